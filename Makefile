@@ -1,0 +1,46 @@
+# The first command on a fresh clone may be any of these; the first one installs into .venv.
+
+MISSION ?= missions/figure_eight_spheres.toml
+VENV := .venv
+INSTALLED := $(VENV)/installed
+
+.PHONY: help install fly test benchmark clean
+
+help:
+	@echo "make fly          fly $(MISSION) with a simulated swarm (MISSION=... for another one)"
+	@echo "make test         ruff, mypy and the tests"
+	@echo "make benchmark    the measurements of speed"
+	@echo "make install      only install, into $(VENV)"
+	@echo "make clean        remove $(VENV) and the caches"
+
+fly: $(INSTALLED)
+	$(VENV)/bin/gcs fly $(MISSION)
+
+test: $(INSTALLED)
+	$(VENV)/bin/ruff check
+	$(VENV)/bin/ruff format --check
+	$(VENV)/bin/mypy
+	$(VENV)/bin/python -m pytest
+
+benchmark: $(INSTALLED)
+	$(VENV)/bin/python -m pytest -o addopts= -s tests/benchmarks
+
+install: $(INSTALLED)
+
+# setuptools comes first and pinned: without build isolation nothing is fetched that constraints.txt does not name.
+$(INSTALLED): pyproject.toml constraints.txt
+	@for python in $(PYTHON) python3.11 python3 python3.12 python3.13 python; do \
+		if $$python -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; then \
+			echo "Installing into $(VENV) with $$($$python --version) (once, about a minute)"; \
+			exec $$python -m venv --clear $(VENV); \
+		fi; \
+	done; \
+	echo "cooplift needs Python 3.11 or newer; found: $$(python3 --version 2>&1 || echo none)." >&2; \
+	echo "Install python3.11, or name one: make PYTHON=/path/to/python3.11" >&2; \
+	exit 1
+	@$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check -c constraints.txt setuptools
+	@$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check --no-build-isolation -c constraints.txt -e '.[dev]'
+	@touch $@
+
+clean:
+	rm -rf $(VENV) build *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis
