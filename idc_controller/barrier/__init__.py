@@ -1,0 +1,1 @@
+"""The safety filter: the formation's hull, exponential barriers on it, and plans that keep them."""

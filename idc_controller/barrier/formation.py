@@ -1,0 +1,94 @@
+"""The formation's hull in flat coordinates: how payload and discs stand for a payload position and acceleration.
+
+With the payload level and the links along g e3 - a, UAV i stands at r + p_i - l_i e3 + lever_i a_xy, lever_i = l_i / (g
+- a_z): when the payload accelerates the hull does not just translate, it shears.
+"""
+
+from __future__ import annotations
+
+import coal
+import numpy as np
+import trimesh
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from idc_controller.parameters import SystemParameters
+
+Array = NDArray[np.float64]
+
+_LINEAR_SEARCH = 32
+"""Up to so many points the distance library looks at all of them, so that their order and facets do not matter."""
+
+
+class Formation:
+    """Payload box and UAV discs, for planning."""
+
+    def __init__(self, parameters: SystemParameters) -> None:
+        self.g = parameters.g
+        self.half = parameters.payload_size / 2.0
+        self.disc_radius = parameters.disc_radius
+        self.lengths = parameters.l
+        self.hover_offsets = parameters.p - np.outer(parameters.l, [0.0, 0.0, 1.0])
+        """UAVs from the payload's centre in hover (N, 3) (m)."""
+        signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+        self._box = signs * self.half
+        n = parameters.number_of_uavs
+        # The rims' outward points alone can lie on the hull.
+        rim = max(1, min(6, (_LINEAR_SEARCH - 8) // n))
+        bearing = np.arctan2(parameters.p[:, 1], parameters.p[:, 0])
+        spread = np.linspace(-np.pi / 2, np.pi / 2, rim) if rim > 1 else np.zeros(1)
+        angle = bearing[:, None] + spread
+        self._rim = self.disc_radius * np.stack([np.cos(angle), np.sin(angle), np.zeros_like(angle)], axis=-1)
+        # The facets of the hull in hover tell the distance library which points are neighbours; the shear of an
+        # accelerated flight hardly changes them.
+        points = self.hull_points(np.zeros((1, 3)))[0]
+        hull = trimesh.convex.convex_hull(points)
+        index = cKDTree(points).query(hull.vertices)[1]
+        self._hulls: list[coal.Convex] = []
+        self._facets = coal.StdVec_Triangle()
+        for triangle in index[hull.faces]:
+            self._facets.append(coal.Triangle(*map(int, triangle)))
+
+    def levers(self, acceleration: Array) -> Array:
+        """``lever_i`` (K, N) (s2) for payload ``acceleration`` (K, 3)."""
+        return self.lengths / np.maximum(self.g - acceleration[:, 2:3], 0.2 * self.g)
+
+    def uav_offsets(self, acceleration: Array) -> Array:
+        """UAVs from the payload's centre (K, N, 3) (m)."""
+        offsets = np.repeat(self.hover_offsets[None], len(acceleration), axis=0)
+        offsets[:, :, :2] += self.levers(acceleration)[:, :, None] * acceleration[:, None, :2]
+        return offsets
+
+    def hull_points(self, acceleration: Array) -> Array:
+        """Points about the payload's centre whose hull is the formation (K, P, 3) (m), rims coarsely."""
+        discs = self.uav_offsets(acceleration)[:, :, None, :] + self._rim
+        K = len(acceleration)
+        box = np.repeat(self._box[None], K, axis=0)
+        return np.concatenate([box, discs.reshape(K, -1, 3)], axis=1)
+
+    def hull(self, points: Array, number: int = 0) -> coal.ShapeBase:
+        """The hull of ``points`` (P, 3) for distance queries, until the next is asked for under the same ``number``."""
+        while number >= len(self._hulls):
+            vertices = coal.StdVec_Vec3s()
+            vertices.extend(list(points))
+            self._hulls.append(coal.Convex(vertices, self._facets))
+        # Its vertices are moved: to make it anew takes ten times as long.
+        hull = self._hulls[number]
+        hull.points()[:] = points
+        return hull
+
+    def box_support(self, normals: Array) -> Array:
+        """Largest ``n . x`` over the level payload box about its centre, for ``normals`` (K, 3) -> (K,)."""
+        return np.abs(normals) @ self.half
+
+    def disc_support(self, normals: Array, acceleration: Array) -> Array:
+        """Largest ``n . x`` over the discs about the payload's centre without their lever's part (K,).
+
+        The discs lie in the rotor planes, which in flight are about normal to g e3 - a; a little is added for what the
+        planes do beyond that.
+        """
+        thrust = acceleration - np.array([0.0, 0.0, self.g])
+        axis = thrust / np.linalg.norm(thrust, axis=1, keepdims=True)
+        along = np.sum(normals * axis, axis=1)
+        flat = np.sqrt(np.maximum(1.0 - along**2, 0.0)) + 0.1
+        return np.max(normals @ self.hover_offsets.T, axis=1) + self.disc_radius * np.minimum(flat, 1.0)

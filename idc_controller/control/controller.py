@@ -1,0 +1,157 @@
+"""The Integrated Decision Controller: reference and estimate in, set-points out (fig:schCont).
+
+Two seams keep it open. Any :class:`~idc_controller.control.tracker.Tracker` can stand in the MPC's place. A
+:class:`~idc_controller.control.safety.SafetyFilter` stands between the mission's trajectory and the tracker and may
+bend it to keep obstacles out of the hull.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from idc_controller.control.force_components import setpoints_from_force_components, state_in_force_components
+from idc_controller.control.safety import SafetyFilter, SafetyReport
+from idc_controller.control.standing import StandingTracker
+from idc_controller.control.tracker import Tracker
+from idc_controller.estimate.estimator import Estimate
+from idc_controller.model.linear import LinearModel
+from idc_controller.parameters import SystemParameters
+from idc_controller.plan.flatness import Load, PayloadTrajectory
+from idc_controller.plan.reference import Reference
+from idc_controller.plan.trajectory import Trajectory
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ControllerSettings:
+    """How fast the load is learnt and how far an error is answered at once."""
+
+    period: float = 0.05
+    """Control period (s)."""
+    horizon: int = 20
+    """Stages over which the tracker wants the reference."""
+    load_time_constant: float = 1.0
+    """With which the reference follows the estimated load (s): it must be slower than the estimate itself."""
+    force_limit: float = 0.4
+    """Largest steady force that the reference leans against, as a share of the payload's weight."""
+    position_error_limit: float = 0.3
+    """An error of the payload's position is answered as if it were at most this (m)."""
+    velocity_error_limit: float = 0.6
+    """The same of its velocity (m/s)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Decision:
+    """Set-points for all UAVs, and how they came about."""
+
+    time: float
+    """When they act (s)."""
+    u: Array
+    """Thrust directions (north, east) of all UAVs, then thrusts (3 N,), in the model's coordinates."""
+    directions: Array
+    """Unit thrust vectors (N, 3) in the world."""
+    thrusts: Array
+    """(N,) (N)"""
+    reference: Reference
+    """What was tracked."""
+    iterations: int
+    infeasible: bool
+    planner_time: float
+    """Spent in the safety filter, by the stopwatch that the caller gave (s)."""
+    tracker_time: float
+    """Spent in the tracker (s)."""
+    safety: SafetyReport
+    """What the safety filter did."""
+
+
+class IntegratedDecisionController:
+    """One object a flight; :meth:`decide` once a control period."""
+
+    def __init__(
+        self,
+        model: LinearModel,
+        tracker: Tracker,
+        safety: SafetyFilter,
+        settings: ControllerSettings,
+        stopwatch: Callable[[], float] = lambda: 0.0,
+    ) -> None:
+        """``stopwatch`` (s) times the parts of a step for the records; it decides nothing."""
+        self.parameters: SystemParameters = model.parameters
+        self.layout = model.layout
+        self.tracker, self.safety, self.settings = tracker, safety, settings
+        self._standing = StandingTracker(model, settings.period)
+        self._tracked: PayloadTrajectory | None = None
+        self._stopwatch = stopwatch
+        self.load = Load(self.parameters.m_0, np.zeros(3))
+        self._times = settings.period * np.append(np.arange(settings.horizon + 1), 0.5)
+
+    def reference(self, mission: PayloadTrajectory) -> Reference:
+        """What is tracked until the next decision, for the estimator; at first the mission itself."""
+        return Reference(self.parameters, self._tracked or mission, self.load)
+
+    def decide(
+        self,
+        estimate: Estimate,
+        mission: Trajectory,
+        *,
+        standing: bool = False,
+        learn_load: bool = True,
+    ) -> Decision:
+        """Set-points that act from ``estimate.time`` on for one period.
+
+        ``standing``: the payload stands on the ground. ``learn_load`` is off while the ground may carry part of it.
+        """
+        begin = self._stopwatch()
+        trajectory = mission if standing else self.safety.filter(estimate.time, mission, estimate)
+        self._tracked = None if standing else trajectory
+        planned = self._stopwatch()
+        if learn_load and not standing:
+            self._learn(estimate)
+        reference = Reference(self.parameters, trajectory, self.load)
+        # The stages 0 .. N_p, then the middle of the first: a set-point is held for one period, and the reference's at
+        # the middle of it leaves the least error.
+        flat = reference.at(estimate.time + self._times)
+        stages = flat.part(slice(0, -1))
+        hover = self.parameters.hover_thrust
+        error = state_in_force_components(estimate.x, self.layout, hover)
+        error -= state_in_force_components(stages.x[0], self.layout, hover)
+        s = self.settings
+        error[self.layout.r_0] = _limited(error[self.layout.r_0], s.position_error_limit)
+        error[self.layout.v_0] = _limited(error[self.layout.v_0], s.velocity_error_limit)
+        ready = self._stopwatch()
+        output = (self._standing if standing else self.tracker).track(error, stages)
+        tracked = self._stopwatch()
+        u = setpoints_from_force_components(output.delta_u, flat.u[-1], self.layout, hover)
+        if not standing:
+            u = self.safety.correct(estimate.time, u, estimate)
+        n = u[self.layout.n_setpoint].reshape(-1, 2)
+        upward = np.sqrt(np.maximum(1.0 - np.sum(n**2, axis=1), 0.0))
+        return Decision(
+            time=estimate.time,
+            u=u,
+            directions=np.column_stack([n, -upward]),
+            thrusts=u[self.layout.f_setpoint],
+            reference=reference,
+            iterations=output.iterations,
+            infeasible=output.infeasible,
+            planner_time=planned - begin,
+            tracker_time=tracked - ready,
+            safety=self.safety.report,
+        )
+
+    def _learn(self, estimate: Estimate) -> None:
+        share = self.settings.period / self.settings.load_time_constant
+        mass = self.load.mass + share * (self.parameters.m_0 + estimate.mass_excess - self.load.mass)
+        limit = self.settings.force_limit * self.parameters.m_0 * self.parameters.g
+        force = self.load.force + share * (_limited(estimate.force, limit) - self.load.force)
+        self.load = Load(float(np.clip(mass, 0.5 * self.parameters.m_0, 2.0 * self.parameters.m_0)), force)
+
+
+def _limited(error: Array, limit: float) -> Array:
+    norm = float(np.linalg.norm(error))
+    return error * (limit / norm) if norm > limit else error

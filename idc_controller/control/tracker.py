@@ -1,0 +1,33 @@
+"""The seam of the tracking controller: any tracker can stand in the MPC's place, as the paper promises."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from idc_controller.plan.flatness import FlatReference
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class TrackingOutput:
+    """What a tracker asks of the vehicles."""
+
+    delta_u: Array
+    """Set-points less the reference's, in force components (3 N,): :mod:`idc_controller.control.force_components`."""
+    iterations: int = 0
+    """Solver iterations; 0 when no constraint was active."""
+    infeasible: bool = False
+    """The constraints could not be met and a fall-back was taken."""
+
+
+class Tracker(Protocol):
+    """Turns the error about a reference into set-points."""
+
+    def track(self, error: Array, reference: FlatReference) -> TrackingOutput:
+        """``error`` (12 + 11 N,) now, ``reference`` over the horizon's stages 0 .. N_p."""
+        ...

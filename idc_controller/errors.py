@@ -1,0 +1,17 @@
+"""The errors of the mathematics."""
+
+
+class IdcError(Exception):
+    """Root of every error raised by ``idc_controller``."""
+
+
+class ParameterError(IdcError):
+    """A physical or tuning parameter has no meaning (negative mass, wrong shape, ...)."""
+
+
+class SolverError(IdcError):
+    """A solver ended without a usable solution."""
+
+
+class TrajectoryError(IdcError):
+    """No trajectory satisfies what was asked (too few points, limits that are not positive, ...)."""

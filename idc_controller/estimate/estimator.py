@@ -1,0 +1,386 @@
+"""The state now, from measurements that come late, twice, out of order or not at all.
+
+A Kalman filter on the linear model, run on the error about the exact flat reference, so that the manoeuvre itself is no
+disturbance to it. Measurements are kept in order of the time they were true; one that comes late takes the filter back
+to before it, and all later ones are applied again. A steady force on the payload and an excess of its mass are
+estimated along with the state, so that neither leaves an offset.
+"""
+
+from __future__ import annotations
+
+import bisect
+from dataclasses import dataclass, field
+from functools import lru_cache
+from itertools import pairwise
+
+import numpy as np
+from filterpy.kalman import KalmanFilter
+from numpy.typing import NDArray
+from scipy.linalg import expm
+from scipy.stats import chi2
+
+from idc_controller.estimate.measurement_model import MeasurementModel
+from idc_controller.estimate.measurements import PAYLOAD, Measurement, MeasurementNoise
+from idc_controller.model.linear import LinearModel
+from idc_controller.plan.flatness import FlatReference
+from idc_controller.plan.reference import Reference
+
+Array = NDArray[np.float64]
+
+PATIENCE = 3
+"""So many times in a row the payload unit may disagree with the prediction before the prediction is doubted."""
+
+
+@dataclass(frozen=True)
+class ProcessNoise:
+    """Densities of the white noise that drives what the model leaves out, each per square root of a second."""
+
+    payload_acceleration: float = 0.005
+    """m/s2"""
+    payload_angular_acceleration: float = 0.008
+    """rad/s2"""
+    link_acceleration: float = 0.004
+    """1/s2"""
+    uav_jerk: float = 1.0
+    """Of the tilt's acceleration (1/s3)."""
+    thrust: float = 0.02
+    """N/s"""
+    force: float = 0.05
+    """Drift of the steady force on the payload (N/s)."""
+    mass: float = 0.005
+    """Drift of the payload's mass (kg/s)."""
+
+
+@dataclass(frozen=True)
+class Surprise:
+    """What is doubted of a prediction that sound measurements contradict: what a blow or a gust changes, no position.
+
+    Standard deviations, added at every moment at which they still contradict it.
+    """
+
+    velocity: float = 0.1
+    """Of the payload (m/s)."""
+    rates: float = 0.1
+    """Of the payload (rad/s)."""
+    link_rate: float = 0.03
+    """1/s"""
+    force: float = 3.0
+    """Of the steady force (N); also the most that it is doubted."""
+
+
+@dataclass(frozen=True)
+class EstimatorSettings:
+    """Noise, gates and memory of the filter."""
+
+    measurement: MeasurementNoise = field(default_factory=MeasurementNoise)
+    process: ProcessNoise = field(default_factory=ProcessNoise)
+    gate_probability: float = 1.0 - 1e-6
+    """Share of sound measurements that the outlier gate lets through."""
+    history: float = 1.0
+    """How late a measurement may come and still count (s)."""
+    simultaneous: float = 0.002
+    """Measurements closer than this are taken as of one moment (s)."""
+    mass_sigma: float = 0.2
+    """Standard deviation of the payload mass about its nominal value (kg)."""
+    force_sigma: float = 0.3
+    """Standard deviation of the steady force at the start (N)."""
+    surprise: Surprise = field(default_factory=Surprise)
+
+
+@dataclass(frozen=True, eq=False)
+class Estimate:
+    """The state at one moment. ``x`` (12 + 11 N,) in the linear model's coordinates, absolute."""
+
+    time: float
+    x: Array
+    force: Array
+    """Steady force on the payload (3,) (N, NED)."""
+    mass_excess: float
+    """Payload mass less nominal (kg)."""
+    covariance: Array
+    """Of x, force and mass excess (12 + 11 N + 4,) squared."""
+
+
+@dataclass(frozen=True, eq=False)
+class InnovationRecord:
+    """How well the measurements of one moment agreed with the prediction."""
+
+    time: float
+    normalised_squared: float
+    """y' S^-1 y of what was accepted; on average ``degrees_of_freedom``."""
+    degrees_of_freedom: int
+    rejected: tuple[tuple[int, str], ...]
+    """Source and kind of what the gate kept out."""
+    surprised: bool = False
+    """Most sources disagreed at once, and the prediction was given up for them."""
+
+
+@dataclass
+class _Moment:
+    time: float
+    measurements: dict[tuple[int, type], list[Measurement]]
+
+
+@dataclass(frozen=True, eq=False)
+class _Snapshot:
+    time: float
+    x: Array  # absolute, augmented
+    P: Array
+
+
+class _Way:
+    """The times between the last update and the moment asked for, with the exact reference at all of them."""
+
+    def __init__(
+        self,
+        start: float,
+        moments: list[float],
+        end: float,
+        setpoints: list[tuple[float, Array | None]],
+        reference: Reference,
+    ) -> None:
+        switches = [t for t, _ in setpoints if start + 1e-6 < t < end - 1e-6]
+        times = sorted([start, *moments, end])
+        times += [t for t in switches if min(abs(t - other) for other in times) > 1e-6]
+        self.edges = sorted(set(times))
+        middles = [(a + b) / 2 for a, b in pairwise(self.edges)]
+        self.flat = reference.at(np.array([*self.edges, *middles]))
+        self.setpoints: list[Array | None] = []
+        """In force from each edge to the next."""
+        for middle in middles:
+            at = bisect.bisect_right(setpoints, middle, key=lambda entry: entry[0]) - 1
+            self.setpoints.append(setpoints[at][1] if at >= 0 else None)
+
+    def middle(self, k: int) -> int:
+        """Where the reference between edge ``k`` and the next stands in ``flat``."""
+        return len(self.edges) + k
+
+    def interval_us(self, k: int) -> int:
+        """Time from edge ``k`` to the next (us)."""
+        return max(round((self.edges[k + 1] - self.edges[k]) * 1e6), 1)
+
+
+class Estimator:
+    """Kalman filter with memory. Times are those of the measurements' clock (s)."""
+
+    def __init__(self, model: LinearModel, settings: EstimatorSettings) -> None:
+        self.model, self.settings, self.layout = model, settings, model.layout
+        self.measurement_model = MeasurementModel(model, settings.measurement)
+        n = self.layout.size
+        self.size = n + 4
+        self._force, self._mass = slice(n, n + 3), n + 3
+        self._filter = KalmanFilter(dim_x=self.size, dim_z=1)
+        self._filter.x = np.zeros(self.size)
+        self._moments: list[_Moment] = []
+        self._snapshots: list[_Snapshot] = []
+        self._setpoints: list[tuple[float, Array | None]] = []
+        self._gates = {m: float(chi2.ppf(settings.gate_probability, m)) for m in (4, 6)}
+        self.innovations: list[InnovationRecord] = []
+        self.discarded_late = 0
+        self._payload_refused = 0
+        self._noise = lru_cache(maxsize=256)(self._process_noise)
+        self._transition = lru_cache(maxsize=256)(self._plain_transition)
+
+    def start(self, time: float, x: Array) -> None:
+        """Begin at ``time`` from the state ``x`` (12 + 11 N,), known to within a start on the ground."""
+        layout, s = self.layout, self.settings
+        sigma = np.empty(self.size)
+        sigma[layout.r_0], sigma[layout.v_0] = 0.05, 0.02
+        sigma[layout.Theta], sigma[layout.omega] = 0.02, 0.02
+        sigma[layout.s], sigma[layout.s_dot] = 0.02, 0.02
+        sigma[layout.n], sigma[layout.n_dot], sigma[layout.n_acc] = 0.03, 0.1, 0.3
+        sigma[layout.f] = 0.5
+        sigma[self._force], sigma[self._mass] = s.force_sigma, s.mass_sigma
+        full = np.concatenate([x, np.zeros(4)])
+        self._moments, self._setpoints = [], []
+        self._snapshots = [_Snapshot(time, full, np.diag(sigma**2))]
+
+    @property
+    def time(self) -> float:
+        """Time of the last measurement that was applied (s)."""
+        return self._snapshots[-1].time
+
+    def add_setpoint(self, effective: float, u: Array | None) -> None:
+        """Set-points (3 N,) that act from ``effective`` on; None: the vehicles are held (cradles, pad), errors stay."""
+        bisect.insort(self._setpoints, (effective, u), key=lambda entry: entry[0])
+
+    def add(self, measurement: Measurement) -> bool:
+        """Take a measurement; False when it is older than the memory or older than the start."""
+        oldest = max(self._snapshots[0].time, self.time - self.settings.history)
+        if measurement.time <= oldest:
+            self.discarded_late += 1
+            return False
+        key = (measurement.source, type(measurement))
+        at = bisect.bisect_left(self._moments, measurement.time - self.settings.simultaneous, key=lambda m: m.time)
+        if at < len(self._moments) and self._moments[at].time <= measurement.time + self.settings.simultaneous:
+            moment = self._moments[at]
+        else:
+            moment = _Moment(measurement.time, {})
+            self._moments.insert(at, moment)
+        copies = moment.measurements.setdefault(key, [])
+        if copies and key[0] == PAYLOAD and moment.time <= self.time:
+            return True  # another vehicle's relay of what was applied already
+        copies.append(measurement)
+        if moment.time <= self.time:
+            while self._snapshots[-1].time >= moment.time:
+                self._snapshots.pop()
+        return True
+
+    def estimate(self, time: float, reference: Reference) -> Estimate:
+        """Apply all that was added and predict to ``time`` (s), the moment at which the next set-points act."""
+        pending = self._moments[bisect.bisect_right(self._moments, self.time, key=lambda m: m.time) :]
+        time = max(time, self.time, pending[-1].time if pending else time)
+        way = _Way(self.time, [m.time for m in pending], time, self._setpoints, reference)
+        believed = np.append(reference.load.force, reference.load.mass - self.model.parameters.m_0)
+        n = self.layout.size
+
+        def absolute(error: Array, k: int) -> Array:
+            x = error.copy()
+            x[:n] += way.flat.x[k]
+            x[n:] += believed
+            return x
+
+        kf = self._filter
+        last = self._snapshots[-1]
+        kf.x, kf.P = last.x.copy(), last.P
+        kf.x[:n] -= way.flat.x[0]
+        kf.x[n:] -= believed
+        waiting = iter(pending)
+        moment = next(waiting, None)
+        for k in range(len(way.edges)):
+            if k:
+                self._predict(way, k - 1)
+            while moment is not None and moment.time == way.edges[k]:
+                self._update(moment, way.flat, k)
+                self._snapshots.append(_Snapshot(moment.time, absolute(kf.x, k), kf.P))
+                moment = next(waiting, None)
+        x = absolute(kf.x, len(way.edges) - 1)
+        self._forget()
+        return Estimate(time, x[:n], x[self._force], float(x[self._mass]), kf.P)
+
+    def _predict(self, way: _Way, k: int) -> None:
+        """From edge ``k`` to the next, under the set-points in force."""
+        u = way.setpoints[k]
+        delta_u = np.zeros(self.layout.inputs) if u is None else u - way.flat.u[way.middle(k)]
+        F, B = self._transition_along(way.interval_us(k), way.flat, way.middle(k))
+        self._filter.predict(u=delta_u, F=F, B=B, Q=self._noise(way.interval_us(k)))
+
+    def _update(self, moment: _Moment, flat: FlatReference, k: int) -> None:
+        """Correct the filter's error state, at time ``k`` of ``flat``, by what was measured then."""
+        kf, n = self._filter, self.layout.size
+        names, parts, rows, variances = [], [], [], []
+        for (source, kind), copies in moment.measurements.items():
+            others = [m for m in copies[1:] if not m.agrees(copies[0])]
+            told = [self.measurement_model.innovation(m, flat, k) for m in (copies if others else copies[:1])]
+            # Relays of one sample agree; where one of them is corrupted the median is not.
+            parts.append(told[0][0] if len(told) == 1 else np.median([y for y, _ in told], axis=0))
+            rows.append(told[0][1])
+            variances.append(self.measurement_model.channels[source, kind].variance)
+            names.append((source, kind.__name__))
+        y = np.concatenate(parts)
+        H = np.zeros((len(y), self.size))
+        H[:, :n] = np.vstack(rows)
+        R = np.concatenate(variances)
+        residual = y - H @ kf.x
+        S = H @ kf.P @ H.T
+        S[np.diag_indices_from(S)] += R
+
+        sizes = [len(part) for part in parts]
+        keep, rejected = self._gate(residual, S, sizes, names)
+        surprised = self._is_surprised(names, rejected)
+        if surprised:
+            self._doubt()
+            S = H @ kf.P @ H.T
+            S[np.diag_indices_from(S)] += R
+            keep, rejected = self._gate(residual, S, sizes, names)
+        nis = 0.0
+        if keep.any():
+            kf.update(y[keep], R=np.diag(R[keep]), H=H[keep])
+            nis = float(kf.y @ kf.SI @ kf.y)
+            kf.P = (kf.P + kf.P.T) / 2
+        self.innovations.append(
+            InnovationRecord(moment.time, nis, int(keep.sum()), tuple(rejected), surprised=surprised)
+        )
+
+    def _gate(
+        self, residual: Array, S: Array, sizes: list[int], names: list[tuple[int, str]]
+    ) -> tuple[NDArray[np.bool_], list[tuple[int, str]]]:
+        """Which rows to keep, and the names of the measurements that disagree too much with the prediction."""
+        starts = np.concatenate([[0], np.cumsum(sizes)[:-1]])
+        keep = np.ones(len(residual), dtype=bool)
+        rejected: list[tuple[int, str]] = []
+        for size in set(sizes):
+            of_size = [k for k, other in enumerate(sizes) if other == size]
+            rows = starts[of_size][:, None] + np.arange(size)
+            r = residual[rows]
+            squared = np.sum(r * np.linalg.solve(S[rows[:, :, None], rows[:, None, :]], r[..., None])[..., 0], axis=1)
+            for k, row, value in zip(of_size, rows, squared, strict=True):
+                if not value <= self._gates[size]:  # nan is out, too
+                    keep[row] = False
+                    rejected.append(names[k])
+        return keep, rejected
+
+    def _is_surprised(self, names: list[tuple[int, str]], rejected: list[tuple[int, str]]) -> bool:
+        """Whether it is the prediction that is wrong.
+
+        Sound sensors do not fail together, so most sources of three or more are right. The payload unit, which alone
+        sees at once what pushes the payload, is right when it insists. Otherwise a filter that went on believing itself
+        would refuse every measurement from here on.
+        """
+        sources = {source for source, _ in names}
+        refused = {source for source, _ in rejected}
+        if PAYLOAD in sources:
+            self._payload_refused = self._payload_refused + 1 if PAYLOAD in refused else 0
+        return self._payload_refused >= PATIENCE or (len(sources) >= 3 and 2 * len(refused) > len(sources))
+
+    def _doubt(self) -> None:
+        layout, surprise = self.layout, self.settings.surprise
+        added = np.zeros(self.size)
+        added[layout.v_0], added[layout.omega] = surprise.velocity**2, surprise.rates**2
+        added[layout.s_dot] = surprise.link_rate**2
+        added[self._force] = np.maximum(surprise.force**2 - np.diag(self._filter.P)[self._force], 0.0)
+        self._filter.P = self._filter.P + np.diag(added)
+
+    def _forget(self) -> None:
+        horizon = self.time - self.settings.history
+        keep = max(bisect.bisect_right(self._snapshots, horizon, key=lambda s: s.time) - 1, 0)
+        del self._snapshots[:keep]
+        oldest = self._snapshots[0].time
+        del self._moments[: bisect.bisect_right(self._moments, oldest, key=lambda m: m.time)]
+        del self._setpoints[: max(bisect.bisect_right(self._setpoints, oldest, key=lambda e: e[0]) - 1, 0)]
+
+    def _transition_along(self, interval_us: int, flat: FlatReference, k: int) -> tuple[Array, Array]:
+        """F and B; an excess of mass acts along g e3 - a, which turns with the manoeuvre."""
+        F, B, B_d = self._transition(interval_us)
+        direction = np.array([0.0, 0.0, self.model.parameters.g]) - flat.payload[2, k]
+        F = F.copy()
+        F[: self.layout.size, self._mass] = B_d @ direction
+        return F, B
+
+    def _plain_transition(self, interval_us: int) -> tuple[Array, Array, Array]:
+        n = self.layout.size
+        A_k, B_k, B_dk = self.model.discretised(interval_us)
+        F = np.eye(self.size)
+        F[:n, :n], F[:n, self._force] = A_k, B_dk
+        return F, np.vstack([B_k, np.zeros((4, self.layout.inputs))]), B_dk
+
+    def _process_noise(self, interval_us: int) -> Array:
+        """Van Loan's integral of the process noise over the interval."""
+        p, layout, n = self.settings.process, self.layout, self.layout.size
+        density = np.zeros(self.size)
+        density[layout.v_0] = p.payload_acceleration
+        density[layout.omega] = p.payload_angular_acceleration
+        density[layout.s_dot] = p.link_acceleration
+        density[layout.n_acc] = p.uav_jerk
+        density[layout.f] = p.thrust
+        density[self._force], density[self._mass] = p.force, p.mass
+        A = np.zeros((self.size, self.size))
+        A[:n, :n], A[:n, self._force] = self.model.A, self.model.B_d
+        A[:n, self._mass] = self.model.B_d[:, 2] * self.model.parameters.g
+        dt = interval_us * 1e-6
+        m = self.size
+        block = np.zeros((2 * m, 2 * m))
+        block[:m, :m], block[:m, m:], block[m:, m:] = -A, np.diag(density**2), A.T
+        big = expm(block * dt)
+        Q = big[m:, m:].T @ big[:m, m:]
+        return (Q + Q.T) / 2

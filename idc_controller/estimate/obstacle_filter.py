@@ -1,0 +1,156 @@
+"""One obstacle from surface points: which shape it is, how large, where, and how it moves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from idc_controller.barrier.obstacles import Shape
+from idc_controller.estimate.flat_surface import FlatSurface
+from idc_controller.estimate.motion_bank import MotionBank, MotionModels
+from idc_controller.estimate.round_surface import RoundSurface
+from idc_controller.estimate.surface_points import SurfacePoints
+
+Array = NDArray[np.float64]
+Surface = RoundSurface | FlatSurface
+
+KINDS = ("sphere", "pole", "wall")
+#: What a score must be better by for the less simple shape, and for a change of mind.
+_COMPLEXITY = {"sphere": 0.0, "pole": 0.4, "wall": 0.8}
+_HYSTERESIS = 1.0
+_SMOOTHING = 0.3
+_LEAST_POINTS = 5
+_EVERY_FRAME_UNTIL, _THEN_EVERY = 6, 20
+_DOUBTFUL = 2.5  # a score from which other shapes are tried at once
+
+
+@dataclass(frozen=True)
+class FilterSettings:
+    """Of one obstacle's filter."""
+
+    growth_limit: float = 0.5
+    """The growth is never more than this (m)."""
+    static_speed: float = 0.1
+    """An obstacle whose speed is surely below this is taken to stand (m/s)."""
+
+
+class ObstacleFilter:
+    """One obstacle. Times in s, places NED in m.
+
+    ``known``: its shape is known and only its motion is to be found.
+    """
+
+    def __init__(
+        self,
+        models: MotionModels,
+        first: SurfacePoints,
+        known: Shape | None = None,
+        settings: FilterSettings | None = None,
+    ) -> None:
+        self.settings = settings or FilterSettings()
+        self.frames = 0
+        self._known = known
+        self._scores: dict[str, float] = {}
+        self._surface = _surface(known.kind if known else "sphere", known)
+        predicted = self._surface.guess(first) if known is None or known.kind != "wall" else first.points.mean(axis=0)
+        fit = self._surface.fit(first, predicted, iterations=8)
+        self._bank = MotionBank(models, first.time, fit.position, fit.variance)
+        self.frames = 1
+        if known is None:
+            self._scores["sphere"] = fit.score
+            self._consider_kinds(first)
+
+    @property
+    def time(self) -> float:
+        """Of the last frame (s)."""
+        return self._bank.time
+
+    @property
+    def kind(self) -> str:
+        """sphere, pole or wall."""
+        return self._surface.kind
+
+    @property
+    def shape(self) -> Shape:
+        """As it is believed to be."""
+        return self._surface.shape
+
+    @property
+    def state(self) -> tuple[Array, Array, Array]:
+        """Position of the centre, velocity and acceleration (3,) at :attr:`time`."""
+        position, velocity, acceleration = self._bank.state
+        return position + self._surface.offset, velocity, acceleration
+
+    @property
+    def weights(self) -> dict[str, float]:
+        """How likely each motion model is."""
+        return dict(zip(self._bank.models.names, self._bank.weight.tolist(), strict=True))
+
+    @property
+    def is_static(self) -> bool:
+        """Whether it surely stands."""
+        _, velocity, _ = self._bank.state
+        return bool(self._bank.weight[0] > 0.5 and np.linalg.norm(velocity) < self.settings.static_speed)
+
+    def advance(self, time: float) -> None:
+        """Carry the motion on to ``time``, if it is not there yet."""
+        self._bank.advance(time)
+
+    @property
+    def position_sigma(self) -> float:
+        """Standard deviation of the position on the axis that is known worst, at :attr:`time` (m)."""
+        return float(np.sqrt(self._bank.position_variance.max()))
+
+    def update(self, seen: SurfacePoints) -> None:
+        """One frame of points on this obstacle; one that comes late is carried to the present by the motion."""
+        bank = self._bank
+        if seen.time > bank.time:
+            bank.advance(seen.time)
+        elif seen.time < bank.time:
+            late = bank.time - seen.time
+            _, velocity, _ = bank.state
+            seen = seen.moved(velocity * late, bank.time, (0.5 * late) ** 2)
+        fit = self._surface.fit(seen, bank.state[0])
+        bank.measured(fit.position, fit.variance)
+        self.frames += 1
+        if self._known is None and len(seen.points) >= _LEAST_POINTS:
+            self._note(self.kind, fit.score)
+            if self.frames <= _EVERY_FRAME_UNTIL or self.frames % _THEN_EVERY == 0 or fit.score > _DOUBTFUL:
+                self._consider_kinds(seen)
+
+    def predict(self, times: Array) -> tuple[Array, Array]:
+        """Where the centre will be at ``times`` (K,): (K, 3), and by how much to take the body larger (K,)."""
+        mean, covariance = self._bank.predict(times)
+        # Gershgorin's bound on the largest eigenvalue; exact where one axis, or one diagonal, dominates.
+        variance = np.abs(covariance).sum(axis=-1).max(axis=-1) + self._surface.size_sigma**2
+        return mean + self._surface.offset, np.minimum(np.sqrt(variance), self.settings.growth_limit)
+
+    def _note(self, kind: str, score: float) -> None:
+        old = self._scores.get(kind)
+        self._scores[kind] = score if old is None else old + _SMOOTHING * (score - old)
+
+    def _consider_kinds(self, seen: SurfacePoints) -> None:
+        """Try the other shapes on this frame alone, and change to one that is clearly better."""
+        if len(seen.points) < _LEAST_POINTS:
+            return
+        tried: dict[str, tuple[Surface, Array]] = {}
+        for kind in KINDS:
+            if kind == self.kind:
+                continue
+            surface = _surface(kind, None)
+            fit = surface.fit(seen, surface.guess(seen), iterations=8)
+            self._note(kind, fit.score)
+            tried[kind] = surface, fit.position
+        cost = {kind: self._scores[kind] + _COMPLEXITY[kind] for kind in KINDS}
+        best = min(KINDS, key=lambda kind: cost[kind])
+        hysteresis = _HYSTERESIS if self.frames > 1 else 0.0
+        if best != self.kind and cost[best] < cost[self.kind] - hysteresis:
+            old = self._bank.state[0]
+            self._surface, place = tried[best]
+            self._bank.shift(place - old)
+
+
+def _surface(kind: str, known: Shape | None) -> Surface:
+    return FlatSurface(known) if kind == "wall" else RoundSurface(kind, known)

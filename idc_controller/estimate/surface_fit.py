@@ -1,0 +1,65 @@
+"""What all fits of a shape to surface points have in common."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+_SCORE_CAP = 16.0
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """Where an obstacle's reference point is in one frame."""
+
+    position: Array
+    """(3,) (m)"""
+    variance: Array
+    """(3,) (m2)"""
+    score: float
+    """Mean squared distance of the points to the surface over its variance: about 1 for the right shape."""
+
+
+def score(residual: Array, variance: Array) -> float:
+    """See :class:`Fit`; single points that do not belong count for little."""
+    return float(np.mean(np.minimum(residual**2 / variance, _SCORE_CAP)))
+
+
+class EndOfSurface:
+    """How far a surface reaches in one direction, from what is seen of it frame by frame."""
+
+    def __init__(self, margin: float) -> None:
+        """``margin`` (m) is added while the end itself was not in the sensors' range."""
+        self._margin = margin
+        self._value = -np.inf
+        self._is_seen = False
+
+    @property
+    def outermost(self) -> float:
+        """As far as the surface may be taken to reach (m)."""
+        return float(self._value if self._is_seen else self._value + self._margin)
+
+    def seen(self, along: Array, cut: NDArray[np.bool_]) -> None:
+        """Points of one frame, by their coordinate in that direction (n,), and whether they end the sensor's range."""
+        last = int(np.argmax(along))
+        furthest, is_cut = float(along[last]), bool(cut[last])
+        beyond = furthest - self._value
+        if beyond > 0.3:
+            self._value, self._is_seen = furthest, not is_cut
+        elif is_cut:
+            if not self._is_seen:
+                self._value = max(self._value, furthest)
+        elif beyond > -0.3:
+            # Noise makes the outermost of several points a little too far out: the safe side.
+            self._value += (0.2 if self._is_seen else 1.0) * beyond
+            self._is_seen = True
+        else:
+            self._value += 0.15 * beyond
+
+    def moved(self, by: float) -> None:
+        """The origin of the coordinate has moved by (m)."""
+        self._value -= by

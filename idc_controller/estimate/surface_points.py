@@ -1,0 +1,59 @@
+"""Points that range sensors found on one obstacle at one moment."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class SurfacePoints:
+    """n points on the surface of one obstacle, from one or more sensors, at ``time`` (s). World frame, m."""
+
+    time: float
+    points: Array
+    """(n, 3)"""
+    origins: Array
+    """Where the sensor of each point was (n, 3)."""
+    cut: NDArray[np.bool_]
+    """Whether a point lies at the end of its sensor's range, so that more may lie behind (n,)."""
+    noise: float
+    """Standard deviation along the line of sight (m)."""
+    pose_variance: Array
+    """Variance of each point from its sensor's own position and attitude, on every axis (n,) (m2)."""
+    sensors: int = 1
+    """How many sensors contributed: what of their poses' errors averages out."""
+
+    @property
+    def rays(self) -> Array:
+        """Unit vectors from the sensors to the points (n, 3)."""
+        ray = self.points - self.origins
+        return ray / np.maximum(np.sqrt(np.einsum("ij,ij->i", ray, ray)), 1e-6)[:, None]
+
+    def moved(self, by: Array, time: float, variance: float) -> SurfacePoints:
+        """The same points as they would have been seen at ``time``, if the obstacle has moved by (3,) (m) until then.
+
+        ``variance`` (m2) of that motion adds to the points'.
+        """
+        return SurfacePoints(
+            time, self.points + by, self.origins + by, self.cut, self.noise, self.pose_variance + variance, self.sensors
+        )
+
+
+def joined(parts: list[SurfacePoints]) -> SurfacePoints:
+    """Several sensors' points of one obstacle at (nearly) one moment."""
+    if len(parts) == 1:
+        return parts[0]
+    return SurfacePoints(
+        max(part.time for part in parts),
+        np.concatenate([part.points for part in parts]),
+        np.concatenate([part.origins for part in parts]),
+        np.concatenate([part.cut for part in parts]),
+        parts[0].noise,
+        np.concatenate([part.pose_variance for part in parts]),
+        len(parts),
+    )

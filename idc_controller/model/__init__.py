@@ -1,0 +1,1 @@
+"""Models of the payload, its links and its UAVs."""

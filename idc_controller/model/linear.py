@@ -1,0 +1,202 @@
+"""Linear model about hover (eq:disSys), in minimal coordinates, with the onboard attitude loop and the motor lag.
+
+The paper linearises with thrust and torque as inputs and with three-vectors for the links; that form has uncontrollable
+modes and leaves out what the vehicles do with a set-point. Here the inputs are what goes over the wire (attitude and
+thrust set-points) and every state is controllable. Coordinates, all deviations from hover in the world frame (NED):
+
+========== ========= ======================================================================================
+``r_0``    (3,)      payload position (m)
+``v_0``    (3,)      payload velocity (m/s)
+``Theta``  (3,)      payload roll, pitch, yaw (rad)
+``omega``  (3,)      payload rates (rad/s)
+``s``      (N, 2)    link tilt: north and east component of the unit vector from UAV to payload
+``s_dot``  (N, 2)    its rate (1/s)
+``n``      (N, 2)    UAV tilt: north and east component of the unit vector along the thrust
+``n_dot``  (N, 2)    its rate (1/s)
+``n_acc``  (N, 2)    its acceleration (1/s2), which lags the attitude loop's demand by the motors
+``f``      (N,)      thrust (N)
+========== ========= ======================================================================================
+
+Inputs: ``n`` set-points (N, 2), then thrust set-points (N,). Disturbance: a force on the payload (3,) (N).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import expm
+
+from idc_controller.parameters import SystemParameters
+from idc_controller.rotations import hat
+
+Array = NDArray[np.float64]
+E3 = np.array([0.0, 0.0, 1.0])
+
+
+@dataclass(frozen=True)
+class StateLayout:
+    """Where each coordinate stands in the state vector (12 + 11 N) and the input vector (3 N)."""
+
+    number_of_uavs: int
+
+    @property
+    def size(self) -> int:
+        """Length of the state vector."""
+        return 12 + 11 * self.number_of_uavs
+
+    @property
+    def inputs(self) -> int:
+        """Length of the input vector."""
+        return 3 * self.number_of_uavs
+
+    r_0 = slice(0, 3)
+    v_0 = slice(3, 6)
+    Theta = slice(6, 9)
+    omega = slice(9, 12)
+
+    def _pairs(self, k: int) -> slice:
+        begin = 12 + 2 * k * self.number_of_uavs
+        return slice(begin, begin + 2 * self.number_of_uavs)
+
+    @cached_property
+    def s(self) -> slice:
+        """Link tilts."""
+        return self._pairs(0)
+
+    @cached_property
+    def s_dot(self) -> slice:
+        """Link tilt rates."""
+        return self._pairs(1)
+
+    @cached_property
+    def n(self) -> slice:
+        """UAV tilts."""
+        return self._pairs(2)
+
+    @cached_property
+    def n_dot(self) -> slice:
+        """UAV tilt rates."""
+        return self._pairs(3)
+
+    @cached_property
+    def n_acc(self) -> slice:
+        """UAV tilt accelerations."""
+        return self._pairs(4)
+
+    @cached_property
+    def f(self) -> slice:
+        """Thrusts."""
+        return slice(12 + 10 * self.number_of_uavs, self.size)
+
+    @cached_property
+    def n_setpoint(self) -> slice:
+        """Tilt set-points in the input vector."""
+        return slice(0, 2 * self.number_of_uavs)
+
+    @cached_property
+    def f_setpoint(self) -> slice:
+        """Thrust set-points in the input vector."""
+        return slice(2 * self.number_of_uavs, self.inputs)
+
+
+class LinearModel:
+    """Continuous matrices ``A`` (n, n), ``B`` (n, 3N), ``B_d`` (n, 3), and their exact discretisation."""
+
+    def __init__(self, parameters: SystemParameters) -> None:
+        self.parameters = parameters
+        self.layout = StateLayout(parameters.number_of_uavs)
+        self.A, self.B, self.B_d = _continuous(parameters, self.layout)
+        self.discretised = lru_cache(maxsize=256)(self._discretised)
+
+    def _discretised(self, interval_us: int) -> tuple[Array, Array, Array]:
+        """``A_k, B_k, B_dk`` for inputs held over ``interval_us`` microseconds (whole, so that they are kept)."""
+        n, m = self.B.shape
+        block = np.zeros((n + m + 3, n + m + 3))
+        block[:n, :n], block[:n, n : n + m], block[:n, n + m :] = self.A, self.B, self.B_d
+        step = expm(block * (interval_us * 1e-6))
+        return step[:n, :n].copy(), step[:n, n : n + m].copy(), step[:n, n + m :].copy()
+
+    @cached_property
+    def uav_position_rows(self) -> Array:
+        """``C`` with UAV positions = C x, (3N, n): r_i = r_0 + Theta x p_i - l_i s_i to first order."""
+        return _kinematic_rows(self.parameters, self.layout, self.layout.r_0, self.layout.Theta, self.layout.s)
+
+    @cached_property
+    def uav_velocity_rows(self) -> Array:
+        """``C`` with UAV velocities = C x, (3N, n)."""
+        return _kinematic_rows(self.parameters, self.layout, self.layout.v_0, self.layout.omega, self.layout.s_dot)
+
+
+def _kinematic_rows(
+    parameters: SystemParameters, layout: StateLayout, translation: slice, rotation: slice, tilt: slice
+) -> Array:
+    rows = np.zeros((3 * layout.number_of_uavs, layout.size))
+    for i, (p, l) in enumerate(zip(parameters.p, parameters.l, strict=True)):
+        uav = slice(3 * i, 3 * i + 3)
+        rows[uav, translation] = np.eye(3)
+        # With the links at rest in the world a payload rotation moves the attachment points alone.
+        rows[uav, rotation] = -hat(p)
+        rows[3 * i, tilt.start + 2 * i] = rows[3 * i + 1, tilt.start + 2 * i + 1] = -l
+    return rows
+
+
+def _continuous(parameters: SystemParameters, layout: StateLayout) -> tuple[Array, Array, Array]:
+    """Newton-Euler with the link tensions eliminated, to first order.
+
+    UAV i:    m_i a_i = F_i + m_i g e3 + T_i s_i,   a_i = dv_0 + domega x p_i - l_i dds_i
+    payload:  m_0 dv_0 = m_0 g e3 - sum T_i s_i + d,   J_0 domega = -sum p_i x R_0^T T_i s_i
+    """
+    N, n = layout.number_of_uavs, layout.size
+    tension = parameters.m_0 * parameters.payload_share * parameters.g
+    hover = parameters.hover_thrust
+    T_m, kp, kd = parameters.motor_time_constant, parameters.attitude_kp, parameters.attitude_kd
+
+    # Rows of generalised force on (r_0, Theta): functions of the state, of the thrusts' lateral part, of d.
+    mass = np.zeros((6, 6))
+    mass[:3, :3], mass[3:, 3:] = parameters.m_0 * np.eye(3), parameters.J_0
+    force = np.zeros((6, n))
+    s, f = layout.s, layout.f
+    for i, p in enumerate(parameters.p):
+        jacobian = np.hstack([np.eye(3), -hat(p)])  # acceleration of the attachment point
+        # The vertical motion of a UAV is that of its attachment point: dT_i = m_i a_z + df_i.
+        mass += parameters.m[i] * np.outer(jacobian[2], jacobian[2])
+        force[:, f.start + i] -= jacobian[2]
+        # Laterally the link pulls the payload with T_i s_i, turned into the payload frame for its moment.
+        for axis in range(2):
+            force[:, s.start + 2 * i + axis] -= tension[i] * jacobian[axis]
+        force[3:, layout.Theta] += hat(p) @ (tension[i] * -hat(E3))
+    acceleration = np.linalg.solve(mass, force)
+
+    A = np.zeros((n, n))
+    A[layout.r_0, layout.v_0] = np.eye(3)
+    A[layout.v_0] = acceleration[:3]
+    A[layout.Theta, layout.omega] = np.eye(3)
+    A[layout.omega] = acceleration[3:]
+    B_d = np.zeros((n, 3))
+    disturbed = np.linalg.solve(mass, np.vstack([np.eye(3), np.zeros((3, 3))]))
+    B_d[layout.v_0], B_d[layout.omega] = disturbed[:3], disturbed[3:]
+
+    A[s, layout.s_dot] = np.eye(2 * N)
+    A[layout.n, layout.n_dot] = np.eye(2 * N)
+    A[layout.n_dot, layout.n_acc] = np.eye(2 * N)
+    A[layout.n_acc, layout.n] = -kp / T_m * np.eye(2 * N)
+    A[layout.n_acc, layout.n_dot] = -kd / T_m * np.eye(2 * N)
+    A[layout.n_acc, layout.n_acc] = -1.0 / T_m * np.eye(2 * N)
+    A[f, f] = -1.0 / T_m * np.eye(N)
+    for i, (p, l) in enumerate(zip(parameters.p, parameters.l, strict=True)):
+        lateral = np.hstack([np.eye(3), -hat(p)])[:2]
+        rows = slice(layout.s_dot.start + 2 * i, layout.s_dot.start + 2 * i + 2)
+        # l dds = (acceleration of the attachment point) - (lateral force on the UAV) / m_i
+        A[rows] = lateral @ acceleration / l
+        B_d[rows] = lateral @ disturbed / l
+        for axis in range(2):
+            A[rows.start + axis, s.start + 2 * i + axis] -= tension[i] / (parameters.m[i] * l)
+            A[rows.start + axis, layout.n.start + 2 * i + axis] -= hover[i] / (parameters.m[i] * l)
+
+    B = np.zeros((n, layout.inputs))
+    B[layout.n_acc, layout.n_setpoint] = kp / T_m * np.eye(2 * N)
+    B[f, layout.f_setpoint] = 1.0 / T_m * np.eye(N)
+    return A, B, B_d

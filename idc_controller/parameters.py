@@ -1,0 +1,125 @@
+"""Physical parameters of the payload-UAV system (Table I of the paper), for any number of UAVs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from idc_controller.errors import ParameterError
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class SystemParameters:
+    """Payload, links and UAVs. SI units; payload and UAV frames are forward-right-down.
+
+    The attributes carry the paper's symbols:
+
+    - ``m_0`` payload mass (kg), ``J_0`` its inertia about the centre of mass (3, 3) (kg m2)
+    - ``payload_size`` edge lengths of the payload box (3,) (m)
+    - ``m`` UAV masses (N,) (kg), ``J`` their inertias (N, 3, 3) (kg m2)
+    - ``p`` attachment points in the payload frame (N, 3) (m)
+    - ``l`` link lengths (N,) (m)
+    - ``disc_radius`` radius of the disc that covers a UAV's rotors (m)
+    - ``thrust_max`` largest thrust of one UAV (N)
+    - ``motor_time_constant`` of the first-order rotor-speed lag (s)
+    - ``attitude_kp``, ``attitude_kd`` gains of the onboard attitude loop, torque = J (kp e - kd omega) (1/s2, 1/s)
+    - ``g`` gravity (m/s2)
+
+    Raises :class:`ParameterError` for shapes that do not agree and for values without a meaning.
+    """
+
+    m_0: float
+    J_0: Array
+    payload_size: Array
+    m: Array
+    J: Array
+    p: Array
+    l: Array  # the paper's symbol
+    disc_radius: float
+    thrust_max: float
+    motor_time_constant: float
+    attitude_kp: float
+    attitude_kd: float
+    g: float = 9.81
+
+    def __post_init__(self) -> None:
+        n = len(self.m)
+        shapes = {"J_0": (3, 3), "payload_size": (3,), "m": (n,), "J": (n, 3, 3), "p": (n, 3), "l": (n,)}
+        for name, shape in shapes.items():
+            value = np.array(getattr(self, name), dtype=float)
+            if value.shape != shape:
+                raise ParameterError(f"{name} has shape {value.shape}, expected {shape}")
+            if not np.all(np.isfinite(value)):
+                raise ParameterError(f"{name} is not finite")
+            value.setflags(write=False)
+            object.__setattr__(self, name, value)
+        if n < 3:
+            raise ParameterError(f"{n} UAVs cannot hold a rigid payload level: three or more are needed")
+        positive = {
+            "m_0": self.m_0, "m": self.m, "l": self.l, "payload_size": self.payload_size,
+            "disc_radius": self.disc_radius, "thrust_max": self.thrust_max, "g": self.g,
+            "motor_time_constant": self.motor_time_constant, "attitude_kp": self.attitude_kp,
+            "attitude_kd": self.attitude_kd,
+        }  # fmt: skip
+        for name, number in positive.items():
+            if not np.all(np.asarray(number) > 0.0):
+                raise ParameterError(f"{name} must be positive, got {number}")
+        for name, inertia in [("J_0", self.J_0), *((f"J[{i}]", J_i) for i, J_i in enumerate(self.J))]:
+            if not np.allclose(inertia, inertia.T) or np.linalg.eigvalsh(inertia)[0] <= 0.0:
+                raise ParameterError(f"{name} must be symmetric and positive definite")
+        if np.linalg.matrix_rank(self._moment_balance()) < 3:
+            raise ParameterError("the attachment points lie on one line: the payload would tip")
+        hover = self.hover_thrust
+        if np.any(hover <= 0.0) or np.any(hover >= self.thrust_max):
+            raise ParameterError(
+                f"hover asks for {np.round(hover, 1).tolist()} N a UAV; it must lie in 0 .. {self.thrust_max} N"
+            )
+
+    @property
+    def number_of_uavs(self) -> int:
+        """Number of UAVs, N."""
+        return len(self.m)
+
+    @cached_property
+    def m_T(self) -> float:
+        """Mass of payload and UAVs together (kg), the paper's m_T."""
+        return float(self.m_0 + self.m.sum())
+
+    @cached_property
+    def payload_share(self) -> Array:
+        """Share of the payload's weight that each link bears at hover, (N,), summing to one.
+
+        The least-norm solution of force and moment balance; 1/N each for a symmetric layout.
+        """
+        return np.linalg.pinv(self._moment_balance()) @ np.array([1.0, 0.0, 0.0])
+
+    @cached_property
+    def hover_thrust(self) -> Array:
+        """Thrust of each UAV at the equilibrium eq:EqPt (N,) (N), corrected to hold for any layout."""
+        return (self.m + self.m_0 * self.payload_share) * self.g
+
+    def with_payload_mass(self, m_0: float) -> SystemParameters:
+        """The same system with another payload mass (kg); the inertia scales with it."""
+        return replace(self, m_0=m_0, J_0=self.J_0 * (m_0 / self.m_0))
+
+    def _moment_balance(self) -> Array:
+        """Rows: sum of shares, moments about x and y of unit vertical loads at the attachment points."""
+        return np.vstack([np.ones(len(self.p)), self.p[:, 1], -self.p[:, 0]])
+
+
+def polygon_attachments(number_of_uavs: int, side: float, height: float) -> Array:
+    """Attachment points on a regular polygon, (N, 3) in the payload frame (m).
+
+    ``side`` is the distance between neighbours (m), so that UAVs of any number keep the same distance; ``height``
+    is the points' z in the payload frame (m, negative: above the centre). For four UAVs, ``side`` 1.0 and ``height``
+    -0.25 these are the corners of the paper's Table I, in its order.
+    """
+    radius = side / (2.0 * np.sin(np.pi / number_of_uavs))
+    # UAV 1 stands front right; the rest follow against the sense of the yaw angle, as in Table I.
+    angle = np.pi / number_of_uavs - 2.0 * np.pi * np.arange(number_of_uavs) / number_of_uavs
+    return np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.full(number_of_uavs, height)]).round(12)

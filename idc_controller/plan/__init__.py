@@ -1,0 +1,1 @@
+"""From what the mission asks to a reference that can be flown."""

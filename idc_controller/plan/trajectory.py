@@ -1,0 +1,209 @@
+"""What a reference trajectory is: position to snap at many times at once, at rest before and after."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from idc_controller.errors import TrajectoryError
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Largest Euclidean norms that a trajectory's derivatives may reach.
+
+    ``speed`` m/s, ``acceleration`` m/s^2, ``jerk`` m/s^3, ``snap`` m/s^4; all positive and finite.
+
+    Raises:
+        TrajectoryError: a limit is not positive or not finite.
+    """
+
+    speed: float
+    acceleration: float
+    jerk: float
+    snap: float
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            positive(getattr(self, field.name), f"limit {field.name}")
+
+    def as_array(self) -> Array:
+        """The four limits by order of derivative, shape (4,)."""
+        return np.array([self.speed, self.acceleration, self.jerk, self.snap])
+
+
+class Trajectory(ABC):
+    """A path of the payload in time: four times continuously differentiable, NED, SI.
+
+    Before ``start`` and after ``end`` (s) it rests: position held, derivatives exactly zero.
+    """
+
+    @property
+    @abstractmethod
+    def start(self) -> float:
+        """Time at which the motion begins, s."""
+
+    @property
+    @abstractmethod
+    def end(self) -> float:
+        """Time from which on it rests, s; ``inf`` while that is not known."""
+
+    @abstractmethod
+    def derivatives(self, times: ArrayLike, order: int = 4) -> Array:
+        """Position and its time derivatives.
+
+        Args:
+            times: shape (K,), s, in any order.
+            order: highest derivative, 0 to 4.
+
+        Returns:
+            Shape (order + 1, K, 3): position m, velocity m/s, acceleration, jerk, snap in NED.
+        """
+
+    @abstractmethod
+    def stop(self, time: float) -> Trajectory:
+        """The same trajectory up to ``time`` (s), then to rest along its path as soon as its limits allow.
+
+        It leaves this one continuously up to snap and never comes to rest later than this one would.
+        """
+
+    def waypoints(self, begin: float, end: float) -> Array:
+        """Where it passes the points that it was asked to pass between two times (s): (M, 3), m, NED."""
+        return np.empty((0, 3))
+
+    def position(self, time: float) -> Array:
+        """Position in NED at one time, shape (3,), m."""
+        return np.asarray(self.derivatives(np.array([time]), 0)[0, 0])
+
+    def then(self, follow: Callable[[float, Array], Trajectory]) -> Trajectory:
+        """This trajectory, followed by another one from rest to rest.
+
+        Args:
+            follow: called once with this one's end (s) and last position (3,) as soon as the end is known
+                and something beyond it is asked for; returns a trajectory that starts there, not earlier.
+        """
+        return SequenceTrajectory(self, follow)
+
+
+class RestTrajectory(Trajectory):
+    """Stays at ``position_in_world`` (3,), m, for ever; nominally from ``start`` to ``end``, s."""
+
+    def __init__(self, position_in_world: ArrayLike, start: float = 0.0, end: float | None = None) -> None:
+        self._position = point(position_in_world, "position")
+        self._start = finite(start, "start")
+        self._end = self._start if end is None else float(end)
+        if not self._end >= self._start:
+            raise TrajectoryError(f"end {end} s lies before start {start} s")
+
+    @property
+    def start(self) -> float:
+        """Time from which on it counts, s."""
+        return self._start
+
+    @property
+    def end(self) -> float:
+        """Time at which something may follow, s (may be ``inf``)."""
+        return self._end
+
+    def derivatives(self, times: ArrayLike, order: int = 4) -> Array:
+        """See ``Trajectory.derivatives``."""
+        times = checked_times(times, order)
+        result = np.zeros((order + 1, len(times), 3))
+        result[0] = self._position
+        return result
+
+    def stop(self, time: float) -> Trajectory:
+        """At rest already: ends at ``time``, s, if it would not have ended before."""
+        return RestTrajectory(self._position, self._start, min(self._end, max(self._start, time)))
+
+
+class SequenceTrajectory(Trajectory):
+    """One trajectory, then another that is made when the end of the first is known (``Trajectory.then``)."""
+
+    def __init__(self, first: Trajectory, follow: Callable[[float, Array], Trajectory]) -> None:
+        self._first = first
+        self._follow = follow
+        self._second: Trajectory | None = None
+
+    @property
+    def start(self) -> float:
+        """Start of the first trajectory, s."""
+        return self._first.start
+
+    @property
+    def end(self) -> float:
+        """End of the second trajectory, s; ``inf`` while the first one's end is not known."""
+        return self._next().end if math.isfinite(self._first.end) else math.inf
+
+    def derivatives(self, times: ArrayLike, order: int = 4) -> Array:
+        """See ``Trajectory.derivatives``."""
+        times = checked_times(times, order)
+        if len(times) and times.min() > self._first.end:
+            return self._next().derivatives(times, order)
+        # Asked first: a lazy trajectory learns of its end while it looks ahead.
+        result = self._first.derivatives(np.minimum(times, self._first.end), order)
+        later = times > self._first.end
+        if later.any():
+            result[:, later] = self._next().derivatives(times[later], order)
+        return result
+
+    def waypoints(self, begin: float, end: float) -> Array:
+        """See ``Trajectory.waypoints``."""
+        found = self._first.waypoints(begin, end)
+        if end > self._first.end:
+            found = np.vstack([found, self._next().waypoints(max(begin, self._first.end), end)])
+        return found
+
+    def stop(self, time: float) -> Trajectory:
+        """See ``Trajectory.stop``; what was to follow is dropped unless it has begun."""
+        self.derivatives([time], 0)
+        if time < self._first.end:
+            return self._first.stop(time)
+        return SequenceTrajectory(self._first, lambda _end, _position: self._next().stop(time))
+
+    def _next(self) -> Trajectory:
+        if self._second is None:
+            end = self._first.end
+            self._second = self._follow(end, self._first.position(end))
+            if self._second.start < end - 1e-9:
+                raise TrajectoryError(f"what starts at {self._second.start:g} s cannot follow what ends at {end:g} s")
+        return self._second
+
+
+def checked_times(times: ArrayLike, order: int) -> Array:
+    """``times`` as an array (K,); raises TrajectoryError unless finite, and ``order`` is 0 to 4."""
+    array = np.atleast_1d(np.asarray(times, dtype=float))
+    if array.ndim != 1 or not np.isfinite(array).all():
+        raise TrajectoryError("times must be a list of finite numbers")
+    if not 0 <= order <= 4:
+        raise TrajectoryError(f"derivatives exist for order 0 to 4, not {order}")
+    return array
+
+
+def finite(value: float, name: str) -> float:
+    """``value`` as a float; raises TrajectoryError unless it is finite."""
+    if not math.isfinite(value):
+        raise TrajectoryError(f"{name} must be a finite number, not {value}")
+    return float(value)
+
+
+def positive(value: float, name: str) -> float:
+    """``value`` as a float; raises TrajectoryError unless it is finite and above zero."""
+    if not (math.isfinite(value) and value > 0.0):
+        raise TrajectoryError(f"{name} must be a positive number, not {value}")
+    return float(value)
+
+
+def point(value: ArrayLike, name: str) -> Array:
+    """``value`` as a point (3,); raises TrajectoryError unless it is three finite numbers."""
+    array = np.array(value, dtype=float)
+    if array.shape != (3,) or not np.isfinite(array).all():
+        raise TrajectoryError(f"{name} must be three finite numbers (north, east, down), not {value!r}")
+    return array
