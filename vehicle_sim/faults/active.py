@@ -1,0 +1,47 @@
+"""A fault of a flight: its parameters, its schedule, its random numbers, and what it has done."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from gcs.faults import KINDS, Direction, Kind, read_settings
+from gcs.mission import Fault
+from vehicle_sim.faults.schedule import Schedule
+
+_STREAM = 2_000_003  # tells these generators apart from the sensors'
+WORLD = 0  # stands for the vehicle where a fault is not of one
+
+
+@dataclass
+class ActiveFault:
+    """``number`` counts the faults of the mission from 1; ``seen`` and ``disturbed`` are datagrams or samples."""
+
+    number: int
+    fault: Fault
+    kind: Kind
+    settings: Any
+    schedule: Schedule
+    seed: int
+    vehicles: tuple[int, ...]
+    seen: int = 0
+    disturbed: int = 0
+
+    @classmethod
+    def of(cls, number: int, fault: Fault, seed: int, team: int) -> ActiveFault:
+        """A mission's fault. Raises :class:`gcs.errors.UnusableInput`."""
+        settings = read_settings(fault.kind, fault.settings)
+        vehicles = tuple(range(1, team + 1)) if fault.vehicles is None else fault.vehicles
+        schedule = Schedule(fault.start, fault.duration, fault.every, fault.times)
+        return cls(number, fault, KINDS[fault.kind], settings, schedule, seed, vehicles)
+
+    @property
+    def direction(self) -> Direction | None:
+        """The mission's, or the kind's own."""
+        return self.fault.direction or self.kind.direction
+
+    def generator(self, vehicle: int, *which: int) -> np.random.Generator:
+        """Random numbers by the mission's seed, the fault's number in it and the vehicle, and nothing else."""
+        return np.random.default_rng([self.seed, _STREAM, self.number, vehicle, *which])

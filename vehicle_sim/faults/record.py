@@ -1,0 +1,41 @@
+"""What the faults of a flight did: ``faults.json`` in the run folder."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from gcs.faults.record import FAULTS_FILE
+from gcs.record.run_folder import write_json
+from vehicle_sim.faults.passage import FaultPassage
+
+_TOLD = 1000  # occurrences that are listed
+
+
+def record_faults(folder: Path, passage: FaultPassage, end: float) -> Path:
+    """Write the file; ``end`` of the flight in s. Raises :class:`gcs.errors.UnusableInput` where it cannot."""
+    return write_json(folder / FAULTS_FILE, faults_record(passage, end))
+
+
+def faults_record(passage: FaultPassage, end: float) -> dict[str, Any]:
+    """What the file holds."""
+    take_off = passage.faults[0].schedule.take_off if passage.faults else None
+    return {
+        "take_off_s": take_off,
+        "end_s": end,
+        "faults": [
+            {
+                "number": fault.number,
+                "kind": fault.fault.kind,
+                "line": fault.fault.line,
+                "start": fault.fault.start,
+                "vehicles": list(fault.vehicles) if fault.kind.of_vehicles else None,
+                "direction": fault.direction,
+                "occurrences": (happened := fault.schedule.occurrences(end, _TOLD))[0],
+                "activations": happened[1],
+                "seen": fault.seen,
+                "disturbed": fault.disturbed,
+            }
+            for fault in passage.faults
+        ],
+    }

@@ -1,0 +1,72 @@
+"""When a fault is there: once or again and again, from take-off on."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+TOLERANCE = 1e-6  # s: sums of steps are not exact, and drivers round to microseconds
+
+
+class Moment(NamedTuple):
+    """A time at which a fault is there: for how long already (s), and the how-manieth time it is, from 0."""
+
+    elapsed: float
+    occurrence: int
+
+
+class Schedule:
+    """Start (s after take-off), duration (s; None: no end), period (s; None: once) and how often (None: no end)."""
+
+    def __init__(
+        self, start: float, duration: float | None = None, every: float | None = None, times: int | None = None
+    ) -> None:
+        self._start = start
+        self._duration = math.inf if duration is None else duration
+        self._every = every
+        self._last = 0 if every is None else math.inf if times is None else times - 1
+        self.take_off: float | None = None
+        """When the first vehicle lifted off (s); None: not yet, and no fault is there."""
+
+    def at(self, now: float) -> Moment | None:
+        """What ``now`` (s) is to the fault; None: it is not there."""
+        if self.take_off is None:
+            return None
+        elapsed = now - self.take_off - self._start + TOLERANCE
+        if elapsed < 0.0:
+            return None
+        occurrence = 0
+        if self._every is not None:
+            occurrence = int(min(elapsed // self._every, self._last))
+            elapsed -= occurrence * self._every
+        if elapsed >= self._duration:
+            return None
+        return Moment(max(elapsed - TOLERANCE, 0.0), occurrence)
+
+    def end_after(self, now: float) -> float:
+        """When the occurrence that is there ``now`` ends (s; infinity: never)."""
+        moment = self.at(now)
+        return math.inf if moment is None else now - moment.elapsed + self._duration
+
+    def time_there(self, now: float) -> float:
+        """For how long in all it has been there until ``now`` (s)."""
+        if self.take_off is None:
+            return 0.0
+        elapsed = now - self.take_off - self._start
+        if elapsed <= 0.0:
+            return 0.0
+        if self._every is None:
+            return min(elapsed, self._duration)
+        whole = min(elapsed // self._every, self._last)
+        return whole * self._duration + min(elapsed - whole * self._every, self._duration)
+
+    def occurrences(self, now: float, limit: int) -> tuple[int, list[tuple[float, float | None]]]:
+        """How often it began until ``now``, and begin and end (s after take-off; None: not over) of the first ones."""
+        if self.take_off is None or now - self.take_off + TOLERANCE < self._start:
+            return 0, []
+        flown = now - self.take_off + TOLERANCE
+        count = 1
+        if self._every is not None:
+            count = int(min((flown - self._start) // self._every, self._last)) + 1
+        begins = [self._start + k * (self._every or 0.0) for k in range(min(count, limit))]
+        return count, [(b, b + self._duration if b + self._duration <= flown else None) for b in begins]

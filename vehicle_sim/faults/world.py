@@ -1,0 +1,111 @@
+"""Faults of the world: wind, by a simple model of drag, and a load that changes.
+
+Drag is quadratic in the air's velocity against the body, along that velocity, at the centre of mass:
+F = 1/2 rho c_d A |u| u. The payload's area is what its box shows to the wind; of a UAV the product c_d A is the same
+from all sides. Thrust, torques and the links feel no wind. Without a wind fault there is no air at all.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from gcs.faults import world as kinds
+from vehicle_sim.faults.active import WORLD, ActiveFault
+from vehicle_sim.passage import Forces
+from vehicle_sim.world import World
+from vehicle_sim.world_state import Vector, into_body
+
+AIR_DENSITY = 1.225  # kg/m3
+PAYLOAD_DRAG = 1.05  # c_d of a box
+UAV_DRAG_AREA = 0.03  # m2, c_d A: a quadrotor of 0.7 kg
+
+
+class Wind:
+    """The air's velocity by one fault."""
+
+    def __init__(self, fault: ActiveFault) -> None:
+        self.fault = fault
+        self._generator = fault.generator(WORLD)
+        self._gust = [0.0, 0.0, 0.0]
+        self._occurrence = -1
+        self._elapsed = 0.0
+
+    def velocity(self, now: float) -> Vector | None:
+        """In the world (m/s); None while the fault is not there. Times must not go back."""
+        moment = self.fault.schedule.at(now)
+        if moment is None:
+            return None
+        settings: kinds.Wind = self.fault.settings
+        if moment.occurrence != self._occurrence:
+            self._occurrence, self._elapsed, self._gust = moment.occurrence, moment.elapsed, [0.0, 0.0, 0.0]
+        if settings.gust > 0.0:
+            # First-order noise, exact for any step: its spectrum is that of Dryden's longitudinal gusts.
+            keep = math.exp(-(moment.elapsed - self._elapsed) / settings.gust_time)
+            new = settings.gust * math.sqrt(1.0 - keep * keep)
+            shares = (new, new, 0.5 * new)
+            normals = self._generator.standard_normal(3).tolist()
+            self._gust = [keep * g + s * n for g, s, n in zip(self._gust, shares, normals, strict=True)]
+        self._elapsed = moment.elapsed
+        risen = 1.0
+        if moment.elapsed < settings.rise:
+            risen = 0.5 - 0.5 * math.cos(math.pi * moment.elapsed / settings.rise)
+        x, y, z = (risen * (v + g) for v, g in zip(settings.velocity, self._gust, strict=True))
+        return x, y, z
+
+
+class WorldFaults:
+    """All faults of the world of one flight."""
+
+    def __init__(self, faults: Sequence[ActiveFault]) -> None:
+        self._winds = [Wind(fault) for fault in faults if isinstance(fault.settings, kinds.Wind)]
+        self._loads = [fault for fault in faults if isinstance(fault.settings, kinds.PayloadMass)]
+        self._change = 0.0
+
+    def act(self, world: World, now: float) -> Forces | None:
+        """Set the load, and give the drag on payload and UAVs (N); None: no air moves."""
+        if self._loads:
+            self._weigh(world, now)
+        air = None
+        for wind in self._winds:
+            velocity = wind.velocity(now)
+            if velocity is not None:
+                wind.fault.seen += 1
+                wind.fault.disturbed += 1
+                air = velocity if air is None else (air[0] + velocity[0], air[1] + velocity[1], air[2] + velocity[2])
+        return None if air is None else _drag(world, air)
+
+    def _weigh(self, world: World, now: float) -> None:
+        total = 0.0
+        for fault in self._loads:
+            if fault.schedule.at(now) is not None:
+                fault.seen += 1
+                fault.disturbed += 1
+                total += fault.settings.change
+        if total != self._change:
+            self._change = total
+            world.set_payload_mass(max(world.parameters.m_0 + total, kinds.LEAST_MASS))
+
+
+def _drag(world: World, air: Vector) -> Forces:
+    state = world.state()
+    relative = _minus(air, state.payload_velocity_in_world)
+    length, width, height = (float(edge) for edge in world.parameters.payload_size)
+    # |u| times what the box shows to u: the sum over its faces of their share in u.
+    x, y, z = into_body(state.payload_quaternion, relative)
+    area_times_speed = abs(x) * width * height + abs(y) * length * height + abs(z) * length * width
+    factor = 0.5 * AIR_DENSITY * PAYLOAD_DRAG * area_times_speed
+    payload = _times(factor, relative)
+    uavs = []
+    for uav in state.uavs:
+        relative = _minus(air, uav.velocity_in_world)
+        uavs.append(_times(0.5 * AIR_DENSITY * UAV_DRAG_AREA * math.hypot(*relative), relative))
+    return payload, uavs
+
+
+def _minus(a: Vector, b: Vector) -> Vector:
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+def _times(factor: float, a: Vector) -> Vector:
+    return factor * a[0], factor * a[1], factor * a[2]

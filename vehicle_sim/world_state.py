@@ -1,0 +1,74 @@
+"""What the world knows of itself, north-east-down, and the way there from the engine's z-up frame.
+
+The engine's world is north-west-up and its bodies are forward-left-up. Both differ from the project's frames by half a
+turn about the first axis, so a vector and the vector part of a quaternion change the same way: (x, -y, -z).
+The engine's quaternions are x-first. Nothing outside the world modules sees either.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+Vector = tuple[float, float, float]
+Quaternion = tuple[float, float, float, float]
+
+
+@dataclass(slots=True, frozen=True)
+class UavState:
+    """The true state of one UAV.
+
+    ``position_in_world`` (m) and ``velocity_in_world`` (m/s) of its centre of mass, NED; ``quaternion`` body to
+    world, w first; ``rates_in_body`` angular velocity in its own frame (rad/s); ``thrust`` of the last step (N);
+    ``cradled``: held by its cradle.
+    """
+
+    position_in_world: Vector
+    quaternion: Quaternion
+    velocity_in_world: Vector
+    rates_in_body: Vector
+    thrust: float
+    cradled: bool
+
+
+@dataclass(slots=True, frozen=True)
+class WorldState:
+    """The true state at ``time`` (s) since the world was made.
+
+    Payload: ``payload_position_in_world`` (m) and ``payload_velocity_in_world`` (m/s) of the centre of mass, NED;
+    ``payload_quaternion`` payload frame to world, w first; ``payload_rates_in_payload`` angular velocity in the
+    payload frame (rad/s). ``uavs`` in the order of the system's parameters.
+    """
+
+    time: float
+    payload_position_in_world: Vector
+    payload_quaternion: Quaternion
+    payload_velocity_in_world: Vector
+    payload_rates_in_payload: Vector
+    uavs: tuple[UavState, ...]
+
+
+def flipped(v: Sequence[float]) -> Vector:
+    """A vector between the engine's frames and the project's, either way."""
+    return v[0], -v[1], -v[2]
+
+
+def quaternion_from_engine(q: Sequence[float]) -> Quaternion:
+    """x-first, forward-left-up to north-west-up -> w-first, forward-right-down to north-east-down; w >= 0."""
+    if q[3] < 0.0:
+        return -q[3], -q[0], q[1], q[2]
+    return q[3], q[0], -q[1], -q[2]
+
+
+def quaternion_to_engine(q: Sequence[float]) -> Quaternion:
+    """The inverse of :func:`quaternion_from_engine`."""
+    return q[1], -q[2], -q[3], q[0]
+
+
+def into_body(q: Quaternion, v: Vector) -> Vector:
+    """The vector ``v`` in the frame whose attitude is the w-first quaternion ``q`` (body to world)."""
+    w, x, y, z = q
+    a, b, c = v
+    # v + 2 w (v x u) + 2 u x (u x v), u the vector part: the rotation by the conjugate.
+    s, t, r = 2.0 * (b * z - c * y), 2.0 * (c * x - a * z), 2.0 * (a * y - b * x)
+    return a + w * s + t * z - r * y, b + w * t + r * x - s * z, c + w * r + s * y - t * x
