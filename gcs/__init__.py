@@ -1,0 +1,1 @@
+"""The ground: telemetry in, set-points out, and the mission in between."""

@@ -1,0 +1,25 @@
+"""What is wrong with a file: every reason, one line each."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from gcs.errors import UnusableInput
+
+
+class UnusableFile(UnusableInput):
+    """A file that cannot be used.
+
+    ``reasons`` holds every reason that was found, one line each: file, line or item, field, reason.
+    ``str(error)`` is the first of them, and says how many more there are.
+    """
+
+    def __init__(self, reasons: Sequence[str]) -> None:
+        self.reasons = tuple(_one_line(reason) for reason in reasons)
+        more = len(self.reasons) - 1
+        super().__init__(self.reasons[0] + (f" (and {more} more)" if more else ""))
+
+
+def _one_line(text: str) -> str:
+    """``text`` without line breaks or control characters, which a hostile file could bring in."""
+    return "".join(c if c.isprintable() else " " for c in text)[:1000]

@@ -1,0 +1,1 @@
+"""Random courses, and the command that flies many of them."""

@@ -1,0 +1,71 @@
+"""Missions and system files as text: the project's ``.toml``, from the model's own objects."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from gcs.config.text_file import read_text
+from gcs.config.toml_file import read_toml
+from gcs.mission.model import Limits, Lissajous, Pole, Sphere, Wall
+
+
+def mission_text(
+    name: str,
+    seed: int,
+    reference: Lissajous | Mapping[str, Any],
+    obstacles: Sequence[Sphere | Pole | Wall],
+    limits: Limits,
+    comments: Sequence[str] = (),
+) -> str:
+    """A mission file. ``reference`` is a figure eight or the keys of a table of kind waypoints."""
+    keys = {"kind": "waypoints", **reference} if isinstance(reference, Mapping) else _fields(reference)
+    tables = [
+        "\n".join(f"# {comment}" for comment in comments),
+        _table("[mission]", {"name": name, "seed": seed}),
+        _table("[reference]", keys),
+        *(_table("[[obstacle]]", _fields(obstacle)) for obstacle in obstacles),
+        _table("[limits]", _fields(limits)),
+    ]
+    return "\n\n".join(table for table in tables if table) + "\n"
+
+
+def system_text(base: Path, changes: Mapping[str, Any]) -> str:
+    """The system file ``base`` with other values, ``changes``, by key: ``{"avoidance.margin": 0.25}``.
+
+    Raises :class:`KeyError` for a key that the file does not have, :class:`gcs.config.UnusableFile` like ``read_toml``.
+    """
+    file, lines = read_toml(base), read_text(base).splitlines()
+    for key, value in changes.items():
+        lines[file.lines[tuple(key.split("."))] - 1] = f"{key.rpartition('.')[2]} = {toml_value(value)}"
+    return "\n".join(lines) + "\n"
+
+
+def _fields(value: Any) -> dict[str, Any]:
+    """The fields of a dataclass that are set, what it is first."""
+    fields = {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
+    first = [key for key in ("name", "kind", "shape") if key in fields]
+    order = [*first, *(key for key in fields if key not in first)]
+    return {key: fields[key] for key in order if fields[key] is not None}
+
+
+def _table(header: str, keys: Mapping[str, Any]) -> str:
+    return "\n".join([header, *(f"{key} = {toml_value(value)}" for key, value in keys.items())])
+
+
+def toml_value(value: Any) -> str:
+    """A value of TOML."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return json.dumps(value)  # a basic string of TOML
+    if isinstance(value, int):
+        return str(value)
+    if isinstance(value, float):
+        return repr(value)
+    if dataclasses.is_dataclass(value):
+        return "{ " + ", ".join(f"{key} = {toml_value(v)}" for key, v in _fields(value).items()) + " }"
+    return "[" + ", ".join(toml_value(item) for item in value) + "]"

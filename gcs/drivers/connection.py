@@ -1,0 +1,48 @@
+"""The ground's socket."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Iterator
+
+from gcs.errors import UnusableInput
+from gcs.wire.address import Address
+
+RECEIVE_BUFFER = 4 * 1024 * 1024  # bytes: a whole team's telemetry while the ground thinks
+DATAGRAM_MAX = 65536
+
+
+class Connection:
+    """One UDP socket for all vehicles, so that datagrams are read in the order in which they came."""
+
+    def __init__(self, local: Address = ("127.0.0.1", 0)) -> None:
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, RECEIVE_BUFFER)
+        try:
+            self.socket.bind(local)
+        except OSError as error:
+            self.socket.close()
+            raise UnusableInput(f"udp://{local[0]}:{local[1]}: {error.strerror}") from None
+        self.socket.setblocking(False)
+
+    def send(self, datagram: bytes, address: Address) -> None:
+        """Send, or lose: a full buffer or a closed port is what a lossy link looks like."""
+        try:
+            self.socket.sendto(datagram, address)
+        except OSError:
+            return
+
+    def receive(self) -> Iterator[tuple[bytes, Address]]:
+        """All datagrams that have come."""
+        while True:
+            try:
+                datagram, sender = self.socket.recvfrom(DATAGRAM_MAX)
+            except BlockingIOError:
+                return
+            except OSError:
+                continue  # the echo of a datagram to a closed port
+            yield datagram, sender
+
+    def close(self) -> None:
+        """Close the socket."""
+        self.socket.close()

@@ -1,0 +1,79 @@
+"""Lockstep: the world's clock is the ground's clock (see :mod:`gcs.wire.lockstep`)."""
+
+from __future__ import annotations
+
+import math
+import select
+from collections.abc import Callable
+
+from gcs.drivers.connection import Connection
+from gcs.drivers.interrupt import Interrupt
+from gcs.ground_station import GroundStation
+from gcs.wire.address import Address
+from gcs.wire.lockstep import Done, Tick, decode_tick
+
+ASK_AGAIN = 0.5  # s of wall time after which an unanswered join is repeated
+PATIENCE = 20.0  # s of wall time without a tick after which the world is taken for lost
+
+
+def run_in_lockstep(
+    station: GroundStation,
+    connection: Connection,
+    clock_address: Address,
+    interrupt: Interrupt,
+    *,
+    progress: Callable[[], None] = lambda: None,
+    gone: Callable[[], str | None] = lambda: None,
+) -> None:
+    """Run ``station`` until its flight has ended, one exchange with the world at a time.
+
+    ``gone`` tells why the world cannot be there any more, if it is known.
+    """
+    connection.send(Done(0, None).encode(), clock_address)
+    landing = False
+    waited = 0.0
+    joined = False
+    inbox: list[tuple[bytes, Address]] = []
+    while not station.ended:
+        tick = _next_tick(connection, clock_address, inbox)
+        if tick is None:
+            ready, _, _ = select.select([connection.socket], [], [], ASK_AGAIN)
+            if ready:
+                continue
+            waited += ASK_AGAIN
+            if (reason := gone()) is not None:
+                station.flight.give_up(reason)
+                break
+            if waited >= PATIENCE:
+                station.flight.give_up(f"the simulated world does not answer for {PATIENCE:g} s")
+                break
+            if not joined:
+                connection.send(Done(0, None).encode(), clock_address)
+            continue
+        joined, waited = True, 0.0
+        now = tick.time_us * 1e-6
+        if interrupt.requested and not landing:
+            landing = True
+            station.break_off(now, "interrupted", interrupted=True)
+        for datagram, sender in inbox:
+            station.receive(datagram, sender, now)
+        inbox.clear()
+        for datagram, address in station.datagrams_to_send(now):
+            connection.send(datagram, address)
+        progress()
+        due = station.next_timer()
+        next_us = None if due is None else max(math.ceil(due * 1e6 - 1e-3), tick.time_us + 1)
+        connection.send(Done(tick.serial, next_us, station.ended).encode(), clock_address)
+    if joined:
+        connection.send(Done(0, None, leaving=True).encode(), clock_address)
+
+
+def _next_tick(connection: Connection, clock_address: Address, inbox: list[tuple[bytes, Address]]) -> Tick | None:
+    """The next tick that has come, with all datagrams before it put into ``inbox``."""
+    for datagram, sender in connection.receive():
+        if sender == clock_address:
+            if (tick := decode_tick(datagram)) is not None:
+                return tick
+        else:
+            inbox.append((datagram, sender))
+    return None

@@ -1,0 +1,50 @@
+"""Real time: UDP on the monotonic clock, which may run faster or slower than the world's."""
+
+from __future__ import annotations
+
+import select
+import time
+from collections.abc import Callable
+
+from gcs.drivers.connection import Connection
+from gcs.drivers.interrupt import Interrupt
+from gcs.ground_station import GroundStation
+
+LONGEST_WAIT = 0.1  # s of wall time, so that an interrupt is seen
+
+
+def run_in_real_time(
+    station: GroundStation,
+    connection: Connection,
+    interrupt: Interrupt,
+    *,
+    speed: float = 1.0,
+    clock: Callable[[], float] = time.monotonic,
+    progress: Callable[[], None] = lambda: None,
+    gone: Callable[[], str | None] = lambda: None,
+) -> None:
+    """Run ``station`` until its flight has ended. ``speed`` is ground seconds a wall second.
+
+    ``gone`` tells why the vehicles cannot be there any more, if it is known.
+    """
+    start = clock()
+    landing = False
+    while not station.ended:
+        now = (clock() - start) * speed
+        if interrupt.requested and not landing:
+            landing = True
+            station.break_off(now, "interrupted", interrupted=True)
+        if (reason := gone()) is not None:
+            station.flight.give_up(reason)
+        for datagram, sender in connection.receive():
+            station.receive(datagram, sender, now)
+        for datagram, address in station.datagrams_to_send(now):
+            connection.send(datagram, address)
+        station.thought((clock() - start) * speed - now)
+        progress()
+        due = station.next_timer()
+        if due is None:
+            continue
+        wait = due / speed - (clock() - start)
+        if wait > 0.0:
+            select.select([connection.socket], [], [], min(wait, LONGEST_WAIT))

@@ -1,0 +1,16 @@
+"""The errors of the ground station; the command line turns them into one line and an exit code."""
+
+
+class GcsError(Exception):
+    """Root of every error raised by ``gcs``."""
+
+
+class UnusableInput(GcsError):
+    """A mission, configuration or argument that cannot be used: exit code 2.
+
+    ``str(error)`` is one line: file, line or item, field, reason.
+    """
+
+
+class FlightAborted(GcsError):
+    """A flight that could not be begun or ended early, safely: exit code 1."""

@@ -1,0 +1,6 @@
+"""The kinds of fault and their parameters: what a mission may ask for. The simulator has what they do."""
+
+from gcs.faults.kind import Direction, Kind
+from gcs.faults.kinds import KINDS, read_settings, settings_adapter
+
+__all__ = ["KINDS", "Direction", "Kind", "read_settings", "settings_adapter"]

@@ -1,0 +1,41 @@
+"""The table of all kinds, and the strict reading of their parameters."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from functools import cache
+from typing import Any
+
+from pydantic import TypeAdapter, ValidationError
+
+from gcs.errors import UnusableInput
+from gcs.faults import link, sensors, timing, values, world  # noqa: F401 -- each fills the table
+from gcs.faults.kind import KINDS
+
+_FAMILIES = ("link", "timing", "values", "sensors", "world")
+_sorted = sorted(KINDS.items(), key=lambda item: _FAMILIES.index(item[1].family))
+KINDS.clear()
+KINDS.update(_sorted)
+
+__all__ = ["KINDS", "read_settings", "settings_adapter"]
+
+
+@cache
+def settings_adapter(name: str) -> TypeAdapter[Any]:
+    """Reads the parameters of a kind of that name, which must exist."""
+    return TypeAdapter(KINDS[name].settings)
+
+
+def read_settings(name: str, settings: Mapping[str, Any]) -> Any:
+    """The parameters of a fault, as the dataclass of its kind. Raises :class:`UnusableInput`."""
+    if name not in KINDS:
+        raise UnusableInput(f"fault: there is no kind '{name}'")
+    try:
+        return settings_adapter(name).validate_json(json.dumps(dict(settings), default=str), strict=True)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        where = ".".join(str(part) for part in first["loc"])
+        raise UnusableInput(f"fault {name}: {where}: {first['msg']}") from error
+    except ValueError as error:
+        raise UnusableInput(f"fault {name}: {error}") from error

@@ -1,0 +1,119 @@
+"""Faults of the links: what happens to datagrams on their way."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from gcs.faults.kind import kind, parameter
+
+_Chance = Annotated[float, parameter("of a datagram", ge=0.0, le=1.0)]
+_Delay = 60.0  # s, the longest
+
+
+@kind("packet_loss", "link", direction="both")
+@dataclass(frozen=True)
+class PacketLoss:
+    """Datagrams are lost, each independently of the others."""
+
+    probability: _Chance
+
+
+@kind("burst_loss", "link", direction="both")
+@dataclass(frozen=True)
+class BurstLoss:
+    """Datagrams are lost in bursts (Gilbert-Elliott): a good and a bad state by turns, of exponential lengths."""
+
+    burst: Annotated[float, parameter("mean length of the bad state", "s", gt=0.0, le=1e3)] = 0.5
+    gap: Annotated[float, parameter("mean length of the good state", "s", gt=0.0, le=1e4)] = 5.0
+    loss_in_burst: Annotated[float, parameter("of a datagram in the bad state", ge=0.0, le=1.0)] = 1.0
+    loss_in_gap: Annotated[float, parameter("of a datagram in the good state", ge=0.0, le=1.0)] = 0.0
+
+
+@kind("latency", "link", direction="both")
+@dataclass(frozen=True)
+class Latency:
+    """Datagrams arrive later, in their order."""
+
+    delay: Annotated[float, parameter("how much later", "s", ge=0.0, le=_Delay)]
+
+
+@kind("jitter", "link", direction="both")
+@dataclass(frozen=True)
+class Jitter:
+    """Datagrams arrive later by a random time, in their order."""
+
+    spread: Annotated[float, parameter("the longest delay; each is uniform from 0", "s", ge=0.0, le=_Delay)]
+
+
+@kind("reordering", "link", direction="both")
+@dataclass(frozen=True)
+class Reordering:
+    """Some datagrams are held back, so that later ones overtake them."""
+
+    probability: _Chance
+    delay: Annotated[float, parameter("how long one is held back", "s", gt=0.0, le=_Delay)] = 0.05
+
+
+@kind("duplication", "link", direction="both")
+@dataclass(frozen=True)
+class Duplication:
+    """Some datagrams arrive twice."""
+
+    probability: _Chance
+    delay: Annotated[float, parameter("how much later the second one comes", "s", ge=0.0, le=_Delay)] = 0.0
+
+
+@kind("corruption", "link", direction="both")
+@dataclass(frozen=True)
+class Corruption:
+    """Some bytes of some datagrams are replaced by other ones, anywhere."""
+
+    probability: _Chance
+    bytes: Annotated[int, parameter("how many are replaced", ge=1, le=1000)] = 1
+
+
+@kind("bad_checksum", "link", direction="both")
+@dataclass(frozen=True)
+class BadChecksum:
+    """The checksum of every message in some datagrams is wrong; the contents are not."""
+
+    probability: _Chance
+
+
+@kind("truncation", "link", direction="both")
+@dataclass(frozen=True)
+class Truncation:
+    """Some datagrams are cut off anywhere."""
+
+    probability: _Chance
+
+
+@kind("bandwidth_cap", "link", direction="both")
+@dataclass(frozen=True)
+class BandwidthCap:
+    """Datagrams wait for those before them to pass, and are lost when too many wait."""
+
+    rate: Annotated[float, parameter("of each direction of a vehicle's link", "bytes/s", gt=0.0, le=1e9)]
+    queue: Annotated[int, parameter("what may wait", "bytes", ge=1, le=10**9)] = 8192
+
+
+@kind("partition", "link", direction="both")
+@dataclass(frozen=True)
+class Partition:
+    """Nothing passes: both ways, or one way as the direction says."""
+
+
+@kind("stall", "link", direction="both", bounded=True)
+@dataclass(frozen=True)
+class Stall:
+    """Nothing passes for the duration; then everything that was held back comes at once."""
+
+
+@kind("flapping", "link", direction="both")
+@dataclass(frozen=True)
+class Flapping:
+    """The link is down and up by turns, down first; what is sent while it is down is lost."""
+
+    down: Annotated[float, parameter("length of each outage", "s", gt=0.0, le=1e4)]
+    up: Annotated[float, parameter("time between outages", "s", gt=0.0, le=1e4)]

@@ -1,0 +1,157 @@
+"""The kinds of fault for people: as a table on the terminal, and as the one of the documentation."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, fields
+from typing import Any
+
+from rich import box
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from gcs.faults.kind import KINDS, Kind
+from gcs.faults.kinds import settings_adapter
+from gcs.faults.values import ValueFault
+
+_SHARED = tuple(field.name for field in fields(ValueFault))
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter as people read it; ``default`` empty: it must be given."""
+
+    name: str
+    type: str
+    unit: str
+    range: str
+    default: str
+    description: str
+
+
+def parameters(kind: Kind) -> list[Parameter]:
+    """Of a kind, in the order of its dataclass."""
+    schema = settings_adapter(kind.name).json_schema()
+    definitions = schema.get("$defs", {})
+    required = schema.get("required", [])
+    found = []
+    for name, entry in schema.get("properties", {}).items():
+        default = "" if name in required else _value(entry.get("default"))
+        found.append(
+            Parameter(name, _type(entry, definitions), entry.get("unit", ""), _range(entry), default,
+                entry.get("description", ""))
+        )  # fmt: skip
+    return found
+
+
+def kinds_table() -> RenderableType:
+    """Every kind with its parameters, for the terminal."""
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for title in ("kind", "parameter", "type", "unit", "range", "default"):
+        table.add_column(title, no_wrap=title in ("kind", "parameter"))
+    table.add_column("what it does", ratio=1)
+    family = ""
+    for kind in KINDS.values():
+        if kind.family != family:
+            family = kind.family
+            table.add_section()
+            table.add_row(Text(family, style="bold underline"))
+            if family == "values":
+                table.add_row(Text("all that have a channel", style="italic"))
+                _add_rows(table, _shared())
+        table.add_row(Text(kind.name, style="bold cyan"), "", "", "", "", "", Text(_told(kind)))
+        _add_rows(table, _own(kind))
+    notes = Text(
+        "Every fault has kind and start (s after take-off begins: when the first vehicle lifts off); it may have "
+        "duration (s), every (s, from start to start) and times; vehicles where it is of vehicles; direction "
+        "(telemetry, command, both) where one is named."
+    )
+    return Group(table, notes)
+
+
+def kinds_markdown() -> str:
+    """The same for the documentation."""
+    lines: list[str] = []
+    family = ""
+    for kind in KINDS.values():
+        if kind.family != family:
+            family = kind.family
+            lines += ["", f"### {family}", ""]
+            if family == "values":
+                lines += ["All but `swapped_vehicles` have:", "", *(f"- {_sentence(p)}" for p in _shared()), ""]
+            lines += ["| kind | what it does | parameters |", "|---|---|---|"]
+        told = "<br>".join(_sentence(p) for p in _own(kind)) or "none of its own"
+        lines.append(f"| `{kind.name}` | {_told(kind)} | {told} |")
+    return "\n".join(lines).strip() + "\n"
+
+
+def _shared() -> list[Parameter]:
+    """Of all faults of values."""
+    return [p for p in parameters(KINDS["stuck"]) if p.name in _SHARED]
+
+
+def _own(kind: Kind) -> list[Parameter]:
+    """Without what all faults of values have."""
+    found = parameters(kind)
+    return [p for p in found if p.name not in _SHARED] if issubclass(kind.settings, ValueFault) else found
+
+
+def _add_rows(table: Table, found: list[Parameter]) -> None:
+    for p in found:
+        cells = (p.name, p.type, p.unit, p.range, p.default or "(needed)")
+        table.add_row("", *map(Text, cells), Text(p.description, style="dim"))
+
+
+def _sentence(p: Parameter) -> str:
+    about = ", ".join(part for part in (p.type, p.unit, p.range) if part)
+    default = f"; default {p.default}" if p.default else ""
+    return f"`{p.name}` ({about}{default}): {p.description}"
+
+
+def _told(kind: Kind) -> str:
+    remarks = []
+    if kind.direction is not None:
+        remarks.append(f"Direction: {kind.direction}, if none is given.")
+    if not kind.of_vehicles:
+        remarks.append("Not of single vehicles.")
+    if kind.bounded:
+        remarks.append("Needs a duration.")
+    return " ".join([kind.summary, *remarks])
+
+
+def _type(entry: dict[str, Any], definitions: dict[str, Any]) -> str:
+    if "$ref" in entry:
+        entry = definitions[entry["$ref"].rsplit("/", 1)[-1]]
+    if "enum" in entry:
+        return " or ".join(f'"{value}"' for value in entry["enum"])
+    match entry.get("type"):
+        case "number":
+            return "number"
+        case "integer":
+            return "whole number"
+        case "boolean":
+            return "true or false"
+        case "array" if entry.get("prefixItems"):
+            return f"{len(entry['prefixItems'])} numbers"
+        case "array":
+            return "list of " + _type(entry["items"], definitions)
+    return str(entry.get("type", ""))
+
+
+def _range(entry: dict[str, Any]) -> str:
+    return ", ".join(_bounds(entry))
+
+
+def _bounds(entry: dict[str, Any]) -> Iterator[str]:
+    for key, sign in (("minimum", ">="), ("exclusiveMinimum", ">"), ("maximum", "<="), ("exclusiveMaximum", "<")):
+        if key in entry and entry.get("type") in ("number", "integer"):
+            yield f"{sign} {entry[key]:g}"
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, list | tuple):
+        return ", ".join(map(str, value))
+    return f"{value:g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,35 @@
+"""What a run folder says of its faults."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+FAULTS_FILE = "faults.json"
+
+
+def fault_notes(run_dir: Path) -> list[str]:
+    """One line for every fault whose time never came, or that found nothing to disturb; none without a record."""
+    try:
+        return notes_of(json.loads((run_dir / FAULTS_FILE).read_text(encoding="utf-8")))
+    except (OSError, ValueError, KeyError, TypeError):
+        return []
+
+
+def notes_of(record: dict[str, Any]) -> list[str]:
+    """The same of what the file holds."""
+    notes = []
+    take_off = record["take_off_s"]
+    for fault in record["faults"]:
+        who = f"fault {fault['number']}, {fault['kind']} (line {fault['line']} of the mission)"
+        if take_off is None:
+            notes.append(f"{who}, never came: nothing took off")
+        elif not fault["occurrences"]:
+            flown = record["end_s"] - take_off
+            start = f"it was to start {fault['start']:g} s after take-off"
+            notes.append(f"{who}, never came: {start}, and the end was at {flown:.1f} s")
+        elif not fault["disturbed"]:
+            what = f"of {fault['seen']} datagrams or samples none was changed" if fault["seen"] else "nothing passed it"
+            notes.append(f"{who}, disturbed nothing: {what}")
+    return notes

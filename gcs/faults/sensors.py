@@ -1,0 +1,68 @@
+"""Faults of the sensors: what is no longer measured, or measured wrongly, on board."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from gcs.faults.kind import kind, parameter
+
+_Vector = tuple[float, float, float]
+_Blind = Annotated[
+    bool,
+    parameter("true: the vehicle itself is blind, too, and goes on with the last it knew; false: it has a second one"),
+]
+
+
+@kind("position_lost", "sensors")
+@dataclass(frozen=True)
+class PositionLost:
+    """Position and velocity are no longer measured, nor told."""
+
+    onboard: _Blind = True
+
+
+@kind("position_glitch", "sensors")
+@dataclass(frozen=True)
+class PositionGlitch:
+    """The measured position jumps away and back, level, in random directions; the vehicle believes it."""
+
+    size: Annotated[float, parameter("how far", "m", gt=0.0, le=1e5)]
+    rate: Annotated[float, parameter("how often, on average", "1/s", gt=0.0, le=100.0)] = 0.5
+    hold: Annotated[float, parameter("how long it stays away", "s", gt=0.0, le=1e3)] = 0.2
+
+
+@kind("position_drift", "sensors")
+@dataclass(frozen=True)
+class PositionDrift:
+    """The measured position drifts away, the velocity does not; the vehicle believes it."""
+
+    velocity: Annotated[_Vector, parameter("of the drift, north-east-down", "m/s")]
+
+
+@kind("attitude_lost", "sensors")
+@dataclass(frozen=True)
+class AttitudeLost:
+    """The attitude is no longer told, nor the rates, which share its message."""
+
+    onboard: _Blind = False
+
+
+@kind("rates_lost", "sensors")
+@dataclass(frozen=True)
+class RatesLost:
+    """The rates are told as NaN, which is MAVLink's way to say that they are not known."""
+
+    onboard: _Blind = False
+
+
+@kind("payload_unit_lost", "sensors")
+@dataclass(frozen=True)
+class PayloadUnitLost:
+    """The vehicles no longer get anything of the payload's navigation unit that they could relay."""
+
+
+@kind("obstacle_sensing_lost", "sensors")
+@dataclass(frozen=True)
+class ObstacleSensingLost:
+    """The vehicles no longer see obstacles."""

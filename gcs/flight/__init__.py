@@ -1,0 +1,1 @@
+"""One flight from connecting to disarming."""

@@ -1,0 +1,393 @@
+"""One flight, from connecting to disarming: phases, the control step, and every way in which it can end."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+import pymavlink.dialects.v20.common as mavlink
+from numpy.typing import NDArray
+
+from gcs.flight.course import Course
+from gcs.flight.team import Team
+from gcs.mission.model import Mission
+from gcs.wire import px4
+from idc_controller.control.controller import Decision, IntegratedDecisionController
+from idc_controller.estimate.estimator import Estimate, Estimator
+from idc_controller.estimate.measurements import PAYLOAD, Measurement, Position
+from idc_controller.plan.reference import Reference
+from idc_controller.plan.trajectory import RestTrajectory, Trajectory
+
+Array = NDArray[np.float64]
+
+CONNECT_TIMEOUT = 10.0  # s
+ARM_TIMEOUT = 6.0  # s
+DISARM_TIMEOUT = 4.0  # s
+SETTLE_BEFORE_CHECK = 0.5  # s of telemetry that are averaged before take-off
+STREAM_BEFORE_OFFBOARD = 0.5  # s
+SPOOL_UP = 2.5  # s from idle to hover thrust
+SPOOL_DOWN = 2.0  # s from hover thrust to idle
+TOUCH_DEPTH = 0.06  # m above the reference at which the payload must be standing
+TOUCH_SPEED = 0.05  # m/s
+TOUCH_STEPS = 4
+TOUCH_GRACE = 3.0  # s after the descent's end at which it counts as touched in any case
+LOST_TILT = math.radians(45.0)  # of the payload, at which nothing can be planned any more
+LOST_AFTER = 0.5  # s
+LEARN_ABOVE = 0.3  # m above the ground: below it the ground may carry part of the load
+
+
+class Phase(Enum):
+    """Where the flight is."""
+
+    CONNECT = "connect"
+    CHECK = "check"
+    ARM = "arm"
+    SPOOL_UP = "spool up"
+    CLIMB = "climb"
+    FLY = "fly"
+    HOLD = "hold"
+    LAND = "land"
+    ON_THEIR_OWN = "vehicles land on their own"
+    SPOOL_DOWN = "spool down"
+    DISARM = "disarm"
+    ENDED = "ended"
+
+
+ALONE_TIMEOUT = 120.0  # s for the vehicles to land on their own
+
+IN_THE_AIR = (Phase.CLIMB, Phase.FLY, Phase.HOLD, Phase.LAND)
+CLEAR_OF_GROUND = (Phase.FLY, Phase.HOLD)
+
+
+@dataclass(frozen=True, eq=False)
+class StepRecord:
+    """One control step, for the records. Times in s; ``*_time`` are spent on it, the rest is team time."""
+
+    estimate: Estimate
+    decision: Decision
+    estimator_time: float
+    controller_time: float
+
+
+@dataclass(frozen=True, eq=False)
+class Setpoints:
+    """What the vehicles are to do: unit thrust directions (N, 3) and thrusts (N,) (N)."""
+
+    directions: Array
+    thrusts: Array
+
+
+class Flight:
+    """The flight phases and the control step. Times are the team's (s); it neither sends nor receives."""
+
+    def __init__(
+        self,
+        mission: Mission,
+        team: Team,
+        estimator: Estimator,
+        controller: IntegratedDecisionController,
+        stopwatch: Callable[[], float],
+    ) -> None:
+        self.mission, self.team = mission, team
+        self.estimator, self.controller = estimator, controller
+        self._stopwatch = stopwatch
+        self._parameters = controller.parameters
+        self.phase = Phase.CONNECT
+        self.reason = ""
+        """Why the flight was broken off; empty: it was not."""
+        self.interrupted = False
+        self.course: Course | None = None
+        self.time = 0.0
+        """Team time of the last control step."""
+        self.takeoff_time = math.nan
+        """When the rotors began to spool up; nan before."""
+        self.landed = False
+        self._called = math.nan
+        self._since = math.nan
+        self._seen: dict[tuple[int, type], list[Measurement]] = {}
+        self._pad: Trajectory | None = None
+        self._asked: int | None = None
+        self._touch_steps = 0
+        self._in_control = math.inf
+        self._descends = False
+        self._down: Trajectory | None = None
+
+    @property
+    def ended(self) -> bool:
+        """Whether there is nothing left to do."""
+        return self.phase is Phase.ENDED
+
+    @property
+    def completed(self) -> bool:
+        """Whether the whole mission was flown and the payload set down."""
+        return self.ended and self.landed and not self.reason and not self.interrupted
+
+    @property
+    def expected_end(self) -> float:
+        """When the course ends (s); inf while that is not known."""
+        return self.course.trajectory.end if self.course is not None else math.inf
+
+    @property
+    def reference(self) -> Trajectory | None:
+        """What the mission asks of the payload; None before take-off."""
+        if self.course is not None:
+            return self.course.trajectory
+        return self._pad
+
+    def asked(self, times: Array) -> tuple[Array, Array]:
+        """Position and velocity (K, 3) that the mission asks of the payload at ``times`` since take-off began."""
+        if self.course is not None:
+            clock = self.controller.safety.mission_time
+            return self.course.asked(np.array([clock(t) for t in times]))
+        assert self._pad is not None
+        position, velocity = self._pad.derivatives(times, 1)
+        return position, velocity
+
+    def measured(self, measurement: Measurement) -> None:
+        """Telemetry of a vehicle or of the payload."""
+        if self._started:
+            self.estimator.add(measurement)
+        elif self.phase in (Phase.CHECK, Phase.ARM):
+            samples = self._seen.setdefault((measurement.source, type(measurement)), [])
+            samples.append(measurement)
+            del samples[:-100]
+
+    def break_off(self, time: float, reason: str, *, interrupted: bool = False) -> None:
+        """End the flight early and safely: on the ground at once, in the air by stopping and landing."""
+        if self.phase is Phase.ENDED:
+            return
+        self.interrupted |= interrupted
+        self.reason = self.reason or reason
+        if self.phase in (Phase.CONNECT, Phase.CHECK):
+            self.phase = Phase.ENDED
+        elif self.phase in (Phase.ARM, Phase.SPOOL_UP):
+            self._begin_disarming(time)
+        elif self.course is not None:
+            safety = self.controller.safety
+            self.course.break_off(*safety.followed(time, self.course.trajectory))
+            safety.forget()
+
+    def give_up(self, reason: str) -> None:
+        """The vehicles cannot be reached any more: they are on their own."""
+        self.reason = self.reason or reason
+        self.phase = Phase.ENDED
+
+    def step(self, time: float, effective: float, now: float) -> tuple[Setpoints | None, StepRecord | None]:
+        """One control step at team ``time``; set-points act at ``effective``. ``now`` is the ground's time.
+
+        None as set-points: nothing is to be sent.
+        """
+        self.time = time
+        match self.phase:
+            case Phase.CONNECT:
+                self._connect(time, now)
+            case Phase.CHECK:
+                self._check(time)
+            case Phase.ARM:
+                return self._arm(time, now), None
+            case Phase.ON_THEIR_OWN:
+                self._watch_landing(time, now)
+            case Phase.DISARM:
+                self._disarm(time)
+            case Phase.ENDED:
+                pass
+            case _:
+                return self._fly(time, effective, now)
+        return None, None
+
+    # On the ground
+
+    def _connect(self, time: float, now: float) -> None:
+        # The team's time jumps when the first vehicle is heard: only the ground's own tells how long it has taken.
+        if math.isnan(self._called):
+            self._called = now
+        missing = self.team.missing(now)
+        if missing is None:
+            self._enter(Phase.CHECK, time)
+        elif now - self._called > CONNECT_TIMEOUT:
+            self.give_up(missing)
+
+    def _check(self, time: float) -> None:
+        if (problem := self.team.unfit()) is not None:
+            self.give_up(problem)
+            return
+        if time - self._since < SETTLE_BEFORE_CHECK:
+            return
+        n = self._parameters.number_of_uavs
+        if any((source, Position) not in self._seen for source in (PAYLOAD, *range(n))):
+            if time - self._since > CONNECT_TIMEOUT:
+                self.give_up("no position of every vehicle and of the payload")
+            return
+        payload = self._mean_position(PAYLOAD)
+        positions = np.array([self._mean_position(i) for i in range(n)])
+        if (problem := self.team.misplaced(positions, payload)) is not None:
+            self.give_up(problem)
+            return
+        self._pad = RestTrajectory(payload, time)
+        self._enter(Phase.ARM, time)
+
+    def _arm(self, time: float, now: float) -> Setpoints | None:
+        refusal = self.team.refusal
+        if refusal is None and time - self._since > ARM_TIMEOUT:
+            refusal = "not every vehicle is armed"
+        if refusal is not None:
+            self.break_off(time, refusal)
+            return None
+        if self._asked is None:
+            # A vehicle enters OFFBOARD only while set-points come in.
+            if time - self._since > STREAM_BEFORE_OFFBOARD:
+                self._ask(mavlink.MAV_CMD_DO_SET_MODE, mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, px4.MainMode.OFFBOARD)
+        elif self.team.answered and self._asked == mavlink.MAV_CMD_DO_SET_MODE:
+            self._ask(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1.0)
+        elif self.team.answered and self.team.armed:
+            assert self._pad is not None
+            rest = Reference(self._parameters, self._pad, self.controller.load)
+            self.estimator.start(time, rest.at(np.array([time])).x[0])
+            self.estimator.add_setpoint(time, None)
+            self.takeoff_time = time
+            self._enter(Phase.SPOOL_UP, time)
+        return self._idle
+
+    def _ask(self, command: int, *parameters: float) -> None:
+        self._asked = command
+        self.team.command_all(command, *parameters)
+
+    def _disarm(self, time: float) -> None:
+        if self.team.answered and self.team.disarmed:
+            self.landed = True
+            self._enter(Phase.ENDED, time)
+        elif self.team.refusal is not None or time - self._since > DISARM_TIMEOUT:
+            self.reason = self.reason or self.team.refusal or "not every vehicle has disarmed"
+            self._enter(Phase.ENDED, time)
+
+    def _begin_disarming(self, time: float) -> None:
+        self._ask(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0.0)
+        self._enter(Phase.DISARM, time)
+
+    # Without one of the vehicles
+
+    def _leave_alone(self, time: float, reason: str) -> None:
+        """One vehicle is lost to the ground: all do at once what that one does on its own.
+
+        It brakes and holds when its set-points stop, and descends a set time later. Whatever the ground had the others
+        do instead would tear at the payload.
+        """
+        self.break_off(time, reason)
+        self._ask(
+            mavlink.MAV_CMD_DO_SET_MODE,
+            mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, px4.MainMode.AUTO, px4.AutoMode.LOITER,
+        )  # fmt: skip
+        self._descends = False
+        self._enter(Phase.ON_THEIR_OWN, time)
+
+    def _watch_landing(self, time: float, now: float) -> None:
+        if not self._descends and time - self._since >= self.team.land_delay:
+            self._descends = True
+            self._ask(
+                mavlink.MAV_CMD_DO_SET_MODE,
+                mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, px4.MainMode.AUTO, px4.AutoMode.LAND,
+            )  # fmt: skip
+        if self.team.heard_are_disarmed(now):
+            self.landed = True
+            self._enter(Phase.ENDED, time)
+        elif time - self._since > ALONE_TIMEOUT:
+            self._enter(Phase.ENDED, time)
+
+    # In the air, and on the way there and back
+
+    @property
+    def _started(self) -> bool:
+        return self.phase in (Phase.SPOOL_UP, *IN_THE_AIR, Phase.SPOOL_DOWN)
+
+    def _fly(self, time: float, effective: float, now: float) -> tuple[Setpoints | None, StepRecord | None]:
+        if self.phase is not Phase.SPOOL_DOWN and (problem := self.team.dropped_out(now)) is not None:
+            if self.phase is Phase.SPOOL_UP:
+                self.break_off(time, problem)
+            else:
+                self._leave_alone(time, problem)
+            return None, None
+        if self.phase in IN_THE_AIR and (problem := self.controller.safety.blocked(time)):
+            self.break_off(time, problem)
+        trajectory = self._trajectory(time)
+        begin = self._stopwatch()
+        estimate = self.estimator.estimate(effective, self.controller.reference(trajectory))
+        if self.phase in IN_THE_AIR and self._is_out_of_control(time, estimate):
+            self._leave_alone(time, "control of the payload is lost")
+            return None, None
+        estimated = self._stopwatch()
+        decision = self.controller.decide(
+            estimate, trajectory, standing=self.phase not in IN_THE_AIR, learn_load=self._learns(estimate)
+        )
+        decided = self._stopwatch()
+        share = 1.0
+        if self.phase is Phase.SPOOL_UP:
+            share = min((time - self._since) / SPOOL_UP, 1.0)
+        elif self.phase is Phase.SPOOL_DOWN:
+            share = max(1.0 - (time - self._since) / SPOOL_DOWN, 0.0)
+        if self.phase in IN_THE_AIR:
+            self.estimator.add_setpoint(effective, decision.u)
+        self._advance(time, estimate, share)
+        setpoints = Setpoints(decision.directions, decision.thrusts * share)
+        return setpoints, StepRecord(estimate, decision, estimated - begin, decided - estimated)
+
+    def _is_out_of_control(self, time: float, estimate: Estimate) -> bool:
+        """Whether the payload has been tipped, or its state unknown, for longer than any manoeuvre takes."""
+        tilt = np.abs(estimate.x[self.controller.layout.Theta][:2]).max()
+        if np.all(np.isfinite(estimate.x)) and tilt < LOST_TILT:
+            self._in_control = time
+        return time - self._in_control > LOST_AFTER
+
+    def _trajectory(self, time: float) -> Trajectory:
+        if self._down is not None:
+            return self._down
+        trajectory = self.reference
+        assert trajectory is not None
+        return trajectory
+
+    def _advance(self, time: float, estimate: Estimate, share: float) -> None:
+        """From one phase to the next."""
+        if self.phase is Phase.SPOOL_UP:
+            if share >= 1.0:
+                assert self._pad is not None
+                self.course = Course(self.mission, self._pad.position(time), time)
+                self._enter(Phase.CLIMB, time)
+        elif self.phase is Phase.SPOOL_DOWN:
+            if share <= 0.0:
+                self._begin_disarming(time)
+        elif self.course is not None:
+            clock = self.controller.safety.mission_time(time)
+            self.phase = Phase(self.course.phase(clock))
+            if self.phase is Phase.LAND and self._touched(clock, estimate):
+                position = estimate.x[self.controller.layout.r_0]
+                self._down = RestTrajectory(position, time)
+                self.estimator.add_setpoint(estimate.time, None)
+                self._enter(Phase.SPOOL_DOWN, time)
+
+    def _touched(self, clock: float, estimate: Estimate) -> bool:
+        assert self.course is not None
+        trajectory = self.course.trajectory
+        layout = self.controller.layout
+        depth = trajectory.position(clock)[2] - estimate.x[layout.r_0][2]
+        still = abs(estimate.x[layout.v_0][2]) < TOUCH_SPEED
+        self._touch_steps = self._touch_steps + 1 if depth > TOUCH_DEPTH and still else 0
+        return self._touch_steps >= TOUCH_STEPS or clock > trajectory.end + TOUCH_GRACE
+
+    def _learns(self, estimate: Estimate) -> bool:
+        ground = -self._parameters.payload_size[2] / 2.0
+        height = ground - estimate.x[self.controller.layout.r_0][2]
+        return bool(height > LEARN_ABOVE)
+
+    def _mean_position(self, source: int) -> Array:
+        samples = self._seen[source, Position]
+        return np.mean([s.position for s in samples if isinstance(s, Position)], axis=0)
+
+    @property
+    def _idle(self) -> Setpoints:
+        n = self._parameters.number_of_uavs
+        return Setpoints(np.tile([0.0, 0.0, -1.0], (n, 1)), np.zeros(n))
+
+    def _enter(self, phase: Phase, time: float) -> None:
+        self.phase, self._since = phase, time

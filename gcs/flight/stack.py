@@ -1,0 +1,86 @@
+"""From a system file to the mathematics that flies it: model, estimator and controller."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import asdict
+
+import numpy as np
+
+from gcs.config import SystemConfig
+from idc_controller.barrier.navigator import NavigatorSettings
+from idc_controller.barrier.obstacles import ObstacleSource
+from idc_controller.barrier.planner import PlannerSettings
+from idc_controller.barrier.safety_filter import AvoidanceFilter
+from idc_controller.control.controller import ControllerSettings, IntegratedDecisionController
+from idc_controller.control.mpc import ModelPredictiveController, MpcSettings, MpcWeights
+from idc_controller.control.safety import SafetyFilter
+from idc_controller.estimate.estimator import Estimator, EstimatorSettings
+from idc_controller.estimate.measurements import MeasurementNoise
+from idc_controller.model.linear import LinearModel
+from idc_controller.plan.trajectory import Limits
+
+
+def linear_model(config: SystemConfig) -> LinearModel:
+    """The model as the ground believes it."""
+    return LinearModel(config.parameters())
+
+
+def estimator(config: SystemConfig, model: LinearModel) -> Estimator:
+    """The filter for the sensors of the system file."""
+    sensors = config.sensors
+    noise = MeasurementNoise(
+        position=sensors.position,
+        attitude=float(np.radians(sensors.attitude_deg)),
+        uav_velocity=sensors.uav_velocity,
+        uav_rates=sensors.uav_rates,
+        payload_velocity=sensors.payload_velocity,
+        payload_rates=sensors.payload_rates,
+    )
+    return Estimator(model, EstimatorSettings(measurement=noise))
+
+
+def avoidance(config: SystemConfig, model: LinearModel, obstacles: ObstacleSource) -> AvoidanceFilter:
+    """The safety filter that keeps ``obstacles`` out of the hull."""
+    margin, motion = config.avoidance.margin, config.motion
+    settings = PlannerSettings(margin=margin, barrier_rates=config.avoidance.barrier_rates)
+    limits = Limits(motion.speed, motion.acceleration, motion.jerk, motion.snap)
+    return AvoidanceFilter(model.parameters, settings, obstacles, NavigatorSettings(limits=limits, margin=margin))
+
+
+def controller(
+    config: SystemConfig, model: LinearModel, safety: SafetyFilter, stopwatch: Callable[[], float]
+) -> IntegratedDecisionController:
+    """The integrated decision controller with the MPC as its tracker."""
+    period = 1.0 / config.rates.control
+    settings = MpcSettings(
+        period=period,
+        horizon=config.controller.horizon,
+        moves=moves(config.controller.horizon),
+        constraint_stages=tuple(range(1, config.controller.horizon + 1, 3)),
+        payload_tilt_limit=float(np.radians(config.controller.payload_tilt_limit_deg)),
+        uav_tilt_limit=float(np.radians(config.controller.uav_tilt_limit_deg)),
+        lowest_payload=-config.payload.size[2] / 2.0,
+        weights=MpcWeights(**asdict(config.controller.weights)),
+    )
+    return IntegratedDecisionController(
+        model,
+        ModelPredictiveController(model, settings),
+        safety,
+        ControllerSettings(period=period, horizon=config.controller.horizon),
+        stopwatch,
+    )
+
+
+def moves(horizon: int) -> tuple[int, ...]:
+    """Move blocks that sum to ``horizon``: single steps first, then longer and longer ones."""
+    blocks: list[int] = []
+    for length in (1, 1, 1, 2, 2, 3, 4, 6):
+        if sum(blocks) >= horizon:
+            break
+        blocks.append(min(length, horizon - sum(blocks)))
+    rest = horizon - sum(blocks)
+    while rest > 0:
+        blocks.append(min(6, rest))
+        rest -= blocks[-1]
+    return tuple(blocks)

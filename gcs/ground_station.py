@@ -1,0 +1,239 @@
+"""The ground station on the wire: bytes in, bytes out, and a flight behind them. No socket, no clock.
+
+The way of the data: datagram -> codec -> vehicle link and telemetry -> estimator -> controller -> set-points ->
+datagram.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from statistics import median
+from typing import Any, Protocol
+
+import pymavlink.dialects.v20.common as mavlink
+
+from gcs.flight.flight import Flight, Phase, StepRecord
+from gcs.flight.team import Team
+from gcs.obstacles import ObstacleMap
+from gcs.setpoints import attitude_target
+from gcs.telemetry import measurement
+from gcs.wire import px4
+from gcs.wire.address import Address
+from gcs.wire.codec import Codec, gather
+
+GROUND_SYSTEM = 255
+GROUND_COMPONENT = mavlink.MAV_COMP_ID_MISSIONPLANNER
+HEARTBEAT_INTERVAL = 1.0  # s
+TIMESYNC_INTERVAL = 0.2  # s
+SILENCE_GIVES_UP = 3.0  # s without a word of any vehicle
+CLOCK_STEP = 0.5  # s by which the team's time is corrected at most in flight
+LATENCIES = 20  # control steps whose latency is remembered
+TOLERANCE = 1e-6  # s, for timers that are sums of periods
+
+
+class Recorder(Protocol):
+    """Where a ground station's records go."""
+
+    def datagram(self, now: float, datagram: bytes) -> None:
+        """One datagram, sent or received."""
+        ...
+
+    def step(self, flight: Flight, time: float, record: StepRecord | None) -> None:
+        """One control step at team ``time``."""
+        ...
+
+    def obstacles(self, obstacle_map: ObstacleMap, time: float) -> None:
+        """What is believed of the obstacles at team ``time``, once a control step."""
+        ...
+
+
+class GroundStation:
+    """All vehicles of one flight. A driver calls :meth:`receive`, :meth:`datagrams_to_send` and :meth:`next_timer`."""
+
+    def __init__(
+        self,
+        team: Team,
+        flight: Flight,
+        control_period: float,
+        recorder: Recorder,
+        obstacle_map: ObstacleMap | None = None,
+    ) -> None:
+        self.team, self.flight = team, flight
+        self.links = team.links
+        self._recorder = recorder
+        self._obstacle_map = obstacle_map
+        self._codec = Codec(GROUND_SYSTEM, GROUND_COMPONENT)
+        self._by_address: dict[tuple[Address, int], int] = {
+            (link.address, link.system_id): i for i, link in enumerate(self.links) if link.address is not None
+        }
+        self._period = control_period
+        self._next_control = -math.inf
+        self._next_heartbeat = -math.inf
+        self._next_timesync = -math.inf
+        self._began = math.nan
+        self._team_offset = 0.0
+        self._last_step = -math.inf
+        self._stepped = False
+        self._thinking: deque[float] = deque(maxlen=LATENCIES)
+        self._latency = 0.0
+        self.refused_datagrams = 0
+        """Datagrams from addresses that belong to no vehicle of this flight."""
+
+    @property
+    def ended(self) -> bool:
+        """Whether the flight is over."""
+        return self.flight.ended
+
+    def team_time(self, now: float) -> float:
+        """The team's time (s): the boot time of the first vehicle; the ground's own until that is known."""
+        return now + self._team_offset
+
+    def break_off(self, now: float, reason: str, *, interrupted: bool = False) -> None:
+        """End the flight early and safely."""
+        self.flight.break_off(self.team_time(now), reason, interrupted=interrupted)
+
+    def receive(self, datagram: bytes, sender: Address, now: float) -> None:
+        """Whatever came from an address. Never raises for anything that a datagram can hold."""
+        messages = self._codec.decode(datagram)
+        known = False
+        for message in messages:
+            index = self._by_address.get((sender, message.get_srcSystem()))
+            if index is None:
+                index = self._unexpected(message, sender)
+            if index is None:
+                continue
+            known = True
+            link = self.links[index]
+            link.handle(message, now)
+            if link.clock.known:
+                self._learn(message, index)
+        if known:
+            self._recorder.datagram(now, datagram)
+        else:
+            self.refused_datagrams += 1
+
+    def datagrams_to_send(self, now: float) -> list[tuple[bytes, Address]]:
+        """All that is due at ``now`` (s), each with its address."""
+        if math.isnan(self._began):
+            self._began = now
+        messages: list[list[Any]] = [[] for _ in self.links]
+        if now >= self._next_heartbeat - TOLERANCE:
+            self._next_heartbeat = now + HEARTBEAT_INTERVAL
+            for queue in messages:
+                queue.append(_heartbeat())
+        if now >= self._next_timesync - TOLERANCE:
+            self._next_timesync = now + TIMESYNC_INTERVAL
+            for queue in messages:
+                queue.append(mavlink.MAVLink_timesync_message(0, round(now * 1e9)))
+        self._stepped = now >= self._next_control - TOLERANCE
+        if self._stepped:
+            self._control(now, messages)
+        for link, queue in zip(self.links, messages, strict=True):
+            queue.extend(link.requests_to_send(now))
+        out = []
+        for link, queue in zip(self.links, messages, strict=True):
+            if link.address is None:
+                continue
+            for datagram in gather(self._codec.encode(message) for message in queue):
+                out.append((datagram, link.address))
+                self._recorder.datagram(now, datagram)
+        return out
+
+    def thought(self, duration: float) -> None:
+        """What was sent last left ``duration`` (s) after the time it was asked for: reckoned with from now on."""
+        if self._stepped:
+            self._thinking.append(duration)
+            self._latency = median(self._thinking)
+
+    def next_timer(self) -> float | None:
+        """When :meth:`datagrams_to_send` is to be called again (s, ground time); None: never."""
+        if self.ended:
+            return None
+        return max(min(self._next_control, self._next_heartbeat, self._next_timesync), 0.0)
+
+    def _unexpected(self, message: Any, sender: Address) -> int | None:
+        """The index of a vehicle that offers itself for the first time with this message; None: nothing is learnt."""
+        if message.get_type() != "HEARTBEAT" or message.get_srcComponent() != px4.AUTOPILOT_COMPONENT:
+            return None
+        system_id = message.get_srcSystem()
+        for i, link in enumerate(self.links):
+            if link.address is None and link.system_id == system_id:
+                link.address = sender
+                self._by_address[sender, system_id] = i
+                return i
+            if link.address == sender:
+                link.found_instead = system_id
+        return None
+
+    def _follow_clock(self, offset: float) -> None:
+        """The team's time is the first vehicle's; in flight a jump is a reboot, and time goes on."""
+        if self.flight.phase is Phase.CONNECT or abs(offset - self._team_offset) < CLOCK_STEP:
+            self._team_offset = offset
+
+    def _learn(self, message: Any, index: int) -> None:
+        """From a message that tells of one moment."""
+        kind = message.get_type()
+        is_detection = kind == "OBSTACLE_DISTANCE_3D"
+        if not is_detection and kind not in ("ATTITUDE_QUATERNION", "LOCAL_POSITION_NED"):
+            return
+        link, obstacle_map = self.links[index], self._obstacle_map
+        if index == 0:
+            self._follow_clock(link.clock.offset)
+        time = _whole_ms(message.time_boot_ms * 1e-3 - link.clock.offset + self._team_offset)
+        if is_detection:
+            if obstacle_map is not None:
+                obstacle_map.detected(message, index, time)
+            return
+        sample = measurement(message, index, time)
+        if sample is not None:
+            self.flight.measured(sample)
+            if obstacle_map is not None:
+                obstacle_map.measured(sample)
+
+    def _control(self, now: float, messages: list[list[Any]]) -> None:
+        time = self.team_time(now)
+        # Steps fall on whole periods of the team's time.
+        self._next_control = (math.floor(time / self._period + 0.5) + 1) * self._period - self._team_offset
+        if self.flight.phase is not Phase.CONNECT and time <= self._last_step:
+            return  # a better guess of the vehicle's clock has set the time back a little
+        self._last_step = time
+        if self.team.silent(now, SILENCE_GIVES_UP) and now - self._began > SILENCE_GIVES_UP:
+            heard = any(math.isfinite(link.heard) for link in self.links)
+            if heard:
+                self.flight.give_up(f"nothing was heard of any vehicle for {SILENCE_GIVES_UP:g} s")
+        delay = max(link.clock.delay for link in self.links)
+        onboard = min(
+            (1.0 / link.parameters[px4.PARAM_ONBOARD_RATE] for link in self.links
+             if link.parameters.get(px4.PARAM_ONBOARD_RATE, 0.0) > 0.0),
+            default=0.0,
+        )  # fmt: skip
+        if self._obstacle_map is not None:
+            self._obstacle_map.update(time)
+            self._recorder.obstacles(self._obstacle_map, time)
+        effective = _whole_ms(time + self._latency + delay + onboard)
+        setpoints, record = self.flight.step(time, effective, now)
+        self._recorder.step(self.flight, time, record)
+        if setpoints is None:
+            return
+        for i, (link, queue) in enumerate(zip(self.links, messages, strict=True)):
+            queue.append(
+                attitude_target(
+                    link.system_id,
+                    now + link.clock.offset,
+                    setpoints.directions[i],
+                    float(setpoints.thrusts[i]),
+                    link.parameters[px4.PARAM_THRUST_MAX],
+                )
+            )
+
+
+def _whole_ms(time: float) -> float:
+    """No stamp tells more, and what the estimator computes for one interval serves for all of its length."""
+    return round(time, 3)
+
+
+def _heartbeat() -> Any:
+    return mavlink.MAVLink_heartbeat_message(
+        mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, mavlink.MAV_STATE_ACTIVE, 3
+    )

@@ -1,0 +1,170 @@
+"""What will be flown, for people: the answer of ``gcs check``."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from itertools import islice
+
+import numpy as np
+from rich.console import Group, RenderableType
+from rich.markup import escape
+from rich.table import Table
+from rich.text import Text
+
+from gcs.config import MotionConfig
+from gcs.faults import KINDS
+from gcs.mission.model import RESTING_ALTITUDE, Fault, Limits, Lissajous, Mission, Pole, Sphere, Wall
+from gcs.mission.route import Circle, FlyTo, HoldForever, Land, Leg, Position, Route, TakeOff
+
+SHOWN_LEGS = 40
+COUNTED_LEGS = 20_000
+
+
+def describe(mission: Mission) -> RenderableType:
+    """What the mission is, leg by leg, with lengths, an estimate of the time, and what is left out."""
+    home, team = mission.home, mission.system.team
+    parts: list[RenderableType] = [
+        Text(f"{mission.name}  ({mission.path})", style="bold"),
+        Text(
+            f"{team.vehicles} vehicles, payload {mission.system.payload.mass:g} kg, seed {mission.seed}; home "
+            f"{home.latitude:.7f}, {home.longitude:.7f}, {home.altitude:g} m above mean sea level"
+        ),
+    ]
+    if isinstance(mission.reference, Lissajous):
+        parts.append(_lissajous(mission.reference))
+    else:
+        parts += _route(mission.reference, mission.system.motion)
+    parts += [Text(line) for line in (*_surroundings(mission), *_limits(mission.limits))]
+    parts += [Text(f"note: {note}", style="yellow") for note in mission.notes]
+    return Group(*parts)
+
+
+def _lissajous(curve: Lissajous) -> Text:
+    (a, b), w = curve.amplitude, curve.angular_frequency
+    time = np.linspace(0.0, curve.duration, 20_001)
+    speed = np.hypot(a * w * np.cos(w * time), 2.0 * b * w * np.cos(2.0 * w * time))
+    return Text(
+        f"figure eight of {2 * a:g} x {2 * b:g} m at {curve.altitude:g} m for {curve.duration:g} s: "
+        f"{np.mean(speed) * curve.duration:.1f} m at up to {speed.max():.2f} m/s"
+    )
+
+
+def _route(route: Route, motion: MotionConfig) -> list[RenderableType]:
+    table = Table("", "leg", "north", "east", "altitude", "m/s", "length (m)", "time (s)", "from")
+    length = time = 0.0
+    count, last = 0, None
+    start: Position = (0.0, 0.0, -RESTING_ALTITUDE)
+    for leg in _legs_to_tell(route):
+        count, last = count + 1, leg
+        leg_length, leg_time, end = _measure(leg, start, motion)
+        length, time = length + leg_length, time + leg_time
+        if count <= SHOWN_LEGS:
+            speed = f"{leg.speed:g}" if isinstance(leg, FlyTo | Circle) else ""
+            place = (f"{end[0]:.2f}", f"{end[1]:.2f}", f"{-end[2]:.2f}")
+            cost = (speed, f"{leg_length:.1f}", f"{leg_time:.0f}")
+            table.add_row(str(count), _told(leg), *place, *cost, escape(leg.source))
+        start = end
+    for column in table.columns[2:8]:
+        column.justify = "right"
+    summary = f"{count} legs, {length:.0f} m, about {time:.0f} s"
+    if isinstance(last, HoldForever):
+        summary += ", then holds until stopped"
+    elif not isinstance(last, Land):
+        summary = f"and so on until stopped: endless; so far {count} legs, {length:.0f} m, about {time:.0f} s"
+    more = [Text(f"... and {count - SHOWN_LEGS} more legs")] if count > SHOWN_LEGS else []
+    return [table, *more, Text(summary)]
+
+
+def _legs_to_tell(route: Route) -> list[Leg]:
+    """All the legs; of an endless route those before an item is flown for the second time."""
+    legs = list(islice(route.legs(), COUNTED_LEGS))
+    if isinstance(legs[-1], Land | HoldForever):
+        return legs
+    seen = set[str]()
+    for index, leg in enumerate(legs):
+        if leg.source in seen and leg.source != legs[index - 1].source:
+            return legs[:index]
+        seen.add(leg.source)
+    return legs
+
+
+def _told(leg: Leg) -> str:
+    match leg:
+        case TakeOff(delay=delay):
+            return f"wait {delay:g} s, take off" if delay else "take off"
+        case FlyTo(hold=hold):
+            return ("spline to" if leg.spline else "fly to") + (f", hold {hold:g} s" if hold else "")
+        case Circle(turns=turns, radius=radius):
+            way = "clockwise" if leg.clockwise else "counter-clockwise"
+            return f"circle {turns:g} x {radius:g} m {way}"
+        case HoldForever():
+            return "hold until stopped"
+    return "land"
+
+
+def _measure(leg: Leg, start: Position, motion: MotionConfig) -> tuple[float, float, Position]:
+    """Length (m), time (s) and end of a leg. Every leg is taken to start and end at rest: an upper estimate."""
+    if isinstance(leg, Circle):
+        length = math.tau * leg.radius * leg.turns
+        speed = min(leg.speed, math.sqrt(motion.acceleration * leg.radius))
+        return length, _time(length, speed, motion), leg.end(start)
+    length = math.dist(start, leg.position)
+    if isinstance(leg, FlyTo):
+        vertical = abs(start[2] - leg.position[2])
+        return length, max(_time(length, leg.speed, motion), vertical / motion.climb_speed) + leg.hold, leg.position
+    if isinstance(leg, TakeOff):
+        return length, leg.delay + _time(length, motion.climb_speed, motion), leg.position
+    return length, length / motion.landing_speed if isinstance(leg, Land) else 0.0, leg.position
+
+
+def _time(length: float, speed: float, motion: MotionConfig) -> float:
+    """Time from rest to rest at a bounded acceleration (s)."""
+    if length < speed**2 / motion.acceleration:
+        return 2.0 * math.sqrt(length / motion.acceleration)
+    return length / speed + speed / motion.acceleration
+
+
+def _surroundings(mission: Mission) -> Iterable[str]:
+    for obstacle in mission.obstacles:
+        place = ", ".join(f"{x:.1f}" for x in obstacle.position)
+        match obstacle:
+            case Sphere(radius=radius):
+                size = f"radius {radius:g} m"
+            case Pole(radius=radius, height=height):
+                size = f"radius {radius:.4g} m, {height:g} m high"
+            case Wall(size=edges, yaw_deg=yaw):
+                size = " x ".join(f"{edge:.4g}" for edge in edges) + f" m, heading {yaw:.1f} deg"
+        moving = f", moving ({obstacle.motion.kind})" if obstacle.motion else ""
+        hidden = "" if obstacle.known else ", not on the map"
+        yield f"{obstacle.shape} '{obstacle.name}' at [{place}], {size}{hidden}{moving}"
+    if mission.boundary:
+        yield f"boundary of {len(mission.boundary)} corners"
+    for fault in mission.faults:
+        yield _fault(fault)
+
+
+def _fault(fault: Fault) -> str:
+    kind = KINDS[fault.kind]
+    text = f"fault {fault.kind} from {fault.start:g} s "
+    text += f"for {fault.duration:g} s" if fault.duration else "to the end"
+    if fault.every is not None:
+        text += f", every {fault.every:g} s" + (f" {fault.times} times" if fault.times else "")
+    if kind.of_vehicles:
+        text += ", all vehicles" if fault.vehicles is None else f", vehicles {', '.join(map(str, fault.vehicles))}"
+    if kind.direction is not None:
+        direction = fault.direction or kind.direction
+        text += ", both directions" if direction == "both" else f", {direction}"
+    told = ", ".join(f"{key} = {value}" for key, value in fault.settings.items())
+    return text + (f": {told}" if told else "")
+
+
+def _limits(limits: Limits | None) -> Iterable[str]:
+    if limits is None:
+        return
+    if limits.position_rmse is not None:
+        yield f"limit: position RMSE {limits.position_rmse:g} m after {limits.settle:g} s"
+    if limits.payload_tilt_deg is not None:
+        yield f"limit: payload tilt {limits.payload_tilt_deg:g} deg"
+    if limits.clearance is not None:
+        yield f"limit: clearance {limits.clearance:g} m"

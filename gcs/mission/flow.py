@@ -1,0 +1,184 @@
+"""Where a route's programme leads: loops without a waypoint, steps never reached, legs that cannot be flown."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from itertools import islice
+
+from gcs.mission.content import Fence
+from gcs.mission.fence import crosses, distance_to_way, is_inside, wall_corners
+from gcs.mission.model import Pole, Wall
+from gcs.mission.route import (
+    Circle,
+    Climb,
+    Descend,
+    FlyTo,
+    Go,
+    Jump,
+    Land,
+    Leg,
+    Position,
+    Return,
+    Route,
+    RouteError,
+    Stay,
+    Step,
+    TakeOff,
+    Turn,
+)
+
+TRIED_LEGS = 20_000
+"""So many legs are tried before the flight. Legs repeat after a lap; a file has at most 10 000 items."""
+
+WAYPOINTS = (Climb, Go, Turn, Stay, Descend, Return)
+
+
+def check_flow(route: Route, fence: Fence) -> tuple[list[str], list[str]]:
+    """Problems and notes, one line each without the file's name."""
+    steps = route.steps
+    if not any(isinstance(step, Climb | Go | Turn | Stay) for step in steps):
+        return ["mission: there is no waypoint"], []
+    if (jump := _loop_without_waypoint(steps)) is not None:
+        return [f"{jump.source}: target: a loop without a waypoint in it would never end"], []
+    flown = _reached(steps, through_landing=False)
+    if problems := _flown_after_landing(steps, flown):
+        return problems, []
+    if not any(isinstance(step, Climb | Go | Turn | Stay) for i, step in enumerate(steps) if i in flown):
+        return ["mission: no waypoint is ever reached"], []
+    try:
+        legs = list(islice(route.legs(), TRIED_LEGS))
+    except RouteError as error:
+        return [f"{error.source}: altitude: {error.reason}"], []
+    return list(_outside_fence(legs, fence)), [*_notes(route, flown, legs), *_ways_across_fence(legs, fence)]
+
+
+def _next(steps: tuple[Step, ...], index: int, through_landing: bool) -> list[int]:
+    """Indices that may follow a step; ``len(steps)`` is the end."""
+    match steps[index]:
+        case Jump(target=target, repeats=repeats):
+            return [target] if repeats is None else [target, index + 1]
+        case Stay():
+            return []
+        case Descend() | Return():
+            return [index + 1] if through_landing else []
+    return [index + 1]
+
+
+def _reached(steps: tuple[Step, ...], through_landing: bool) -> set[int]:
+    reached, waiting = set[int](), [0]
+    while waiting:
+        index = waiting.pop()
+        if index in reached or index >= len(steps):
+            continue
+        reached.add(index)
+        waiting += _next(steps, index, through_landing)
+    return reached
+
+
+def _loop_without_waypoint(steps: tuple[Step, ...]) -> Jump | None:
+    """A jump that closes a loop in which nothing is flown, by depth-first search; None if there is none."""
+    done, open_ = set[int](), set[int]()
+    for start in range(len(steps)):
+        stack = [(start, False)]
+        while stack:
+            index, leaving = stack.pop()
+            if leaving:
+                open_.discard(index)
+                done.add(index)
+                continue
+            if index >= len(steps) or index in done or index in open_ or isinstance(steps[index], WAYPOINTS):
+                continue
+            open_.add(index)
+            stack.append((index, True))
+            for after in _next(steps, index, through_landing=True):
+                step = steps[index]
+                if after in open_ and isinstance(step, Jump):
+                    return step
+                stack.append((after, False))
+    return None
+
+
+def _flown_after_landing(steps: tuple[Step, ...], flown: set[int]) -> list[str]:
+    after = sorted(_reached(steps, through_landing=True) - flown)
+    return [
+        f"{steps[i].source}: command: comes after the landing: a second take-off is not supported"
+        for i in after
+        if isinstance(steps[i], Climb | Go | Turn | Stay)
+        or (isinstance(step := steps[i], Descend) and step.place.horizontal is not None)
+    ]
+
+
+def _notes(route: Route, flown: set[int], legs: list[Leg]) -> Iterator[str]:
+    steps = route.steps
+    never = [step.source for i, step in enumerate(steps) if i not in flown]
+    if never:
+        which = never[0] if len(never) == 1 else f"{len(never)} items, from {never[0]} to {never[-1]}"
+        yield f"{which}: never reached"
+    if isinstance(legs[0], TakeOff):
+        first = next(step for step in steps if step.source == legs[0].source)
+        if not isinstance(first, Climb):
+            yield f"{first.source}: no take-off before it: takes off to {-legs[0].position[2]:g} m first"
+    if isinstance(legs[-1], Land) and legs[-1].source == "end of mission":
+        yield "end of mission: no landing in the file: returns to the pad and lands"
+
+
+def _outside_fence(legs: list[Leg], fence: Fence) -> Iterator[str]:
+    """Legs that end outside the boundary or inside an excluded area; each item once."""
+    seen = set[str]()
+    if fence.boundary is not None and not is_inside((0.0, 0.0), fence.boundary):
+        yield "geoFence: inclusion: home is outside of it"
+    for leg in legs:
+        if leg.source in seen:
+            continue
+        reason = None
+        for place in _places(leg):
+            if fence.boundary is not None and not is_inside(place[:2], fence.boundary):
+                reason = "outside the fence's inclusion area"
+            for obstacle in fence.obstacles:
+                if _is_within(place, obstacle):
+                    reason = f"inside {obstacle.name}, which the fence excludes"
+        if reason:
+            seen.add(leg.source)
+            yield f"{leg.source}: latitude, longitude: {reason}"
+
+
+def _places(leg: Leg) -> list[Position]:
+    """Where a leg ends; of a circle, places all around it."""
+    if not isinstance(leg, Circle):
+        return [leg.position]
+    north, east, down = leg.centre
+    angles = [math.tau * i / 64 for i in range(64)]
+    return [(north + leg.radius * math.cos(a), east + leg.radius * math.sin(a), down) for a in angles]
+
+
+def _ways_across_fence(legs: list[Leg], fence: Fence) -> Iterator[str]:
+    """Straight ways that cross the fence, though they end on its right side; each item once."""
+    told = set[tuple[str, str]]()
+    start: Position = (0.0, 0.0, 0.0)
+    for leg in legs:
+        end = leg.end(start) if isinstance(leg, Circle) else leg.position
+        crossed = []
+        if isinstance(leg, FlyTo) and fence != Fence():
+            if fence.boundary is not None and crosses(start[:2], end[:2], fence.boundary):
+                crossed.append("the fence's inclusion area")
+            low = min(-start[2], -end[2])
+            for obstacle in fence.obstacles:
+                if isinstance(obstacle, Pole):
+                    through = distance_to_way(obstacle.position, start[:2], end[:2]) < obstacle.radius
+                    through = through and low < obstacle.height
+                else:
+                    through = crosses(start[:2], end[:2], wall_corners(obstacle)) and low < obstacle.size[2]
+                if through:
+                    crossed.append(obstacle.name)
+        for name in crossed:
+            if (leg.source, name) not in told:
+                told.add((leg.source, name))
+                yield f"{leg.source}: the straight way there leads across {name}"
+        start = end
+
+
+def _is_within(place: Position, obstacle: Pole | Wall) -> bool:
+    if isinstance(obstacle, Pole):
+        return math.dist(place[:2], obstacle.position) <= obstacle.radius and -place[2] <= obstacle.height
+    return is_inside(place[:2], wall_corners(obstacle)) and -place[2] <= obstacle.size[2]

@@ -1,0 +1,215 @@
+"""What a mission is, once read: a reference, what stands in its way, what goes wrong, what it is held to."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
+
+from gcs.config.system import NotNegative, Positive, SystemConfig, Vector
+from gcs.config.toml_file import strict
+from gcs.mission.route import Route
+
+RESTING_ALTITUDE = 0.30
+"""Height of the payload's centre above home when it stands on the pad (m); nothing is flown below."""
+
+Name = Annotated[str, Field(min_length=1, max_length=200)]
+
+
+@dataclass(frozen=True)
+class Home:
+    """Where the pad stands: latitude and longitude (deg), altitude above mean sea level (m)."""
+
+    latitude: float
+    longitude: float
+    altitude: float
+
+
+DEFAULT_HOME = Home(47.397742, 8.545594, 488.0)
+"""The home of PX4's simulations."""
+
+
+@strict
+@dataclass(frozen=True)
+class Lissajous:
+    """The paper's curve about home: x = a sin wt, y = -b sin 2wt (m, NED), at ``altitude`` above home (m).
+
+    ``amplitude`` is (a, b) (m), ``angular_frequency`` w (rad/s), ``duration`` in s.
+    """
+
+    amplitude: tuple[NotNegative, NotNegative]
+    angular_frequency: Positive
+    altitude: Annotated[float, Field(ge=RESTING_ALTITUDE)]
+    duration: Positive
+    kind: Literal["lissajous"] = "lissajous"
+
+
+@strict
+@dataclass(frozen=True)
+class HarmonicMotion:
+    """Displacement ``amplitude * sin(angular_frequency t + phase)`` from the position (m, rad/s, rad)."""
+
+    amplitude: Vector
+    angular_frequency: Positive
+    phase: float = 0.0
+    kind: Literal["harmonic"] = "harmonic"
+
+
+@strict
+@dataclass(frozen=True)
+class LinearMotion:
+    """Displacement ``velocity * t`` from the position (m/s)."""
+
+    velocity: Vector
+    kind: Literal["linear"] = "linear"
+
+
+@strict
+@dataclass(frozen=True)
+class CircleMotion:
+    """Round the position on a level circle: ``radius`` (m), ``angular_frequency`` (rad/s).
+
+    ``phase`` (rad) is where on the circle it is at time 0, from north towards east; ``clockwise`` as seen from above.
+    """
+
+    radius: Positive
+    angular_frequency: Positive
+    phase: float = 0.0
+    clockwise: bool = True
+    kind: Literal["circle"] = "circle"
+
+
+@strict
+@dataclass(frozen=True)
+class WaypointsMotion:
+    """Straight from displacement to displacement (``points``, m) at ``speed`` (m/s), stopping for ``hold`` (s) at each.
+
+    ``acceleration`` (m/s2) is that with which it starts and stops at every point; None: at once. ``repeat``: goes on
+    from the last point to the first one and so on; otherwise it stays at the last one.
+    """
+
+    points: Annotated[tuple[Vector, ...], Field(min_length=2, max_length=1000)]
+    speed: Positive
+    hold: NotNegative = 0.0
+    acceleration: Positive | None = None
+    repeat: bool = False
+    kind: Literal["waypoints"] = "waypoints"
+
+
+@strict
+@dataclass(frozen=True)
+class RandomWalkMotion:
+    """Wanders about the position: on each axis the acceleration is noise of limited band, the same for one ``seed``.
+
+    ``speed`` is the standard deviation of the velocity on each axis (m/s), ``bandwidth`` the highest angular
+    frequency (rad/s); the lowest is a fifth of it, which keeps it about its position.
+    """
+
+    seed: Annotated[int, Field(ge=0, lt=2**63)]
+    speed: tuple[NotNegative, NotNegative, NotNegative]
+    bandwidth: Positive
+    kind: Literal["random_walk"] = "random_walk"
+
+
+AnyMotion = HarmonicMotion | LinearMotion | CircleMotion | WaypointsMotion | RandomWalkMotion
+Motion = Annotated[AnyMotion, Field(discriminator="kind")]
+
+
+@strict
+@dataclass(frozen=True)
+class Sphere:
+    """A ball: centre (NED, m) and radius (m)."""
+
+    name: Name
+    position: Vector
+    radius: Positive
+    known: bool = True
+    motion: Motion | None = None
+    shape: Literal["sphere"] = "sphere"
+
+
+@strict
+@dataclass(frozen=True)
+class Pole:
+    """An upright cylinder on the ground: (north, east), radius, height (m)."""
+
+    name: Name
+    position: tuple[float, float]
+    radius: Positive
+    height: Positive
+    known: bool = True
+    motion: Motion | None = None
+    shape: Literal["pole"] = "pole"
+
+
+@strict
+@dataclass(frozen=True)
+class Wall:
+    """A box: centre (NED, m), edge lengths (m), heading of its x edge (deg, from north towards east)."""
+
+    name: Name
+    position: Vector
+    size: tuple[Positive, Positive, Positive]
+    yaw_deg: float = 0.0
+    known: bool = True
+    motion: Motion | None = None
+    shape: Literal["wall"] = "wall"
+
+
+Obstacle = Annotated[Sphere | Pole | Wall, Field(discriminator="shape")]
+
+
+@strict
+@dataclass(frozen=True)
+class Fault:
+    """Something that goes wrong. Times in s after take-off begins, which is when the first vehicle lifts off.
+
+    ``vehicles`` None: all of them. ``duration`` None: to the end. ``every``: it comes again at this period, ``times``
+    times in all (None: without end). ``direction`` None: the kind's own. ``settings`` are the kind's parameters as
+    written (:mod:`gcs.faults` has the kinds); ``line`` is where the fault stands in the mission file.
+    """
+
+    kind: Name
+    start: NotNegative
+    duration: Positive | None = None
+    every: Positive | None = None
+    times: Annotated[int, Field(ge=1, le=1_000_000)] | None = None
+    vehicles: tuple[Annotated[int, Field(ge=1)], ...] | None = None
+    direction: Literal["telemetry", "command", "both"] | None = None
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    line: int = 1
+
+
+@strict
+@dataclass(frozen=True)
+class Limits:
+    """What the flight is held to; None: not held to it. m, s, deg."""
+
+    position_rmse: Positive | None = None
+    settle: NotNegative = 10.0
+    payload_tilt_deg: Positive | None = None
+    clearance: NotNegative | None = None
+
+
+@dataclass(frozen=True)
+class Mission:
+    """A mission as it will be flown.
+
+    ``boundary``: corners (north, east) in m of the area that must not be left, None: no boundary. ``notes``: what
+    of the file is left out, capped or added, one line each. Positions are NED in m from home's ground point.
+    """
+
+    name: str
+    path: Path
+    seed: int
+    system: SystemConfig
+    reference: Lissajous | Route
+    home: Home = DEFAULT_HOME
+    obstacles: tuple[Sphere | Pole | Wall, ...] = ()
+    boundary: tuple[tuple[float, float], ...] | None = None
+    faults: tuple[Fault, ...] = ()
+    limits: Limits | None = None
+    notes: tuple[str, ...] = ()

@@ -1,0 +1,291 @@
+"""A route: a small programme of steps, run leg by leg.
+
+Jumps make a route a programme rather than a list: it may be endless, and where "here" is depends on the way that led
+there. :meth:`Route.legs` runs it lazily.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+Position = tuple[float, float, float]
+
+
+# What is flown --------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class TakeOff:
+    """Straight up from the pad to ``position`` (NED, m), after ``delay`` seconds on the pad."""
+
+    position: Position
+    source: str
+    delay: float = 0.0
+
+
+@dataclass(frozen=True)
+class FlyTo:
+    """Straight to ``position`` (NED, m) at ``speed`` (m/s); there hold for ``hold`` seconds (0: fly on).
+
+    ``spline``: the file asks for a smooth curve through this point.
+    """
+
+    position: Position
+    speed: float
+    source: str
+    hold: float = 0.0
+    spline: bool = False
+
+
+@dataclass(frozen=True)
+class Circle:
+    """``turns`` around ``centre`` (NED, m) at ``radius`` (m) and ``speed`` (m/s), from where the leg before ended.
+
+    ``clockwise`` as seen from above.
+    """
+
+    centre: Position
+    radius: float
+    turns: float
+    clockwise: bool
+    speed: float
+    source: str
+
+    def end(self, start: Position) -> Position:
+        """Where the circle ends that begins at ``start``."""
+        angle = math.atan2(start[1] - self.centre[1], start[0] - self.centre[0])
+        angle += math.fmod(self.turns, 1.0) * math.tau * (1.0 if self.clockwise else -1.0)
+        north, east, down = self.centre
+        return (north + self.radius * math.cos(angle), east + self.radius * math.sin(angle), down)
+
+
+@dataclass(frozen=True)
+class HoldForever:
+    """Hold at ``position`` (NED, m) until stopped; the last leg."""
+
+    position: Position
+    source: str
+
+
+@dataclass(frozen=True)
+class Land:
+    """Straight down to the ground below ``position``, the payload's resting place (NED, m); the last leg."""
+
+    position: Position
+    source: str
+
+
+Leg = TakeOff | FlyTo | Circle | HoldForever | Land
+
+
+# What is written ------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Place:
+    """A place in m from home's ground point: (north, east), altitude above it. None: as it is then."""
+
+    horizontal: tuple[float, float] | None = None
+    altitude: float | None = None
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step of the programme; ``source`` names the line or item it comes from."""
+
+    source: str
+
+
+@dataclass(frozen=True)
+class Climb(Step):
+    """Take-off: straight up to the altitude, then to the place."""
+
+    place: Place
+
+
+@dataclass(frozen=True)
+class Go(Step):
+    """To a place, and hold there (s)."""
+
+    place: Place
+    hold: float = 0.0
+    spline: bool = False
+
+
+@dataclass(frozen=True)
+class Turn(Step):
+    """Around a place (m)."""
+
+    place: Place
+    radius: float
+    turns: float
+    clockwise: bool
+
+
+@dataclass(frozen=True)
+class Stay(Step):
+    """To a place, and hold there until stopped."""
+
+    place: Place
+
+
+@dataclass(frozen=True)
+class Wait(Step):
+    """Hold here (s)."""
+
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Descend(Step):
+    """To above a place, and land."""
+
+    place: Place
+
+
+@dataclass(frozen=True)
+class Return(Step):
+    """To above home at the present altitude, and land."""
+
+
+@dataclass(frozen=True)
+class Speed(Step):
+    """Speed from here on (m/s); None: the route's own."""
+
+    speed: float | None
+
+
+@dataclass(frozen=True)
+class Jump(Step):
+    """To the step of index ``target``, ``repeats`` times (None: always), then on."""
+
+    target: int
+    repeats: int | None
+
+
+class RouteError(Exception):
+    """A step that cannot be flown where the programme meets it: ``source`` and the reason."""
+
+    def __init__(self, source: str, reason: str) -> None:
+        super().__init__(reason)
+        self.source = source
+        self.reason = reason
+
+
+@dataclass(frozen=True)
+class Route:
+    """Steps to be flown at ``speed`` (m/s) where they do not say; the payload rests at ``resting_altitude`` (m)."""
+
+    steps: tuple[Step, ...]
+    speed: float
+    resting_altitude: float
+
+    def legs(self) -> Iterator[Leg]:
+        """The legs in the order of flight, made as they are asked for: a route may be endless.
+
+        The first is a :class:`TakeOff`; the last, if there is one, a :class:`Land` or :class:`HoldForever`. A route
+        without a landing ends with one at home. Jumps keep their count for the whole flight.
+
+        Raises :class:`RouteError` for a step that cannot be flown; a :class:`Mission`'s route has been tried.
+        """
+        flight = _Flight(self)
+        index, taken, lap_at = 0, dict[int, int](), dict[int, int]()
+        while index < len(self.steps):
+            step = self.steps[index]
+            index += 1
+            if isinstance(step, Jump):
+                here, count = index - 1, taken.get(index - 1, 0)
+                if step.repeats is not None and count >= step.repeats:
+                    continue
+                if lap_at.get(here) == flight.progress:  # the lap moved nothing and took no time
+                    if step.repeats is None:
+                        yield HoldForever(flight.airborne(step.source), step.source)
+                        return
+                    continue
+                taken[here], lap_at[here], index = count + 1, flight.progress, step.target
+                continue
+            yield from flight.fly(step)
+            if flight.ended:
+                return
+        yield from flight.fly(Return("end of mission"))
+
+
+class _Flight:
+    """Where a route's programme stands: position, speed, whether it flies."""
+
+    def __init__(self, route: Route) -> None:
+        self.route = route
+        self.horizontal = (0.0, 0.0)
+        self.altitude: float | None = None  # None: on the pad
+        self.speed = route.speed
+        self.delay = 0.0
+        self.progress = 0
+        self.ended = False
+
+    def airborne(self, source: str) -> Position:
+        """The present position; an error on the pad."""
+        if self.altitude is None:
+            raise RouteError(source, "the payload is still on the pad, and no altitude is given to take off to")
+        return (*self.horizontal, -self.altitude)
+
+    def fly(self, step: Step) -> Iterator[Leg]:
+        """The legs of one step."""
+        source = step.source
+        match step:
+            case Speed(speed=speed):
+                self.speed = self.route.speed if speed is None else speed
+            case Wait(seconds=seconds) if self.altitude is None:
+                self.delay += seconds
+            case Wait(seconds=seconds):
+                yield from self._go(Place(), source, hold=seconds)
+            case Climb(place=place):
+                yield from self._go(Place(None, place.altitude), source)
+                if place.horizontal is not None and math.dist(place.horizontal, self.horizontal) > 0.05:
+                    yield from self._go(Place(place.horizontal), source)
+            case Go(place=place, hold=hold, spline=spline):
+                yield from self._go(place, source, hold=hold, spline=spline)
+            case Turn(place=place):
+                yield from self._turn(step)
+            case Stay(place=place):
+                yield from self._go(place, source)
+                self.ended = True
+                yield HoldForever(self.airborne(source), source)
+            case Descend() | Return():
+                self.airborne(source)
+                target = step.place.horizontal if isinstance(step, Descend) else (0.0, 0.0)
+                if target is not None and target != self.horizontal:
+                    yield from self._go(Place(target), source)
+                self.ended = True
+                yield Land((*self.horizontal, -self.route.resting_altitude), source)
+
+    def _go(self, place: Place, source: str, *, hold: float = 0.0, spline: bool = False) -> Iterator[Leg]:
+        if self.altitude is None:
+            if place.altitude is None:
+                self.airborne(source)
+            self.altitude = place.altitude
+            self.progress += 1
+            yield TakeOff(self.airborne(source), source, self.delay)
+            if hold == 0.0 and place.horizontal in (None, self.horizontal):
+                return
+        before = self.airborne(source)
+        self.horizontal = place.horizontal or self.horizontal
+        self.altitude = self.altitude if place.altitude is None else place.altitude
+        position = self.airborne(source)
+        if hold > 0.0 or math.dist(before, position) > 1e-3:
+            self.progress += 1
+        yield FlyTo(position, self.speed, source, hold, spline)
+
+    def _turn(self, step: Turn) -> Iterator[Leg]:
+        north, east = step.place.horizontal or self.horizontal
+        away = (self.horizontal[0] - north, self.horizontal[1] - east)
+        distance = math.hypot(*away)
+        toward = (away[0] / distance, away[1] / distance) if distance > 1e-6 else (1.0, 0.0)
+        entry = (north + step.radius * toward[0], east + step.radius * toward[1])
+        yield from self._go(Place(entry, step.place.altitude), step.source)
+        centre = (north, east, self.airborne(step.source)[2])
+        circle = Circle(centre, step.radius, step.turns, step.clockwise, self.speed, step.source)
+        self.horizontal = circle.end(self.airborne(step.source))[:2]
+        self.progress += 1
+        yield circle

@@ -1,0 +1,258 @@
+"""All obstacles as the ground knows them: on the map, or followed by what the vehicles' range sensors tell."""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcs.mission.fence import boundary_walls
+from gcs.mission.model import Mission, Pole, Sphere, Wall
+from gcs.obstacles.association import assigned, for_gating, mean_distances
+from gcs.obstacles.known import centre_of, shape_of
+from gcs.obstacles.scans import Cluster, ScanInbox, SensorModel
+from gcs.obstacles.track import Track
+from idc_controller.barrier.obstacles import PredictedObstacle, Shape
+from idc_controller.estimate.measurements import Measurement
+from idc_controller.estimate.motion_bank import BankSettings, MotionModels
+from idc_controller.estimate.surface_distance import Bodies
+
+Array = NDArray[np.float64]
+
+KNOWN_GATE = 0.25  # m, mean distance of a cluster from a surface that is on the map
+TRACK_GATE = 0.4  # m, and what the track itself is not sure of
+UNSEEN_GATE = 3.0  # m, from a known obstacle that moves and was not seen yet
+SAME_GATE = 0.5  # m, between clusters of several vehicles that begin a track together
+MERGE_GATE, MERGE_FRAMES = 0.25, 3
+GHOST_AFTER = 1.0  # s unseen, although in range
+FORGET_AFTER = 2.0  # s unseen and out of range, if it moves
+UNCONFIRMED_AFTER = 0.5  # s
+SURELY_IN_RANGE = 0.8  # of the sensors' range
+_MEMORY = 3.0  # s for which a vehicle's number stands for an obstacle
+_LINK_ALIVE = 0.3  # s
+
+
+class Belief(NamedTuple):
+    """One followed obstacle at one time, for the records. SI units, NED."""
+
+    time: float
+    name: str
+    shape: Shape
+    position: Array
+    velocity: Array
+    growth: float
+
+
+class ObstacleMap:
+    """An :class:`~idc_controller.barrier.obstacles.ObstacleSource`. Times are the team's (s).
+
+    Hand over telemetry with :meth:`measured` and :meth:`detected`, call :meth:`update` once a control step, then
+    :meth:`predict`. Obstacles that the mission does not mark as known are not looked at.
+    """
+
+    def __init__(self, obstacles: Sequence[Sphere | Pole | Wall], sensors: SensorModel, reach: float) -> None:
+        """``obstacles`` of the mission; ``reach`` (m) of the range sensors."""
+        known = [obstacle for obstacle in obstacles if obstacle.known]
+        standing = [obstacle for obstacle in known if obstacle.motion is None]
+        self.models = MotionModels(BankSettings())
+        self.tracks: list[Track] = [
+            Track(obstacle.name, self.models, known=shape_of(obstacle), place=centre_of(obstacle))
+            for obstacle in known
+            if obstacle.motion is not None
+        ]
+        self._standing = [(obstacle.name, shape_of(obstacle), centre_of(obstacle)) for obstacle in standing]
+        self._reach = reach
+        self._inbox = ScanInbox(sensors)
+        self._memory: dict[tuple[int, int], tuple[str, float]] = {}
+        self._names = {obstacle.name for obstacle in known}
+        self._next_number = 1
+        self._time = -math.inf
+
+    @classmethod
+    def of_mission(cls, mission: Mission) -> ObstacleMap:
+        """The map of a mission, for the sensors of its system file."""
+        config = mission.system
+        sensors = SensorModel(
+            config.range_sensor.noise, config.sensors.position, math.radians(config.sensors.attitude_deg)
+        )
+        fence = boundary_walls(mission.boundary) if mission.boundary is not None else ()
+        return cls((*mission.obstacles, *fence), sensors, config.range_sensor.range)
+
+    # From telemetry
+
+    def measured(self, sample: Measurement) -> None:
+        """A vehicle's position or attitude."""
+        self._inbox.measured(sample)
+
+    def detected(self, message: Any, uav: int, time: float) -> None:
+        """An OBSTACLE_DISTANCE_3D of UAV ``uav`` (0 .. N-1), true at ``time``. Nonsense is counted and left out."""
+        self._inbox.detected(message, uav, time)
+
+    @property
+    def refused(self) -> int:
+        """Detections that could not be used."""
+        return self._inbox.refused
+
+    def update(self, now: float) -> None:
+        """Learn from all that came since the last time."""
+        self._time = now
+        for clusters in self._inbox.frames(now):
+            self._learn(clusters)
+        self._drop_silent(now)
+
+    # For the controller and the records
+
+    def predict(self, times: Array) -> list[PredictedObstacle]:
+        """All obstacles at ``times`` (K,)."""
+        times = np.asarray(times, dtype=float)
+        none = np.zeros(len(times))
+        found = [
+            PredictedObstacle(name, shape, np.broadcast_to(centre, (len(times), 3)), none)
+            for name, shape, centre in self._standing
+        ]
+        return found + [track.predict(times, self._time) for track in self.tracks if track.is_believed]
+
+    def beliefs(self, time: float) -> list[Belief]:
+        """The followed obstacles at ``time``."""
+        return [
+            Belief(time, track.name, track.shape, *_split(track, time))
+            for track in self.tracks
+            if track.is_believed and track.filter is not None
+        ]
+
+    # Inside
+
+    def _learn(self, clusters: list[Cluster]) -> None:
+        """One frame: clusters of all vehicles at one time."""
+        time = max(cluster.seen.time for cluster in clusters)
+        tracks = self.tracks
+        centres, gates = [], []
+        for track in tracks:
+            centre, sigma = track.expected(time)
+            centres.append(centre)
+            gates.append(UNSEEN_GATE if track.filter is None or track.is_gone else TRACK_GATE + sigma)
+        names = [track.name for track in tracks] + [name for name, _, _ in self._standing]
+        shapes = [track.shape if track.known else for_gating(track.shape) for track in tracks]
+        shapes += [shape for _, shape, _ in self._standing]
+        centres += [centre for _, _, centre in self._standing]
+        gates += [KNOWN_GATE] * len(self._standing)
+        distances = mean_distances(clusters, shapes, np.array(centres).reshape(-1, 3))
+        index = {name: i for i, name in enumerate(names)}
+        remembered = [index.get(self._recall(cluster, time)) for cluster in clusters]
+        bodies = assigned(clusters, distances, np.array(gates), remembered)
+
+        parts: dict[int, list[Cluster]] = defaultdict(list)
+        fresh: list[Cluster] = []
+        for cluster, body in zip(clusters, bodies, strict=True):
+            if body is None:
+                fresh.append(cluster)
+            else:
+                parts[body].append(cluster)
+                self._memory[cluster.uav, cluster.number] = names[body], time
+        for body, members in parts.items():
+            if body < len(tracks):
+                tracks[body].update([cluster.seen for cluster in members])
+        self._merge(clusters, bodies, distances, tracks[:])
+        for group in self._grouped(fresh):
+            self._begin(group, time)
+
+    def _recall(self, cluster: Cluster, time: float) -> str:
+        name, when = self._memory.get((cluster.uav, cluster.number), ("", -math.inf))
+        return name if time - when < _MEMORY else ""
+
+    def _grouped(self, clusters: list[Cluster]) -> list[list[Cluster]]:
+        """Clusters of several vehicles that lie on one surface."""
+        groups: list[tuple[list[Cluster], Track]] = []
+        for cluster in clusters:
+            for members, trial in groups:
+                if any(member.uav == cluster.uav for member in members):
+                    continue
+                centre, _ = trial.centre(cluster.seen.time)
+                if mean_distances([cluster], [for_gating(trial.shape)], centre[None])[0, 0] < SAME_GATE:
+                    members.append(cluster)
+                    trial.filter = None
+                    trial.update([member.seen for member in members])
+                    break
+            else:
+                trial = Track("", self.models)
+                trial.update([cluster.seen])
+                groups.append(([cluster], trial))
+        return [members for members, _ in groups]
+
+    def _begin(self, members: list[Cluster], time: float) -> None:
+        while f"track {self._next_number}" in self._names:
+            self._next_number += 1
+        track = Track(f"track {self._next_number}", self.models)
+        self._next_number += 1
+        track.update([member.seen for member in members])
+        self.tracks.append(track)
+        for member in members:
+            self._memory[member.uav, member.number] = track.name, time
+
+    def _merge(self, clusters: list[Cluster], bodies: list[int | None], distances: Array, tracks: list[Track]) -> None:
+        """Two tracks of one obstacle become one: the younger one's points have lain on the older for some frames."""
+        of_track: dict[int, list[int]] = defaultdict(list)
+        for row, body in enumerate(bodies):
+            if body is not None and body < len(tracks):
+                of_track[body].append(row)
+        for younger, rows in of_track.items():
+            track = tracks[younger]
+            if track.known is not None:
+                continue
+            sees_younger = {clusters[row].uav for row in rows}
+            for older in range(distances.shape[1]):
+                is_standing = older >= len(tracks)
+                name = self._standing[older - len(tracks)][0] if is_standing else tracks[older].name
+                if not is_standing and (older >= younger or tracks[older].filter is None):
+                    continue
+                apart = any(bodies[i] == older and clusters[i].uav in sees_younger for i in range(len(clusters)))
+                if apart or distances[rows, older].max() > MERGE_GATE:
+                    track.overlaps.pop(name, None)
+                    continue
+                track.overlaps[name] = track.overlaps.get(name, 0) + 1
+                if track.overlaps[name] >= MERGE_FRAMES:
+                    self._remove(track)
+                    for key, (remembered, when) in tuple(self._memory.items()):
+                        if remembered == track.name:
+                            self._memory[key] = name, when
+                    break
+
+    def _drop_silent(self, now: float) -> None:
+        for track in tuple(self.tracks):
+            silent = now - track.last_seen
+            if silent <= UNCONFIRMED_AFTER:
+                continue
+            if track.known is not None:
+                if not track.is_gone and silent > GHOST_AFTER and self._would_be_seen(track, now):
+                    track.is_gone = True
+            elif not track.is_believed or (
+                silent > GHOST_AFTER
+                and (self._would_be_seen(track, now) or (silent > FORGET_AFTER and not track.is_static))
+            ):
+                self._remove(track)
+        for key, (_, when) in tuple(self._memory.items()):
+            if now - when > _MEMORY:
+                del self._memory[key]
+
+    def _would_be_seen(self, track: Track, now: float) -> bool:
+        """Whether a vehicle whose telemetry comes in is so near that its sensor could not miss the obstacle."""
+        places = [self._inbox.position(uav, now, _LINK_ALIVE) for uav in self._inbox.vehicles]
+        near = np.array([place for place in places if place is not None])
+        if not len(near):
+            return False
+        centre, _ = track.centre(now)
+        distance = Bodies([track.shape]).distance(near, centre[None])
+        return bool(distance.min() < SURELY_IN_RANGE * self._reach)
+
+    def _remove(self, track: Track) -> None:
+        if track in self.tracks:
+            self.tracks.remove(track)
+
+
+def _split(track: Track, time: float) -> tuple[Array, Array, float]:
+    position, growth = track.centre(time)
+    return position, track.velocity, growth

@@ -1,0 +1,173 @@
+"""OBSTACLE_DISTANCE_3D messages become points in the world, by the telemetered poses of the vehicles that sent them."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import pymavlink.dialects.v20.ardupilotmega as mavlink
+from numpy.typing import NDArray
+
+from idc_controller.estimate.measurements import Attitude, Measurement, Position
+from idc_controller.estimate.surface_points import SurfacePoints
+from idc_controller.rotations import quaternion_product, rotation_from_quaternion
+
+Array = NDArray[np.float64]
+
+POSE_GAP = 0.1  # s between a scan and the pose by which it is placed
+PATIENCE = 0.3  # s for which a scan waits for its pose
+TOGETHER = 0.02  # s within which scans of several vehicles count as one frame
+_POSES = 30
+_CUT = 4.0  # standard deviations from the sensor's range at which a point may have been cut off by it
+_POINTS_MAX = 2000  # of a vehicle that wait at a time
+
+
+@dataclass(frozen=True)
+class SensorModel:
+    """What is known of the sensors: standard deviations."""
+
+    range_noise: float
+    """m, along the line of sight"""
+    position: float
+    """m, of a vehicle's position, every axis"""
+    attitude: float
+    """rad, of its attitude, every axis"""
+
+
+@dataclass(frozen=True, eq=False)
+class Cluster:
+    """The points that one vehicle takes for one obstacle, under a number of its own."""
+
+    uav: int
+    number: int
+    seen: SurfacePoints
+
+
+@dataclass(eq=False)
+class _Scan:
+    time: float
+    reach: float
+    points: dict[int, list[tuple[float, float, float]]] = field(default_factory=dict)
+    count: int = 0
+
+
+class ScanInbox:
+    """Gathers messages until they can be placed. Times are the team's (s)."""
+
+    def __init__(self, sensors: SensorModel) -> None:
+        self._sensors = sensors
+        self._attitudes: dict[int, deque[Attitude]] = {}
+        self._positions: dict[int, deque[Position]] = {}
+        self._waiting: dict[tuple[int, int], _Scan] = {}
+        self._waiting_points: dict[int, int] = {}
+        self.refused = 0
+        """Messages that made no sense, and scans that no pose was known for."""
+
+    def measured(self, sample: Measurement) -> None:
+        """A pose of a vehicle, or half of one."""
+        if sample.source < 0:
+            return
+        if isinstance(sample, Attitude):
+            self._attitudes.setdefault(sample.source, deque(maxlen=_POSES)).append(sample)
+        else:
+            self._positions.setdefault(sample.source, deque(maxlen=_POSES)).append(sample)
+
+    def detected(self, message: Any, uav: int, time: float) -> None:
+        """An OBSTACLE_DISTANCE_3D of UAV ``uav`` (0 .. N-1), true at ``time``."""
+        point = (message.x, message.y, message.z)
+        reach = message.max_distance
+        waiting = self._waiting_points.get(uav, 0)
+        if (
+            message.frame != mavlink.MAV_FRAME_BODY_FRD
+            or not math.isfinite(sum(point) + reach)
+            or not 0.0 < math.hypot(*point) < 2.0 * reach
+            or waiting >= _POINTS_MAX
+        ):
+            self.refused += 1
+            return
+        key = uav, message.time_boot_ms
+        scan = self._waiting.get(key)
+        if scan is None:
+            scan = self._waiting[key] = _Scan(time, reach)
+        scan.points.setdefault(message.obstacle_id, []).append(point)
+        scan.count += 1
+        self._waiting_points[uav] = waiting + 1
+
+    def position(self, uav: int, time: float, within: float) -> Array | None:
+        """Where a vehicle was at ``time`` (3,), if its telemetry told so within that time (s) before."""
+        history = self._positions.get(uav)
+        if not history or not abs(time - history[-1].time) <= within:
+            return None
+        return history[-1].position
+
+    @property
+    def vehicles(self) -> tuple[int, ...]:
+        """Those that have told where they are."""
+        return tuple(self._positions)
+
+    def frames(self, now: float) -> list[list[Cluster]]:
+        """What can be placed, oldest first: the clusters of all vehicles at (nearly) one time."""
+        placed: list[tuple[float, list[Cluster]]] = []
+        for key, scan in tuple(self._waiting.items()):
+            pose = self._pose(key[0], scan.time)
+            if pose is None and now - scan.time <= PATIENCE:
+                continue
+            del self._waiting[key]
+            self._waiting_points[key[0]] -= scan.count
+            if pose is None:
+                self.refused += scan.count
+                continue
+            placed.append((scan.time, self._placed(key[0], scan, *pose)))
+        placed.sort(key=lambda entry: entry[0])
+        frames: list[list[Cluster]] = []
+        begin = -math.inf
+        for time, clusters in placed:
+            if time - begin > TOGETHER:
+                begin = time
+                frames.append([])
+            frames[-1] += clusters
+        return frames
+
+    def _placed(self, uav: int, scan: _Scan, position: Array, quaternion: Array) -> list[Cluster]:
+        rotation = rotation_from_quaternion(quaternion)
+        s = self._sensors
+        body = np.array([point for points in scan.points.values() for point in points])
+        distance = np.sqrt(np.einsum("ij,ij->i", body, body))
+        world = position + body @ rotation.T
+        origins = np.broadcast_to(position, body.shape)
+        cut = distance > scan.reach - _CUT * s.range_noise
+        variance = s.position**2 + (s.attitude * distance) ** 2
+        clusters, end = [], 0
+        for number, points in scan.points.items():
+            own = slice(end, end + len(points))
+            end = own.stop
+            seen = SurfacePoints(scan.time, world[own], origins[own], cut[own], s.range_noise, variance[own])
+            clusters.append(Cluster(uav, number, seen))
+        return clusters
+
+    def _pose(self, uav: int, time: float) -> tuple[Array, Array] | None:
+        """Position (3,) and attitude (4,) at ``time``, from the samples next to it."""
+        attitude = _nearest(self._attitudes.get(uav), time)
+        position = _nearest(self._positions.get(uav), time)
+        if attitude is None or position is None:
+            return None
+        dt = time - attitude.time
+        quaternion = attitude.quaternion
+        if abs(dt) > 1e-4:
+            quaternion = quaternion_product(quaternion, np.append(1.0, 0.5 * dt * attitude.rates))
+            quaternion = quaternion / np.linalg.norm(quaternion)
+        return position.position + (time - position.time) * position.velocity, quaternion
+
+
+def _nearest(history: deque[Any] | None, time: float) -> Any:
+    if not history:
+        return None
+    found = history[-1]
+    for sample in reversed(history):
+        if abs(sample.time - time) > abs(found.time - time):
+            break
+        found = sample
+    return found if abs(found.time - time) <= POSE_GAP else None

@@ -1,0 +1,61 @@
+"""The progress line while a flight goes on."""
+
+from __future__ import annotations
+
+import math
+from types import TracebackType
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+from gcs.flight.flight import Flight, Phase
+
+
+class FlightProgress:
+    """One line at a terminal that tells phase, flight time and how much is left; elsewhere one line a phase."""
+
+    def __init__(self, console: Console) -> None:
+        self._console = console
+        self._progress = Progress(
+            SpinnerColumn(),
+            TextColumn("{task.description:<12}"),
+            BarColumn(),
+            TextColumn("{task.fields[flown]}"),
+            TimeElapsedColumn(),
+            console=console,
+            transient=True,
+            disable=not console.is_terminal,
+        )
+        self._task = self._progress.add_task("connect", total=None, flown="")
+        self._phase: Phase | None = None
+        self._second = -1
+
+    def update(self, flight: Flight) -> None:
+        """Called at every exchange; draws only what has changed."""
+        changed = flight.phase is not self._phase
+        time = flight.time - flight.takeoff_time
+        flown = math.isfinite(time)
+        if changed:
+            self._phase = flight.phase
+            if not self._console.is_terminal:
+                self._console.print(f"{flight.time:8.2f} s  {flight.phase.value}")
+        second = math.floor(time) if flown else -1
+        if self._console.is_terminal and (changed or second != self._second):
+            self._second = second
+            end = flight.expected_end - flight.takeoff_time if flown else math.inf
+            self._progress.update(
+                self._task,
+                description=flight.phase.value,
+                completed=time if flown else 0.0,
+                total=end if math.isfinite(end) else None,
+                flown=f"{time:5.0f} s" + (f" of {end:.0f} s" if math.isfinite(end) else "") if flown else "",
+            )
+
+    def __enter__(self) -> FlightProgress:
+        self._progress.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._progress.stop()

@@ -1,0 +1,120 @@
+"""Writes a flight's records while it goes on: telemetry log, reference, estimate, control steps."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gcs.flight.flight import CLEAR_OF_GROUND
+from gcs.record.tables import (
+    ESTIMATE_COLUMNS,
+    OBSTACLE_ESTIMATE_COLUMNS,
+    PLAN_COLUMNS,
+    REFERENCE_COLUMNS,
+    STEP_COLUMNS,
+    TableWriter,
+)
+from gcs.record.tlog import TelemetryLog
+from idc_controller.rotations import quaternion_from_euler
+
+if TYPE_CHECKING:
+    from gcs.flight.flight import Flight, StepRecord
+    from gcs.obstacles import ObstacleMap
+    from idc_controller.control.controller import Decision
+
+REFERENCE_INTERVAL = 0.02  # s, the grid of truth.csv
+OBSTACLE_INTERVAL = 0.1  # s
+_GRID_TOLERANCE = 1e-6
+
+
+class FlightRecorder:
+    """The ground's records of one flight; a context manager that closes them."""
+
+    def __init__(self, run_dir: Path, start_epoch: float) -> None:
+        """``start_epoch``: seconds since 1970 at the ground's time 0, for the telemetry log."""
+        self._tlog = TelemetryLog(run_dir / "telemetry.tlog", start_epoch)
+        self._reference = TableWriter(run_dir / "reference.csv", REFERENCE_COLUMNS)
+        self._estimate = TableWriter(run_dir / "estimate.csv", ESTIMATE_COLUMNS)
+        self._steps = TableWriter(run_dir / "steps.csv", STEP_COLUMNS)
+        self._run_dir = run_dir
+        self._obstacles: TableWriter | None = None
+        self._next_obstacles = -math.inf
+        self._plan = TableWriter(run_dir / "plan.csv", PLAN_COLUMNS)
+        self._next_row: int | None = None
+        self.last_time = 0.0
+
+    def datagram(self, now: float, datagram: bytes) -> None:
+        """One datagram, sent or received."""
+        self._tlog.write(now, datagram)
+
+    def step(self, flight: Flight, time: float, record: StepRecord | None) -> None:
+        """One control step at team ``time`` (s)."""
+        self.last_time = time
+        if not math.isnan(flight.takeoff_time):
+            self._write_reference(flight, time)
+        if record is None:
+            return
+        estimate, decision = record.estimate, record.decision
+        x = estimate.x
+        attitude = quaternion_from_euler(*x[6:9])
+        self._estimate.write([estimate.time, *x[0:3], *attitude, *x[3:6], *x[9:12], *estimate.force])
+        milliseconds = (record.estimator_time * 1e3, decision.planner_time * 1e3, decision.tracker_time * 1e3)
+        self._steps.write(
+            [time, *milliseconds, (record.estimator_time + record.controller_time) * 1e3, decision.iterations,
+             decision.infeasible]
+        )  # fmt: skip
+        if flight.phase in CLEAR_OF_GROUND:
+            self._write_plan(estimate.time, decision)
+
+    def _write_plan(self, time: float, decision: Decision) -> None:
+        position, _, acceleration = decision.reference.trajectory.derivatives(np.array([time]), 2)[:, 0]
+        safety = decision.safety
+        bounds = (math.nan if b is None else b for b in (safety.payload_bound, safety.uav_bound))
+        self._plan.write(
+            [time, *position, *acceleration, safety.slack, safety.lag, safety.clock_rate, safety.detours, *bounds]
+        )
+
+    def obstacles(self, obstacle_map: ObstacleMap, time: float) -> None:
+        """What is believed of the obstacles at team ``time`` (s); ten times a second, once there are any."""
+        if time < self._next_obstacles - _GRID_TOLERANCE:
+            return
+        self._next_obstacles = (math.floor(time / OBSTACLE_INTERVAL + _GRID_TOLERANCE) + 1) * OBSTACLE_INTERVAL
+        for belief in obstacle_map.beliefs(time):
+            if self._obstacles is None:
+                self._obstacles = TableWriter(self._run_dir / "obstacles_estimate.csv", OBSTACLE_ESTIMATE_COLUMNS)
+            shape = belief.shape
+            self._obstacles.write(
+                [round(time, 6), belief.name, shape.kind, *belief.position, *belief.velocity, shape.radius, *shape.size,
+                 shape.yaw, belief.growth]
+            )  # fmt: skip
+
+    def _write_reference(self, flight: Flight, time: float) -> None:
+        if flight.ended:
+            return
+        if self._next_row is None:
+            self._next_row = math.ceil(flight.takeoff_time / REFERENCE_INTERVAL - _GRID_TOLERANCE)
+        last = math.floor(time / REFERENCE_INTERVAL + _GRID_TOLERANCE)
+        times = np.arange(self._next_row, last + 1, dtype=np.float64) * REFERENCE_INTERVAL
+        if len(times):
+            position, velocity = flight.asked(times)
+            for row in zip(times, position, velocity, strict=True):
+                self._reference.write([round(row[0], 6), *row[1], *row[2]])
+            self._next_row = last + 1
+
+    def close(self) -> None:
+        """Close all files; harmless when they are closed."""
+        for file in (self._tlog, self._reference, self._estimate, self._steps, self._plan, self._obstacles):
+            if file is not None:
+                file.close()
+
+    def __enter__(self) -> FlightRecorder:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()

@@ -1,0 +1,210 @@
+"""Reading the records of a run folder, finished or cut off."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcs.errors import UnusableInput
+from gcs.record.clearance import ObstacleTrack, clearance_over_time
+from gcs.record.run_folder import MANIFEST
+from gcs.record.tables import (
+    ESTIMATE_COLUMNS,
+    OBSTACLE_COLUMNS,
+    REFERENCE_COLUMNS,
+    STEP_COLUMNS,
+    read_table,
+    read_text_table,
+    truth_columns,
+)
+
+Array = NDArray[np.float64]
+Table = dict[str, Array]
+
+SUMMARY = "summary.json"
+_DEFAULT_PAYLOAD_SIZE = (1.0, 1.0, 0.5)  # m
+_DEFAULT_DISC_RADIUS = 0.3  # m
+
+
+@dataclass(frozen=True, eq=False)
+class RunData:
+    """What a run folder holds about a flight: T rows of N UAVs. NED, SI, w-first quaternions body to world.
+
+    ``source`` is ``truth``, or ``estimate`` when the folder has no truth; N is 0 then and ``contacts`` is
+    None. ``reference`` and ``steps`` are the tables, None when absent; ``manifest`` and ``summary`` the JSON
+    objects, empty when absent.
+    """
+
+    folder: Path
+    source: str
+    time: Array  # (T,)
+    payload_position: Array  # (T, 3)
+    payload_quaternion: Array  # (T, 4)
+    uav_position: Array  # (T, N, 3)
+    uav_quaternion: Array  # (T, N, 4)
+    thrust: Array  # (T, N)
+    contacts: Array | None  # (T,)
+    obstacles: tuple[ObstacleTrack, ...]
+    reference: Table | None
+    steps: Table | None
+    manifest: Mapping[str, Any]
+    summary: Mapping[str, Any]
+
+    @property
+    def number_of_uavs(self) -> int:
+        """Number of UAVs on record, N; 0 for an estimate."""
+        return self.uav_position.shape[1]
+
+    @property
+    def reference_position(self) -> Array:
+        """The reference's position (rows, 3); no rows without a reference."""
+        if self.reference is None:
+            return np.empty((0, 3))
+        return np.column_stack([self.reference[name] for name in REFERENCE_COLUMNS[1:4]])
+
+    def uav_separation(self) -> Array:
+        """Smallest distance between the centres of two UAVs (T,) (m)."""
+        first, second = np.triu_indices(self.number_of_uavs, k=1)
+        between = self.uav_position[:, first] - self.uav_position[:, second]
+        return np.asarray(np.min(np.linalg.norm(between, axis=-1), axis=1, initial=np.inf))
+
+    def clearance(self) -> Array:
+        """Distance from the formation to each obstacle (T, number of obstacles) (m), NaN where unknown."""
+        system = self.manifest.get("system")
+        size = _find(system, "payload_size") or _find(_find(system, "payload"), "size")
+        radius = _find(system, "disc_radius")
+        return clearance_over_time(
+            self.payload_position,
+            self.payload_quaternion,
+            self.uav_position,
+            self.uav_quaternion,
+            self.obstacles,
+            _DEFAULT_PAYLOAD_SIZE if size is None else size,
+            _DEFAULT_DISC_RADIUS if radius is None else radius,
+        )
+
+
+def read_run(run_dir: Path | str) -> RunData:
+    """Read what a run folder holds; files and rows that a cut-off flight did not write are just absent.
+
+    T is 0 where nothing was recorded. Raises :class:`UnusableInput` for a folder that is not a run and for a
+    damaged file.
+    """
+    folder = Path(run_dir)
+    if not folder.is_dir():
+        raise UnusableInput(f"{folder}: is not a folder")
+    if not any((folder / name).exists() for name in (MANIFEST, "truth.csv", "estimate.csv")):
+        files = "manifest.json, truth.csv or estimate.csv"
+        raise UnusableInput(f"{folder}: is not a run folder: it holds no {files}")
+    truth = _table(folder / "truth.csv")
+    # A truth of no rows (its world never ran) must not hide what the ground recorded.
+    from_truth = truth is not None and len(truth["time_s"]) > 0
+    state = truth if from_truth else _table(folder / "estimate.csv", ESTIMATE_COLUMNS)
+    if state is None:
+        state = {name: np.empty(0) for name in ESTIMATE_COLUMNS}
+    n = sum(name.endswith("_thrust_n") for name in state) if from_truth else 0
+    if from_truth:
+        _check_columns(folder / "truth.csv", state, truth_columns(n))
+    time = state["time_s"]
+
+    def stack(prefix: str, parts: tuple[str, ...]) -> Array:
+        return np.column_stack([state[f"{prefix}_{part}"] for part in parts])
+
+    def uavs(parts: tuple[str, ...]) -> Array:
+        each = [stack(f"uav{i}", parts) for i in range(1, n + 1)]
+        return np.stack(each, axis=1) if each else np.empty((len(time), 0, len(parts)))
+
+    position, quaternion = ("x_m", "y_m", "z_m"), ("qw", "qx", "qy", "qz")
+    return RunData(
+        folder=folder,
+        source="truth" if from_truth else "estimate",
+        time=time,
+        payload_position=stack("payload", position),
+        payload_quaternion=stack("payload", quaternion),
+        uav_position=uavs(position),
+        uav_quaternion=uavs(quaternion),
+        thrust=uavs(("thrust_n",))[:, :, 0],
+        contacts=state["contacts"] if from_truth else None,
+        obstacles=_obstacles(folder / "obstacles.csv", time) if from_truth else (),
+        reference=_table(folder / "reference.csv", REFERENCE_COLUMNS),
+        steps=_table(folder / "steps.csv", STEP_COLUMNS),
+        manifest=_json(folder / MANIFEST),
+        summary=_json(folder / SUMMARY),
+    )
+
+
+def _table(path: Path, columns: tuple[str, ...] = ("time_s",)) -> Table | None:
+    """A table, or None if it is absent or was cut off before its header was written."""
+    if not path.exists() or path.stat().st_size == 0:
+        return None
+    table = read_table(path)
+    _check_columns(path, table, columns)
+    return table
+
+
+def _check_columns(path: Path, table: Mapping[str, object], columns: tuple[str, ...]) -> None:
+    for name in columns:
+        if name not in table:
+            raise UnusableInput(f"{path}, line 1: column {name} is missing")
+
+
+def _obstacles(path: Path, time: Array) -> tuple[ObstacleTrack, ...]:
+    """The obstacles over the times of the truth; NaN where a cut-off flight left no row."""
+    if not path.exists() or path.stat().st_size == 0:
+        return ()
+    table = read_text_table(path)
+    _check_columns(path, table, OBSTACLE_COLUMNS)
+    row_of_time = {moment: row for row, moment in enumerate(time.tolist())}
+    seen: Counter[tuple[str, str]] = Counter()
+    shape_of: dict[tuple[str, int], tuple[str, float, tuple[float, float, float], float]] = {}
+    tracks: dict[tuple[str, int], Array] = {}
+    numbers = [table[name] for name in OBSTACLE_COLUMNS if name not in ("time_s", "name", "shape")]
+    rows = zip(table["time_s"], table["name"], table["shape"], *numbers, strict=True)
+    for line, (moment, name, shape, *cells) in enumerate(rows, start=2):
+        try:
+            at = float(moment)
+            x, y, z, radius, size_x, size_y, size_z, yaw = map(float, cells)
+        except ValueError:
+            raise UnusableInput(f"{path}, line {line}: a value is not a number") from None
+        # Two obstacles of one name are told apart by their order at that moment.
+        key = (name, seen[moment, name])
+        seen[moment, name] += 1
+        if key not in tracks:
+            tracks[key] = np.full((len(time), 3), np.nan)
+            shape_of[key] = (shape, radius, (size_x, size_y, size_z), yaw)
+        if at in row_of_time:
+            tracks[key][row_of_time[at]] = (x, y, z)
+    return tuple(ObstacleTrack(key[0], shape_of[key][0], track, *shape_of[key][1:]) for key, track in tracks.items())
+
+
+def _json(path: Path) -> Mapping[str, Any]:
+    try:
+        text = path.read_text(encoding="utf-8")
+        content = json.loads(text) if text.strip() else {}
+    except FileNotFoundError:
+        return {}
+    except OSError as error:
+        raise UnusableInput(f"{path}: cannot be read: {error.strerror}") from None
+    except ValueError as error:
+        raise UnusableInput(f"{path}: is not JSON: {error}") from None
+    if not isinstance(content, dict):
+        raise UnusableInput(f"{path}: is not a JSON object")
+    return content
+
+
+def _find(tree: Any, name: str) -> Any:
+    """The value of the first key of that name in nested objects, or None."""
+    if isinstance(tree, Mapping):
+        if name in tree:
+            return tree[name]
+        for branch in tree.values():
+            if (found := _find(branch, name)) is not None:
+                return found
+    return None

@@ -1,0 +1,175 @@
+"""The folder that holds the records of one flight, and its manifest."""
+
+from __future__ import annotations
+
+import dataclasses
+import enum
+import json
+import math
+import platform
+import re
+from collections.abc import Mapping, Sequence
+from datetime import date, datetime
+from importlib import metadata
+from pathlib import Path, PurePath
+from typing import Any
+
+import numpy as np
+
+from gcs.errors import UnusableInput
+
+MANIFEST = "manifest.json"
+_DISTRIBUTION = "cooplift"
+
+
+def open_run_folder(mission_name: str, run_dir: Path | str | None = None, parent: Path | str = "runs") -> Path:
+    """Make the folder for the records of one flight, and claim it by an empty manifest.
+
+    Without ``run_dir`` it is ``<parent>/<mission_name>-<number>`` with the next free number; flights that
+    start side by side never get the same one. ``run_dir`` is made if it is absent. Raises
+    :class:`UnusableInput` if the folder is not empty, is claimed by another flight at the same moment, or
+    cannot be written.
+    """
+    folder = Path(run_dir) if run_dir is not None else _numbered(Path(parent), _plain(mission_name))
+    make_folder(folder)
+    try:
+        if any(folder.iterdir()):
+            raise FileExistsError
+        (folder / MANIFEST).touch(exist_ok=False)
+    except FileExistsError:
+        raise UnusableInput(f"{folder}: the run folder is not empty") from None
+    except OSError as error:
+        raise _unwritable(folder, error) from None
+    return folder
+
+
+def make_folder(folder: Path | str) -> Path:
+    """Make a folder, with those above it, if it is absent; raises :class:`UnusableInput` where it cannot."""
+    folder = Path(folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except FileExistsError:
+        raise UnusableInput(f"{folder}: is a file, not a folder") from None
+    except OSError as error:
+        raise _unwritable(folder, error) from None
+    return folder
+
+
+def _numbered(parent: Path, name: str) -> Path:
+    try:
+        parent.mkdir(parents=True, exist_ok=True)
+        pattern = re.compile(re.escape(name) + r"-(\d+)")
+        taken = [int(match[1]) for path in parent.iterdir() if (match := pattern.fullmatch(path.name))]
+        number = max(taken, default=0) + 1
+        while True:
+            try:
+                # mkdir is atomic: of two flights at one number, one gets it and the other counts on.
+                (parent / f"{name}-{number}").mkdir()
+                return parent / f"{name}-{number}"
+            except FileExistsError:
+                number += 1
+    except OSError as error:
+        raise _unwritable(parent, error) from None
+
+
+def _unwritable(folder: Path, error: OSError) -> UnusableInput:
+    return UnusableInput(f"{folder}: the run folder cannot be written: {error.strerror}")
+
+
+def _plain(mission_name: str) -> str:
+    """The mission's name as a file name: letters, digits, _ and -; at most 60 characters."""
+    return re.sub(r"[^\w-]+", "-", mission_name).strip("-")[:60] or "mission"
+
+
+def write_manifest(
+    folder: Path | str,
+    *,
+    command: Sequence[str],
+    seed: int,
+    mission: object,
+    system: object,
+    start: datetime | str,
+    extra: Mapping[str, object] | None = None,
+) -> Path:
+    """Write ``manifest.json``: what was flown, with what, and when it began (by the caller's clock).
+
+    ``mission`` and ``system`` are given as read; dataclasses become objects, see :func:`to_json`. Raises
+    :class:`UnusableInput` if the file cannot be written.
+    """
+    content = {
+        "command": list(command),
+        "seed": seed,
+        "start": start,
+        "versions": versions(),
+        "mission": mission,
+        "system": system,
+        **(extra or {}),
+    }
+    return write_json(Path(folder) / MANIFEST, content)
+
+
+def write_json(path: Path | str, content: object) -> Path:
+    """Write strict JSON (see :func:`to_json`) in one go; raises :class:`UnusableInput` where it cannot."""
+    path = Path(path)
+    text = json.dumps(to_json(content), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    # Whoever looks, or a killed process, finds the old file or the new one, never half of it.
+    draft = path.with_name(path.name + ".part")
+    try:
+        draft.write_text(text, encoding="utf-8")
+        draft.replace(path)
+    except OSError as error:
+        raise UnusableInput(f"{path}: cannot be written: {error.strerror}") from None
+    return path
+
+
+def versions() -> dict[str, str]:
+    """Versions of Python, of this package and of every package that it asks for at run time."""
+    found = {"python": platform.python_version()}
+    try:
+        found[_DISTRIBUTION] = metadata.version(_DISTRIBUTION)
+        required = metadata.requires(_DISTRIBUTION) or []
+    except metadata.PackageNotFoundError:  # run from a checkout that is not installed
+        required = ["matplotlib", "numpy", "pybullet", "proxsuite", "pymavlink", "scipy"]
+    for requirement in sorted(required):
+        match = re.match(r"[\w.-]+", requirement)
+        if match is None or "extra ==" in requirement:
+            continue
+        try:
+            found[match[0]] = metadata.version(match[0])
+        except metadata.PackageNotFoundError:
+            found[match[0]] = "not installed"
+    return found
+
+
+def to_json(value: Any) -> Any:
+    """The same value in terms of strict JSON.
+
+    Dataclasses and mappings become objects, arrays, sequences and sets become lists, paths and dates text,
+    enumeration members their names; NaN becomes null and infinity the text ``inf`` or ``-inf``; anything else
+    its ``str``.
+    """
+    if value is None or (isinstance(value, (bool, str)) and not isinstance(value, enum.Enum)):
+        return value
+    if isinstance(value, enum.Enum):
+        return value.name
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        return {field.name: to_json(getattr(value, field.name)) for field in dataclasses.fields(value)}
+    if isinstance(value, (np.ndarray, np.generic)):
+        return to_json(value.tolist())
+    if isinstance(value, int):
+        return int(value)
+    if isinstance(value, float):
+        if math.isnan(value):
+            return None
+        return float(value) if math.isfinite(value) else ("inf" if value > 0 else "-inf")
+    if isinstance(value, Mapping):
+        return {str(to_json(key)): to_json(item) for key, item in value.items()}
+    if isinstance(value, (set, frozenset)):
+        return sorted((to_json(item) for item in value), key=str)
+    if isinstance(value, Sequence) and not isinstance(value, (bytes, bytearray)):
+        return [to_json(item) for item in value]
+    if isinstance(value, (date, datetime)):
+        return value.isoformat()
+    if isinstance(value, PurePath):
+        return value.as_posix()
+    return str(value)

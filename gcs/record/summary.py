@@ -1,0 +1,191 @@
+"""``summary.json``: the figures by which a flight is judged, computed after it from its records."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcs.record.run_data import SUMMARY, RunData, Table, read_run
+from gcs.record.run_folder import write_json
+from gcs.record.safety import safety_figures
+from idc_controller.rotations import euler_from_quaternion
+
+Array = NDArray[np.float64]
+
+OUTCOMES = ("completed", "aborted", "collided", "failed")
+LIMITS = ("position_rmse", "payload_tilt_deg", "clearance", "uav_separation")
+DEFAULT_SETTLE = 10.0  # s
+_DIGITS = 6  # of a metre, a degree or a millisecond: below what is simulated faithfully
+
+
+def summarise(
+    run_dir: Path | str,
+    *,
+    completed: bool,
+    outcome: str,
+    duration_s: float,
+    real_time_factor: float | None,
+    limits: Mapping[str, float | None] | None = None,
+    obstacles: bool | None = None,
+) -> dict[str, Any]:
+    """The content of ``summary.json``, from the truth in ``run_dir`` or, where there is none, the estimate.
+
+    How the flight ended is the caller's to say. ``limits`` is the mission's table of that name: ``settle`` (s) and
+    any of :data:`LIMITS` (m, deg), None for no limit. A limit is held when its figure is known and within it, a
+    clearance also when there is no obstacle (``obstacles`` says whether the mission has any; None: as on record).
+    Figures that the records cannot tell are None. Raises :class:`UnusableInput` like :func:`read_run`, and
+    ``ValueError`` for an unknown outcome or limit.
+    """
+    if outcome not in OUTCOMES:
+        raise ValueError(f"outcome {outcome!r} is none of {OUTCOMES}")
+    bounds = {name: float(limit) for name, limit in (limits or {}).items() if limit is not None}
+    settle = bounds.pop("settle", DEFAULT_SETTLE)
+    for name in bounds:
+        if name not in LIMITS:
+            raise ValueError(f"limit {name!r} is none of {LIMITS}")
+    run = read_run(run_dir)
+    rmse = position_rmse(run, settle)
+    tilt = payload_tilt_max(run)
+    clearance = _least(run.clearance()) if run.obstacles and run.number_of_uavs else None
+    separation = _least(run.uav_separation()) if run.number_of_uavs > 1 else None
+    has_obstacles = bool(run.obstacles) if obstacles is None else obstacles
+    figures = {
+        "position_rmse": rmse["total"],
+        "payload_tilt_deg": max((angle for angle in tilt.values() if angle is not None), default=None),
+        "clearance": clearance,
+        "uav_separation": separation,
+    }
+    return _rounded(
+        {
+            "completed": completed,
+            "outcome": outcome,
+            "source": run.source,
+            "duration_s": duration_s,
+            "real_time_factor": real_time_factor,
+            "position_rmse_m": rmse,
+            "payload_tilt_max_deg": tilt,
+            "clearance_min_m": clearance,
+            "uav_separation_min_m": separation,
+            "contacts": _contacts(run.contacts),
+            "step_time_ms": _step_times(run.steps),
+            "solver": _solver(run.steps),
+            "safety": safety_figures(run),
+            "limits": {
+                name: [figures[name], limit, _held(name, figures[name], limit, has_obstacles)]
+                for name, limit in bounds.items()
+            },
+        }
+    )
+
+
+def write_summary(run_dir: Path | str, summary: Mapping[str, Any]) -> Path:
+    """Write ``summary.json`` (strict JSON: what is not known is null). Raises :class:`UnusableInput`."""
+    return write_json(Path(run_dir) / SUMMARY, summary)
+
+
+def within_limits(summary: Mapping[str, Any]) -> bool:
+    """Whether every limit of a summary was held."""
+    return all(held for _, _, held in summary["limits"].values())
+
+
+def position_error(run: RunData) -> tuple[Array, Array]:
+    """Times (K,) (s) within the reference's span, and position minus reference then (K, 3) (m)."""
+    if run.reference is None or len(run.reference["time_s"]) == 0:
+        return np.empty(0), np.empty((0, 3))
+    at = run.reference["time_s"]
+    inside = (run.time >= at[0]) & (run.time <= at[-1])
+    time = run.time[inside]
+    wanted = [np.interp(time, at, axis) for axis in run.reference_position.T]
+    return time, run.payload_position[inside] - np.column_stack(wanted)
+
+
+def position_rmse(run: RunData, settle: float) -> dict[str, float | None]:
+    """Root-mean-square position error (m), by axis and of all three together.
+
+    Counted from ``settle`` seconds after the reference begins; None where no row is left.
+    """
+    time, error = position_error(run)
+    if run.reference is None or len(time) == 0:
+        return dict.fromkeys(("x", "y", "z", "total"))
+    error = error[time >= run.reference["time_s"][0] + settle]
+    if len(error) == 0:
+        return dict.fromkeys(("x", "y", "z", "total"))
+    mean_square = np.mean(error**2, axis=0)
+    x, y, z = np.sqrt(mean_square).tolist()
+    return {"x": x, "y": y, "z": z, "total": float(np.sqrt(mean_square.sum()))}
+
+
+def payload_angles(run: RunData) -> Array:
+    """Roll, pitch and yaw of the payload (T, 3) (deg)."""
+    return np.rad2deg(euler_from_quaternion(run.payload_quaternion))
+
+
+def payload_tilt_max(run: RunData) -> dict[str, float | None]:
+    """Largest magnitude of the payload's roll, pitch and yaw (deg) from take-off to landing.
+
+    That is: from the first to the last row with thrust; every row when thrust is not on record. None without
+    a row.
+    """
+    if len(run.time) == 0:
+        return dict.fromkeys(("roll", "pitch", "yaw"))
+    angles = np.abs(payload_angles(run))
+    powered = np.flatnonzero(np.any(run.thrust > 0.0, axis=1))
+    if len(powered):
+        angles = angles[powered[0] : powered[-1] + 1]
+    return dict(zip(("roll", "pitch", "yaw"), np.max(angles, axis=0).tolist(), strict=True))
+
+
+def _contacts(touching_pairs: Array | None) -> int | None:
+    """How often a pair began to touch; a touch that lasts counts once."""
+    if touching_pairs is None:
+        return None
+    return int(np.clip(np.diff(touching_pairs, prepend=0.0), 0.0, None).sum())
+
+
+def _step_times(steps: Table | None) -> dict[str, float | None]:
+    total = steps["total_ms"] if steps is not None else np.empty(0)
+    return {
+        "p50": _percentile(total, 50.0),
+        "p99": _percentile(total, 99.0),
+        "max": _percentile(total, 100.0),
+    }
+
+
+def _solver(steps: Table | None) -> dict[str, float | int | None]:
+    if steps is None:
+        return {"mpc_p50_ms": None, "planner_p50_ms": None, "infeasible_steps": None}
+    return {
+        "mpc_p50_ms": _percentile(steps["mpc_ms"], 50.0),
+        "planner_p50_ms": _percentile(steps["planner_ms"], 50.0),
+        "infeasible_steps": int(np.count_nonzero(steps["infeasible"])),
+    }
+
+
+def _percentile(values: Array, percent: float) -> float | None:
+    values = values[np.isfinite(values)]
+    return float(np.percentile(values, percent)) if len(values) else None
+
+
+def _least(values: Array) -> float | None:
+    values = values[np.isfinite(values)]
+    return float(np.min(values)) if values.size else None
+
+
+def _held(name: str, figure: float | None, limit: float, obstacles: bool) -> bool:
+    if figure is None:
+        return name == "clearance" and not obstacles
+    return figure >= limit if name in ("clearance", "uav_separation") else figure <= limit
+
+
+def _rounded(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _rounded(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_rounded(item) for item in value]
+    if isinstance(value, float):
+        return round(value, _DIGITS) if np.isfinite(value) else None
+    return value

@@ -1,0 +1,81 @@
+"""The summary of a flight for the terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from rich import box
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+_COLOUR_OF_OUTCOME = {"completed": "green", "aborted": "yellow", "collided": "red", "failed": "red"}
+
+
+def summary_table(summary: Mapping[str, Any], run_dir: Path | str, pictures: Sequence[Path] = ()) -> RenderableType:
+    """What ``rich`` prints at the end of a flight: each figure, its limit, and where the records are."""
+    limits = summary["limits"]
+    rmse, tilt = summary["position_rmse_m"], summary["payload_tilt_max_deg"]
+    steps, solver = summary["step_time_ms"], summary["solver"]
+    outcome = summary["outcome"]
+    held = all(limit[2] for limit in limits.values())
+
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    table.add_column("figure")
+    table.add_column("flown", justify="right")
+    table.add_column("limit", justify="right")
+    table.add_column("")
+
+    def row(title: str, value: str, limit: str = "", sign: str = "", unit: str = "") -> None:
+        if limit not in limits:
+            table.add_row(title, value)
+            return
+        _, bound, kept = limits[limit]
+        verdict = Text("held", style="green") if kept else Text("NOT HELD", style="bold red")
+        table.add_row(title, value, f"{sign} {bound:g} {unit}", verdict)
+
+    row("position error, RMS", _number(rmse["total"], 3, "m"), "position_rmse", "<=", "m")
+    if rmse["total"] is not None:
+        row("  north / east / down", " / ".join(_number(rmse[axis], 3) for axis in "xyz") + " m")
+    # One limit holds for all three angles: it stands beside the largest.
+    largest = max((angle for angle in tilt.values() if angle is not None), default=None)
+    row("payload angle, largest", _number(largest, 1, "deg"), "payload_tilt_deg", "<=", "deg")
+    angles = " / ".join(_number(tilt[axis], 1) for axis in ("roll", "pitch", "yaw"))
+    row("  roll / pitch / yaw", f"{angles} deg")
+    if summary["clearance_min_m"] is not None or not limits.get("clearance", [0, 0, True])[2]:
+        row("clearance to obstacles", _number(summary["clearance_min_m"], 3, "m"), "clearance", ">=", "m")
+    row("UAVs apart", _number(summary["uav_separation_min_m"], 3, "m"), "uav_separation", ">=", "m")
+    row("contacts", "-" if summary["contacts"] is None else str(summary["contacts"]))
+    step_times = " / ".join(_number(steps[name], 1) for name in ("p50", "p99", "max"))
+    row("control step, median / p99 / max", f"{step_times} ms")
+    row("  of it MPC / planner, median", f"{_number(solver['mpc_p50_ms'], 1)} / "
+        f"{_number(solver['planner_p50_ms'], 1)} ms")  # fmt: skip
+    safety = summary.get("safety")
+    if safety and safety["payload_tracking_bound_m"] is not None:
+        bounds = f"{safety['payload_tracking_bound_m']:g} / {_number(safety['uav_tracking_bound_m'], 2)}"
+        errors = f"{_number(safety['payload_tracking_max_m'], 3)} / {_number(safety['uav_tracking_max_m'], 3)}"
+        row("off the plan, payload / UAVs, largest", f"{errors} m (margins allow {bounds} m)")
+        row("barrier missed by at most", _number(safety["slack_max_m"], 3, "m"))
+    if solver["infeasible_steps"]:
+        row("steps without a feasible solution", str(solver["infeasible_steps"]))
+
+    title = Text.assemble(("Flight ", "bold"), (outcome, f"bold {_COLOUR_OF_OUTCOME.get(outcome, 'white')}"))
+    if limits:
+        verdict = ("within its limits", "green") if held else ("OUTSIDE its limits", "bold red")
+        title.append(", ").append(*verdict)
+    title.append(f": {_number(summary['duration_s'], 1, 's')}")
+    if summary["real_time_factor"] is not None:
+        title.append(f", {_number(summary['real_time_factor'], 1)} times real time")
+    parts: list[RenderableType] = [title, table]
+    if summary["source"] == "estimate":
+        parts.append(Text("The swarm kept no truth here: figures are the ground's own estimate.", "yellow"))
+    parts.append(Text(f"Records   {run_dir}"))
+    if pictures:
+        parts.append(Text("Pictures  " + "  ".join(path.name for path in pictures)))
+    return Group(*parts)
+
+
+def _number(value: float | None, digits: int, unit: str = "") -> str:
+    return "-" if value is None else f"{value:.{digits}f} {unit}".rstrip()

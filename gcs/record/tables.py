@@ -1,0 +1,169 @@
+"""The tables (CSV) of a run folder: their columns, their writer and their reader."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcs.errors import UnusableInput
+from gcs.record.append_file import AppendOnlyFile
+
+Array = NDArray[np.float64]
+
+PAYLOAD_COLUMNS = (
+    "payload_x_m", "payload_y_m", "payload_z_m",
+    "payload_qw", "payload_qx", "payload_qy", "payload_qz",
+    "payload_vx_mps", "payload_vy_mps", "payload_vz_mps",
+    "payload_wx_radps", "payload_wy_radps", "payload_wz_radps",
+)  # fmt: skip
+REFERENCE_COLUMNS = ("time_s", "x_m", "y_m", "z_m", "vx_mps", "vy_mps", "vz_mps")
+# What the ground believes: the payload's state and the disturbance force on it, as estimated.
+ESTIMATE_COLUMNS = ("time_s", *PAYLOAD_COLUMNS, "disturbance_x_n", "disturbance_y_n", "disturbance_z_n")
+# Wall-clock times stand in this table only, so that every other one repeats to the byte.
+STEP_COLUMNS = (
+    "time_s", "estimator_ms", "planner_ms", "mpc_ms", "total_ms", "solver_iterations", "infeasible",
+)  # fmt: skip
+# What was tracked, and what the safety filter did, at every control step in the air.
+PLAN_COLUMNS = (
+    "time_s", "x_m", "y_m", "z_m", "ax_mps2", "ay_mps2", "az_mps2", "slack_m", "lag_m", "clock_rate", "detours",
+    "payload_bound_m", "uav_bound_m",
+)  # fmt: skip
+OBSTACLE_COLUMNS = (
+    "time_s", "name", "shape", "x_m", "y_m", "z_m", "radius_m", "size_x_m", "size_y_m", "size_z_m", "yaw_rad",
+)  # fmt: skip
+# The obstacles that are followed by the vehicles' sensors, as the ground believes them to be; columns as above.
+OBSTACLE_ESTIMATE_COLUMNS = (
+    "time_s", "name", "kind", "x_m", "y_m", "z_m", "vx_mps", "vy_mps", "vz_mps", "radius_m",
+    "size_x_m", "size_y_m", "size_z_m", "yaw_rad", "growth_m",
+)  # fmt: skip
+
+Cell = float | int | bool | str
+
+
+def truth_columns(number_of_uavs: int) -> tuple[str, ...]:
+    """The columns of ``truth.csv`` for so many UAVs."""
+    parts = ("x_m", "y_m", "z_m", "qw", "qx", "qy", "qz", "thrust_n")
+    uavs = tuple(f"uav{i}_{part}" for i in range(1, number_of_uavs + 1) for part in parts)
+    return ("time_s", *PAYLOAD_COLUMNS, *uavs, "contacts")
+
+
+class TableWriter:
+    """Writes a CSV file: the header once, then rows; the same rows give the same bytes.
+
+    Numbers are written in the shortest form that reads back to the same double. Rows reach the operating
+    system whole and at once (see :class:`AppendOnlyFile`, whose errors this raises and whose ``error`` it
+    shows).
+    """
+
+    def __init__(self, path: Path | str, columns: Sequence[str]) -> None:
+        self.columns = tuple(columns)
+        self._file = AppendOnlyFile(path)
+        self._file.append(_line(self.columns))
+
+    @property
+    def path(self) -> Path:
+        """Where the table is."""
+        return self._file.path
+
+    @property
+    def error(self) -> OSError | None:
+        """Why writing stopped before ``close()``, if it did."""
+        return self._file.error
+
+    def write(self, row: Iterable[Cell]) -> None:
+        """Append one row, a value a column. Raises :class:`ValueError` for another number of values."""
+        cells = [_cell(value) for value in row]
+        if len(cells) != len(self.columns):
+            raise ValueError(f"{self.path.name}: {len(cells)} values for {len(self.columns)} columns")
+        self._file.append(_line(cells))
+
+    def close(self) -> None:
+        """Close the file; harmless when it is closed already."""
+        self._file.close()
+
+    def __enter__(self) -> TableWriter:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+def _cell(value: Cell) -> str:
+    if isinstance(value, str):
+        return value
+    if isinstance(value, (bool, np.bool_)):
+        return "1" if value else "0"
+    if isinstance(value, (int, np.integer)):
+        return str(int(value))
+    return repr(float(value))
+
+
+def _line(cells: Sequence[str]) -> bytes:
+    line = ",".join(cells)
+    if '"' in line or "\n" in line or "\r" in line or line.count(",") != len(cells) - 1:
+        buffer = io.StringIO()
+        # A line break inside a cell would break the rule that a line is a row.
+        csv.writer(buffer, lineterminator="").writerow([" ".join(cell.splitlines()) for cell in cells])
+        line = buffer.getvalue()
+    return (line + "\n").encode()
+
+
+def read_table(path: Path | str) -> dict[str, Array]:
+    """The columns of a numeric table, each (rows,).
+
+    A last line without its line break, as a killed process may leave, is left out. Raises
+    :class:`UnusableInput`, with file and line, for a file that cannot be read or is not such a table.
+    """
+    path = Path(path)
+    header, lines = _whole_lines(path)
+    columns = header.split(",")
+    try:
+        values = np.loadtxt(lines, delimiter=",", ndmin=2) if lines else np.empty((0, len(columns)))
+        if values.shape[1] != len(columns):
+            raise ValueError
+    except ValueError:
+        raise UnusableInput(_first_bad_line(path, columns, lines)) from None
+    return dict(zip(columns, values.T, strict=True))
+
+
+def read_text_table(path: Path | str) -> dict[str, list[str]]:
+    """The columns of a table that also holds words, as text. Otherwise like :func:`read_table`."""
+    path = Path(path)
+    header, lines = _whole_lines(path)
+    columns = header.split(",")
+    rows = list(csv.reader(lines))
+    for number, row in enumerate(rows, start=2):
+        if len(row) != len(columns):
+            raise UnusableInput(f"{path}, line {number}: {len(row)} values for {len(columns)} columns")
+    return {name: [row[i] for row in rows] for i, name in enumerate(columns)}
+
+
+def _whole_lines(path: Path) -> tuple[str, list[str]]:
+    try:
+        text = path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise UnusableInput(f"{path}: cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise UnusableInput(f"{path}: is not a text file") from None
+    header, *lines = text.split("\n")
+    if not lines:
+        raise UnusableInput(f"{path}, line 1: the header is missing or cut off")
+    return header, lines[:-1]
+
+
+def _first_bad_line(path: Path, columns: Sequence[str], lines: Sequence[str]) -> str:
+    for number, line in enumerate(lines, start=2):
+        cells = line.split(",")
+        if len(cells) != len(columns):
+            return f"{path}, line {number}: {len(cells)} values for {len(columns)} columns"
+        for name, cell in zip(columns, cells, strict=True):
+            try:
+                float(cell)
+            except ValueError:
+                return f"{path}, line {number}, {name}: {cell!r} is not a number"
+    return f"{path}: is not a table of numbers"

@@ -1,0 +1,40 @@
+"""Telemetry: MAVLink messages of the vehicles become measurements for the estimator."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from gcs.wire import px4
+from idc_controller.estimate.measurements import PAYLOAD, Attitude, Measurement, Position
+
+
+def measurement(message: Any, uav: int, time: float) -> Measurement | None:
+    """The measurement in ``message`` of UAV ``uav`` (0 .. N-1), true at ``time`` (s, team time).
+
+    None for messages that measure nothing and for values that cannot be measurements (not finite, no rotation).
+    The payload's navigation unit is a component of its own, relayed by every vehicle.
+    """
+    component = message.get_srcComponent()
+    if component == px4.PAYLOAD_UNIT_COMPONENT:
+        source = PAYLOAD
+    elif component == px4.AUTOPILOT_COMPONENT:
+        source = uav
+    else:
+        return None
+    kind = message.get_type()
+    if kind == "ATTITUDE_QUATERNION":
+        quaternion = (message.q1, message.q2, message.q3, message.q4)
+        rates = (message.rollspeed, message.pitchspeed, message.yawspeed)
+        norm = math.sqrt(sum(c * c for c in quaternion))
+        if not (math.isfinite(sum(rates)) and 0.9 < norm < 1.1):
+            return None
+        return Attitude(time, source, np.array(quaternion) / norm, np.array(rates))
+    if kind == "LOCAL_POSITION_NED":
+        values = (message.x, message.y, message.z, message.vx, message.vy, message.vz)
+        if not math.isfinite(sum(values)):
+            return None
+        return Position(time, source, np.array(values[:3]), np.array(values[3:]))
+    return None

@@ -1,0 +1,176 @@
+"""One vehicle as the ground knows it: what it last told, what it was asked, and whether it answered."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Any
+
+import pymavlink.dialects.v20.common as mavlink
+
+from gcs.wire import px4
+from gcs.wire.address import Address
+from gcs.wire.clock import RemoteClock
+
+RETRY_AFTER = 0.5  # s
+TRIES = 6
+
+
+class CommandState(Enum):
+    """How far a command has come."""
+
+    PENDING = "pending"
+    ACCEPTED = "accepted"
+    REFUSED = "refused"
+    UNANSWERED = "unanswered"
+
+
+@dataclass
+class Command:
+    """A COMMAND_LONG on its way; repeated until it is answered."""
+
+    number: int
+    parameters: tuple[float, ...]
+    state: CommandState = CommandState.PENDING
+    result: int | None = None
+    tries: int = 0
+    next_try: float = -math.inf
+
+    @property
+    def name(self) -> str:
+        """The command's MAVLink name."""
+        entry = mavlink.enums["MAV_CMD"].get(self.number)
+        return entry.name if entry else str(self.number)
+
+
+@dataclass(eq=False)
+class VehicleLink:
+    """State of the link to one vehicle. Times are the ground's (s)."""
+
+    system_id: int
+    address: Address | None
+    """None while it is not known: the vehicle has yet to offer itself."""
+    clock: RemoteClock = field(default_factory=RemoteClock)
+    heard: float = -math.inf
+    """When any message came last."""
+    found_instead: int | None = None
+    """The system id that speaks at its address in its place."""
+    attitude_heard: float = -math.inf
+    position_heard: float = -math.inf
+    payload_heard: float = -math.inf
+    base_mode: int = 0
+    custom_mode: int = 0
+    landed_state: int = mavlink.MAV_LANDED_STATE_UNDEFINED
+    prearm_ok: bool | None = None
+    """The vehicle's own checks, from SYS_STATUS; None: not told yet."""
+    parameters: dict[str, float] = field(default_factory=dict)
+    texts: deque[str] = field(default_factory=lambda: deque(maxlen=20))
+    _commands: dict[int, Command] = field(default_factory=dict)
+    _wanted: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def armed(self) -> bool:
+        """As its last heartbeat says."""
+        return bool(self.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
+
+    @property
+    def offboard(self) -> bool:
+        """Whether it flies the ground's set-points, as its last heartbeat says."""
+        return self.custom_mode == px4.MODE_OFFBOARD
+
+    @property
+    def telemetry_heard(self) -> float:
+        """When the staler of its own attitude and position came last."""
+        return min(self.attitude_heard, self.position_heard)
+
+    def handle(self, message: Any, now: float) -> None:
+        """Learn from one message of this vehicle."""
+        kind = message.get_type()
+        self.heard = now
+        if kind == "ATTITUDE_QUATERNION" or kind == "LOCAL_POSITION_NED":
+            if message.get_srcComponent() == px4.PAYLOAD_UNIT_COMPONENT:
+                self.payload_heard = now
+            elif message.get_srcComponent() == px4.AUTOPILOT_COMPONENT:
+                self.clock.stamped(message.time_boot_ms * 1e-3, now)
+                if kind == "ATTITUDE_QUATERNION":
+                    self.attitude_heard = now
+                else:
+                    self.position_heard = now
+        elif kind == "HEARTBEAT":
+            if message.get_srcComponent() == px4.AUTOPILOT_COMPONENT:
+                self.base_mode, self.custom_mode = message.base_mode, message.custom_mode
+        elif kind == "COMMAND_ACK":
+            self._acknowledged(message)
+        elif kind == "PARAM_VALUE":
+            self._parameter(message)
+        elif kind == "TIMESYNC":
+            if message.tc1:
+                self.clock.answered(message.ts1 * 1e-9, now)
+        elif kind == "EXTENDED_SYS_STATE":
+            self.landed_state = message.landed_state
+        elif kind == "SYS_STATUS":
+            bit = mavlink.MAV_SYS_STATUS_PREARM_CHECK
+            if message.onboard_control_sensors_present & bit:
+                self.prearm_ok = bool(message.onboard_control_sensors_health & bit)
+        elif kind == "STATUSTEXT":
+            self.texts.append(str(message.text))
+
+    def want_parameters(self, names: tuple[str, ...]) -> None:
+        """Ask for parameters until they are known."""
+        for name in names:
+            if name not in self.parameters:
+                self._wanted.setdefault(name, -math.inf)
+
+    def command(self, number: int, *parameters: float) -> Command:
+        """Send a command until it is answered; a new one takes the place of an older one of its number."""
+        command = Command(number, (*parameters, *([0.0] * (7 - len(parameters)))))
+        self._commands[number] = command
+        return command
+
+    def requests_to_send(self, now: float) -> list[Any]:
+        """Parameter requests and commands that are due."""
+        messages = []
+        for name, due in self._wanted.items():
+            if now >= due:
+                self._wanted[name] = now + RETRY_AFTER
+                messages.append(
+                    mavlink.MAVLink_param_request_read_message(
+                        self.system_id, px4.AUTOPILOT_COMPONENT, name.encode(), -1
+                    )
+                )
+        for command in self._commands.values():
+            if command.state is not CommandState.PENDING or now < command.next_try:
+                continue
+            if command.tries >= TRIES:
+                command.state = CommandState.UNANSWERED
+                continue
+            messages.append(
+                mavlink.MAVLink_command_long_message(
+                    self.system_id, px4.AUTOPILOT_COMPONENT, command.number, command.tries, *command.parameters
+                )
+            )
+            command.tries += 1
+            command.next_try = now + RETRY_AFTER
+        return messages
+
+    def _acknowledged(self, message: Any) -> None:
+        command = self._commands.get(message.command)
+        if command is None or command.state is not CommandState.PENDING:
+            return
+        if message.result == mavlink.MAV_RESULT_IN_PROGRESS:
+            return
+        command.result = message.result
+        accepted = message.result == mavlink.MAV_RESULT_ACCEPTED
+        command.state = CommandState.ACCEPTED if accepted else CommandState.REFUSED
+
+    def _parameter(self, message: Any) -> None:
+        name = message.param_id if isinstance(message.param_id, str) else message.param_id.decode(errors="replace")
+        try:
+            value = px4.parameter_from_wire(message.param_value, message.param_type)
+        except ValueError:
+            return
+        if math.isfinite(value):
+            self.parameters[name] = float(value)
+            self._wanted.pop(name, None)

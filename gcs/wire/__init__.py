@@ -1,0 +1,1 @@
+"""MAVLink bytes and the links that carry them."""

@@ -1,0 +1,38 @@
+"""Connection URLs: where a vehicle listens, or where the ground listens for vehicles that offer themselves."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from gcs.errors import UnusableInput
+
+Address = tuple[str, int]
+
+_URL = re.compile(r"^(?P<scheme>udp|udpout|udpin):(?://)?(?P<host>[^:/\s]+):(?P<port>\d{1,5})/?$")
+
+
+@dataclass(frozen=True)
+class ConnectionUrl:
+    """``udp://host:port``, ``udpout://host:port``: a vehicle there; ``udpin://host:port``: the ground listens there."""
+
+    host: str
+    port: int
+    listens: bool
+
+    @property
+    def address(self) -> Address:
+        """Host and port, as sockets take them."""
+        return self.host, self.port
+
+    def __str__(self) -> str:
+        return f"{'udpin' if self.listens else 'udp'}://{self.host}:{self.port}"
+
+
+def parse_url(text: str) -> ConnectionUrl:
+    """Raises :class:`UnusableInput` when ``text`` is no connection URL."""
+    match = _URL.match(text)
+    if match is None or not 1 <= int(match["port"]) <= 65535:
+        raise UnusableInput(f"--connect {text}: expected udp://HOST:PORT, udpout://HOST:PORT or udpin://HOST:PORT")
+    host = "127.0.0.1" if match["host"] == "localhost" else match["host"]
+    return ConnectionUrl(host, int(match["port"]), match["scheme"] == "udpin")

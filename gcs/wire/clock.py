@@ -1,0 +1,59 @@
+"""The clock of one vehicle as the ground sees it: its boot time in the ground's time, and how far away it is."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from statistics import median
+
+WINDOW = 50  # round trips that are remembered
+SLICE = 0.5  # s of which only the greatest lead is remembered
+SLICES = 8
+REBOOT = 1.0  # s; a boot time that falls behind by more belongs to another boot
+
+
+class RemoteClock:
+    """Offset and delay of a vehicle from TIMESYNC round trips and from the stamps of its telemetry.
+
+    A stamp arrives after a delay that is never negative, so the largest ``stamp - arrival`` seen in the last seconds is
+    nearest to the truth; half of the shortest round trip is the part of the delay that is always there.
+    """
+
+    def __init__(self) -> None:
+        self._leads: deque[list[float]] = deque(maxlen=SLICES)  # [beginning of the slice, greatest lead in it]
+        self._lead = -math.inf
+        self._round_trips: deque[float] = deque(maxlen=WINDOW)
+        self._shortest = 0.0
+
+    def stamped(self, boot_time: float, arrival: float) -> None:
+        """Telemetry stamped ``boot_time`` (s, vehicle) arrived at ``arrival`` (s, ground)."""
+        lead = boot_time - arrival
+        if lead < self._lead - REBOOT:
+            self._leads.clear()
+        if not self._leads or arrival - self._leads[-1][0] >= SLICE:
+            self._leads.append([arrival, lead])
+            self._lead = max(greatest for _, greatest in self._leads)
+        elif lead > self._leads[-1][1]:
+            self._leads[-1][1] = lead
+            self._lead = max(self._lead, lead)
+
+    def answered(self, sent: float, arrival: float) -> None:
+        """A TIMESYNC request of ``sent`` was answered at ``arrival`` (s, ground)."""
+        if arrival >= sent:
+            self._round_trips.append(arrival - sent)
+            self._shortest = min(self._round_trips)
+
+    @property
+    def known(self) -> bool:
+        """Whether the vehicle's time can be told at all."""
+        return bool(self._leads)
+
+    @property
+    def offset(self) -> float:
+        """Vehicle boot time less ground time (s)."""
+        return self._lead + self._shortest / 2.0 if self._leads else 0.0
+
+    @property
+    def delay(self) -> float:
+        """Time that a datagram takes one way (s): half of the usual round trip."""
+        return median(self._round_trips) / 2.0 if self._round_trips else 0.0

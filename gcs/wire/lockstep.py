@@ -1,0 +1,66 @@
+"""The barrier that lets a world and a ground station share one virtual clock over UDP.
+
+The world owns the time. At every moment at which anything is due it first sends the vehicles' datagrams and then, from
+its clock port to the ground's socket, a :class:`Tick`. Loopback UDP keeps the order of arrival, so when the ground
+reads the tick it has read all that was sent before. It answers all of it at that time, and last of all, to the clock
+port, with :class:`Done`, which names the next moment at which it wants to be called. When vehicles have something to
+say to what they received, the world ticks again at the same time; otherwise it lets time go on to the earliest of what
+is due on either side.
+
+The barrier carries time alone and stands outside MAVLink, so that no fault on a link can stop the clock.
+"""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass
+
+_TICK = struct.Struct("<4sIQ")
+_DONE = struct.Struct("<4sIQB")
+_TICK_MAGIC = b"CLTK"
+_DONE_MAGIC = b"CLDN"
+_NEVER = 2**64 - 1
+
+
+@dataclass(frozen=True)
+class Tick:
+    """All datagrams of this time have been sent."""
+
+    serial: int
+    time_us: int
+
+    def encode(self) -> bytes:
+        """One datagram."""
+        return _TICK.pack(_TICK_MAGIC, self.serial, self.time_us)
+
+
+@dataclass(frozen=True)
+class Done:
+    """The ground has answered a tick. Serial 0 asks to join."""
+
+    serial: int
+    next_us: int | None
+    """When the ground wants to be called at the latest (us); None: only when something arrives."""
+    leaving: bool = False
+    """The ground will not answer again."""
+
+    def encode(self) -> bytes:
+        """One datagram."""
+        next_us = _NEVER if self.next_us is None else self.next_us
+        return _DONE.pack(_DONE_MAGIC, self.serial, next_us, self.leaving)
+
+
+def decode_tick(datagram: bytes) -> Tick | None:
+    """None when the datagram is something else."""
+    if len(datagram) != _TICK.size or not datagram.startswith(_TICK_MAGIC):
+        return None
+    _, serial, time_us = _TICK.unpack(datagram)
+    return Tick(serial, time_us)
+
+
+def decode_done(datagram: bytes) -> Done | None:
+    """None when the datagram is something else."""
+    if len(datagram) != _DONE.size or not datagram.startswith(_DONE_MAGIC):
+        return None
+    _, serial, next_us, leaving = _DONE.unpack(datagram)
+    return Done(serial, None if next_us == _NEVER else next_us, bool(leaving))
