@@ -1,0 +1,174 @@
+"""The safety filter flown without a plant: the payload is where the filter's trajectory says, at every step."""
+
+from dataclasses import dataclass, field
+
+import coal
+import numpy as np
+from scipy.spatial import ConvexHull
+
+from idc_controller.barrier.navigator import NavigatorSettings
+from idc_controller.barrier.obstacles import PredictedObstacle, Shape
+from idc_controller.barrier.planner import PlannerSettings
+from idc_controller.barrier.safety_filter import AvoidanceFilter
+from idc_controller.estimate.estimator import Estimate
+from idc_controller.parameters import SystemParameters, polygon_attachments
+from idc_controller.plan.flatness import Load, flat_forces
+from idc_controller.plan.paths import Leg
+from idc_controller.plan.trajectory import Limits
+from idc_controller.plan.waypoints import WaypointTrajectory
+
+STEP = 0.05  # s
+
+
+def system(n=4):
+    """The paper's system with ``n`` UAVs."""
+    return SystemParameters(
+        m_0=3.1, J_0=np.diag([0.29, 0.29, 0.55]), payload_size=np.array([1.0, 1.0, 0.5]), m=np.full(n, 0.7),
+        J=np.array([0.01 * np.eye(3)] * n), p=polygon_attachments(n, 1.0, -0.25), l=np.full(n, 3.2), disc_radius=0.3,
+        thrust_max=30.0, motor_time_constant=0.05, attitude_kp=100.0, attitude_kd=16.0,
+    )  # fmt: skip
+
+
+def hull_of(parameters, derivatives, rim=16):
+    """Exact points of the formation (K, P, 3) for payload ``derivatives`` (5, K, 3), by flatness; discs as polygons."""
+    forces = flat_forces(parameters, derivatives, Load(parameters.m_0, np.zeros(3)))
+    position = derivatives[0]
+    signs = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+    parts = [position[:, None] + signs * parameters.payload_size]
+    angles = np.linspace(0.0, 2.0 * np.pi, rim, endpoint=False)
+    for i in range(parameters.number_of_uavs):
+        centre = position + parameters.p[i] - parameters.l[i] * forces.q
+        axis = forces.force[:, i] / np.linalg.norm(forces.force[:, i], axis=1, keepdims=True)
+        first = np.cross(axis, [0.0, 1.0, 0.0])
+        first /= np.linalg.norm(first, axis=1, keepdims=True)
+        second = np.cross(axis, first)
+        ring = np.cos(angles)[None, :, None] * first[:, None] + np.sin(angles)[None, :, None] * second[:, None]
+        parts.append(centre[:, None] + parameters.disc_radius * ring)
+    return np.concatenate(parts, axis=1)
+
+
+def clearance_of(points, shape, position):
+    """True distance of the convex hull of ``points`` (P, 3) to a body at ``position``; not above zero: they meet."""
+    hull = ConvexHull(points)
+    number = {vertex: k for k, vertex in enumerate(hull.vertices)}
+    vertices, facets = coal.StdVec_Vec3s(), coal.StdVec_Triangle()
+    vertices.extend(list(points[hull.vertices]))
+    for simplex in hull.simplices:
+        facets.append(coal.Triangle(*(number[k] for k in simplex)))
+    result = coal.DistanceResult()
+    return coal.distance(
+        coal.Convex(vertices, facets), coal.Transform3s.Identity(),
+        shape.geometry(), coal.Transform3s(shape.rotation, np.asarray(position, dtype=float)),
+        coal.DistanceRequest(), result,
+    )  # fmt: skip
+
+
+def sphere(name, position, velocity=(0.0, 0.0, 0.0), radius=0.5, growth=0.0):
+    place, velocity = np.array(position, dtype=float), np.array(velocity, dtype=float)
+    return name, Shape("sphere", radius), lambda t: place + np.outer(t, velocity), growth
+
+
+def swinging(name, position, amplitude, frequency=1.0, phase=0.0, radius=0.5):
+    place, swing = np.array(position, dtype=float), np.array(amplitude, dtype=float)
+    return name, Shape("sphere", radius), lambda t: place + np.outer(np.sin(frequency * t + phase), swing), 0.0
+
+
+def pole(name, north, east, radius=0.3, height=15.0):
+    place = np.array([north, east, -height / 2.0])
+    return name, Shape("pole", radius, (0.0, 0.0, height)), lambda t: np.tile(place, (len(t), 1)), 0.0
+
+
+def wall(name, north, east, size, yaw=0.0):
+    """A wall that stands on the ground."""
+    place = np.array([north, east, -size[2] / 2.0])
+    return name, Shape("wall", size=tuple(size), yaw=yaw), lambda t: np.tile(place, (len(t), 1)), 0.0
+
+
+class Scene:
+    """Obstacles whose motion is known exactly."""
+
+    def __init__(self, obstacles):
+        self.obstacles = list(obstacles)
+
+    def predict(self, times):
+        times = np.asarray(times, dtype=float)
+        return [
+            PredictedObstacle(name, shape, motion(times), np.full(len(times), growth))
+            for name, shape, motion, growth in self.obstacles
+        ]
+
+
+def estimate_at(time, position, size=56):
+    x = np.zeros(size)
+    x[:3] = position
+    return Estimate(time, x, np.zeros(3), 0.0, np.zeros((size + 4, size + 4)))
+
+
+def straight(length, speed=1.5, altitude=5.0, start=0.0):
+    """A way north, from rest to rest."""
+    legs = [Leg(np.array([length, 0.0, -altitude]), speed)]
+    return WaypointTrajectory([0.0, 0.0, -altitude], legs, Limits(speed, 1.5, 2.0, 6.0), start=start)
+
+
+def avoidance(obstacles, n=4, margin=0.5, speed=1.5, **settings):
+    navigation = NavigatorSettings(limits=Limits(speed, 1.5, 2.0, 6.0), margin=margin)
+    return AvoidanceFilter(system(n), PlannerSettings(margin=margin, **settings), Scene(obstacles), navigation)
+
+
+@dataclass
+class Flown:
+    """What a flight came to."""
+
+    safety: AvoidanceFilter
+    mission: WaypointTrajectory
+    times: list = field(default_factory=list)
+    derivatives: list = field(default_factory=list)
+    reports: list = field(default_factory=list)
+    seams: list = field(default_factory=list)
+    """Largest step of position to snap where one plan follows another (5,)."""
+    ends_at: float = np.nan
+    """When the mission's end was reached (s)."""
+
+    @property
+    def path(self):
+        """(5, K, 3)"""
+        return np.stack(self.derivatives, axis=1)
+
+    @property
+    def slack(self):
+        return max(report.slack for report in self.reports)
+
+    def clearance(self, every=2):
+        """Least true distance of every obstacle to the exact hull, {name: m}."""
+        points = hull_of(self.safety.navigator and system(self.safety.formation.hover_offsets.shape[0]), self.path)
+        least = {}
+        for name, shape, motion, _ in self.safety.obstacles.obstacles:
+            places = motion(np.array(self.times))
+            reach = shape.reach + 6.0
+            lateral = np.linalg.norm((places - self.path[0])[:, :2], axis=1)
+            near = [k for k in range(0, len(places), every) if lateral[k] < reach]
+            least[name] = min((clearance_of(points[k], shape, places[k]) for k in near), default=np.inf)
+        return least
+
+
+def fly(safety, mission, duration, on_step=lambda flown, time: None, until_end=True, time=0.0):
+    """Fly ``mission``; stops a second after its end is reached."""
+    flown = Flown(safety, mission)
+    before = None
+    position = mission.position(time)
+    while time < duration:
+        trajectory = safety.filter(time, mission, estimate_at(time, position))
+        now = trajectory.derivatives(np.array([time, time + STEP]))
+        if before is not None:
+            flown.seams.append(np.abs(now[:, 0] - before.derivatives(np.array([time]))[:, 0]).max(axis=1))
+        flown.times.append(time)
+        flown.derivatives.append(now[:, 0])
+        flown.reports.append(safety.report)
+        position, before = now[0, 1], trajectory
+        time = round(time + STEP, 6)
+        on_step(flown, time)
+        if np.isnan(flown.ends_at) and np.isfinite(mission.end) and safety.mission_time(time) >= mission.end:
+            flown.ends_at = time
+        if until_end and time > flown.ends_at + 4.0:
+            break
+    return flown

@@ -1,0 +1,224 @@
+"""What the safety filter costs a control step, and which solver suits which programme.
+
+    python tests/benchmarks/bench_planner.py            both tables
+    python tests/benchmarks/bench_planner.py --quick    fewer steps
+
+Times are of the processor (ms), so that other work on the machine disturbs them little; compare within one run only.
+"""
+
+import argparse
+import importlib.util
+import sys
+import time
+from pathlib import Path
+from types import SimpleNamespace
+
+import daqp
+import numpy as np
+from proxsuite import proxqp
+from threadpoolctl import threadpool_limits
+
+sys.path.insert(0, str(Path(__file__).parents[2]))
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+from avoidance_scene import STEP, avoidance, estimate_at, pole, sphere, straight, system
+
+import idc_controller.barrier.planner as planner_module
+from idc_controller.control.controller import ControllerSettings, IntegratedDecisionController
+from idc_controller.control.mpc import ModelPredictiveController, MpcSettings
+from idc_controller.control.quadratic_program import ParametricQp
+from idc_controller.model.linear import LinearModel
+
+OBSTACLES = (2, 10, 50, 200)
+TEAMS = (3, 4, 5, 6, 7, 8)
+FAR = 1e20
+
+
+def field(count):
+    """``count`` obstacles: a sphere and a pole on the way, the rest about it, thinner further off."""
+    rng = np.random.default_rng(count)
+    obstacles = [sphere("s0", (8.0, 0.2, -5.0)), pole("p0", 14.0, 2.6)]
+    while len(obstacles) < count:
+        north, east = rng.uniform(0.0, 24.0), rng.uniform(3.0, 30.0) * rng.choice([-1.0, 1.0])
+        if len(obstacles) % 2:
+            obstacles.append(pole(f"p{len(obstacles)}", north, east))
+        else:
+            obstacles.append(sphere(f"s{len(obstacles)}", (north, east, rng.uniform(-9.0, -2.0))))
+    return obstacles
+
+
+class Recorded:
+    """A flight whose control steps are timed and whose programmes are kept."""
+
+    def __init__(self, count, n, steps):
+        parameters = system(n)
+        model = LinearModel(parameters)
+        safety = avoidance(field(count), n=n)
+        mpc = ModelPredictiveController(model, MpcSettings())
+        controller = IntegratedDecisionController(model, mpc, safety, ControllerSettings())
+        mission, rng = straight(24.0), np.random.default_rng(n)
+        self.planner, self.mpc, self.filter_ms, self.step_ms = [], [], [], []
+        solve, track, real_filter = daqp.solve, mpc._qp.solve, safety.filter
+
+        def kept(*programme):
+            self.planner.append(programme)
+            return solve(*programme)
+
+        def kept_mpc(g, h):
+            if not np.all(mpc._qp.G @ mpc._qp.unconstrained(g) <= h):
+                self.mpc.append((g.copy(), h.copy()))
+            return track(g, h)
+
+        def timed(*arguments):
+            begin = time.process_time()
+            trajectory = real_filter(*arguments)
+            self.filter_ms.append(1e3 * (time.process_time() - begin))
+            return trajectory
+
+        safety.filter, mpc._qp.solve = timed, kept_mpc
+        planner_module.daqp = SimpleNamespace(solve=kept)
+        try:
+            for k in range(steps):
+                now = k * STEP
+                reference = controller.reference(mission)
+                x = reference.at(np.array([now])).x[0]
+                # Errors as in a flight with noise, large enough now and then to wake the MPC's constraints.
+                x[model.layout.r_0] += 0.03 * rng.normal(size=3)
+                x[model.layout.Theta] += (0.08 if k % 4 == 0 else 0.008) * rng.normal(size=3)
+                x[model.layout.omega] += 0.03 * rng.normal(size=3)
+                estimate = estimate_at(now, x[:3], model.layout.size)
+                estimate.x[:] = x
+                begin = time.process_time()
+                controller.decide(estimate, mission, learn_load=False)
+                self.step_ms.append(1e3 * (time.process_time() - begin))
+        finally:
+            planner_module.daqp = daqp
+        self.weights = mpc._qp
+
+
+def told(values):
+    return f"{np.percentile(values, 50):8.2f} {np.percentile(values, 99):8.2f} {np.max(values):8.2f}"
+
+
+def steps_table(steps):
+    """Filter and control step (filter, reference, MPC) against obstacles and team size."""
+    columns = f"{'p50':>8} {'p99':>8} {'max':>8}"
+    print(f"\n{'':14} | {'filter':>26} | {'control step':>26}")
+    print(f"{'UAVs':>4} {'obstacles':>9} | {columns} | {columns}")
+    cases = [(4, count) for count in OBSTACLES] + [(n, 2) for n in TEAMS if n != 4]
+    for n, count in cases:
+        run = Recorded(count, n, steps)
+        print(f"{n:>4} {count:>9} | {told(run.filter_ms)} | {told(run.step_ms)}")
+
+
+# Solvers, on the same recorded programmes: each says (seconds, x)
+
+
+def by_daqp(H, f, A, upper, lower, sense):
+    begin = time.process_time()
+    x, _, flag, _ = daqp.solve(H, f, A, upper, lower, sense)
+    return time.process_time() - begin, (x if flag > 0 else None)
+
+
+def by_proxqp(H, f, A, upper, lower, sense):
+    n, m = len(f), len(A)
+    begin = time.process_time()
+    qp = proxqp.dense.QP(n, 0, m, True)
+    qp.settings.eps_abs, qp.settings.max_iter = 1e-6, 2000
+    cut = (np.maximum(lower, -FAR), np.minimum(upper, FAR))
+    qp.init(H, f, None, None, A, cut[0][n:], cut[1][n:], cut[0][:n], cut[1][:n])
+    qp.solve()
+    solved = qp.results.info.status == proxqp.QPSolverOutput.PROXQP_SOLVED
+    return time.process_time() - begin, (qp.results.x if solved else None)
+
+
+def by_osqp(H, f, A, upper, lower, sense):
+    import osqp
+    from scipy.sparse import csc_matrix, triu, vstack
+
+    begin = time.process_time()
+    rows = vstack([csc_matrix(np.eye(len(f))), csc_matrix(A)], format="csc")
+    solver = osqp.OSQP()
+    solver.setup(triu(csc_matrix(H), format="csc"), f, rows, lower, upper, verbose=False, eps_abs=1e-5, eps_rel=1e-5)
+    result = solver.solve()
+    return time.process_time() - begin, (result.x if result.info.status == "solved" else None)
+
+
+def by_piqp(H, f, A, upper, lower, sense):
+    import piqp
+
+    n = len(f)
+    begin = time.process_time()
+    solver = piqp.DenseSolver()
+    rows = np.vstack([A, -A[np.isfinite(lower[n:]) & (lower[n:] > -FAR)]])
+    h = np.concatenate([upper[n:], -lower[n:][lower[n:] > -FAR]])
+    solver.setup(H, f, np.zeros((0, n)), np.zeros(0), rows, h, np.maximum(lower[:n], -1e6), np.minimum(upper[:n], 1e6))
+    status = solver.solve()
+    return time.process_time() - begin, (solver.result.x if status == piqp.PIQP_SOLVED else None)
+
+
+SOLVERS = {"daqp": by_daqp, "proxsuite": by_proxqp, "osqp": by_osqp, "piqp": by_piqp}
+
+
+def mpc_programmes(run):
+    """The MPC's as one dense programme with its slacks, in the planner's form."""
+    qp: ParametricQp = run.weights
+    P = np.linalg.inv(qp._inverse)
+    m, slacks = len(qp.G), len(qp._slack_bound)
+    rows = np.array(qp._qp.model.C)[:m]
+    n = len(P) + slacks
+    H = np.zeros((n, n))
+    H[: len(P), : len(P)], H[len(P) :, len(P) :] = (P + P.T) / 2, 1e4 * np.eye(slacks)
+    for g, h in run.mpc:
+        upper = np.concatenate([np.full(n, 1e30), h])
+        lower = np.concatenate([np.full(len(P), -1e30), np.zeros(slacks), np.full(m, -1e30)])
+        yield H, np.concatenate([g, qp._slack_gradient]), rows.copy(), upper, lower, np.zeros(n + m, dtype=np.int32)
+
+
+def solvers_table(steps, most=150):
+    """Every installed solver on the same programmes; ratios to the first."""
+    run = Recorded(10, 4, steps)
+    for name, programmes in (("planner", run.planner), ("MPC, constrained, cold", list(mpc_programmes(run)))):
+        chosen = programmes[:: max(1, len(programmes) // most)]
+        if not chosen:
+            continue
+        H, _, A, *_ = chosen[0]
+        print(f"\n{name}: {len(chosen)} programmes, e.g. {len(H)} variables, {len(A)} rows")
+        print(f"{'solver':>10} {'p50':>8} {'p99':>8} {'max':>8} {'ratio':>7} {'failed':>7} {'cost above':>11}")
+        spent = {s: [] for s in SOLVERS if importlib.util.find_spec(s)}
+        costs = {s: [] for s in spent}
+        for programme in chosen:  # side by side: what disturbs one disturbs all
+            for solver in spent:
+                seconds, x = SOLVERS[solver](*programme)
+                spent[solver].append(1e3 * seconds)
+                costs[solver].append(np.nan if x is None else 0.5 * x @ programme[0] @ x + programme[1] @ x)
+        best = np.nanmin(np.array(list(costs.values())), axis=0)
+        first = np.median(next(iter(spent.values())))
+        for solver, times in spent.items():
+            above = np.nanmax((np.array(costs[solver]) - best) / np.maximum(np.abs(best), 1.0), initial=0.0)
+            failed = int(np.isnan(costs[solver]).sum())
+            print(f"{solver:>10} {told(times)} {np.median(times) / first:7.1f} {failed:>7} {above:>11.1e}")
+    times = []
+    for g, h in run.mpc:
+        begin = time.process_time()
+        run.weights.solve(g, h)
+        times.append(1e3 * (time.process_time() - begin))
+    if times:
+        print(f"{'as flown':>10} {told(times)}   (ProxQP, set up once, warm)")
+
+
+def test_planner_benchmark():
+    main([])
+
+
+def main(arguments=None):
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--quick", action="store_true", help="fewer steps")
+    steps = 60 if parser.parse_args(arguments).quick else 300
+    with threadpool_limits(1):
+        steps_table(steps)
+        solvers_table(max(steps, 160))
+
+
+if __name__ == "__main__":
+    main()

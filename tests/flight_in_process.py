@@ -1,0 +1,183 @@
+"""A whole flight in one process: the ground station and the swarm on a virtual clock, datagrams handed over in memory.
+
+The same objects as in a real flight, without sockets: quick, repeatable, and open to questions at every exchange.
+"""
+
+import csv
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from gcs.fly import ground_station
+from gcs.mission.read import read_mission
+from gcs.record.recorder import FlightRecorder
+from gcs.record.summary import summarise, within_limits
+from vehicle_sim.faults import FaultPassage
+from vehicle_sim.swarm import Swarm
+from vehicle_sim.truth_log import TruthLog
+
+MISSIONS = Path(__file__).parents[1] / "missions"
+GROUND = ("127.0.0.1", 1)
+LONGEST = 300.0  # s of simulated time after which a flight is taken for stuck
+
+SHORT_FIGURE = """
+[mission]
+name = "short figure"
+system = "system.toml"
+seed = 1
+
+[reference]
+kind = "lissajous"
+amplitude = [6.0, 3.0]
+angular_frequency = 0.5
+altitude = {altitude}
+duration = {duration}
+
+[limits]
+position_rmse = 0.03
+settle = 10.0
+payload_tilt_deg = 5.0
+"""
+
+
+def address_of(system_id):
+    return ("127.0.0.1", 14539 + system_id)
+
+
+def system_file(folder, **changes):
+    """A copy of the system file with keys replaced, each given as table__key="toml text" or key="toml text"."""
+    text = (MISSIONS / "system.toml").read_text()
+    for name, value in changes.items():
+        key = name.split("__")[-1]
+        lines = text.splitlines()
+        at = [i for i, line in enumerate(lines) if line.removeprefix("# ").startswith(f"{key} =")]
+        if "__" in name:
+            table = lines.index(f"[{name.split('__')[0]}]")
+            at = [i for i in at if i > table][:1]
+        assert len(at) == 1, name
+        lines[at[0]] = f"{key} = {value}"
+        text = "\n".join(lines) + "\n"
+    path = folder / "system.toml"
+    path.write_text(text)
+    return path
+
+
+NO_NOISE = {
+    "position": None,  # several tables have one
+    "attitude_deg": "0.0", "uav_velocity": "0.0", "uav_rates": "0.0", "payload_velocity": "0.0", "payload_rates": "0.0",
+}  # fmt: skip
+
+
+def noiseless(mission):
+    """The mission in a world whose sensors are perfect."""
+    sensors = mission.system.sensors
+    names = ("position", "attitude_deg", "uav_velocity", "uav_rates", "payload_velocity", "payload_rates")
+    return replace(mission, system=replace(mission.system, sensors=replace(sensors, **dict.fromkeys(names, 0.0))))
+
+
+def short_figure(folder, duration=10.0, altitude=2.5, **changes):
+    """Path of a figure eight of ``duration`` (s) in ``folder``, with a system file of its own beside it."""
+    system_file(folder, **changes)
+    path = folder / "short_figure.toml"
+    path.write_text(SHORT_FIGURE.format(duration=duration, altitude=altitude))
+    return path
+
+
+def copied_mission(folder, name, **changes):
+    """Path of a copy of one of the project's missions, with a system file of its own beside it."""
+    system_file(folder, **changes)
+    return Path(shutil.copy(MISSIONS / name, folder))
+
+
+class Rehearsal:
+    """One flight. ``on_exchange(rehearsal)`` is called after every exchange and may do what it likes."""
+
+    def __init__(self, mission, folder, *, seed=None, world=None, passage=None, controller="idc"):
+        """``mission``: a path or a Mission; ``world``: the system file's config of the world when it differs."""
+        if isinstance(mission, Path):
+            mission = read_mission(mission)
+        self.mission = mission if seed is None else replace(mission, seed=seed)
+        self.folder = folder
+        folder.mkdir(parents=True, exist_ok=True)
+        config = world or self.mission.system
+        if passage is None and self.mission.faults:
+            passage = FaultPassage(self.mission.faults, self.mission.seed, config)
+        self.swarm = Swarm(config, seed=self.mission.seed, home=self.mission.home, passage=passage)
+        self.swarm.record(TruthLog(folder, config.team.vehicles))
+        self.recorder = FlightRecorder(folder, 0.0)
+        addresses = [address_of(vehicle.system_id) for vehicle in self.swarm.vehicles]
+        self.station = ground_station(self.mission, addresses, self.recorder, controller)
+        self.flight = self.station.flight
+        self.now = 0.0
+
+    def fly(self, on_exchange=lambda rehearsal: None, until=LONGEST, stop=lambda: False):
+        """To the flight's end, to ``until`` (s), or until ``stop()`` says so."""
+        swarm, station = self.swarm, self.station
+        while not station.ended and self.now <= until and not stop():
+            swarm.advance_to(self.now)
+            for i, datagram, address in swarm.datagrams_to_send(self.now):
+                if address == GROUND:
+                    station.receive(datagram, address_of(i), self.now)
+            for datagram, address in station.datagrams_to_send(self.now):
+                swarm.receive(address[1] - 14539, datagram, GROUND, self.now)
+            on_exchange(self)
+            due = [t for t in (swarm.next_timer(), station.next_timer()) if t is not None]
+            self.now = max(min(due), self.now)
+        assert self.now <= LONGEST, "the flight does not end"
+        return self
+
+    def leave_alone(self, duration=120.0):
+        """The world goes on without a ground until all is at rest."""
+        end = self.now + duration
+        while not self.swarm.at_rest and self.now < end:
+            self.now += 0.1
+            self.swarm.advance_to(self.now)
+            self.swarm.datagrams_to_send(self.now)
+        return self.swarm.at_rest
+
+    def close(self):
+        self.recorder.close()
+        self.swarm.close()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def summary(self):
+        """Closes the records and sums them up as the command does."""
+        self.close()
+        limits = self.mission.limits
+        return summarise(
+            self.folder, completed=self.flight.completed, outcome="completed" if self.flight.completed else "failed",
+            duration_s=self.now - self.flight.takeoff_time, real_time_factor=None,
+            limits=None if limits is None else {**limits.__dict__}, obstacles=False,
+        )  # fmt: skip
+
+
+def flown(mission, folder, **options):
+    """The summary of a flight to its end."""
+    with Rehearsal(mission, folder, **options) as rehearsal:
+        rehearsal.fly()
+        return rehearsal.summary()
+
+
+def check_within_limits(summary, rmse=0.03):
+    """What every flight is held to."""
+    assert summary["completed"], summary
+    assert summary["position_rmse_m"]["total"] <= rmse, summary
+    assert max(summary["payload_tilt_max_deg"].values()) <= 5.0, summary
+    assert summary["uav_separation_min_m"] >= 0.7, summary
+    assert summary["contacts"] == 0, summary
+    if rmse == 0.03:
+        assert within_limits(summary)
+
+
+def truth_of(folder):
+    """truth.csv as {column: array}."""
+    with (folder / "truth.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}

@@ -1,0 +1,125 @@
+"""Obstacles seen by range sensors, for tests of the ground's obstacle estimate: points with noise, no wire."""
+
+import math
+
+import numpy as np
+import pymavlink.dialects.v20.ardupilotmega as mavlink
+
+from idc_controller.estimate.measurements import Attitude, Position
+from idc_controller.estimate.surface_points import SurfacePoints, joined
+from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
+from vehicle_sim.obstacle_bodies import Obstacle
+from vehicle_sim.range_sensor import RangeSensor
+
+REACH, NOISE = 10.0, 0.05
+POSITION_NOISE, ATTITUDE_NOISE = 0.02, math.radians(0.2)
+#: Of four UAVs about the formation's centre, at the height at which they fly above the payload.
+FORMATION = np.array([[0.5, 0.5, 0.0], [0.5, -0.5, 0.0], [-0.5, -0.5, 0.0], [-0.5, 0.5, 0.0]])
+
+
+def sphere(position, radius=0.5, name="sphere"):
+    return Obstacle(name, "sphere", tuple(position), radius)
+
+
+def pole(position, radius=0.2, height=15.0, name="pole"):
+    return Obstacle(name, "pole", (position[0], position[1], -height / 2.0), radius, (0.0, 0.0, height))
+
+
+def wall(position, size=(0.3, 5.0, 6.0), yaw=0.3, name="wall"):
+    return Obstacle(name, "wall", tuple(position), 0.0, tuple(size), yaw)
+
+
+def messages_of(scan):
+    """As a vehicle sends it."""
+    return [
+        mavlink.MAVLink_obstacle_distance_3d_message(
+            round(scan.time * 1e3), mavlink.MAV_DISTANCE_SENSOR_LASER, mavlink.MAV_FRAME_BODY_FRD,
+            detection.obstacle_id, *detection.position_in_body, 0.05, scan.reach,
+        )
+        for detection in scan.detections
+    ]  # fmt: skip
+
+
+class Scene:
+    """Four UAVs that look around. Poses on the ground's side have the noise of the default navigation."""
+
+    def __init__(self, seed=0, uavs=4, noise=NOISE, reach=REACH, loss=0.0):
+        self.rng = np.random.default_rng([seed, 7])
+        self.reach, self.noise, self.loss = reach, noise, loss
+        self.sensors = [RangeSensor(reach, noise, seed, i) for i in range(1, uavs + 1)]
+
+    def look(self, time, centre, obstacles):
+        """[(uav, believed position, believed attitude, RangeSample)] at ``time``, the formation at ``centre`` (3,)."""
+        found = []
+        for i, sensor in enumerate(self.sensors):
+            position = np.asarray(centre) + FORMATION[i]
+            angles = self.rng.normal(0.0, 0.05, 3)
+            scan = sensor.scan(time, position, tuple(quaternion_from_euler(*angles)), obstacles)
+            believed = position + self.rng.normal(0.0, POSITION_NOISE, 3)
+            errors = self.rng.normal(0.0, ATTITUDE_NOISE, 3)
+            if self.rng.uniform() >= self.loss:
+                found.append((i, believed, quaternion_from_euler(*(angles + errors)), scan))
+        return found
+
+    def scans(self, time, centre, obstacles):
+        """[(uav, id, SurfacePoints)] of the scans at ``time`` with the formation at ``centre`` (3,)."""
+        found = []
+        for i, believed, quaternion, scan in self.look(time, centre, obstacles):
+            rotation = rotation_from_quaternion(quaternion)
+            for number in sorted({d.obstacle_id for d in scan.detections}):
+                body = np.array([d.position_in_body for d in scan.detections if d.obstacle_id == number])
+                distance = np.linalg.norm(body, axis=1)
+                found.append((i, number, SurfacePoints(
+                    time, believed + body @ rotation.T, np.tile(believed, (len(body), 1)),
+                    distance > self.reach - 4.0 * self.noise, self.noise,
+                    POSITION_NOISE**2 + (ATTITUDE_NOISE * distance) ** 2,
+                )))  # fmt: skip
+        return found
+
+    def feed(self, obstacle_map, time, centre, obstacles):
+        """Hand a map what it would get from telemetry at ``time``."""
+        for i, position, quaternion, scan in self.look(time, centre, obstacles):
+            obstacle_map.measured(Attitude(time, i, quaternion, np.zeros(3)))
+            obstacle_map.measured(Position(time, i, position, np.zeros(3)))
+            for message in messages_of(scan):
+                obstacle_map.detected(message, i, time)
+
+    def frame(self, time, centre, obstacle):
+        """All points on one obstacle; None if nobody sees it."""
+        parts = [points for _, _, points in self.scans(time, centre, [obstacle])]
+        return joined(parts) if parts else None
+
+
+MOTIONS = {
+    "standing": lambda t: np.zeros(3),
+    "linear": lambda t: np.array([1.2 * t - 5.0, 1.6 * t - 6.0, 0.0]),
+    "harmonic": lambda t: np.array([2.0 * math.sin(t), 0.0, 0.0]),
+    "fast harmonic": lambda t: np.array([0.0, 1.0 * math.sin(2.0 * t + 0.4), 0.0]),
+    "circle": lambda t: np.array([1.6 * math.cos(1.25 * t), 1.6 * math.sin(1.25 * t), 0.0]),
+}
+
+
+def random_motion(seed, duration=12.0, speed=2.0, acceleration=2.0):
+    """A course with accelerations drawn anew every 0.7 s or so, speed limited: in no model of the estimator."""
+    rng = np.random.default_rng([seed, 11])
+    dt = 0.01
+    v, p = rng.normal(0.0, 0.7, 3), np.zeros(3)
+    a, left = np.zeros(3), 0.0
+    course = []
+    for _ in range(int(duration / dt) + 200):
+        if left <= 0.0:
+            a, left = rng.normal(0.0, acceleration, 3) - 0.15 * p, rng.exponential(0.7)
+        v = v + a * dt
+        v *= min(1.0, speed / np.linalg.norm(v))
+        p = p + v * dt
+        left -= dt
+        course.append(p)
+    course = np.array(course)
+    return lambda t: course[min(max(round(t / dt), 0), len(course) - 1)]
+
+
+def stop_and_go(t):
+    """2 m/s for 1.5 s, standing for 1.5 s, and back."""
+    phase, cycle = t % 6.0, 3.0
+    going = min(phase, 1.5) if phase < cycle else 1.5 - min(phase - cycle, 1.5)
+    return np.array([2.0 * going, 0.0, 0.0])

@@ -1,0 +1,368 @@
+import math
+
+import numpy as np
+import pymavlink.dialects.v20.common as mavlink
+import pytest
+from flying import AIRFRAME, ONBOARD_EVERY, Body
+from scipy.linalg import expm
+
+from gcs.wire import px4
+from idc_controller.rotations import euler_from_quaternion, quaternion_from_euler
+from vehicle_sim.attitude_control import AttitudeController
+from vehicle_sim.autopilot import Autopilot
+from vehicle_sim.hold_control import HoldPlan, attitude_of_force
+from vehicle_sim.parameter_table import vehicle_parameters
+from vehicle_sim.sensors import Measurement, NavigationSensor, SensorNoise
+from vehicle_sim.setpoints import AttitudeSetpoint
+
+LEVEL = (1.0, 0.0, 0.0, 0.0)
+STANDING = Measurement(0.0, LEVEL, (0.0,) * 3, (0.0,) * 3, (0.0,) * 3)
+
+
+def autopilot() -> Autopilot:
+    return Autopilot(AIRFRAME, vehicle_parameters(AIRFRAME, 1, 250))
+
+
+def setpoint(attitude: tuple[float, ...] | None = LEVEL, thrust: float = 0.5, stamp: int = 0) -> AttitudeSetpoint:
+    return AttitudeSetpoint(attitude, (0.0, 0.0, 0.0), thrust, stamp)  # type: ignore[arg-type]
+
+
+class Flight:
+    """A body with its autopilot; a simple ground that sends set-points at 20 Hz while ``ground_is_there``."""
+
+    def __init__(self, carried: float = 0.775, noise: SensorNoise | None = None) -> None:
+        self.body = Body(carried, noise)
+        self.pilot = autopilot()
+        self.ground_is_there = True
+        self.target = setpoint()
+
+    def run(self, seconds: float) -> None:
+        for _ in range(round(seconds / 0.002)):
+            now = self.body.now
+            if self.ground_is_there and self.body.tick % 25 == 0:
+                self.pilot.follow(self.target, now)
+                self.pilot.heard_from_ground(now)
+            if self.body.tick % ONBOARD_EVERY == 0:
+                self.body.command = self.pilot.step(self.body.measure(), now)
+            self.body.advance()
+
+    @property
+    def hover(self) -> float:
+        return self.body.mass * AIRFRAME.g / AIRFRAME.rotors.thrust_max
+
+    def take_off(self, height: float = 6.0) -> None:
+        self.run(0.02)
+        assert self.pilot.enter_offboard(self.target, self.body.now, self.body.now).text == ""
+        assert self.pilot.arm(self.body.now).text == ""
+        self.target = setpoint(thrust=self.hover * 1.1)
+        while -self.body.position[2] < height:
+            self.run(0.05)
+            assert self.body.now < 20.0
+        self.target = setpoint(thrust=self.hover * 0.9)
+        while self.body.velocity[2] < -0.02:
+            self.run(0.02)
+        self.target = setpoint(thrust=self.hover)
+        self.run(4.0)
+
+
+@pytest.fixture
+def flying() -> Flight:
+    flight = Flight()
+    flight.take_off()
+    return flight
+
+
+# The attitude loop
+
+
+def test_small_errors_are_angles_whatever_the_signs() -> None:
+    control = AttitudeController(np.eye(3), 1.0, 1e-9)
+    for angles in np.eye(3) * 0.01:
+        target = tuple(quaternion_from_euler(*angles))
+        for a, b in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
+            torque = control.torque(tuple(a * np.array(LEVEL)), (0.0,) * 3, tuple(b * np.array(target)), (0.0,) * 3)
+            assert torque == pytest.approx(angles, rel=1e-4, abs=1e-9)
+
+
+def test_error_is_in_the_body_frame() -> None:
+    control = AttitudeController(np.eye(3), 1.0, 1e-9)
+    yawed = quaternion_from_euler(0.0, 0.0, math.pi / 2)
+    target = quaternion_from_euler(0.02, 0.0, math.pi / 2)
+    assert control.torque(tuple(yawed), (0.0,) * 3, tuple(target), (0.0,) * 3) == pytest.approx([0.02, 0, 0], abs=1e-4)
+
+
+def test_torque_takes_the_whole_inertia() -> None:
+    J = np.array([[0.02, 0.001, 0.002], [0.001, 0.03, 0.003], [0.002, 0.003, 0.04]])
+    torque = AttitudeController(J, 1.0, 2.0).torque(LEVEL, (0.1, 0.2, 0.3), None, (1.0, 1.0, 1.0))
+    assert torque == pytest.approx(J @ (2.0 * np.array([0.9, 0.8, 0.7])))
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+def test_loop_is_the_linear_model_that_the_ground_uses(axis: int) -> None:
+    """tilt'' = a; T_m a' = kp (set-point - tilt) - kd tilt' - a, with commands held for 4 ms.
+
+    Exact steps of the linear model, so that any hidden delay of the loop shows; without the hold, the plain model
+    still describes it within a few percent.
+    """
+    size = 0.03
+    kp, kd, lag = AIRFRAME.attitude_kp, AIRFRAME.attitude_kd, AIRFRAME.motor_time_constant
+    A = np.array([[0, 1, 0, 0], [0, 0, 1, 0], [0, 0, -1 / lag, 1 / lag], [0, 0, 0, 0]])  # tilt, rate, a, command
+    step = expm(A * 0.002)
+    state = np.zeros(4)
+    plain = expm(np.array([[0, 1, 0, 0], [0, 0, 1, 0], np.array([-kp, -kd, -1, kp]) / lag, [0, 0, 0, 0]]) * 0.002)
+    plain_state = np.array([0.0, 0.0, 0.0, size])
+
+    flight = Flight()
+    flight.take_off(2.0)
+    flight.run(flight.body.now % 0.004)
+    angles = [0.0, 0.0, 0.0]
+    angles[axis] = size
+    flight.target = setpoint(tuple(quaternion_from_euler(*angles)), flight.hover)
+    flight.pilot.follow(flight.target, flight.body.now)
+    for tick in range(400):
+        if tick % 2 == 0:
+            state[3] = kp * (size - state[0]) - kd * state[1]
+        state = step @ state
+        plain_state = plain @ plain_state
+        flight.run(0.002)
+        tilt = euler_from_quaternion(flight.body.attitude)[axis]
+        assert tilt == pytest.approx(state[0], abs=0.006 * size)
+        assert tilt == pytest.approx(plain_state[0], abs=0.04 * size)
+    assert tilt == pytest.approx(size, rel=0.02)
+
+
+def test_large_turns_with_negative_quaternions_settle(flying: Flight) -> None:
+    target = quaternion_from_euler(0.3, -0.2, 1.5)
+    flying.target = setpoint(tuple(-target), flying.hover)
+    flying.run(1.5)
+    assert abs(flying.body.attitude @ target) > math.cos(0.005)
+
+
+def test_rates_alone_are_followed(flying: Flight) -> None:
+    flying.target = AttitudeSetpoint(None, (0.0, 0.0, 0.4), flying.hover, 0)
+    flying.run(1.0)
+    assert flying.body.rates == pytest.approx([0.0, 0.0, 0.4], abs=0.01)
+
+
+# Arming and modes
+
+
+def test_nothing_arms_without_measurements_or_lying_down_or_moving() -> None:
+    pilot = autopilot()
+    assert pilot.arm(0.0).result == mavlink.MAV_RESULT_TEMPORARILY_REJECTED
+    assert "navigation" in pilot.arm(0.0, force=True).text
+    pilot.step(STANDING._replace(attitude=(math.cos(0.6), math.sin(0.6), 0.0, 0.0)), 0.0)
+    assert "side" in pilot.arm(0.0).text
+    pilot.step(STANDING._replace(velocity=(0.0, 0.0, 3.0)), 0.004)
+    assert "moves" in pilot.arm(0.004).text
+    pilot.step(STANDING._replace(position=(math.nan, 0.0, 0.0)), 1.0)
+    assert "navigation" in pilot.arm(1.0).text
+    pilot.step(STANDING, 2.0)
+    assert pilot.arm(2.0).result == mavlink.MAV_RESULT_ACCEPTED and pilot.armed
+    assert pilot.arm(2.0).result == mavlink.MAV_RESULT_ACCEPTED
+
+
+def test_armed_on_the_ground_it_waits_with_stopped_rotors() -> None:
+    pilot = autopilot()
+    pilot.step(STANDING, 0.0)
+    pilot.arm(0.0)
+    assert pilot.step(STANDING, 0.004) == (0.0,) * 4
+    assert pilot.landed_state == mavlink.MAV_LANDED_STATE_ON_GROUND
+    assert pilot.disarm().result == mavlink.MAV_RESULT_ACCEPTED and not pilot.armed
+
+
+def test_disarming_in_the_air_needs_force(flying: Flight) -> None:
+    assert flying.pilot.landed_state == mavlink.MAV_LANDED_STATE_IN_AIR
+    assert flying.pilot.disarm().result == mavlink.MAV_RESULT_DENIED and flying.pilot.armed
+    assert flying.pilot.disarm(force=True).result == mavlink.MAV_RESULT_ACCEPTED and not flying.pilot.armed
+    flying.run(0.01)
+    assert flying.body.command == (0.0,) * 4
+
+
+@pytest.mark.parametrize(
+    "mode",
+    [px4.MODE_TAKEOFF, px4.MODE_MISSION, px4.MODE_RETURN, px4.MODE_POSCTL, px4.encode_custom_mode(77), 0],
+)
+def test_modes_that_cannot_be_flown_are_refused_and_change_nothing(flying: Flight, mode: int) -> None:
+    answer = flying.pilot.enter_mode(mode, flying.body.now)
+    assert answer.result == mavlink.MAV_RESULT_DENIED and answer.text
+    assert flying.pilot.mode == px4.MODE_OFFBOARD
+
+
+def test_hover_thrust_is_learned_in_flight(flying: Flight) -> None:
+    assert flying.pilot.hover_thrust == pytest.approx(flying.body.mass * AIRFRAME.g, rel=0.04)
+
+
+# Failsafes
+
+
+def fly_forward(flight: Flight, speed: float) -> None:
+    flight.target = setpoint(tuple(quaternion_from_euler(0.0, -0.2, 0.0)), flight.hover / math.cos(0.2))
+    while flight.body.velocity[0] < speed:
+        flight.run(0.05)
+    flight.target = setpoint(thrust=flight.hover)
+    flight.run(0.5)
+
+
+def test_lost_setpoints_are_answered_within_half_a_second_by_braking_and_holding(flying: Flight) -> None:
+    fly_forward(flying, 2.0)
+    flying.run(0.05 - flying.body.now % 0.05)
+    altitude, speed, start = flying.body.position[2], flying.body.velocity[0], flying.body.position[0]
+    flying.ground_is_there = False
+    flying.run(0.40)
+    assert not flying.pilot.failsafe
+    flying.run(0.10)
+    assert flying.pilot.failsafe and flying.pilot.mode == px4.MODE_HOLD
+    assert flying.pilot.armed
+    flying.run(4.4)
+    assert abs(flying.body.velocity[0]) < 0.15 * speed
+    assert start < flying.body.position[0] < start + speed * 3.5
+    assert flying.body.position[2] == pytest.approx(altitude, abs=0.25)
+    assert flying.pilot.mode == px4.MODE_HOLD
+
+
+def test_after_a_further_time_it_descends_gently_and_disarms_on_the_ground(flying: Flight) -> None:
+    flying.ground_is_there = False
+    fastest = 0.0
+    while flying.pilot.armed:
+        flying.run(0.02)
+        fastest = max(fastest, flying.body.velocity[2])
+        assert flying.body.now < 60.0
+        if flying.pilot.mode == px4.MODE_LAND:
+            assert flying.pilot.landed_state == mavlink.MAV_LANDED_STATE_LANDING
+    assert flying.body.position[2] == 0.0
+    assert 0.4 < fastest < 0.65
+    assert not flying.pilot.failsafe and not flying.pilot.in_air
+
+
+def test_holding_and_landing_stand_noise() -> None:
+    flight = Flight(noise=SensorNoise(0.02, math.radians(0.2), 0.02, 0.005))
+    flight.take_off()
+    flight.ground_is_there = False
+    flight.run(5.0)
+    low, high = flight.body.position - 0.3, flight.body.position + 0.3
+    height = flight.body.position[2]
+    assert np.all(flight.body.position > low) and np.all(flight.body.position < high)
+    assert abs(euler_from_quaternion(flight.body.attitude)[:2]).max() < math.radians(5)
+    flight.run(-height / 0.5 + 5.0)
+    assert not flight.pilot.armed and flight.body.position[2] == 0.0
+
+
+def test_setpoints_that_come_back_end_the_failsafe(flying: Flight) -> None:
+    flying.ground_is_there = False
+    flying.run(1.0)
+    assert flying.pilot.failsafe
+    flying.pilot.follow(flying.target, flying.body.now)
+    flying.run(0.01)
+    assert flying.pilot.failsafe  # one set-point is no stream
+    flying.ground_is_there = True
+    flying.run(0.2)
+    assert not flying.pilot.failsafe and flying.pilot.mode == px4.MODE_OFFBOARD
+
+
+def test_loss_on_the_ground_disarms() -> None:
+    flight = Flight()
+    flight.run(0.02)
+    flight.pilot.enter_offboard(flight.target, 0.0, flight.body.now)
+    flight.target = setpoint(thrust=0.1)
+    assert flight.pilot.arm(flight.body.now).text == ""
+    flight.run(0.3)
+    assert flight.pilot.armed
+    flight.ground_is_there = False
+    flight.run(0.6)
+    assert not flight.pilot.armed
+
+
+def test_loss_while_it_balances_on_its_link_holds_before_it_disarms() -> None:
+    flight = Flight()
+    flight.run(0.02)
+    flight.pilot.enter_offboard(flight.target, 0.0, flight.body.now)
+    flight.target = setpoint(thrust=0.8 * flight.hover)  # more than its own weight, too little to lift the load
+    assert flight.pilot.arm(flight.body.now).text == ""
+    flight.run(1.0)
+    flight.ground_is_there = False
+    flight.run(1.0)
+    assert flight.pilot.armed and flight.pilot.failsafe
+    assert flight.pilot.attitude_target[2] == pytest.approx(0.8 * flight.hover, rel=0.1)
+    flight.run(5.0)
+    assert not flight.pilot.armed
+
+
+def test_commanded_hold_stays_while_a_ground_is_there_and_lands_when_none_is(flying: Flight) -> None:
+    assert flying.pilot.enter_mode(px4.MODE_HOLD, flying.body.now).text == ""
+    flying.run(12.0)
+    assert flying.pilot.mode == px4.MODE_HOLD and not flying.pilot.failsafe
+    flying.ground_is_there = False
+    flying.run(10.5)
+    assert flying.pilot.mode == px4.MODE_LAND and flying.pilot.failsafe
+
+
+def test_a_hold_that_is_asked_for_in_a_failsafe_does_not_descend(flying: Flight) -> None:
+    flying.ground_is_there = False
+    flying.run(2.0)
+    flying.pilot.enter_mode(px4.MODE_HOLD, flying.body.now)
+    assert not flying.pilot.failsafe
+    height = flying.body.position[2]
+    flying.run(7.0)
+    assert flying.body.position[2] == pytest.approx(height, abs=0.1)
+
+
+def test_landing_by_setpoints_is_noticed(flying: Flight) -> None:
+    flying.target = setpoint(thrust=flying.hover * 0.99)
+    while flying.body.position[2] < 0.0:
+        flying.run(0.1)
+    assert flying.pilot.in_air
+    flying.target = setpoint(thrust=0.05)
+    flying.run(1.0)
+    assert not flying.pilot.in_air and flying.pilot.armed
+    assert flying.pilot.disarm().result == mavlink.MAV_RESULT_ACCEPTED
+
+
+# Plans and sensors
+
+
+def test_hold_plan_is_consistent_with_its_own_derivatives() -> None:
+    plan = HoldPlan(2.0, (1.0, 2.0, -5.0), (3.0, -4.0, 1.0), 0.3, descent_start=7.0, descent_speed=0.5)
+    h = 1e-4
+    for t in np.linspace(2.1, 12.0, 53):
+        before, here, after = plan.at(t - h), plan.at(t), plan.at(t + h)
+        slope = (np.array(after.position) - before.position) / (2 * h)
+        assert here.velocity == pytest.approx(slope, abs=1e-6)
+        if abs(t - 7.0) > 0.01 and abs(t - 8.0) > 0.01:
+            bend = (np.array(after.velocity) - before.velocity) / (2 * h)
+            assert here.acceleration == pytest.approx(bend, abs=1e-5)
+    start, end = plan.at(2.0), plan.at(7.0)
+    assert start.velocity[:2] == (3.0, -4.0) and start.acceleration == (0.0, 0.0, 0.0)
+    assert end.velocity == pytest.approx((0.0, 0.0, 0.0)) and end.position[2] == -5.0
+    assert max(np.linalg.norm(plan.at(t).acceleration) for t in np.linspace(2, 7, 99)) <= 2.0 + 1e-9
+
+
+def test_attitude_of_force_points_body_up_along_the_force() -> None:
+    for yaw in (-2.0, 0.0, 1.0):
+        force = np.array([1.0, -2.0, -9.0])
+        w, x, y, z = attitude_of_force(*force, yaw)
+        up = -np.array([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)])
+        assert up == pytest.approx(force / np.linalg.norm(force))
+
+
+def test_sensor_noise_has_its_sigmas_and_repeats_by_seed_and_id() -> None:
+    noise = SensorNoise(position=0.02, attitude=0.003, velocity=0.05, rates=0.008)
+    truth = (tuple(quaternion_from_euler(0.1, 0.2, 2.0)), (0.1, 0.2, 0.3), (1.0, 2.0, -3.0), (0.5, 0.0, -0.5))
+
+    def samples(seed: int, sensor_id: int, count: int = 4000) -> list[Measurement]:
+        sensor = NavigationSensor(noise, seed, sensor_id)
+        return [sensor.measure(0.0, *truth) for _ in range(count)]
+
+    some = samples(1, 2)
+    for field, index, sigma in (("position", 2, 0.02), ("velocity", 3, 0.05), ("rates", 1, 0.008)):
+        error = np.array([getattr(s, field) for s in some]) - truth[index]
+        assert error.std(axis=0) == pytest.approx([sigma] * 3, rel=0.06)
+        assert np.abs(error.mean(axis=0)).max() < 4 * sigma / math.sqrt(4000)
+    attitude = np.array([s.attitude for s in some])
+    assert np.linalg.norm(attitude, axis=1) == pytest.approx(np.ones(4000))
+    angle = 2 * np.arccos(np.clip(attitude @ np.array(truth[0]), -1, 1))
+    assert math.sqrt(np.mean(angle**2) / 3) == pytest.approx(0.003, rel=0.06)
+    assert samples(1, 2, 50) == some[:50]
+    assert samples(2, 2, 1) != some[:1] and samples(1, 3, 1) != some[:1]
+    perfect = NavigationSensor(SensorNoise(), 1, 1).measure(0.5, *truth)
+    assert perfect.position == truth[2] and perfect.attitude == pytest.approx(truth[0], abs=1e-15)

@@ -1,0 +1,102 @@
+"""The chain's roll-out against numerical integration, and its smoothness."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from idc_controller.plan.chain import Chain
+
+CHAINS = [Chain(), Chain(0.05, (1, 2, 3)), Chain(0.2, (1,)), Chain(0.1, (4, 1, 4))]
+
+
+def integrated(chain, start, knots, times):
+    """(r, v, a, j) at ``times`` (M,), one axis, by a general integrator: (M, 4)."""
+    at = np.concatenate([[0.0], np.cumsum(chain.blocks)]) * chain.period
+    snaps = np.concatenate([[start[4]], knots])
+
+    def slope(t, y):
+        return [y[1], y[2], y[3], np.interp(t, at, snaps)]
+
+    y, now, found = np.array(start[:4]), 0.0, []
+    for time in times:
+        # No step across a corner of the snap.
+        for stop in [*at[(at > now) & (at < time)], time]:
+            y = solve_ivp(slope, (now, stop), y, rtol=1e-10, atol=1e-12).y[:, -1]
+            now = stop
+        found.append(y)
+    return np.array(found)
+
+
+@pytest.mark.parametrize("chain", CHAINS)
+def test_roll_out_and_evaluation_are_the_integral_of_the_snap(chain):
+    rng = np.random.default_rng(chain.stages)
+    start, knots = rng.normal(size=(5, 3)), rng.normal(size=(chain.knots, 3)) * 3.0
+    states = chain.roll_out(start, knots)
+    stages = chain.period * np.arange(1, chain.stages + 1)
+    between = np.sort(rng.uniform(0.0, stages[-1], 12))
+    told = chain.evaluate(states, between)
+    for axis in range(3):
+        np.testing.assert_allclose(
+            states[1:, :4, axis], integrated(chain, start[:, axis], knots[:, axis], stages), rtol=1e-7, atol=1e-8
+        )
+        np.testing.assert_allclose(
+            told[:4, :, axis].T, integrated(chain, start[:, axis], knots[:, axis], between), rtol=1e-7, atol=1e-8
+        )
+
+
+@pytest.mark.parametrize("chain", CHAINS)
+def test_snap_goes_through_its_knots_in_straight_lines(chain):
+    rng = np.random.default_rng(1)
+    start, knots = rng.normal(size=(5, 3)), rng.normal(size=(chain.knots, 3))
+    states = chain.roll_out(start, knots)
+    np.testing.assert_allclose(states[np.cumsum(chain.blocks), 4], knots, atol=1e-12)
+    np.testing.assert_allclose(states[0], start, atol=1e-15)
+    bends = np.diff(states[:, 4], 2, axis=0)
+    inner = np.setdiff1d(np.arange(1, chain.stages), np.cumsum(chain.blocks))
+    np.testing.assert_allclose(bends[inner - 1], 0.0, atol=1e-12)
+    first, others = chain.snap_of_stage
+    np.testing.assert_allclose(first + others.sum(axis=1), 1.0)
+
+
+def test_evaluation_is_continuous_up_to_snap():
+    chain = Chain()
+    rng = np.random.default_rng(2)
+    states = chain.roll_out(rng.normal(size=(5, 3)), rng.normal(size=(chain.knots, 3)))
+    joints = chain.period * np.arange(1, chain.stages)
+    tiny = 1e-9
+    np.testing.assert_allclose(
+        chain.evaluate(states, joints - tiny), chain.evaluate(states, joints + tiny), rtol=0.0, atol=1e-6
+    )
+    np.testing.assert_allclose(chain.evaluate(states, joints), states[1:-1].transpose(1, 0, 2), atol=1e-9)
+
+
+def test_each_derivative_is_that_of_the_one_before():
+    chain = Chain()
+    rng = np.random.default_rng(3)
+    states = chain.roll_out(rng.normal(size=(5, 3)), rng.normal(size=(chain.knots, 3)))
+    h = 1e-4
+    times = rng.uniform(2 * h, chain.stages * chain.period - 2 * h, 40)
+    times = times[np.abs(times / chain.period - np.round(times / chain.period)) > 2e-3]
+    slope = (chain.evaluate(states, times + h) - chain.evaluate(states, times - h)) / (2 * h)
+    np.testing.assert_allclose(slope[:4], chain.evaluate(states, times)[1:], atol=1e-5)
+
+
+def test_several_roll_outs_are_evaluated_in_one_go():
+    chain = Chain()
+    rng = np.random.default_rng(4)
+    plans = [chain.roll_out(rng.normal(size=(5, 3)), rng.normal(size=(chain.knots, 3))) for _ in range(3)]
+    times = rng.uniform(0.0, 1.5 * chain.stages * chain.period, 30)
+    which = rng.integers(0, 3, 30)
+    told = chain.evaluate(np.concatenate(plans), times, which * (chain.stages + 1))
+    for i in range(3):
+        np.testing.assert_array_equal(told[:, which == i], chain.evaluate(plans[i], times[which == i]))
+
+
+def test_beyond_the_last_stage_it_coasts():
+    chain = Chain()
+    states = chain.roll_out(np.ones((5, 3)), np.zeros((chain.knots, 3)))
+    end = chain.stages * chain.period
+    told = chain.evaluate(states, np.array([end, end + 2.0]))
+    np.testing.assert_allclose(told[0, 1], states[-1, 0] + 2.0 * states[-1, 1])
+    np.testing.assert_allclose(told[1, 1], states[-1, 1])
+    np.testing.assert_array_equal(told[2:, 1], 0.0)

@@ -1,0 +1,161 @@
+import struct
+
+import numpy as np
+import pymavlink.dialects.v20.common as mavlink
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from gcs.wire import px4
+from gcs.wire.codec import DATAGRAM_LIMIT, Codec, gather
+
+
+def attitude(stamp: int = 7) -> mavlink.MAVLink_attitude_quaternion_message:
+    return mavlink.MAVLink_attitude_quaternion_message(stamp, 1.0, 0.25, -0.5, 0.125, 1.5, -2.5, 3.5)
+
+
+def command() -> mavlink.MAVLink_command_long_message:
+    return mavlink.MAVLink_command_long_message(1, 1, 400, 0, 1, 0, 0, 0, 0, 0, 0)
+
+
+def test_round_trip_keeps_every_field_and_the_sender() -> None:
+    sender, receiver = Codec(3, 25), Codec(255, 190)
+    [message] = receiver.decode(sender.encode(attitude()))
+    assert message.get_type() == "ATTITUDE_QUATERNION"
+    assert (message.get_srcSystem(), message.get_srcComponent()) == (3, 25)
+    assert [message.time_boot_ms, message.q1, message.q2, message.q3, message.q4] == [7, 1.0, 0.25, -0.5, 0.125]
+    assert [message.rollspeed, message.pitchspeed, message.yawspeed] == [1.5, -2.5, 3.5]
+
+
+def test_sequence_number_rises_and_wraps() -> None:
+    codec = Codec(1, 1)
+    sequence = [codec.decode(codec.encode(attitude()))[0].get_seq() for _ in range(258)]
+    assert sequence == [*range(256), 0, 1]
+
+
+def test_many_frames_in_one_datagram_keep_their_order() -> None:
+    codec = Codec(1, 1)
+    data = b"".join(codec.encode(attitude(stamp)) for stamp in range(20))
+    assert [message.time_boot_ms for message in Codec(2, 1).decode(data)] == list(range(20))
+
+
+def test_mavlink_1_frames_are_read() -> None:
+    one = mavlink.MAVLink(None, 9, 1)
+    frame = attitude().pack(one, force_mavlink1=True)
+    assert frame[0] == 0xFE
+    [message] = Codec(2, 1).decode(frame + Codec(4, 1).encode(command()) + frame)[:1]
+    assert message.get_srcSystem() == 9 and message.q3 == -0.5
+
+
+def test_signed_frames_are_read() -> None:
+    signer = mavlink.MAVLink(None, 9, 1)
+    signer.signing.secret_key = bytes(range(32))
+    signer.signing.sign_outgoing = True
+    frame = attitude().pack(signer)
+    messages = Codec(2, 1).decode(frame + Codec(4, 1).encode(command()))
+    assert [message.get_type() for message in messages] == ["ATTITUDE_QUATERNION", "COMMAND_LONG"]
+    assert Codec(2, 1).decode(frame[:-3]) == []
+
+
+def test_garbage_bad_checksums_and_cut_frames_do_not_hide_what_follows() -> None:
+    good = Codec(1, 1).encode(command())
+    bad = bytearray(good)
+    bad[-1] ^= 0x40
+    codec = Codec(2, 1)
+    messages = codec.decode(b"\xfd\xfe garbage \xfd" + bytes(bad) + good + good[:-4] + good + b"\xfd\x00")
+    assert len(messages) == 2 and all(message.get_type() == "COMMAND_LONG" for message in messages)
+    assert codec.bad_frames >= 1 and codec.skipped_bytes > 0 and codec.decoded == 2
+
+
+def test_a_cut_datagram_does_not_poison_the_next() -> None:
+    codec = Codec(2, 1)
+    good = Codec(1, 1).encode(command())
+    for length in range(len(good)):
+        assert codec.decode(good[:length]) == []
+        assert len(codec.decode(good)) == 1
+
+
+def test_a_wrong_length_byte_does_not_swallow_the_next_frame() -> None:
+    good = Codec(1, 1).encode(command())
+    wrong = bytearray(good)
+    wrong[1] = 60
+    assert len(Codec(2, 1).decode(bytes(wrong) + good + good)) == 2
+
+
+def test_unknown_messages_are_counted_and_skipped_whole() -> None:
+    hidden = Codec(1, 1).encode(command())
+    payload = hidden.ljust(60, b"\x01")
+    unknown = struct.pack("<BBBBBBBHB", 0xFD, len(payload), 0, 0, 0, 1, 1, 0xFFF0, 0x7F) + payload + b"\x12\x34"
+    codec = Codec(2, 1)
+    assert [m.get_type() for m in codec.decode(unknown + Codec(1, 1).encode(attitude()))] == ["ATTITUDE_QUATERNION"]
+    assert codec.unknown_messages == 1
+
+
+def test_unknown_incompatibility_flags_are_refused() -> None:
+    frame = bytearray(Codec(1, 1).encode(attitude()))
+    frame[2] = 0x02
+    crc = mavlink.x25crc(bytes(frame[1:-2]) + bytes([mavlink.MAVLink_attitude_quaternion_message.crc_extra])).crc
+    frame[-2:] = struct.pack("<H", crc)
+    assert Codec(2, 1).decode(bytes(frame)) == []
+
+
+@given(st.binary(max_size=400))
+@settings(max_examples=300, deadline=None)
+def test_no_bytes_raise_and_a_good_frame_after_them_in_its_own_datagram_is_read(data: bytes) -> None:
+    codec = Codec(2, 1)
+    codec.decode(data)
+    assert len(codec.decode(Codec(1, 1).encode(command()))) == 1
+
+
+def test_every_message_of_the_dialect_with_random_payload_is_read_or_refused() -> None:
+    rng = np.random.default_rng(5)
+    codec = Codec(2, 1)
+    for number, kind in mavlink.mavlink_map.items():
+        for length in (0, 1, kind.unpacker.size, 255):
+            body = struct.pack("<BBBBBBHB", length, 0, 0, 0, 1, 1, number & 0xFFFF, number >> 16) + rng.bytes(length)
+            crc = mavlink.x25crc(body + bytes([kind.crc_extra])).crc
+            codec.decode(b"\xfd" + body + struct.pack("<H", crc))
+    assert codec.decoded == 4 * len(mavlink.mavlink_map)
+
+
+def test_gather_fills_datagrams_in_order_and_within_the_limit() -> None:
+    frames = [bytes([i]) * (20 + 5 * i) for i in range(40)]
+    datagrams = gather(frames)
+    assert b"".join(datagrams) == b"".join(frames)
+    assert all(len(datagram) <= DATAGRAM_LIMIT for datagram in datagrams)
+    assert len(datagrams) == 5
+    assert gather([]) == []
+
+
+def test_custom_modes() -> None:
+    assert px4.MODE_OFFBOARD == 6 << 16
+    assert px4.MODE_LAND == 0x06040000
+    assert px4.decode_custom_mode(px4.MODE_HOLD) == (4, 3)
+    assert px4.mode_name(px4.MODE_HOLD) == "AUTO.LOITER"
+    assert px4.mode_name(px4.MODE_OFFBOARD) == "OFFBOARD"
+    assert px4.mode_name(99 << 16) == "mode 99.0"
+
+
+@given(st.integers(-4_000_000, 2**31 - 1).filter(lambda i: not 0x7F800001 <= i <= 0x7FBFFFFF))
+def test_integer_parameters_travel_byte_wise(value: int) -> None:
+    kind = mavlink.MAV_PARAM_TYPE_INT32
+    codec = Codec(1, 1)
+    sent = mavlink.MAVLink_param_value_message(b"X", px4.parameter_to_wire(value, kind), kind, 1, 0)
+    [message] = codec.decode(codec.encode(sent))
+    assert px4.parameter_from_wire(message.param_value, message.param_type) == value
+
+
+def test_integer_four_is_not_sent_as_the_float_four() -> None:
+    wire = px4.parameter_to_wire(4, mavlink.MAV_PARAM_TYPE_INT32)
+    assert struct.unpack("<I", struct.pack("<f", wire))[0] == 4
+    assert px4.parameter_from_wire(4.0, mavlink.MAV_PARAM_TYPE_INT32) == 1082130432  # a C cast, as it would be read
+
+
+@pytest.mark.parametrize(
+    ("value", "kind"),
+    [(300, mavlink.MAV_PARAM_TYPE_UINT8), (-1, mavlink.MAV_PARAM_TYPE_UINT32), (1.5, mavlink.MAV_PARAM_TYPE_INT32),
+     (1, mavlink.MAV_PARAM_TYPE_REAL64), (0x7F800001, mavlink.MAV_PARAM_TYPE_INT32)],
+)  # fmt: skip
+def test_parameters_that_cannot_be_sent_are_refused(value: float, kind: int) -> None:
+    with pytest.raises(ValueError, match=r"parameter|float"):
+        px4.parameter_to_wire(value, kind)

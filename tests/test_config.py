@@ -1,0 +1,157 @@
+"""The system file: read strictly, every error with its line."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from gcs.config import UnusableFile, default_system_path, read_system
+from gcs.errors import UnusableInput
+
+TEXT = default_system_path().read_text()
+REPOSITORY = Path(__file__).parents[1]
+
+
+def changed(tmp_path: Path, old: str, new: str) -> Path:
+    assert old in TEXT
+    path = tmp_path / "system.toml"
+    path.write_text(TEXT.replace(old, new, 1))
+    return path
+
+
+def line_of(text: str) -> int:
+    return TEXT[: TEXT.index(text)].count("\n") + 1
+
+
+def test_default_is_the_file_in_missions() -> None:
+    """One file, not two that could drift apart: the packaged one is a link, which a wheel turns into a file."""
+    assert (REPOSITORY / "missions" / "system.toml").read_text() == TEXT
+    assert read_system() == read_system(REPOSITORY / "missions" / "system.toml")
+
+
+def test_parameters_are_the_papers() -> None:
+    parameters = read_system().parameters()
+    assert parameters.number_of_uavs == 4
+    assert parameters.m_0 == 3.1
+    corners = [[0.5, 0.5, -0.25], [0.5, -0.5, -0.25], [-0.5, -0.5, -0.25], [-0.5, 0.5, -0.25]]
+    np.testing.assert_allclose(parameters.p, corners)
+    np.testing.assert_allclose(parameters.l, 3.2)
+    np.testing.assert_allclose(parameters.hover_thrust, (3.1 / 4 + 0.7) * 9.81)
+
+
+@pytest.mark.parametrize("vehicles", [3, 5, 6, 8])
+def test_with_vehicles_keeps_the_spacing(vehicles: int) -> None:
+    parameters = read_system().with_vehicles(vehicles).parameters()
+    assert parameters.number_of_uavs == vehicles
+    np.testing.assert_allclose(np.linalg.norm(parameters.p - np.roll(parameters.p, 1, axis=0), axis=1), 1.0)
+
+
+def test_with_vehicles_refuses_what_cannot_hover() -> None:
+    with pytest.raises(UnusableInput, match="2 vehicles"):
+        read_system().with_vehicles(2)
+
+
+def test_explicit_layout(tmp_path: Path) -> None:
+    layout = "attachments = [[0.5, 0.0, -0.25], [-0.5, 0.5, -0.25], [-0.5, -0.5, -0.25]]"
+    config = read_system(changed(tmp_path, "vehicles = 4", f"vehicles = 3\n{layout}"))
+    np.testing.assert_allclose(config.parameters().p[0], [0.5, 0.0, -0.25])
+    assert config.with_vehicles(3) is config
+    with pytest.raises(UnusableInput, match="attachments"):
+        config.with_vehicles(4)
+
+
+def test_world_differs_from_belief(tmp_path: Path) -> None:
+    config = read_system(changed(tmp_path, "payload_mass_factor = 1.0", "payload_mass_factor = 1.1"))
+    assert config.parameters().m_0 == 3.1
+    assert config.true_parameters().m_0 == pytest.approx(3.41)
+
+
+def test_noise_may_be_off(tmp_path: Path) -> None:
+    assert read_system(changed(tmp_path, "position = 0.02", "position = 0")).sensors.position == 0.0
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "at", "reason"),
+    [
+        ("mass = 3.1 ", 'mass = "3.1" ', "mass = 3.1", "payload.mass: input should be a valid number"),
+        ("mass = 3.1 ", "mass = -3.1 ", "mass = 3.1", "payload.mass: input should be greater than 0"),
+        ("mass = 3.1 ", "mass = nan ", "mass = 3.1", "payload.mass: input should be a finite number"),
+        ("mass = 3.1 ", "mass = inf ", "mass = 3.1", "payload.mass: input should be a finite number"),
+        ("mass = 3.1 ", "mass = true ", "mass = 3.1", "payload.mass: input should be a valid number"),
+        ("mass = 3.1 ", "mass = 1979-05-27 ", "mass = 3.1", "payload.mass: input should be a valid number"),
+        ("mass = 3.1 ", "mass = ", "mass = 3.1", "not valid TOML"),
+        ("mass = 3.1 ", "mass = 3.1\nmass = 3.1 ", "inertia = [0.29", "not valid TOML"),
+        ("mass = 3.1 ", "# ", "[payload]", "payload.mass: missing key"),
+        ("mass = 3.1 ", "mass = 3.1\ncolour = 1 ", "inertia = [0.29", "payload.colour: unknown key"),
+        ("[world]", "[wind]\nspeed = 1.0\n[world]", "[world]", "wind: unknown key"),
+        ("size = [1.0, 1.0, 0.5]", "size = [1.0, 1.0]", "size = ", "payload.size[3]: missing value"),
+        ("vehicles = 4", "vehicles = 2", "vehicles = 4", "team.vehicles: "),
+        ("vehicles = 4", "vehicles = 4.5", "vehicles = 4", "team.vehicles: "),
+        ("vehicles = 4", "vehicles = 4\nattachments = [[0.5, 0.5, 0.0]]", "spacing = ", "1 points for 4 vehicles"),
+        ("thrust_max = 30.0", "thrust_max = 10.0", "[team]", "hover asks for"),
+        ("payload_mass_factor = 1.0", "payload_mass_factor = 9.0", "payload_mass_factor", "hover asks for"),
+        ("onboard = 250", "onboard = 240", "onboard =", "240 Hz does not divide physics"),
+        ("control = 20", "control = 100", "control = 20", "100 Hz is faster than telemetry"),
+        ("physics = 500", "physics = 250", "physics = 500", "rates.physics: "),
+        ("speed = 1.5 ", "speed = 4.0 ", "speed = 1.5", "motion.speed: 4.0 is more than speed_max"),
+        ("position = [60.0, 60.0, 80.0]", "position = [60.0, -1.0, 80.0]", "position = [60", "position[2]: "),
+        ("[controller.weights]", "[controller.weight]", "[controller.weights]", "controller.weight: unknown key"),
+    ],
+)
+def test_refused_with_line_and_key(tmp_path: Path, old: str, new: str, at: str, reason: str) -> None:
+    path = changed(tmp_path, old, new)
+    with pytest.raises(UnusableFile) as caught:
+        read_system(path)
+    matching = [r for r in caught.value.reasons if reason in r]
+    assert matching, caught.value.reasons
+    assert matching[0].startswith(f"{path}: line {line_of(at)}: ")
+    assert "\n" not in str(caught.value)
+
+
+def test_every_key_is_required(tmp_path: Path) -> None:
+    for number, line in enumerate(TEXT.splitlines()):
+        if "=" in line and not line.startswith("#"):
+            lines = TEXT.splitlines()
+            del lines[number]
+            path = tmp_path / "system.toml"
+            path.write_text("\n".join(lines))
+            with pytest.raises(UnusableFile, match=rf"\.{line.split()[0]}: missing key"):
+                read_system(path)
+
+
+def test_all_reasons_are_told(tmp_path: Path) -> None:
+    with pytest.raises(UnusableFile) as caught:
+        read_system(changed(tmp_path, "mass = 3.1 ", "mas = 3.1 "))
+    assert len(caught.value.reasons) == 2
+    assert str(caught.value).endswith("(and 1 more)")
+
+
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [
+        (b"", "the file is empty"),
+        (b"\xff\xfe[\x00", "not UTF-8 text"),
+        (b"a = " + b"[" * 100_000, "nested too deeply"),
+        (b"# " + b"x" * 9_000_000, "larger than"),
+    ],
+)
+def test_unreadable(tmp_path: Path, content: bytes, reason: str) -> None:
+    path = tmp_path / "system.toml"
+    path.write_bytes(content)
+    with pytest.raises(UnusableFile, match=reason):
+        read_system(path)
+
+
+def test_no_such_file(tmp_path: Path) -> None:
+    with pytest.raises(UnusableFile, match="cannot be read: No such file"):
+        read_system(tmp_path / "none.toml")
+    with pytest.raises(UnusableFile, match="is a folder"):
+        read_system(tmp_path)
+
+
+def test_frozen() -> None:
+    config = read_system()
+    with pytest.raises(AttributeError):
+        config.team.vehicles = 5  # type: ignore[misc]
+    assert hash(config) == hash(replace(config))

@@ -1,0 +1,362 @@
+"""Random courses: what is generated can be flown and repeats; a campaign keeps its results and goes on."""
+
+import dataclasses
+import json
+import math
+import threading
+
+import numpy as np
+import pytest
+
+from gcs.cli import main
+from gcs.courses import campaign as campaigns
+from gcs.courses.campaign import Campaign, CampaignOptions
+from gcs.courses.flights import COLUMNS, FlightPlan, Result, evaluate, fly_course
+from gcs.courses.generator import KINDS, RandomCourse, generate
+from gcs.courses.moving import MOTIONS, displacement, motion_for, top_speed
+from gcs.courses.outcome import draw_distribution, from_bad_end, outcome_table
+from gcs.courses.schedule import Schedule, arrival
+from gcs.errors import UnusableInput
+from gcs.flight.flight import SPOOL_UP
+from gcs.mission import Lissajous, Sphere, mover, read_mission, rest_position
+from gcs.record.run_folder import open_run_folder
+from gcs.record.tables import truth_columns
+from idc_controller.barrier.obstacles import PredictedObstacle, Shape
+from idc_controller.plan.detour import Formation, first_conflict
+
+FORMATION = Formation(1.0, 3.45, 0.25)
+
+
+def read(course, folder):
+    path = folder / f"{course.name}.toml"
+    path.write_text(course.text)
+    return read_mission(path)
+
+
+# Generator
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_same_seed_gives_the_same_course(kind):
+    assert generate(3, 17, kind) == generate(3, 17, kind)
+    assert generate(3, 17, kind).text != generate(3, 18, kind).text != generate(4, 18, kind).text
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("number", range(1, 4))
+def test_courses_are_what_they_are_to_be(kind, number, tmp_path):
+    mission = read(generate(11, number, kind), tmp_path)
+    schedule = Schedule(mission)
+    assert mission.obstacles and mission.limits.clearance == 0.3 and mission.limits.payload_tilt_deg == 6.0
+    way = np.linalg.norm(np.diff(schedule.positions, axis=0), axis=1).sum()
+    if isinstance(mission.reference, Lissajous):
+        assert kind in ("spheres", "moving")
+    else:
+        assert 15.0 < way < 30.0 + 6.0
+        assert 1.0 <= mission.reference.speed <= 1.5
+        assert np.linalg.norm(schedule.goal[:2]) > 12.0
+    standing = [o for o in mission.obstacles if o.motion is None]
+    moving = [o for o in mission.obstacles if o.motion is not None]
+    for end in (schedule.positions[0], schedule.goal):  # clear by 3 m
+        column = np.array([[*end[:2], z] for z in np.arange(schedule.goal[2], 0.0, 0.5)])
+        assert first_conflict(column, [standing_there(o) for o in standing], FORMATION, 3.0) is None
+    if kind != "moving":  # something is in the way
+        obstacles = [standing_there(o) for o in standing] + [moving_there(o, schedule) for o in moving]
+        assert first_conflict(schedule.positions, obstacles, FORMATION, 1.0) is not None
+    for obstacle in moving:
+        assert top_speed(obstacle.motion) <= 2.0 + 1e-3
+        assert first_conflict(schedule.positions, [moving_there(obstacle, schedule)], FORMATION, 0.0) is not None
+        late = np.arange(schedule.landing, schedule.landing + 20.0, 0.1)
+        places = np.array(obstacle.position) + displacement(obstacle.motion, late)
+        assert np.linalg.norm(places[:, :2] - schedule.goal[:2], axis=1).min() > 3.0
+
+
+def shape_of(obstacle):
+    if obstacle.shape == "sphere":
+        return Shape("sphere", obstacle.radius)
+    if obstacle.shape == "pole":
+        return Shape("pole", obstacle.radius, (0.0, 0.0, obstacle.height))
+    return Shape("wall", size=obstacle.size, yaw=math.radians(obstacle.yaw_deg))
+
+
+def standing_there(obstacle):
+    return PredictedObstacle(obstacle.name, shape_of(obstacle), np.array([rest_position(obstacle)]), np.zeros(1))
+
+
+def moving_there(obstacle, schedule):
+    places = np.array(obstacle.position) + displacement(obstacle.motion, schedule.times)
+    return PredictedObstacle(obstacle.name, shape_of(obstacle), places, np.zeros(len(places)))
+
+
+def test_kinds_of_obstacles_and_motions_all_occur(tmp_path):
+    found = set()
+    for number in range(1, 40):
+        for obstacle in read(generate(1, number, ("moving", "mixed")[number % 2]), tmp_path).obstacles:
+            found |= {obstacle.shape, obstacle.known, obstacle.motion.kind if obstacle.motion else None}
+    assert found == {"sphere", "pole", "wall", True, False, None, *MOTIONS}
+
+
+@pytest.mark.parametrize("kind", MOTIONS)
+@pytest.mark.parametrize("fastest", [0.5, 2.0, 5.0])
+def test_motions_are_as_fast_as_asked(kind, fastest):
+    random = np.random.default_rng(1)
+    speeds = [top_speed(motion_for(kind, random, 20.0, np.array([1.0, 0.0, 0.0]), fastest)) for _ in range(20)]
+    assert max(speeds) <= fastest + 1e-3
+    assert max(speeds) > 0.6 * fastest
+
+
+def test_harmonic_motion_is_fastest_when_the_payload_passes():
+    random = np.random.default_rng(2)
+    for _ in range(10):
+        motion = motion_for("harmonic", random, 17.0, np.array([1.0, 0.0, 0.0]), 2.0)
+        np.testing.assert_allclose(mover(motion)(17.0), 0.0, atol=1e-3)
+
+
+# Schedule
+
+
+@pytest.mark.parametrize("name", ["figure_eight_spheres.toml", "pole_course.toml"])
+def test_the_missions_own_spheres_confront_the_payload(name, missions):
+    """Each swinging sphere is at its mean position when the payload passes it, undisturbed."""
+    mission = read_mission(missions / name)
+    schedule = Schedule(mission)
+    [sphere] = [o for o in mission.obstacles if o.motion is not None]
+    assert isinstance(sphere, Sphere) and not sphere.known
+    distance = np.linalg.norm(schedule.positions - np.array(sphere.position), axis=1)
+    near = [
+        i for i in range(1, len(distance) - 1)
+        if distance[i] < 0.1 and distance[i - 1] > distance[i] <= distance[i + 1]
+    ]  # fmt: skip
+    assert near
+    for i in near:
+        np.testing.assert_allclose(mover(sphere.motion)(schedule.times[i]), 0.0, atol=0.1)
+
+
+@pytest.fixture
+def missions():
+    from pathlib import Path
+
+    return Path(__file__).parents[1] / "missions"
+
+
+def test_arrival_is_for_good():
+    times = np.arange(6.0)
+    north = np.array([0.0, 5.0, 4.9, 7.0, 5.2, 5.0])
+    positions = np.column_stack([north, np.zeros(6), np.full(6, -4.0)])
+    goal = np.array([5.0, 0.0, -9.0])
+    assert arrival(times, positions, goal, 0.5) == 4.0
+    assert arrival(times[:4], positions[:4], goal, 0.5) is None
+    assert arrival(times[:0], positions[:0], goal, 0.5) is None
+
+
+# Flights and their results
+
+
+def plan_for(folder, course):
+    mission = folder / "missions" / f"{course.name}.toml"
+    mission.parent.mkdir(parents=True, exist_ok=True)
+    mission.write_text(course.text)
+    return FlightPlan(course, mission, folder / "flights" / course.name, ("--controller", "mpc"))
+
+
+SUMMARY = {
+    "completed": True, "outcome": "completed", "contacts": 0, "clearance_min_m": 0.5, "uav_separation_min_m": 0.9,
+    "payload_tilt_max_deg": {"roll": 1.0, "pitch": 2.5, "yaw": None}, "duration_s": 60.0, "real_time_factor": 5.0,
+    "step_time_ms": {"p50": 2.0, "p99": 5.0, "max": 6.0}, "solver": {"infeasible_steps": 3},
+}  # fmt: skip
+
+
+def record(plan, late=0.0, stop_short=False):
+    """A run folder in which the payload flew the nominal course, so much later."""
+    schedule = Schedule(read_mission(plan.mission))
+    open_run_folder("", plan.run_dir)
+    columns = truth_columns(3)
+    spool_up = 1.2  # s after the records begin
+    rows = []
+    for time in np.arange(0.0, schedule.landing + 10.0 + late, 0.02):
+        on_course = time - spool_up - late - SPOOL_UP + schedule.start
+        position = schedule.position(np.array([on_course]))[0]
+        if stop_short:
+            position = position * 0.8
+        values = dict.fromkeys(columns, 0.0) | dict(zip(columns[1:4], position, strict=True)) | {"time_s": time}
+        values |= {name: 1.0 for name in columns if name.endswith("_qw")}
+        values |= {f"uav{i}_thrust_n": 14.0 for i in (1, 2, 3) if time >= spool_up}
+        rows.append(",".join(f"{values[name]:.6f}" for name in columns))
+    (plan.run_dir / "truth.csv").write_text("\n".join([",".join(columns), *rows]) + "\n")
+
+
+def test_a_flight_as_planned_is_passed(tmp_path):
+    plan = plan_for(tmp_path, generate(1, 1, "poles"))
+    record(plan)
+    result = evaluate(plan, 0, SUMMARY, "", 12.3)
+    assert result.passed and result.failures == "" and result.reason == ""
+    assert result.delay_s == pytest.approx(0.0, abs=0.05)
+    assert result.goal_error_m < 0.01
+    assert (result.tilt_max_deg, result.clearance_min_m, result.contacts) == (2.5, 0.5, 0)
+    assert result.replay == f"gcs fly {plan.mission} --controller mpc"
+
+
+def test_delay_and_arrival(tmp_path):
+    plan = plan_for(tmp_path, generate(1, 1, "poles"))
+    record(plan, late=3.0)
+    assert evaluate(plan, 0, SUMMARY, "", 1.0).delay_s == pytest.approx(3.0, abs=0.05)
+    short = plan_for(tmp_path, generate(1, 2, "poles"))
+    record(short, stop_short=True)
+    result = evaluate(short, 0, SUMMARY, "", 1.0)
+    assert (result.passed, result.failures, result.delay_s) == (False, "arrival", None)
+    assert result.goal_error_m > 2.0
+
+
+@pytest.mark.parametrize(
+    ("figures", "failures"),
+    [
+        (
+            {"contacts": 2, "outcome": "collided", "completed": False, "clearance_min_m": 0.0},
+            "collided contact clearance",
+        ),
+        ({"clearance_min_m": 0.29}, "clearance"),
+        ({"payload_tilt_max_deg": {"roll": 6.1}}, "tilt"),
+        ({"uav_separation_min_m": 0.74}, "separation"),
+        ({"completed": False, "outcome": "aborted"}, "aborted"),
+    ],
+)
+def test_what_fails_a_flight(tmp_path, figures, failures):
+    plan = plan_for(tmp_path, generate(1, 1, "poles"))
+    record(plan)
+    said = "   3.65 s  climb\nflight broken off: a closed wall\n  9.00 s  ended\n"
+    result = evaluate(plan, 1, SUMMARY | figures, said, 1.0)
+    assert (result.passed, result.failures, result.reason) == (False, failures, "a closed wall")
+
+
+def test_a_flight_that_could_not_start_fails_with_its_reason(tmp_path, monkeypatch):
+    course = generate(1, 1, "poles")
+    plan = plan_for(tmp_path, course)
+    monkeypatch.setenv("PATH", "")
+    broken = dataclasses.replace(plan, options=("--controller", "none"))
+    result = fly_course(broken, threading.Event())
+    assert not result.passed and result.exit_code == 2
+    assert "invalid choice" in result.reason
+
+
+def test_a_flight_is_ended_when_asked(tmp_path):
+    plan = plan_for(tmp_path, generate(1, 1, "poles"))
+    stop = threading.Event()
+    stop.set()
+    assert fly_course(plan, stop) is None
+
+
+# Campaign
+
+
+def result_of(course, passed=True, **figures):
+    values = dict.fromkeys(COLUMNS) | {
+        "number": course.number, "name": course.name, "kind": course.kind, "passed": passed,
+        "failures": "" if passed else "clearance", "outcome": "completed", "reason": "", "exit_code": 0,
+        "clearance_min_m": 0.4 if passed else 0.1, "tilt_max_deg": 2.0, "uav_separation_min_m": 0.9, "contacts": 0,
+        "arrival_s": 30.0, "nominal_arrival_s": 28.0, "delay_s": 2.0, "wall_s": 1.0,
+        "replay": f"gcs fly {course.name}.toml",
+    }  # fmt: skip
+    return Result(**(values | figures))
+
+
+@pytest.fixture
+def flown(monkeypatch):
+    """Courses are not flown: their numbers are noted, and every fourth fails."""
+    numbers = []
+
+    def fly(plan, stop):
+        numbers.append(plan.course.number)
+        plan.run_dir.mkdir(parents=True)
+        return result_of(plan.course, passed=plan.course.number % 4 != 0)
+
+    monkeypatch.setattr(campaigns, "fly_course", fly)
+    return numbers
+
+
+def options(folder, **changes):
+    return CampaignOptions(**({"count": 6, "seed": 5, "out": folder / "out", "kinds": ("poles", "moving")} | changes))
+
+
+def test_a_campaign_flies_every_course_once(tmp_path, flown):
+    campaign = Campaign(options(tmp_path, jobs=2))
+    started, ended = [], []
+    campaign.fly(started.append, ended.append)
+    assert sorted(flown) == [1, 2, 3, 4, 5, 6]
+    assert len(started) == len(ended) == 6
+    names = sorted(path.name for path in (tmp_path / "out" / "missions").iterdir())
+    assert names == [f"{n:04d}-{kind}.toml" for n, kind in enumerate(["poles", "moving"] * 3, start=1)]
+    table, content = campaign.write_results()
+    lines = table.read_text().splitlines()
+    assert lines[0] == ",".join(COLUMNS) and len(lines) == 7
+    assert [row["number"] for row in json.loads(content.read_text())] == [1, 2, 3, 4, 5, 6]
+    # Of those that passed only the results are kept.
+    assert [path.name for path in (tmp_path / "out" / "flights").iterdir()] == ["0004-moving"]
+
+
+def test_a_campaign_goes_on_where_it_was_cut_off(tmp_path, flown, monkeypatch):
+    def interrupted(result):
+        if result.number == 3:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        Campaign(options(tmp_path, jobs=1)).fly(lambda name: None, interrupted)
+    before = list(flown)
+    assert before[:3] == [1, 2, 3] and len(before) < 6
+    again = Campaign(options(tmp_path, jobs=1, count=8))
+    assert sorted(r.number for r in again.results) == [1, 2, 3]
+    again.fly(lambda name: None, lambda result: None)
+    assert sorted(set(flown)) == list(range(1, 9)) and flown.count(1) == flown.count(3) == 1
+    assert len(again.results) == 8
+
+
+def test_a_course_that_has_changed_is_flown_again(tmp_path, flown):
+    Campaign(options(tmp_path)).fly(lambda name: None, lambda result: None)
+    (tmp_path / "out" / "missions" / "0002-moving.toml").write_text("another")
+    assert [r.number for r in Campaign(options(tmp_path)).results].count(2) == 0
+
+
+@pytest.mark.parametrize("change", [{"seed": 6}, {"kinds": ("poles",)}, {"controller": "mpc"}, {"fastest": 3.0}])
+def test_a_folder_of_another_campaign_is_refused(tmp_path, change, flown):
+    Campaign(options(tmp_path, count=1))
+    with pytest.raises(UnusableInput, match="was begun with"):
+        Campaign(options(tmp_path, count=1, **change))
+
+
+def test_a_folder_of_something_else_is_refused(tmp_path):
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "thesis.tex").touch()
+    with pytest.raises(UnusableInput, match="neither empty nor the folder of a campaign"):
+        Campaign(options(tmp_path))
+
+
+def test_the_command(tmp_path, flown, capsys):
+    out = str(tmp_path / "out")
+    assert main(["courses", "--count", "3", "--kinds", "poles", "--out", out]) == 0
+    said = capsys.readouterr().out
+    assert "3 of 3 courses passed" in said and "0003-poles" in said
+    assert main(["courses", "--count", "4", "--kinds", "poles", "--out", out]) == 1
+    said = capsys.readouterr().out
+    assert "3 of 4 courses passed" in said and "gcs fly 0004-poles.toml" in said
+    assert (tmp_path / "out" / "distribution.png").stat().st_size > 10_000
+    assert main(["courses", "--count", "4", "--kinds", "walls", "--out", out]) == 2
+    assert "was begun with kinds" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("wrong", [["--count", "0"], ["--kinds", "lakes"], ["--jobs", "x"], ["--obstacle-speed", "0"]])
+def test_arguments_that_mean_nothing(wrong, capsys):
+    with pytest.raises(SystemExit) as exit_:
+        main(["courses", *wrong])
+    assert exit_.value.code == 2
+
+
+def test_distribution_counts_from_the_bad_end():
+    values = np.arange(101.0)
+    assert from_bad_end(values, high_is_bad=False) == [0.0, 1.0, 5.0, 50.0]
+    assert from_bad_end(values, high_is_bad=True) == [100.0, 99.0, 95.0, 50.0]
+
+
+def test_nothing_known_is_drawn_and_told(tmp_path):
+    course = RandomCourse(1, "poles", "0001-poles", "")
+    result = result_of(course, False, clearance_min_m=None, tilt_max_deg=None, uav_separation_min_m=None, delay_s=None)
+    assert draw_distribution([result], tmp_path).exists()
+    outcome_table([result], tmp_path)

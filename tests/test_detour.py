@@ -1,0 +1,248 @@
+"""Ways round obstacles for the whole formation: geometry against an independent distance library."""
+
+import math
+from itertools import pairwise
+
+import coal
+import numpy as np
+import pytest
+import shapely
+
+from idc_controller.barrier.obstacles import PredictedObstacle, Shape
+from idc_controller.errors import TrajectoryError
+from idc_controller.plan.detour import Formation, Room, find_detour, first_conflict
+
+FORMATION = Formation(radius=1.1, above=3.75, below=0.25)
+MARGIN = 0.5
+START, GOAL = (0.0, 0.0, -5.0), (20.0, 0.0, -5.0)
+HIGH = 15.0  # m, of what is not to be flown over
+
+
+def pole(north, east, radius=0.3, height=HIGH):
+    return Shape("pole", radius, (0.0, 0.0, height)), (north, east, -height / 2.0)
+
+
+def wall(north, east, size_x, size_y, height=HIGH, yaw=0.0):
+    return Shape("wall", size=(size_x, size_y, height), yaw=yaw), (north, east, -height / 2.0)
+
+
+def sphere(*position, radius=0.5):
+    return Shape("sphere", radius), position
+
+
+def way(obstacles, start=START, goal=GOAL, margin=MARGIN, highest=12.0, **others):
+    detour = find_detour(obstacles, start, goal, FORMATION, margin, highest=highest, **others)
+    if detour.waypoints is not None:
+        assert detour.reason == ""
+        np.testing.assert_allclose(detour.waypoints[[0, -1]], [start, goal])
+        assert clearance_by_coal(obstacles, detour.waypoints) >= margin - 2e-3
+    return detour
+
+
+def clearance_by_coal(obstacles, waypoints, spacing=0.05):
+    """Least distance on the way, sampled, by a library that knows nothing of closed forms."""
+    cylinder = coal.Cylinder(FORMATION.radius, FORMATION.above + FORMATION.below)
+    least = math.inf
+    for a, b in pairwise(waypoints):
+        for fraction in np.linspace(0.0, 1.0, math.ceil(np.linalg.norm(b - a) / spacing) + 1):
+            centre = a + fraction * (b - a) + [0.0, 0.0, (FORMATION.below - FORMATION.above) / 2.0]
+            at = coal.Transform3s(np.eye(3), centre)
+            for shape, position in obstacles:
+                there = coal.Transform3s(shape.rotation, np.array(position))
+                result = coal.DistanceResult()
+                least = min(least, coal.distance(cylinder, at, shape.geometry(), there, coal.DistanceRequest(), result))
+    return least
+
+
+def side(detour):
+    """East of the point of the way that is farthest from the straight way."""
+    return detour.waypoints[np.argmax(np.abs(detour.waypoints[:, 1])), 1]
+
+
+def test_nothing_in_the_way_is_the_straight_way():
+    assert way([pole(10.0, 6.0)]).waypoints.tolist() == [list(START), list(GOAL)]
+
+
+def test_over_a_low_wall_that_is_wide():
+    detour = way([wall(10.0, 0.0, 0.3, 30.0, height=6.0)])
+    assert detour.waypoints is not None
+    top = -detour.waypoints[:, 2].min()
+    assert 6.0 + FORMATION.below + MARGIN <= top + 1e-6 <= 7.5
+    assert np.abs(detour.waypoints[:, 1]).max() < 0.1
+    assert len(detour.waypoints) <= 4
+
+
+def test_round_a_high_wall_on_its_shorter_side():
+    left, right = way([wall(10.0, 2.0, 0.3, 8.0)]), way([wall(10.0, -2.0, 0.3, 8.0)])
+    assert side(left) < -2.0 - 1.1 - MARGIN + 1e-6 and side(right) > 2.0 + 1.1 + MARGIN - 1e-6
+    assert left.length == pytest.approx(right.length, rel=0.02)
+    shortest = 2.0 * math.hypot(10.0, 2.0 + 1.1 + MARGIN)
+    assert shortest - 0.05 < left.length < 1.03 * shortest + 0.3
+
+
+def test_under_a_sphere_far_above_and_over_one_below():
+    """Only the height band of the formation matters: payload's bottom to discs' top."""
+    assert len(way([sphere(10.0, 0.0, -5.0 - 3.75 - 0.5 - 0.51)]).waypoints) == 2
+    assert len(way([sphere(10.0, 0.0, -5.0 + 0.25 + 0.5 + 0.51)]).waypoints) == 2
+    assert len(way([sphere(10.0, 0.0, -5.0 - 3.75 - 0.5 - 0.45)]).waypoints) > 2
+
+
+def test_between_two_poles_with_a_wide_gap():
+    half = 0.3 + 1.1 + MARGIN + 0.2
+    closed = wall(10.0, 3.0 - half - 6.5, 0.3, 12.0)
+    detour = way([pole(10.0, 3.0 - half), pole(10.0, 3.0 + half), closed])
+    at_poles = np.interp(10.0, detour.waypoints[:, 0], detour.waypoints[:, 1])
+    assert 3.0 - 0.21 < at_poles < 3.0 + 0.21
+
+
+def test_not_between_two_poles_with_a_narrow_gap():
+    half = 0.3 + 1.1 + MARGIN - 0.1
+    detour = way([pole(10.0, -half), pole(10.0, half)])
+    assert abs(np.interp(10.0, detour.waypoints[:, 0], detour.waypoints[:, 1])) > half
+
+
+def test_a_gap_that_the_coarse_grid_misses():
+    """0.34 m wider than it must be, in a wall that goes from boundary to boundary."""
+    half = 1.1 + MARGIN + 0.17
+    walls = [wall(10.0, 0.75 - half - 10.0, 0.3, 20.0), wall(10.0, 0.75 + half + 10.0, 0.3, 20.0)]
+    boundary = [(-10.0, -8.0), (30.0, -8.0), (30.0, 8.0), (-10.0, 8.0)]
+    detour = way(walls, boundary=boundary)
+    assert detour.waypoints is not None
+    assert np.interp(10.0, detour.waypoints[:, 0], detour.waypoints[:, 1]) == pytest.approx(0.75, abs=0.17)
+    narrow = [wall(10.0, 0.75 - 1.59 - 10.0, 0.3, 20.0), wall(10.0, 0.75 + 1.59 + 10.0, 0.3, 20.0)]
+    assert "too narrow" in way(narrow, boundary=boundary).reason
+
+
+def test_a_closed_box_cannot_be_reached():
+    box = [wall(16.0, 0.0, 0.3, 8.0), wall(24.0, 0.0, 0.3, 8.0), wall(20.0, 4.0, 8.0, 0.3), wall(20.0, -4.0, 8.0, 0.3)]
+    detour = way(box)
+    assert detour.waypoints is None and detour.length == math.inf
+    assert detour.reason == "every way from start to goal is closed or too narrow for the formation"
+    # From above it can.
+    assert way(box, highest=20.0).waypoints is not None
+
+
+@pytest.mark.parametrize(
+    ("obstacle", "others", "reason"),
+    [
+        (sphere(20.0, 0.5, -5.0), {}, "the formation at the goal would meet the ball"),
+        (sphere(20.0, 1.9, -5.0), {}, "would be 0.30 m from the ball, less than the margin of 0.5 m"),
+        (sphere(20.0, 2.2, -5.0), {"growth": [0.2]}, "would be 0.40 m from the ball"),
+        (sphere(9.0, 9.0, -5.0), {"goal": (20.0, 0.0, -13.0)}, "the goal, 13.00 m high, is not within 0.5 to 12 m"),
+        (sphere(9.0, 9.0, -5.0), {"boundary": [(-9, -9), (21, -9), (21, 9), (-9, 9)]}, "goal is outside the boundary"),
+    ],
+)
+def test_a_goal_that_cannot_be(obstacle, others, reason):
+    detour = find_detour([obstacle], **({"start": START, "goal": GOAL, "formation": FORMATION, "margin": MARGIN,
+                                          "highest": 12.0, "names": ["the ball"]} | others))  # fmt: skip
+    assert detour.waypoints is None
+    assert reason in detour.reason
+
+
+def test_boundary_is_kept_by_the_whole_formation():
+    boundary = [(-5.0, -8.0), (25.0, -8.0), (25.0, 4.0), (-5.0, 4.0)]
+    free = way([wall(10.0, 0.5, 0.3, 5.0)], goal=(20.0, 2.0, -5.0))
+    assert side(free) > 0.0
+    kept = way([wall(10.0, 0.5, 0.3, 5.0)], goal=(20.0, 2.0, -5.0), boundary=boundary)
+    assert kept.waypoints[:, 1].min() < -3.0
+    hull = shapely.LineString(kept.waypoints[:, :2]).buffer(FORMATION.radius)
+    assert shapely.Polygon(boundary).buffer(1e-6).contains(hull)
+
+
+def test_altitudes_are_kept():
+    low_wall = [wall(10.0, 0.0, 0.3, 12.0, height=6.0)]
+    assert -way(low_wall).waypoints[:, 2].min() > 6.0
+    round_it = way(low_wall, highest=6.5)
+    assert np.allclose(round_it.waypoints[:, 2].min(), -5.0, atol=1.5)
+    assert -round_it.waypoints[:, 2].min() <= 6.5
+    assert abs(side(round_it)) > 6.0
+
+
+def test_a_start_too_near_is_left_without_coming_nearer():
+    ball = sphere(1.9, 0.0, -5.0)
+    detour = find_detour([ball], START, GOAL, FORMATION, MARGIN, highest=12.0)
+    assert detour.waypoints is not None
+    room = Room([ball], FORMATION, MARGIN, 0.5, 12.0)
+    at_start = room.clearance(np.array([START]))[0, 0]
+    assert at_start == pytest.approx(0.3)
+    first, rest = detour.waypoints[:2], detour.waypoints[1:]
+    assert clearance_by_coal([ball], first) >= at_start - 2e-3
+    assert clearance_by_coal([ball], rest) >= MARGIN - 2e-3
+
+
+def test_a_moving_obstacle_counts_with_its_growth():
+    ball = sphere(10.0, 2.0, -5.0)
+    assert len(find_detour([ball], START, GOAL, FORMATION, 0.3).waypoints) == 2
+    grown = find_detour([ball], START, GOAL, FORMATION, 0.3, growth=[0.5])
+    assert clearance_by_coal([ball], grown.waypoints) >= 0.8 - 2e-3
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_random_courses_keep_the_margin_and_repeat(seed):
+    rng = np.random.default_rng(seed)
+    obstacles = []
+    for i in range(12):
+        north, east, height = rng.uniform([3.5, -8.0, 3.0], [16.5, 8.0, 9.0])
+        kind = (sphere(north, east, -height), pole(north, east), wall(north, east, 0.3, 3.0, height, rng.uniform(0, 3)))
+        obstacles.append(kind[i % 3])
+    detour = way(obstacles, highest=14.0)
+    assert detour.waypoints is not None
+    assert len(detour.waypoints) <= 9
+    assert detour.length < 32.0
+    again = way(obstacles, highest=14.0)
+    assert np.array_equal(detour.waypoints, again.waypoints)
+
+
+def test_clearance_is_the_library_s():
+    rng = np.random.default_rng(5)
+    shapes = [Shape("sphere", 0.7), Shape("pole", 0.4, (0.0, 0.0, 5.0)), Shape("wall", size=(3.0, 0.5, 2.0), yaw=0.7)]
+    obstacles = [(shape, rng.uniform(-3.0, 3.0, 3)) for shape in shapes]
+    places = rng.uniform(-9.0, 9.0, (200, 3))
+    found = Room(obstacles, FORMATION, 0.0, -100.0, 100.0).clearance(places)
+    for place, row in zip(places, found, strict=True):
+        for obstacle, distance in zip(obstacles, row, strict=True):
+            expected = clearance_by_coal([obstacle], np.array([place, place]))
+            assert (distance if distance > 0 else 0.0) == pytest.approx(max(expected, 0.0), abs=1e-3)
+
+
+def test_first_conflict():
+    times = np.linspace(0.0, 6.0, 61)
+    positions = np.column_stack([2.0 * times, np.zeros(61), np.full(61, -5.0)])
+    shape = Shape("sphere", 0.5)
+    standing = PredictedObstacle("standing", shape, np.array([[9.0, 0.0, -5.0]]), np.zeros(1))
+    # 9 - 0.5 - 1.1 - 0.3 = 7.1 m: passed between samples 35 (7.0) and 36 (7.2).
+    assert first_conflict(positions, [standing], FORMATION, 0.3) == 36
+    assert first_conflict(positions, [], FORMATION, 0.3) is None
+    assert first_conflict(positions, [standing], FORMATION, 0.0) == 38
+    grown = PredictedObstacle("grown", shape, np.tile([9.0, 0.0, -5.0], (61, 1)), np.linspace(0.0, 1.0, 61))
+    assert first_conflict(positions, [grown], FORMATION, 0.3) == 33
+    gone = np.column_stack([9.0 + 2.0 * times, np.zeros(61), np.full(61, -5.0)])
+    assert first_conflict(positions, [PredictedObstacle("gone", shape, gone, np.zeros(61))], FORMATION, 0.3) is None
+
+
+def test_formation_of_parameters(parameters):
+    formation = Formation.of(parameters)
+    assert [formation.radius, formation.above, formation.below] == pytest.approx([math.sqrt(0.5) + 0.3, 3.45, 0.25])
+    assert Formation.of(parameters, 0.2).radius == pytest.approx(formation.radius + 3.2 * math.sin(0.2))
+
+
+@pytest.fixture
+def parameters():
+    from gcs.config import read_system
+    from gcs.flight.stack import linear_model
+
+    return linear_model(read_system(None)).parameters
+
+
+def test_what_has_no_meaning_is_refused():
+    for wrong in (
+        lambda: Formation(-1.0, 1.0, 1.0),
+        lambda: way([], margin=-0.1),
+        lambda: way([], highest=0.2),
+        lambda: way([], goal=(0.0, math.nan, 0.0)),
+        lambda: way([(Shape("cone", 1.0), (0.0, 0.0, 0.0))]),
+        lambda: way([sphere(1.0, math.inf, 0.0)]),
+        lambda: way([pole(10.0, 0.0)], region=((0.0, 0.0, -99.0), (9.0, 9.0, -98.0))),
+    ):
+        with pytest.raises(TrajectoryError):
+            wrong()

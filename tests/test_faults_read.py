@@ -1,0 +1,158 @@
+"""Faults in mission files: strict reading, telling, listing."""
+
+import dataclasses
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from gcs.cli import main
+from gcs.errors import UnusableInput
+from gcs.faults import KINDS, read_settings
+from gcs.faults.listing import kinds_markdown, parameters
+from gcs.faults.record import notes_of
+from gcs.fly import FlyOptions, prepare
+from gcs.mission import Fault, describe, read_mission
+
+ROOT = Path(__file__).parents[1]
+BEGIN = """
+[mission]
+name = "faulty"
+
+[reference]
+kind = "waypoints"
+points = [[1, 0, -3]]
+
+"""
+GOOD = """[[fault]]
+kind = "noise"
+start = 2.0
+duration = 1.0
+every = 3.0
+times = 2
+vehicles = [1, 3]
+channel = "velocity"
+axes = ["x", "z"]
+factor = 5
+"""
+
+
+def mission_of(tmp_path, faults):
+    path = tmp_path / "mission.toml"
+    path.write_text(BEGIN + faults)
+    return path
+
+
+def fault(kind, *lines):
+    return "\n".join(["[[fault]]", f'kind = "{kind}"', "start = 1.0", *lines]) + "\n"
+
+
+def test_a_fault_is_read_and_told(tmp_path):
+    mission = read_mission(mission_of(tmp_path, GOOD + fault("latency", "delay = 0.06")))
+    noise, latency = mission.faults
+    assert (noise.every, noise.times, noise.vehicles) == (3.0, 2, (1, 3))
+    assert read_settings(noise.kind, noise.settings).factor == 5
+    assert read_settings(latency.kind, latency.settings).delay == 0.06
+    console = Console(width=200, file=(tmp_path / "out").open("w"), highlight=False)
+    console.print(describe(mission))
+    console.file.close()
+    text = (tmp_path / "out").read_text()
+    assert "fault noise from 2 s for 1 s, every 3 s 2 times, vehicles 1, 3: channel = velocity" in text
+    assert "fault latency from 1 s to the end, all vehicles, both directions: delay = 0.06" in text
+
+
+@pytest.mark.parametrize(
+    ("faults", "at", "reason"),
+    [
+        (fault("packet_los"), "kind", "fault[1].kind: there is no kind 'packet_los': did you mean 'packet_loss'?"),
+        (fault("xyz"), "kind", "fault[1].kind: there is no kind 'xyz': gcs faults --kinds lists them"),
+        (fault("packet_loss"), "[[fault]]", "fault[1].probability: missing key"),
+        (fault("packet_loss", "probability = 1.1"), "probability", "fault[1].probability: input should be less than"),
+        (fault("packet_loss", "probability = nan"), "probability", "fault[1].probability: "),
+        (fault("packet_loss", 'probability = "much"'), "probability", "fault[1].probability: "),
+        (fault("packet_loss", "probability = 0.1", "prob = 0.1"), "prob =", "fault[1].prob: unknown key"),
+        (fault("bias", 'channel = "posture"', "amount = 1"), "channel", "fault[1].channel: "),
+        (fault("bias", 'channel = "rates"', 'axes = ["w"]', "amount = 1"), "axes", "fault[1].axes[1]: "),
+        (fault("bias", 'channel = "rates"', "axes = []", "amount = 1"), "axes", "fault[1].axes: "),
+        (fault("partition", "vehicles = [5]"), "vehicles", "fault[1].vehicles: there is no vehicle 5: the team has 4"),
+        (fault("partition", "vehicles = [0]"), "vehicles", "fault[1].vehicles[1]: "),
+        (fault("partition", "vehicles = [1, 1]"), "vehicles", "fault[1].vehicles: names one twice"),
+        (fault("partition", "vehicles = []"), "vehicles", "fault[1].vehicles: names none"),
+        (fault("partition", 'direction = "up"'), "direction", "fault[1].direction: "),
+        (fault("stuck", 'channel = "rates"', 'direction = "both"'), "direction", "fault[1].direction: stuck has none"),
+        (fault("wind", "velocity = [1, 0, 0]", "vehicles = [1]"), "vehicles", "fault[1].vehicles: wind is not of"),
+        (fault("wind", "velocity = [1, 0]"), "velocity", "fault[1].velocity"),
+        (fault("wind", "velocity = [1000, 0, 0]"), "velocity", "fault[1].velocity: more than 100 m/s"),
+        (fault("payload_mass", "change = -3.05"), "change", "fault[1].change: 0.05 kg would be left"),
+        (fault("payload_mass", "change = 50"), "change", "fault[1].change: "),
+        (fault("stall"), "[[fault]]", "fault[1].duration: stall needs one"),
+        (fault("partition", "every = 5.0"), "every", "fault[1].every: needs a duration"),
+        (fault("partition", "every = 5.0", "duration = 5.0"), "every", "fault[1].every: 5 s is not more than"),
+        (fault("partition", "times = 5", "duration = 5.0"), "times", "fault[1].times: goes with `every`"),
+        (fault("swapped_vehicles", "other = 2"), "[[fault]]", "fault[1].vehicles: name the one vehicle"),
+        (fault("swapped_vehicles", "other = 2", "vehicles = [2]"), "other", "fault[1].other: is the same vehicle"),
+        (fault("swapped_vehicles", "other = 9", "vehicles = [2]"), "other", "fault[1].other: there is no vehicle 9"),
+        (
+            fault("bias", 'channel = "payload_position"', "amount = 1", "at_source = true", "vehicles = [1]"),
+            "vehicles",
+            "fault[1].vehicles: the payload has one navigation unit",
+        ),
+        (GOOD + fault("stall", "duration = 1", "probability = 1"), "probability", "fault[2].probability: unknown key"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_is_refused_with_its_line(tmp_path, capsys, faults, at, reason):
+    path = mission_of(tmp_path, faults)
+    line = BEGIN.count("\n") + faults[: faults.rindex(at)].count("\n") + 1
+    assert main(["check", str(path)]) == 2
+    said = capsys.readouterr().err
+    assert f"{path}: line {line}: {reason.split(': ')[0]}" in said
+    assert reason in said
+    assert main(["fly", str(path), "--run-dir", str(tmp_path / "run")]) == 2
+    assert not (tmp_path / "run").exists()
+
+
+def test_faults_are_checked_again_for_the_team_that_flies(tmp_path):
+    path = mission_of(tmp_path, fault("partition", "vehicles = [4]"))
+    assert prepare(FlyOptions(path)).faults
+    with pytest.raises(UnusableInput, match="there is no vehicle 4: the team has 3"):
+        prepare(FlyOptions(path, vehicles=3))
+
+
+def test_faults_from_python_are_read_as_strictly():
+    with pytest.raises(UnusableInput, match="probability"):
+        read_settings("packet_loss", {"probability": 2.0})
+    with pytest.raises(UnusableInput, match="there is no kind 'x'"):
+        read_settings("x", {})
+    assert read_settings("packet_loss", {"probability": 1}).probability == 1.0
+    assert dataclasses.asdict(Fault("stall", 1.0))["settings"] == {}
+
+
+def test_every_kind_is_listed_with_its_parameters(capsys):
+    assert main(["faults", "--kinds"]) == 0
+    said = capsys.readouterr().out
+    for kind in KINDS.values():
+        assert kind.name in said
+        for parameter in parameters(kind):
+            assert parameter.name in said
+            assert parameter.description, (kind.name, parameter.name)
+    assert main(["faults"]) == 2
+    assert main(["faults", "campaign.toml"]) == 2
+    assert "not available yet" in capsys.readouterr().err
+
+
+def test_the_documentation_holds_the_present_table():
+    assert kinds_markdown() in (ROOT / "docs" / "faults.md").read_text(encoding="utf-8")
+
+
+def test_what_never_came_is_said():
+    entry = {
+        "number": 1, "kind": "stall", "line": 7, "start": 9.0, "occurrences": 0, "seen": 0, "disturbed": 0,
+    }  # fmt: skip
+    (note,) = notes_of({"take_off_s": 1.0, "end_s": 6.0, "faults": [entry]})
+    assert note.startswith("fault 1, stall (line 7 of the mission), never came: it was to start 9 s after take-off")
+    assert note.endswith("the end was at 5.0 s")
+    (note,) = notes_of({"take_off_s": None, "end_s": 6.0, "faults": [entry]})
+    assert "nothing took off" in note
+    (note,) = notes_of({"take_off_s": 1.0, "end_s": 16.0, "faults": [entry | {"occurrences": 1}]})
+    assert "disturbed nothing" in note
+    assert not notes_of({"take_off_s": 1.0, "end_s": 16.0, "faults": [entry | {"occurrences": 1, "disturbed": 3}]})

@@ -1,0 +1,216 @@
+"""Faults in a whole swarm: on the wire, in the world, on record."""
+
+import csv
+import json
+import math
+import os
+import signal
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from scripted_ground import ScriptedGround, exchange
+
+from gcs.config import read_system
+from gcs.faults.record import fault_notes
+from gcs.mission import Fault
+from vehicle_sim.faults import FaultPassage, record_faults
+from vehicle_sim.faults.active import ActiveFault
+from vehicle_sim.faults.world import Wind, WorldFaults
+from vehicle_sim.passage import Passage
+from vehicle_sim.swarm import Swarm
+from vehicle_sim.truth_log import TruthLog
+from vehicle_sim.world import World
+
+SYSTEM = read_system()
+
+
+def fault(kind, start=0.0, duration=None, vehicles=None, direction=None, **settings):
+    return Fault(kind, start, duration, vehicles=vehicles, direction=direction, settings=settings)
+
+
+def lifted(*faults, seed=1, until=4.0, folder=None):
+    """A swarm that a scripted ground lifts: (ground, passage, swarm)."""
+    system = SYSTEM.parameters()
+    ground = ScriptedGround([("uav", i) for i in (1, 2, 3, 4)], float(system.hover_thrust.mean()), system.thrust_max)
+    passage = FaultPassage(faults, seed, SYSTEM) if faults else Passage()
+    with Swarm(SYSTEM, seed=seed, passage=passage) as swarm:
+        if folder is not None:
+            swarm.record(TruthLog(folder, 4))
+        exchange(swarm, ground, until)
+        if faults:
+            assert all(f.schedule.take_off == swarm.take_off_time for f in passage.faults)
+    return ground, passage, swarm
+
+
+def stamps(ground, vehicle, kind, component=1):
+    return [
+        m for m in ground.messages
+        if m.get_type() == kind and m.get_srcSystem() == vehicle and m.get_srcComponent() == component
+    ]  # fmt: skip
+
+
+MIXED = (
+    fault("packet_loss", probability=0.2),
+    fault("latency", delay=0.03),
+    fault("jitter", 0.2, spread=0.02, vehicles=(1, 2)),
+    fault("reordering", probability=0.1),
+    fault("duplication", probability=0.1),
+    fault("corruption", probability=0.1),
+    fault("noise", channel="position", factor=5.0),
+    fault("position_glitch", size=1.0),
+    fault("wind", velocity=[2.0, 0.0, 0.0], gust=1.0),
+    fault("payload_mass", 0.3, change=0.2),
+)
+
+
+def test_the_same_seed_and_faults_give_the_same_truth_to_the_byte(tmp_path):
+    runs = {"a": (MIXED, 1), "b": (MIXED, 1), "c": (MIXED, 2), "d": ((*MIXED[:8], *MIXED[9:]), 1)}
+    truth, faults = {}, {}
+    for name, (mixed, seed) in runs.items():
+        (tmp_path / name).mkdir()
+        _, passage, swarm = lifted(*mixed, seed=seed, folder=tmp_path / name)
+        faults[name] = record_faults(tmp_path / name, passage, swarm.time).read_bytes()
+        truth[name] = (tmp_path / name / "truth.csv").read_bytes()
+    assert truth["a"] == truth["b"] and faults["a"] == faults["b"]
+    assert truth["a"] != truth["c"] and truth["a"] != truth["d"]
+    record = json.loads(faults["a"])
+    assert record["take_off_s"] > 1.0
+    assert [f["number"] for f in record["faults"]] == list(range(1, 11))
+    assert all(f["occurrences"] == 1 and f["seen"] >= f["disturbed"] > 0 for f in record["faults"])
+    assert (record["faults"][2]["vehicles"], record["faults"][8]["vehicles"]) == ([1, 2], None)
+    assert record["faults"][2]["activations"] == [[0.2, None]]
+    assert not fault_notes(tmp_path / "a")
+
+
+def test_a_fault_that_never_came_is_on_record(tmp_path):
+    _, passage, swarm = lifted(fault("packet_loss", 1000.0, probability=1.0), fault("partition", 0.5), until=3.0)
+    record_faults(tmp_path, passage, swarm.time)
+    (note,) = fault_notes(tmp_path)
+    assert "fault 1, packet_loss" in note and "never came" in note
+
+
+def test_a_nan_goes_over_the_wire_and_whole_numbers_are_not_sent():
+    ground, *_ = lifted(
+        fault("not_a_number", channel="position", vehicles=(2,)),
+        fault("not_a_number", channel="attitude", value="inf", vehicles=(3,)),
+        fault("not_a_number", channel="payload_velocity", vehicles=(4,)),
+    )
+    assert math.isnan(stamps(ground, 2, "LOCAL_POSITION_NED")[-1].x)
+    assert stamps(ground, 3, "ATTITUDE_QUATERNION")[-1].q1 == math.inf
+    assert math.isnan(stamps(ground, 4, "LOCAL_POSITION_NED", 25)[-1].vx)
+    counts = [len(stamps(ground, i, "GLOBAL_POSITION_INT")) for i in (1, 2, 3, 4)]
+    assert counts[0] == counts[3] > counts[1] == counts[2] > 0
+    assert len({len(stamps(ground, i, "LOCAL_POSITION_NED")) for i in (1, 2, 3, 4)}) == 1
+
+
+def test_lost_sensors_clocks_and_half_rate_on_the_wire():
+    ground, _, swarm = lifted(
+        fault("position_lost", vehicles=(1,)),
+        fault("payload_unit_lost", vehicles=(2,)),
+        fault("clock_step", step=10.0, vehicles=(3,)),
+        fault("low_rate", vehicles=(4,)),
+    )
+    flown = swarm.time - swarm.take_off_time
+    last = {i: stamps(ground, i, "LOCAL_POSITION_NED")[-1].time_boot_ms * 1e-3 for i in (1, 2, 3)}
+    assert last[1] == pytest.approx(swarm.take_off_time, abs=0.03)
+    assert last[2] == pytest.approx(swarm.time, abs=0.03)
+    assert last[3] == pytest.approx(swarm.time + 10.0, abs=0.03)
+    assert stamps(ground, 1, "ATTITUDE_QUATERNION")[-1].time_boot_ms * 1e-3 == pytest.approx(swarm.time, abs=0.03)
+    assert stamps(ground, 2, "LOCAL_POSITION_NED", 25)[-1].time_boot_ms < (swarm.take_off_time + 0.03) * 1e3
+    late = [m for m in stamps(ground, 4, "LOCAL_POSITION_NED") if m.time_boot_ms * 1e-3 > swarm.take_off_time]
+    assert len(late) == pytest.approx(25 * flown, abs=2)
+
+
+def test_latency_is_what_the_ground_sees():
+    ground, _, swarm = lifted(fault("latency", 0.5, delay=0.06, direction="telemetry"))
+    begin = swarm.take_off_time + 0.5
+    delays = [now - stamp * 1e-3 for stamp, now in ground.stamps[1] if now > begin + 0.07]
+    assert delays and max(delays) == pytest.approx(0.06, abs=0.005) and min(delays) == pytest.approx(0.06, abs=0.005)
+    assert max(now - stamp * 1e-3 for stamp, now in ground.stamps[1] if now < begin) < 0.005
+
+
+def active(entry, seed=1):
+    made = ActiveFault.of(1, entry, seed, 4)
+    made.schedule.take_off = 0.0
+    return made
+
+
+def test_gusts_have_their_deviation_and_correlation_time():
+    wind = Wind(active(fault("wind", velocity=[3.0, 0.0, 0.0], gust=1.5, gust_time=0.5, rise=0.0)))
+    air = np.array([wind.velocity(k * 0.01) for k in range(60_000)]) - [3.0, 0.0, 0.0]
+    assert air.mean(axis=0) == pytest.approx(np.zeros(3), abs=0.25)
+    assert air.std(axis=0) == pytest.approx([1.5, 1.5, 0.75], rel=0.1)
+    centred = air - air.mean(axis=0)
+    later = (centred[50:] * centred[:-50]).mean(axis=0) / centred.var(axis=0)
+    assert later == pytest.approx(np.full(3, math.exp(-1.0)), abs=0.1)
+
+
+def test_drag_is_quadratic_against_what_a_body_shows_to_the_wind():
+    def forces(velocity, now=10.0):
+        with World(SYSTEM.true_parameters()) as world:
+            return WorldFaults([active(fault("wind", velocity=velocity))]).act(world, now)
+
+    payload, uavs = forces([3.0, 0.0, 0.0])
+    assert payload == pytest.approx((0.5 * 1.225 * 1.05 * 0.5 * 9.0, 0.0, 0.0))
+    assert np.array(uavs) == pytest.approx(np.tile([0.5 * 1.225 * 0.03 * 9.0, 0.0, 0.0], (4, 1)))
+    down, _ = forces([0.0, 0.0, 2.0])
+    assert down == pytest.approx((0.0, 0.0, 0.5 * 1.225 * 1.05 * 1.0 * 4.0))
+    slant, _ = forces([3.0, 3.0, 0.0])
+    assert math.hypot(*slant) == pytest.approx(0.5 * 1.225 * 1.05 * (1.0 * math.sqrt(0.5)) * 18.0)
+    rising, _ = forces([3.0, 0.0, 0.0], now=1.0)
+    assert rising[0] == pytest.approx(payload[0] / 4.0)
+    with World(SYSTEM.true_parameters()) as world:
+        assert WorldFaults([active(fault("wind", 5.0, velocity=[3.0, 0.0, 0.0]))]).act(world, 1.0) is None
+
+
+def test_the_wind_blows_the_load_away(tmp_path):
+    ends = []
+    for name, faults in (("still", ()), ("windy", (fault("wind", velocity=[0.0, 5.0, 0.0]),))):
+        (tmp_path / name).mkdir()
+        lifted(*faults, folder=tmp_path / name)
+        with (tmp_path / name / "truth.csv").open(newline="") as file:
+            ends.append(float(list(csv.DictReader(file))[-1]["payload_y_m"]))
+    assert abs(ends[0]) < 0.05 and ends[1] > 0.3
+
+
+def test_a_changed_load_moves_like_a_load_of_that_mass_and_changes_back():
+    def flown(parameters, faults, steps):
+        with World(parameters) as world:
+            worlds = WorldFaults([active(entry) for entry in faults])
+            for k in range(steps):
+                worlds.act(world, k / world.physics_hz)
+                world.step([14.5, 14.9, 14.5, 14.5], [(0.0, 0.0, 0.0)] * 4)
+            return world.state()
+
+    true = SYSTEM.true_parameters()
+    lighter = flown(true.with_payload_mass(true.m_0 - 0.5), (), 500)
+    changed = flown(true, (fault("payload_mass", change=-0.8), fault("payload_mass", change=0.3)), 500)
+    assert np.allclose(changed.payload_position_in_world, lighter.payload_position_in_world, rtol=0.0, atol=1e-12)
+    assert np.allclose(changed.payload_quaternion, lighter.payload_quaternion, rtol=0.0, atol=1e-12)
+    assert flown(true, (fault("payload_mass", 0.0, 0.1, change=-0.5),), 50) != flown(true, (), 50)
+    assert flown(true, (fault("payload_mass", 0.5, 0.1, change=-0.5),), 100) == flown(true, (), 100)
+
+
+def test_vehicle_sim_writes_what_its_faults_did(tmp_path):
+    mission = tmp_path / "mission.toml"
+    mission.write_text(
+        '[mission]\nname = "m"\n[reference]\nkind = "waypoints"\npoints = [[0, 0, -2]]\n'
+        '[[fault]]\nkind = "partition"\nstart = 1.0\n'
+    )
+    command = [sys.executable, "-m", "vehicle_sim", "--lockstep", "--base-port", "0", "--mission", str(mission)]
+    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
+    with subprocess.Popen(
+        [*command, "--run-dir", str(tmp_path / "run")], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        env=environment,
+    ) as process:  # fmt: skip
+        for line in process.stdout:
+            if line.strip() == "ready":
+                break
+        process.send_signal(signal.SIGTERM)
+        said = process.communicate(timeout=60)[1]
+    assert process.returncode == 0
+    assert "fault 1, partition (line 6 of the mission), never came: nothing took off" in said
+    assert json.loads((tmp_path / "run" / "faults.json").read_text())["faults"][0]["occurrences"] == 0
+    assert fault_notes(tmp_path / "run")

@@ -1,0 +1,101 @@
+"""The flat reference satisfies the nonlinear dynamics, not only their linearisation."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from flight_in_process import MISSIONS
+from test_linear_model import UNSYMMETRIC
+
+from gcs.config import read_system
+from idc_controller.model.linear import StateLayout
+from idc_controller.model.nonlinear import Inputs, SystemState, accelerations, hat, uav_positions
+from idc_controller.plan.flatness import Load, flat_reference
+
+CONFIG = read_system(MISSIONS / "system.toml")
+TIMES = np.linspace(0.3, 12.0, 14)
+
+
+class Wave:
+    """A smooth three-dimensional curve with all its derivatives; as wild as a figure eight at 3 m/s2."""
+
+    amplitude = np.array([6.0, -3.0, 0.4])
+    frequency = np.array([0.5, 1.0, 0.7])
+
+    def derivatives(self, times, order=4):
+        phase = np.asarray(times)[:, None] * self.frequency
+        return np.stack([self.amplitude * self.frequency**k * np.sin(phase + k * np.pi / 2) for k in range(order + 1)])
+
+
+def systems():
+    for n in (3, 4, 6):
+        yield pytest.param(CONFIG.with_vehicles(n).parameters(), id=str(n))
+    yield pytest.param(replace(CONFIG.parameters(), p=UNSYMMETRIC), id="unsymmetric")
+    yield pytest.param(replace(CONFIG.parameters(), l=np.array([3.2, 2.0, 2.6, 3.8])), id="links")
+
+
+@pytest.mark.parametrize("p", list(systems()))
+@pytest.mark.parametrize("load", [Load(3.1, np.zeros(3)), Load(2.7, np.array([1.0, -2.0, 0.5]))], ids=["plain", "load"])
+def test_the_reference_solves_the_nonlinear_dynamics_exactly(p, load):
+    flat = flat_reference(p, Wave(), TIMES, load)
+    true = p.with_payload_mass(load.mass)
+    N = p.number_of_uavs
+    for k in range(len(TIMES)):
+        q, q_dot, q_ddot = (getattr(flat.links, name)[k] for name in ("q", "q_dot", "q_ddot"))
+        state = SystemState(
+            r_0=flat.payload[0, k], r_0_dot=flat.payload[1, k], quaternion_0=np.array([1.0, 0, 0, 0]),
+            omega_0=np.zeros(3), q=np.tile(q, (N, 1)), Omega=np.tile(np.cross(q, q_dot), (N, 1)),
+            quaternion=np.tile([1.0, 0, 0, 0], (N, 1)), omega=np.zeros((N, 3)),
+        )  # fmt: skip
+        second = accelerations(true, state, Inputs(F=flat.links.force[k], tau=np.zeros((N, 3)), F_0=load.force))
+        assert np.allclose(second.r_0_ddot, flat.payload[2, k], atol=1e-9)
+        assert np.allclose(second.omega_0_dot, 0.0, atol=1e-9)  # the payload stays level
+        assert np.allclose(second.Omega_dot, np.cross(q, q_ddot), atol=1e-9)
+
+
+def test_links_and_uavs_move_as_their_derivatives_say():
+    p, layout, h = CONFIG.parameters(), StateLayout(4), 1e-4
+    load = Load(p.m_0, np.zeros(3))
+    before, flat, after = (flat_reference(p, Wave(), TIMES + d, load) for d in (-h, 0.0, h))
+    links = (before.links, flat.links, after.links)
+    assert np.allclose((links[2].q - links[0].q) / (2 * h), links[1].q_dot, atol=1e-7)
+    assert np.allclose((links[2].q_dot - links[0].q_dot) / (2 * h), links[1].q_ddot, atol=1e-7)
+    slope = (after.x - before.x) / (2 * h)
+    assert np.allclose(slope[:, layout.r_0], flat.x[:, layout.v_0], atol=1e-6)
+    assert np.allclose(slope[:, layout.s], flat.x[:, layout.s_dot], atol=1e-6)
+    # These come from a stencil of 20 ms: exact to its order only.
+    assert np.allclose(slope[:, layout.n], flat.x[:, layout.n_dot], atol=2e-4)
+    assert np.allclose(slope[:, layout.n_dot], flat.x[:, layout.n_acc], atol=2e-3)
+
+
+def test_set_points_invert_the_attitude_loop_and_the_motor_lag():
+    p, layout, h = CONFIG.parameters(), StateLayout(4), 1e-3
+    load = Load(p.m_0, np.zeros(3))
+    before, flat, after = (flat_reference(p, Wave(), TIMES + d, load) for d in (-h, 0.0, h))
+    n, n_dot, n_acc = (flat.x[:, part] for part in (layout.n, layout.n_dot, layout.n_acc))
+    n_jerk = (after.x[:, layout.n_acc] - before.x[:, layout.n_acc]) / (2 * h)
+    # T_m n''' + n'' + kd n' + kp n = kp n_setpoint
+    left = p.motor_time_constant * n_jerk + n_acc + p.attitude_kd * n_dot + p.attitude_kp * n
+    assert np.allclose(left, p.attitude_kp * flat.u[:, layout.n_setpoint], atol=0.02)
+    f_dot = (after.x[:, layout.f] - before.x[:, layout.f]) / (2 * h)
+    assert np.allclose(flat.x[:, layout.f] + p.motor_time_constant * f_dot, flat.u[:, layout.f_setpoint], atol=1e-3)
+
+
+def test_uavs_stand_on_their_links():
+    p = CONFIG.parameters()
+    flat = flat_reference(p, Wave(), TIMES, Load(p.m_0, np.zeros(3)))
+    for k in range(len(TIMES)):
+        state = SystemState(
+            flat.payload[0, k], np.zeros(3), np.array([1.0, 0, 0, 0]), np.zeros(3), np.tile(flat.links.q[k], (4, 1)),
+            np.zeros((4, 3)), np.tile([1.0, 0, 0, 0], (4, 1)), np.zeros((4, 3)),
+        )  # fmt: skip
+        expected = flat.payload[0, k] + p.p - p.l[:, None] * flat.links.q[k]
+        assert np.allclose(uav_positions(p, state), expected)
+
+
+def test_the_payload_feels_no_moment():
+    p = replace(CONFIG.parameters(), p=UNSYMMETRIC)
+    flat = flat_reference(p, Wave(), TIMES, Load(p.m_0, np.zeros(3)))
+    for q, tension in zip(flat.links.q, flat.links.tension, strict=True):
+        assert np.allclose(sum(T * hat(p_i) @ q for T, p_i in zip(tension, p.p, strict=True)), 0.0, atol=1e-9)
+        assert np.all(tension > 0.0)

@@ -1,0 +1,116 @@
+"""Obstacles avoided in whole flights: simulator, vehicles, MAVLink over UDP and ground in lockstep, with noise."""
+
+import json
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from flight_in_process import system_file, truth_of
+
+FIGURE = """
+[mission]
+name = "short figure with two spheres"
+system = "system.toml"
+seed = 3
+
+[reference]
+kind = "lissajous"
+amplitude = [6.0, 3.0]
+angular_frequency = 0.5
+altitude = 3.0
+duration = 9.0
+
+[[obstacle]]
+name = "static"
+shape = "sphere"
+position = [-6.0, 0.0, -3.0]
+radius = 0.5
+known = true
+
+[[obstacle]]
+name = "moving"
+shape = "sphere"
+position = [5.5, -1.0, -3.0]
+radius = 0.5
+known = false
+motion = { kind = "harmonic", amplitude = [0.0, 1.2, 0.0], angular_frequency = 0.8, phase = 0.5 }
+"""
+
+STRAIGHT = """
+[mission]
+name = "{name}"
+system = "system.toml"
+seed = 4
+
+[reference]
+kind = "waypoints"
+points = [[13.0, 0.0, -3.0]]
+speed = 1.5
+return_home = false
+
+[[obstacle]]
+name = "{obstacle}"
+{shape}
+known = true
+"""
+
+LIMITS = """
+[limits]
+clearance = 0.4
+payload_tilt_deg = 6.0
+"""
+
+
+def flown(folder, text):
+    """Exit status, summary and what was said of a flight of the mission ``text``; its records lie in folder/run."""
+    system_file(folder)
+    (folder / "mission.toml").write_text(text + LIMITS)
+    command = [sys.executable, "-m", "gcs", "fly", str(folder / "mission.toml"), "--json", "--no-pictures"]
+    done = subprocess.run(
+        [*command, "--run-dir", str(folder / "run")],
+        capture_output=True, text=True, timeout=120, env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
+    )  # fmt: skip
+    assert done.stdout, done.stderr
+    return done.returncode, json.loads(done.stdout), done.stderr
+
+
+def check_safe(summary):
+    assert summary["contacts"] == 0
+    assert summary["clearance_min_m"] >= 0.4
+    assert max(summary["payload_tilt_max_deg"].values()) <= 6.0
+    assert summary["uav_separation_min_m"] >= 0.75
+
+
+def test_figure_with_a_known_sphere_and_one_seen_only_by_the_vehicles(tmp_path):
+    code, summary, said = flown(tmp_path, FIGURE)
+    check_safe(summary)
+    assert summary["outcome"] == "completed", said
+    assert code == 0, said
+    # Both were in the way: the mission's own path leads within the margin of them.
+    assert summary["position_rmse_m"]["total"] > 0.1
+
+
+def test_pole_on_a_straight_way(tmp_path):
+    shape = 'shape = "pole"\nposition = [7.0, 0.0]\nradius = 0.3\nheight = 12.0'
+    code, summary, said = flown(tmp_path, STRAIGHT.format(name="pole", obstacle="mast", shape=shape))
+    check_safe(summary)
+    assert code == 0, said
+    truth = truth_of(tmp_path / "run")
+    np.testing.assert_allclose([truth["payload_x_m"][-1], truth["payload_y_m"][-1]], [13.0, 0.0], atol=0.15)
+    assert np.abs(truth["payload_y_m"]).max() > 1.0
+
+
+def test_closed_way_is_given_up_safely(tmp_path):
+    shape = 'shape = "wall"\nposition = [8.0, 60.0, -20.0]\nsize = [0.3, 300.0, 40.0]'
+    code, summary, said = flown(tmp_path, STRAIGHT.format(name="closed", obstacle="the great wall", shape=shape))
+    check_safe(summary)
+    assert code == 1
+    assert summary["outcome"] == "aborted"
+    assert "the great wall" in said
+    assert "Traceback" not in said
+    truth = truth_of(tmp_path / "run")
+    assert truth["payload_z_m"][-1] == pytest.approx(-0.25, abs=0.02)
+    assert truth["payload_x_m"].max() < 8.0 - 0.15 - 0.8 - 0.4
+    assert np.abs(truth["payload_vz_mps"][-5:]).max() < 0.02

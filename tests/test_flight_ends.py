@@ -1,0 +1,360 @@
+"""Every way in which a flight can end: a clear message and exit code, the payload on the ground, records closed."""
+
+import json
+import os
+import random
+import re
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pymavlink.dialects.v20.common as mavlink
+import pytest
+from flight_in_process import GROUND, Rehearsal, address_of, short_figure, truth_of
+from pymavlink import mavutil
+from test_flight_end_to_end import ENVIRONMENT, addresses_of, free_port, swarm_process
+
+from gcs.setpoints import attitude_target
+from gcs.wire import px4
+from gcs.wire.codec import Codec
+from vehicle_sim.passage import Passage
+
+PATIENCE = 120.0  # s of wall time for what takes a few
+
+
+class GcsProcess:
+    """The command itself, followed by the phases that it prints."""
+
+    def __init__(self, mission, folder, *options):
+        command = [sys.executable, "-m", "gcs", "fly", mission, "--run-dir", folder, *options]
+        self.folder = folder
+        self.process = subprocess.Popen(
+            [*map(str, command)], env=ENVIRONMENT, cwd=folder.parent, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+            text=True,
+        )  # fmt: skip
+        self.output = []
+
+    def until_phase(self, phase):
+        for line in self.process.stdout:
+            self.output.append(line)
+            if re.match(rf"\s*[\d.]+ s  {phase}$", line.rstrip()):
+                return
+        raise AssertionError("".join(self.output) + self.process.stderr.read())
+
+    def end(self):
+        """(exit code, standard error)"""
+        out, errors = self.process.communicate(timeout=PATIENCE)
+        self.output.append(out)
+        assert "Traceback" not in errors, errors
+        return self.process.returncode, errors
+
+    def child(self):
+        """Process id of the vehicle-sim that it started."""
+        children = Path(f"/proc/{self.process.pid}/task/{self.process.pid}/children").read_text().split()
+        assert len(children) == 1
+        return int(children[0])
+
+
+def check_records_closed(folder):
+    summary = json.loads((folder / "summary.json").read_text())
+    log = mavutil.mavlink_connection(str(folder / "telemetry.tlog"))
+    kinds = set()
+    while (message := log.recv_match()) is not None:
+        kinds.add(message.get_type())
+    log.close()
+    assert {"HEARTBEAT", "SET_ATTITUDE_TARGET", "LOCAL_POSITION_NED"} <= kinds
+    for name in ("truth.csv", "reference.csv"):
+        text = (folder / name).read_text()
+        assert text.endswith("\n")
+        columns = text.partition("\n")[0].count(",")
+        assert text.rstrip("\n").rpartition("\n")[2].count(",") == columns  # the last row is whole
+    return summary
+
+
+def check_on_the_ground(folder, height=0.25):
+    truth = truth_of(folder)
+    assert -truth["payload_z_m"].min() > 1.0  # it was in the air
+    assert -truth["payload_z_m"][-1] == pytest.approx(height, abs=0.06)
+    assert max(truth[f"uav{i}_thrust_n"][-1] for i in (1, 2, 3, 4)) < 0.5
+
+
+# Two programs
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=["ctrl-c", "sigterm"])
+def test_ctrl_c_in_flight_lands_and_closes_the_records(tmp_path, number):
+    gcs = GcsProcess(short_figure(tmp_path, duration=30.0), tmp_path / "run")
+    gcs.until_phase("fly")
+    gcs.process.send_signal(number)
+    code, errors = gcs.end()
+    assert code == 130
+    assert "flight broken off: interrupted" in errors
+    summary = check_records_closed(gcs.folder)
+    assert summary["outcome"] == "aborted"
+    assert summary["contacts"] == 0
+    assert max(summary["payload_tilt_max_deg"].values()) < 5.0
+    check_on_the_ground(gcs.folder)
+
+
+def test_a_second_ctrl_c_leaves_the_vehicles_to_land_on_their_own(tmp_path):
+    gcs = GcsProcess(short_figure(tmp_path, duration=30.0), tmp_path / "run")
+    gcs.until_phase("fly")
+    gcs.process.send_signal(signal.SIGINT)
+    gcs.until_phase("hold")  # the first one is being obeyed
+    gcs.process.send_signal(signal.SIGINT)
+    code, _ = gcs.end()
+    assert code == 130
+    check_records_closed(gcs.folder)
+    check_on_the_ground(gcs.folder, height=0.275)
+
+
+def test_the_world_killed_in_flight_is_said_and_ends_it(tmp_path):
+    gcs = GcsProcess(short_figure(tmp_path, duration=30.0), tmp_path / "run")
+    gcs.until_phase("fly")
+    os.kill(gcs.child(), signal.SIGKILL)
+    code, errors = gcs.end()
+    assert code == 1
+    assert "vehicle-sim was killed by signal 9" in errors
+    summary = json.loads((gcs.folder / "summary.json").read_text())
+    assert not summary["completed"]
+    assert (gcs.folder / "telemetry.tlog").stat().st_size > 10_000
+
+
+def test_the_ground_killed_in_flight_leaves_vehicles_that_hold_then_land(tmp_path):
+    mission = short_figure(tmp_path, duration=30.0)
+    options = ("--lockstep", "--mission", mission, "--run-dir", tmp_path / "world", "--base-port", free_port())
+    swarm = swarm_process(*options)
+    try:
+        told = addresses_of(swarm)
+        gcs = GcsProcess(mission, tmp_path / "run", "--connect", *(told[f"vehicle {i}"] for i in (1, 2, 3, 4)))
+        gcs.until_phase("hold")
+        gcs.process.kill()
+        gcs.process.communicate()
+        # A second ground that joins is served when the vehicles have landed: the sign that they have.
+        again = GcsProcess(mission, tmp_path / "second", "--connect", *(told[f"vehicle {i}"] for i in (1, 2, 3, 4)))
+        again.until_phase("check")
+        again.process.kill()
+        again.process.communicate()
+    finally:
+        swarm.terminate()
+        swarm.communicate(timeout=PATIENCE)
+    assert swarm.returncode == 0
+    check_on_the_ground(tmp_path / "world", height=0.275)
+    truth = truth_of(tmp_path / "world")
+    assert truth["contacts"].max() == 0
+
+
+def test_nobody_there_is_said(tmp_path):
+    base = free_port()
+    urls = [f"udp://127.0.0.1:{base + i}" for i in range(4)]
+    code, errors = GcsProcess(
+        short_figure(tmp_path), tmp_path / "run", "--realtime", "--speed", "10", "--connect", *urls
+    ).end()
+    assert code == 1, errors
+    assert f"vehicle 1 does not answer at {urls[0].removeprefix('udp://')}" in errors
+    assert json.loads((tmp_path / "run" / "summary.json").read_text())["outcome"] == "aborted"
+
+
+@pytest.mark.parametrize(
+    ("options", "reason"),
+    [
+        (("--connect", "udp://127.0.0.1:1", "--vehicles", "4"), "4 does not agree with 1"),
+        (("--connect", "udp://127.0.0.1:1", "udp://127.0.0.1:2"), "2"),
+        (("--connect", "udp://127.0.0.1:1", "udp://127.0.0.1:1", "udp://127.0.0.1:2"), "named twice"),
+        (("--connect", "udpin://127.0.0.1:14550"), "--realtime"),
+        (("--realtime", "--connect", "udpin://127.0.0.1:14550", "udp://127.0.0.1:1"), "no other"),
+        (("--connect", "tcp://127.0.0.1:1"), "expected udp://"),
+        (("--config", "nowhere.toml"), "nowhere.toml"),
+        (("--vehicles", "2"), "2"),
+    ],
+)
+def test_unusable_input_ends_before_anything_is_started(tmp_path, options, reason):
+    gcs = GcsProcess(short_figure(tmp_path), tmp_path / "run", *options)
+    code, errors = gcs.end()
+    assert code == 2, errors
+    assert reason in errors
+    assert len(errors.strip().splitlines()) == 1
+    assert not (tmp_path / "run").exists()
+
+
+# One process
+
+
+class Cut(Passage):
+    """From ``at`` (s) on nothing passes between a vehicle and the ground, in the directions named."""
+
+    def __init__(self, vehicle, at, telemetry=True, commands=True):
+        self.vehicle, self.at, self.telemetry, self.commands = vehicle, at, telemetry, commands
+
+    def to_vehicle(self, vehicle, arriving, now):
+        return () if self.commands and vehicle == self.vehicle and now >= self.at else arriving
+
+    def from_vehicle(self, vehicle, leaving, now):
+        return () if self.telemetry and vehicle == self.vehicle and now >= self.at else leaving
+
+
+def test_a_vehicle_that_never_answers(tmp_path):
+    with Rehearsal(short_figure(tmp_path), tmp_path / "run", passage=Cut(3, 0.0)) as flight:
+        flight.fly()
+        assert flight.flight.reason == "vehicle 3 does not answer at 127.0.0.1:14542"
+        assert not flight.flight.completed
+        assert flight.swarm.at_rest
+
+
+def test_a_vehicle_at_another_ones_address_is_told_apart(tmp_path):
+    with Rehearsal(short_figure(tmp_path), tmp_path / "run") as flight:
+        first, second, *_ = flight.station.links
+        first.address, second.address = second.address, first.address
+        flight.station._by_address = {(link.address, link.system_id): i for i, link in enumerate(flight.station.links)}
+        flight.fly()
+        assert flight.flight.reason == "vehicle 1 does not answer at 127.0.0.1:14541: vehicle 2 does"
+
+
+def test_a_vehicle_that_refuses_to_arm(tmp_path):
+    with Rehearsal(short_figure(tmp_path), tmp_path / "run") as flight:
+        flight.fly(stop=lambda: flight.flight.phase.value == "arm")
+        autopilot = flight.swarm.vehicles[1].autopilot
+        autopilot.arming_problem = lambda now: "the compass is upside down"
+        flight.fly()
+        assert "vehicle 2 answers MAV_CMD_COMPONENT_ARM_DISARM with temporarily_rejected" in flight.flight.reason
+        assert "the compass is upside down" in flight.flight.reason
+        assert not any(vehicle.autopilot.armed for vehicle in flight.swarm.vehicles)
+
+
+def test_a_vehicle_that_is_armed_already_is_left_alone(tmp_path):
+    with Rehearsal(short_figure(tmp_path), tmp_path / "run") as flight:
+        flight.swarm.advance_to(0.1)
+        flight.swarm.vehicles[2].autopilot.arm(0.1)
+        flight.fly()
+        assert "vehicle 3 is armed already" in flight.flight.reason
+
+
+def test_a_vehicle_of_another_make_is_refused(tmp_path):
+    with Rehearsal(short_figure(tmp_path), tmp_path / "run") as flight:
+        flight.swarm.vehicles[0].parameters.by_name(px4.PARAM_THRUST_MAX).value = 20.0
+        flight.fly()
+        assert flight.flight.reason == "vehicle 1 has CLFT_THRUST_MAX = 20, the system file says 30"
+
+
+@pytest.mark.parametrize(
+    ("telemetry", "commands", "reason"),
+    [(True, True, "sends no telemetry"), (False, True, "has left OFFBOARD for AUTO.LOITER (Set-points lost")],
+    ids=["both ways", "commands"],
+)
+def test_a_vehicle_that_drops_out_in_flight_brings_all_of_them_down(tmp_path, telemetry, commands, reason):
+    passage = Cut(2, 20.0, telemetry, commands)
+    with Rehearsal(short_figure(tmp_path, duration=30.0), tmp_path / "run", passage=passage) as flight:
+        flight.fly()
+        assert f"vehicle 2 {reason}" in flight.flight.reason
+        assert flight.leave_alone()
+        summary = flight.summary()
+    assert not summary["completed"]
+    assert summary["contacts"] == 0
+    tilt = summary["payload_tilt_max_deg"]
+    assert max(tilt["roll"], tilt["pitch"]) < 20.0
+    check_on_the_ground(tmp_path / "run")
+
+
+class Stranger:
+    """Another MAVLink system that sends what it likes to every vehicle, and to the ground."""
+
+    def __init__(self, seed=1):
+        self.codec = Codec(254, 190)
+        self.random = random.Random(seed)
+        self.sent = 0
+        self.next = 15.0
+
+    def is_due(self, flight):
+        """Twenty times a second: whoever answers every answer at once stops the virtual clock."""
+        if flight.now < self.next:
+            return False
+        self.next = flight.now + 0.05
+        return True
+
+    def commands(self, flight):
+        """The first things that somebody would try."""
+        if flight.now > 18.0 or not self.is_due(flight):
+            return
+        for i in (1, 2, 3, 4):
+            for message in (
+                mavlink.MAVLink_command_long_message(i, 1, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0, 0, 21196, *[0] * 5),
+                mavlink.MAVLink_command_long_message(i, 1, mavlink.MAV_CMD_DO_SET_MODE, 0, 1, 4, 6, *[0] * 4),
+                mavlink.MAVLink_command_long_message(i, 1, mavlink.MAV_CMD_NAV_LAND, 0, *[0] * 7),
+                attitude_target(i, flight.now, (0.5, 0.0, -0.8), 0.0, 30.0),
+                mavlink.MAVLink_param_set_message(i, 1, b"COM_OF_LOSS_T", 60.0, mavlink.MAV_PARAM_TYPE_REAL32),
+                mavlink.MAVLink_set_mode_message(i, 1, px4.MODE_LAND),
+            ):
+                flight.swarm.receive(i, self.codec.encode(message), ("10.9.8.7", 4000), flight.now)
+                self.sent += 1
+
+    def noise(self, flight):
+        """Random bytes, and datagrams of the vehicles and of the ground with bits turned over."""
+        if not self.is_due(flight):
+            return
+        sound = self.codec.encode(attitude_target(1, flight.now, (0.0, 0.0, -1.0), 0.0, 30.0))
+        for _ in range(10):
+            self.sent += 1
+            if self.random.random() < 0.5:
+                datagram = self.random.randbytes(self.random.randrange(300))
+            else:
+                bent = bytearray(sound * self.random.randrange(1, 3))
+                for _ in range(self.random.randrange(1, 6)):
+                    bent[self.random.randrange(len(bent))] = self.random.randrange(256)
+                datagram = bytes(bent)
+            if self.random.random() < 0.5:
+                i = self.random.randrange(1, 5)
+                sender = GROUND if self.random.random() < 0.5 else ("10.9.8.7", 4000)
+                flight.swarm.receive(i, datagram, sender, flight.now)
+            else:
+                sender = address_of(self.random.randrange(1, 5)) if self.random.random() < 0.5 else ("10.9.8.7", 4000)
+                flight.station.receive(datagram, sender, flight.now)
+
+
+@pytest.mark.parametrize("kind", ["commands", "noise"])
+def test_strangers_and_noise_on_the_wire_change_nothing(tmp_path, kind):
+    stranger = Stranger()
+    with Rehearsal(short_figure(tmp_path, duration=8.0), tmp_path / "run", seed=9) as flight:
+        flight.fly(getattr(stranger, kind))
+        refused = sum(vehicle.refused_setpoints for vehicle in flight.swarm.vehicles)
+        summary = flight.summary()
+    assert stranger.sent > 500
+    assert kind == "noise" or refused >= stranger.sent / 6
+    assert summary["completed"], flight.flight.reason
+    assert summary["position_rmse_m"]["total"] < 0.03
+    assert max(summary["payload_tilt_max_deg"].values()) < 5.0
+
+
+def test_the_ground_survives_any_message_of_the_dialect(tmp_path):
+    """Every message, well formed, with whatever its fields may hold, from a vehicle that it believes."""
+    generator = np.random.default_rng(4)
+    with Rehearsal(short_figure(tmp_path), tmp_path / "run") as flight:
+        flight.fly(stop=lambda: flight.flight.phase.value == "fly")
+        encoder = Codec(1, 1)
+        for kind in mavlink.mavlink_map.values():
+            frame = bytearray(kind.unpacker.size)
+            for _ in range(5):
+                frame[:] = generator.bytes(len(frame))
+                try:
+                    fields = kind.unpacker.unpack(bytes(frame))
+                    message = kind(*_in_order(kind, fields))
+                    datagram = encoder.encode(message)
+                except Exception:  # what cannot be packed cannot arrive
+                    continue
+                flight.station.receive(datagram, address_of(1), flight.now)
+        flight.station.datagrams_to_send(flight.now + 0.05)
+
+
+def _in_order(kind, fields):
+    """Unpacked wire values as the constructor takes them: arrays put together, in the order of the definition."""
+    values, at = [], 0
+    for length in kind.array_lengths:
+        if length:
+            part = fields[at : at + 1] if isinstance(fields[at], bytes) else fields[at : at + length]
+            values.append(part[0] if isinstance(part[0], bytes) else list(part))
+            at += 1 if isinstance(part[0], bytes) else length
+        else:
+            values.append(fields[at])
+            at += 1
+    return [values[i] for i in kind.orders]

@@ -1,0 +1,158 @@
+"""The hull in flat coordinates against the exact formation, and its distances against an independent minimiser."""
+
+import numpy as np
+import pytest
+from avoidance_scene import hull_of, system
+from proxsuite import proxqp
+
+from idc_controller.barrier.formation import Formation
+from idc_controller.barrier.obstacles import PredictedObstacle, Shape
+from idc_controller.barrier.separation import separations
+from idc_controller.plan.flatness import Load, flat_forces
+
+TEAMS = [3, 4, 6, 8]
+SHAPES = [Shape("sphere", 0.5), Shape("pole", 0.3, (0.0, 0.0, 12.0)), Shape("wall", size=(0.3, 4.0, 5.0), yaw=0.4)]
+
+
+def accelerations(rng, K=40, lateral=3.0, vertical=2.5):
+    a = rng.uniform(-1.0, 1.0, (K, 3)) * [lateral, lateral, vertical]
+    a[0] = 0.0
+    return a
+
+
+def surface(shape):
+    """Points (P, 3) whose hull is the body, or the ball's centre: a hull and a radius, exact but for a pole's round."""
+    if shape.kind == "sphere":
+        return np.zeros((1, 3)), shape.radius
+    if shape.kind == "wall":
+        signs = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+        return signs * shape.size @ shape.rotation.T, 0.0
+    angle = np.linspace(0.0, 2.0 * np.pi, 90, endpoint=False)
+    ring = shape.radius * np.column_stack([np.cos(angle), np.sin(angle)])
+    half = shape.size[2] / 2.0
+    return np.vstack([np.column_stack([ring, np.full(90, z)]) for z in (-half, half)]), 0.0
+
+
+def least_distance(first, second):
+    """Distance of two convex hulls of points, (P, 3) and (Q, 3), as a quadratic programme in the convex weights."""
+    n, m = len(first), len(second)
+    D = np.hstack([first.T, -second.T])
+    sums = np.zeros((2, n + m))
+    sums[0, :n], sums[1, n:] = 1.0, 1.0
+    qp = proxqp.dense.QP(n + m, 2, n + m)
+    qp.settings.eps_abs = 1e-9
+    qp.init(2 * D.T @ D, np.zeros(n + m), sums, np.ones(2), np.eye(n + m), np.zeros(n + m), np.ones(n + m))
+    qp.solve()
+    return float(np.linalg.norm(D @ qp.results.x))
+
+
+@pytest.mark.parametrize("n", TEAMS)
+def test_uavs_stand_where_flatness_says(n):
+    parameters, formation = system(n), Formation(system(n))
+    a = accelerations(np.random.default_rng(n))
+    derivatives = np.zeros((5, len(a), 3))
+    derivatives[2] = a
+    q = flat_forces(parameters, derivatives, Load(parameters.m_0, np.zeros(3))).q
+    exact = parameters.p - parameters.l[:, None] * q[:, None]
+    told = formation.uav_offsets(a)
+    tilt = np.hypot(a[:, 0], a[:, 1]) / (parameters.g - a[:, 2])
+    error = np.abs(told - exact)
+    l = parameters.l.max()
+    # Tangent for sine sideways, and the link's full length for its height.
+    assert np.all(error[..., :2].max(axis=(1, 2)) <= 0.5 * l * tilt**3 + 1e-12)
+    assert np.all(error[..., 2].max(axis=1) <= 0.5 * l * tilt**2 + 1e-12)
+    assert np.all(error[0] < 1e-12)
+    assert error.max() > 1e-3  # the accelerations are large enough to tell
+
+
+@pytest.mark.parametrize("n", TEAMS)
+def test_at_rest_hull_is_the_exact_one_to_within_the_rims_polygons(n):
+    parameters, formation = system(n), Formation(system(n))
+    exact = hull_of(parameters, np.zeros((5, 1, 3)), rim=64)[0]
+    points = formation.hull_points(np.zeros((1, 3)))[0]
+    rng = np.random.default_rng(n)
+    directions = rng.normal(size=(200, 3))
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    excess = (exact @ directions.T).max(axis=0) - (points @ directions.T).max(axis=0)
+    # The rims are coarse only as far as the plan's extra room for the discs covers it, for up to six UAVs.
+    assert excess.max() < (0.05 if n <= 6 else 0.1)
+    assert excess.min() > -1e-3
+
+
+@pytest.mark.parametrize("n", TEAMS)
+def test_discs_and_box_supports_bound_the_exact_hull(n):
+    """What the planner's rows are made of never tells less than is there, but for the links' own second order."""
+    parameters, formation = system(n), Formation(system(n))
+    rng = np.random.default_rng(10 + n)
+    a = accelerations(rng, 60)
+    derivatives = np.zeros((5, len(a), 3))
+    derivatives[2] = a
+    exact = hull_of(parameters, derivatives, rim=32)
+    normals = rng.normal(size=(len(a), 3))
+    normals[::2, 2] = 0.0
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    lever = formation.levers(a)[:, 0]
+    told = np.maximum(
+        formation.box_support(normals),
+        formation.disc_support(normals, a) + lever * np.sum(normals[:, :2] * a[:, :2], axis=1),
+    )
+    true = np.einsum("kpi,ki->kp", exact, normals).max(axis=1)
+    tilt = np.hypot(a[:, 0], a[:, 1]) / (parameters.g - a[:, 2])
+    allowed = 0.5 * parameters.l.max() * (tilt**3 + tilt**2 * np.abs(normals[:, 2]))
+    assert np.all(told >= true - allowed - 1e-9)
+
+
+@pytest.mark.parametrize("n", TEAMS)
+@pytest.mark.parametrize("shape", SHAPES, ids=lambda s: s.kind)
+def test_distance_and_plane_are_those_of_the_convex_hulls(n, shape):
+    formation = Formation(system(n))
+    rng = np.random.default_rng(20 + n)
+    K = 8
+    a = accelerations(rng, K)
+    position = rng.normal((0.0, 0.0, -6.0), size=(K, 3))
+    away = rng.normal(size=(K, 3)) * [1.0, 1.0, 0.4]
+    centre = position + 3.2 * away / np.linalg.norm(away, axis=1, keepdims=True) + [0.0, 0.0, -1.5]
+    obstacle = PredictedObstacle("o", shape, centre, np.zeros(K))
+    (found,) = separations(formation, position, a, [obstacle], 50.0)
+    points = formation.hull_points(a) + position[:, None]
+    body, radius = surface(shape)
+    apart = 0
+    for k in range(K):
+        expected = least_distance(points[k], body + centre[k]) - radius
+        if expected < 1e-3:
+            assert found.distance[k] < 2e-3
+            continue
+        apart += 1
+        assert found.distance[k] == pytest.approx(expected, abs=2e-3)
+        # A plane with this much room between the bodies proves that they are no nearer.
+        normal = found.normals[k]
+        assert np.linalg.norm(normal) == pytest.approx(1.0)
+        gap = normal @ centre[k] - shape.support(-normal) - (points[k] @ normal).max()
+        assert gap == pytest.approx(found.distance[k], abs=2e-3)
+    assert apart >= 3
+
+
+def test_only_what_is_near_takes_part():
+    formation = Formation(system())
+    shape = Shape("sphere", 0.5)
+    K = 5
+    position = np.column_stack([np.linspace(0.0, 8.0, K), np.zeros(K), np.full(K, -5.0)])
+    near, far, grown = (
+        PredictedObstacle(name, shape, np.tile(place, (K, 1)), np.full(K, growth))
+        for name, place, growth in (
+            ("near", [8.0, 2.5, -5.0], 0.0), ("far", [8.0, 8.0, -5.0], 0.0), ("grown", [8.0, -6.0, -5.0], 3.0),
+        )
+    )  # fmt: skip
+    found = separations(formation, position, np.zeros((K, 3)), [near, far, grown], 2.5)
+    assert [s.obstacle.name for s in found] == ["near", "grown"]
+    # Stages that are far are told as no nearer than they are looked at.
+    assert found[0].distance[0] >= 2.5
+    assert found[0].room == pytest.approx(found[0].distance.min())
+    assert found[1].room == pytest.approx(found[1].distance.min() - 3.0)
+
+
+def test_overlap_is_negative():
+    formation = Formation(system())
+    inside = PredictedObstacle("in", Shape("sphere", 0.5), np.array([[0.0, 0.0, -6.0]]), np.zeros(1))
+    (found,) = separations(formation, np.array([[0.0, 0.0, -5.0]]), np.zeros((1, 3)), [inside], 2.5)
+    assert found.distance[0] < -0.4

@@ -1,0 +1,155 @@
+"""The bank of Kalman filters: against filterpy, against exact motion, and on its own account of its errors."""
+
+import numpy as np
+import pytest
+from filterpy.kalman import KalmanFilter
+from scipy.linalg import expm
+
+from idc_controller.estimate.motion_bank import BankSettings, MotionBank, MotionModels
+
+MODELS = MotionModels(BankSettings())
+SIGMA = 0.03
+VARIANCE = np.full(3, SIGMA**2)
+
+
+def continuous(index):
+    """A of x' = A x of the model with this index."""
+    s = MODELS.settings
+    if index == 0:
+        return np.zeros((3, 3))
+    if index == 1:
+        return np.array([[0, 1, 0], [0, 0, 0], [0, 0, 0.0]])
+    if index < 2 + len(s.singer):
+        return np.array([[0, 1, 0], [0, 0, 1], [0, 0, -1 / s.singer[index - 2][1]]])
+    omega = s.frequencies[index - 2 - len(s.singer)]
+    return np.array([[0, 1, 0], [0, 0, 1], [0, -(omega**2), 0.0]])
+
+
+@pytest.mark.parametrize("dt", [0.05, 0.1, 1.0, 3.0])
+def test_transitions_are_the_exponentials(dt):
+    F = MODELS.transition(np.array([dt]))[:, 0]
+    for i in range(MODELS.count):
+        expected = expm(continuous(i) * dt)
+        # A model without velocity or acceleration forgets them.
+        rows = 1 if i == 0 else 2 if i == 1 else 3
+        np.testing.assert_allclose(F[i, :rows, :rows], expected[:rows, :rows], atol=1e-12)
+        assert not F[i, rows:].any()
+
+
+@pytest.mark.parametrize("dt", [0.1, 1.0])
+def test_noise_is_the_integral(dt):
+    Q = MODELS.noise(np.array([dt]))[:, 0]
+    s = MODELS.settings
+    strength = [0.0, 0.0, *(2 * sigma**2 / tau for sigma, tau in s.singer)]
+    strength += [(s.harmonic_walk * omega) ** 2 for omega in s.frequencies]
+    t = np.linspace(0.0, dt, 2001)
+    for i in range(2, MODELS.count):
+        kernel = MODELS.transition(t)[i, :, :, 2]
+        exact = np.trapezoid(kernel[:, :, None] * kernel[:, None, :], t, axis=0) * strength[i]
+        np.testing.assert_allclose(Q[i], exact, rtol=0.02, atol=0.02 * exact.max())
+    for i in range(MODELS.count):
+        assert np.linalg.eigvalsh(Q[i]).min() > -1e-15
+
+
+@pytest.mark.parametrize("singer", [(1.0, 1.0), (4.0, 0.5)])
+def test_one_model_is_the_kalman_filter_of_filterpy(singer):
+    """With all weight on one model and no changes between them, axis by axis."""
+    models = MotionModels(BankSettings(change=0.0, singer=(singer,)))
+    rng = np.random.default_rng(1)
+    bank = MotionBank(models, 0.0, np.array([1.0, 2.0, 3.0]), VARIANCE)
+    index = 2
+    references = []
+    for axis in range(3):
+        reference = KalmanFilter(dim_x=3, dim_z=1)
+        reference.x = bank.x[index, axis].copy()
+        reference.P = bank.P[index, axis].copy()
+        reference.H = np.array([[1.0, 0.0, 0.0]])
+        reference.R = np.array([[VARIANCE[axis]]])
+        references.append(reference)
+    F, Q = models.step(0.1)
+    for k in range(1, 30):
+        bank.weight = np.eye(models.count)[index] + 1e-12
+        z = np.array([1.0, 2.0, 3.0]) + 0.05 * k + rng.normal(0.0, SIGMA, 3)
+        bank.advance(0.1 * k)
+        bank.measured(z, VARIANCE)
+        for axis, reference in enumerate(references):
+            reference.predict(F=F[index], Q=Q[index])
+            reference.update(z[axis])
+            np.testing.assert_allclose(bank.x[index, axis], np.ravel(reference.x), atol=1e-9)
+            np.testing.assert_allclose(bank.P[index, axis], reference.P, atol=1e-9)
+
+
+def followed(motion, seed=0, until=8.0, each=lambda bank: None):
+    bank = None
+    rng = np.random.default_rng(seed)
+    for k in range(round(until * 10)):
+        t = 0.1 * k
+        z = motion(t) + rng.normal(0.0, SIGMA, 3)
+        if bank is None:
+            bank = MotionBank(MODELS, t, z, VARIANCE)
+        else:
+            bank.advance(t)
+            bank.measured(z, VARIANCE)
+        each(bank)
+    return bank
+
+
+@pytest.mark.parametrize(
+    ("motion", "likely"),
+    [
+        (lambda t: np.zeros(3), "static"),
+        (lambda t: np.array([1.2 * t, -0.8 * t, 0.2 * t]), "velocity"),
+        (lambda t: np.array([1.5 * np.sin(t), 0.0, 0.0]), "harmonic 1"),
+        (lambda t: np.array([0.0, 1.0 * np.sin(2.0 * t), 0.3]), "harmonic 2"),
+        (lambda t: np.array([1.4 * np.cos(1.4 * t), 1.4 * np.sin(1.4 * t), 0.0]), "harmonic 1.4"),
+    ],
+)
+def test_the_right_model_wins_and_foresees(motion, likely):
+    errors = []
+
+    def watch(bank):
+        if bank.time > 4.0:
+            times = bank.time + np.array([0.0, 1.0])
+            errors.append(bank.predict(times)[0] - [motion(t) for t in times])
+
+    bank = followed(motion, each=watch)
+    assert MODELS.names[int(np.argmax(bank.weight))] == likely
+    times = bank.time + np.array([0.0, 0.5, 1.0])
+    _, covariance = bank.predict(times)
+    now, ahead = np.sqrt(np.mean(np.sum(np.square(errors), axis=2), axis=0))
+    assert now < 0.05
+    assert ahead < 0.2
+    assert np.all(np.linalg.eigvalsh(covariance) > 0.0)
+    assert np.all(np.diff(np.trace(covariance, axis1=1, axis2=2)) > 0.0)
+
+
+def test_prediction_is_what_advancing_would_give_when_models_do_not_change():
+    models = MotionModels(BankSettings(change=0.0))
+    bank = MotionBank(models, 0.0, np.array([1.0, 0.0, -5.0]), VARIANCE)
+    for k in range(1, 8):
+        bank.advance(0.1 * k)
+        bank.measured(np.array([1.0 + 0.1 * k, 0.0, -5.0]), VARIANCE)
+    mean, covariance = bank.predict(np.array([bank.time + 0.4]))
+    bank.advance(bank.time + 0.4)
+    np.testing.assert_allclose(mean[0], bank.state[0], atol=1e-12)
+    np.testing.assert_allclose(np.diag(covariance[0]), bank.position_variance, atol=1e-9)
+
+
+def test_an_axis_that_was_not_seen_is_left_alone():
+    bank = followed(lambda t: np.array([t, 0.0, 0.0]), until=2.0)
+    before = bank.x[:, 1].copy()
+    bank.measured(np.array([1.9, np.nan, 0.0]), VARIANCE)
+    np.testing.assert_array_equal(bank.x[:, 1], before)
+
+
+def test_what_stops_dead_is_trusted_less_afterwards():
+    def stops(t):
+        return np.array([2.0 * min(t, 3.0), 0.0, 0.0])
+
+    steady = followed(lambda t: np.array([2.0 * t, 0.0, 0.0]), until=4.0)
+    stopped = followed(stops, until=4.0)
+    ahead = np.array([1.0])
+    assert steady.surprise < 0.3
+    assert stopped.surprise > 0.6
+    spread = [np.sqrt(bank.predict(bank.time + ahead)[1][0, 0, 0]) for bank in (steady, stopped)]
+    assert spread[1] > 1.5 * spread[0]

@@ -1,0 +1,149 @@
+"""When a way round is searched, where it leads, and what is said when there is none."""
+
+import numpy as np
+import pytest
+from avoidance_scene import Scene, pole, straight, system, wall
+
+from idc_controller.barrier.navigator import Navigator, NavigatorSettings
+from idc_controller.plan.room import Formation, first_conflict
+
+ACROSS = wall("barrier", 10.0, 0.0, (0.3, 6.0, 12.0))
+CLOSED = wall("the long wall", 10.0, 0.0, (0.3, 400.0, 60.0))
+HERE = np.array([6.5, 0.0, -5.0])
+
+
+def now(*obstacles):
+    return Scene(obstacles).predict(np.zeros(1))
+
+
+def formation():
+    return Formation.of(system(), float(np.radians(5.0)))
+
+
+@pytest.fixture
+def navigator():
+    return Navigator(formation(), NavigatorSettings())
+
+
+def held_up(navigator, obstacles, seconds, rate=0.3, clock=5.0, begin=0.0, mission=None):
+    """Watch at 20 Hz; the clock at the end, and when ways round were searched."""
+    searches, search = [], navigator._search
+    mission = mission or straight(18.0)
+
+    def watched(*arguments):
+        searches.append(time)
+        return search(*arguments)
+
+    navigator._search = watched
+    for time in begin + 0.05 * np.arange(round(seconds / 0.05) + 1):
+        clock = navigator.watch(time, clock, rate, mission, HERE, obstacles)
+        if navigator.detours:
+            break
+    navigator._search = search
+    return clock, searches
+
+
+def test_mission_is_followed_while_it_goes_on(navigator):
+    mission = straight(18.0)
+    clock, searches = held_up(navigator, now(ACROSS), 5.0, rate=0.9, mission=mission)
+    assert not searches
+    assert clock == 5.0
+    assert navigator.followed(mission) is mission
+    assert navigator.mission_time(4.2) == 4.2
+    assert navigator.blocked(5.0) == ""
+
+
+def test_it_is_patient(navigator):
+    settings = navigator.settings
+    held_up(navigator, now(ACROSS), settings.patience - 0.1)
+    assert navigator.detours == 0
+    # Held up anew, it waits anew.
+    navigator.watch(1.0, 5.0, 1.0, straight(18.0), HERE, now(ACROSS))
+    held_up(navigator, now(ACROSS), settings.patience - 0.1, begin=1.05)
+    assert navigator.detours == 0
+    held_up(navigator, now(ACROSS), 0.3, begin=1.05 + settings.patience - 0.1)
+    assert navigator.detours == 1
+
+
+@pytest.mark.parametrize("obstacles", [[ACROSS], [pole("p", 10.0, 0.0)], [pole("a", 10.0, -1.0), pole("b", 10.0, 1.0)]])
+def test_way_round_keeps_its_distance_and_leads_back_to_the_mission(navigator, obstacles):
+    mission = straight(18.0)
+    clock, _ = held_up(navigator, now(*obstacles), 0.6, mission=mission)
+    detour = navigator.followed(mission)
+    assert detour is not mission
+    assert clock == pytest.approx(0.0)
+    np.testing.assert_allclose(detour.position(0.0), HERE, atol=1e-9)
+    detour.derivatives(np.array([200.0]), 0)
+    resume = navigator.mission_time(3.0)
+    np.testing.assert_allclose(detour.position(detour.end), mission.position(resume), atol=1e-6)
+    assert resume > 5.0
+    path = detour.derivatives(np.linspace(0.0, detour.end, 300), 0)[0]
+    s = navigator.settings
+    # Corners are cut by 0.1 m; the rest of the spare room is left.
+    assert first_conflict(path, now(*obstacles), formation(), s.margin + s.spare - 0.12) is None
+    # Beyond where it leads the mission is free.
+    beyond = mission.derivatives(np.linspace(resume, mission.end, 50), 0)[0]
+    assert first_conflict(beyond, now(*obstacles), formation(), s.margin) is None
+
+
+def test_behind_it_the_mission_is_taken_up_again(navigator):
+    mission = straight(18.0)
+    held_up(navigator, now(ACROSS), 0.6, mission=mission)
+    detour, resume = navigator.followed(mission), navigator.mission_time(0.0)
+    detour.derivatives(np.array([200.0]), 0)
+    assert navigator.advance(detour.end - 1.0) == detour.end - 1.0
+    assert navigator.followed(mission) is detour
+    assert navigator.advance(detour.end - 0.2) == resume
+    assert navigator.followed(mission) is mission
+    assert navigator.mission_time(resume + 0.5) == resume + 0.5
+
+
+def test_closed_way_is_said_after_a_while_and_names_what_closes_it(navigator):
+    settings = navigator.settings
+    # The bystander is nearer than the wall's centre, but not than the wall.
+    obstacles = now(pole("bystander", 6.5, 30.0), wall("the long wall", 10.0, 100.0, (0.3, 600.0, 60.0)))
+    clock, searches = held_up(navigator, obstacles, settings.give_up)
+    assert navigator.detours == 0
+    assert clock == 5.0
+    assert "the long wall" in navigator.reason
+    # Searches become rarer.
+    gaps = np.diff(searches)
+    assert np.all(np.diff(gaps) > -0.06)
+    assert gaps[0] < 2.0 * settings.search_interval + 0.1
+    assert len(searches) < 8
+    since = searches[0]
+    assert navigator.blocked(since + settings.give_up - 0.1) == ""
+    assert "the long wall" in navigator.blocked(since + settings.give_up)
+
+
+def test_what_opens_is_passed_and_no_longer_complained_of(navigator):
+    held_up(navigator, now(CLOSED), 3.0)
+    assert navigator.reason
+    held_up(navigator, now(ACROSS), 9.0, begin=3.05)
+    assert navigator.detours == 1
+    assert navigator.reason == ""
+    assert navigator.blocked(100.0) == ""
+
+
+def test_going_on_clears_the_reason(navigator):
+    held_up(navigator, now(CLOSED), 3.0)
+    navigator.watch(3.1, 5.0, 1.0, straight(18.0), HERE, now(CLOSED))
+    assert navigator.reason == ""
+    assert navigator.blocked(100.0) == ""
+
+
+def test_a_waypoint_inside_an_obstacle_is_named(navigator):
+    mission = straight(10.0)
+    held_up(navigator, now(wall("block", 10.0, 0.0, (3.0, 3.0, 8.0))), 3.0, mission=mission)
+    assert navigator.detours == 0
+    assert "block" in navigator.reason
+    assert "10.0 m north" in navigator.reason
+
+
+def test_forgetting_drops_the_way_round(navigator):
+    mission = straight(18.0)
+    held_up(navigator, now(ACROSS), 0.6, mission=mission)
+    navigator.forget()
+    assert navigator.followed(mission) is mission
+    assert navigator.mission_time(7.0) == 7.0
+    assert navigator.blocked(1000.0) == ""

@@ -1,0 +1,213 @@
+"""The nonlinear model against a second derivation, and against what mechanics conserves."""
+
+from dataclasses import fields
+
+import numpy as np
+import pytest
+
+from idc_controller.model.nonlinear import (
+    Inputs,
+    SystemState,
+    accelerations,
+    energy,
+    hover_inputs,
+    hover_state,
+    matrix_P,
+    rk4_step,
+    thrust_forces,
+    uav_positions,
+    uav_velocities,
+)
+from idc_controller.parameters import SystemParameters, polygon_attachments
+from idc_controller.rotations import hat
+
+
+def make_parameters(n, *, rng=None):
+    """Table I for ``n`` UAVs; with a generator, every UAV, link and attachment point is different."""
+    p = polygon_attachments(n, 1.0, -0.25)
+    m, l, J = np.full(n, 0.7), np.full(n, 3.2), np.tile(0.01 * np.eye(3), (n, 1, 1))
+    J_0 = np.diag([0.29, 0.29, 0.55])
+    if rng is not None:
+        p = p + rng.uniform(-0.1, 0.1, p.shape)
+        m, l = m * rng.uniform(0.8, 1.2, n), l * rng.uniform(0.8, 1.2, n)
+        A = rng.normal(size=(n, 3, 3))
+        J = J + 0.001 * A @ np.swapaxes(A, 1, 2)
+        B = rng.normal(size=(3, 3))
+        J_0 = J_0 + 0.01 * B @ B.T
+    return SystemParameters(
+        m_0=3.1, J_0=J_0, payload_size=np.array([1.0, 1.0, 0.5]), m=m, J=J, p=p, l=l, disc_radius=0.3,
+        thrust_max=30.0, motor_time_constant=0.05, attitude_kp=100.0, attitude_kd=16.0,
+    )  # fmt: skip
+
+
+def random_state(n, rng, rate=1.0):
+    """Any attitude, any links, any rates: the equations hold everywhere, not only near hover."""
+    unit = lambda shape: (lambda v: v / np.linalg.norm(v, axis=-1, keepdims=True))(rng.normal(size=shape))  # noqa: E731
+    q = unit((n, 3))
+    Omega = rate * rng.normal(size=(n, 3))
+    return SystemState(
+        r_0=rng.normal(size=3), r_0_dot=rng.normal(size=3), quaternion_0=unit(4), omega_0=rate * rng.normal(size=3),
+        q=q, Omega=Omega - np.sum(Omega * q, axis=1, keepdims=True) * q,
+        quaternion=unit((n, 4)), omega=rate * rng.normal(size=(n, 3)),
+    )  # fmt: skip
+
+
+def newton_euler(parameters, state, inputs):
+    """Second derivation, in the world frame, each body for itself, with the link tensions as unknowns.
+
+    Unknowns: payload acceleration and angular acceleration (world), UAV accelerations, tensions T_i along the links.
+    A tension pulls the payload towards the UAV (-q) and the UAV towards the payload (+q). The rigid links close the
+    system: |r_i - a_i| = l_i twice differentiated, a_i the attachment point.
+    """
+    n, g = parameters.number_of_uavs, np.array([0, 0, parameters.g])
+    R_0 = state.R_0
+    omega_0 = R_0 @ state.omega_0
+    J_0 = R_0 @ parameters.J_0 @ R_0.T
+    arm = parameters.p @ R_0.T
+    q = state.q @ R_0.T
+    Omega = state.Omega @ R_0.T
+    size = 6 + 4 * n
+    A, b = np.zeros((size, size)), np.zeros(size)
+    A[:3, :3] = parameters.m_0 * np.eye(3)
+    b[:3] = parameters.m_0 * g + inputs.F_0
+    A[3:6, 3:6] = J_0
+    b[3:6] = R_0 @ inputs.tau_0 - np.cross(omega_0, J_0 @ omega_0)
+    for i in range(n):
+        body, tension = slice(6 + 3 * i, 9 + 3 * i), 6 + 3 * n + i
+        A[:3, tension] = q[i]
+        A[3:6, tension] = np.cross(arm[i], q[i])
+        A[body, body] = parameters.m[i] * np.eye(3)
+        A[body, tension] = -q[i]
+        b[body] = parameters.m[i] * g + inputs.F[i]
+        # d = r_i - a_i = -l q: d . (r_i'' - a_i'') + |d'|^2 = 0
+        d, d_dot = -parameters.l[i] * q[i], -parameters.l[i] * np.cross(Omega[i], q[i])
+        A[tension, body] = d
+        A[tension, :3] = -d
+        A[tension, 3:6] = d @ hat(arm[i])  # a_i'' contains omega_0' x arm = -hat(arm) omega_0'
+        b[tension] = d @ np.cross(omega_0, np.cross(omega_0, arm[i])) - d_dot @ d_dot
+    x = np.linalg.solve(A, b)
+    r_0_ddot, omega_0_dot_world, r_ddot = x[:3], x[3:6], x[6 : 6 + 3 * n].reshape(n, 3)
+    # Omega x q = q', so Omega = q x q' and Omega' = q x q'' in the world; then into the payload frame.
+    attachment = r_0_ddot + np.cross(omega_0_dot_world, arm) + np.cross(omega_0, np.cross(omega_0, arm))
+    Omega_dot_world = np.cross(q, -(r_ddot - attachment) / parameters.l[:, None])
+    Omega_dot = (Omega_dot_world - np.cross(omega_0, Omega)) @ R_0
+    omega_dot = np.array(
+        [
+            np.linalg.solve(J, t - np.cross(w, J @ w))
+            for J, t, w in zip(parameters.J, inputs.tau, state.omega, strict=True)
+        ]
+    )
+    return r_0_ddot, R_0.T @ omega_0_dot_world, Omega_dot, omega_dot
+
+
+@pytest.mark.parametrize("n", [3, 4, 6])
+def test_two_derivations_agree(n):
+    rng = np.random.default_rng(n)
+    for _ in range(20):
+        parameters = make_parameters(n, rng=rng)
+        state = random_state(n, rng, rate=2.0)
+        inputs = Inputs(
+            F=10 * rng.normal(size=(n, 3)),
+            tau=rng.normal(size=(n, 3)),
+            F_0=rng.normal(size=3),
+            tau_0=rng.normal(size=3),
+        )
+        for got, expected in zip(
+            accelerations(parameters, state, inputs), newton_euler(parameters, state, inputs), strict=True
+        ):
+            assert np.linalg.norm(got - expected) <= 1e-10 * max(1.0, np.linalg.norm(expected))
+
+
+def test_P_is_symmetric_and_positive_definite():
+    rng = np.random.default_rng(0)
+    parameters = make_parameters(5, rng=rng)
+    P = matrix_P(parameters, random_state(5, rng).q)
+    np.testing.assert_allclose(P, P.T, rtol=0, atol=1e-14)
+    assert np.linalg.eigvalsh(P)[0] > 0
+
+
+@pytest.mark.parametrize("n", [3, 4, 7])
+def test_hover_is_an_equilibrium(n):
+    parameters = make_parameters(n)
+    for part in accelerations(parameters, hover_state(parameters), hover_inputs(parameters)):
+        np.testing.assert_allclose(part, 0.0, atol=1e-12)
+
+
+def test_hover_thrust_along_the_rotor_axis_points_up():
+    parameters = make_parameters(4)
+    F = thrust_forces(hover_state(parameters).quaternion, parameters.hover_thrust)
+    np.testing.assert_allclose(F, hover_inputs(parameters).F)
+    assert np.all(F[:, 2] < 0)
+
+
+@pytest.mark.parametrize("n", [3, 4, 6])
+def test_energy_is_conserved_without_thrust(n):
+    rng = np.random.default_rng(10 + n)
+    parameters = make_parameters(n, rng=rng)
+    state = random_state(n, rng, rate=0.5)
+    inputs = Inputs(F=np.zeros((n, 3)), tau=np.zeros((n, 3)))
+    before = energy(parameters, state)
+    kinetic = []
+    for _ in range(500):
+        state = rk4_step(parameters, state, inputs, 0.004)
+        kinetic.append(np.sum(uav_velocities(parameters, state) ** 2))
+    assert max(kinetic) > 1.5 * min(kinetic)  # there was something to exchange
+    assert abs(energy(parameters, state) - before) < 4e-9 * abs(before)
+
+
+def test_work_of_the_forces_is_the_gain_in_energy():
+    rng = np.random.default_rng(5)
+    n = 4
+    parameters = make_parameters(n, rng=rng)
+    state = random_state(n, rng)
+    inputs = Inputs(
+        F=5 * rng.normal(size=(n, 3)), tau=rng.normal(size=(n, 3)), F_0=rng.normal(size=3), tau_0=rng.normal(size=3)
+    )
+    power = (
+        np.sum(inputs.F * uav_velocities(parameters, state))
+        + np.sum(inputs.tau * state.omega)
+        + inputs.F_0 @ state.r_0_dot
+        + inputs.tau_0 @ state.omega_0
+    )
+    h = 1e-4
+    ahead, behind = (energy(parameters, rk4_step(parameters, state, inputs, s * h)) for s in (1, -1))
+    assert (ahead - behind) / (2 * h) == pytest.approx(power, rel=1e-6)
+
+
+def test_uav_velocities_are_the_derivative_of_the_positions():
+    rng = np.random.default_rng(6)
+    parameters = make_parameters(5, rng=rng)
+    state = random_state(5, rng)
+    inputs = hover_inputs(parameters)
+    h = 1e-5
+    ahead, behind = (uav_positions(parameters, rk4_step(parameters, state, inputs, s * h)) for s in (1, -1))
+    np.testing.assert_allclose((ahead - behind) / (2 * h), uav_velocities(parameters, state), atol=1e-6)
+
+
+def test_the_step_is_of_fourth_order_and_stays_on_the_manifold():
+    rng = np.random.default_rng(7)
+    parameters = make_parameters(4, rng=rng)
+    start = random_state(4, rng)
+
+    def forced(steps):
+        dt, state = 0.4 / steps, start
+        for k in range(steps):
+
+            def law(tau, s, k=k, dt=dt):
+                swing = np.sin(3 * (k * dt + tau))
+                return Inputs(F=thrust_forces(s.quaternion, np.full(4, 14 + swing)), tau=0.05 * swing * np.ones((4, 3)))
+
+            state = rk4_step(parameters, state, law, dt)
+        return state
+
+    states = [forced(steps) for steps in (20, 40, 80, 320)]
+    errors = [
+        max(np.abs(getattr(s, f.name) - getattr(states[-1], f.name)).max() for f in fields(SystemState))
+        for s in states[:-1]
+    ]
+    assert errors[0] / errors[1] > 10
+    assert errors[1] / errors[2] > 10
+    final = states[0]
+    np.testing.assert_allclose(np.linalg.norm(final.q, axis=1), 1.0, atol=1e-14)
+    np.testing.assert_allclose(np.linalg.norm(final.quaternion, axis=1), 1.0, atol=1e-14)
+    np.testing.assert_allclose(np.sum(final.q * final.Omega, axis=1), 0.0, atol=1e-12)

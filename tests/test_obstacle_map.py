@@ -1,0 +1,352 @@
+"""The ground's map of obstacles: association across vehicles and time, ghosts, and the obstacles of the mission."""
+
+import csv
+from dataclasses import replace
+
+import numpy as np
+import pymavlink.dialects.v20.ardupilotmega as mavlink
+import pytest
+from flight_in_process import Rehearsal, short_figure
+from obstacle_scene import ATTITUDE_NOISE, MOTIONS, NOISE, POSITION_NOISE, REACH, Scene, messages_of, pole, sphere, wall
+
+from gcs.mission import HarmonicMotion, Pole, Sphere, Wall
+from gcs.mission.read import read_mission
+from gcs.obstacles import ObstacleMap
+from gcs.obstacles.scans import SensorModel
+from idc_controller.estimate.measurements import Attitude, Position
+from vehicle_sim.swarm import Swarm
+
+SENSORS = SensorModel(NOISE, POSITION_NOISE, ATTITUDE_NOISE)
+HERE = np.array([0.0, 0.0, -6.0])
+
+
+def map_of(*known):
+    return ObstacleMap(known, SENSORS, REACH)
+
+
+def run(obstacle_map, obstacles, until, begin=0.0, scene=None, centre=lambda t: HERE, each=lambda t: None):
+    """Scans at 10 Hz and control steps at 20 Hz; ``obstacles(t)`` are the true ones."""
+    scene = scene or Scene(0)
+    for k in range(round(begin * 20), round(until * 20)):
+        t = k / 20
+        if k % 2 == 0:
+            scene.feed(obstacle_map, t, centre(t), obstacles(t))
+        obstacle_map.update(t)
+        each(t)
+    return obstacle_map
+
+
+def places(obstacle_map, time):
+    return {b.name: b.position for b in obstacle_map.beliefs(time)}
+
+
+def nearest(obstacle_map, time, place):
+    """Name and error of the track next to a place."""
+    found = places(obstacle_map, time)
+    name = min(found, key=lambda n: np.linalg.norm(found[n] - place))
+    return name, float(np.linalg.norm(found[name] - place))
+
+
+FOUR = {
+    "a": (lambda t: np.array([6.0, 0.0, -6.0]) + MOTIONS["harmonic"](t) * [0.5, 0, 0]),
+    "b": (lambda t: np.array([0.0, 6.0, -6.0]) + MOTIONS["circle"](t)),
+    "c": (lambda t: np.array([-6.0, 0.0, -5.0])),
+    "d": (lambda t: np.array([0.0, -6.0, -7.0]) + MOTIONS["fast harmonic"](t)),
+}
+
+
+def four(t):
+    return [sphere(place(t), 0.4, name) for name, place in FOUR.items()]
+
+
+def test_four_vehicles_four_obstacles_four_tracks():
+    counts = []
+    m = map_of()
+    run(m, four, 6.0, each=lambda t: counts.append(len(m.predict(np.array([t])))))
+    assert counts[0] == 4  # four vehicles see each at once
+    assert set(counts) == {4}
+    for place in FOUR.values():
+        _, error = nearest(m, 5.95, place(5.95))
+        assert error < 0.12
+    names = [o.name for o in m.predict(np.array([6.0]))]
+    assert len(set(names)) == 4
+
+
+def test_one_vehicle_needs_two_scans():
+    counts = []
+    m = map_of()
+    run(m, lambda t: [sphere((5.0, 0.0, -6.0))], 0.5, scene=Scene(0, uavs=1),
+        each=lambda t: counts.append(len(m.predict(np.array([t])))))  # fmt: skip
+    assert counts[0] == 0
+    assert counts[2] == 1
+
+
+def test_shapes_together():
+    things = [
+        pole((0.0, 6.0), 0.3, 12.0), wall((-6.0, 0.0, -4.0), (0.3, 5.0, 8.0), 0.2), sphere((6.0, 0.0, -6.0), 0.7),
+        pole((4.0, -6.0), 0.2, 9.0, "other"),
+    ]  # fmt: skip
+    m = run(map_of(), lambda t: things, 3.0)
+    found = sorted(o.shape.kind for o in m.predict(np.array([3.0])))
+    assert found == ["pole", "pole", "sphere", "wall"]
+
+
+def test_predictions_have_the_shape_asked_for():
+    m = run(map_of(Pole("known", (9.0, 9.0), 0.3, 8.0)), four, 1.0)
+    times = 1.0 + 0.1 * np.arange(33)
+    for o in m.predict(times):
+        assert o.positions.shape == (33, 3)
+        assert o.growth.shape == (33,)
+        assert np.all((o.growth >= 0.0) & (o.growth <= 0.5))
+        if o.name != "known":
+            assert np.all(np.diff(o.growth) >= -1e-9)
+
+
+@pytest.mark.parametrize("loss", [0.0, 0.3, 0.6])
+def test_crossing_obstacles_keep_their_names(loss):
+    """Two pass each other at 3 m/s with 0.3 m between their surfaces, and two others at the same height behind."""
+
+    def crossing(t):
+        x = -4.5 + 1.5 * t
+        return [
+            sphere((5.0, x, -6.0), 0.4, "a"), sphere((6.1, -x, -6.0), 0.4, "b"),
+            sphere((-5.0, x, -6.0), 0.4, "c"), sphere((-6.1, -x, -6.2), 0.4, "d"),
+        ]  # fmt: skip
+
+    m = map_of()
+    names = {}
+
+    def each(t):
+        if t in (1.5, 5.5):
+            for o in crossing(t):
+                name, error = nearest(m, t, np.array(o.position_in_world))
+                names.setdefault(o.name, []).append(name)
+                assert error < (0.2 if loss < 0.5 else 0.35)
+
+    run(m, crossing, 6.0, scene=Scene(3, loss=loss), each=each)
+    for before, after in names.values():
+        assert before == after
+    assert len(m.tracks) == 4
+
+
+def test_one_obstacle_never_stays_two_tracks():
+    """A vehicle that comes late, with a number of its own, joins the track of the others."""
+    m = map_of()
+    late, early = Scene(1), Scene(2, uavs=3)
+    run(m, lambda t: [sphere((6.0, 0.0, -6.0))], 1.0, scene=early)
+    run(m, lambda t: [sphere((6.0, 0.0, -6.0))], 2.0, begin=1.0, scene=late)
+    assert len(m.tracks) == 1
+
+
+def test_duplicates_are_merged():
+    m = map_of()
+    obstacle = sphere((6.0, 0.0, -6.0), 0.5)
+    run(m, lambda t: [obstacle], 1.0)
+    (first,) = m.tracks
+    # A second track of the same obstacle, as a bad pose might have begun it, with a vehicle's number bound to it.
+    parts = [cluster for i, _, cluster in Scene(8).scans(1.0, HERE, [obstacle]) if i == 0]
+    m._begin([type("C", (), {"uav": 0, "number": 0, "seen": p})() for p in parts], 1.0)
+    m.tracks[-1].clusters = 5
+    assert len(m.tracks) == 2
+    run(m, lambda t: [obstacle], 2.0, begin=1.0, scene=Scene(0))
+    assert m.tracks == [first]
+
+
+# Coming and going
+
+
+def test_a_ghost_is_dropped_and_a_single_false_detection_never_counts():
+    m = map_of()
+    run(m, lambda t: [sphere((5.0, 0.0, -6.0))], 1.0)
+    assert len(m.predict(np.array([1.0]))) == 1
+    run(m, lambda t: [], 1.8, begin=1.0)
+    assert len(m.predict(np.array([1.8]))) == 1  # still foreseen after a short silence
+    run(m, lambda t: [], 2.5, begin=1.8)
+    assert m.predict(np.array([2.5])) == []
+    m = map_of()
+    counts = []
+    run(m, lambda t: [sphere((5.0, 0.0, -6.0))] if t < 0.05 else [], 1.0, scene=Scene(0, uavs=1),
+        each=lambda t: counts.append(len(m.predict(np.array([t])))))  # fmt: skip
+    assert set(counts) == {0}
+    assert m.tracks == []
+
+
+def leaving(t):
+    return np.array([-max(t - 1.0, 0.0) * 3.0, 0.0, -6.0])
+
+
+def test_out_of_range_what_stands_is_kept_and_what_moves_is_forgotten():
+    def things(t):
+        return [sphere((5.0, 0.0, -6.0), 0.5, "stands"), sphere((5.0, -2.0 + 1.5 * t, -6.0), 0.4, "moves")]
+
+    m = map_of()
+    run(m, things, 12.0, centre=leaving)
+    (left,) = m.predict(np.array([12.0, 13.0]))
+    assert np.linalg.norm(left.positions[0] - [5.0, 0.0, -6.0]) < 0.1
+    assert left.growth[0] < 0.1  # as sure as when it was last seen
+
+
+def test_a_moving_obstacle_is_carried_on_for_a_while_after_it_left_the_range():
+    m = map_of()
+    run(m, lambda t: [sphere((5.0 + 1.8 * t, 0.0, -6.0))], 4.0)  # out of range after 3 s
+    (o,) = m.predict(np.array([4.0]))
+    assert np.linalg.norm(o.positions[0] - [5.0 + 1.8 * 4.0, 0.0, -6.0]) < 0.5
+    run(m, lambda t: [], 6.0, begin=4.0)
+    assert m.predict(np.array([6.0])) == []
+
+
+def test_when_all_links_are_silent_nothing_is_dropped_for_being_unseen():
+    m = map_of()
+    run(m, lambda t: [sphere((5.0, 0.0, -6.0))], 1.0)
+    for k in range(20, 60):
+        m.update(k / 20)
+    assert len(m.predict(np.array([3.0]))) == 1
+
+
+def test_scans_wait_for_their_pose_and_nonsense_is_refused():
+    m = map_of()
+    scene = Scene(0)
+    ((i, position, quaternion, scan),) = scene.look(1.0, HERE, [sphere((5.0, 0.0, -6.0))])[:1]
+    for message in messages_of(scan):
+        m.detected(message, i, 1.0)
+    m.update(1.0)
+    assert m.tracks == []
+    m.measured(Position(1.0, i, position, np.zeros(3)))
+    m.measured(Attitude(1.0, i, quaternion, np.zeros(3)))
+    m.update(1.05)
+    assert len(m.tracks) == 1
+    assert m.refused == 0
+
+    def nonsense(**changes):
+        fields = {
+            "time_boot_ms": 1100, "sensor_type": 0, "frame": mavlink.MAV_FRAME_BODY_FRD, "obstacle_id": 1,
+            "x": 1.0, "y": 0.0, "z": 0.0, "min_distance": 0.1, "max_distance": 10.0,
+        } | changes  # fmt: skip
+        return mavlink.MAVLink_obstacle_distance_3d_message(**fields)
+
+    for bad in (
+        {"frame": mavlink.MAV_FRAME_GLOBAL}, {"x": float("nan")}, {"y": float("inf")}, {"x": 0.0}, {"x": 1e6},
+        {"max_distance": 0.0}, {"max_distance": float("nan")},
+    ):  # fmt: skip
+        m.detected(nonsense(**bad), 0, 1.1)
+    assert m.refused == 7
+    m.detected(nonsense(), 3, 1.1)  # of a vehicle whose pose never comes
+    m.update(1.1)
+    m.update(1.5)
+    assert m.refused == 8
+    for k in range(5000):  # a flood
+        m.detected(nonsense(time_boot_ms=2000 + k), 2, 2.0)
+    assert m.refused > 3000
+
+
+# Obstacles of the mission
+
+
+def test_known_standing_obstacles_are_told_from_the_start_and_their_detections_make_no_tracks():
+    known = (
+        Sphere("ball", (5.0, 0.0, -6.0), 0.5), Pole("mast", (0.0, 6.0), 0.3, 12.0),
+        Wall("house", (-6.0, 0.0, -4.0), (0.3, 5.0, 8.0), 12.0),
+    )  # fmt: skip
+    m = map_of(*known, Sphere("secret", (0.0, -5.0, -6.0), 0.5, known=False))
+    before = m.predict(np.array([0.0, 1.0]))
+    assert [o.name for o in before] == ["ball", "mast", "house"]
+    true = [
+        sphere((5.0, 0.0, -6.0), 0.5, "ball"), pole((0.0, 6.0), 0.3, 12.0, "mast"),
+        wall((-6.0, 0.0, -4.0), (0.3, 5.0, 8.0), np.radians(12.0), "house"),
+    ]  # fmt: skip
+    run(m, lambda t: true, 3.0)
+    assert m.tracks == []
+    for a, b in zip(before, m.predict(np.array([3.0, 4.0])), strict=True):
+        assert a.shape == b.shape
+        np.testing.assert_array_equal(a.positions, b.positions)
+        assert not b.growth.any()
+    run(m, lambda t: [*true, sphere((0.0, -5.0, -6.0), 0.5, "secret")], 5.0, begin=3.0)
+    assert [track.name for track in m.tracks] == ["track 1"]
+
+
+def test_an_unknown_obstacle_that_passes_a_known_one_keeps_its_track():
+    m = map_of(Wall("house", (5.0, 0.0, -4.0), (0.3, 6.0, 8.0)))
+    house = wall((5.0, 0.0, -4.0), (0.3, 6.0, 8.0), 0.0, "house")
+
+    def ball(t):
+        return np.array([4.2, -4.0 + 1.5 * t, -6.0])
+
+    errors = []
+
+    def each(t):
+        if 1.0 < t < 5.0:
+            assert len(m.tracks) == 1
+            errors.append(nearest(m, t, ball(t))[1])
+
+    run(m, lambda t: [house, sphere(ball(t), 0.4, "ball")], 5.2, each=each)
+    assert max(errors) < 0.25
+
+
+def test_a_known_moving_obstacle_keeps_its_shape_and_its_motion_is_followed():
+    def place(t):
+        return np.array([6.0 + 1.5 * np.sin(t), 0.0, -6.0])
+
+    motion = HarmonicMotion((1.5, 0.0, 0.0), 1.0)
+    m = map_of(Sphere("swing", (6.0, 0.0, -6.0), 0.45, motion=motion))
+    (before,) = m.predict(np.array([0.0]))
+    np.testing.assert_array_equal(before.positions[0], [6.0, 0.0, -6.0])
+    assert before.growth[0] == 0.5
+    errors = []
+
+    def each(t):
+        (o,) = m.predict(np.array([t]))
+        assert o.name == "swing"
+        assert o.shape.radius == 0.45
+        if t > 1.5:
+            errors.append(np.linalg.norm(o.positions[0] - place(t)))
+
+    run(m, lambda t: [sphere(place(t), 0.45)], 7.0, each=each)
+    assert np.sqrt(np.mean(np.square(errors))) < 0.1
+
+
+def test_a_known_moving_obstacle_that_is_not_where_it_should_be_is_left_out_until_it_is_seen():
+    m = map_of(Sphere("swing", (6.0, 0.0, -6.0), 0.45, motion=HarmonicMotion((1.5, 0.0, 0.0), 1.0)))
+    run(m, lambda t: [], 2.0)
+    assert m.predict(np.array([2.0])) == []
+    run(m, lambda t: [sphere((6.5, 0.5, -6.0), 0.45)], 3.0, begin=2.0)
+    (o,) = m.predict(np.array([3.0]))
+    assert o.name == "swing"
+
+
+def test_equal_seeds_give_equal_maps():
+    maps = [run(map_of(), four, 3.0, scene=Scene(9)) for _ in range(2)]
+    a, b = (m.predict(np.array([3.0, 4.0])) for m in maps)
+    for one, other in zip(a, b, strict=True):
+        np.testing.assert_array_equal(one.positions, other.positions)
+        assert one.shape == other.shape
+
+
+# Over the wire
+
+
+def test_in_flight_the_ground_finds_what_the_vehicles_sense(tmp_path):
+    """The whole way: sensors, MAVLink, the ground's codec and clocks, the map, the records."""
+    mission = read_mission(short_figure(tmp_path))
+    obstacles = (
+        Sphere("ball", (4.0, 4.0, -3.5), 0.5, known=False), Pole("mast", (0.0, 6.0), 0.3, 9.0, known=False),
+        Sphere("known", (-5.0, 0.0, -3.0), 0.4),
+    )  # fmt: skip
+    mission = replace(mission, obstacles=obstacles)
+    with Rehearsal(mission, tmp_path / "run") as flight:
+        obstacle_map = ObstacleMap.of_mission(mission)
+        flight.station._obstacle_map = obstacle_map
+        flight.swarm.close()
+        flight.swarm = Swarm(mission.system, seed=1, home=mission.home, obstacles=obstacles)
+        flight.fly(until=6.0)
+        believed = {o.name: o for o in obstacle_map.predict(np.array([flight.now]))}
+        assert obstacle_map.refused == 0
+    assert len(believed) == 3
+    kinds = {o.shape.kind: o for name, o in believed.items() if name != "known"}
+    assert np.linalg.norm(kinds["sphere"].positions[0] - [4.0, 4.0, -3.5]) < 0.08
+    assert np.linalg.norm(kinds["pole"].positions[0][:2] - [0.0, 6.0]) < 0.08
+    with (tmp_path / "run" / "obstacles_estimate.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert {row["kind"] for row in rows} == {"sphere", "pole"}
+    times = sorted({float(row["time_s"]) for row in rows})
+    np.testing.assert_allclose(np.diff(times), 0.1, atol=1e-6)
+    assert len(times) > 40

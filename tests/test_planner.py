@@ -1,0 +1,285 @@
+"""The safety programme: its barrier, its optimum against another solver, its slacks and its limits."""
+
+from types import SimpleNamespace
+
+import daqp
+import numpy as np
+import pytest
+from avoidance_scene import system
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from proxsuite import proxqp
+
+import idc_controller.barrier.planner as planner_module
+from idc_controller.barrier.formation import Formation
+from idc_controller.barrier.obstacles import PredictedObstacle, Shape
+from idc_controller.barrier.planner import Planner, PlannerSettings
+from idc_controller.barrier.separation import separations
+from idc_controller.errors import ParameterError
+from idc_controller.plan.chain import Chain
+
+SETTINGS = PlannerSettings()
+K = SETTINGS.chain.stages
+
+
+def cruising(speed=1.5, altitude=5.0, stages=K, period=0.1):
+    """A mission (5, K + 1, 3) north at constant speed."""
+    mission = np.zeros((5, stages + 1, 3))
+    mission[0, :, 0] = speed * period * np.arange(stages + 1)
+    mission[0, :, 2] = -altitude
+    mission[1, :, 0] = speed
+    return mission
+
+
+def standing(shape, position, growth=0.0, name="o"):
+    return PredictedObstacle(name, shape, np.tile(position, (K + 1, 1)), np.full(K + 1, growth))
+
+
+@pytest.fixture(scope="module")
+def planner():
+    return Planner(Formation(system()), SETTINGS)
+
+
+def solved(planner, start, mission, obstacles, passes=3):
+    """The plan after some rounds of convexification, and the planes it kept to."""
+    position, acceleration, plan = mission[0], mission[2], None
+    for _ in range(passes):
+        near = separations(planner.formation, position, acceleration, obstacles, 2.5)
+        about = acceleration
+        plan = planner.solve(start, mission, near, about)
+        assert plan is not None
+        position, acceleration = mission[0] + plan.deviation[:, 0], mission[2] + plan.deviation[:, 2]
+    return plan, near, about
+
+
+# The barrier
+
+
+@pytest.mark.parametrize("rates", [(), (5.0,), (2.0, 7.0), (6.0, 6.0, 6.0, 6.0)])
+def test_operator_is_the_product_of_its_factors(rates):
+    s = PlannerSettings(barrier_rates=rates)
+    rng = np.random.default_rng(len(rates))
+    h = rng.normal(size=K + 1)
+    told = s.barrier @ h
+    for k in range(1, K + 1):
+        # (E - p_1) .. (E - p_m) h, with as many factors as there is past for.
+        row = h
+        for rate in rates[: min(len(rates), k)]:
+            row = row[1:] - np.exp(-rate * s.chain.period) * row[:-1]
+        degree = min(len(rates), k)
+        assert told[k - 1] == pytest.approx(row[k - degree])
+
+
+@pytest.mark.parametrize("rates", [(0.0,), (-1.0,), (3.0, float("nan")), (3.0, -0.5)])
+def test_poles_must_be_real_and_stable(rates):
+    with pytest.raises(ParameterError, match="barrier rates"):
+        PlannerSettings(barrier_rates=rates)
+
+
+@given(
+    st.lists(st.floats(0.2, 30.0), min_size=0, max_size=4),
+    st.lists(st.floats(0.0, 5.0), min_size=K, max_size=K),
+    st.floats(0.0, 5.0),
+)
+@settings(max_examples=60, deadline=None)
+def test_safe_sets_are_nested(rates, rows, first):
+    """Whenever h_0 >= 0 and all rows hold, h stays at zero or more: the rows' first stages put it in every set."""
+    operator = PlannerSettings(barrier_rates=tuple(rates)).barrier
+    h = np.concatenate([[first], np.linalg.solve(operator[:, 1:], np.array(rows) - operator[:, 0] * first)])
+    assert h.min() >= -1e-9
+    # Every partial product is in its set, too.
+    psi = h
+    for rate in rates:
+        psi = psi[1:] - np.exp(-rate * 0.1) * psi[:-1]
+        assert psi.min() >= -1e-7 * max(1.0, np.abs(h).max())
+
+
+@pytest.mark.parametrize("rates", [(3.0,), (4.0, 4.0)])
+def test_barrier_limits_how_fast_an_obstacle_is_approached(rates):
+    """Plain rows let it run up to the margin; with the barrier every row holds on the plan itself."""
+    s = PlannerSettings(barrier_rates=rates)
+    planner = Planner(Formation(system()), s)
+    mission = cruising()
+    obstacle = standing(Shape("sphere", 0.5), [4.5, 0.4, -6.5])
+    plan, near, about = solved(planner, np.zeros((5, 3)), mission, [obstacle])
+    assert plan.slack < 1e-6
+    position = mission[0] + plan.deviation[:, 0]
+    n, lever = near[0].normals, planner.formation.levers(about)[:, 0]
+    change = plan.deviation[:, 2] + mission[2] - about
+    rooms = planner.room(near[0], position, about)
+    rooms[1] -= lever * np.sum(n[:, :2] * change[:, :2], axis=1)
+    for h in rooms:
+        assert (s.barrier @ h).min() > -1e-6
+        assert h.min() > -1e-6
+    # The mission itself would break them.
+    assert min((s.barrier @ h).min() for h in planner.room(near[0], mission[0], mission[2])) < -0.05
+
+
+# The optimum
+
+
+def random_programme(rng):
+    mission = cruising(rng.uniform(0.5, 2.0))
+    start = rng.normal(size=(5, 3)) * np.array([0.3, 0.3, 0.2, 0.2, 0.5])[:, None]
+    shapes = [Shape("sphere", 0.5), Shape("pole", 0.3, (0.0, 0.0, 15.0)), Shape("wall", size=(0.3, 3.0, 4.0), yaw=0.5)]
+    obstacles = []
+    for i in range(rng.integers(1, 4)):
+        place = np.array([rng.uniform(2.5, 6.0), rng.uniform(-3.0, 3.0), rng.uniform(-8.0, -4.0)])
+        obstacles.append(standing(shapes[rng.integers(3)], place, rng.uniform(0.0, 0.2), f"o{i}"))
+    return start, mission, obstacles
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_optimum_is_that_of_another_solver(planner, monkeypatch, seed):
+    start, mission, obstacles = random_programme(np.random.default_rng(seed))
+    asked = []
+
+    def watched(*arguments):
+        answer = daqp.solve(*arguments)
+        asked.append((arguments, answer))
+        return answer
+
+    monkeypatch.setattr(planner_module, "daqp", SimpleNamespace(solve=watched))
+    plan, _, _ = solved(planner, start, mission, obstacles, passes=1)
+    (H, f, A, upper, lower, sense), (x, value, _, info) = asked[-1]
+    n = len(f)
+    assert not sense.any()
+    assert plan.cost == pytest.approx(value + planner._cost(start, np.zeros((SETTINGS.chain.knots, 3))), abs=1e-6)
+    rows = np.vstack([np.eye(n), A])
+    assert np.all(rows @ x <= upper + 1e-6)
+    assert np.all(rows @ x >= lower - 1e-6)
+    # Stationarity: the multipliers of upper bounds are positive, of lower ones negative.
+    multipliers = info["lam"]
+    np.testing.assert_allclose(H @ x + f + rows.T @ multipliers, 0.0, atol=1e-4)
+    assert np.all(multipliers[upper - rows @ x > 1e-5] <= 1e-6)
+    assert np.all(multipliers[rows @ x - lower > 1e-5] >= -1e-6)
+    qp = proxqp.dense.QP(n, 0, len(rows))
+    qp.settings.eps_abs, qp.settings.max_iter = 1e-7, 20000
+    qp.init(H, f, None, None, rows, np.maximum(lower, -1e20), np.minimum(upper, 1e20))
+    qp.solve()
+    other = qp.results.x
+    assert 0.5 * other @ H @ other + f @ other == pytest.approx(value, rel=1e-4, abs=1e-4)
+
+
+def test_free_plan_is_the_linear_quadratic_optimum(planner):
+    rng = np.random.default_rng(1)
+    start = rng.normal(size=(5, 3)) * 0.1
+    free = planner.free(start)
+    s, chain = SETTINGS, SETTINGS.chain
+
+    def cost(knots):
+        """Written out over the stages, without the planner's matrices but the terminal one."""
+        y = chain.roll_out(start, knots)
+        total = 0.0
+        for axis in range(3):
+            weights = np.array([s.position[axis], s.velocity[axis], s.acceleration, s.jerk, s.snap[axis]])
+            total += (y[1:, :, axis] ** 2 @ weights).sum()
+            total += s.crackle * (np.diff(y[:, 4, axis]) ** 2).sum() / chain.period**2
+            W = np.diag(weights)
+            last = y[-1, :4, axis]
+            total += last @ planner_module._terminal(chain.period, W) @ last
+        return 0.5 * total
+
+    assert free.cost == pytest.approx(cost(free.knots))
+    for _ in range(20):
+        assert cost(free.knots + 0.05 * rng.normal(size=free.knots.shape)) > free.cost
+    # With nothing near and no limit touched the programme finds the same.
+    plan = planner.solve(start, cruising(), [], np.zeros((K + 1, 3)))
+    np.testing.assert_allclose(plan.knots, free.knots, atol=1e-5)
+    assert plan.cost == pytest.approx(free.cost, rel=1e-6)
+    assert plan.slack == 0.0
+
+
+def test_nothing_to_do_is_done(planner):
+    free = planner.free(np.zeros((5, 3)))
+    assert not free.knots.any()
+    assert free.cost == 0.0
+
+
+def test_free_plan_comes_back(planner):
+    start = np.zeros((5, 3))
+    start[0] = [1.0, -0.5, 0.7]
+    free = planner.free(start)
+    assert np.abs(free.deviation[-1, 0]).max() < 0.1
+
+
+# Slacks and limits
+
+
+def test_slack_is_zero_when_the_rows_can_be_kept(planner):
+    obstacle = standing(Shape("sphere", 0.5), [4.0, 0.3, -7.0])
+    plan, _, _ = solved(planner, np.zeros((5, 3)), cruising(1.0), [obstacle])
+    assert plan.slack == pytest.approx(0.0, abs=1e-7)
+
+
+def test_slack_says_by_how_much_safety_is_missed(planner):
+    # It begins 0.2 m from the surface: 0.33 m of margin and tracking cannot be had at the first stages.
+    position = np.array([0.0, 0.0, -5.0])
+    surface = position + np.array([0.5 + 0.2 + 0.5, 0.0, 0.0])
+    obstacle = standing(Shape("sphere", 0.5), surface)
+    plan, _, _ = solved(planner, np.zeros((5, 3)), cruising(0.0), [obstacle])
+    missing = SETTINGS.margin + SETTINGS.tracking - 0.2
+    p = np.exp(-SETTINGS.barrier_rates[0] * 0.1)
+    # h hardly changes in the first stage: its row, h_1 - p h_0, is missed by that share of the room.
+    assert plan.slack == pytest.approx((1.0 - p) * missing, rel=0.25)
+    assert plan.cost > SETTINGS.slack_linear * plan.slack * 0.9
+
+
+def test_one_obstacle_that_cannot_be_kept_off_does_not_excuse_another(planner):
+    near = standing(Shape("sphere", 0.5), [1.2, 0.0, -5.0], name="near")
+    ahead = standing(Shape("sphere", 0.5), [-4.5, 0.4, -6.5], name="other")
+    alone, _, _ = solved(planner, np.zeros((5, 3)), cruising(-1.5), [near])
+    assert alone.slack > 0.01
+    _, planes, about = solved(planner, np.zeros((5, 3)), cruising(-1.5), [near, ahead])
+    both = planner.solve(np.zeros((5, 3)), cruising(-1.5), planes, about)
+    other = next(s for s in planes if s.obstacle.name == "other")
+    position = cruising(-1.5)[0] + both.deviation[:, 0]
+    assert planner.room(other, position, both.deviation[:, 2])[0].min() > -1e-6
+
+
+def test_growth_of_what_is_not_known_is_kept_off_as_well(planner):
+    sure, unsure = (standing(Shape("sphere", 0.5), [3.5, 0.0, -7.4], growth) for growth in (0.0, 0.3))
+    heights = []
+    for obstacle in (sure, unsure):
+        plan, _, _ = solved(planner, np.zeros((5, 3)), cruising(1.0), [obstacle])
+        assert plan.slack < 1e-6
+        heights.append(np.linalg.norm(plan.deviation[:, 0], axis=1).max())
+    assert heights[1] > heights[0] + 0.1
+
+
+@pytest.mark.parametrize("start", [[3.0, 0.0, 0.0], [0.0, -4.0, 0.0], [2.0, 2.0, 3.0], [0.0, 0.0, -3.0]])
+def test_far_from_the_mission_the_limits_hold(planner, start):
+    y = np.zeros((5, 3))
+    y[0] = start
+    mission = cruising(0.0)
+    plan = planner.solve(y, mission, [], np.zeros((K + 1, 3)))
+    limited = np.arange(3, K + 1, 3)
+    assert np.all(np.abs(plan.deviation[limited, 2]) <= np.array(SETTINGS.acceleration_limit) + 1e-6)
+    assert np.all(np.abs(plan.deviation[1:, 4]) <= np.array(SETTINGS.snap_limit) + 1e-6)
+    assert np.all(mission[0, limited, 2] + plan.deviation[limited, 0, 2] <= SETTINGS.lowest + 1e-6)
+
+
+def test_limits_never_forbid_the_mission_itself(planner):
+    mission = cruising(1.0)
+    mission[2, :, 1], mission[4, :, 0], mission[0, :, 2] = 4.5, 9.0, -0.25
+    plan = planner.solve(np.zeros((5, 3)), mission, [], mission[2])
+    np.testing.assert_allclose(plan.knots, 0.0, atol=1e-6)
+    assert plan.cost == pytest.approx(0.0, abs=1e-6)
+
+
+def test_mission_near_the_ground_is_not_led_into_it(planner):
+    mission = cruising(1.0, altitude=1.2)
+    above = standing(Shape("wall", size=(0.5, 40.0, 2.0)), [3.0, 0.0, -6.2])
+    plan, _, _ = solved(planner, np.zeros((5, 3)), mission, [above])
+    limited = np.arange(3, K + 1, 3)
+    assert np.all(mission[0, limited, 2] + plan.deviation[limited, 0, 2] <= SETTINGS.lowest + 0.02)
+
+
+def test_other_chains_do_as_well():
+    chain = Chain(0.2, (1, 1, 2, 3, 4))
+    planner = Planner(Formation(system(6)), PlannerSettings(chain=chain, barrier_rates=(3.0, 3.0)))
+    mission = cruising(1.0, stages=chain.stages, period=chain.period)
+    k = chain.stages + 1
+    obstacle = PredictedObstacle("o", Shape("sphere", 0.4), np.tile([2.0, 0.3, -7.0], (k, 1)), np.zeros(k))
+    near = separations(planner.formation, mission[0], mission[2], [obstacle], 2.5)
+    assert planner.solve(np.zeros((5, 3)), mission, near, mission[2]) is not None

@@ -1,0 +1,237 @@
+"""The vehicles' range sensors: geometry, noise, repeatability, and the way onto the wire."""
+
+import math
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pymavlink.dialects.v20.ardupilotmega as mavlink
+import pytest
+from obstacle_scene import pole, sphere, wall
+from scripted_ground import ScriptedGround, exchange
+
+from gcs.config import UnusableFile, default_system_path, read_system
+from gcs.mission import HarmonicMotion, Pole, Sphere, Wall
+from gcs.wire.codec import Codec
+from idc_controller.barrier.obstacles import Shape
+from idc_controller.estimate.surface_distance import Bodies
+from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
+from vehicle_sim.passage import Passage
+from vehicle_sim.range_sensor import RangeSensor
+from vehicle_sim.swarm import Swarm
+from vehicle_sim.visible_surface import visible_points
+
+CONFIG = read_system()
+REACH = 10.0
+LEVEL = (1.0, 0.0, 0.0, 0.0)
+OBSTACLES = [
+    sphere((0.0, 0.0, -6.0), 0.5), sphere((0.0, 0.0, -6.0), 0.3), pole((0.0, 0.0), 0.2), pole((0.0, 0.0), 1.0, 4.0),
+    wall((0.0, 0.0, -5.0)), wall((0.0, 0.0, -3.0), (6.0, 0.3, 6.0), -1.1), wall((0.0, 0.0, -4.0), (0.2, 30.0, 30.0)),
+]  # fmt: skip
+
+
+def body_of(obstacle):
+    return Bodies([Shape(obstacle.shape, obstacle.radius, obstacle.size, obstacle.yaw)])
+
+
+def places(rng, count=40):
+    for _ in range(count):
+        direction = rng.normal(size=3) * [1.0, 1.0, 0.4]
+        yield tuple(direction / np.linalg.norm(direction) * rng.uniform(1.5, 11.0) + [0.0, 0.0, -6.0])
+
+
+@pytest.mark.parametrize("obstacle", OBSTACLES, ids=lambda o: f"{o.shape} {o.radius} {o.size}")
+def test_points_lie_on_the_visible_side_within_range_and_the_first_is_the_nearest(obstacle):
+    centre = np.array([obstacle.position_in_world])
+    body = body_of(obstacle)
+    rng = np.random.default_rng(3)
+    seen = 0
+    for place in places(rng):
+        distance = float(body.distance(np.array([place]), centre)[0, 0])
+        points = visible_points(obstacle, place, REACH, rng.uniform())
+        if distance <= 0.0 or distance > REACH:
+            assert points == []
+            continue
+        seen += 1
+        points = np.array(points)
+        on_surface = np.abs(body.distance(points, centre)[0])
+        # Points on a pole's end lie within its rim.
+        assert on_surface.max() < 1e-6
+        ranges = np.linalg.norm(points - place, axis=1)
+        assert ranges.max() <= REACH + 1e-6
+        assert ranges[0] == pytest.approx(distance, abs=1e-6)
+        assert ranges[0] == pytest.approx(ranges.min(), abs=1e-6)
+        for share in np.linspace(0.02, 0.98, 25):  # nothing of the obstacle itself in the way
+            between = np.array(place) + share * (points - place)
+            assert body.distance(between, centre)[0].min() > -1e-6
+    assert seen > 20
+
+
+def test_ends_are_hit_when_they_are_in_range():
+    points = np.array(visible_points(pole((0.0, 0.0), 0.2, 8.0), (-4.0, 0.0, -5.0), REACH, 0.0))
+    assert points[:, 2].min() == pytest.approx(-8.0)
+    assert points[:, 2].max() == pytest.approx(0.0)
+    points = np.array(visible_points(wall((0.0, 0.0, -5.0), (0.4, 6.0, 4.0), 0.0), (-5.0, 0.0, -8.5), REACH, 0.0))
+    assert np.ptp(points[:, 1]) == pytest.approx(6.0)
+    assert np.ptp(points[:, 2]) == pytest.approx(4.0)
+    assert np.ptp(points[:, 0]) == pytest.approx(0.4)  # the top shows how thick it is
+
+
+def test_noise_is_along_the_line_of_sight_with_the_given_deviation():
+    obstacle = sphere((8.0, 0.0, -6.0), 0.5)
+    attitude = tuple(quaternion_from_euler(0.2, -0.1, 1.0))
+    noisy, exact = RangeSensor(REACH, 0.05, 1, 1), RangeSensor(REACH, 0.0, 1, 1)
+    errors = []
+    for k in range(300):
+        a = noisy.scan(0.1 * k, (0.0, 0.0, -6.0), attitude, [obstacle])
+        b = exact.scan(0.1 * k, (0.0, 0.0, -6.0), attitude, [obstacle])
+        p, q = (np.array([d.position_in_body for d in scan.detections]) for scan in (a, b))
+        # The nearest point does not depend on how the pattern is turned.
+        assert np.linalg.norm(np.cross(p[0], q[0])) < 1e-9
+        errors.append(np.linalg.norm(p[0]) - np.linalg.norm(q[0]))
+    assert np.mean(errors) == pytest.approx(0.0, abs=0.01)
+    assert np.std(errors) == pytest.approx(0.05, rel=0.15)
+    world = rotation_from_quaternion(np.array(attitude)) @ q[0]
+    np.testing.assert_allclose(world, [7.5, 0.0, 0.0], atol=1e-9)
+
+
+def test_seed_and_vehicle_decide_the_noise():
+    def run(seed, vehicle):
+        sensor = RangeSensor(REACH, 0.05, seed, vehicle)
+        return [sensor.scan(0.1 * k, (0.0, 0.0, -6.0), LEVEL, OBSTACLES_AROUND) for k in range(5)]
+
+    assert run(1, 1) == run(1, 1)
+    assert run(1, 1) != run(1, 2)
+    assert run(1, 1) != run(2, 1)
+
+
+OBSTACLES_AROUND = [sphere((5.0, 0.0, -6.0), name="a"), pole((0.0, 6.0), name="b")]
+
+
+def test_numbers_are_the_vehicles_own_and_new_after_an_absence():
+    sensor = RangeSensor(REACH, 0.05, 1, 1)
+    first, second = sphere((9.0, 0.0, -6.0), name="first"), sphere((0.0, 9.0, -6.0), name="second")
+
+    def numbers(position):
+        return {d.obstacle_id for d in sensor.scan(0.0, position, LEVEL, [first, second]).detections}
+
+    assert numbers((0.0, 6.0, -6.0)) == {0}  # the second of the mission is the first that is seen
+    assert numbers((2.0, 2.0, -6.0)) == {0, 1}
+    assert numbers((-20.0, 0.0, -6.0)) == set()
+    assert numbers((2.0, 2.0, -6.0)) == {2, 3}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "reason"),
+    [
+        ("range = 10.0", "range = 0.0", "range_sensor.range: "),
+        ("rate = 10 ", "rate = 0 ", "range_sensor.rate: "),
+        ("rate = 10 ", "rate = 30 ", "range_sensor.rate: 30 Hz does not divide physics"),
+        ("rate = 10 ", "rate = 100 ", "range_sensor.rate: 100 Hz is faster than telemetry"),
+        ("noise = 0.05 ", "noise = -0.1 ", "range_sensor.noise: "),
+        ("noise = 0.05 ", "nose = 0.05 ", "range_sensor.nose: unknown key"),
+    ],
+)
+def test_the_system_file_is_read_strictly(tmp_path, old, new, reason):
+    text = default_system_path().read_text()
+    assert text.count(old) == 1
+    path = tmp_path / "system.toml"
+    path.write_text(text.replace(old, new))
+    with pytest.raises(UnusableFile) as caught:
+        read_system(path)
+    assert any(reason in r for r in caught.value.reasons)
+
+
+# On the wire
+
+MISSION = (
+    Sphere("known", (6.0, 0.0, -3.0), 0.5),
+    Sphere("unknown", (0.0, 6.0, -3.0), 0.4, known=False, motion=HarmonicMotion((1.0, 0.0, 0.0), 1.0)),
+    Pole("far", (40.0, 0.0), 0.3, 9.0, known=False),
+    Wall("wall", (-6.0, 0.0, -2.0), (0.3, 4.0, 4.0), known=False),
+)
+
+
+def detections(seed=1, obstacles=MISSION, passage=None, until=1.5, config=CONFIG):
+    system = config.parameters()
+    addresses = [("uav", i) for i in range(1, system.number_of_uavs + 1)]
+    ground = ScriptedGround(addresses, float(system.hover_thrust.mean()), system.thrust_max)
+    with Swarm(config, seed=seed, obstacles=obstacles, passage=passage) as swarm:
+        exchange(swarm, ground, until)
+    return ground
+
+
+def test_a_swarm_sends_what_it_sees():
+    ground = detections()
+    messages = ground.of_type("OBSTACLE_DISTANCE_3D")
+    for vehicle in (1, 2, 3, 4):
+        own = [m for m in messages if m.get_srcSystem() == vehicle]
+        assert {m.obstacle_id for m in own} == {0, 1, 2}
+        stamps = sorted({m.time_boot_ms for m in own})
+        assert {b - a for a, b in pairwise(stamps)} == {100}
+        poses = {m.time_boot_ms for m in ground.of_type("LOCAL_POSITION_NED", vehicle)}
+        assert set(stamps) <= poses
+        for m in own:
+            assert m.frame == mavlink.MAV_FRAME_BODY_FRD
+            assert m.get_srcComponent() == 1
+            assert (m.min_distance, m.max_distance) == (pytest.approx(0.05), 10.0)
+            assert math.hypot(m.x, m.y, m.z) < 10.5
+
+
+def test_without_obstacles_there_is_nothing_to_send():
+    assert detections(obstacles=()).of_type("OBSTACLE_DISTANCE_3D") == []
+
+
+def test_equal_seeds_send_equal_messages():
+    def points(seed):
+        return [m.to_dict() for m in detections(seed, until=0.6).of_type("OBSTACLE_DISTANCE_3D")]
+
+    assert points(3) == points(3)
+    assert points(3) != points(4)
+
+
+def test_what_is_sent_does_not_tell_names_shapes_or_who_is_known():
+    def renamed(known):
+        return tuple(replace(o, name=f"obstacle {i}", known=known) for i, o in enumerate(MISSION))
+
+    def points(obstacles):
+        return [m.to_dict() for m in detections(obstacles=obstacles, until=0.6).of_type("OBSTACLE_DISTANCE_3D")]
+
+    assert points(renamed(True)) == points(renamed(False)) == points(MISSION)
+
+
+def test_a_passage_may_hold_scans_back():
+    class Blind(Passage):
+        def range_sample(self, vehicle, sample):
+            return None if vehicle == 2 else sample._replace(detections=sample.detections[:1])
+
+    ground = detections(passage=Blind(), until=0.6)
+    assert ground.of_type("OBSTACLE_DISTANCE_3D", 2) == []
+    own = ground.of_type("OBSTACLE_DISTANCE_3D", 1)
+    assert own
+    assert len({m.time_boot_ms for m in own}) == len(own)
+
+
+def test_another_rate_and_range():
+    config = replace(CONFIG, range_sensor=replace(CONFIG.range_sensor, rate=5, range=5.0))
+    ground = detections(config=config)
+    assert ground.of_type("OBSTACLE_DISTANCE_3D") == []  # all are further away, but for the wall's distance of 5.35 m
+    ground = detections(obstacles=(Sphere("near", (3.0, 0.0, -3.0), 0.5),), config=config)
+    stamps = sorted({m.time_boot_ms for m in ground.of_type("OBSTACLE_DISTANCE_3D", 1)})
+    assert {b - a for a, b in pairwise(stamps)} == {200}
+
+
+def test_bytes_are_the_dialects():
+    codec = Codec(3, 1)
+    message = mavlink.MAVLink_obstacle_distance_3d_message(
+        1234, mavlink.MAV_DISTANCE_SENSOR_LASER, mavlink.MAV_FRAME_BODY_FRD, 7, 1.5, -2.0, 0.25, 0.0625, 10.0
+    )
+    frame = codec.encode(message)
+    assert frame[7:10] == (11037).to_bytes(3, "little")
+    expected = "d20400000000c03f000000c00000803e0000803d000020410700000c"
+    assert frame[10:-2].hex() == expected
+    (decoded,) = Codec(255, 190).decode(frame)
+    assert decoded.to_dict() == message.to_dict()
+    broken = bytearray(frame)
+    broken[15] ^= 1
+    assert Codec(255, 190).decode(bytes(broken)) == []

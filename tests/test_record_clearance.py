@@ -1,0 +1,169 @@
+"""Clearance against distances that can be written down by hand."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from gcs.errors import UnusableInput
+from gcs.record.clearance import ObstacleTrack, clearance_over_time, formation_points, rim_error
+from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
+
+LEVEL = np.array([1.0, 0.0, 0.0, 0.0])
+# Payload at the origin, its UAVs 1 m above its upper corners.
+UAVS = np.array([[x, y, -1.25] for x in (-0.5, 0.5) for y in (-0.5, 0.5)])
+BOUND = rim_error(0.3) + 1e-5
+
+
+def clearance(obstacle: ObstacleTrack, rotation=LEVEL, shift=(0.0, 0.0, 0.0), uav_quaternion=LEVEL) -> float:
+    """Clearance of the level formation, moved as a whole, from one obstacle."""
+    R = rotation_from_quaternion(rotation)
+    return clearance_over_time(
+        np.array([shift]),
+        rotation[None],
+        (UAVS @ R.T + shift)[None],
+        np.array([[uav_quaternion] * 4]),
+        [obstacle],
+    )[0, 0]
+
+
+def sphere(position, radius=0.5) -> ObstacleTrack:
+    return ObstacleTrack("s", "sphere", np.array([position], dtype=float), radius)
+
+
+def test_the_bound_is_stated_below_a_millimetre() -> None:
+    assert rim_error(0.3) < 0.2e-3
+
+
+@pytest.mark.parametrize(
+    ("position", "expected"),
+    [
+        ((0.0, 0.0, 3.0), 3.0 - 0.25 - 0.5),  # below: the box's floor
+        ((0.0, 0.0, -4.0), 4.0 - 1.25 - 0.5),  # above: between the discs, where only the hull is
+        ((5.0, 0.3, -1.25), 5.0 - 0.8 - 0.5),  # ahead, between the rims of two discs
+        ((5.0, 0.5, -1.25), 5.0 - 0.8 - 0.5),  # ahead of one disc
+        ((0.5, 4.0, -1.25), 4.0 - 0.8 - 0.5),
+        ((4.5, 4.5, -1.25), 4.0 * np.sqrt(2.0) - 0.3 - 0.5),  # diagonal: the rim, not a corner
+    ],
+)
+def test_sphere(position, expected) -> None:
+    assert clearance(sphere(position)) == pytest.approx(expected, abs=BOUND)
+
+
+def test_sphere_beside_the_slanted_side() -> None:
+    # The side rises from the floor's edge (0.5, 0.25) to the rims at (0.8, -1.25), in x and z.
+    normal = np.array([1.5, 0.3]) / np.hypot(1.5, 0.3)
+    middle_of_side = np.array([0.65, -0.5])
+    x, z = middle_of_side + 2.0 * normal
+    assert clearance(sphere((x, 0.0, z))) == pytest.approx(2.0 - 0.5, abs=BOUND)
+
+
+def test_pole_reaches_the_hull_at_the_height_of_the_discs() -> None:
+    pole = ObstacleTrack("p", "pole", np.array([[3.0, 0.0, -2.5]]), 0.4, (0.0, 0.0, 15.0))
+    assert clearance(pole) == pytest.approx(3.0 - 0.8 - 0.4, abs=BOUND)
+
+
+def test_pole_ends_at_its_top() -> None:
+    pole = ObstacleTrack("p", "pole", np.array([[0.0, 0.0, 6.0]]), 0.4, (0.0, 0.0, 4.0))  # top at z = 4
+    assert clearance(pole) == pytest.approx(4.0 - 0.25, abs=BOUND)
+
+
+def test_wall_is_turned_about_the_down_axis() -> None:
+    # Edge 2 m long along x, turned by 90 degrees: it then reaches 1 m along y.
+    wall = ObstacleTrack("w", "wall", np.array([[0.0, 4.0, 0.0]]), 0.0, (2.0, 0.2, 10.0), np.pi / 2)
+    assert clearance(wall) == pytest.approx(4.0 - 1.0 - 0.8, abs=BOUND)
+    # 30 degrees, clockwise from above: the corner at (+x, -y) of the wall comes round towards +x.
+    wall = ObstacleTrack("w", "wall", np.array([[-5.0, 0.0, 0.0]]), 0.0, (2.0, 0.0002, 10.0), np.pi / 6)
+    corner = -5.0 + np.cos(np.pi / 6)
+    assert clearance(wall) == pytest.approx(-0.8 - corner, abs=BOUND + 1e-4)
+
+
+def test_a_tilted_disc_reaches_less_far() -> None:
+    tilted = quaternion_from_euler(0.0, np.pi / 3, 0.0)
+    # Seen from ahead the disc reaches r cos 60 deg; ahead of the disc's centre, far away along x.
+    expected = 1000.0 - 0.5 - 0.3 * 0.5 - 0.5
+    assert clearance(sphere((1000.0, 0.5, -1.25)), uav_quaternion=tilted) == pytest.approx(expected, abs=2e-3)
+    far = clearance(sphere((0.5, 5.0, -1.25)), uav_quaternion=tilted)
+    assert far == pytest.approx(5.0 - 0.8 - 0.5, abs=BOUND)
+
+
+@pytest.mark.parametrize("position", [(0.0, 0.0, 0.0), (0.9, 0.9, -1.25), (0.0, 0.0, -0.9)])
+def test_meeting_is_zero(position) -> None:
+    assert clearance(sphere(position)) == 0.0
+
+
+def test_turning_and_moving_everything_changes_nothing() -> None:
+    rng = np.random.default_rng(5)
+    for _ in range(20):
+        position = rng.normal(size=3)
+        position *= rng.uniform(2.5, 6.0) / np.linalg.norm(position)
+        still = clearance(sphere(position))
+        rotation = quaternion_from_euler(*rng.uniform(-1.0, 1.0, 3))
+        shift = rng.uniform(-100.0, 100.0, 3)
+        moved = sphere(rotation_from_quaternion(rotation) @ position + shift)
+        # The discs turn with their UAVs: give them the formation's rotation.
+        assert clearance(moved, rotation, shift, rotation) == pytest.approx(still, abs=1e-5)
+
+
+def test_random_hulls_against_separating_planes() -> None:
+    """The distance to a sphere is the largest gap over all directions, with the discs' exact support."""
+    rng = np.random.default_rng(11)
+    for _ in range(10):
+        quaternions = np.array([quaternion_from_euler(*rng.uniform(-0.6, 0.6, 3)) for _ in range(4)])
+        uavs = UAVS + rng.uniform(-0.3, 0.3, UAVS.shape)
+        centre = rng.normal(size=3)
+        centre *= 4.0 / np.linalg.norm(centre)
+        got = clearance_over_time(np.zeros((1, 3)), LEVEL[None], uavs[None], quaternions[None], [sphere(centre)])
+        axis = rotation_from_quaternion(quaternions)[:, :, 2]
+
+        def gap(normals, centre=centre, uavs=uavs, axis=axis):
+            along = normals @ axis.T
+            discs = normals @ uavs.T + 0.3 * np.sqrt(np.clip(1.0 - along**2, 0.0, None))
+            box = np.abs(normals) @ np.array([0.5, 0.5, 0.25])
+            return normals @ centre - 0.5 - np.maximum(discs.max(axis=1), box)
+
+        best, spread = centre / np.linalg.norm(centre), 0.5
+        while spread > 1e-6:
+            tried = best + spread * rng.normal(size=(300, 3))
+            tried = np.vstack([best, tried / np.linalg.norm(tried, axis=1, keepdims=True)])
+            best, spread = tried[np.argmax(gap(tried))], spread * 0.7
+        assert got[0, 0] == pytest.approx(gap(best[None])[0], abs=BOUND)
+
+
+def test_size_and_radius_given() -> None:
+    got = clearance_over_time(
+        np.zeros((1, 3)), LEVEL[None], UAVS[None], np.array([[LEVEL] * 4]),
+        [sphere((0, 0, 4)), sphere((9, 0.5, -1.25))],
+        payload_size=(1.0, 1.0, 2.0), disc_radius=0.5,
+    )  # fmt: skip
+    assert got[0] == pytest.approx([4 - 1 - 0.5, 9 - 1.0 - 0.5], abs=rim_error(0.5) + 1e-5)
+
+
+def test_what_is_not_on_record_is_nan() -> None:
+    track = ObstacleTrack("s", "sphere", np.array([[0.0, 0.0, 3.0], [np.nan] * 3]), 0.5)
+    states = [np.repeat(a[None], 2, axis=0) for a in (np.zeros(3), LEVEL, UAVS, np.array([LEVEL] * 4))]
+    got = clearance_over_time(*states, [track])
+    assert got[0, 0] == pytest.approx(2.25, abs=BOUND)
+    assert np.isnan(got[1, 0])
+
+
+def test_points_lie_half_outside_half_inside_the_rim() -> None:
+    points = formation_points(np.zeros(3), LEVEL, UAVS[:1], LEVEL[None], (1.0, 1.0, 0.5), 0.3)
+    from_centre = np.linalg.norm(points[8:] - UAVS[0], axis=1)
+    between = np.linalg.norm((points[8] + points[9]) / 2.0 - UAVS[0])
+    assert from_centre == pytest.approx(0.3 + rim_error(0.3), abs=1e-12)
+    assert between == pytest.approx(0.3 - rim_error(0.3), abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        (("cone", np.zeros((1, 3)), 1.0), "shape is 'cone'"),
+        (("sphere", np.zeros((1, 3)), 0.0), "radius must be positive"),
+        (("pole", np.zeros((1, 3)), 1.0), "height must be positive"),
+        (("wall", np.zeros((1, 3)), 0.0, (1.0, float("nan"), 1.0)), "size_y must be positive"),
+    ],
+)
+def test_refused_obstacles(arguments, reason) -> None:
+    with pytest.raises(UnusableInput, match=f"obstacle x: {reason}"):
+        ObstacleTrack("x", *arguments)

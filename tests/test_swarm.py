@@ -1,0 +1,245 @@
+"""The swarm in one process, without sockets."""
+
+import csv
+import itertools
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scripted_ground import ScriptedGround, exchange
+
+from gcs.config import read_system
+from gcs.mission import HarmonicMotion, Home, LinearMotion, Pole, Sphere, Wall
+from gcs.wire import px4
+from gcs.wire.codec import Codec
+from vehicle_sim.errors import SimulationError, UnsupportedWorld
+from vehicle_sim.passage import Passage
+from vehicle_sim.swarm import Swarm
+from vehicle_sim.truth_log import TruthLog
+
+CONFIG = read_system()
+OBSTACLES = (
+    Sphere("swinging", (6.0, 0.0, -5.0), 0.5, motion=HarmonicMotion((1.5, 0.0, 0.0), 1.0, math.pi / 2)),
+    Pole("drifting", (-8.0, 3.0), 0.2, 12.0, motion=LinearMotion((0.5, -0.25, 0.0))),
+    Wall("standing", (0.0, 20.0, -2.0), (4.0, 0.5, 4.0), yaw_deg=30.0),
+)
+
+
+def ground_of(config, **settings):
+    system = config.parameters()
+    addresses = [("uav", i) for i in range(1, system.number_of_uavs + 1)]
+    return ScriptedGround(addresses, float(system.hover_thrust.mean()), system.thrust_max, **settings)
+
+
+def flight(folder, config=CONFIG, seed=1, obstacles=(), **settings):
+    """Up, then left alone until all is at rest: (swarm's vehicles, ground, rows of truth.csv)."""
+    ground = ground_of(config)
+    with Swarm(config, seed=seed, obstacles=obstacles, **settings) as swarm:
+        swarm.record(TruthLog(folder, config.team.vehicles))
+        exchange(swarm, ground, 10.0, lambda: ground.silent)
+        assert ground.silent
+        left = swarm.time
+        assert not swarm.at_rest
+        exchange(swarm, ground, left + 30.0, lambda: swarm.at_rest)
+        assert swarm.at_rest
+        assert swarm.world.touching_ground()
+        take_off = swarm.take_off_time
+        vehicles = swarm.vehicles
+    return vehicles, ground, rows(folder / "truth.csv"), take_off
+
+
+def rows(path):
+    with path.open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
+@pytest.fixture(scope="module")
+def flown(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("flown")
+    return folder, *flight(folder, obstacles=OBSTACLES)
+
+
+def test_vehicles_left_alone_hold_then_land(flown):
+    _, vehicles, ground, truth, _ = flown
+    assert not any(vehicle.autopilot.armed for vehicle in vehicles)
+    altitude = np.array([-float(row["payload_z_m"]) for row in truth])
+    assert altitude[0] == pytest.approx(0.30, abs=0.01)
+    assert altitude[-1] == pytest.approx(0.30, abs=0.01)
+    assert 0.9 < altitude.max() < 2.0
+    texts = " ".join(message.text for message in ground.of_type("STATUSTEXT"))
+    assert "Set-points lost" in texts
+    assert "Touch-down" in texts
+
+
+def test_the_payload_stays_level_and_nothing_touches(flown):
+    _, _, _, truth, _ = flown
+    assert {row["contacts"] for row in truth} == {"0"}
+    tilt = max(2.0 * math.hypot(float(row["payload_qx"]), float(row["payload_qy"])) for row in truth)
+    assert tilt < math.radians(5.0)
+
+
+def test_truth_stands_on_a_grid_of_20_ms_from_zero(flown):
+    _, _, _, truth, _ = flown
+    assert [row["time_s"] for row in truth] == [repr(k / 50) for k in range(len(truth))]
+
+
+def test_obstacles_stand_until_take_off_and_move_from_then(flown):
+    folder, _, _, truth, take_off = flown
+    obstacles = rows(folder / "obstacles.csv")
+    assert [row["time_s"] for row in obstacles[::3]] == [row["time_s"] for row in truth]
+    assert 1.0 < take_off < 3.0
+    for row in obstacles[0::3]:
+        t = max(float(row["time_s"]) - take_off, 0.0)
+        assert float(row["x_m"]) == pytest.approx(6.0 + 1.5 * math.cos(t), abs=1e-9)
+    for row in obstacles[1::3]:
+        t = max(float(row["time_s"]) - take_off, 0.0)
+        assert float(row["x_m"]) == pytest.approx(-8.0 + 0.5 * t, abs=1e-9)
+        assert float(row["y_m"]) == pytest.approx(3.0 - 0.25 * t, abs=1e-9)
+        assert (row["z_m"], row["size_z_m"], row["radius_m"]) == ("-6.0", "12.0", "0.2")
+    for row in obstacles[2::3]:
+        assert (row["shape"], row["x_m"], row["y_m"], row["size_y_m"]) == ("wall", "0.0", "20.0", "0.5")
+        assert float(row["yaw_rad"]) == pytest.approx(math.radians(30.0))
+
+
+def test_telemetry_carries_what_is_measured_when_it_is_sent(flown):
+    _, _, ground, _, _ = flown
+    assert sorted(ground.stamps) == [1, 2, 3, 4]
+    for stamps in ground.stamps.values():
+        # The first answers the first datagram; from then on 50 a second, each stamped with its own time.
+        assert len(stamps) > 400
+        assert all(stamp == round(now * 1e3) for stamp, now in stamps)
+        assert {b - a for (a, _), (b, _) in itertools.pairwise(stamps[1:])} == {20}
+
+
+def test_every_vehicle_relays_the_payload_unit(flown):
+    _, _, ground, _, _ = flown
+    samples = {}
+    for message in ground.of_type("LOCAL_POSITION_NED"):
+        if message.get_srcComponent() == px4.PAYLOAD_UNIT_COMPONENT:
+            samples.setdefault(message.time_boot_ms, set()).add((message.get_srcSystem(), message.x, message.z))
+    complete = [of for of in samples.values() if len(of) == 4]
+    assert len(complete) > 400
+    for of in complete:  # one unit, so one sample for all four
+        assert len({(x, z) for _, x, z in of}) == 1
+
+
+def test_noise_has_the_size_that_the_system_file_says(flown):
+    _, _, ground, truth, _ = flown
+    true = {round(float(row["time_s"]) * 1e3): row for row in truth}
+    uav, payload = [], []
+    for message in ground.of_type("LOCAL_POSITION_NED"):
+        row = true.get(message.time_boot_ms)
+        if row is None:
+            continue
+        if message.get_srcComponent() == px4.PAYLOAD_UNIT_COMPONENT:
+            if message.get_srcSystem() == 1:
+                payload += [message.vx - float(row["payload_vx_mps"]), message.vz - float(row["payload_vz_mps"])]
+        else:
+            i = message.get_srcSystem()
+            uav += [message.x - float(row[f"uav{i}_x_m"]), message.z - float(row[f"uav{i}_z_m"])]
+    assert np.std(uav) == pytest.approx(CONFIG.sensors.position, rel=0.05)
+    assert np.std(payload) == pytest.approx(CONFIG.sensors.payload_velocity, rel=0.1)
+    assert abs(np.mean(uav)) < 0.002
+
+
+def test_the_same_seed_repeats_to_the_byte_and_another_does_not(flown, tmp_path):
+    folder = flown[0]
+    flight(tmp_path / "again", obstacles=OBSTACLES)
+    flight(tmp_path / "other", obstacles=OBSTACLES, seed=2)
+    for name in ("truth.csv", "obstacles.csv"):
+        assert (tmp_path / "again" / name).read_bytes() == (folder / name).read_bytes()
+    assert (tmp_path / "other" / "truth.csv").read_bytes() != (folder / "truth.csv").read_bytes()
+
+
+@pytest.mark.parametrize("vehicles", [3, 6])
+def test_other_teams_fly_and_land(tmp_path, vehicles):
+    _, _, truth, _ = flight(tmp_path, CONFIG.with_vehicles(vehicles))
+    assert {row["contacts"] for row in truth} == {"0"}
+
+
+def test_the_true_payload_may_weigh_more_than_anybody_knows():
+    heavier = replace(CONFIG, world=replace(CONFIG.world, payload_mass_factor=1.1))
+    with Swarm(heavier, seed=1) as swarm:
+        assert swarm.world.parameters.m_0 == pytest.approx(1.1 * CONFIG.payload.mass)
+
+
+def test_contacts_between_two_rows_are_counted_in_the_second(tmp_path):
+    # A ball that passes through the discs of the waiting team as soon as it lifts off.
+    ball = Sphere("ball", (0.5, 0.5, -3.75), 0.1, motion=LinearMotion((0.0, 0.0, -30.0)))
+    ground = ground_of(CONFIG)
+    with Swarm(CONFIG, seed=1, obstacles=(ball,)) as swarm:
+        swarm.record(TruthLog(tmp_path, 4))
+        exchange(swarm, ground, 3.0, lambda: ground.silent)
+    assert max(int(row["contacts"]) for row in rows(tmp_path / "truth.csv")) > 0
+
+
+def test_home_is_the_missions():
+    with Swarm(CONFIG, seed=1, home=Home(-33.5, 151.25, 12.0), ground_address="ground") as swarm:
+        ground = ground_of(CONFIG)
+        exchange(swarm, ground, 2.5)
+        (message,) = ground.of_type("HOME_POSITION", 1)[:1]
+        assert (message.latitude, message.longitude, message.altitude) == (-335000000, 1512500000, 12000)
+
+
+def test_vehicles_offer_themselves_to_a_ground_that_never_spoke():
+    with Swarm(CONFIG, seed=1, ground_address="ground") as swarm:
+        sent = swarm.datagrams_to_send(0.0)
+        assert [(i, address) for i, _, address in sent] == [(i, "ground") for i in (1, 2, 3, 4)]
+        messages = [Codec(255, 1).decode(datagram)[0] for _, datagram, _ in sent]
+        assert [m.get_type() for m in messages] == ["HEARTBEAT"] * 4
+        assert swarm.datagrams_to_send(0.0) == []
+        assert swarm.next_timer() == pytest.approx(1.0)
+
+
+def test_without_anybody_to_talk_to_there_is_no_timer():
+    with Swarm(CONFIG, seed=1) as swarm:
+        assert swarm.next_timer() is None
+        assert swarm.at_rest
+
+
+def test_time_goes_on_in_whole_physics_steps():
+    with Swarm(CONFIG, seed=1) as swarm:
+        swarm.advance_to(0.0131)
+        assert swarm.time == 0.012
+        swarm.advance_to(0.005)
+        assert swarm.time == 0.012
+        swarm.advance_to(0.02)
+        assert swarm.time == 0.02
+        assert swarm.vehicles[0].autopilot.measurement.time == 0.02
+
+
+def test_truth_is_written_50_times_a_second_or_more_at_any_physics_rate(tmp_path):
+    odd = replace(CONFIG, rates=replace(CONFIG.rates, physics=520, onboard=260, telemetry=40, control=20))
+    with Swarm(odd, seed=1) as swarm:
+        swarm.record(TruthLog(tmp_path, 4))
+        swarm.advance_to(1.0)
+    assert [row["time_s"] for row in rows(tmp_path / "truth.csv")] == [repr(k * 10 / 520) for k in range(53)]
+
+
+def test_a_passage_stands_between_samples_and_vehicles_and_between_vehicles_and_wire():
+    class Disturbed(Passage):
+        def own_sample(self, vehicle, sample):
+            return None if vehicle == 2 else sample
+
+        def to_vehicle(self, vehicle, arriving, now):
+            return [] if vehicle == 3 else arriving
+
+        def from_vehicle(self, vehicle, leaving, now):
+            return [] if vehicle == 4 else leaving
+
+    with Swarm(CONFIG, seed=1, ground_address="ground", passage=Disturbed()) as swarm:
+        ground = ground_of(CONFIG)
+        exchange(swarm, ground, 0.25)
+        assert swarm.vehicles[1].autopilot.measurement is None
+        heard = {i: len([m for m in ground.messages if m.get_srcSystem() == i]) for i in (1, 2, 3, 4)}
+        assert heard[1] > heard[2] > heard[3] == 1  # everything, all but samples, a heartbeat
+        assert heard[4] == 0
+
+
+def test_nothing_is_left_of_a_swarm_that_cannot_be():
+    with pytest.raises(UnsupportedWorld):
+        Swarm(CONFIG.with_vehicles(16), seed=1)
+    twice = (Sphere("a", (0.0, 0.0, -9.0), 0.5), Sphere("a", (0.0, 5.0, -9.0), 0.5))
+    with pytest.raises(SimulationError, match="the name is taken"):
+        Swarm(CONFIG, seed=1, obstacles=twice)

@@ -1,0 +1,332 @@
+"""The drivers: lockstep over real sockets, real time on a clock of the test's own."""
+
+import contextlib
+import os
+import re
+import socket
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import pymavlink.dialects.v20.common as mavlink
+import pytest
+from scripted_ground import LockstepClient, ScriptedGround
+from test_swarm import CONFIG, rows
+
+from gcs.wire.codec import Codec
+from gcs.wire.lockstep import Done, decode_tick
+from vehicle_sim.drivers.ending import Ending
+from vehicle_sim.drivers.lockstep import LockstepDriver
+from vehicle_sim.drivers.realtime import LAG_MAX, RealTimeClock, RealTimeDriver
+from vehicle_sim.drivers.sockets import SwarmSockets
+from vehicle_sim.errors import SimulationError
+from vehicle_sim.swarm import Swarm
+
+SYSTEM = CONFIG.parameters()
+PATIENCE = 30.0  # s of wall time for what takes one or two
+
+
+def scripted_ground(addresses, lift=0.6):
+    return ScriptedGround(addresses, float(SYSTEM.hover_thrust.mean()), SYSTEM.thrust_max, lift=lift)
+
+
+@contextlib.contextmanager
+def process(*arguments):
+    """A vehicle-sim of its own, with the addresses that it tells: (process, clock or None, vehicles)."""
+    command = [sys.executable, "-m", "vehicle_sim", *map(str, arguments)]
+    pipe = subprocess.PIPE
+    # Importable from any folder, installed or not.
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[1])}
+    with subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=pipe, text=True, env=environment) as started:
+        try:
+            told = []
+            for line in started.stdout:
+                if line == "ready\n":
+                    break
+                told.append(re.fullmatch(r"(clock|vehicle \d): udp://([\d.]+):(\d+)\n", line).groups())
+            else:
+                raise AssertionError(started.stderr.read())
+            addresses = {who: (host, int(port)) for who, host, port in told}
+            clock = addresses.pop("clock", None)
+            assert [*addresses] == [f"vehicle {i}" for i in range(1, len(addresses) + 1)]
+            yield started, clock, list(addresses.values())
+        finally:
+            if started.poll() is None:
+                started.kill()
+
+
+@pytest.fixture
+def lockstep():
+    """A driver in a thread of its own: (swarm, sockets, ending, thread)."""
+    with contextlib.ExitStack() as opened:
+        swarm = opened.enter_context(Swarm(CONFIG, seed=1))
+        sockets = opened.enter_context(SwarmSockets("127.0.0.1", 0, 4, with_clock=True))
+        ending = opened.enter_context(contextlib.closing(Ending()))
+        driver = LockstepDriver(swarm, sockets, ending, answer_time=1.0)
+        thread = threading.Thread(target=driver.run)
+        thread.start()
+        try:
+            yield swarm, sockets, ending, thread
+        finally:
+            ending.request()
+            thread.join(PATIENCE)
+
+
+def client_of(sockets, lift=0.6):
+    ground = scripted_ground([endpoint.getsockname() for endpoint in sockets.vehicles], lift)
+    return LockstepClient(ground, sockets.clock.getsockname())
+
+
+def fly_and_leave(clock, vehicles, end):
+    """A ground that flies until the payload is up and then ends in the way that ``end`` does."""
+    client = LockstepClient(scripted_ground(vehicles), clock)
+    client.join()
+    client.run(lambda: client.ground.silent)
+    end(client)
+    client.close()
+    return client
+
+
+def check_landed(truth):
+    assert max(-float(row["payload_z_m"]) for row in truth) > 0.9
+    assert float(truth[-1]["payload_z_m"]) == pytest.approx(-0.30, abs=0.01)
+    assert max(float(truth[-1][f"uav{i}_thrust_n"]) for i in (1, 2, 3, 4)) < 0.2
+    assert {row["contacts"] for row in truth} == {"0"}
+
+
+def test_two_swarms_side_by_side_fly_alike_and_land_without_their_ground(tmp_path):
+    def started(name, seed):
+        arguments = ("--lockstep", "--base-port", 0, "--with-parent", "--run-dir", tmp_path / name, "--seed", seed)
+        return process(*arguments)
+
+    with started("a", 5) as first, started("b", 5) as second, started("c", 6) as third:
+        ports = {port for _, clock, vehicles in (first, second, third) for _, port in (clock, *vehicles)}
+        assert len(ports) == 15
+        # The first says that it leaves, the others just vanish.
+        ends = (LockstepClient.leave, LockstepClient.close, LockstepClient.close)
+        flights = [
+            threading.Thread(target=fly_and_leave, args=(clock, vehicles, end))
+            for (_, clock, vehicles), end in zip((first, second, third), ends, strict=True)
+        ]
+        for flight in flights:
+            flight.start()
+        for flight in flights:
+            flight.join(PATIENCE)
+            assert not flight.is_alive()
+        for running, _, _ in (second, third):
+            running.stdin.close()
+        for running, _, _ in (first, second, third):
+            assert running.wait(PATIENCE) == 0
+            assert running.stdout.read() == ""
+    for name in "abc":
+        check_landed(rows(tmp_path / name / "truth.csv"))
+        assert [path.name for path in (tmp_path / name).iterdir()] == ["truth.csv"]
+    truths = [(tmp_path / name / "truth.csv").read_bytes() for name in "abc"]
+    assert truths[0] == truths[1]
+    assert truths[0] != truths[2]
+
+
+def test_time_stands_still_until_a_ground_joins(lockstep):
+    swarm, sockets, _, _ = lockstep
+    client = client_of(sockets)
+    client.join()
+    client.run(lambda: True)
+    assert client.last_tick.time_us == 0
+    assert swarm.time == 0.0
+    client.close()
+
+
+def test_after_one_ground_has_left_another_may_join(lockstep):
+    swarm, sockets, _, _ = lockstep
+    first = client_of(sockets)
+    first.join()
+    first.run(lambda: first.ground.silent)
+    first.leave()
+    first.close()
+
+    second = client_of(sockets)
+    second.join()
+    second.ground.commanded = True  # it only listens
+    ticks = []
+    second.run(lambda: ticks.append(second.now) or second.ground.of_type("HEARTBEAT", 3))
+    landed = ticks[0]
+    assert first.now + 6.0 < landed < first.now + 30.0
+    assert swarm.at_rest
+    assert swarm.world.touching_ground()
+    second.close()
+
+
+def test_a_ground_that_stops_answering_is_given_up(lockstep):
+    swarm, sockets, _, _ = lockstep
+    first = client_of(sockets, lift=0.3)
+    first.join()
+    first.run(lambda: first.ground.silent)  # the last tick stays without an answer
+
+    second = client_of(sockets)
+    second.join()
+    second.run(lambda: True)
+    assert swarm.at_rest
+    assert second.now > first.now + 6.0
+    first.close()
+    second.close()
+
+
+def test_only_the_ground_that_joined_moves_the_clock(lockstep):
+    swarm, sockets, _, _ = lockstep
+    client = client_of(sockets)
+    client.join()
+    client.run(lambda: True)
+    tick = client.last_tick
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+        forged = (Done(tick.serial, 10**9), Done(tick.serial, None, leaving=True))
+        for junk in (b"", b"CLDN", b"\xfd" * 400, *[done.encode() for done in forged]):
+            other.sendto(junk, client.clock)
+    client.socket.sendto(Done(tick.serial + 7, 10**9).encode(), client.clock)  # an answer to nothing
+    client.socket.sendto(Done(tick.serial, 123).encode(), client.clock)
+    datagram, _ = client.socket.recvfrom(65535)
+    assert decode_tick(datagram).time_us == 123
+    assert swarm.time < 0.001
+    client.close()
+
+
+def test_what_vehicles_answer_comes_at_the_same_time(lockstep):
+    _, sockets, _, _ = lockstep
+    client = client_of(sockets)
+    client.join()
+    client.run(lambda: True)
+    tick = client.last_tick
+    codec = Codec(255, 1)
+    ping = codec.encode(mavlink.MAVLink_ping_message(0, 42, 0, 0))
+    client.socket.sendto(ping, sockets.vehicles[2].getsockname())
+    client.socket.sendto(Done(tick.serial, 5_000_000).encode(), client.clock)
+    answers = []
+    while (again := decode_tick((datagram := client.socket.recvfrom(65535))[0])) is None:
+        answers += [(datagram[1], m) for m in Codec(255, 1).decode(datagram[0]) if m.get_type() == "PING"]
+    assert [(address, m.seq) for address, m in answers] == [(sockets.vehicles[2].getsockname(), 42)]
+    assert (again.serial, again.time_us) == (tick.serial + 1, tick.time_us)
+    client.close()
+
+
+def test_a_request_to_end_ends_it_at_once(lockstep):
+    _, sockets, ending, thread = lockstep
+    client = client_of(sockets)
+    client.join()
+    client.run(lambda: client.ground.silent)  # in the air, an answer awaited
+    ending.request()
+    thread.join(PATIENCE)
+    assert not thread.is_alive()
+    client.close()
+
+
+class Wall:
+    """A wall clock that goes on while the driver waits, as long as it waits, and sometimes much longer."""
+
+    def __init__(self, stop_at, stalls=()):
+        self.now = 1e6
+        self.stop_at = self.now + stop_at
+        self.stalls = [self.now + when for when in stalls]
+        self.requested = False
+        self.parent_gone = False
+
+    def __call__(self):
+        return self.now
+
+    def wait(self, sockets, timeout):
+        self.now += timeout + 1e-5
+        if self.stalls and self.now >= self.stalls[0]:
+            self.stalls.pop(0)
+            self.now += 3600.0
+            self.stop_at += 3600.0
+        self.requested = self.now >= self.stop_at
+
+
+@pytest.mark.parametrize("speed", [0.5, 1.0, 4.0])
+def test_real_time_follows_the_clock_at_the_speed(speed):
+    wall = Wall(stop_at=0.5)
+    with Swarm(CONFIG, seed=1) as swarm, SwarmSockets("127.0.0.1", 0, 4, with_clock=False) as sockets:
+        RealTimeDriver(swarm, sockets, wall, speed, wall).run()
+        assert swarm.time == pytest.approx(0.5 * speed, abs=0.01 * max(1.0, speed))
+
+
+def test_after_a_stall_time_goes_on_from_where_it_was():
+    wall = Wall(stop_at=0.5, stalls=(0.2, 0.3))
+    with Swarm(CONFIG, seed=1) as swarm, SwarmSockets("127.0.0.1", 0, 4, with_clock=False) as sockets:
+        RealTimeDriver(swarm, sockets, wall, 1.0, wall).run()
+        assert 0.48 < swarm.time < 0.5 + 2 * LAG_MAX + 0.02
+
+
+def test_the_clock_stands_back_from_what_cannot_be_followed():
+    now = [100.0]
+    clock = RealTimeClock(5.0, 2.0, lambda: now[0])
+    assert clock.now() == 5.0
+    now[0] += 0.05
+    assert clock.follow(5.0) == pytest.approx(5.1)
+    assert clock.wall_until(5.2) == pytest.approx(0.05)
+    now[0] += 1000.0
+    assert clock.follow(5.1) == pytest.approx(5.1 + 2 * LAG_MAX)
+    assert clock.now() == pytest.approx(5.1 + 2 * LAG_MAX)
+    assert clock.wall_until(5.0) == 0.0
+
+
+def test_real_time_over_udp_sends_each_sample_when_it_is_due():
+    wall = Wall(stop_at=1.0)
+    with (
+        Swarm(CONFIG, seed=1) as swarm,
+        SwarmSockets("127.0.0.1", 0, 4, with_clock=False) as sockets,
+        socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as ground,
+    ):
+        ground.bind(("127.0.0.1", 0))
+        ground.setblocking(False)
+        codec = Codec(255, 1)
+        heartbeat = mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, 4, 3)
+        for endpoint in sockets.vehicles:
+            ground.sendto(codec.encode(heartbeat), endpoint.getsockname())
+        RealTimeDriver(swarm, sockets, wall, 1.0, wall).run()
+        stamps = {}
+        with contextlib.suppress(BlockingIOError):
+            while True:
+                datagram, sender = ground.recvfrom(65535)
+                for message in codec.decode(datagram):
+                    if message.get_type() == "LOCAL_POSITION_NED" and message.get_srcComponent() == 1:
+                        stamps.setdefault(sender, []).append(message.time_boot_ms)
+        assert sorted(stamps) == sorted(endpoint.getsockname() for endpoint in sockets.vehicles)
+        for of_one in stamps.values():
+            assert of_one[1:] == list(range(20, 20 * len(of_one), 20))
+            assert len(of_one) >= 48
+
+
+def test_in_real_time_vehicles_land_when_the_parent_is_gone(tmp_path):
+    arguments = ("--base-port", 0, "--ground-port", 0, "--with-parent", "--speed", 20, "--run-dir", tmp_path / "run")
+    with process(*arguments) as (running, clock, vehicles):
+        assert clock is None
+        assert len(vehicles) == 4
+        running.stdin.close()
+        assert running.wait(PATIENCE) == 0
+    assert rows(tmp_path / "run" / "truth.csv")[0]["time_s"] == "0.0"
+
+
+def test_sockets_open_all_or_none():
+    with SwarmSockets("127.0.0.1", 0, 4, with_clock=True) as sockets:
+        taken = sockets.vehicles[0].getsockname()[1]
+        with pytest.raises(SimulationError, match="Address already in use"):
+            SwarmSockets("127.0.0.1", taken - 2, 4, with_clock=False)
+        with pytest.raises(SimulationError, match="Address already in use"):
+            SwarmSockets("127.0.0.1", taken + 1, 2, with_clock=True)
+    with SwarmSockets("127.0.0.1", taken, 1, with_clock=False) as again:
+        assert again.clock is None
+        assert again.vehicles[0].getsockname() == ("127.0.0.1", taken)
+
+
+@pytest.mark.parametrize(("base_port", "with_clock"), [(65533, False), (1, True), (70000, False)])
+def test_ports_that_do_not_exist(base_port, with_clock):
+    with pytest.raises(SimulationError, match="do not exist"):
+        SwarmSockets("127.0.0.1", base_port, 4, with_clock)
+
+
+def test_a_datagram_that_cannot_be_sent_is_lost():
+    with SwarmSockets("127.0.0.1", 0, 1, with_clock=False) as sockets:
+        sockets.send(1, b"x" * 70_000, sockets.vehicles[0].getsockname())
+        assert list(sockets.received()) == []
+        sockets.send(1, b"x", sockets.vehicles[0].getsockname())
+        assert list(sockets.received()) == [(1, b"x", sockets.vehicles[0].getsockname())]

@@ -1,0 +1,309 @@
+import itertools
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.interpolate import BSpline
+
+from idc_controller.errors import TrajectoryError
+from idc_controller.plan.paths import Circle, Leg
+from idc_controller.plan.smoothing import smoothing_for
+from idc_controller.plan.spline import SplineTrajectory
+from idc_controller.plan.trajectory import Limits, RestTrajectory
+from idc_controller.plan.waypoints import WaypointTrajectory, fly_on
+
+LIMITS = Limits(speed=1.5, acceleration=2.0, jerk=4.0, snap=6.0)
+ORIGIN = np.zeros(3)
+HIGH = np.array([0.0, 0.0, -5.0])
+
+
+def planned(legs, start=HIGH, limits=LIMITS, **options):
+    trajectory = WaypointTrajectory(start, legs, limits, kept=math.inf, **options)
+    trajectory.derivatives([1e5])
+    assert math.isfinite(trajectory.end)
+    return trajectory
+
+
+def sampled(trajectory, step=0.02):
+    times = np.arange(trajectory.start - 0.5, trajectory.end + 0.5, step)
+    return times, trajectory.derivatives(times)
+
+
+def assert_within(derivatives, limits=LIMITS):
+    norms = np.linalg.norm(derivatives[1:], axis=2).max(axis=1)
+    assert np.all(norms <= limits.as_array() * (1 + 1e-6)), norms
+
+
+def assert_consistent(trajectory, times, h=1e-3):
+    """Each derivative against central differences of the one below."""
+    middle = trajectory.derivatives(times)
+    difference = (trajectory.derivatives(times + h) - trajectory.derivatives(times - h)) / (2 * h)
+    # Snap is only continuous: its kinks (knots) bound the error of the last one by h * crackle / 4.
+    for d in range(4):
+        assert np.abs(difference[d] - middle[d + 1]).max() < (0.05 if d == 3 else 1e-4)
+
+
+coordinate = st.floats(-15.0, 15.0, allow_nan=False)
+far = st.tuples(coordinate, coordinate, st.floats(-15.0, -0.1))
+near = st.tuples(*[st.floats(-0.4, 0.4)] * 3)
+
+
+@st.composite
+def missions(draw):
+    """Legs that go far, hardly move, reverse, repeat a point, go straight up or on, and circles."""
+    start = np.array(draw(far))
+    here, before, legs = start, start, []
+    for kind in draw(st.lists(st.sampled_from("fffnnrsvoc"), min_size=1, max_size=7)):
+        speed = draw(st.sampled_from([0.3, 1.0, 1.5, 5.0]))
+        hold = draw(st.sampled_from([0.0, 0.0, 0.0, 1.0]))
+        if kind == "c":
+            radius = draw(st.floats(0.3, 6.0))
+            turns = draw(st.sampled_from([0.25, 1.0, 2.0]))
+            legs.append(Circle(here + draw(near), radius, turns, speed, draw(st.booleans()), hold))
+            angles = math.atan2(here[1] - legs[-1].centre[1], here[0] - legs[-1].centre[0])
+            angles += (1 if legs[-1].clockwise else -1) * 2 * math.pi * turns
+            if np.linalg.norm((here - legs[-1].centre)[:2]) <= 1e-6:
+                angles -= math.atan2(here[1] - legs[-1].centre[1], here[0] - legs[-1].centre[0])
+            here = legs[-1].centre + radius * np.array([math.cos(angles), math.sin(angles), 0.0])
+            continue
+        target = {
+            "f": lambda: np.array(draw(far)),
+            "n": lambda h=here: h + draw(near),
+            "r": lambda b=before: b,
+            "s": lambda h=here: h,
+            "v": lambda h=here: h + np.array([0.0, 0.0, draw(st.floats(-4.0, 4.0))]),
+            "o": lambda h=here, b=before: h + 0.5 * (h - b),
+        }[kind]()
+        legs.append(Leg(target, speed, hold))
+        before, here = here, target
+    return start, legs
+
+
+@settings(max_examples=60, deadline=None, derandomize=True)
+@given(missions())
+def test_any_mission_keeps_limits_passes_every_waypoint_and_rests_at_both_ends(mission):
+    start, legs = mission
+    trajectory = planned(legs, start)
+    _, derivatives = sampled(trajectory)
+    assert_within(derivatives)
+    ends = trajectory.derivatives([trajectory.start, trajectory.end, trajectory.end + 7.0])
+    assert np.all(np.abs(ends[1:]) < 1e-9)
+    assert np.allclose(ends[0, 0], start, atol=1e-12)
+    assert [leg for _, leg in trajectory.passages] == list(range(len(legs)))
+    passed = np.array([time for time, _ in trajectory.passages])
+    assert np.all(np.diff(passed) >= 0.0)
+    for time, index in trajectory.passages:
+        leg = legs[index]
+        if isinstance(leg, Circle):
+            continue
+        distance = np.linalg.norm(derivatives[0] - leg.position, axis=1)
+        assert distance.min() <= 0.21  # the samples are up to 0.03 m apart
+        if leg.hold > 0.0:
+            held = trajectory.derivatives(np.linspace(time, time + leg.hold, 20))
+            assert np.linalg.norm(held[0] - leg.position, axis=1).max() <= 1e-3
+    if isinstance(legs[-1], Leg):
+        assert np.allclose(ends[0, -1], legs[-1].position, atol=2e-6)
+
+
+@settings(max_examples=30, deadline=None, derandomize=True)
+@given(missions(), st.floats(0.0, 1.0))
+def test_stop_leaves_continuously_keeps_limits_and_never_ends_later(mission, share):
+    start, legs = mission
+    trajectory = planned(legs, start)
+    time = share * trajectory.end
+    stopped = trajectory.stop(time)
+    around = time + np.array([-0.3, -0.01, 0.0])
+    assert np.allclose(stopped.derivatives(around), trajectory.derivatives(around), atol=1e-6)
+    assert stopped.end <= trajectory.end + 1e-9
+    times = np.arange(time, max(stopped.end, time) + 0.1, 0.02)
+    derivatives = stopped.derivatives(times)
+    assert_within(derivatives)
+    assert np.all(stopped.derivatives([max(stopped.end, time)])[1:] == pytest.approx(0.0, abs=1e-9))
+    # It stays on the path that was planned.
+    path = trajectory.derivatives(np.arange(time, trajectory.end + 0.02, 0.02), 0)[0]
+    gaps = np.linalg.norm(derivatives[0, ::5, None] - path[None], axis=2).min(axis=1)
+    assert gaps.max() < 0.1
+
+
+def test_derivatives_are_those_of_the_position():
+    trajectory = planned([Leg([3, 0, -5], 1.5), Leg([3, 4, -6], 1.0, 1.0), Leg([0, 0, -5], 1.5)])
+    assert_consistent(trajectory, np.linspace(0.2, trajectory.end - 0.2, 501))
+    stopped = trajectory.stop(3.0)
+    assert_consistent(stopped, np.linspace(1.0, stopped.end + 1.0, 301))
+
+
+def test_spline_agrees_with_scipy():
+    rng = np.random.default_rng(3)
+    points = rng.normal(size=(20, 3))
+    spline = SplineTrajectory(points, 0.3, 2.0, LIMITS)
+    reference = BSpline(2.0 + 0.3 * np.arange(26), points, 5)
+    times = rng.uniform(2.0 + 0.3 * 5, 2.0 + 0.3 * 20, 50)
+    for d in range(5):
+        expected = reference.derivative(d)(times) if d else reference(times)
+        assert np.allclose(spline.derivatives(times)[d], expected, rtol=1e-9, atol=1e-7)
+
+
+def test_snap_is_continuous():
+    trajectory = planned([Leg([3, 0, -5], 1.5), Leg([3, 4, -6], 1.0)])
+    knots = trajectory.start + np.arange(1, 60) * smoothing_for(LIMITS).interval
+    step = trajectory.derivatives(knots + 1e-7)[4] - trajectory.derivatives(knots - 1e-7)[4]
+    assert np.abs(step).max() < 1e-4
+
+
+def test_straight_on_is_flown_at_constant_speed():
+    # Unequal legs, two of them shorter than the smoothing reaches.
+    legs = [Leg([x, 0, -5], 1.5) for x in (7.0, 7.9, 8.3, 20.0, 30.0)]
+    trajectory = planned(legs)
+    first, last = (trajectory.passages[i][0] for i in (0, 3))
+    speed = np.linalg.norm(trajectory.derivatives(np.linspace(first, last, 200), 1)[1], axis=1)
+    assert np.allclose(speed, 1.5, atol=1e-6)
+    for time, index in trajectory.passages[:4]:
+        assert np.linalg.norm(trajectory.position(time) - legs[index].position) < 0.1
+
+
+def test_change_of_speed_on_a_straight_line_needs_no_pause():
+    trajectory = planned([Leg([10, 0, -5], 1.5), Leg([20, 0, -5], 0.5)])
+    _, derivatives = sampled(trajectory)
+    between = (derivatives[0, :, 0] > 3.0) & (derivatives[0, :, 0] < 18.0)
+    assert np.linalg.norm(derivatives[1, between], axis=1).min() > 0.5 - 1e-6
+
+
+def test_corner_is_flown_through_not_stopped_at():
+    trajectory = planned([Leg([10, 0, -5], 1.5), Leg([10, 10, -5], 1.5)])
+    time, _ = trajectory.passages[0]
+    derivatives = trajectory.derivatives(np.linspace(time - 0.5, time + 0.5, 50))
+    assert np.linalg.norm(derivatives[1], axis=1).min() > 0.2
+    assert np.linalg.norm(derivatives[0] - [10, 0, -5], axis=1).min() <= 0.2
+
+
+def test_never_outside_the_legs():
+    points = [[4, 0, -0.2], [4, 4, -0.2], [0, 0, 0]]
+    _, derivatives = sampled(planned([Leg(p, 1.5) for p in points], [0, 0, -0.2]))
+    assert derivatives[0, :, 2].max() <= 1e-12
+    assert derivatives[0, :, :2].min() >= -1e-12
+    assert derivatives[0, :, :2].max() <= 4 + 1e-12
+
+
+def test_take_off_and_landing_are_vertical():
+    trajectory = planned([Leg(HIGH, 0.5, 2.0), Leg(ORIGIN, 0.3)], ORIGIN)
+    _, derivatives = sampled(trajectory)
+    assert np.all(derivatives[:, :, :2] == 0.0)
+    assert np.abs(derivatives[1]).max() == pytest.approx(0.5)
+    assert np.array_equal(trajectory.position(trajectory.end), ORIGIN)
+
+
+def test_circle_keeps_its_radius_and_direction_and_slows_down_where_it_is_tight():
+    for clockwise, sign in ((True, 1.0), (False, -1.0)):
+        trajectory = planned([Circle([3, 0, -5], 3.0, 2.0, 1.5, clockwise)])
+        _, d = sampled(trajectory)
+        arm = d[0] - [3, 0, -5]
+        assert np.abs(np.linalg.norm(arm, axis=1) - 3.0).max() < 0.15
+        angle = np.unwrap(np.arctan2(arm[:, 1], arm[:, 0]))
+        assert angle[-1] - angle[0] == pytest.approx(sign * 4 * math.pi, abs=1e-6)
+    tight = planned([Circle([0.3, 0, -5], 0.3, 3.0, 1.5)])
+    _, d = sampled(tight)
+    assert_within(d)
+    arm = np.linalg.norm(d[0] - [0.3, 0, -5], axis=1)
+    assert arm.min() > 0.15
+
+
+def test_endless_mission_is_read_only_as_far_as_asked_and_the_past_is_dropped():
+    read = 0
+
+    def legs():
+        nonlocal read
+        for corner in itertools.cycle([[10, 0, -5], [10, 10, -5], [0, 10, -5], [0, 0, -5]]):
+            read += 1
+            yield Leg(corner, 1.5)
+
+    trajectory = WaypointTrajectory(HIGH, legs(), LIMITS)
+    assert read == 0
+    trajectory.derivatives([10.0])
+    assert read <= 5
+    for now in np.arange(0.0, 2000.0, 10.0):
+        derivatives = trajectory.derivatives(now + np.arange(21) * 0.1)
+        assert_within(derivatives)
+    assert trajectory.end == math.inf
+    assert len(trajectory._samples) < 3000
+    assert len(trajectory._corners) < 10
+    with pytest.raises(TrajectoryError, match="no longer kept"):
+        trajectory.derivatives([10.0])
+    stopped = trajectory.stop(2000.0)
+    assert stopped.end < 2006.0
+
+
+def test_planning_ahead_in_steps_gives_what_planning_at_once_gives():
+    legs = [Leg(p, 1.5) for p in ([5, 0, -5], [5, 1, -5], [0, 1, -5], [0, 0.5, -5.2], [8, 8, -8])]
+    at_once = planned(legs)
+    stepwise = WaypointTrajectory(HIGH, iter(legs), LIMITS)
+    times = np.arange(0.0, at_once.end + 1, 0.05)
+    for time in times:
+        assert np.allclose(stepwise.derivatives([time]), at_once.derivatives([time]), atol=1e-9)
+    assert stepwise.end == pytest.approx(at_once.end)
+    assert np.allclose(stepwise.passages, at_once.passages)
+
+
+def test_holding_for_ever_and_stopping_then_flying_home():
+    trajectory = WaypointTrajectory(HIGH, [Leg([5, 0, -5], 1.5, math.inf)], LIMITS, start=3.0)
+    assert np.allclose(trajectory.position(1e4), [5, 0, -5])
+    assert trajectory.end == math.inf
+    # From an endless hold, and in mid-flight.
+    for time in (50.0, 6.0):
+        trajectory = WaypointTrajectory(HIGH, [Leg([5, 0, -5], 1.5, math.inf)], LIMITS, start=3.0)
+        stopped = trajectory.stop(time)
+        home = fly_on(
+            RestTrajectory(stopped.position(time), time) if time > stopped.end else stopped,
+            [Leg(HIGH, 1.5, 1.0), Leg(ORIGIN, 0.3)],
+            LIMITS,
+        )
+        times = np.arange(time, time + 60.0, 0.02)
+        derivatives = home.derivatives(times)
+        assert_within(derivatives)
+        assert np.abs(np.diff(derivatives[0], axis=0)).max() < 0.04
+        assert np.allclose(derivatives[0, -1], ORIGIN)
+        assert home.end < time + 60.0
+        again = home.stop(home.end - 3.0)
+        assert again.end <= home.end + 1e-9
+
+
+def test_stop_is_prompt():
+    trajectory = planned([Leg([40, 0, -5], 1.5)])
+    assert trajectory.stop(15.0).end - 15.0 < 3.0
+    slow = planned([Leg([10, 0, -5], 0.3)])
+    assert slow.stop(15.0).end - 15.0 < 2.2
+
+
+@pytest.mark.parametrize(
+    "bad",
+    [
+        lambda: Limits(0.0, 1, 1, 1),
+        lambda: Limits(1, math.nan, 1, 1),
+        lambda: Leg([0, 0, math.inf], 1.0),
+        lambda: Leg([0, 0], 1.0),
+        lambda: Leg([0, 0, 0], 0.0),
+        lambda: Leg([0, 0, 0], 1.0, -1.0),
+        lambda: Leg([0, 0, 0], 1.0, math.nan),
+        lambda: Circle([0, 0, 0], 0.0, 1.0, 1.0),
+        lambda: Circle([0, 0, 0], 1.0, -1.0, 1.0),
+        lambda: WaypointTrajectory([0, 0, math.nan], [], LIMITS),
+        lambda: WaypointTrajectory(HIGH, [], LIMITS, corner=0.0),
+        lambda: WaypointTrajectory(HIGH, [], LIMITS).derivatives([math.nan]),
+        lambda: WaypointTrajectory(HIGH, [], LIMITS).derivatives([0.0], 5),
+        lambda: WaypointTrajectory(HIGH, itertools.repeat(Leg(HIGH, 1.0)), LIMITS).derivatives([1.0]),
+        lambda: SplineTrajectory(np.zeros((0, 3)), 0.1, 0.0, LIMITS),
+        lambda: SplineTrajectory(np.zeros((4, 3)), 0.0, 0.0, LIMITS),
+        lambda: RestTrajectory(HIGH, 2.0, 1.0),
+    ],
+)
+def test_nonsense_is_refused(bad):
+    with pytest.raises(TrajectoryError):
+        bad()
+
+
+def test_no_legs_is_rest():
+    trajectory = WaypointTrajectory(HIGH, [], LIMITS, start=2.0)
+    assert np.array_equal(trajectory.position(9.0), HIGH)
+    assert trajectory.end == 2.0
+    assert trajectory.stop(3.0).end <= 3.0

@@ -1,0 +1,82 @@
+"""Four autopilots on one payload that lose their set-points together: they brake, hold, descend and disarm."""
+
+from __future__ import annotations
+
+import math
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+from gcs.config import read_system
+from gcs.wire import px4
+from idc_controller.model.nonlinear import SystemState
+from idc_controller.rotations import euler_from_quaternion
+from vehicle_sim.airframe import Airframe
+from vehicle_sim.autopilot import Autopilot
+from vehicle_sim.parameter_table import vehicle_parameters
+from vehicle_sim.rotors import IDLE, Rotors
+from vehicle_sim.sensors import NavigationSensor, SensorNoise
+from vehicle_sim.setpoints import AttitudeSetpoint
+from vehicle_sim.world import World
+
+NOISE = SensorNoise(position=0.02, attitude=math.radians(0.2), velocity=0.02, rates=0.005)
+
+
+@pytest.mark.parametrize("velocity", [(0.0, 0.0), (3.0, 2.5)])
+def test_payload_is_braked_held_and_set_down(velocity: tuple[float, float]) -> None:
+    config = read_system()
+    system = config.true_parameters()
+    n = system.number_of_uavs
+    level = np.tile([1.0, 0.0, 0.0, 0.0], (n, 1))
+    start = SystemState(
+        np.array([0.0, 0.0, -5.0]), np.array([*velocity, -0.5]), level[0], np.zeros(3),
+        np.tile([0.0, 0.0, 1.0], (n, 1)), np.zeros((n, 3)), level, np.zeros((n, 3)),
+    )  # fmt: skip
+    airframes = [
+        Airframe.of_system(system, i, arm_length=0.17, torque_to_thrust=0.016, rotor_speed_max=1000.0) for i in range(n)
+    ]
+    pilots = [Autopilot(airframe, vehicle_parameters(airframe, i, 250)) for i, airframe in enumerate(airframes)]
+    rotors = [Rotors(airframe.rotors, airframe.motor_time_constant, 0.002) for airframe in airframes]
+    sensors = [NavigationSensor(NOISE, 3, i) for i in range(n)]
+    speeds = [IDLE] * n
+    tilts, separations, modes, sinking = [], [], set(), []
+    with World(system, 500) as world:
+        world.place(start)
+        for tick in range(12_000):
+            now, state = tick * 0.002, world.state()
+            if tick % 2 == 0:
+                for i, (pilot, uav) in enumerate(zip(pilots, state.uavs, strict=True)):
+                    thrust = float(system.hover_thrust[i]) / system.thrust_max
+                    setpoint = AttitudeSetpoint((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), thrust, tick)
+                    measured = sensors[i].measure(
+                        now, uav.quaternion, uav.rates_in_body, uav.position_in_world, uav.velocity_in_world
+                    )
+                    speeds[i] = pilot.step(measured, now)
+                    if tick == 0:
+                        pilot.enter_offboard(setpoint, now, now)
+                        pilot.arm(now, force=True)
+                        rotors[i].speeds = (math.sqrt(system.hover_thrust[i] / 4 / airframes[i].rotors.k_f),) * 4
+                        speeds[i] = rotors[i].speeds
+                    elif now < 0.8:
+                        pilot.follow(setpoint, now)
+            if tick % 50 == 0:
+                tilts.append(np.abs(euler_from_quaternion(state.payload_quaternion)[:2]).max())
+                places = [np.array(uav.position_in_world) for uav in state.uavs]
+                separations.append(min(np.linalg.norm(a - b) for a, b in combinations(places, 2)))
+                modes.add(pilots[0].mode)
+                if pilots[0].mode == px4.MODE_LAND:
+                    sinking.append(state.payload_velocity_in_world[2])
+                if not any(pilot.armed for pilot in pilots):
+                    break
+            wrenches = [rotor.advance(command) for rotor, command in zip(rotors, speeds, strict=True)]
+            world.step([wrench[0] for wrench in wrenches], [wrench[1:] for wrench in wrenches])
+        assert world.touching_ground()
+        # Flown to the loss (0.8 s), unnoticed (0.5 s), and half of the braking time (4 s).
+        way = math.hypot(*velocity) * (0.8 + 0.5 + 2.0)
+        assert math.hypot(*world.state().payload_position_in_world[:2]) < way + 0.5
+    assert not any(pilot.armed for pilot in pilots)
+    assert {px4.MODE_OFFBOARD, px4.MODE_HOLD, px4.MODE_LAND} <= modes
+    assert math.degrees(max(tilts)) < 9.0
+    assert min(separations) > 0.7
+    assert max(sinking) < 0.65

@@ -1,0 +1,159 @@
+"""The command vehicle-sim: what it refuses, what it tells, how it ends."""
+
+import json
+import signal
+import socket
+
+import pymavlink.dialects.v20.common as mavlink
+import pytest
+from test_swarm import rows
+from test_swarm_drivers import PATIENCE, process
+
+from gcs.config import default_system_path
+from gcs.wire.codec import Codec
+from vehicle_sim.cli import main
+
+OPTIONS = ["vehicles", "mission", "config", "base-port", "realtime", "speed", "lockstep", "gui", "seed", "run-dir"]
+
+MISSION = """\
+[mission]
+name = "an obstacle"
+seed = 11
+
+[reference]
+kind = "lissajous"
+amplitude = [1.0, 1.0]
+angular_frequency = 0.5
+altitude = 5.0
+duration = 10.0
+
+[[obstacle]]
+name = "pole"
+shape = "pole"
+position = [8.0, 1.0]
+radius = 0.3
+height = 6.0
+"""
+
+
+@pytest.fixture(autouse=True)
+def somewhere_else(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("DISPLAY", raising=False)
+    (tmp_path / "mission.toml").write_text(MISSION)
+    (tmp_path / "full").mkdir()
+    (tmp_path / "full" / "something").touch()
+    (tmp_path / "bad.toml").write_text(default_system_path().read_text().replace("mass = 3.1", "mass = -3.1"))
+    (tmp_path / "odd.toml").write_text(MISSION.replace("radius = 0.3", "radius = 0.3\ncolour = 'red'"))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        ("--vehicles 2", "--vehicles: '2' is not a whole number from 3"),
+        ("--vehicles four", "--vehicles: 'four' is not a whole number"),
+        ("--vehicles 16", "16 vehicles: the physics engine is wrong beyond 15"),
+        ("--vehicles 200", "200 vehicles"),
+        ("--mission none.toml", "none.toml: cannot be read"),
+        ("--mission odd.toml", "odd.toml: line 17: obstacle[1].colour: unknown key"),
+        ("--config bad.toml", "payload.mass: "),
+        ("--mission mission.toml --config bad.toml", "payload.mass: "),
+        ("--seed -1", "--seed: '-1'"),
+        ("--seed 1.5", "--seed: '1.5'"),
+        ("--speed 0", "--speed: '0'"),
+        ("--speed nan", "--speed: 'nan'"),
+        ("--lockstep --speed 2", "--speed: lockstep has no speed"),
+        ("--lockstep --realtime", "not allowed with"),
+        ("--lockstep --ground-port 14550", "--ground-port"),
+        ("--base-port 65536", "--base-port: '65536'"),
+        ("--base-port 65534", "ports 65534 .. 65537 do not exist"),
+        ("--base-port 1 --lockstep", "ports 0 .. 4 do not exist"),
+        ("--host 192.0.2.1 --base-port 0", "cannot listen on udp://192.0.2.1:0"),
+        ("--base-port 0 --run-dir full", "full: the run folder is not empty"),
+        ("--base-port 0 --run-dir mission.toml", "mission.toml: is a file"),
+        ("--gui", "there is no display"),
+        ("--faster", "unrecognized arguments: --faster"),
+    ],
+)
+def test_what_cannot_be_used_is_refused_in_one_line(arguments, reason, tmp_path, capfd):
+    before = sorted(path.name for path in tmp_path.rglob("*"))
+    assert main(arguments.split()) == 2
+    told = capfd.readouterr()
+    assert told.out == ""
+    assert told.err.startswith("vehicle-sim: ")
+    assert told.err.count("\n") == 1
+    assert reason in told.err
+    assert sorted(path.name for path in tmp_path.rglob("*")) == before
+
+
+def test_a_taken_port_starts_nothing(tmp_path, capfd):
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+        other.bind(("127.0.0.1", 0))
+        port = other.getsockname()[1]
+        assert main(["--base-port", str(port - 1), "--run-dir", "run"]) == 2
+    assert f"cannot listen on udp://127.0.0.1:{port}: Address already in use" in capfd.readouterr().err
+    assert not (tmp_path / "run").exists()
+
+
+def test_help_tells_the_whole_story(capfd):
+    with pytest.raises(SystemExit) as ended:
+        main(["--help"])
+    assert ended.value.code == 0
+    told = capfd.readouterr().out
+    for option in OPTIONS:
+        assert f"--{option}" in told
+    assert "--with-parent" not in told
+    assert "Examples:" in told
+
+
+@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 0)])
+@pytest.mark.parametrize("pace", ["--lockstep", "--realtime"])
+def test_signals_end_it_with_its_records_closed(tmp_path, number, status, pace):
+    arguments = ("--mission", "mission.toml", "--base-port", 0, "--run-dir", "run", pace)
+    with process(*arguments, *(("--ground-port", 0) if pace == "--realtime" else ())) as (running, clock, vehicles):
+        assert (clock is not None) == (pace == "--lockstep")
+        assert len(vehicles) == 4
+        running.send_signal(number)
+        assert running.wait(PATIENCE) == status
+        assert running.stderr.read() == ""
+    truth = rows(tmp_path / "run" / "truth.csv")
+    assert truth[0]["time_s"] == "0.0"
+    assert rows(tmp_path / "run" / "obstacles.csv")[0]["name"] == "pole"
+    manifest = json.loads((tmp_path / "run" / "manifest.json").read_text())
+    assert manifest["seed"] == 11
+    assert manifest["mission"]["name"] == "an obstacle"
+    assert manifest["system"]["team"]["vehicles"] == 4
+    assert manifest["command"][:3] == ["vehicle-sim", "--mission", "mission.toml"]
+
+
+def test_vehicles_offer_themselves_at_the_ground_port():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as ground:
+        ground.bind(("127.0.0.1", 0))
+        ground.settimeout(PATIENCE)
+        arguments = ("--base-port", 0, "--ground-port", ground.getsockname()[1], "--vehicles", 3, "--seed", 4)
+        with process(*arguments) as (running, _, vehicles):
+            codec = Codec(255, mavlink.MAV_COMP_ID_MISSIONPLANNER)
+            heard = {}
+            while len(heard) < 3:
+                datagram, sender = ground.recvfrom(65535)
+                heard[sender] = codec.decode(datagram)[0].get_srcSystem()
+            assert heard == {address: i for i, address in enumerate(vehicles, start=1)}
+            running.send_signal(signal.SIGTERM)
+            assert running.wait(PATIENCE) == 0
+
+
+def test_the_folder_of_a_parent_keeps_its_manifest(tmp_path):
+    (tmp_path / "run").mkdir()
+    (tmp_path / "run" / "manifest.json").write_text("the parent's")
+    with process("--base-port", 0, "--lockstep", "--with-parent", "--run-dir", "run") as (running, _, _):
+        running.stdin.close()
+        assert running.wait(PATIENCE) == 0
+    assert (tmp_path / "run" / "manifest.json").read_text() == "the parent's"
+    assert (tmp_path / "run" / "truth.csv").exists()
+
+
+def test_ctrl_c_at_the_terminal_is_left_to_the_parent(tmp_path):
+    with process("--base-port", 0, "--lockstep", "--with-parent") as (running, _, _):
+        running.send_signal(signal.SIGINT)
+        running.stdin.close()
+        assert running.wait(PATIENCE) == 0
