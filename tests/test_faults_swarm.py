@@ -209,7 +209,7 @@ def test_vehicle_sim_writes_what_its_faults_did(tmp_path):
             if line.strip() == "ready":
                 break
         process.send_signal(signal.SIGTERM)
-        said = process.communicate(timeout=60)[1]
+        said = process.communicate(timeout=300)[1]
     assert process.returncode == 0
     assert "fault 1, partition (line 6 of the mission), never came: nothing took off" in said
     assert json.loads((tmp_path / "run" / "faults.json").read_text())["faults"][0]["occurrences"] == 0

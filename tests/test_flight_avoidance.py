@@ -70,7 +70,7 @@ def flown(folder, text):
     command = [sys.executable, "-m", "gcs", "fly", str(folder / "mission.toml"), "--json", "--no-pictures"]
     done = subprocess.run(
         [*command, "--run-dir", str(folder / "run")],
-        capture_output=True, text=True, timeout=120, env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
+        capture_output=True, text=True, timeout=500, env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
     )  # fmt: skip
     assert done.stdout, done.stderr
     return done.returncode, json.loads(done.stdout), done.stderr

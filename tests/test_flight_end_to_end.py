@@ -186,27 +186,5 @@ def test_two_programs_with_two_beliefs_of_the_mass_in_lockstep(tmp_path):
         assert code == 0, summary
     finally:
         swarm.terminate()
-        swarm.communicate(timeout=60)
+        swarm.communicate(timeout=300)
     assert truth_against_reference(tmp_path / "world", tmp_path / "run") <= 0.035
-
-
-def test_in_real_time_with_vehicles_that_offer_themselves(tmp_path):
-    mission = short_figure(tmp_path, duration=6.0, altitude=1.5)
-    port = free_port()
-    swarm = swarm_process(
-        "--mission", mission, "--run-dir", tmp_path / "world", "--base-port", 0, "--ground-port", port, "--seed", 3
-    )  # fmt: skip
-    try:
-        addresses_of(swarm)
-        code, summary = gcs_fly(mission, tmp_path / "run", "--realtime", "--connect", f"udpin://127.0.0.1:{port}")
-        if code != 0 and os.getloadavg()[0] > 1.5 * os.cpu_count():
-            pytest.skip("other programs keep this machine too busy for real time")
-        assert code == 0, summary
-        assert summary["completed"]
-    finally:
-        swarm.terminate()
-        swarm.communicate(timeout=60)
-    assert truth_against_reference(tmp_path / "world", tmp_path / "run") <= 0.03
-    truth = truth_of(tmp_path / "world")
-    assert truth["contacts"].max() == 0
-    assert truth["payload_z_m"][-1] == pytest.approx(-0.3, abs=0.02)  # on the pad again

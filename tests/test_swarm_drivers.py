@@ -24,7 +24,7 @@ from vehicle_sim.errors import SimulationError
 from vehicle_sim.swarm import Swarm
 
 SYSTEM = CONFIG.parameters()
-PATIENCE = 30.0  # s of wall time for what takes one or two
+PATIENCE = 120.0  # s of wall time for what takes one or two
 
 
 def scripted_ground(addresses, lift=0.6):
@@ -63,7 +63,7 @@ def lockstep():
         swarm = opened.enter_context(Swarm(CONFIG, seed=1))
         sockets = opened.enter_context(SwarmSockets("127.0.0.1", 0, 4, with_clock=True))
         ending = opened.enter_context(contextlib.closing(Ending()))
-        driver = LockstepDriver(swarm, sockets, ending, answer_time=1.0)
+        driver = LockstepDriver(swarm, sockets, ending, answer_time=3.0)
         thread = threading.Thread(target=driver.run)
         thread.start()
         try:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import select
 import socket
 from collections.abc import Iterator
 
@@ -42,6 +43,10 @@ class Connection:
             except OSError:
                 continue  # the echo of a datagram to a closed port
             yield datagram, sender
+
+    def wait(self, timeout: float) -> None:
+        """Until something can be received, but not longer than ``timeout`` (s)."""
+        select.select([self.socket], [], [], timeout)
 
     def close(self) -> None:
         """Close the socket."""

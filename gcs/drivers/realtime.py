@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import select
 import time
 from collections.abc import Callable
 
@@ -47,4 +46,4 @@ def run_in_real_time(
             continue
         wait = due / speed - (clock() - start)
         if wait > 0.0:
-            select.select([connection.socket], [], [], min(wait, LONGEST_WAIT))
+            connection.wait(min(wait, LONGEST_WAIT))

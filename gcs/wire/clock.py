@@ -7,8 +7,9 @@ from collections import deque
 from statistics import median
 
 WINDOW = 50  # round trips that are remembered
-SLICE = 0.5  # s of which only the greatest lead is remembered
-SLICES = 8
+SLICE = 0.25  # s of which only the greatest lead is remembered
+SLICES = 4  # few, because a simulated world that has stalled does not catch up
+RESOLUTION = 1e-6  # s; TIMESYNC counts nanoseconds, and sums of times are rounded
 REBOOT = 1.0  # s; a boot time that falls behind by more belongs to another boot
 
 
@@ -39,8 +40,8 @@ class RemoteClock:
 
     def answered(self, sent: float, arrival: float) -> None:
         """A TIMESYNC request of ``sent`` was answered at ``arrival`` (s, ground)."""
-        if arrival >= sent:
-            self._round_trips.append(arrival - sent)
+        if arrival >= sent - RESOLUTION:
+            self._round_trips.append(max(arrival - sent, 0.0))
             self._shortest = min(self._round_trips)
 
     @property

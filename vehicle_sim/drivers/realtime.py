@@ -12,7 +12,7 @@ from vehicle_sim.swarm import Swarm
 
 STRIDE = 0.005  # s of simulated time between looks at the clock when nothing else is due
 STRIDE_MAX = 0.02  # s of simulated time at most between looks at the sockets
-LAG_MAX = 0.1  # s; the clock is set back by what the world is behind more than this
+LAG_MAX = 0.4  # s; less than vehicles wait for set-points. What the world is behind more, its clock is set back by
 
 
 class RealTimeClock:

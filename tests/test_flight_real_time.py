@@ -1,0 +1,113 @@
+"""Flights by the drivers of real time, over UDP, on a wall clock of the test's own: vehicles offer themselves."""
+
+import contextlib
+import threading
+
+import numpy as np
+import pytest
+from flight_in_process import short_figure, truth_of
+from virtual_time import VirtualTime
+
+from gcs.drivers.connection import Connection
+from gcs.drivers.interrupt import Interrupt
+from gcs.drivers.realtime import run_in_real_time
+from gcs.fly import ground_station
+from gcs.mission.read import read_mission
+from gcs.record.recorder import FlightRecorder
+from vehicle_sim.drivers.ending import Ending
+from vehicle_sim.drivers.realtime import RealTimeDriver
+from vehicle_sim.drivers.sockets import SwarmSockets
+from vehicle_sim.swarm import Swarm
+from vehicle_sim.truth_log import TruthLog
+
+GROUND, WORLD = "ground", "world"
+
+
+class GroundSocket(Connection):
+    def __init__(self, time):
+        super().__init__()
+        self._time = time
+
+    def wait(self, timeout):
+        self._time.wait(GROUND, [self.socket], timeout)
+
+
+class WorldsEnd(Ending):
+    def __init__(self, time):
+        super().__init__()
+        self._time = time
+
+    def wait(self, sockets, timeout):
+        self._time.wait(WORLD, sockets, timeout)
+
+
+def fly_in_real_time(mission, folder, stalls=()):
+    """Both programs' loops, each in a thread: the flight, when it has ended."""
+    folder.mkdir()
+    time = VirtualTime([WORLD, GROUND], stalls)
+    with contextlib.ExitStack() as opened:
+        connection = opened.enter_context(contextlib.closing(GroundSocket(time)))
+        ending = opened.enter_context(contextlib.closing(WorldsEnd(time)))
+        sockets = opened.enter_context(SwarmSockets("127.0.0.1", 0, mission.system.team.vehicles, with_clock=False))
+        swarm = opened.enter_context(
+            Swarm(mission.system, seed=mission.seed, ground_address=connection.socket.getsockname())
+        )
+        swarm.record(TruthLog(folder, mission.system.team.vehicles))
+        recorder = opened.enter_context(contextlib.closing(FlightRecorder(folder, 0.0)))
+        station = ground_station(mission, [None] * mission.system.team.vehicles, recorder)
+
+        def world():
+            time.begin(WORLD)
+            try:
+                RealTimeDriver(swarm, sockets, ending, wall=time.read).run()
+            finally:
+                time.leave(WORLD)
+
+        thread = threading.Thread(target=world)
+        thread.start()
+        time.begin(GROUND)
+        try:
+            run_in_real_time(station, connection, Interrupt(), clock=time.read)
+        finally:
+            ending.request()
+            time.leave(GROUND)
+            thread.join()
+    return station.flight
+
+
+def rmse_in_figure(folder):
+    """Position RMSE (m) of the payload about the mission, 10 s after take-off and on."""
+    truth = truth_of(folder)
+    reference = np.genfromtxt(folder / "reference.csv", delimiter=",", names=True)
+    at = reference["time_s"]
+    late = at > at[0] + 10.0
+    squared = sum(
+        (np.interp(at, truth["time_s"], truth[f"payload_{axis}_m"]) - reference[f"{axis}_m"]) ** 2 for axis in "xyz"
+    )
+    return float(np.sqrt(squared[late].mean()))
+
+
+def check_flown(flight, folder, rmse):
+    assert flight.completed, flight.reason
+    assert rmse_in_figure(folder) <= rmse
+    truth = truth_of(folder)
+    assert truth["contacts"].max() == 0
+    assert truth["payload_z_m"][-1] == pytest.approx(-0.3, abs=0.02)  # on the pad again
+
+
+@pytest.fixture
+def mission(tmp_path):
+    return read_mission(short_figure(tmp_path, duration=6.0, altitude=1.5))
+
+
+def test_it_is_flown_on_time(mission, tmp_path):
+    flight = fly_in_real_time(mission, tmp_path / "run")
+    check_flown(flight, tmp_path / "run", rmse=0.03)
+
+
+@pytest.mark.parametrize(("stalled", "duration"), [(GROUND, 0.4), (WORLD, 0.4)])
+def test_a_busy_machine_is_borne(mission, tmp_path, stalled, duration):
+    # Without the processor again and again, at moments that fit no other period.
+    stalls = [(stalled, 2.0 + 2.37 * i, duration) for i in range(40)]
+    flight = fly_in_real_time(mission, tmp_path / "run", stalls)
+    check_flown(flight, tmp_path / "run", rmse=0.1)
