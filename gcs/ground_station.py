@@ -16,7 +16,7 @@ import pymavlink.dialects.v20.common as mavlink
 from gcs.flight.flight import Flight, Phase, StepRecord
 from gcs.flight.team import Team
 from gcs.obstacles import ObstacleMap
-from gcs.setpoints import attitude_target
+from gcs.setpoints import attitude_target, stop_plan_message
 from gcs.telemetry import measurement
 from gcs.wire import px4
 from gcs.wire.address import Address
@@ -214,6 +214,11 @@ class GroundStation:
         effective = _whole_ms(time + self._latency + delay + onboard)
         setpoints, record = self.flight.step(time, effective, now)
         self._recorder.step(self.flight, time, record)
+        # The plan before the set-point: a vehicle that gets one of the two can still stop with the others.
+        if (plan := self.flight.stop_plan) is not None:
+            for link, queue, points in zip(self.links, messages, plan.control_points.tolist(), strict=True):
+                start = plan.start - self._team_offset + link.clock.offset
+                queue.append(stop_plan_message(start, plan.duration, points))
         if setpoints is None:
             return
         for i, (link, queue) in enumerate(zip(self.links, messages, strict=True)):

@@ -1,4 +1,4 @@
-"""Set-points: a decision of the controller becomes one SET_ATTITUDE_TARGET for each vehicle."""
+"""Set-points: a decision of the controller becomes a SET_ATTITUDE_TARGET for each vehicle, and with it a stop plan."""
 
 from __future__ import annotations
 
@@ -44,4 +44,22 @@ def attitude_target(
         body_pitch_rate=0.0,
         body_yaw_rate=0.0,
         thrust=max(0.0, min(1.0, thrust / thrust_max)),
+    )
+
+
+def stop_plan_message(boot_time: float, duration: float, control_points: Sequence[Sequence[float]]) -> Any:
+    """TRAJECTORY_REPRESENTATION_BEZIER from a vehicle's ``boot_time`` (s) on, to rest in ``duration`` (s).
+
+    ``control_points``: (5, 3) of its way (m, NED); heading north.
+    """
+    x, y, z = zip(*control_points, strict=True)
+    points = len(x)
+    return mavlink.MAVLink_trajectory_representation_bezier_message(
+        time_usec=max(round(boot_time * 1e6), 0),
+        valid_points=points,
+        pos_x=x,
+        pos_y=y,
+        pos_z=z,
+        delta=[duration] * points,
+        pos_yaw=[0.0] * points,
     )

@@ -322,7 +322,7 @@ def test_landing_by_setpoints_is_noticed(flying: Flight) -> None:
 
 
 def test_hold_plan_is_consistent_with_its_own_derivatives() -> None:
-    plan = HoldPlan(2.0, (1.0, 2.0, -5.0), (3.0, -4.0, 1.0), 0.3, descent_start=7.0, descent_speed=0.5)
+    plan = HoldPlan.braking(2.0, (1.0, 2.0, -5.0), (3.0, -4.0, 1.0), 0.3, descent_start=7.0, descent_speed=0.5)
     h = 1e-4
     for t in np.linspace(2.1, 12.0, 53):
         before, here, after = plan.at(t - h), plan.at(t), plan.at(t + h)
@@ -332,8 +332,8 @@ def test_hold_plan_is_consistent_with_its_own_derivatives() -> None:
             bend = (np.array(after.velocity) - before.velocity) / (2 * h)
             assert here.acceleration == pytest.approx(bend, abs=1e-5)
     start, end = plan.at(2.0), plan.at(7.0)
-    assert start.velocity[:2] == (3.0, -4.0) and start.acceleration == (0.0, 0.0, 0.0)
-    assert end.velocity == pytest.approx((0.0, 0.0, 0.0)) and end.position[2] == -5.0
+    assert start.velocity == pytest.approx((3.0, -4.0, 0.0)) and start.acceleration == pytest.approx((0.0, 0.0, 0.0))
+    assert end.velocity == pytest.approx((0.0, 0.0, 0.0)) and end.position[2] == pytest.approx(-5.0)
     assert max(np.linalg.norm(plan.at(t).acceleration) for t in np.linspace(2, 7, 99)) <= 2.0 + 1e-9
 
 

@@ -238,23 +238,45 @@ def test_a_vehicle_of_another_make_is_refused(tmp_path):
         assert flight.flight.reason == "vehicle 1 has CLFT_THRUST_MAX = 20, the system file says 30"
 
 
+@pytest.mark.parametrize("moment", [13.0, 20.1])
 @pytest.mark.parametrize(
     ("telemetry", "commands", "reason"),
-    [(True, True, "sends no telemetry"), (False, True, "has left OFFBOARD for AUTO.LOITER (Set-points lost")],
-    ids=["both ways", "commands"],
+    [
+        (True, True, "sends no telemetry"),
+        (True, False, "sends no telemetry"),
+        (False, True, "has left OFFBOARD for AUTO.LOITER (Set-points lost"),
+    ],
+    ids=["both ways", "telemetry", "commands"],
 )
-def test_a_vehicle_that_drops_out_in_flight_brings_all_of_them_down(tmp_path, telemetry, commands, reason):
-    passage = Cut(2, 20.0, telemetry, commands)
-    with Rehearsal(short_figure(tmp_path, duration=30.0), tmp_path / "run", passage=passage) as flight:
+def test_a_vehicle_that_drops_out_in_flight_brings_all_of_them_down(tmp_path, telemetry, commands, reason, moment):
+    passage = Cut(2, moment, telemetry, commands)
+    with Rehearsal(short_figure(tmp_path, duration=20.0), tmp_path / "run", seed=1200, passage=passage) as flight:
         flight.fly()
         assert f"vehicle 2 {reason}" in flight.flight.reason
         assert flight.leave_alone()
         summary = flight.summary()
     assert not summary["completed"]
+    check_set_down(tmp_path / "run", summary)
+
+
+@pytest.mark.parametrize("moment", [13.3, 17.8])
+def test_vehicles_whose_ground_is_gone_stop_together_and_set_the_payload_down(tmp_path, moment):
+    with Rehearsal(short_figure(tmp_path, duration=20.0), tmp_path / "run", seed=1201) as flight:
+        flight.fly(until=moment)
+        assert flight.leave_alone()
+        summary = flight.summary()
+    check_set_down(tmp_path / "run", summary)
+
+
+def check_set_down(folder, summary):
     assert summary["contacts"] == 0
+    assert summary["uav_separation_min_m"] >= 0.75
     tilt = summary["payload_tilt_max_deg"]
-    assert max(tilt["roll"], tilt["pitch"]) < 20.0
-    check_on_the_ground(tmp_path / "run")
+    assert max(tilt["roll"], tilt["pitch"]) < 15.0
+    check_on_the_ground(folder)
+    truth = truth_of(folder)
+    sinking = np.diff(truth["payload_z_m"]) / np.diff(truth["time_s"])
+    assert sinking.max() < 1.0
 
 
 class Stranger:

@@ -11,6 +11,7 @@ import pymavlink.dialects.v20.common as mavlink
 import pytest
 from flying import AIRFRAME, Body
 
+from gcs.setpoints import stop_plan_message
 from gcs.wire import px4
 from gcs.wire.codec import DATAGRAM_LIMIT, Codec
 from vehicle_sim.sensors import Measurement
@@ -34,6 +35,7 @@ def command(number: int, *parameters: float, system: int = 1, component: int = 1
 
 
 OFFBOARD = command(176, 1, px4.MainMode.OFFBOARD)
+HOLD = command(176, 1, px4.MainMode.AUTO, px4.AutoMode.LOITER)
 ARM, DISARM = command(400, 1), command(400, 0)
 
 
@@ -404,6 +406,68 @@ def test_the_stamp_of_the_last_setpoint_is_told_to_the_driver(flying: Bench) -> 
     assert flying.vehicle.setpoint_stamp_ms == 4242
     flying.send(attitude_target(stamp=1), STRANGER)
     assert flying.vehicle.setpoint_stamp_ms == 4242
+
+
+# Stop plans
+
+
+def stop_plan(flying: Bench, start: float, x: float = 0.0, duration: float = 4.0, **changes: Any) -> Any:
+    here = flying.body.position
+    points = [(here[0] + x * k / 4, here[1], here[2]) for k in (0, 1, 4, 4, 4)]
+    message = stop_plan_message(start, duration, points)
+    for name, value in changes.items():
+        setattr(message, name, value)
+    return message
+
+
+def test_without_setpoints_it_follows_the_plan_that_came_with_the_last_one(flying: Bench) -> None:
+    x = flying.body.position[0]
+    flying.send(stop_plan(flying, flying.now, x=3.0))
+    flying.streaming.clear()
+    flying.run(5.0)
+    assert flying.vehicle.autopilot.failsafe
+    assert flying.body.position[0] - x == pytest.approx(3.0, abs=0.3)
+
+
+@pytest.mark.parametrize(
+    ("late", "changes"),
+    [
+        (0.0, {"valid_points": 4}),
+        (0.0, {"pos_x": [math.nan] * 5}),
+        (0.0, {"delta": [0.0] * 5}),
+        (0.0, {"delta": [math.inf] * 5}),
+        (0.0, {"pos_yaw": [math.nan] * 5}),
+        (0.0, {"pos_y": [50.0] * 5}),
+        (3.0, {}),
+        (-9.0, {}),
+    ],
+)
+def test_a_plan_of_another_time_or_place_or_none_is_not_followed(flying: Bench, late: float, changes: Any) -> None:
+    x = flying.body.position[0]
+    flying.send(stop_plan(flying, flying.now - late, x=3.0, **changes))
+    flying.streaming.clear()
+    flying.run(5.0)
+    assert flying.vehicle.autopilot.failsafe
+    assert flying.body.position[0] - x == pytest.approx(0.0, abs=0.3)
+
+
+def test_a_strangers_plan_is_not_followed(flying: Bench) -> None:
+    x = flying.body.position[0]
+    flying.send(stop_plan(flying, flying.now, x=3.0), STRANGER)
+    flying.streaming.clear()
+    flying.run(5.0)
+    assert flying.body.position[0] - x == pytest.approx(0.0, abs=0.3)
+
+
+def test_a_hold_that_is_asked_for_again_goes_on_with_its_plan(flying: Bench) -> None:
+    x = flying.body.position[0]
+    flying.send(stop_plan(flying, flying.now, x=3.0))
+    flying.streaming.clear()
+    assert flying.result(HOLD) == ACCEPTED
+    for _ in range(5):
+        flying.run(1.0)
+        assert flying.result(HOLD) == ACCEPTED
+    assert flying.body.position[0] - x == pytest.approx(3.0, abs=0.3)
 
 
 # Strangers

@@ -19,13 +19,15 @@ from vehicle_sim.land_detector import LandDetector
 from vehicle_sim.parameter_table import ParameterTable
 from vehicle_sim.rotors import IDLE, Four, Mixer
 from vehicle_sim.sensors import Measurement
-from vehicle_sim.setpoints import AttitudeSetpoint
+from vehicle_sim.setpoints import AttitudeSetpoint, StopPlan
 
 MEASUREMENT_TIMEOUT = 0.2  # s without a usable sample: the navigation has failed
 STANDING_THRUST = 0.9  # of its own weight: with less thrust, something else holds the vehicle
 ARMING_TILT_MAX = math.radians(60.0)
 ARMING_SPEED_MAX = 1.0  # m/s
 ARMING_RATE_MAX = 2.0  # rad/s
+STOP_PLAN_AGE = 2.0  # s since the start of a stop plan in which it may still be begun
+STOP_PLAN_DISTANCE = 2.0  # m from it: farther away something else has happened
 _TIME_TOLERANCE = 1e-6  # s: sums of steps are not exact
 
 _MANUAL_MODES = (px4.MODE_MANUAL, px4.MODE_ALTCTL, px4.MODE_POSCTL)
@@ -58,7 +60,7 @@ class Autopilot:
     Public state, to be read only: ``armed``, ``failsafe`` (it flies on its own against the ground's intention),
     ``changes`` (rises with every change of what a HEARTBEAT shows), ``measurement`` (the last usable one, or None),
     ``attitude_target`` (attitude or None, rates, thrust 0 .. 1) as last flown, ``notices`` (texts for people, to be
-    taken away by whoever tells them).
+    taken away by whoever tells them). ``stop_plan``: the newest of the ground in control, to be set.
     """
 
     def __init__(self, airframe: Airframe, parameters: ParameterTable) -> None:
@@ -84,6 +86,7 @@ class Autopilot:
         self.measurement: Measurement | None = None
         self.attitude_target: tuple[Quaternion | None, Three, float] = (LEVEL, NO_RATES, 0.0)
         self.notices: list[str] = []
+        self.stop_plan: StopPlan | None = None
 
     # What the ground sees
 
@@ -204,10 +207,11 @@ class Autopilot:
             return self._land_here(now)
         if custom_mode != px4.MODE_HOLD:
             return denied(f"{name} denied: no such mode")
-        keep = self.failsafe and not self._is_descending
+        # Asked again, or while it stops on its own, it goes on with its plan: its neighbours do.
+        keeps = self._hold is not None and not self._is_descending
         self._mode = px4.MODE_HOLD
         self.failsafe = False
-        if keep and self._hold is not None:
+        if keeps and self._hold is not None:
             self._hold.plan = replace(self._hold.plan, descent_start=math.inf)
         else:
             self._hold = None
@@ -293,9 +297,11 @@ class Autopilot:
         if not self._land.in_air:
             self._stop()
             return ACCEPTED
-        if self._mode != px4.MODE_LAND or self._hold is None:
-            self._mode = px4.MODE_LAND
+        if self._hold is None:
             self._begin_hold(now, descent_start=now)
+        elif not self._is_descending:
+            self._hold.plan = replace(self._hold.plan, descent_start=now)
+        self._mode = px4.MODE_LAND
         self.failsafe = False
         return ACCEPTED
 
@@ -303,17 +309,23 @@ class Autopilot:
         measured = self.measurement
         if measured is None:
             return
-        plan = HoldPlan(
-            start=now,
-            position=measured.position,
-            velocity=measured.velocity,
-            yaw=yaw_of(measured.attitude),
-            descent_start=descent_start,
-            descent_speed=self._parameters[px4.PARAM_LAND_SPEED],
+        speed = self._parameters[px4.PARAM_LAND_SPEED]
+        plan = self._plan_of_all(measured, now, descent_start, speed) or HoldPlan.braking(
+            now, measured.position, measured.velocity, yaw_of(measured.attitude), descent_start, speed
         )
         hover = self._land.hover_thrust if self._land.in_air else None
         hover = hover or max(self._thrust, self._weight)
         self._hold = HoldController(plan, hover, self._weight, self._g)
+
+    def _plan_of_all(
+        self, measured: Measurement, now: float, descent_start: float, descent_speed: float
+    ) -> HoldPlan | None:
+        """The ground's stop plan, if it is of now and of here."""
+        told = self.stop_plan
+        if told is None or not -self.setpoint_loss_time <= now - told.start <= STOP_PLAN_AGE:
+            return None
+        plan = HoldPlan(told.start, told.duration, told.control_points, told.yaw, descent_start, descent_speed)
+        return plan if math.dist(plan.at(now).position, measured.position) <= STOP_PLAN_DISTANCE else None
 
     def _stop(self) -> None:
         """Rotors off. The vehicle is then in HOLD, and any ground may begin anew."""
@@ -322,6 +334,7 @@ class Autopilot:
         self._hold = None
         self._setpoint = None
         self._setpoint_time = -math.inf
+        self.stop_plan = None
         self._thrust = 0.0
         self.attitude_target = (LEVEL, NO_RATES, 0.0)
         self._mode = px4.MODE_HOLD

@@ -1,15 +1,21 @@
 """What a vehicle does on its own: brake along its velocity, hold position and altitude, descend.
 
-It must do the same as its neighbours, who hang on the same payload and whom it does not hear. So all follow a plan
-made from their state at the moment of the loss, at times that follow from that moment alone.
+It must do the same as its neighbours, who hang on the same payload and whom it does not hear. So all follow the stop
+plan that came with the last set-point, which the ground made for all of them from one moment; a vehicle whose ground
+sends none makes its own from its state at the moment of the loss.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
+import numpy as np
+from scipy.interpolate import BPoly
+
+from idc_controller.plan.stop import BRAKING_LIMIT, BRAKING_TIME
 from vehicle_sim.attitude_control import Quaternion, Three
 from vehicle_sim.sensors import Measurement
 
@@ -24,8 +30,6 @@ VERTICAL_KD = 4.5
 TILT_LIMIT = 0.35  # horizontal acceleration, in g
 VERTICAL_LIMIT = 0.35  # vertical acceleration, in g
 
-BRAKING_TIME = 4.0  # s
-BRAKING_LIMIT = 2.0  # m/s2; a faster vehicle takes longer to stop
 DESCENT_RAMP = 1.0  # s to reach the descent speed
 
 
@@ -39,50 +43,58 @@ class PlannedState(NamedTuple):
 
 @dataclass(frozen=True)
 class HoldPlan:
-    """From a state, to rest along the own velocity at the same altitude, then down from ``descent_start`` on.
+    """To rest along a Bezier curve of degree 4, then down from ``descent_start`` on.
 
-    ``position`` and ``velocity`` at ``start`` in the world (NED, m, m/s), times in s, ``yaw`` in rad,
-    ``descent_speed`` in m/s, ``descent_start`` infinite for a plan that stays.
-
-    The horizontal velocity falls as 1 - 3 s^2 + 2 s^3, so that acceleration begins and ends at zero. The altitude
-    is that of the start: a vertical velocity is not braked along, because four noisy integrals of it would part.
+    ``control_points``: five, in the world (NED, m), passed from ``start`` on in ``duration`` (times in s); ``yaw`` in
+    rad, ``descent_speed`` in m/s, ``descent_start`` infinite for a plan that stays.
     """
 
     start: float
-    position: Three
-    velocity: Three
+    duration: float
+    control_points: tuple[Three, ...]
     yaw: float
     descent_start: float = math.inf
     descent_speed: float = 0.5
 
-    @property
-    def braking_time(self) -> float:
-        """Seconds until the vehicle is to rest."""
-        return max(BRAKING_TIME, 1.5 * math.hypot(self.velocity[0], self.velocity[1]) / BRAKING_LIMIT)
+    @classmethod
+    def braking(
+        cls, start: float, position: Three, velocity: Three, yaw: float,
+        descent_start: float = math.inf, descent_speed: float = 0.5,
+    ) -> HoldPlan:  # fmt: skip
+        """From an own state to rest along the own horizontal velocity, as 1 - 3 s^2 + 2 s^3 of it.
+
+        The altitude is that of the start: a vertical velocity is not braked along, because four noisy integrals of it
+        would part.
+        """
+        v_x, v_y, _ = velocity
+        duration = max(BRAKING_TIME, 1.5 * math.hypot(v_x, v_y) / BRAKING_LIMIT)
+        x, y, z = position
+        quarter = (x + duration * v_x / 4, y + duration * v_y / 4, z)
+        end = (x + duration * v_x / 2, y + duration * v_y / 2, z)
+        return cls(start, duration, (position, quarter, end, end, end), yaw, descent_start, descent_speed)
 
     def at(self, now: float) -> PlannedState:
         """The planned state at a time (s)."""
-        duration = self.braking_time
-        s = min(max((now - self.start) / duration, 0.0), 1.0)
-        travelled = duration * (s - s**3 + 0.5 * s**4)
-        speed = 1.0 - 3.0 * s * s + 2.0 * s**3
-        braking = 6.0 * (s * s - s) / duration
-        x, y, z = self.position
-        v_x, v_y, _ = self.velocity
-        sinking, down, down_acceleration = 0.0, 0.0, 0.0
+        t = min(max(now - self.start, 0.0), self.duration)
+        (x, y, z), (v_x, v_y, v_z), (a_x, a_y, a_z) = (curve(t).tolist() for curve in self._curves)
         descending = now - self.descent_start
         if descending > 0.0:
             rate = self.descent_speed / DESCENT_RAMP
             if descending < DESCENT_RAMP:
-                sinking, down, down_acceleration = rate * descending, 0.5 * rate * descending**2, rate
+                sinking, down = rate * descending, 0.5 * rate * descending**2
+                a_z += rate
             else:
                 sinking = self.descent_speed
                 down = self.descent_speed * (descending - 0.5 * DESCENT_RAMP)
-        return PlannedState(
-            (x + v_x * travelled, y + v_y * travelled, z + down),
-            (v_x * speed, v_y * speed, sinking),
-            (v_x * braking, v_y * braking, down_acceleration),
-        )
+            z += down
+            v_z += sinking
+        return PlannedState((x, y, z), (v_x, v_y, v_z), (a_x, a_y, a_z))
+
+    @cached_property
+    def _curves(self) -> tuple[BPoly, BPoly, BPoly]:
+        """Position, velocity and acceleration over the time since the start."""
+        position = BPoly(np.array(self.control_points)[:, None, :], [0.0, self.duration])
+        return position, position.derivative(), position.derivative(2)
 
     def is_descending(self, now: float) -> bool:
         """Whether the descent has begun."""
@@ -93,7 +105,7 @@ class HoldController:
     """Follows a plan: from what is measured to an attitude and a thrust.
 
     The weight to carry is the thrust that the vehicle has learned to hover with: its own weight and its payload's
-    share. A later plan (one that every set-point brings along) only needs ``at``, ``yaw`` and ``is_descending``.
+    share.
     """
 
     def __init__(self, plan: HoldPlan, hover_thrust: float, thrust_min: float, g: float) -> None:

@@ -1,4 +1,4 @@
-"""SET_ATTITUDE_TARGET to a set-point that can be flown, or the reason why not."""
+"""What the ground asks for, read from messages: set-points and stop plans, or the reason why they cannot be flown."""
 
 from __future__ import annotations
 
@@ -23,6 +23,10 @@ _KNOWN_BITS = sum(_IGNORE_RATE) | _IGNORE_THRUST | _IGNORE_ATTITUDE
 RATE_LIMIT = 20.0  # rad/s; no set-point of a sane ground asks for more
 NORM_TOLERANCE = 0.1  # of a quaternion's norm; float32 alone stays within 1e-6
 THRUST_TOLERANCE = 1e-4
+
+
+STOP_DURATION_MAX = 60.0  # s
+STOP_POINTS = 5  # control points of a quartic
 
 
 class SetpointError(SimulationError):
@@ -77,3 +81,30 @@ def read_setpoint(message: Any) -> AttitudeSetpoint:
             raise SetpointError(f"thrust {thrust} is outside 0 .. 1")
         thrust = min(max(thrust, 0.0), 1.0)
     return AttitudeSetpoint(attitude, rates, thrust, message.time_boot_ms)
+
+
+class StopPlan(NamedTuple):
+    """How to come to rest if no set-point follows; see :class:`~vehicle_sim.hold_control.HoldPlan`.
+
+    ``start`` in the vehicle's boot time (s), ``duration`` in s, five ``control_points`` in NED (m), ``yaw`` in rad.
+    """
+
+    start: float
+    duration: float
+    control_points: tuple[Three, ...]
+    yaw: float
+
+
+def read_stop_plan(message: Any) -> StopPlan:
+    """The plan in a TRAJECTORY_REPRESENTATION_BEZIER of one segment. Raises :class:`SetpointError`."""
+    if message.valid_points != STOP_POINTS:
+        raise SetpointError(f"a stop plan has {STOP_POINTS} control points, not {message.valid_points}")
+    points = tuple(zip(message.pos_x, message.pos_y, message.pos_z, strict=True))
+    if not all(math.isfinite(value) for point in points for value in point):
+        raise SetpointError("a control point is not finite")
+    duration, yaw = message.delta[0], message.pos_yaw[0]
+    if not 0.0 < duration <= STOP_DURATION_MAX:
+        raise SetpointError(f"delta {duration} is outside 0 .. {STOP_DURATION_MAX} s")
+    if not math.isfinite(yaw):
+        raise SetpointError("pos_yaw is not finite")
+    return StopPlan(message.time_usec * 1e-6, duration, points, yaw)

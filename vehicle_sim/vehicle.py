@@ -20,7 +20,7 @@ from vehicle_sim.peers import PEER_TIMEOUT, PEERS_MAX, TIME_TOLERANCE, Peer
 from vehicle_sim.range_sensor import RangeSample
 from vehicle_sim.rotors import Four
 from vehicle_sim.sensors import Measurement, Told
-from vehicle_sim.setpoints import SetpointError, read_setpoint
+from vehicle_sim.setpoints import SetpointError, read_setpoint, read_stop_plan
 from vehicle_sim.telemetry import Home, Telemetry
 
 
@@ -74,6 +74,7 @@ class Vehicle:
         # A further protocol (missions, ...) registers its messages here.
         self._handlers: dict[int, Callable[[Any, Sender, Peer, float], None]] = {
             mavlink.MAVLINK_MSG_ID_SET_ATTITUDE_TARGET: self._on_setpoint,
+            mavlink.MAVLINK_MSG_ID_TRAJECTORY_REPRESENTATION_BEZIER: self._on_stop_plan,
             mavlink.MAVLINK_MSG_ID_TIMESYNC: self._on_timesync,
             mavlink.MAVLINK_MSG_ID_PING: self._on_ping,
             **commands.handlers,
@@ -195,6 +196,17 @@ class Vehicle:
             self.refused_setpoints += 1
             return
         self.owner.take(setpoint, sender, now)
+
+    def _on_stop_plan(self, message: Any, sender: Sender, peer: Peer, now: float) -> None:
+        if self.owner.in_control(now) != sender:
+            return
+        try:
+            plan = read_stop_plan(message)
+        except SetpointError:
+            self.refused_setpoints += 1
+            return
+        behind = self._clock(now) - now
+        self.autopilot.stop_plan = plan._replace(start=plan.start - behind)
 
     def _on_timesync(self, message: Any, sender: Sender, peer: Peer, now: float) -> None:
         if message.tc1 == 0:  # a question

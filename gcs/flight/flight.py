@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
@@ -19,6 +20,7 @@ from idc_controller.control.controller import Decision, IntegratedDecisionContro
 from idc_controller.estimate.estimator import Estimate, Estimator
 from idc_controller.estimate.measurements import PAYLOAD, Measurement, Position
 from idc_controller.plan.reference import Reference
+from idc_controller.plan.stop import StopPlan, stop_plan
 from idc_controller.plan.trajectory import RestTrajectory, Trajectory
 
 Array = NDArray[np.float64]
@@ -56,6 +58,8 @@ class Phase(Enum):
     ENDED = "ended"
 
 
+STOP_PLANS = 100  # control steps whose stop plans are remembered
+TOLERANCE = 0.01  # s
 ALONE_TIMEOUT = 120.0  # s for the vehicles to land on their own
 
 IN_THE_AIR = (Phase.CLIMB, Phase.FLY, Phase.HOLD, Phase.LAND)
@@ -114,6 +118,9 @@ class Flight:
         self._in_control = math.inf
         self._descends = False
         self._down: Trajectory | None = None
+        self._stop_plans: deque[StopPlan] = deque(maxlen=STOP_PLANS)
+        self.stop_plan: StopPlan | None = None
+        """What all vehicles are to do together when they hear no more; goes out with the set-points."""
 
     @property
     def ended(self) -> bool:
@@ -269,13 +276,15 @@ class Flight:
 
     # Without one of the vehicles
 
-    def _leave_alone(self, time: float, reason: str) -> None:
+    def _leave_alone(self, time: float, reason: str, unheard: float = 0.0) -> None:
         """One vehicle is lost to the ground: all do at once what that one does on its own.
 
-        It brakes and holds when its set-points stop, and descends a set time later. Whatever the ground had the others
-        do instead would tear at the payload.
+        It follows the last stop plan that it has heard, ``unheard`` (s) ago, and descends a set time later. Whatever
+        the ground had the others do instead would tear at the payload.
         """
         self.break_off(time, reason)
+        heard = [plan for plan in self._stop_plans if plan.start <= time - unheard + TOLERANCE]
+        self.stop_plan = heard[-1] if heard else self.stop_plan
         self._ask(
             mavlink.MAV_CMD_DO_SET_MODE,
             mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, px4.MainMode.AUTO, px4.AutoMode.LOITER,
@@ -305,12 +314,12 @@ class Flight:
     def _fly(self, time: float, effective: float, now: float) -> tuple[Setpoints | None, StepRecord | None]:
         if self.phase is not Phase.SPOOL_DOWN and (problem := self.team.dropped_out(now)) is not None:
             if self.phase is Phase.SPOOL_UP:
-                self.break_off(time, problem)
+                self.break_off(time, problem.reason)
             else:
-                self._leave_alone(time, problem)
+                self._leave_alone(time, problem.reason, problem.unheard)
             return None, None
-        if self.phase in IN_THE_AIR and (problem := self.controller.safety.blocked(time)):
-            self.break_off(time, problem)
+        if self.phase in IN_THE_AIR and (blocked := self.controller.safety.blocked(time)):
+            self.break_off(time, blocked)
         trajectory = self._trajectory(time)
         begin = self._stopwatch()
         estimate = self.estimator.estimate(effective, self.controller.reference(trajectory))
@@ -329,6 +338,8 @@ class Flight:
             share = max(1.0 - (time - self._since) / SPOOL_DOWN, 0.0)
         if self.phase in IN_THE_AIR:
             self.estimator.add_setpoint(effective, decision.u)
+            self.stop_plan = stop_plan(self._parameters, decision.flat, effective)
+            self._stop_plans.append(self.stop_plan)
         self._advance(time, estimate, share)
         setpoints = Setpoints(decision.directions, decision.thrusts * share)
         return setpoints, StepRecord(estimate, decision, estimated - begin, decided - estimated)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 import pymavlink.dialects.v20.common as mavlink
@@ -26,6 +27,13 @@ NEEDED_PARAMETERS = (
 )
 TOLERANCE = 0.01
 """By how much a vehicle's parameter may differ from what the controller's model assumes."""
+
+
+class DropOut(NamedTuple):
+    """A vehicle that no longer takes part: the reason, and for how long (s) it has most likely heard nothing."""
+
+    reason: str
+    unheard: float
 
 
 class Team:
@@ -137,21 +145,20 @@ class Team:
         """Whether nothing at all was heard of any vehicle."""
         return all(now - link.heard > longer_than for link in self.links)
 
-    def dropped_out(self, now: float) -> str | None:
+    def dropped_out(self, now: float) -> DropOut | None:
         """Which vehicle no longer takes part in the flight."""
         if all(now - link.telemetry_heard > SILENCE for link in self.links):
-            return f"no vehicle sends telemetry for {SILENCE:g} s"
-        return self._first(
-            lambda v: (
-                f"sends no telemetry for {SILENCE:g} s"
-                if now - v.telemetry_heard > SILENCE
-                else "has disarmed itself" + _told(v)
-                if not v.armed
-                else f"has left OFFBOARD for {px4.mode_name(v.custom_mode)}" + _told(v)
-                if not v.offboard
-                else None
-            )
-        )
+            return DropOut(f"no vehicle sends telemetry for {SILENCE:g} s", SILENCE)
+        for link in self.links:
+            name = f"vehicle {link.system_id}"
+            if now - link.telemetry_heard > SILENCE:
+                return DropOut(f"{name} sends no telemetry for {SILENCE:g} s", now - link.telemetry_heard)
+            if not link.armed:
+                return DropOut(f"{name} has disarmed itself{_told(link)}", 0.0)
+            if not link.offboard:
+                mode = px4.mode_name(link.custom_mode)
+                return DropOut(f"{name} has left OFFBOARD for {mode}{_told(link)}", SILENCE)
+        return None
 
     def _first(self, problem: Callable[[VehicleLink], str | None]) -> str | None:
         for link in self.links:

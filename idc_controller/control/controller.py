@@ -20,7 +20,7 @@ from idc_controller.control.tracker import Tracker
 from idc_controller.estimate.estimator import Estimate
 from idc_controller.model.linear import LinearModel
 from idc_controller.parameters import SystemParameters
-from idc_controller.plan.flatness import Load, PayloadTrajectory
+from idc_controller.plan.flatness import FlatReference, Load, PayloadTrajectory
 from idc_controller.plan.reference import Reference
 from idc_controller.plan.trajectory import Trajectory
 
@@ -59,6 +59,8 @@ class Decision:
     """(N,) (N)"""
     reference: Reference
     """What was tracked."""
+    flat: FlatReference
+    """It, from ``time`` on, one stage a period."""
     iterations: int
     infeasible: bool
     planner_time: float
@@ -137,6 +139,7 @@ class IntegratedDecisionController:
             directions=np.column_stack([n, -upward]),
             thrusts=u[self.layout.f_setpoint],
             reference=reference,
+            flat=stages,
             iterations=output.iterations,
             infeasible=output.infeasible,
             planner_time=planned - begin,

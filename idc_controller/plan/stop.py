@@ -1,0 +1,60 @@
+"""The stop plan: how every UAV comes to rest, together with the others, when it hears no more.
+
+All of them start from one moment of one reference and take the same time, so the payload stays level without a word
+between them. Along each axis the position is the quartic that takes over position, velocity and acceleration and ends
+without velocity and acceleration; a quartic is a Bezier curve of five control points, as many as fit into a message.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from idc_controller.parameters import SystemParameters
+from idc_controller.plan.flatness import FlatReference
+
+Array = NDArray[np.float64]
+
+BRAKING_TIME = 4.0  # s
+BRAKING_LIMIT = 2.0  # m/s2; a faster team takes longer to stop
+
+# Control points of the quartic from (position, T velocity, T^2 acceleration) at its start.
+_CONTROL_POINTS = np.array(
+    [
+        [1.0, 0.0, 0.0],
+        [1.0, 1.0 / 4.0, 0.0],
+        [1.0, 1.0 / 2.0, 1.0 / 12.0],
+        [1.0, 1.0 / 2.0, 1.0 / 12.0],
+        [1.0, 1.0 / 2.0, 1.0 / 12.0],
+    ]
+)
+
+
+@dataclass(frozen=True, eq=False)
+class StopPlan:
+    """Bezier curves that bring all UAVs to rest, over the same ``duration`` (s) from the same ``start`` (s)."""
+
+    start: float
+    duration: float
+    control_points: Array
+    """(N, 5, 3) (m, NED)."""
+
+
+def stop_plan(parameters: SystemParameters, flat: FlatReference, time: float) -> StopPlan:
+    """From the first instant of the reference ``flat``, which is ``time`` (s), to rest."""
+    links = flat.links
+    position, velocity, acceleration = flat.payload[:3, 0]
+    l = parameters.l[:, None]
+    state = np.stack(
+        [
+            position + parameters.p - l * links.q[0],
+            velocity - l * links.q_dot[0],
+            acceleration - l * links.q_ddot[0],
+        ],
+        axis=1,
+    )  # (N, 3, 3)
+    duration = max(BRAKING_TIME, 1.5 * float(np.linalg.norm(velocity)) / BRAKING_LIMIT)
+    scaled = state * np.array([1.0, duration, duration**2])[:, None]
+    return StopPlan(time, duration, _CONTROL_POINTS @ scaled)

@@ -1,0 +1,50 @@
+"""Stop plans: they take over the reference's motion and end at rest, all UAVs in their places."""
+
+import numpy as np
+import pytest
+from scipy.interpolate import BPoly
+
+from gcs.config import read_system
+from idc_controller.plan.flatness import Load, flat_reference
+from idc_controller.plan.lissajous import LissajousCurve, LissajousTrajectory
+from idc_controller.plan.stop import BRAKING_LIMIT, stop_plan
+from idc_controller.plan.trajectory import Limits
+
+PARAMETERS = read_system().parameters()
+LIMITS = Limits(20.0, 6.0, 20.0, 80.0)
+LOAD = Load(PARAMETERS.m_0, np.zeros(3))
+
+
+def uav_positions(curve, times):
+    flat = flat_reference(PARAMETERS, curve, np.asarray(times), LOAD)
+    links = PARAMETERS.l[:, None] * flat.links.q[:, None, :]
+    return flat.payload[0][:, None, :] + PARAMETERS.p - links
+
+
+@pytest.mark.parametrize("time", [11.0, 13.7, 18.2])
+def test_it_takes_over_position_velocity_and_acceleration_and_ends_at_rest(time):
+    curve = LissajousTrajectory(LissajousCurve((6.0, 3.0), -2.5), 0.5, 40.0, LIMITS, start=10.0)
+    flat = flat_reference(PARAMETERS, curve, np.array([time]), LOAD)
+    plan = stop_plan(PARAMETERS, flat, time)
+    h = 0.01
+    before, here, after = uav_positions(curve, [time - h, time, time + h])
+    for i, points in enumerate(plan.control_points):
+        way = BPoly(points[:, None, :], [0.0, plan.duration])
+        assert way(0.0) == pytest.approx(here[i], abs=1e-9)
+        assert way.derivative()(0.0) == pytest.approx((after[i] - before[i]) / (2 * h), abs=2e-3)
+        assert way.derivative(2)(0.0) == pytest.approx((after[i] - 2 * here[i] + before[i]) / h**2, abs=5e-3)
+        assert way.derivative()(plan.duration) == pytest.approx(0.0, abs=1e-9)
+        assert way.derivative(2)(plan.duration) == pytest.approx(0.0, abs=1e-9)
+    # All of them are moved alike, so the payload stays level.
+    places = plan.control_points[:, -1] - plan.control_points[0, -1]
+    assert places == pytest.approx(PARAMETERS.p - PARAMETERS.p[0], abs=1e-6)
+
+
+def test_a_fast_team_takes_longer():
+    curve = LissajousTrajectory(LissajousCurve((60.0, 3.0), -2.5), 0.2, 40.0, LIMITS, start=10.0)
+    times = np.linspace(10.0, 50.0, 401)
+    time = times[np.argmax(np.linalg.norm(curve.derivatives(times, 1)[1], axis=1))]
+    flat = flat_reference(PARAMETERS, curve, np.array([time]), LOAD)
+    speed = np.linalg.norm(flat.payload[1, 0])
+    assert speed > 6.0
+    assert stop_plan(PARAMETERS, flat, time).duration == pytest.approx(1.5 * speed / BRAKING_LIMIT)
