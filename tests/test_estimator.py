@@ -246,10 +246,10 @@ def test_estimation_errors_are_within_their_bounds_over_a_whole_flight(flown):
     nees = normalised_errors(pairs, known)
     upper = chi2.ppf(0.975, len(known))
     assert (nees < upper).mean() > 0.97
-    assert 0.6 < nees.mean() / len(known) < 1.1  # a little too modest rather than too sure
+    assert 0.7 < nees.mean() / len(known) < 1.1  # a little too modest rather than too sure
     for part in ("r_0", "v_0", "Theta", "omega", "s", "s_dot", "n", "n_dot", "f"):
         which = np.arange(LAYOUT.size)[getattr(LAYOUT, part)]
-        assert normalised_errors(pairs, which).mean() / len(which) < 1.6, part
+        assert 0.45 < normalised_errors(pairs, which).mean() / len(which) < 1.5, part
 
 
 def test_the_estimate_is_as_good_as_it_should_be(flown):

@@ -111,7 +111,7 @@ class World:
         floats are faster than arrays.
 
         The engine integrates semi-implicitly: inputs sampled at the beginning of a step give positions of second
-        order at its end, with velocities that belong to half a step earlier.
+        order at its end, with velocities that belong to half a step earlier; :meth:`state` brings those forward.
         """
         client, body, uavs = self._client, self._system.body, self._system.uavs
         apply_force, apply_torque = pybullet.applyExternalForce, pybullet.applyExternalTorque
@@ -129,7 +129,9 @@ class World:
         pybullet.stepSimulation(client)
         self._steps += 1
         self._thrusts = tuple(thrusts)
+        before = self._payload_velocity, self._uav_states
         self._read()
+        self._before = before
 
     def set_payload_mass(self, mass: float) -> None:
         """Make the payload weigh ``mass`` (kg) from the next step on; its inertia changes in proportion."""
@@ -141,17 +143,21 @@ class World:
         pybullet.changeDynamics(body, -1, localInertiaDiagonal=inertia, physicsClientId=client)
 
     def state(self) -> WorldState:
-        """The true state after the last step."""
+        """The true state after the last step: velocities, too, to second order."""
         position, quaternion = self._payload_pose
-        velocity, rates = self._payload_velocity
         payload_quaternion = quaternion_from_engine(quaternion)
+        (velocity_before, rates_before), uavs_before = self._before
+        velocity = _half_a_step_on(velocity_before, self._payload_velocity[0])
+        rates = _half_a_step_on(rates_before, self._payload_velocity[1])
         held = self._cradles.held
         uavs = []
-        for i, link in enumerate(self._uav_states):
+        for i, (before, link) in enumerate(zip(uavs_before, self._uav_states, strict=True)):
             attitude = quaternion_from_engine(link[1])
+            uav_velocity = _half_a_step_on(before[6], link[6])
+            uav_rates = _half_a_step_on(before[7], link[7])
             uavs.append(
                 UavState(
-                    flipped(link[0]), attitude, flipped(link[6]), into_body(attitude, flipped(link[7])),
+                    flipped(link[0]), attitude, flipped(uav_velocity), into_body(attitude, flipped(uav_rates)),
                     self._thrusts[i], held(i),
                 )
             )  # fmt: skip
@@ -216,7 +222,10 @@ class World:
         return min((point[8] for point in points), default=float("inf"))
 
     def place(self, state: SystemState) -> None:
-        """Put the system into ``state``, cradles open: to begin in flight."""
+        """Put the system into ``state``, cradles open: to begin in flight.
+
+        As the engine integrates, the velocities are those of half a step earlier.
+        """
         client, system = self._client, self._system
         R_0 = state.R_0
         payload_quaternion = quaternion_to_engine(state.quaternion_0.tolist())
@@ -270,6 +279,7 @@ class World:
         self._uav_states = pybullet.getLinkStates(body, self._system.uavs, 1, 1, client)
         self._payload_pose = pybullet.getBasePositionAndOrientation(body, client)
         self._payload_velocity = pybullet.getBaseVelocity(body, client)
+        self._before = self._payload_velocity, self._uav_states
         self._contact_cache = None
 
     def _update_cradles(self, thrusts: Sequence[float]) -> None:
@@ -311,6 +321,13 @@ class World:
         offset: Vector = flipped((point[0] - position[0], point[1] - position[1], point[2] - position[2]))
         down = into_body(quaternion_from_engine(quaternion), offset)[2]
         return down > self._half_height - _STANDING_DEPTH
+
+
+def _half_a_step_on(before: Sequence[float], now: Sequence[float]) -> Vector:
+    """A velocity at the end of a step, from those of the middles of the last two steps."""
+    x, y, z = now
+    a, b, c = before
+    return (x + 0.5 * (x - a), y + 0.5 * (y - b), z + 0.5 * (z - c))
 
 
 def _product(a: Sequence[float], b: Sequence[float]) -> list[float]:

@@ -35,15 +35,15 @@ PATIENCE = 3
 class ProcessNoise:
     """Densities of the white noise that drives what the model leaves out, each per square root of a second."""
 
-    payload_acceleration: float = 0.005
+    payload_acceleration: float = 0.003
     """m/s2"""
-    payload_angular_acceleration: float = 0.008
+    payload_angular_acceleration: float = 0.003
     """rad/s2"""
-    link_acceleration: float = 0.004
+    link_acceleration: float = 0.0015
     """1/s2"""
     uav_jerk: float = 1.0
     """Of the tilt's acceleration (1/s3)."""
-    thrust: float = 0.02
+    thrust: float = 0.009
     """N/s"""
     force: float = 0.05
     """Drift of the steady force on the payload (N/s)."""
