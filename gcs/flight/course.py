@@ -13,6 +13,7 @@ from gcs.mission.model import Lissajous, Mission
 from gcs.mission.route import Circle, FlyTo, HoldForever, Land, Leg, Speed, TakeOff
 from idc_controller.plan import paths
 from idc_controller.plan.lissajous import LissajousCurve, LissajousTrajectory
+from idc_controller.plan.remembered import RememberedTrajectory
 from idc_controller.plan.trajectory import Limits, Trajectory
 from idc_controller.plan.waypoints import WaypointTrajectory
 
@@ -42,7 +43,7 @@ class Course:
         up = WaypointTrajectory(position, climb, self._vertical_limits(), start=start)
         self._climb: Trajectory | None = up
         along = up.then(lambda time, here: self._flown(mission, legs, time, here))
-        self._trajectory: Trajectory = along.then(self._land)
+        self._trajectory: Trajectory = RememberedTrajectory(along.then(self._land))
         self._broken_off = False
 
     @property
@@ -85,7 +86,7 @@ class Course:
             return
         self._broken_off = True
         self._climb = None
-        self._trajectory = followed.stop(time).then(self._land)
+        self._trajectory = RememberedTrajectory(followed.stop(time).then(self._land))
 
     def _split(self, mission: Mission, position: Array) -> tuple[list[paths.Leg], Iterator[Leg]]:
         """The climb, and the legs that follow it."""

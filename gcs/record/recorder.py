@@ -71,7 +71,7 @@ class FlightRecorder:
             self._write_plan(estimate.time, decision)
 
     def _write_plan(self, time: float, decision: Decision) -> None:
-        position, _, acceleration = decision.reference.trajectory.derivatives(np.array([time]), 2)[:, 0]
+        position, _, acceleration = decision.flat.payload[:3, 0]
         safety = decision.safety
         bounds = (math.nan if b is None else b for b in (safety.payload_bound, safety.uav_bound))
         self._plan.write(

@@ -148,14 +148,15 @@ class AvoidanceFilter:
         stages = chain.period * np.arange(chain.stages + 1, dtype=np.float64)
         obstacles = list(self.obstacles.predict(time + stages))
         clock = self.navigator.advance(self._clock(time))
+        now = None
         if self._pieces:
-            position = evaluate(self._pieces[-1], chain, np.array([time]))[0, 0]
-            clock = self.navigator.watch(time, clock, self._rate, mission, position, obstacles)
+            now = evaluate(self._pieces[-1], chain, np.array([time]))[:, 0]
+            clock = self.navigator.watch(time, clock, self._rate, mission, now[0], obstacles)
         followed = self.navigator.followed(mission)
         ahead = followed.derivatives(clock + self._rate * stages, 4)
         if self._rate != 1.0:
             ahead = ahead * (self._rate ** np.arange(5))[:, None, None]
-        start = self._start(time, ahead, estimate)
+        start = self._start(now, ahead, estimate)
         lag = _lag(start, ahead)
         plan, nearest, infeasible, programmes = self._decide(time, start, ahead, obstacles)
         still = plan is None or bool(np.abs(plan.deviation).max() < NEGLIGIBLE)
@@ -188,11 +189,10 @@ class AvoidanceFilter:
         piece = self._pieces[-1]
         return piece.mission_time + piece.rate * (time - piece.start)
 
-    def _start(self, time: float, ahead: Array, estimate: Estimate) -> Array:
-        """Deviation (5, 3) of the trajectory in force from the mission, drawn to the estimate when that is far off."""
-        if not self._pieces:
+    def _start(self, now: Array | None, ahead: Array, estimate: Estimate) -> Array:
+        """Deviation (5, 3) from the mission of what is in force ``now``, drawn to the estimate when that is far off."""
+        if now is None:
             return np.zeros((5, 3))
-        now = evaluate(self._pieces[-1], self.settings.chain, np.array([time]))[:, 0]
         start = now - ahead[:, 0]
         error = estimate.x[0:3] - now[0]
         distance = float(np.linalg.norm(error))

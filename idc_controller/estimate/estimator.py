@@ -144,16 +144,20 @@ class _Way:
         times += [t for t in switches if min(abs(t - other) for other in times) > 1e-6]
         self.edges = sorted(set(times))
         middles = [(a + b) / 2 for a, b in pairwise(self.edges)]
-        self.flat = reference.at(np.array([*self.edges, *middles]))
+        self.flat = reference.at(np.array(self.edges))
         self.setpoints: list[Array | None] = []
         """In force from each edge to the next."""
         for middle in middles:
             at = bisect.bisect_right(setpoints, middle, key=lambda entry: entry[0]) - 1
             self.setpoints.append(setpoints[at][1] if at >= 0 else None)
 
-    def middle(self, k: int) -> int:
-        """Where the reference between edge ``k`` and the next stands in ``flat``."""
-        return len(self.edges) + k
+    def u(self, k: int) -> Array:
+        """The reference's set-points between edge ``k`` and the next (3 N,)."""
+        return (self.flat.u[k] + self.flat.u[k + 1]) / 2
+
+    def acceleration(self, k: int) -> Array:
+        """The reference's acceleration between edge ``k`` and the next (3,) (m/s2)."""
+        return (self.flat.payload[2, k] + self.flat.payload[2, k + 1]) / 2
 
     def interval_us(self, k: int) -> int:
         """Time from edge ``k`` to the next (us)."""
@@ -261,37 +265,27 @@ class Estimator:
     def _predict(self, way: _Way, k: int) -> None:
         """From edge ``k`` to the next, under the set-points in force."""
         u = way.setpoints[k]
-        delta_u = np.zeros(self.layout.inputs) if u is None else u - way.flat.u[way.middle(k)]
-        F, B = self._transition_along(way.interval_us(k), way.flat, way.middle(k))
+        delta_u = np.zeros(self.layout.inputs) if u is None else u - way.u(k)
+        F, B = self._transition_along(way.interval_us(k), way.acceleration(k))
         self._filter.predict(u=delta_u, F=F, B=B, Q=self._noise(way.interval_us(k)))
 
     def _update(self, moment: _Moment, flat: FlatReference, k: int) -> None:
         """Correct the filter's error state, at time ``k`` of ``flat``, by what was measured then."""
         kf, n = self._filter, self.layout.size
-        names, parts, rows, variances = [], [], [], []
-        for (source, kind), copies in moment.measurements.items():
-            others = [m for m in copies[1:] if not m.agrees(copies[0])]
-            told = [self.measurement_model.innovation(m, flat, k) for m in (copies if others else copies[:1])]
-            # Relays of one sample agree; where one of them is corrupted the median is not.
-            parts.append(told[0][0] if len(told) == 1 else np.median([y for y, _ in told], axis=0))
-            rows.append(told[0][1])
-            variances.append(self.measurement_model.channels[source, kind].variance)
-            names.append((source, kind.__name__))
-        y = np.concatenate(parts)
+        stack = self.measurement_model.stack(tuple(moment.measurements))
+        y = np.concatenate([self._innovation(copies, flat, k) for copies in moment.measurements.values()])
         H = np.zeros((len(y), self.size))
-        H[:, :n] = np.vstack(rows)
-        R = np.concatenate(variances)
+        self.measurement_model.observe(stack, flat, k, into=H[:, :n])
+        R, sizes = stack.variance, stack.sizes
+        names = [(source, kind.__name__) for source, kind in moment.measurements]
         residual = y - H @ kf.x
-        S = H @ kf.P @ H.T
-        S[np.diag_indices_from(S)] += R
+        S = _innovation_covariance(H, kf.P, R)
 
-        sizes = [len(part) for part in parts]
         keep, rejected = self._gate(residual, S, sizes, names)
         surprised = self._is_surprised(names, rejected)
         if surprised:
             self._doubt()
-            S = H @ kf.P @ H.T
-            S[np.diag_indices_from(S)] += R
+            S = _innovation_covariance(H, kf.P, R)
             keep, rejected = self._gate(residual, S, sizes, names)
         nis = 0.0
         if keep.any():
@@ -302,8 +296,16 @@ class Estimator:
             InnovationRecord(moment.time, nis, int(keep.sum()), tuple(rejected), surprised=surprised)
         )
 
+    def _innovation(self, copies: list[Measurement], flat: FlatReference, k: int) -> Array:
+        """Of one source and kind. Relays of one sample agree; where one of them is corrupted the median is not."""
+        first = copies[0]
+        if all(copy.agrees(first) for copy in copies[1:]):
+            return self.measurement_model.innovation(first, flat, k)
+        told = [self.measurement_model.innovation(copy, flat, k) for copy in copies]
+        return np.asarray(np.median(told, axis=0))
+
     def _gate(
-        self, residual: Array, S: Array, sizes: list[int], names: list[tuple[int, str]]
+        self, residual: Array, S: Array, sizes: tuple[int, ...], names: list[tuple[int, str]]
     ) -> tuple[NDArray[np.bool_], list[tuple[int, str]]]:
         """Which rows to keep, and the names of the measurements that disagree too much with the prediction."""
         starts = np.concatenate([[0], np.cumsum(sizes)[:-1]])
@@ -349,10 +351,10 @@ class Estimator:
         del self._moments[: bisect.bisect_right(self._moments, oldest, key=lambda m: m.time)]
         del self._setpoints[: max(bisect.bisect_right(self._setpoints, oldest, key=lambda e: e[0]) - 1, 0)]
 
-    def _transition_along(self, interval_us: int, flat: FlatReference, k: int) -> tuple[Array, Array]:
+    def _transition_along(self, interval_us: int, acceleration: Array) -> tuple[Array, Array]:
         """F and B; an excess of mass acts along g e3 - a, which turns with the manoeuvre."""
         F, B, B_d = self._transition(interval_us)
-        direction = np.array([0.0, 0.0, self.model.parameters.g]) - flat.payload[2, k]
+        direction = np.array([0.0, 0.0, self.model.parameters.g]) - acceleration
         F = F.copy()
         F[: self.layout.size, self._mass] = B_d @ direction
         return F, B
@@ -384,3 +386,9 @@ class Estimator:
         big = expm(block * dt)
         Q = big[m:, m:].T @ big[:m, m:]
         return (Q + Q.T) / 2
+
+
+def _innovation_covariance(H: Array, P: Array, R: Array) -> Array:
+    S = H @ P @ H.T
+    S.flat[:: len(R) + 1] += R
+    return S

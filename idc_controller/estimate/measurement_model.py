@@ -28,6 +28,22 @@ class Channel:
     """(k,)"""
 
 
+@dataclass(frozen=True)
+class Stack:
+    """Channels one below the other, as the measurements of one moment are taken."""
+
+    rows: Array
+    """(m, n), links upright."""
+    variance: Array
+    """(m,)"""
+    sizes: tuple[int, ...]
+    """Of the channels; they add up to m."""
+    uavs: NDArray[np.int_]
+    """UAVs whose position is among the channels (K,)."""
+    heights: NDArray[np.int_]
+    """Rows of their heights (K,); those of the vertical velocities are three below."""
+
+
 class MeasurementModel:
     """Channels for every source, and measured less reference in the filter's coordinates."""
 
@@ -62,13 +78,42 @@ class MeasurementModel:
                 variance(noise.attitude, "attitude", noise.uav_rates, "rates", 2),
             )
 
-    def innovation(self, measurement: Measurement, reference: FlatReference, k: int) -> tuple[Array, Array]:
-        """Measured less what the reference's time ``k`` predicts, (m,), and the rows (m, n) that observe the error."""
+        self._stacks: dict[tuple[tuple[int, type], ...], Stack] = {}
+
+    def stack(self, keys: tuple[tuple[int, type], ...]) -> Stack:
+        """The channels of these sources and kinds."""
+        if (found := self._stacks.get(keys)) is None:
+            channels = [self.channels[key] for key in keys]
+            sizes = tuple(len(channel.variance) for channel in channels)
+            starts = np.cumsum((0, *sizes))
+            tilted = [(i, start + 2) for (i, kind), start in zip(keys, starts, strict=False)
+                      if kind is Position and i != PAYLOAD]  # fmt: skip
+            found = self._stacks[keys] = Stack(
+                np.vstack([channel.rows for channel in channels]),
+                np.concatenate([channel.variance for channel in channels]),
+                sizes,
+                np.array([i for i, _ in tilted], dtype=int),
+                np.array([row for _, row in tilted], dtype=int),
+            )
+        return found
+
+    def observe(self, stack: Stack, reference: FlatReference, k: int, into: Array) -> None:
+        """Fill ``into`` (m, n) with the rows that observe the error about the reference's time ``k``."""
+        into[:] = stack.rows
+        if len(stack.uavs):
+            # The unit length of a tilted link: a change of its lateral part changes its height too.
+            q = reference.links.q[k]
+            slope = np.outer(self.parameters.l[stack.uavs], q[:2] / q[2])
+            columns = 2 * stack.uavs[:, None] + np.arange(2)
+            into[stack.heights[:, None], self.layout.s.start + columns] = slope
+            into[stack.heights[:, None] + 3, self.layout.s_dot.start + columns] = slope
+
+    def innovation(self, measurement: Measurement, reference: FlatReference, k: int) -> Array:
+        """Measured less what the reference's time ``k`` predicts, (m,)."""
         i = measurement.source
-        rows = self.channels[i, type(measurement)].rows
         if isinstance(measurement, Attitude):
             if i == PAYLOAD:
-                return np.concatenate([euler_from_quaternion(measurement.quaternion), measurement.rates]), rows
+                return np.concatenate([euler_from_quaternion(measurement.quaternion), measurement.rates])
             # Of a UAV's attitude only the direction of the thrust moves anything: n = -R e3, n' = -R (omega x e3).
             w, x, y, z = measurement.quaternion.tolist()
             p, q, _ = measurement.rates.tolist()
@@ -81,15 +126,10 @@ class MeasurementModel:
                 (1.0 - 2.0 * (x * x + z * z)) * p - 2.0 * (x * y + w * z) * q,
             )
             expected = (reference_x[n], reference_x[n + 1], reference_x[n_dot], reference_x[n_dot + 1])
-            return np.subtract(told, expected), rows
+            return np.subtract(told, expected)
         position, velocity = reference.payload[0, k], reference.payload[1, k]
         if i != PAYLOAD:
-            l, q = self.parameters.l[i], reference.links.q[k]
-            position = position + self.parameters.p[i] - l * q
+            l = self.parameters.l[i]
+            position = position + self.parameters.p[i] - l * reference.links.q[k]
             velocity = velocity - l * reference.links.q_dot[k]
-            # The unit length of a tilted link: a change of its lateral part changes its height too.
-            slope = l * q[:2] / q[2]
-            rows = rows.copy()
-            rows[2, self.layout.s.start + 2 * i : self.layout.s.start + 2 * i + 2] = slope
-            rows[5, self.layout.s_dot.start + 2 * i : self.layout.s_dot.start + 2 * i + 2] = slope
-        return np.concatenate([measurement.position - position, measurement.velocity - velocity]), rows
+        return np.concatenate([measurement.position - position, measurement.velocity - velocity])

@@ -30,7 +30,7 @@ class Attitude:
         """Whether both tell the same."""
         if not isinstance(other, Attitude):
             return False
-        return np.array_equal(self.quaternion, other.quaternion) and np.array_equal(self.rates, other.rates)
+        return bool((self.quaternion == other.quaternion).all() and (self.rates == other.rates).all())
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +50,7 @@ class Position:
         """Whether both tell the same."""
         if not isinstance(other, Position):
             return False
-        return np.array_equal(self.position, other.position) and np.array_equal(self.velocity, other.velocity)
+        return bool((self.position == other.position).all() and (self.velocity == other.velocity).all())
 
 
 Measurement = Attitude | Position

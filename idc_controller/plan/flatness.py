@@ -85,7 +85,7 @@ def flat_forces(parameters: SystemParameters, derivatives: Array, load: Load) ->
     acceleration, jerk, snap = derivatives[2], derivatives[3], derivatives[4]
     gravity = parameters.g * E3
     w = gravity - acceleration + load.force / load.mass
-    norm = np.linalg.norm(w, axis=-1, keepdims=True)
+    norm = np.sqrt(_dot(w, w))
     q = w / norm
     norm_dot = -_dot(q, jerk)
     q_dot = (-jerk - norm_dot * q) / norm
@@ -113,8 +113,9 @@ def flat_reference(
     derivatives = trajectory.derivatives(grid[chosen])
     forces = flat_forces(parameters, derivatives, load)
     F = forces.force[back].reshape(K, 5, N, 3)
-    f = np.linalg.norm(F, axis=-1)
-    n = F[..., :2] / f[..., None]
+    f = np.sqrt(_dot(F, F))
+    n = F[..., :2] / f
+    f = f[..., 0]
 
     centre = back[2::5]
     h = STENCIL
@@ -143,13 +144,17 @@ def flat_reference(
 
 def _tensions(parameters: SystemParameters, q: Array, total: Array) -> Array:
     """Least-norm link tensions (K, N) that sum to ``total`` (K,) and leave the payload without moment."""
-    moment = np.cross(parameters.p, q[:, None, :])  # (K, N, 3); the component along q is zero
-    balance = np.concatenate([np.ones((len(q), 1, parameters.number_of_uavs)), moment.transpose(0, 2, 1)[:, :2]], 1)
+    p = parameters.p
+    balance = np.empty((len(q), 3, parameters.number_of_uavs))
+    balance[:, 0] = 1.0
+    # The moment p x q T; its component along q is zero, so two of the three suffice.
+    balance[:, 1] = np.outer(q[:, 2], p[:, 1]) - np.outer(q[:, 1], p[:, 2])
+    balance[:, 2] = np.outer(q[:, 0], p[:, 2]) - np.outer(q[:, 2], p[:, 0])
     wanted = np.zeros((len(q), 3, 1))
     wanted[:, 0, 0] = total
-    gram = balance @ balance.transpose(0, 2, 1)
-    return (balance.transpose(0, 2, 1) @ np.linalg.solve(gram, wanted))[..., 0]
+    transposed = balance.transpose(0, 2, 1)
+    return (transposed @ np.linalg.solve(balance @ transposed, wanted))[..., 0]
 
 
 def _dot(a: Array, b: Array) -> Array:
-    return np.sum(a * b, axis=-1, keepdims=True)
+    return np.einsum("...i,...i->...", a, b)[..., None]

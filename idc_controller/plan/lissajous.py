@@ -95,7 +95,13 @@ class LissajousTrajectory(Trajectory):
         self._set_phase(_phase(knots, [still, cruise, cruise, still], 0.0))
 
     def _set_phase(self, phase: PPoly) -> None:
-        self._phase = [phase.derivative(d) if d else phase for d in range(5)]
+        # Phase and four derivatives as one polynomial with values (5,): asked at once.
+        coefficients = np.zeros((*phase.c.shape, 5))
+        for d in range(5):
+            derivative = phase.derivative(d) if d else phase
+            coefficients[-len(derivative.c) :, :, d] = derivative.c
+        self._phase = PPoly(coefficients, phase.x)
+        self._rate = phase.derivative()
         self._start, self._end = float(phase.x[0]), float(phase.x[-1])
 
     @property
@@ -112,7 +118,7 @@ class LissajousTrajectory(Trajectory):
         """Phase and its derivatives at times (K,), s: (order + 1, K), rad / s^d."""
         times = checked_times(times, order)
         inside = np.clip(times, self._start, self._end)
-        result = np.array([phase(inside) for phase in self._phase[: order + 1]])
+        result = self._phase(inside).T[: order + 1]
         result[1:, (times <= self._start) | (times >= self._end)] = 0.0
         return result
 
@@ -144,7 +150,7 @@ class LissajousTrajectory(Trajectory):
 
     def _braked(self, time: float, duration: float) -> PPoly:
         """The phase if from ``time`` (s) its rate is multiplied by a factor that falls to 0 in ``duration``."""
-        rate = self._phase[1]
+        rate = self._rate
         knots = np.unique([*rate.x[rate.x < time + duration], time, time + duration])
         knots = knots[np.append(True, np.diff(knots) > 1e-9)]
         factor = PPoly.from_bernstein_basis(
