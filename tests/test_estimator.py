@@ -293,7 +293,7 @@ def test_a_payload_of_another_mass_leaves_no_offset(tmp_path, factor):
 @pytest.mark.parametrize("force", [(3.0, 0.0, 0.0), (0.0, 8.0, 0.0)], ids=["3 N", "8 N"])
 def test_a_sudden_steady_force_is_learnt_and_leaves_no_offset(tmp_path, force):
     mission = short_figure(tmp_path, duration=20.0)
-    flight = Watched(mission, tmp_path / "run", force=force, from_time=14.0, controller="mpc")
+    flight = Watched(mission, tmp_path / "run", force=force, from_time=14.0)
     with flight:
         flight.fly(flight.watch, until=40.0)
         assert flight.flight.phase.value in ("fly", "hold")
