@@ -1,0 +1,1 @@
+"""What the paper prints, line by line, for comparison with what is correct: equations, matrices, controller, filter."""
