@@ -1,0 +1,261 @@
+"""The controllers that are compared on one plant: the paper's, corrected step by step, and the project's."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import coal
+import numpy as np
+from numpy.typing import NDArray
+
+from gcs.flight import stack
+from gcs.reproduce.scene import MARGIN, RADIUS, KnownSpheres, Sphere, configuration, printed_reference
+from idc_controller.barrier.formation import Formation
+from idc_controller.control.safety import NoObstacles, SafetyFilter
+from idc_controller.estimate.estimator import Estimate
+from idc_controller.model.linear import LinearModel, StateLayout
+from idc_controller.paper.avoidance import (
+    Encounter,
+    corrected_input,
+    linear_acceleration,
+    nonlinear_acceleration,
+    obstacle_row,
+)
+from idc_controller.paper.plant import Plant, PlantState
+from idc_controller.paper.state_space import Layout
+from idc_controller.paper.tracking import Settings, ThrustTorqueMpc, Weights
+from idc_controller.parameters import SystemParameters
+from idc_controller.plan.flatness import Load, flat_reference
+from idc_controller.plan.trajectory import Trajectory
+from idc_controller.rotations import euler_from_quaternion, rotation_from_quaternion
+
+Array = NDArray[np.float64]
+
+PERIOD = 0.05  # s
+
+
+class Control(Protocol):
+    """Decides once a period, acts on the rotors at every step of the plant."""
+
+    avoiding: bool
+    """The last decision was changed for an obstacle."""
+    infeasible_tracking: int
+    """Decisions whose programme, as printed, had no solution."""
+    infeasible_avoidance: int
+
+    def decide(self, time: float, measured: PlantState) -> None:
+        """Take a decision."""
+        ...
+
+    def act(self, state: PlantState, dt: float) -> tuple[Array, Array]:
+        """Thrusts (N,) and torques (N, 3) for the next ``dt`` (s)."""
+        ...
+
+    def reference(self, times: Array) -> Array:
+        """What the payload is asked to do (K, 3)."""
+        ...
+
+
+@dataclass(frozen=True)
+class PaperVariant:
+    """How the paper is read.
+
+    ``tracking`` outputs: the cost is on what y' names alone; states: on all states, those that y' does not name are
+    wanted at zero; flat: corrected, errors about the exact reference over the horizon, entered from rest.
+    ``acceleration`` linear or nonlinear: which equations A_obs is made of.
+    """
+
+    tracking: str = "outputs"
+    acceleration: str = "linear"
+    poles: tuple[float, float] = (2.0, 2.0)
+
+
+class PaperControl:
+    """Thrust and torque, held for a period: the paper's MPC, then its obstacle avoidance controller."""
+
+    def __init__(
+        self, parameters: SystemParameters, variant: PaperVariant, figure: Trajectory | None = None,
+        spheres: Sequence[Sphere] = (), margin: float = MARGIN,
+    ) -> None:  # fmt: skip
+        """``figure`` is what a flat variant tracks; the others track eq:Lissajous as it stands."""
+        outputs = variant.tracking == "outputs"
+        weights = Weights.of_named_outputs() if outputs else Weights()
+        self.variant, self.parameters, self.spheres, self.margin = variant, parameters, tuple(spheres), margin
+        self._figure = figure
+        self._mpc = ThrustTorqueMpc(parameters, Settings(weights=weights, terminal_outputs_alone=outputs))
+        self._plant, self._formation = Plant(parameters), Formation(parameters)
+        self._A_v, self._G = linear_acceleration(parameters)
+        self._hover = np.column_stack([parameters.hover_thrust, np.zeros((parameters.number_of_uavs, 3))]).ravel()
+        self._u = self._hover
+        self.avoiding, self.infeasible_tracking, self.infeasible_avoidance = False, 0, 0
+
+    def reference(self, times: Array) -> Array:
+        """See :class:`Control`."""
+        return printed_reference(times) if self._figure is None else self._figure.derivatives(times, 0)[0]
+
+    def decide(self, time: float, measured: PlantState) -> None:
+        """See :class:`Control`."""
+        mpc = self._mpc
+        x = minimal_state(measured)
+        times = time + PERIOD * np.arange(mpc.settings.horizon + 1)
+        if self._figure is None:
+            wanted = np.zeros((len(times), len(x)))
+            wanted[:, :3] = printed_reference(times)
+            u = np.tile(self._hover, (len(times) - 1, 1))
+            state = mpc.F @ x
+            free = state - wanted
+        else:
+            wanted, u = _flat_in_paper_inputs(self.parameters, self._figure, times)
+            free = mpc.F @ (x - wanted[0])
+            state = wanted + free
+        move = mpc.solve(free, state, u)
+        self.infeasible_tracking += move.infeasible_as_printed
+        rows, bounds = self._rows(time, measured, x)
+        delta_u = u[0] + move.delta_u - self._hover
+        corrected = corrected_input(delta_u, rows, bounds, mpc.lower - self._hover, mpc.upper - self._hover)
+        self.avoiding = corrected.active
+        self.infeasible_avoidance += corrected.infeasible
+        self._u = self._hover + corrected.delta_u
+
+    def act(self, state: PlantState, dt: float) -> tuple[Array, Array]:
+        """See :class:`Control`: held."""
+        u = self._u.reshape(-1, 4)
+        return u[:, 0], u[:, 1:]
+
+    def _rows(self, time: float, state: PlantState, x: Array) -> tuple[Array, Array]:
+        if not self.spheres:
+            return np.zeros((0, len(self._hover))), np.zeros(0)
+        if self.variant.acceleration == "linear":
+            # All deviations are small in eq:disSys; the payload's position does not enter.
+            a, G = self._A_v @ x, self._G
+        else:
+            a, G = nonlinear_acceleration(self._plant, state)
+        points = formation_points(self._formation, self._plant, state)
+        hull = self._formation.hull(points)
+        rows, bounds = [], []
+        for sphere in self.spheres:
+            position, velocity, acceleration = (part[0] for part in sphere.motion(np.array([time])))
+            result = coal.DistanceResult()
+            coal.distance(
+                hull, coal.Transform3s.Identity(), coal.Sphere(RADIUS), coal.Transform3s(np.eye(3), position),
+                coal.DistanceRequest(), result,
+            )  # fmt: skip
+            encounter = Encounter(
+                np.array(result.getNearestPoint1()), state.v_0, position, velocity, acceleration,
+                RADIUS + self.margin, np.ones(3),
+            )  # fmt: skip
+            row, bound = obstacle_row(encounter, a, G, self.variant.poles)
+            rows.append(row)
+            bounds.append(bound)
+        return np.array(rows), np.array(bounds)
+
+
+class ProjectControl:
+    """The project's controller: set-points of attitude and thrust, an attitude loop on board, rotors with a lag."""
+
+    def __init__(
+        self, parameters: SystemParameters, figure: Trajectory, spheres: Sequence[Sphere] = (), margin: float = MARGIN
+    ) -> None:
+        config = configuration()
+        self.parameters, self._figure = parameters, figure
+        model = LinearModel(parameters)
+        self._layout = model.layout
+        self._safety: SafetyFilter = NoObstacles()
+        if spheres:
+            changed = replace(config, avoidance=replace(config.avoidance, margin=margin))
+            self._safety = stack.avoidance(changed, model, KnownSpheres(spheres))
+        self._controller = stack.controller(config, model, self._safety, lambda: 0.0)
+        N = parameters.number_of_uavs
+        self._directions, self._thrusts = np.tile([0.0, 0.0, -1.0], (N, 1)), parameters.hover_thrust
+        self._thrust, self._torque = parameters.hover_thrust, np.zeros((N, 3))
+        self.avoiding, self.infeasible_tracking, self.infeasible_avoidance = False, 0, 0
+
+    def reference(self, times: Array) -> Array:
+        """See :class:`Control`."""
+        return self._figure.derivatives(times, 0)[0]
+
+    def decide(self, time: float, measured: PlantState) -> None:
+        """See :class:`Control`."""
+        n = self._layout.size + 4
+        estimate = Estimate(time, self._state(measured), np.zeros(3), 0.0, np.zeros((n, n)))
+        decision = self._controller.decide(estimate, self._figure)
+        self._directions, self._thrusts = decision.directions, decision.thrusts
+        self.avoiding = decision.safety.active
+        self.infeasible_tracking += decision.infeasible
+        self.infeasible_avoidance += decision.safety.infeasible
+
+    def act(self, state: PlantState, dt: float) -> tuple[Array, Array]:
+        """See :class:`Control`: torque = J (kp e - kd omega), first-order lag of the rotors."""
+        p = self.parameters
+        R = rotation_from_quaternion(state.quaternion)
+        down = np.einsum("ijk,ij->ik", R, np.cross(R[:, :, 2], -self._directions))
+        down[:, 2] -= np.arctan2(R[:, 1, 0], R[:, 0, 0])
+        demand = np.einsum("ijk,ik->ij", p.J, p.attitude_kp * down - p.attitude_kd * state.omega)
+        share = 1.0 - np.exp(-dt / p.motor_time_constant)
+        self._torque = self._torque + share * (demand - self._torque)
+        self._thrust = self._thrust + share * (np.clip(self._thrusts, 0.0, p.thrust_max) - self._thrust)
+        return self._thrust, self._torque
+
+    def _state(self, state: PlantState) -> Array:
+        layout, p = self._layout, self.parameters
+        x = np.zeros(layout.size)
+        x[layout.r_0], x[layout.v_0] = state.r_0, state.v_0
+        x[layout.Theta], x[layout.omega] = euler_from_quaternion(state.quaternion_0), state.omega_0
+        x[layout.s], x[layout.s_dot] = state.q[:, :2].ravel(), state.q_dot[:, :2].ravel()
+        # Thrust directions -R e3 and their derivatives.
+        R, e3 = rotation_from_quaternion(state.quaternion), np.array([0.0, 0.0, 1.0])
+        turning = np.cross(state.omega, e3)
+        gaining = np.cross(state.omega, turning) + np.cross(np.linalg.solve(p.J, self._torque[:, :, None])[:, :, 0], e3)
+        for part, vector in ((layout.n, np.tile(e3, (len(R), 1))), (layout.n_dot, turning), (layout.n_acc, gaining)):
+            x[part] = -np.einsum("ijk,ik->ij", R, vector)[:, :2].ravel()
+        x[layout.f] = self._thrust
+        return x
+
+
+def minimal_state(state: PlantState) -> Array:
+    """Deviation from hover at the origin in the minimal coordinates (12 + 10 N,)."""
+    layout = Layout.minimal(len(state.q))
+    x = np.zeros(layout.size)
+    x[:12] = np.concatenate([state.r_0, state.v_0, euler_from_quaternion(state.quaternion_0), state.omega_0])
+    x[layout.of_uavs("s")], x[layout.of_uavs("s_dot")] = state.q[:, :2], state.q_dot[:, :2]
+    x[layout.of_uavs("Theta")], x[layout.of_uavs("omega")] = euler_from_quaternion(state.quaternion), state.omega
+    return x
+
+
+def formation_points(formation: Formation, plant: Plant, state: PlantState) -> Array:
+    """Points (P, 3) in the world whose hull is the formation as it stands: box and rims."""
+    hover = formation.hull_points(np.zeros((1, 3)))[0]
+    points = np.empty_like(hover)
+    points[:8] = state.r_0 + hover[:8] @ rotation_from_quaternion(state.quaternion_0).T
+    N = len(state.q)
+    rims = hover[8:].reshape(N, -1, 3) - formation.hover_offsets[:, None]
+    turned = rims @ np.swapaxes(rotation_from_quaternion(state.quaternion), 1, 2)
+    points[8:] = (turned + plant.uav_positions(state)[:, None]).reshape(-1, 3)
+    return points
+
+
+def _flat_in_paper_inputs(parameters: SystemParameters, figure: Trajectory, times: Array) -> tuple[Array, Array]:
+    """Minimal states at ``times`` (K,) and the inputs (K - 1, 4 N) between them that keep the system there."""
+    load = Load(parameters.m_0, np.zeros(3))
+    between = 0.5 * (times[1:] + times[:-1])
+    flat = flat_reference(parameters, figure, np.concatenate([times, between]), load)
+    K, N = len(times), parameters.number_of_uavs
+    source, layout = StateLayout(N), Layout.minimal(N)
+    x, u = np.zeros((K, layout.size)), np.zeros((K - 1, N, 4))
+    x[:, :6] = flat.x[:K, :6]
+    pair = lambda part: flat.x[:, part].reshape(-1, N, 2)  # noqa: E731
+    x[:, layout.of_uavs("s")], x[:, layout.of_uavs("s_dot")] = pair(source.s)[:K], pair(source.s_dot)[:K]
+    n = pair(source.n)
+    roll = np.arcsin(n[..., 1])
+    pitch = np.arcsin(-n[..., 0] / np.cos(roll))
+    x[:, layout.of_uavs("Theta")[:, 0]], x[:, layout.of_uavs("Theta")[:, 1]] = roll[:K], pitch[:K]
+    for at, part in ((layout.of_uavs("omega"), source.n_dot), (None, source.n_acc)):
+        rate = np.stack([pair(part)[..., 1] / np.cos(roll), -pair(part)[..., 0] / np.cos(pitch)], axis=-1)
+        if at is not None:
+            x[:, at[:, :2]] = rate[:K]
+        else:
+            u[..., 1:3] = np.einsum("ijk,tik->tij", parameters.J[:, :2, :2], rate[K:])
+    u[..., 0] = flat.x[K:, source.f]
+    return x, u.reshape(K - 1, 4 * N)

@@ -1,0 +1,100 @@
+"""The paper's obstacle avoidance controller (eq:h_x .. eq:obsAvoid) in its own inputs, thrust and torque.
+
+A_obs and B_obs, which the paper left on a drive, in closed form. With d = x_c - x_obs, h = |d|^2 - R_o^2, the hull
+point x_c taken to move with the payload, r_0'' = a + G du, and K = (p_1 p_2, p_1 + p_2) for poles -p_1, -p_2:
+
+    h'   = 2 d . (v_0 - v_obs)
+    h''  = 2 d . (a + G du - a_obs) + 2 |v_0 - v_obs|^2  >=  -K (h, h')
+    A_obs = -2 d' G
+    B_obs =  2 d . (a - a_obs) + 2 |v_0 - v_obs|^2 + K (h, h')
+
+Two readings of "the acceleration equations of the payload": those of eq:disSys (:func:`linear_acceleration`), where G
+has but the thrusts' vertical row, -1 / m_T for a symmetric layout, and all torques' columns are zero; or the nonlinear
+ones at the state (:func:`nonlinear_acceleration`), where a tilted link lets thrust push sideways a little.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import daqp
+import numpy as np
+from numpy.typing import NDArray
+
+from idc_controller.paper.plant import Plant, PlantState
+from idc_controller.paper.state_space import minimal
+from idc_controller.parameters import SystemParameters
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Encounter:
+    """The hull point nearest to an obstacle, and how the obstacle moves; world NED, SI.
+
+    ``mask`` (3,) has zeros for the axes along which the obstacle is endless: (1, 1, 0) of a pole.
+    """
+
+    closest: Array
+    velocity: Array
+    obstacle: Array
+    obstacle_velocity: Array
+    obstacle_acceleration: Array
+    radius: float
+    """R_o: of the obstacle with the safety margin (m)."""
+    mask: Array
+
+
+def linear_acceleration(parameters: SystemParameters) -> tuple[Array, Array]:
+    """Rows of v_0' in eq:disSys: (3, 12 + 10 N) for the minimal state's deviation, (3, 4 N) for the inputs'."""
+    A, B = minimal(parameters)
+    return A[3:6], B[3:6]
+
+
+def nonlinear_acceleration(plant: Plant, state: PlantState) -> tuple[Array, Array]:
+    """a (3,) at hover thrust and G (3, 4 N) with r_0'' = a + G du: exact, since r_0'' is affine in the thrusts."""
+    parameters = plant.parameters
+    N = parameters.number_of_uavs
+    none = np.zeros((N, 3))
+    hover = parameters.hover_thrust
+    a = plant.accelerations(state, hover, none)[0]
+    G = np.zeros((3, 4 * N))
+    for i in range(N):
+        G[:, 4 * i] = plant.accelerations(state, hover + np.eye(N)[i], none)[0] - a
+    return a, G
+
+
+def obstacle_row(encounter: Encounter, a: Array, G: Array, poles: tuple[float, float]) -> tuple[Array, float]:
+    """A_obs (4 N,) and B_obs of one obstacle, A_obs du <= B_obs."""
+    e = encounter
+    d = (e.closest - e.obstacle) * e.mask
+    d_dot = (e.velocity - e.obstacle_velocity) * e.mask
+    h, h_dot = float(d @ d) - e.radius**2, 2.0 * float(d @ d_dot)
+    constant = 2.0 * float(d @ (a - e.obstacle_acceleration)) + 2.0 * float(d_dot @ d_dot)
+    return -2.0 * d @ G, constant + poles[0] * poles[1] * h + (poles[0] + poles[1]) * h_dot
+
+
+@dataclass(frozen=True, eq=False)
+class Correction:
+    """``delta_u`` (4 N,) of eq:obsAvoid; ``active``: other than the tracker's; ``infeasible``: none keeps all rows."""
+
+    delta_u: Array
+    active: bool
+    infeasible: bool
+
+
+def corrected_input(delta_u: Array, rows: Array, bounds: Array, lower: Array, upper: Array) -> Correction:
+    """The input nearest to the tracker's ``delta_u`` (4 N,) with ``rows`` (k, 4 N) du <= ``bounds`` and within bounds.
+
+    Q_obs is the identity. Where the paper's programme has no solution its rows are kept as well as can be.
+    """
+    n, k = len(delta_u), len(rows)
+    if k == 0 or np.all(rows @ delta_u <= bounds):
+        return Correction(delta_u, False, False)
+    below, above = np.concatenate([lower, np.full(k, -1e30)]), np.concatenate([upper, bounds])
+    for soft in (0, 8):
+        sense = np.array([0] * n + [soft] * k, dtype=np.int32)
+        x, _, flag, _ = daqp.solve(np.eye(n), -delta_u, np.ascontiguousarray(rows), above, below, sense)
+        if flag >= 1 and np.all(np.isfinite(x)):
+            return Correction(np.clip(x, lower, upper), True, soft > 0)
+    return Correction(delta_u, False, True)
