@@ -24,6 +24,7 @@ from gcs.mission.read import read_mission
 from gcs.progress import FlightProgress
 from gcs.record.figures import report
 from gcs.record.summary_table import summary_table
+from gcs.reproduce import command as reproduce
 from gcs.wire.address import parse_url
 from idc_controller.errors import IdcError
 
@@ -35,6 +36,7 @@ The ground station of cooplift: UAVs that carry one payload together.
   gcs report runs/figure-eight-1            draws what happened
   gcs courses                               flies 200 random courses and tells how it went
   gcs study margin                          flies a mission with other margins; other studies likewise
+  gcs reproduce --quick                     the paper's figures and numbers, as printed and as corrected
 """
 _FLY = """\
 Flies a mission: a QGroundControl .plan, a QGC WPL 110 file, or the project's .toml.
@@ -135,6 +137,12 @@ def _parser() -> argparse.ArgumentParser:
         "study", help="fly missions with one thing changed", description=study.DESCRIPTION, formatter_class=style
     )
     study.add_arguments(study_parser)
+
+    reproduce_parser = commands.add_parser(
+        "reproduce", help="regenerate the figures and numbers of the paper", description=reproduce.DESCRIPTION,
+        formatter_class=style,
+    )  # fmt: skip
+    reproduce.add_arguments(reproduce_parser)
     return parser
 
 

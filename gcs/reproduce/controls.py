@@ -99,7 +99,7 @@ class PaperControl:
         """See :class:`Control`."""
         mpc = self._mpc
         x = minimal_state(measured)
-        times = time + PERIOD * np.arange(mpc.settings.horizon + 1)
+        times = time + PERIOD * np.arange(mpc.settings.horizon + 1, dtype=np.float64)
         if self._figure is None:
             wanted = np.zeros((len(times), len(x)))
             wanted[:, :3] = printed_reference(times)

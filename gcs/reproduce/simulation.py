@@ -20,8 +20,8 @@ Array = NDArray[np.float64]
 PROJECT = "project"
 LOST_TILT, LOST_DISTANCE = 60.0, 60.0
 """deg and m: the payload has tipped over, or flown away."""
-_STEPS = {"paper": 5, PROJECT: 10}
-"""Steps of the plant a period: the attitude loop on board runs at 200 Hz."""
+STEPS = 5
+"""Steps of the plant a period; the attitude loop on board runs at each of them, at 100 Hz."""
 
 
 @dataclass(frozen=True)
@@ -128,7 +128,7 @@ def simulate(case: Case) -> Flown:
     control = _control(case, design, spheres)
     end = case.duration if as_printed else figure.full_rate + case.duration
     flown = Flown(case, spheres, 10.0 if as_printed else figure.full_rate, 5.0 if as_printed else figure.full_rate)
-    _run(flown, control, truth, end, _STEPS[PROJECT if case.control == PROJECT else "paper"])
+    _run(flown, control, truth, end)
     return flown
 
 
@@ -140,34 +140,36 @@ def _control(case: Case, design: SystemParameters, spheres: tuple[Sphere, ...]) 
     return ProjectControl(design, figure, spheres, case.margin)
 
 
-def _run(flown: Flown, control: Control, truth: SystemParameters, end: float, steps: int) -> None:
+def _run(flown: Flown, control: Control, truth: SystemParameters, end: float) -> None:
     plant, rng = Plant(truth), np.random.default_rng(flown.case.seed)
     state = PlantState.hovering(truth, np.zeros(3))
     rows: list[tuple[Any, ...]] = []
     for k in range(round(end / PERIOD) + 1):
         time = k * PERIOD
         control.decide(time, _measured(state, flown.case.sigma, rng))
-        thrust, torque = control.act(state, PERIOD / steps)
+        thrust, torque = control.act(state, PERIOD / STEPS)
         rows.append(
             (
                 time, state.r_0, state.quaternion_0, plant.uav_positions(state), state.quaternion,
                 np.column_stack([thrust, torque]).ravel(), control.avoiding,
             )
         )  # fmt: skip
-        for step in range(steps):
+        for step in range(STEPS):
             if step:
-                thrust, torque = control.act(state, PERIOD / steps)
-            state = plant.step(state, thrust, torque, PERIOD / steps)
+                thrust, torque = control.act(state, PERIOD / STEPS)
+            state = plant.step(state, thrust, torque, PERIOD / STEPS)
         if _lost(state):
             flown.lost_at = time + PERIOD
             break
-    time, position, quaternion, uavs, uav_quaternion, u, avoiding = (np.array(part) for part in zip(*rows, strict=True))
-    flown.time, flown.position, flown.quaternion, flown.u, flown.avoiding = time, position, quaternion, u, avoiding
+    times, position, quaternion, uavs, uav_quaternion, u, avoiding = (
+        np.array(part) for part in zip(*rows, strict=True)
+    )
+    flown.time, flown.position, flown.quaternion, flown.u, flown.avoiding = times, position, quaternion, u, avoiding
     flown.uav_position, flown.uav_quaternion = uavs, uav_quaternion
     flown.angles = np.degrees(euler_from_quaternion(quaternion))
-    flown.reference = control.reference(time)
+    flown.reference = control.reference(times)
     flown.infeasible_tracking, flown.infeasible_avoidance = control.infeasible_tracking, control.infeasible_avoidance
-    tracks = [ObstacleTrack(s.name, "sphere", s.motion(time)[0], RADIUS) for s in flown.spheres]
+    tracks = [ObstacleTrack(s.name, "sphere", s.motion(times)[0], RADIUS) for s in flown.spheres]
     if tracks:
         flown.clearance = clearance_over_time(
             position, quaternion, uavs, uav_quaternion, tracks, truth.payload_size, truth.disc_radius

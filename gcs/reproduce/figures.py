@@ -1,0 +1,256 @@
+"""The paper's figures, each with what is printed beside what is corrected. PNG files."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from gcs.record.figures import FLOWN, LIMIT, OBSTACLE, SERIES
+from gcs.record.run_data import RunData
+from gcs.reproduce.scene import RADIUS
+from gcs.reproduce.simulation import Flown
+from idc_controller.rotations import euler_from_quaternion, rotation_from_quaternion
+
+Array = NDArray[np.float64]
+
+TITLES = {
+    "printed": "as printed", "corrected": "thrust and torque, flat reference", "project": "this project",
+    "nonlinear": "as printed, A_obs nonlinear",
+}  # fmt: skip
+DPI = 110
+_REFERENCE: dict[str, Any] = {"color": "#BBBBBB", "lw": 4.0, "solid_capstyle": "round", "label": "reference"}
+
+
+def draw_position(flown: Mapping[str, Flown], title: str, path: Path) -> None:
+    """trackxyz, trackObsxyz: position over time, a column a control, avoidance shaded."""
+
+    def draw(axes: Sequence[Axes], run: Flown) -> None:
+        for i, ax in enumerate(axes):
+            ax.plot(run.time, run.reference[:, i], **_REFERENCE)
+            ax.plot(run.time, run.position[:, i], color=FLOWN, lw=1.4, label="flown")
+        axes[2].invert_yaxis()
+
+    _columns(flown, title, ("x (m)", "y (m)", "z (m)"), draw, path)
+
+
+def draw_attitude(flown: Mapping[str, Flown], title: str, path: Path) -> None:
+    """attrpy, attObsrpy: roll, pitch, yaw of the payload over time, with the 5 degrees of the paper."""
+
+    def draw(axes: Sequence[Axes], run: Flown) -> None:
+        for i, ax in enumerate(axes):
+            ax.plot(run.time, run.angles[:, i], color=FLOWN, lw=1.2)
+            for limit in (-5.0, 5.0):
+                ax.axhline(limit, color=LIMIT, ls="--", lw=1.0)
+
+    _columns(flown, title, ("roll (deg)", "pitch (deg)", "yaw (deg)"), draw, path)
+
+
+def _columns(flown: Mapping[str, Flown], title: str, labels: Sequence[str], draw: Any, path: Path) -> None:
+    figure = new_figure(title, (4.6 * len(flown), 7.0))
+    grid = figure.subplots(3, len(flown), squeeze=False, sharey="row")
+    for column, (name, run) in enumerate(flown.items()):
+        axes = list(grid[:, column])
+        draw(axes, run)
+        ended = "" if run.lost_at is None else f" (lost at {run.lost_at:.1f} s)"
+        axes[0].set_title(TITLES.get(name, name) + ended, fontsize=11)
+        for ax in axes:
+            for begin, end in run.avoidance_intervals():
+                ax.axvspan(begin, end, color="red", alpha=0.12, lw=0)
+            ax.grid(alpha=0.3)
+        axes[2].set_xlabel("time (s)")
+    for row, label in enumerate(labels):
+        grid[row, 0].set_ylabel(label)
+    if grid[0, 0].get_legend_handles_labels()[1]:
+        grid[0, 0].legend(frameon=False, fontsize=8, ncols=2)
+    _save(figure, path)
+
+
+def draw_snapshot(flown: Mapping[str, Flown], title: str, path: Path) -> None:
+    """anim3d, animObs3d: the formation at some moments in three dimensions, east-north-up as in the paper."""
+    figure = new_figure(title, (6.4 * len(flown), 6.2))
+    for column, (name, run) in enumerate(flown.items()):
+        ax = figure.add_subplot(1, len(flown), column + 1, projection="3d")
+        ax.plot(*enu(run.reference), ":", color=LIMIT, lw=1.2)
+        ax.plot(*enu(run.position), color="black", lw=1.2)
+        for k in np.linspace(0, len(run.time) - 1, 5).astype(int):
+            draw_formation(ax, run, int(k))
+        if run.spheres:
+            nearest = int(np.argmin(run.clearance.min(axis=1)))
+            draw_spheres(ax, run, nearest)
+            draw_formation(ax, run, nearest)
+        ax.set_title(TITLES.get(name, name), fontsize=11)
+        label_space(ax)
+    _save(figure, path)
+
+
+def draw_formation(ax: Any, run: Flown, k: int) -> list[Any]:
+    """Payload's upper face, links and UAVs at record ``k``."""
+    R_0, r_0 = rotation_from_quaternion(run.quaternion[k]), run.position[k]
+    corners = np.array([[0.5, 0.5, -0.25], [0.5, -0.5, -0.25], [-0.5, -0.5, -0.25], [-0.5, 0.5, -0.25]])
+    attached = r_0 + corners @ R_0.T
+    drawn = list(ax.plot(*enu(np.vstack([attached, attached[:1]])), color=SERIES[6], lw=1.6))
+    angle = np.linspace(0.0, 2.0 * np.pi, 25)
+    rim = 0.3 * np.column_stack([np.cos(angle), np.sin(angle), np.zeros(25)])
+    for i, uav in enumerate(run.uav_position[k]):
+        drawn += ax.plot(*enu(np.vstack([attached[i], uav])), color="#666666", lw=0.9)
+        disc = uav + rim @ rotation_from_quaternion(run.uav_quaternion[k, i]).T
+        drawn += ax.plot(*enu(disc), color=FLOWN, lw=1.2)
+    return drawn
+
+
+def draw_spheres(ax: Any, run: Flown, k: int) -> list[Any]:
+    """The obstacles at record ``k``."""
+    u, v = np.meshgrid(np.linspace(0.0, 2.0 * np.pi, 17), np.linspace(0.0, np.pi, 9))
+    ball = RADIUS * np.stack([np.cos(u) * np.sin(v), np.sin(u) * np.sin(v), np.cos(v)], axis=-1)
+    return [
+        ax.plot_surface(*np.moveaxis((ball + sphere.motion(run.time[k : k + 1])[0][0]) @ _TO_ENU.T, -1, 0),
+                        color=OBSTACLE, alpha=0.8, lw=0)
+        for sphere in run.spheres
+    ]  # fmt: skip
+
+
+def draw_noise(worst: Mapping[str, Any], path: Path) -> None:
+    """sigmavsdev: largest roll and pitch against the noise."""
+    figure = new_figure(
+        "Largest angle against noise on the payload's velocity and rates, avoiding two spheres", (9, 4.6)
+    )
+    ax = figure.add_subplot()
+    for color, (control, by_sigma) in zip(SERIES, sorted(worst.items()), strict=False):
+        sigmas = sorted(by_sigma, key=float)
+        for key, style in (("roll_max_deg", "o-"), ("pitch_max_deg", "s--")):
+            values = [by_sigma[sigma][key] for sigma in sigmas]
+            label = f"{TITLES.get(control, control)}: {key.split('_')[0]}"
+            ax.plot([float(sigma) for sigma in sigmas], values, style, color=color, label=label)
+    ax.axhline(10.0, color=LIMIT, ls="--", lw=1.0, label="the paper's threshold")
+    for sigma, text in ((0.008, "paper: 10 deg"), (0.012, "paper: unstable beyond")):
+        ax.axvline(sigma, color="#999999", ls=":", lw=1.0)
+        ax.text(sigma, 9.0, f" {text}", fontsize=8, color="#555555")
+    _finish(ax, "sigma (m/s and rad/s)", "largest angle (deg)")
+    _save(figure, path)
+
+
+def draw_mass(mass: Mapping[str, Any], path: Path) -> None:
+    """Control effort and tilt against the payload's true mass."""
+    figure = new_figure("Payload mass: designed for 3.0 kg, avoiding two spheres", (10, 4.2))
+    left, right = figure.subplots(1, 2)
+    for color, (control, found) in zip(SERIES, _by_control(mass).items(), strict=False):
+        values = sorted(found)
+        label = TITLES.get(control, control)
+        left.plot(values, [found[m].get("effort_change_percent") for m in values], "o-", color=color, label=label)
+        right.plot(values, [_tilt(found[m]) for m in values], "o-", color=color, label=label)
+    for change in (-5.0, 5.0):
+        left.axhline(change, color=LIMIT, ls="--", lw=1.0)
+    _finish(left, "true mass (kg)", "change of mean |u| (%)")
+    _finish(right, "true mass (kg)", "largest roll or pitch (deg)")
+    _save(figure, path)
+
+
+def draw_margin(margin: Mapping[str, Any], path: Path) -> None:
+    """Clearance, deviation and tilt against the safety margin."""
+    figure = new_figure("Safety margin around spheres of 0.5 m", (10, 4.2))
+    left, right = figure.subplots(1, 2)
+    for color, (control, found) in zip(SERIES, _by_control(margin).items(), strict=False):
+        values = sorted(found)
+        label = TITLES.get(control, control)
+        left.plot(values, [found[m]["clearance_min_m"] for m in values], "o-", color=color, label=label)
+        right.plot(values, [found[m]["height_max_m"] - 5.0 for m in values], "o-", color=color, label=label)
+    left.plot(left.get_xlim(), left.get_xlim(), ":", color="#999999", label="the margin itself")
+    _finish(left, "margin (m)", "least clearance (m)")
+    _finish(right, "margin (m)", "highest above the reference (m)")
+    _save(figure, path)
+
+
+def draw_course(runs: Mapping[str, RunData], path: Path) -> None:
+    """gazObs, payTrajGaz: the obstacle course and the payload's way through it, from above and from the side."""
+    figure = new_figure("Obstacle course in PyBullet, through MAVLink", (12, 6.4))
+    above, side = figure.subplots(2, 1, sharex=True)
+    for number, obstacle in enumerate(next(iter(runs.values())).obstacles):
+        track = obstacle.position[np.all(np.isfinite(obstacle.position), axis=1)]
+        half = np.array(obstacle.size) / 2.0 if obstacle.shape == "wall" else np.full(3, obstacle.radius)
+        if obstacle.shape == "pole":
+            half[2] = obstacle.size[2] / 2.0
+        for ax, axis in ((above, 1), (side, 2)):
+            sign = 1.0 if axis == 1 else -1.0
+            low, high = np.sort(sign * np.array([track[0, axis] - half[axis], track[0, axis] + half[axis]]))
+            left = track[0, 0] - half[0]
+            label = "obstacle" if number == 0 and axis == 1 else None
+            ax.fill([left, left + 2 * half[0]] * 1 + [left + 2 * half[0], left], [low, low, high, high],
+                    color=OBSTACLE, alpha=0.6, label=label)  # fmt: skip
+            ax.plot(track[:, 0], sign * track[:, axis], color=OBSTACLE, lw=1.0, alpha=0.6)
+    for color, (name, run) in zip(SERIES, runs.items(), strict=False):
+        above.plot(run.payload_position[:, 0], run.payload_position[:, 1], color=color, lw=1.6, label=name)
+        side.plot(run.payload_position[:, 0], -run.payload_position[:, 2], color=color, lw=1.6, label=name)
+    above.set_aspect("equal", adjustable="datalim")
+    _finish(above, "", "east (m)")
+    _finish(side, "north (m)", "height (m)")
+    _save(figure, path)
+
+
+def draw_course_position(runs: Mapping[str, RunData], path: Path) -> None:
+    """payloadObsGaz: the payload's position and attitude over time on the course."""
+    figure = new_figure("Payload on the obstacle course", (11, 8.5))
+    axes = list(figure.subplots(4, 1, sharex=True))
+    for color, (name, run) in zip(SERIES, runs.items(), strict=False):
+        for i in range(3):
+            axes[i].plot(run.time, run.payload_position[:, i], color=color, lw=1.3, label=name)
+        tilt = np.degrees(np.abs(euler_from_quaternion(run.payload_quaternion))[:, :2]).max(axis=1)
+        axes[3].plot(run.time, tilt, color=color, lw=1.1, label=name)
+    axes[2].invert_yaxis()
+    axes[3].axhline(5.0, color=LIMIT, ls="--", lw=1.0)
+    for ax, label in zip(axes, ("north (m)", "east (m)", "down (m)", "tilt (deg)"), strict=True):
+        _finish(ax, "", label)
+    axes[3].set_xlabel("time (s)")
+    _save(figure, path)
+
+
+_TO_ENU = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
+
+
+def enu(points: Array) -> Array:
+    """East, north, up (3, K) of NED points (K, 3)."""
+    return np.asarray(_TO_ENU @ points.T)
+
+
+def label_space(ax: Any) -> None:
+    """Axes of a picture in space."""
+    ax.set(xlabel="east (m)", ylabel="north (m)", zlabel="up (m)", xlim=(-8, 8), ylim=(-8, 8), zlim=(0, 12))
+    ax.view_init(elev=28.0, azim=-60.0)
+
+
+def new_figure(title: str, size: tuple[float, float]) -> Figure:
+    """A figure without pyplot, which would pick a screen."""
+    figure = Figure(figsize=size, layout="constrained")
+    FigureCanvasAgg(figure)
+    figure.suptitle(title, fontsize=12, fontweight="bold")
+    return figure
+
+
+def _by_control(section: Mapping[str, Any]) -> dict[str, dict[float, Any]]:
+    found: dict[str, dict[float, Any]] = {}
+    for name, numbers in section.items():
+        control, value = name.split("_")
+        found.setdefault(control, {})[float(value)] = numbers
+    return found
+
+
+def _tilt(numbers: Mapping[str, Any]) -> float:
+    return float(max(numbers["roll_max_deg"], numbers["pitch_max_deg"]))
+
+
+def _finish(ax: Axes, x: str, y: str) -> None:
+    ax.set_xlabel(x)
+    ax.set_ylabel(y)
+    ax.grid(alpha=0.3)
+    if ax.get_legend_handles_labels()[1]:
+        ax.legend(frameon=False, fontsize=8)
+
+
+def _save(figure: Figure, path: Path) -> None:
+    figure.savefig(path, dpi=DPI)

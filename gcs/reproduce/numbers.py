@@ -1,0 +1,225 @@
+"""``numbers.json``: every number that ``docs/paper.md`` quotes, from the model, the simulations and the flights."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcs.reproduce.plan import DESIGN_MASS, Plan
+from gcs.reproduce.scene import configuration, printed_reference, shaped_figure
+from gcs.reproduce.work import Results
+from idc_controller.model.nonlinear import Inputs, SystemState, accelerations, matrix_P, thrust_forces, vector_Q
+from idc_controller.paper import printed_equations as printed
+from idc_controller.paper.avoidance import linear_acceleration
+from idc_controller.paper.plant import Plant, PlantState
+from idc_controller.paper.state_space import (
+    Layout,
+    discretised,
+    embedding,
+    input_names,
+    linearised,
+    minimal,
+    relative_degrees,
+    uncontrollable_modes,
+)
+from idc_controller.parameters import SystemParameters, polygon_attachments
+
+Array = NDArray[np.float64]
+
+PERIOD = 0.05
+_STATES = 20
+
+
+def numbers(plan: Plan, results: Results) -> dict[str, Any]:
+    """All of them; a quick run has fewer."""
+    found: dict[str, Any] = {"quick": plan.quick, "model": model_numbers()}
+    for (section, name), flown in sorted(results.simulations.items()):
+        found.setdefault(section, {})[name] = flown.numbers()
+    _effort_against_design(found.get("mass", {}))
+    if "noise" in found:
+        found["noise_worst"] = _worst_by_sigma(found["noise"])
+    found["flights"] = {
+        name: {
+            "outcome": summary["outcome"],
+            "clearance_min_m": summary["clearance_min_m"],
+            "contacts": summary["contacts"],
+            "tilt_max_deg": max(summary["payload_tilt_max_deg"].values()),
+            "uav_separation_min_m": summary["uav_separation_min_m"],
+            "rmse_m": summary["position_rmse_m"]["total"],
+            "duration_s": summary["duration_s"],
+        }
+        for name, summary in sorted(results.flights.items())
+    }
+    return found
+
+
+def model_numbers() -> dict[str, Any]:
+    """What follows from the equations alone: cheap, and the same on every run."""
+    p = configuration().parameters()
+    A, B = linearised(p)
+    A_small, B_small = minimal(p)
+    T = embedding(p)
+    lost = uncontrollable_modes(*discretised(A, B, PERIOD))
+    G = linear_acceleration(p)[1]
+    wrong = [_errors_of(seed) for seed in range(_STATES)]
+    return {
+        "state_printed": printed.printed_state_dimension(4),
+        "state": len(A),
+        "state_minimal": len(A_small),
+        "uncontrollable_modes": len(lost),
+        "uncontrollable_modes_minimal": len(uncontrollable_modes(*discretised(A_small, B_small, PERIOD))),
+        "uncontrollable_mode": float(np.mean(np.real(lost))),
+        "minimal_against_full": float(max(np.abs(A @ T - T @ A_small).max(), np.abs(B - T @ B_small).max())),
+        "relative_degrees": _degrees(p),
+        "A_obs_per_thrust": {axis: float(-2.0 * G[i, 0]) for i, axis in enumerate("xyz")},
+        "hover_thrust_n": {str(N): _hover_thrusts(p, N) for N in (3, 4, 6)},
+        "printed_fall_mps2": _printed_fall(p),
+        "P_asymmetry": float(max(w["asymmetry"] for w in wrong)),
+        "P_acceleration_error_median": float(np.median([w["acceleration"] for w in wrong])),
+        "moment_residual_printed_nm": float(np.median([w["moment_printed"] for w in wrong])),
+        "moment_residual_nm": float(max(w["moment"] for w in wrong)),
+        "lagrange_moment_error_nm": float(np.median([w["lagrange"] for w in wrong])),
+        "derivations_difference": float(max(w["derivations"] for w in wrong)),
+        "hull": _hull(p),
+    }
+
+
+def _degrees(p: SystemParameters) -> dict[str, dict[str, int | None]]:
+    """Lowest derivative of each axis of r_0 that any UAV's input reaches, at hover."""
+    A, B = minimal(p)
+    degrees = relative_degrees(A, B, np.eye(3, len(A)))
+    names = ("thrust", "tau_x", "tau_y", "tau_z")
+    return {
+        name: {axis: min((int(d) for d in degrees[i, k::4] if d > 0), default=None) for i, axis in enumerate("xyz")}
+        for k, name in enumerate(names)
+    }
+
+
+def _hover_thrusts(p: SystemParameters, N: int) -> dict[str, float]:
+    parameters = replace(
+        p, m=np.full(N, p.m[0]), J=np.tile(p.J[0], (N, 1, 1)), l=np.full(N, p.l[0]),
+        p=polygon_attachments(N, 1.0, float(p.p[0, 2])),
+    )  # fmt: skip
+    return {
+        "printed": float(printed.printed_hover_thrust(parameters)[0]),
+        "correct": float(parameters.hover_thrust[0]),
+    }
+
+
+def _printed_fall(p: SystemParameters) -> float:
+    """Vertical acceleration at hover with the printed direction of thrust (m/s2)."""
+    state = _random_state(p, np.random.default_rng(0), 0.0)
+    level = np.array([1.0, 0.0, 0.0, 0.0])
+    N = p.number_of_uavs
+    state = SystemState(
+        state.r_0, np.zeros(3), level, np.zeros(3), np.tile([0.0, 0.0, 1.0], (N, 1)), np.zeros((N, 3)),
+        np.tile(level, (N, 1)), np.zeros((N, 3)),
+    )  # fmt: skip
+    F = printed.printed_thrust_forces(state.quaternion, p.hover_thrust)
+    return float(accelerations(p, state, Inputs(F, np.zeros((N, 3)))).r_0_ddot[2])
+
+
+def _errors_of(seed: int) -> dict[str, float]:
+    """What the printed equations do at a random state: links within 20 degrees of hover, rates of 0.5 rad/s."""
+    p = configuration().parameters()
+    rng = np.random.default_rng(seed)
+    state = _random_state(p, rng, 0.5)
+    N = p.number_of_uavs
+    thrust, torque = p.hover_thrust * rng.uniform(0.8, 1.2, N), 0.1 * rng.normal(size=(N, 3))
+    inputs = Inputs(thrust_forces(state.quaternion, thrust), torque)
+    P = printed.printed_matrix_P(p, state.q)
+    right = np.linalg.solve(matrix_P(p, state.q), vector_Q(p, state, inputs))
+    second = accelerations(p, state, inputs)
+    R_0 = state.R_0
+    plant = PlantState(
+        state.r_0, state.r_0_dot, state.quaternion_0, state.omega_0, state.q @ R_0.T,
+        np.cross(state.Omega, state.q) @ R_0.T, state.quaternion, state.omega,
+    )  # fmt: skip
+    other = Plant(p).accelerations(plant, thrust, torque)
+    lagrange = [printed.generalised_moment(p, state, inputs, printed=which) for which in (True, False)]
+    return {
+        "asymmetry": float(np.abs(P - P.T).max()),
+        "acceleration": float(np.linalg.norm((printed.printed_accelerations(p, state, inputs) - right)[:3])),
+        "moment_printed": printed.moment_residual(p, state, inputs, printed=True),
+        "moment": printed.moment_residual(p, state, inputs, printed=False),
+        "lagrange": float(np.linalg.norm(lagrange[0] - lagrange[1])),
+        "derivations": float(
+            max(np.abs(other[0] - second.r_0_ddot).max(), np.abs(other[1] - second.omega_0_dot).max())
+        ),
+    }
+
+
+def _random_state(p: SystemParameters, rng: np.random.Generator, rate: float) -> SystemState:
+    N = p.number_of_uavs
+
+    def tilted(count: int) -> Array:
+        q = np.column_stack([np.ones(count), 0.1 * rng.normal(size=(count, 3))])
+        return np.asarray(q / np.linalg.norm(q, axis=1, keepdims=True))
+
+    q = np.column_stack([0.2 * rng.normal(size=(N, 2)), np.ones(N)])
+    q /= np.linalg.norm(q, axis=1, keepdims=True)
+    Omega = rate * rng.normal(size=(N, 3))
+    return SystemState(
+        rng.normal(size=3), rng.normal(size=3), tilted(1)[0], rate * rng.normal(size=3), q,
+        Omega - np.sum(Omega * q, axis=1, keepdims=True) * q, tilted(N), rate * rng.normal(size=(N, 3)),
+    )  # fmt: skip
+
+
+def _hull(p: SystemParameters) -> dict[str, float]:
+    """How far the links lean and the UAVs move against the payload on the figure eight, by its acceleration."""
+    times = np.linspace(0.0, 4.0 * np.pi, 2001)
+    h = 1e-3
+    r = [printed_reference(times + offset) for offset in (-h, 0.0, h)]
+    acceleration = float(np.linalg.norm((r[2] - 2.0 * r[1] + r[0]) / h**2, axis=1).max())
+    tilt = float(np.arctan2(acceleration, p.g))
+    speed = float(np.linalg.norm((r[2] - r[0]) / (2.0 * h), axis=1)[0])
+    return {
+        "acceleration_max_mps2": acceleration,
+        "link_tilt_max_deg": float(np.degrees(tilt)),
+        "uav_shift_max_m": float(p.l[0] * np.sin(tilt)),
+        "speed_at_start_mps": speed,
+        "shaped_full_rate_s": shaped_figure(8.0).full_rate,
+    }
+
+
+def _effort_against_design(mass: dict[str, Any]) -> None:
+    """Adds to each mass how its effort differs from the design's (%)."""
+    for name, found in mass.items():
+        design = mass.get(f"{name.rsplit('_', 1)[0]}_{DESIGN_MASS:g}")
+        if design is not None and found["effort_mean"] is not None and design["effort_mean"]:
+            found["effort_change_percent"] = 100.0 * (found["effort_mean"] / design["effort_mean"] - 1.0)
+
+
+def _worst_by_sigma(noise: dict[str, Any]) -> dict[str, dict[str, dict[str, Any]]]:
+    """Worst of all seeds, by control and sigma."""
+    worst: dict[str, dict[str, dict[str, Any]]] = {}
+    for name, found in noise.items():
+        control, sigma, _ = name.split("_")
+        entry = worst.setdefault(control, {}).setdefault(
+            sigma, {"roll_max_deg": 0.0, "pitch_max_deg": 0.0, "clearance_min_m": np.inf, "lost": 0, "flown": 0}
+        )
+        entry["flown"] += 1
+        entry["lost"] += found["lost_at_s"] is not None
+        for key in ("roll_max_deg", "pitch_max_deg"):
+            entry[key] = max(entry[key], found[key])
+        entry["clearance_min_m"] = min(entry["clearance_min_m"], found["clearance_min_m"])
+    return worst
+
+
+def matrices() -> dict[str, tuple[Array, list[str], list[str]]]:
+    """The matrices the paper left on a drive, with names of rows and columns, at hover and 20 Hz."""
+    p = configuration().parameters()
+    full, small, inputs = Layout.full(4).names(), Layout.minimal(4).names(), input_names(4)
+    A, B = linearised(p)
+    A_k, B_k = discretised(A, B, PERIOD)
+    A_small, B_small = minimal(p)
+    A_small_k, B_small_k = discretised(A_small, B_small, PERIOD)
+    return {
+        "A_continuous": (A, full, full), "B_continuous": (B, full, inputs),
+        "A": (A_k, full, full), "B": (B_k, full, inputs),
+        "A_minimal": (A_small_k, small, small), "B_minimal": (B_small_k, small, inputs),
+        "minimal_to_full": (embedding(p), full, small),
+    }  # fmt: skip

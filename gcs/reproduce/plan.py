@@ -1,0 +1,65 @@
+"""What is simulated and flown, quick and in full."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from gcs.reproduce.controls import PaperVariant
+from gcs.reproduce.simulation import PROJECT, Case
+
+PRINTED = PaperVariant("states")
+"""The reading of the paper that flies."""
+OUTPUTS = PaperVariant("outputs")
+CORRECTED = PaperVariant("flat")
+NONLINEAR = PaperVariant("states", "nonlinear")
+MASSES = (2.7, 3.0, 3.3)
+"""kg, of the plant; the controller is designed for the middle one."""
+DESIGN_MASS = 3.0
+POLES = ((1.0, 1.0), (4.0, 4.0), (1.0, 4.0))
+"""1/s, beside (2, 2): the paper gives none."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """``cases`` by section and name; ``flights`` name: (mission file, controller); frames of an animation."""
+
+    quick: bool
+    cases: dict[tuple[str, str], Case]
+    flights: dict[str, tuple[str, str]]
+    frames: int
+
+
+def plan(quick: bool) -> Plan:
+    """The quick one leaves out the flights in PyBullet, repeats of the noise, and the dearer variants."""
+    as_printed, shaped = (12.0, 8.0) if quick else (40.0, 40.0)
+    base = {
+        "outputs": Case("outputs", OUTPUTS, as_printed),
+        "printed": Case("printed", PRINTED, as_printed),
+        "corrected": Case("corrected", CORRECTED, shaped),
+        "project": Case("project", PROJECT, shaped),
+    }
+    cases = {("tracking", name): case for name, case in base.items()}
+    avoiding = {name: replace(case, obstacles=True) for name, case in base.items() if name != "outputs"}
+    if not quick:
+        avoiding["nonlinear"] = replace(avoiding["printed"], name="nonlinear", control=NONLINEAR)
+        for poles in POLES:
+            name = f"poles_{poles[0]:g}_{poles[1]:g}"
+            avoiding[name] = replace(avoiding["printed"], name=name, control=replace(PRINTED, poles=poles))
+    cases |= {("avoidance", name): case for name, case in avoiding.items()}
+    compared = ("printed",) if quick else ("printed", "project")
+    for name in compared:
+        short = replace(avoiding[name], duration=12.0 if name == "printed" else 16.0)
+        for mass in MASSES:
+            cases["mass", f"{name}_{mass:g}"] = replace(short, design_mass=DESIGN_MASS, plant_mass=mass)
+        for margin in (0.25, 1.0) if quick else (0.25, 0.5, 0.75, 1.0, 1.5):
+            cases["margin", f"{name}_{margin:g}"] = replace(short, margin=margin)
+        for sigma in (0.008, 0.05) if quick else (0.002, 0.004, 0.008, 0.012, 0.02, 0.03, 0.05):
+            for seed in (1,) if quick else (1, 2, 3):
+                cases["noise", f"{name}_{sigma:g}_{seed}"] = replace(short, sigma=sigma, seed=seed)
+    flights = {
+        "pole_course_idc": ("pole_course.toml", "idc"),
+        "pole_course_paper": ("pole_course.toml", "paper"),
+        "figure_eight_spheres_idc": ("figure_eight_spheres.toml", "idc"),
+        "figure_eight_spheres_paper": ("figure_eight_spheres.toml", "paper"),
+    }
+    return Plan(quick, cases, {} if quick else flights, 16 if quick else 120)
