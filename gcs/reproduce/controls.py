@@ -34,6 +34,8 @@ from idc_controller.rotations import euler_from_quaternion, rotation_from_quater
 Array = NDArray[np.float64]
 
 PERIOD = 0.05  # s
+VISIBLE = 0.05
+"""m off the reference, from which on the project's planner is said to avoid something."""
 
 
 class Control(Protocol):
@@ -182,7 +184,9 @@ class ProjectControl:
         estimate = Estimate(time, self._state(measured), np.zeros(3), 0.0, np.zeros((n, n)))
         decision = self._controller.decide(estimate, self._figure)
         self._directions, self._thrusts = decision.directions, decision.thrusts
-        self.avoiding = decision.safety.active
+        # The plan bends a little long before and after an obstacle: counted is what can be seen.
+        bent = decision.flat.payload[0, 0] - self._figure.position(time)
+        self.avoiding = decision.safety.active and float(np.linalg.norm(bent)) > VISIBLE
         self.infeasible_tracking += decision.infeasible
         self.infeasible_avoidance += decision.safety.infeasible
 

@@ -129,9 +129,10 @@ def draw_noise(worst: Mapping[str, Any], path: Path) -> None:
             label = f"{TITLES.get(control, control)}: {key.split('_')[0]}"
             ax.plot([float(sigma) for sigma in sigmas], values, style, color=color, label=label)
     ax.axhline(10.0, color=LIMIT, ls="--", lw=1.0, label="the paper's threshold")
-    for sigma, text in ((0.008, "paper: 10 deg"), (0.012, "paper: unstable beyond")):
+    for sigma, height, text in ((0.008, 8.6, "paper: 10 deg"), (0.012, 7.8, "paper: unstable beyond")):
         ax.axvline(sigma, color="#999999", ls=":", lw=1.0)
-        ax.text(sigma, 9.0, f" {text}", fontsize=8, color="#555555")
+        ax.text(sigma, height, f" {text}", fontsize=8, color="#555555")
+    ax.set_ylim(bottom=0.0)
     _finish(ax, "sigma (m/s and rad/s)", "largest angle (deg)")
     _save(figure, path)
 
@@ -148,6 +149,7 @@ def draw_mass(mass: Mapping[str, Any], path: Path) -> None:
     for change in (-5.0, 5.0):
         left.axhline(change, color=LIMIT, ls="--", lw=1.0)
     _finish(left, "true mass (kg)", "change of mean |u| (%)")
+    right.set_ylim(bottom=0.0)
     _finish(right, "true mass (kg)", "largest roll or pitch (deg)")
     _save(figure, path)
 

@@ -50,7 +50,8 @@ def write_page(out: Path, numbers: Mapping[str, Any], pictures: Sequence[str], s
     """``index.html`` in ``out``."""
     note = (
         "<p><b>Quick run.</b> Shorter simulations; without the flights in PyBullet through MAVLink (gazObs, "
-        "payTrajGaz, payloadObsGaz), the project's controller in the studies, the repeats of the noise study, and the other readings of the paper's filter. "
+        "payTrajGaz, payloadObsGaz), the project's controller in the studies, the repeats of the noise, and the other "
+        "readings of the paper's filter. "
         "<code>gcs reproduce</code> without <code>--quick</code> has them all.</p>"
         if numbers["quick"]
         else ""
