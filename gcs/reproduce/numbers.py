@@ -87,13 +87,13 @@ def model_numbers() -> dict[str, Any]:
     }
 
 
-def _degrees(p: SystemParameters) -> dict[str, dict[str, int | None]]:
+def _degrees(p: SystemParameters) -> dict[str, dict[str, int | str]]:
     """Lowest derivative of each axis of r_0 that any UAV's input reaches, at hover."""
     A, B = minimal(p)
     degrees = relative_degrees(A, B, np.eye(3, len(A)))
     names = ("thrust", "tau_x", "tau_y", "tau_z")
     return {
-        name: {axis: min((int(d) for d in degrees[i, k::4] if d > 0), default=None) for i, axis in enumerate("xyz")}
+        name: {axis: min((int(d) for d in degrees[i, k::4] if d > 0), default="never") for i, axis in enumerate("xyz")}
         for k, name in enumerate(names)
     }
 

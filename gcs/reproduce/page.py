@@ -101,7 +101,7 @@ def rounded(value: Any) -> Any:
 
 
 def _relative_degrees(table: Mapping[str, Mapping[str, Any]]) -> str:
-    rows = [[name, *(str(by[axis] or "never") for axis in "xyz")] for name, by in table.items()]
+    rows = [[name, *(str(by[axis]) for axis in "xyz")] for name, by in table.items()]
     return "<h2>Relative degree of the payload's position</h2>" + _table(["input", "x", "y", "z"], rows)
 
 
