@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gcs.record.run_data import RunData, read_run
+from gcs.record.summary import payload_angles
 from gcs.reproduce.plan import DESIGN_MASS, Plan
 from gcs.reproduce.scene import configuration, printed_reference, shaped_figure
 from gcs.reproduce.work import Results
@@ -42,18 +45,37 @@ def numbers(plan: Plan, results: Results) -> dict[str, Any]:
     if "noise" in found:
         found["noise_worst"] = _worst_by_sigma(found["noise"])
     found["flights"] = {
-        name: {
-            "outcome": summary["outcome"],
-            "clearance_min_m": summary["clearance_min_m"],
-            "contacts": summary["contacts"],
-            "tilt_max_deg": max(summary["payload_tilt_max_deg"].values()),
-            "uav_separation_min_m": summary["uav_separation_min_m"],
-            "rmse_m": summary["position_rmse_m"]["total"],
-            "duration_s": summary["duration_s"],
-        }
+        name: flight_numbers(summary, read_run(results.folders[name]))
         for name, summary in sorted(results.flights.items())
     }
     return found
+
+
+def flight_numbers(summary: Mapping[str, Any], run: RunData) -> dict[str, Any]:
+    """A flight's summary, and how it went until something touched something."""
+    contacts = run.contacts if run.contacts is not None else np.zeros(len(run.time))
+    powered = (run.thrust > 0.0).any(axis=1)
+    touched = np.flatnonzero((contacts > 0) & powered)
+    before = slice(0, touched[0] + 1 if len(touched) else len(run.time))
+    nearest = run.clearance()[before]
+    return {
+        "outcome": summary["outcome"],
+        "clearance_min_m": summary["clearance_min_m"],
+        "contacts": summary["contacts"],
+        "tilt_max_deg": max(summary["payload_tilt_max_deg"].values()),
+        "uav_separation_min_m": summary["uav_separation_min_m"],
+        "rmse_m": summary["position_rmse_m"]["total"],
+        "duration_s": summary["duration_s"],
+        "first_contact_s": float(run.time[touched[0]]) if len(touched) else None,
+        "touched_first": _touched(run, nearest[-1]) if len(touched) else None,
+        "tilt_max_before_contact_deg": float(np.abs(payload_angles(run)[before, :2]).max()),
+        "clearance_before_contact_m": float(np.nanmin(nearest)),
+    }
+
+
+def _touched(run: RunData, clearance: Array) -> str:
+    """What a first contact was with: an obstacle, or the vehicles among themselves."""
+    return run.obstacles[int(np.argmin(clearance))].name if clearance.min() < 0.01 else "one UAV another"
 
 
 def model_numbers() -> dict[str, Any]:

@@ -1,0 +1,147 @@
+"""``gcs reproduce``: the command as a whole on a plan of seconds, and docs/paper.md against its numbers."""
+
+import csv
+import json
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from gcs.cli import main
+from gcs.reproduce import command
+from gcs.reproduce.numbers import model_numbers
+from gcs.reproduce.page import ABSENT, paper_text, rounded
+from gcs.reproduce.plan import plan
+from gcs.reproduce.simulation import Case, Flown, simulate
+
+DOCS = Path(__file__).parents[1] / "docs"
+
+
+@pytest.fixture(scope="module")
+def quoted():
+    """The numbers of the full run that docs/paper.md quotes."""
+    return json.loads((DOCS / "paper_numbers.json").read_text(encoding="utf-8"))
+
+
+def test_document_quotes_the_numbers_of_a_full_run(quoted):
+    assert not quoted["quick"]
+    assert (DOCS / "paper.md").read_text(encoding="utf-8") == paper_text(quoted)
+    assert ABSENT not in re.sub(r"`[^`]*`", "", paper_text(quoted))
+
+
+def compare(got, expected, path=""):
+    if isinstance(expected, dict):
+        assert got.keys() == expected.keys(), path
+        for name in expected:
+            compare(got[name], expected[name], f"{path}.{name}")
+    elif isinstance(expected, float):
+        # Rounding errors themselves differ from machine to machine.
+        assert got == pytest.approx(expected, rel=0.02, abs=1e-6), path
+    else:
+        assert got == expected, path
+
+
+def test_numbers_of_the_model_are_what_the_model_says(quoted):
+    compare(rounded(model_numbers()), quoted["model"])
+
+
+@pytest.mark.parametrize(
+    ("section", "name"), [("tracking", "outputs"), ("mass", "printed_2.7"), ("margin", "printed_1")]
+)
+def test_numbers_of_simulations_are_what_they_come_to(quoted, section, name):
+    case = plan(quick=False).cases[section, name]
+    got = simulate(case).numbers()
+    got.pop("effort_change_percent", None)
+    expected = {key: value for key, value in quoted[section][name].items() if key != "effort_change_percent"}
+    compare(rounded(got), expected)
+
+
+def test_full_plan_has_what_the_text_quotes(quoted):
+    whole = plan(quick=False)
+    for section, name in whole.cases:
+        assert name in quoted[section], (section, name)
+    assert set(whole.flights) == set(quoted["flights"])
+    quick = plan(quick=True)
+    assert not quick.flights
+    assert set(quick.cases) < set(whole.cases)
+    # Cases of the studies are the same in both: their numbers can be compared.
+    for key in quick.cases:
+        if key[0] in ("mass", "margin", "noise"):
+            assert quick.cases[key] == whole.cases[key]
+
+
+def test_text_without_a_number_says_so():
+    text = paper_text({"model": {"state": 60}})
+    assert "= 60 for N = 4" in text
+    assert ABSENT in text
+
+
+def short_plan(quick):
+    whole = plan(quick)
+    kept = {}
+    for key, case in whole.cases.items():
+        if key[0] in ("tracking", "avoidance"):
+            kept[key] = replace(case, duration=2.0)
+        elif key[1] in ("printed_2.7", "printed_3", "printed_0.25", "printed_0.008_1"):
+            kept[key] = replace(case, duration=1.0)
+    return replace(whole, cases=kept, frames=2)
+
+
+def test_command_fills_a_folder(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(command, "plan", short_plan)
+    out = tmp_path / "deep" / "out"
+    assert main(["reproduce", "--quick", "--out", str(out), "--jobs", "2"]) == 0
+    said = capsys.readouterr().out
+    assert "index.html" in said
+    assert "tracking project" in said
+    page = (out / "index.html").read_text(encoding="utf-8")
+    assert "Quick run" in page
+    pictures = re.findall(r'img src="([^"]+)"', page)
+    assert {"trackxyz.png", "attrpy.png", "trackObsxyz.png", "attObsrpy.png", "anim3d.png", "animObs3d.png",
+            "sigmavsdev.png", "mass.png", "margin.png", "anim3d.gif", "animObs3d.gif"} == set(pictures)  # fmt: skip
+    for name in pictures:
+        with Image.open(out / name) as image:
+            assert image.size[0] > 300
+            assert getattr(image, "n_frames", 1) == (2 if name.endswith(".gif") else 1)
+    found = json.loads((out / "numbers.json").read_text(encoding="utf-8"))
+    assert found["tracking"]["project"]["lost_at_s"] is None
+    assert (out / "paper.md").read_text(encoding="utf-8") == paper_text(found)
+    with (out / "matrices" / "A.csv").open(encoding="utf-8") as file:
+        rows = list(csv.reader(file))
+    assert len(rows) == len(rows[0]) == 61
+    assert rows[0][1:4] == ["r_0_x", "r_0_y", "r_0_z"]
+    assert np.array([row[1:] for row in rows[1:]], dtype=float)[0, 3] == pytest.approx(0.05)
+
+
+def test_folder_that_is_not_empty_is_refused(tmp_path, capsys):
+    (tmp_path / "kept").write_text("mine", encoding="utf-8")
+    assert main(["reproduce", "--quick", "--out", str(tmp_path)]) == 2
+    assert capsys.readouterr().err.strip() == f"{tmp_path}: the folder is not empty"
+    assert [path.name for path in tmp_path.iterdir()] == ["kept"]
+    assert main(["reproduce", "--quick", "--out", str(tmp_path / "kept")]) == 2
+    assert "is a file" in capsys.readouterr().err
+
+
+def test_missions_that_are_not_there_are_refused_before_anything_starts(tmp_path, capsys):
+    out = tmp_path / "out"
+    assert main(["reproduce", "--missions", str(tmp_path), "--out", str(out)]) == 2
+    assert "pole_course.toml" in capsys.readouterr().err
+    assert not out.exists()
+
+
+def test_simulations_repeat():
+    case = replace(plan(quick=True).cases["noise", "printed_0.008_1"], duration=1.0)
+    first, second = simulate(case), simulate(case)
+    np.testing.assert_array_equal(first.position, second.position)
+    assert not np.array_equal(simulate(replace(case, seed=2)).position, first.position)
+
+
+def test_avoidance_intervals_close_short_gaps():
+    flown = Flown(Case("x", "project", 1.0), (), 0.0, 0.0)
+    flown.time = np.arange(100) * 0.05
+    flown.avoiding = np.zeros(100, dtype=bool)
+    flown.avoiding[[10, 11, 15, 60]] = True
+    np.testing.assert_allclose(flown.avoidance_intervals(), [(0.5, 0.8), (3.0, 3.05)])
