@@ -11,11 +11,14 @@ import pytest
 from PIL import Image
 
 from gcs.cli import main
-from gcs.reproduce import command
-from gcs.reproduce.numbers import model_numbers
+from gcs.record.clearance import ObstacleTrack
+from gcs.record.run_data import RunData
+from gcs.reproduce import command, figures
+from gcs.reproduce.numbers import flight_numbers, model_numbers
 from gcs.reproduce.page import ABSENT, paper_text, rounded
 from gcs.reproduce.plan import plan
 from gcs.reproduce.simulation import Case, Flown, simulate
+from idc_controller.rotations import quaternion_from_euler
 
 DOCS = Path(__file__).parents[1] / "docs"
 
@@ -137,6 +140,49 @@ def test_simulations_repeat():
     first, second = simulate(case), simulate(case)
     np.testing.assert_array_equal(first.position, second.position)
     assert not np.array_equal(simulate(replace(case, seed=2)).position, first.position)
+
+
+def recorded(folder, tilt_deg, contacts):
+    """A flight north at 1 m/s past a pole and a sphere, that tips over when ``tilt_deg`` (T,) says."""
+    T = len(tilt_deg)
+    time = 0.1 * np.arange(T)
+    position = np.column_stack([time, np.zeros(T), np.full(T, -5.0)])
+    quaternion = np.array([quaternion_from_euler(np.radians(a), 0.0, 0.0) for a in tilt_deg])
+    level = np.tile([1.0, 0.0, 0.0, 0.0], (T, 4, 1))
+    uavs = position[:, None] + np.array([[0.5, 0.5, -3.4], [0.5, -0.5, -3.4], [-0.5, -0.5, -3.4], [-0.5, 0.5, -3.4]])
+    obstacles = (
+        ObstacleTrack("pole", "pole", np.tile([3.0, 2.0, -5.0], (T, 1)), 0.3, (0.0, 0.0, 10.0)),
+        ObstacleTrack("wall", "wall", np.tile([3.0, 4.0, -5.0], (T, 1)), size=(4.0, 0.3, 10.0)),
+        ObstacleTrack("ball", "sphere", np.tile([6.0, 0.0, -5.0], (T, 1)), 0.5),
+    )
+    summary = {
+        "outcome": "collided", "clearance_min_m": 0.0, "contacts": 3, "uav_separation_min_m": 1.0, "duration_s": 6.0,
+        "payload_tilt_max_deg": {"roll": 80.0, "pitch": 0.0, "yaw": 0.0}, "position_rmse_m": {"total": 1.0},
+    }  # fmt: skip
+    return RunData(
+        folder, "truth", time, position, quaternion, uavs, level, np.full((T, 4), 14.0), np.array(contacts), obstacles,
+        None, None, {}, summary,
+    )  # fmt: skip
+
+
+def test_flights_are_told_until_the_first_contact(tmp_path):
+    tilt, contacts = np.zeros(60), np.zeros(60)
+    tilt[20], tilt[57:], contacts[56:] = 7.0, 80.0, 1
+    run = recorded(tmp_path, tilt, contacts)
+    told = flight_numbers(run.summary, run)
+    assert told["first_contact_s"] == pytest.approx(5.6)
+    assert told["touched_first"] == "ball"
+    assert told["tilt_max_before_contact_deg"] == pytest.approx(7.0)
+    contacts[10] = 1  # far from everything
+    early = flight_numbers(run.summary, recorded(tmp_path, tilt, contacts))
+    assert early["touched_first"] == "one UAV another"
+    none = flight_numbers(run.summary, recorded(tmp_path, np.zeros(60), np.zeros(60)))
+    assert none["first_contact_s"] is None
+    runs = {"idc": recorded(tmp_path, np.zeros(60), np.zeros(60)), "paper": run}
+    for draw in (figures.draw_course, figures.draw_course_position):
+        draw(runs, tmp_path / "picture.png")
+        with Image.open(tmp_path / "picture.png") as image:
+            assert image.size[0] > 300
 
 
 def test_avoidance_intervals_close_short_gaps():

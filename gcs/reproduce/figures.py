@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 
 from gcs.record.figures import FLOWN, LIMIT, OBSTACLE, SERIES
 from gcs.record.run_data import RunData
+from gcs.record.summary import payload_angles
 from gcs.reproduce.scene import RADIUS
-from gcs.reproduce.simulation import Flown
-from idc_controller.rotations import euler_from_quaternion, rotation_from_quaternion
+from gcs.reproduce.simulation import LOST_TILT, Flown
+from idc_controller.rotations import rotation_from_quaternion
 
 Array = NDArray[np.float64]
 
@@ -24,6 +25,8 @@ TITLES = {
     "printed": "as printed", "corrected": "thrust and torque, flat reference", "project": "this project",
     "nonlinear": "as printed, A_obs nonlinear",
 }  # fmt: skip
+FLOWN_BY = {"idc": "this project", "paper": "the paper's filter"}
+"""Controllers of ``gcs fly``."""
 DPI = 110
 _REFERENCE: dict[str, Any] = {"color": "#BBBBBB", "lw": 4.0, "solid_capstyle": "round", "label": "reference"}
 
@@ -183,12 +186,16 @@ def draw_course(runs: Mapping[str, RunData], path: Path) -> None:
             low, high = np.sort(sign * np.array([track[0, axis] - half[axis], track[0, axis] + half[axis]]))
             left = track[0, 0] - half[0]
             label = "obstacle" if number == 0 and axis == 1 else None
-            ax.fill([left, left + 2 * half[0]] * 1 + [left + 2 * half[0], left], [low, low, high, high],
-                    color=OBSTACLE, alpha=0.6, label=label)  # fmt: skip
+            ax.fill([left, left + 2 * half[0], left + 2 * half[0], left], [low, low, high, high],
+                    color=OBSTACLE, alpha=0.2 if obstacle.shape == "wall" else 0.7, label=label)  # fmt: skip
             ax.plot(track[:, 0], sign * track[:, axis], color=OBSTACLE, lw=1.0, alpha=0.6)
     for color, (name, run) in zip(SERIES, runs.items(), strict=False):
-        above.plot(run.payload_position[:, 0], run.payload_position[:, 1], color=color, lw=1.6, label=name)
-        side.plot(run.payload_position[:, 0], -run.payload_position[:, 2], color=color, lw=1.6, label=name)
+        way, lost = _until_lost(run)
+        label = f"{FLOWN_BY[name]}, lost" if lost else FLOWN_BY[name]
+        for ax, height in ((above, way[:, 1]), (side, -way[:, 2])):
+            ax.plot(way[:, 0], height, color=color, lw=1.6, label=label)
+            if lost:
+                ax.plot(way[-1, 0], height[-1], "x", color=color, ms=10, mew=2.5)
     above.set_aspect("equal", adjustable="datalim")
     _finish(above, "", "east (m)")
     _finish(side, "north (m)", "height (m)")
@@ -200,16 +207,28 @@ def draw_course_position(runs: Mapping[str, RunData], path: Path) -> None:
     figure = new_figure("Payload on the obstacle course", (11, 8.5))
     axes = list(figure.subplots(4, 1, sharex=True))
     for color, (name, run) in zip(SERIES, runs.items(), strict=False):
+        way, lost = _until_lost(run)
+        time = run.time[: len(way)]
+        label = f"{FLOWN_BY[name]}, lost" if lost else FLOWN_BY[name]
         for i in range(3):
-            axes[i].plot(run.time, run.payload_position[:, i], color=color, lw=1.3, label=name)
-        tilt = np.degrees(np.abs(euler_from_quaternion(run.payload_quaternion))[:, :2]).max(axis=1)
-        axes[3].plot(run.time, tilt, color=color, lw=1.1, label=name)
+            axes[i].plot(time, way[:, i], color=color, lw=1.3, label=label)
+        axes[3].plot(time, _tilt_over_time(run)[: len(way)], color=color, lw=1.1, label=label)
     axes[2].invert_yaxis()
     axes[3].axhline(5.0, color=LIMIT, ls="--", lw=1.0)
     for ax, label in zip(axes, ("north (m)", "east (m)", "down (m)", "tilt (deg)"), strict=True):
         _finish(ax, "", label)
     axes[3].set_xlabel("time (s)")
     _save(figure, path)
+
+
+def _until_lost(run: RunData) -> tuple[Array, bool]:
+    """The payload's way (K, 3) until it tips over, and whether it does: what comes then is no flight."""
+    over = np.flatnonzero(_tilt_over_time(run) > LOST_TILT)
+    return (run.payload_position[: over[0] + 1], True) if len(over) else (run.payload_position, False)
+
+
+def _tilt_over_time(run: RunData) -> Array:
+    return np.asarray(np.abs(payload_angles(run))[:, :2].max(axis=1))
 
 
 _TO_ENU = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
