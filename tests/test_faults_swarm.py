@@ -114,13 +114,13 @@ def test_lost_sensors_clocks_and_half_rate_on_the_wire():
     )
     flown = swarm.time - swarm.take_off_time
     last = {i: stamps(ground, i, "LOCAL_POSITION_NED")[-1].time_boot_ms * 1e-3 for i in (1, 2, 3)}
-    assert last[1] == pytest.approx(swarm.take_off_time, abs=0.03)
-    assert last[2] == pytest.approx(swarm.time, abs=0.03)
-    assert last[3] == pytest.approx(swarm.time + 10.0, abs=0.03)
-    assert stamps(ground, 1, "ATTITUDE_QUATERNION")[-1].time_boot_ms * 1e-3 == pytest.approx(swarm.time, abs=0.03)
-    assert stamps(ground, 2, "LOCAL_POSITION_NED", 25)[-1].time_boot_ms < (swarm.take_off_time + 0.03) * 1e3
+    assert last[1] == pytest.approx(swarm.take_off_time, abs=0.05)
+    assert last[2] == pytest.approx(swarm.time, abs=0.05)
+    assert last[3] == pytest.approx(swarm.time + 10.0, abs=0.05)
+    assert stamps(ground, 1, "ATTITUDE_QUATERNION")[-1].time_boot_ms * 1e-3 == pytest.approx(swarm.time, abs=0.05)
+    assert stamps(ground, 2, "LOCAL_POSITION_NED", 25)[-1].time_boot_ms < (swarm.take_off_time + 0.05) * 1e3
     late = [m for m in stamps(ground, 4, "LOCAL_POSITION_NED") if m.time_boot_ms * 1e-3 > swarm.take_off_time]
-    assert len(late) == pytest.approx(25 * flown, abs=2)
+    assert len(late) == pytest.approx(SYSTEM.rates.telemetry / 2 * flown, abs=2)
 
 
 def test_latency_is_what_the_ground_sees():

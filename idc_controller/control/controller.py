@@ -35,7 +35,7 @@ class ControllerSettings:
     """Control period (s)."""
     horizon: int = 20
     """Stages over which the tracker wants the reference."""
-    load_time_constant: float = 1.0
+    load_time_constant: float = 0.5
     """With which the reference follows the estimated load (s): it must be slower than the estimate itself."""
     force_limit: float = 0.4
     """Largest steady force that the reference leans against, as a share of the payload's weight."""
@@ -152,7 +152,9 @@ class IntegratedDecisionController:
         mass = self.load.mass + share * (self.parameters.m_0 + estimate.mass_excess - self.load.mass)
         limit = self.settings.force_limit * self.parameters.m_0 * self.parameters.g
         force = self.load.force + share * (_limited(estimate.force, limit) - self.load.force)
-        self.load = Load(float(np.clip(mass, 0.5 * self.parameters.m_0, 2.0 * self.parameters.m_0)), force)
+        uav_limit = self.settings.force_limit * float(self.parameters.m.min()) * self.parameters.g
+        uav_force = self.load.uav_force + share * (_limited(estimate.uav_force, uav_limit) - self.load.uav_force)
+        self.load = Load(float(np.clip(mass, 0.5 * self.parameters.m_0, 2.0 * self.parameters.m_0)), force, uav_force)
 
 
 def _limited(error: Array, limit: float) -> Array:

@@ -9,6 +9,8 @@ estimated along with the state, so that neither leaves an offset.
 from __future__ import annotations
 
 import bisect
+import contextlib
+from copy import copy
 from dataclasses import dataclass, field
 from functools import lru_cache
 from itertools import pairwise
@@ -19,7 +21,8 @@ from numpy.typing import NDArray
 from scipy.linalg import expm
 from scipy.stats import chi2
 
-from idc_controller.estimate.measurement_model import MeasurementModel
+from idc_controller.estimate.adaptation import Adaptation
+from idc_controller.estimate.measurement_model import MeasurementModel, Stack
 from idc_controller.estimate.measurements import PAYLOAD, Measurement, MeasurementNoise
 from idc_controller.model.linear import LinearModel
 from idc_controller.plan.flatness import FlatReference
@@ -43,10 +46,12 @@ class ProcessNoise:
     """1/s2"""
     uav_jerk: float = 1.0
     """Of the tilt's acceleration (1/s3)."""
-    thrust: float = 0.009
+    thrust: float = 0.014
     """N/s"""
     force: float = 0.05
     """Drift of the steady force on the payload (N/s)."""
+    uav_force: float = 0.01
+    """Drift of the steady force on each UAV (N/s)."""
     mass: float = 0.005
     """Drift of the payload's mass (kg/s)."""
 
@@ -84,6 +89,8 @@ class EstimatorSettings:
     """Standard deviation of the payload mass about its nominal value (kg)."""
     force_sigma: float = 0.3
     """Standard deviation of the steady force at the start (N)."""
+    uav_force_sigma: float = 0.05
+    """The same of the force on each UAV (N)."""
     surprise: Surprise = field(default_factory=Surprise)
 
 
@@ -95,10 +102,12 @@ class Estimate:
     x: Array
     force: Array
     """Steady force on the payload (3,) (N, NED)."""
+    uav_force: Array
+    """Steady level force on each of the UAVs (3,) (N, NED)."""
     mass_excess: float
     """Payload mass less nominal (kg)."""
     covariance: Array
-    """Of x, force and mass excess (12 + 11 N + 4,) squared."""
+    """Of x, forces (3 + 2) and mass excess (12 + 11 N + 6,) squared."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,6 +135,7 @@ class _Snapshot:
     time: float
     x: Array  # absolute, augmented
     P: Array
+    adaptation: Adaptation
 
 
 class _Way:
@@ -171,17 +181,19 @@ class Estimator:
         self.model, self.settings, self.layout = model, settings, model.layout
         self.measurement_model = MeasurementModel(model, settings.measurement)
         n = self.layout.size
-        self.size = n + 4
-        self._force, self._mass = slice(n, n + 3), n + 3
+        self.size = n + 6
+        self._force, self._uav_force, self._mass = slice(n, n + 3), slice(n + 3, n + 5), n + 5
+        self._forces = slice(n, n + 5)
         self._filter = KalmanFilter(dim_x=self.size, dim_z=1)
         self._filter.x = np.zeros(self.size)
         self._moments: list[_Moment] = []
         self._snapshots: list[_Snapshot] = []
         self._setpoints: list[tuple[float, Array | None]] = []
-        self._gates = {m: float(chi2.ppf(settings.gate_probability, m)) for m in (4, 6)}
+        self._gates = chi2.ppf(settings.gate_probability, np.arange(7))
+        """By the size of a measurement."""
         self.innovations: list[InnovationRecord] = []
         self.discarded_late = 0
-        self._payload_refused = 0
+        self.adaptation = Adaptation()
         self._noise = lru_cache(maxsize=256)(self._process_noise)
         self._transition = lru_cache(maxsize=256)(self._plain_transition)
 
@@ -194,10 +206,11 @@ class Estimator:
         sigma[layout.s], sigma[layout.s_dot] = 0.02, 0.02
         sigma[layout.n], sigma[layout.n_dot], sigma[layout.n_acc] = 0.03, 0.1, 0.3
         sigma[layout.f] = 0.5
-        sigma[self._force], sigma[self._mass] = s.force_sigma, s.mass_sigma
-        full = np.concatenate([x, np.zeros(4)])
+        sigma[self._force], sigma[self._uav_force], sigma[self._mass] = s.force_sigma, s.uav_force_sigma, s.mass_sigma
+        full = np.concatenate([x, np.zeros(self.size - len(x))])
         self._moments, self._setpoints = [], []
-        self._snapshots = [_Snapshot(time, full, np.diag(sigma**2))]
+        self.adaptation = Adaptation()
+        self._snapshots = [_Snapshot(time, full, np.diag(sigma**2), copy(self.adaptation))]
 
     @property
     def time(self) -> float:
@@ -235,7 +248,8 @@ class Estimator:
         pending = self._moments[bisect.bisect_right(self._moments, self.time, key=lambda m: m.time) :]
         time = max(time, self.time, pending[-1].time if pending else time)
         way = _Way(self.time, [m.time for m in pending], time, self._setpoints, reference)
-        believed = np.append(reference.load.force, reference.load.mass - self.model.parameters.m_0)
+        load = reference.load
+        believed = np.concatenate([load.force, load.uav_force[:2], [load.mass - self.model.parameters.m_0]])
         n = self.layout.size
 
         def absolute(error: Array, k: int) -> Array:
@@ -247,6 +261,7 @@ class Estimator:
         kf = self._filter
         last = self._snapshots[-1]
         kf.x, kf.P = last.x.copy(), last.P
+        self.adaptation = copy(last.adaptation)
         kf.x[:n] -= way.flat.x[0]
         kf.x[n:] -= believed
         waiting = iter(pending)
@@ -256,18 +271,18 @@ class Estimator:
                 self._predict(way, k - 1)
             while moment is not None and moment.time == way.edges[k]:
                 self._update(moment, way.flat, k)
-                self._snapshots.append(_Snapshot(moment.time, absolute(kf.x, k), kf.P))
+                self._snapshots.append(_Snapshot(moment.time, absolute(kf.x, k), kf.P, copy(self.adaptation)))
                 moment = next(waiting, None)
         x = absolute(kf.x, len(way.edges) - 1)
         self._forget()
-        return Estimate(time, x[:n], x[self._force], float(x[self._mass]), kf.P)
+        return Estimate(time, x[:n], x[self._force], np.append(x[self._uav_force], 0.0), float(x[self._mass]), kf.P)
 
     def _predict(self, way: _Way, k: int) -> None:
         """From edge ``k`` to the next, under the set-points in force."""
         u = way.setpoints[k]
         delta_u = np.zeros(self.layout.inputs) if u is None else u - way.u(k)
         F, B = self._transition_along(way.interval_us(k), way.acceleration(k))
-        self._filter.predict(u=delta_u, F=F, B=B, Q=self._noise(way.interval_us(k)))
+        self._filter.predict(u=delta_u, F=F, B=B, Q=self._noise(way.interval_us(k), self.adaptation.restlessness))
 
     def _update(self, moment: _Moment, flat: FlatReference, k: int) -> None:
         """Correct the filter's error state, at time ``k`` of ``flat``, by what was measured then."""
@@ -276,17 +291,33 @@ class Estimator:
         y = np.concatenate([self._innovation(copies, flat, k) for copies in moment.measurements.values()])
         H = np.zeros((len(y), self.size))
         self.measurement_model.observe(stack, flat, k, into=H[:, :n])
-        R, sizes = stack.variance, stack.sizes
-        names = [(source, kind.__name__) for source, kind in moment.measurements]
+        keys = tuple(moment.measurements)
         residual = y - H @ kf.x
-        S = _innovation_covariance(H, kf.P, R)
+        adaptation = self.adaptation
 
-        keep, rejected = self._gate(residual, S, sizes, names)
-        surprised = self._is_surprised(names, rejected)
-        if surprised:
-            self._doubt()
-            S = _innovation_covariance(H, kf.P, R)
-            keep, rejected = self._gate(residual, S, sizes, names)
+        def gate() -> tuple[Array, Array, Array, NDArray[np.bool_]]:
+            R = stack.variance * adaptation.noise
+            S = H @ kf.P @ H.T
+            S.flat[:: len(R) + 1] += R
+            white, mean_squares = _whitened(residual, S, stack)
+            return R, white, mean_squares, mean_squares * stack.sizes <= self._gates[stack.sizes]  # nan is out, too
+
+        R, white, mean_squares, accepted = gate()
+        surprised = False
+        if not accepted.all():
+            by_payload, by_most = self._refusals(keys, accepted)
+            surprised = by_payload or (by_most and adaptation.persists(moment.time, keys, white))
+            if surprised:
+                self._doubt()
+            elif by_most:
+                adaptation.noisier(mean_squares)
+            if surprised or by_most:
+                R, white, mean_squares, accepted = gate()
+        else:
+            adaptation.payload_refused = 0
+        rejected = [(source, kind.__name__) for (source, kind), good in zip(keys, accepted, strict=True) if not good]
+        keep = np.repeat(accepted, stack.sizes)
+        adaptation.learn(moment.time, keys, white, mean_squares, keep, stack.of_payload)
         nis = 0.0
         if keep.any():
             kf.update(y[keep], R=np.diag(R[keep]), H=H[keep])
@@ -304,36 +335,19 @@ class Estimator:
         told = [self.measurement_model.innovation(copy, flat, k) for copy in copies]
         return np.asarray(np.median(told, axis=0))
 
-    def _gate(
-        self, residual: Array, S: Array, sizes: tuple[int, ...], names: list[tuple[int, str]]
-    ) -> tuple[NDArray[np.bool_], list[tuple[int, str]]]:
-        """Which rows to keep, and the names of the measurements that disagree too much with the prediction."""
-        starts = np.concatenate([[0], np.cumsum(sizes)[:-1]])
-        keep = np.ones(len(residual), dtype=bool)
-        rejected: list[tuple[int, str]] = []
-        for size in set(sizes):
-            of_size = [k for k, other in enumerate(sizes) if other == size]
-            rows = starts[of_size][:, None] + np.arange(size)
-            r = residual[rows]
-            squared = np.sum(r * np.linalg.solve(S[rows[:, :, None], rows[:, None, :]], r[..., None])[..., 0], axis=1)
-            for k, row, value in zip(of_size, rows, squared, strict=True):
-                if not value <= self._gates[size]:  # nan is out, too
-                    keep[row] = False
-                    rejected.append(names[k])
-        return keep, rejected
-
-    def _is_surprised(self, names: list[tuple[int, str]], rejected: list[tuple[int, str]]) -> bool:
-        """Whether it is the prediction that is wrong.
+    def _refusals(self, keys: tuple[tuple[int, type], ...], accepted: NDArray[np.bool_]) -> tuple[bool, bool]:
+        """Whether the payload unit insists on what the prediction excludes, and whether most sources exclude it.
 
         Sound sensors do not fail together, so most sources of three or more are right. The payload unit, which alone
         sees at once what pushes the payload, is right when it insists. Otherwise a filter that went on believing itself
         would refuse every measurement from here on.
         """
-        sources = {source for source, _ in names}
-        refused = {source for source, _ in rejected}
+        sources = {source for source, _ in keys}
+        refused = {source for (source, _), good in zip(keys, accepted, strict=True) if not good}
+        adaptation = self.adaptation
         if PAYLOAD in sources:
-            self._payload_refused = self._payload_refused + 1 if PAYLOAD in refused else 0
-        return self._payload_refused >= PATIENCE or (len(sources) >= 3 and 2 * len(refused) > len(sources))
+            adaptation.payload_refused = adaptation.payload_refused + 1 if PAYLOAD in refused else 0
+        return adaptation.payload_refused >= PATIENCE, len(sources) >= 3 and 2 * len(refused) > len(sources)
 
     def _doubt(self) -> None:
         layout, surprise = self.layout, self.settings.surprise
@@ -356,18 +370,18 @@ class Estimator:
         F, B, B_d = self._transition(interval_us)
         direction = np.array([0.0, 0.0, self.model.parameters.g]) - acceleration
         F = F.copy()
-        F[: self.layout.size, self._mass] = B_d @ direction
+        F[: self.layout.size, self._mass] = B_d[:, :3] @ direction
         return F, B
 
     def _plain_transition(self, interval_us: int) -> tuple[Array, Array, Array]:
         n = self.layout.size
         A_k, B_k, B_dk = self.model.discretised(interval_us)
         F = np.eye(self.size)
-        F[:n, :n], F[:n, self._force] = A_k, B_dk
-        return F, np.vstack([B_k, np.zeros((4, self.layout.inputs))]), B_dk
+        F[:n, :n], F[:n, self._forces] = A_k, B_dk
+        return F, np.vstack([B_k, np.zeros((self.size - n, self.layout.inputs))]), B_dk
 
-    def _process_noise(self, interval_us: int) -> Array:
-        """Van Loan's integral of the process noise over the interval."""
+    def _process_noise(self, interval_us: int, restlessness: float) -> Array:
+        """Van Loan's integral of the process noise; ``restlessness`` multiplies that of the forces."""
         p, layout, n = self.settings.process, self.layout, self.layout.size
         density = np.zeros(self.size)
         density[layout.v_0] = p.payload_acceleration
@@ -375,9 +389,10 @@ class Estimator:
         density[layout.s_dot] = p.link_acceleration
         density[layout.n_acc] = p.uav_jerk
         density[layout.f] = p.thrust
-        density[self._force], density[self._mass] = p.force, p.mass
+        density[self._force], density[self._mass] = restlessness * p.force, p.mass
+        density[self._uav_force] = restlessness * p.uav_force
         A = np.zeros((self.size, self.size))
-        A[:n, :n], A[:n, self._force] = self.model.A, self.model.B_d
+        A[:n, :n], A[:n, self._forces] = self.model.A, self.model.B_d
         A[:n, self._mass] = self.model.B_d[:, 2] * self.model.parameters.g
         dt = interval_us * 1e-6
         m = self.size
@@ -388,7 +403,12 @@ class Estimator:
         return (Q + Q.T) / 2
 
 
-def _innovation_covariance(H: Array, P: Array, R: Array) -> Array:
-    S = H @ P @ H.T
-    S.flat[:: len(R) + 1] += R
-    return S
+def _whitened(residual: Array, S: Array, stack: Stack) -> tuple[Array, Array]:
+    """Each measurement's innovation with variance 1 (m,), by its own block of ``S``; and its mean squares (K,)."""
+    white = np.full(len(residual), np.inf)
+    for rows in stack.rows_by_size:
+        with contextlib.suppress(np.linalg.LinAlgError):  # of a filter that is lost already
+            factor = np.linalg.cholesky(S[rows[:, :, None], rows[:, None, :]])
+            white[rows] = np.linalg.solve(factor, residual[rows][..., None])[..., 0]
+    mean_squares = np.add.reduceat(white**2, stack.starts) / stack.sizes
+    return white, np.nan_to_num(mean_squares, nan=np.inf)

@@ -36,8 +36,14 @@ class Stack:
     """(m, n), links upright."""
     variance: Array
     """(m,)"""
-    sizes: tuple[int, ...]
-    """Of the channels; they add up to m."""
+    sizes: NDArray[np.int_]
+    """Of the channels (K,); they add up to m."""
+    starts: NDArray[np.int_]
+    """Their first rows (K,)."""
+    rows_by_size: tuple[NDArray[np.int_], ...]
+    """Rows of the channels of one size, (channels, size) for each size that there is."""
+    of_payload: NDArray[np.bool_]
+    """Which rows are the payload's (m,)."""
     uavs: NDArray[np.int_]
     """UAVs whose position is among the channels (K,)."""
     heights: NDArray[np.int_]
@@ -84,14 +90,17 @@ class MeasurementModel:
         """The channels of these sources and kinds."""
         if (found := self._stacks.get(keys)) is None:
             channels = [self.channels[key] for key in keys]
-            sizes = tuple(len(channel.variance) for channel in channels)
-            starts = np.cumsum((0, *sizes))
-            tilted = [(i, start + 2) for (i, kind), start in zip(keys, starts, strict=False)
+            sizes = np.array([len(channel.variance) for channel in channels])
+            starts = np.cumsum(sizes) - sizes
+            tilted = [(i, start + 2) for (i, kind), start in zip(keys, starts.tolist(), strict=True)
                       if kind is Position and i != PAYLOAD]  # fmt: skip
             found = self._stacks[keys] = Stack(
                 np.vstack([channel.rows for channel in channels]),
                 np.concatenate([channel.variance for channel in channels]),
                 sizes,
+                starts,
+                tuple(starts[sizes == size][:, None] + np.arange(size) for size in np.unique(sizes)),
+                np.repeat([i == PAYLOAD for i, _ in keys], sizes),
                 np.array([i for i, _ in tilted], dtype=int),
                 np.array([row for _, row in tilted], dtype=int),
             )

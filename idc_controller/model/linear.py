@@ -103,7 +103,10 @@ class StateLayout:
 
 
 class LinearModel:
-    """Continuous matrices ``A`` (n, n), ``B`` (n, 3N), ``B_d`` (n, 3), and their exact discretisation."""
+    """Continuous matrices ``A`` (n, n), ``B`` (n, 3N), ``B_d`` (n, 5), and their exact discretisation.
+
+    Columns of ``B_d``: a force on the payload (N, NED), then one (north, east) on each of the UAVs, the same for all.
+    """
 
     def __init__(self, parameters: SystemParameters) -> None:
         self.parameters = parameters
@@ -114,7 +117,7 @@ class LinearModel:
     def _discretised(self, interval_us: int) -> tuple[Array, Array, Array]:
         """``A_k, B_k, B_dk`` for inputs held over ``interval_us`` microseconds (whole, so that they are kept)."""
         n, m = self.B.shape
-        block = np.zeros((n + m + 3, n + m + 3))
+        block = np.zeros((n + m + 5, n + m + 5))
         block[:n, :n], block[:n, n : n + m], block[:n, n + m :] = self.A, self.B, self.B_d
         step = expm(block * (interval_us * 1e-6))
         return step[:n, :n].copy(), step[:n, n : n + m].copy(), step[:n, n + m :].copy()
@@ -146,7 +149,7 @@ def _kinematic_rows(
 def _continuous(parameters: SystemParameters, layout: StateLayout) -> tuple[Array, Array, Array]:
     """Newton-Euler with the link tensions eliminated, to first order.
 
-    UAV i:    m_i a_i = F_i + m_i g e3 + T_i s_i,   a_i = dv_0 + domega x p_i - l_i dds_i
+    UAV i:    m_i a_i = F_i + m_i g e3 + T_i s_i + w,   a_i = dv_0 + domega x p_i - l_i dds_i
     payload:  m_0 dv_0 = m_0 g e3 - sum T_i s_i + d,   J_0 domega = -sum p_i x R_0^T T_i s_i
     """
     N, n = layout.number_of_uavs, layout.size
@@ -175,9 +178,9 @@ def _continuous(parameters: SystemParameters, layout: StateLayout) -> tuple[Arra
     A[layout.v_0] = acceleration[:3]
     A[layout.Theta, layout.omega] = np.eye(3)
     A[layout.omega] = acceleration[3:]
-    B_d = np.zeros((n, 3))
+    B_d = np.zeros((n, 5))
     disturbed = np.linalg.solve(mass, np.vstack([np.eye(3), np.zeros((3, 3))]))
-    B_d[layout.v_0], B_d[layout.omega] = disturbed[:3], disturbed[3:]
+    B_d[layout.v_0, :3], B_d[layout.omega, :3] = disturbed[:3], disturbed[3:]
 
     A[s, layout.s_dot] = np.eye(2 * N)
     A[layout.n, layout.n_dot] = np.eye(2 * N)
@@ -191,8 +194,9 @@ def _continuous(parameters: SystemParameters, layout: StateLayout) -> tuple[Arra
         rows = slice(layout.s_dot.start + 2 * i, layout.s_dot.start + 2 * i + 2)
         # l dds = (acceleration of the attachment point) - (lateral force on the UAV) / m_i
         A[rows] = lateral @ acceleration / l
-        B_d[rows] = lateral @ disturbed / l
+        B_d[rows, :3] = lateral @ disturbed / l
         for axis in range(2):
+            B_d[rows.start + axis, 3 + axis] = -1.0 / (parameters.m[i] * l)
             A[rows.start + axis, s.start + 2 * i + axis] -= tension[i] / (parameters.m[i] * l)
             A[rows.start + axis, layout.n.start + 2 * i + axis] -= hover[i] / (parameters.m[i] * l)
 

@@ -2,18 +2,18 @@
 
 With the payload level, its position up to snap fixes everything else: all links are parallel to
 
-    w = g e3 + d / m_0 - a,   q = w / |w|,   (d: a steady force on the payload)
+    w = g e3 + d / m_0 - a,   q = w / |w|,   (d: a steady force on the payload, w: one on each UAV)
 
 they share the tension m_0 |w| so that no moment acts on the payload, and the force of UAV i is
 
-    F_i = m_i (a_i - g e3) - T_i q,   a_i = a - l_i q''.
+    F_i = m_i (a_i - g e3) - T_i q - w,   a_i = a - l_i q''.
 
 No linearisation is made, so a linear controller about this reference only sees errors, not the manoeuvre.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from typing import Protocol
 
 import numpy as np
@@ -74,10 +74,14 @@ class FlatReference:
 
 @dataclass(frozen=True, eq=False)
 class Load:
-    """What is believed of the payload: its mass (kg) and a steady force on it (3,) (N, NED)."""
+    """What is believed of the payload, its mass (kg) and a steady ``force`` on it (3,), and of the wind.
+
+    ``uav_force``: level force on each of the UAVs, the same for all (3,). Forces in N, NED.
+    """
 
     mass: float
     force: Array
+    uav_force: Array = field(default_factory=lambda: np.zeros(3))
 
 
 def flat_forces(parameters: SystemParameters, derivatives: Array, load: Load) -> FlatForces:
@@ -95,6 +99,7 @@ def flat_forces(parameters: SystemParameters, derivatives: Array, load: Load) ->
     tension = _tensions(parameters, q, load.mass * norm[:, 0])
     uav_acceleration = acceleration[:, None, :] - parameters.l[:, None] * q_ddot[:, None, :]
     force = parameters.m[:, None] * (uav_acceleration - gravity) - tension[..., None] * q[:, None, :]
+    force -= load.uav_force
     return FlatForces(q, q_dot, q_ddot, tension, force)
 
 
