@@ -180,8 +180,8 @@ class ProjectControl:
 
     def decide(self, time: float, measured: PlantState) -> None:
         """See :class:`Control`."""
-        n = self._layout.size + 4
-        estimate = Estimate(time, self._state(measured), np.zeros(3), 0.0, np.zeros((n, n)))
+        n = self._layout.size + 6
+        estimate = Estimate(time, self._state(measured), np.zeros(3), np.zeros(3), 0.0, np.zeros((n, n)))
         decision = self._controller.decide(estimate, self._figure)
         self._directions, self._thrusts = decision.directions, decision.thrusts
         # The plan bends a little long before and after an obstacle: counted is what can be seen.
