@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 
 CONNECT_TIMEOUT = 10.0  # s
 ARM_TIMEOUT = 6.0  # s
-DISARM_TIMEOUT = 4.0  # s
+DISARM_TIMEOUT = 10.0  # s: the heartbeat that tells it comes once a second, and may be lost
 SETTLE_BEFORE_CHECK = 0.5  # s of telemetry that are averaged before take-off
 STREAM_BEFORE_OFFBOARD = 0.5  # s
 SPOOL_UP = 2.5  # s from idle to hover thrust
@@ -161,6 +161,10 @@ class Flight:
             samples = self._seen.setdefault((measurement.source, type(measurement)), [])
             samples.append(measurement)
             del samples[:-100]
+
+    def flown(self, uav: int, time: float, told: Array) -> bool | None:
+        """A vehicle says what it flies, tilt (north, east) and thrust (N) (3,): whether that is what it was sent."""
+        return self.estimator.confirm_setpoint(uav, time, told) if self.phase in IN_THE_AIR else None
 
     def break_off(self, time: float, reason: str, *, interrupted: bool = False) -> None:
         """End the flight early and safely: on the ground at once, in the air by stopping and landing."""
