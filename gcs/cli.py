@@ -24,6 +24,7 @@ from gcs.mission.read import read_mission
 from gcs.progress import FlightProgress
 from gcs.record.figures import report
 from gcs.record.summary_table import summary_table
+from gcs.side_by_side import end_with_parent
 from gcs.wire.address import parse_url
 from idc_controller.errors import IdcError
 
@@ -101,6 +102,7 @@ def _parser() -> argparse.ArgumentParser:
     )  # fmt: skip
     fly_parser.add_argument("--json", action="store_true", help="print the summary as JSON instead of a table")
     fly_parser.add_argument("--no-pictures", action="store_true", help="draw none; gcs report does it later")
+    fly_parser.add_argument("--with-parent", action="store_true", help=argparse.SUPPRESS)
     fly_parser.set_defaults(run=_fly)
 
     check = commands.add_parser(
@@ -151,6 +153,8 @@ def _fly(arguments: argparse.Namespace) -> int:
         connect=tuple(parse_url(url) for url in arguments.connect),
     )
     mission = prepare(options)
+    if arguments.with_parent:
+        end_with_parent()
     # With --json standard output is the summary alone.
     console = Console(stderr=arguments.json, highlight=False)
     with FlightProgress(console) as progress:
