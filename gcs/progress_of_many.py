@@ -27,7 +27,9 @@ R = TypeVar("R", bound=FlightResult)
 class Flights(Protocol[R]):
     """What is flown side by side: a campaign, a study."""
 
-    results: list[R]
+    @property
+    def results(self) -> list[R]:
+        """Of those flown so far."""
 
     @property
     def total(self) -> int:

@@ -66,7 +66,7 @@ def fly_process(mission: Path, options: Sequence[str], run_dir: Path, stop: thre
     draft = run_dir.with_name(f".{run_dir.name}-{os.getpid()}")
     command = [sys.executable, "-m", "gcs", "fly", str(mission), *options]
     command += ["--run-dir", str(draft), "--json", "--no-pictures", "--with-parent"]
-    _remove(draft)
+    remove_folder(draft)
     # The flight has the one end and reads its end of file when this process is no more, however that came about.
     theirs, ours = os.pipe()
     try:
@@ -84,9 +84,9 @@ def fly_process(mission: Path, options: Sequence[str], run_dir: Path, stop: thre
     finally:
         os.close(ours)
     if stop.is_set():
-        _remove(draft)
+        remove_folder(draft)
         return None
-    _remove(run_dir)
+    remove_folder(run_dir)
     if draft.exists():
         draft.replace(run_dir)
     return Ended(process.returncode, _object(output), said, time.monotonic() - begin)
@@ -176,7 +176,7 @@ def sole_flyer(out: Path) -> Iterator[None]:
         except OSError:
             raise UnusableInput(f"{out}: another process is flying there") from None
         for draft in (out / "flights").glob(".*"):
-            _remove(draft)
+            remove_folder(draft)
         yield
 
 
@@ -207,12 +207,14 @@ def read_object(path: Path) -> dict[str, Any]:
     return content if isinstance(content, dict) else {}
 
 
-def drop_run_folder(run_dir: Path, keep: str, passed: bool) -> bool:
-    """Remove a run folder unless ``keep``, one of :data:`KEPT`, says otherwise; whether it was to be removed."""
-    drop = keep == "none" or (keep == "failures" and passed)
-    if drop:
-        _remove(run_dir)
-    return drop
+def drops_run_folder(keep: str, passed: bool) -> bool:
+    """Whether the run folder of a flight is not kept, by ``keep``, one of :data:`KEPT`."""
+    return keep == "none" or (keep == "failures" and passed)
+
+
+def remove_folder(folder: Path) -> None:
+    """Remove a folder with all that is in it, if there is one."""
+    shutil.rmtree(folder, ignore_errors=True)
 
 
 def write_table(path: Path, columns: Sequence[str], rows: Sequence[Mapping[str, Any]]) -> Path:
@@ -225,7 +227,3 @@ def write_table(path: Path, columns: Sequence[str], rows: Sequence[Mapping[str, 
     except OSError as error:
         raise UnusableInput(f"{path}: cannot be written: {error.strerror}") from None
     return path
-
-
-def _remove(folder: Path) -> None:
-    shutil.rmtree(folder, ignore_errors=True)

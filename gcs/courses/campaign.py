@@ -16,9 +16,10 @@ from gcs.record.run_folder import make_folder, write_json
 from gcs.side_by_side import (
     all_cores,
     claim_folder,
-    drop_run_folder,
+    drops_run_folder,
     fly_side_by_side,
     read_object,
+    remove_folder,
     sole_flyer,
     write_table,
 )
@@ -145,7 +146,8 @@ def read_result(path: Path) -> Result | None:
 def keep_result(path: Path, plan: FlightPlan, result: Result, keep: str) -> None:
     """Write a result to ``path``; remove its run folder unless ``keep``, one of :data:`KEPT`, says otherwise."""
     write_json(path, result)
-    drop_run_folder(plan.run_dir, keep, result.passed)
+    if drops_run_folder(keep, result.passed):
+        remove_folder(plan.run_dir)
 
 
 def _digest(path: Path) -> str:
