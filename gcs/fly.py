@@ -157,6 +157,8 @@ def _result(run_dir: Path, mission: Mission, flight: Flight, last_time: float, w
         limits=limits,
         obstacles=bool(mission.obstacles),
     )
+    broken_off = flight.broken_off_time - flight.takeoff_time
+    summary["broken_off_s"] = round(broken_off, 6) if math.isfinite(broken_off) else None
     if summary["contacts"]:
         summary |= {"outcome": "collided", "completed": False}
     write_summary(run_dir, summary)

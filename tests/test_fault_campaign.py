@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pandas
 import pytest
-from flight_in_process import short_figure
+from flight_in_process import HOP, short_figure
 from scipy.stats import binomtest
 
 from gcs.cli import main
@@ -355,13 +355,12 @@ def test_all_outcomes_are_drawn_and_told(tmp_path):
 
 
 def test_time_to_the_stop(tmp_path):
-    occurrences = [{"occurrences": [[5.0, 6.0]]}, {"occurrences": []}, {"occurrences": [[4.0, None]]}]
-    (tmp_path / "faults.json").write_text(json.dumps({"take_off_s": 3.0, "end_s": 20.0, "faults": occurrences}))
-    said = "   0.00 s  connect\n   3.10 s  climb\n   5.00 s  fly\n   9.25 s  hold\n  12.00 s  land\n"
-    broken = said + "flight broken off: vehicle 2 is lost\n"
-    assert stop_time(Ended(1, SUMMARY, broken, 1.0), tmp_path) == 2.25
-    assert stop_time(Ended(0, SUMMARY, said, 1.0), tmp_path) is None
-    assert stop_time(Ended(1, SUMMARY, broken, 1.0), tmp_path / "none") is None
+    faults = [{"activations": [[5.0, 6.0]]}, {"activations": []}, {"activations": [[4.0, None]]}]
+    (tmp_path / "faults.json").write_text(json.dumps({"take_off_s": 3.0, "end_s": 20.0, "faults": faults}))
+    assert stop_time({"broken_off_s": 6.25}, tmp_path) == 2.25
+    assert stop_time({"broken_off_s": 3.0}, tmp_path) is None  # for another reason
+    assert stop_time({"broken_off_s": None}, tmp_path) is None
+    assert stop_time({"broken_off_s": 6.25}, tmp_path / "none") is None
 
 
 # Flown
@@ -370,7 +369,7 @@ def test_time_to_the_stop(tmp_path):
 REAL = """
 [campaign]
 name = "real"
-missions = ["short_figure.toml"]
+missions = ["hop.toml"]
 seeds = [1]
 
 [limits]
@@ -388,6 +387,7 @@ severity = { probability = [0.05, 0.1] }
 def test_killed_in_the_middle_it_goes_on(tmp_path):
     """Two real flights, one after the other; the campaign is killed when the first has ended."""
     path, out = campaign_file(tmp_path, REAL), tmp_path / "out"
+    (tmp_path / "hop.toml").write_text(HOP)
     command = [sys.executable, "-m", "gcs", "faults", str(path), "--out", str(out), "--jobs", "1", "--keep", "all"]
     with subprocess.Popen(
         command, stdout=subprocess.PIPE, text=True, env={**os.environ, "PYTHONUNBUFFERED": "1"}

@@ -33,15 +33,23 @@ class BaseMission:
     files: Mapping[str, str]
 
     def text(
-        self, name: str, seed: int | None = None, faults: Sequence[Fault] = (), limits: Limits | None = None
+        self,
+        name: str,
+        seed: int | None = None,
+        faults: Sequence[Fault | Mapping[str, Any]] = (),
+        limits: Limits | Mapping[str, Any] | None = None,
     ) -> str:
-        """The mission with ``faults`` after its own; another ``seed`` or ``limits`` in place of its own."""
+        """The mission with ``faults`` after its own; another ``seed`` or ``limits`` in place of its own.
+
+        Mappings are taken for the tables of a mission file as they are.
+        """
         header = {**self.tables["mission"], "name": name[:_NAME], "seed": self.seed if seed is None else seed}
         tables = {**self.tables, "mission": header}
         if faults:
             tables["fault"] = [*self.tables.get("fault", ()), *map(fault_table, faults)]
         if limits is not None:
-            tables["limits"] = {k: v for k, v in dataclasses.asdict(limits).items() if v is not None}
+            keys = limits if isinstance(limits, Mapping) else dataclasses.asdict(limits)
+            tables["limits"] = {key: value for key, value in keys.items() if value is not None}
         return tables_text(tables)
 
     def write_files(self, folder: Path) -> None:
@@ -75,8 +83,10 @@ def read_base(path: Path, config: Path | None = None) -> BaseMission:
     return BaseMission(mission.name, mission.seed, mission.system, tables, files)
 
 
-def fault_table(fault: Fault) -> dict[str, Any]:
-    """A fault as the keys of a ``[[fault]]`` table."""
+def fault_table(fault: Fault | Mapping[str, Any]) -> dict[str, Any]:
+    """A fault as the keys of a ``[[fault]]`` table; a mapping is one already."""
+    if isinstance(fault, Mapping):
+        return dict(fault)
     own = {key: value for key, value in dataclasses.asdict(fault).items() if key not in ("settings", "line")}
     return {key: value for key, value in own.items() if value is not None} | dict(fault.settings)
 

@@ -4,31 +4,27 @@ from __future__ import annotations
 
 import dataclasses
 import json
-import re
 import shlex
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from gcs.fault_campaign.sweep import FaultFlight
 from gcs.faults.record import FAULTS_FILE, fault_notes
-from gcs.flight.flight import Phase
 from gcs.side_by_side import Ended
 
 WITHIN, OUTSIDE, ABORTED, COLLIDED, FAILED, NOT_FLOWN = VERDICTS = (
     "within limits", "outside limits", "aborted", "collided", "failed", "not flown",
 )  # fmt: skip
 """How a flight ended, from good to bad: ``aborted`` is landed safely, but before its mission was done."""
-_STOPPED = tuple(phase.value for phase in (Phase.HOLD, Phase.LAND, Phase.ON_THEIR_OWN))
-_PHASE = re.compile(r"^\s*(\d+\.\d+) s  (.+?)\s*$", re.MULTILINE)
 
 
 @dataclass(frozen=True)
 class FaultResult:
     """What came of one flight: a row of the table. m, s, deg; None: not known, or it never happened.
 
-    ``stop_s``: from the start of the first fault to the moment when the team was stopped or landed because of it.
+    ``stop_s``: from the start of the first fault to the moment when the flight was broken off, and the team stopped.
     ``notes``: faults that never came or disturbed nothing. ``run_dir`` is empty where it was not kept.
     """
 
@@ -95,7 +91,7 @@ def evaluate(flight: FaultFlight, ended: Ended, run_dir: Path, replay: str) -> F
         contacts=summary.get("contacts"),
         position_rmse_m=summary.get("position_rmse_m", {}).get("total"),
         duration_s=summary.get("duration_s"),
-        stop_s=stop_time(ended, run_dir),
+        stop_s=stop_time(summary, run_dir),
         notes="; ".join(fault_notes(run_dir)),
         wall_s=round(ended.wall, 1),
         run_dir=str(run_dir) if run_dir.exists() else "",
@@ -118,16 +114,12 @@ def limits_not_held(summary: dict[str, Any]) -> list[str]:
     return [name for name, (_, _, held) in summary.get("limits", {}).items() if not held]
 
 
-def stop_time(ended: Ended, run_dir: Path) -> float | None:
-    """From the first fault to the first phase of a stop (s), of a flight that was broken off; None where unknown."""
-    if not ended.reason or not ended.summary:
-        return None
+def stop_time(summary: Mapping[str, Any], run_dir: Path) -> float | None:
+    """From the start of the first fault to the moment when the flight was broken off (s); None where it was not."""
+    broken_off = summary.get("broken_off_s")
     try:
-        record = json.loads((run_dir / FAULTS_FILE).read_text(encoding="utf-8"))
-        begin = record["take_off_s"] + min(
-            fault["occurrences"][0][0] for fault in record["faults"] if fault["occurrences"]
-        )
+        faults = json.loads((run_dir / FAULTS_FILE).read_text(encoding="utf-8"))["faults"]
+        begin = min(fault["activations"][0][0] for fault in faults if fault["activations"])
     except (OSError, ValueError, KeyError, TypeError, IndexError):
         return None
-    stops = [float(time) - begin for time, phase in _PHASE.findall(ended.said) if phase in _STOPPED]
-    return next((round(time, 2) for time in stops if time >= 0.0), None)
+    return None if broken_off is None or broken_off < begin else round(broken_off - begin, 3)
