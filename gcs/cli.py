@@ -151,9 +151,9 @@ def _fly(arguments: argparse.Namespace) -> int:
         controller=arguments.controller,
         connect=tuple(parse_url(url) for url in arguments.connect),
     )
-    mission = prepare(options)
     if arguments.with_parent:
         end_with_parent()
+    mission = prepare(options)
     # With --json standard output is the summary alone.
     console = Console(stderr=arguments.json, highlight=False)
     with FlightProgress(console) as progress:
