@@ -357,10 +357,13 @@ def test_all_outcomes_are_drawn_and_told(tmp_path):
 def test_time_to_the_stop(tmp_path):
     faults = [{"activations": [[5.0, 6.0]]}, {"activations": []}, {"activations": [[4.0, None]]}]
     (tmp_path / "faults.json").write_text(json.dumps({"take_off_s": 3.0, "end_s": 20.0, "faults": faults}))
-    assert stop_time({"broken_off_s": 6.25}, tmp_path) == 2.25
-    assert stop_time({"broken_off_s": 3.0}, tmp_path) is None  # for another reason
-    assert stop_time({"broken_off_s": None}, tmp_path) is None
-    assert stop_time({"broken_off_s": 6.25}, tmp_path / "none") is None
+    assert stop_time({"broken_off_s": 9.25}, tmp_path, 3) == 2.25
+    faults[:0] = [{"activations": [[1.0, None]]}]  # the mission's own
+    (tmp_path / "faults.json").write_text(json.dumps({"take_off_s": 3.0, "end_s": 20.0, "faults": faults}))
+    assert stop_time({"broken_off_s": 9.25}, tmp_path, 3) == 2.25
+    assert stop_time({"broken_off_s": 6.5}, tmp_path, 3) is None  # for another reason
+    assert stop_time({"broken_off_s": None}, tmp_path, 3) is None
+    assert stop_time({"broken_off_s": 6.25}, tmp_path / "none", 3) is None
 
 
 # Flown

@@ -24,6 +24,7 @@ COLOURS = {
     WITHIN: "#009E73", OUTSIDE: "#F0E442", ABORTED: "#56B4E9", COLLIDED: "#D55E00", FAILED: "#882255",
     NOT_FLOWN: "#BBBBBB",
 }  # fmt: skip
+_WRAPPED = ("fault", "severity")
 _WIDTH, _HEIGHT = 1.7, 0.55  # in, of a cell
 
 
@@ -33,7 +34,7 @@ def outcome_table(results: Sequence[FaultResult], files: Sequence[Path]) -> Rend
     colour = "bold green" if passed == len(results) else "bold red"
     parts: list[RenderableType] = [Text(f"{passed} of {len(results)} flights within their limits", style=colour)]
     parts.append(_rates(rates_of(results), results))
-    parts.append(Text(f"Rates with their {CONFIDENCE:.0%} intervals (Wilson). Safe: landed without contact."))
+    parts.append(Text(f"Rates with their {100 * CONFIDENCE:.0f} % intervals (Wilson); safe: landed without contact."))
     idle = [result for result in results if result.notes]
     if idle:
         parts.append(
@@ -65,7 +66,7 @@ def _rates(rates: Sequence[Rates], results: Sequence[FaultResult]) -> Table:
         "worst tilt",
         "stopped in",
     ):
-        table.add_column(title, justify="left" if title in ("fault", "severity") else "right")
+        table.add_column(title, justify="left" if title in _WRAPPED else "right", no_wrap=title not in _WRAPPED)
     for rate in rates:
         chosen = [result for result in results if (result.fault, result.level) == (rate.fault, rate.level)]
         clearance = min((r.clearance_min_m for r in chosen if r.clearance_min_m is not None), default=None)

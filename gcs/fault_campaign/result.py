@@ -24,7 +24,7 @@ WITHIN, OUTSIDE, ABORTED, COLLIDED, FAILED, NOT_FLOWN = VERDICTS = (
 class FaultResult:
     """What came of one flight: a row of the table. m, s, deg; None: not known, or it never happened.
 
-    ``stop_s``: from the start of the first fault to the moment when the flight was broken off, and the team stopped.
+    ``stop_s``: from the start of the case's first fault to the moment when the flight was broken off.
     ``notes``: faults that never came or disturbed nothing. ``run_dir`` is empty where it was not kept.
     """
 
@@ -91,7 +91,7 @@ def evaluate(flight: FaultFlight, ended: Ended, run_dir: Path, replay: str) -> F
         contacts=summary.get("contacts"),
         position_rmse_m=summary.get("position_rmse_m", {}).get("total"),
         duration_s=summary.get("duration_s"),
-        stop_s=stop_time(summary, run_dir),
+        stop_s=stop_time(summary, run_dir, len(flight.case.faults)),
         notes="; ".join(fault_notes(run_dir)),
         wall_s=round(ended.wall, 1),
         run_dir=str(run_dir) if run_dir.exists() else "",
@@ -114,12 +114,17 @@ def limits_not_held(summary: dict[str, Any]) -> list[str]:
     return [name for name, (_, _, held) in summary.get("limits", {}).items() if not held]
 
 
-def stop_time(summary: Mapping[str, Any], run_dir: Path) -> float | None:
-    """From the start of the first fault to the moment when the flight was broken off (s); None where it was not."""
+def stop_time(summary: Mapping[str, Any], run_dir: Path, count: int) -> float | None:
+    """From the start of the first of the last ``count`` faults to when the flight was broken off (s); None: it was not.
+
+    The faults before them are the mission's own.
+    """
     broken_off = summary.get("broken_off_s")
     try:
-        faults = json.loads((run_dir / FAULTS_FILE).read_text(encoding="utf-8"))["faults"]
-        begin = min(fault["activations"][0][0] for fault in faults if fault["activations"])
+        record = json.loads((run_dir / FAULTS_FILE).read_text(encoding="utf-8"))
+        faults = record["faults"][len(record["faults"]) - count :]
+        starts = [fault["activations"][0][0] for fault in faults if fault["activations"]]
+        begin = record["take_off_s"] + min(starts)
     except (OSError, ValueError, KeyError, TypeError, IndexError):
         return None
     return None if broken_off is None or broken_off < begin else round(broken_off - begin, 3)
