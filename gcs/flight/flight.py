@@ -101,6 +101,8 @@ class Flight:
         self._parameters = controller.parameters
         self.phase = Phase.CONNECT
         self.reason = ""
+        self.broken_off_time = math.nan
+        """When the reason to end early was found (s)."""
         """Why the flight was broken off; empty: it was not."""
         self.interrupted = False
         self.course: Course | None = None
@@ -171,7 +173,7 @@ class Flight:
         if self.phase is Phase.ENDED:
             return
         self.interrupted |= interrupted
-        self.reason = self.reason or reason
+        self._note(time, reason)
         if self.phase in (Phase.CONNECT, Phase.CHECK):
             self.phase = Phase.ENDED
         elif self.phase in (Phase.ARM, Phase.SPOOL_UP):
@@ -183,8 +185,13 @@ class Flight:
 
     def give_up(self, reason: str) -> None:
         """The vehicles cannot be reached any more: they are on their own."""
-        self.reason = self.reason or reason
+        self._note(self.time, reason)
         self.phase = Phase.ENDED
+
+    def _note(self, time: float, reason: str) -> None:
+        """The first reason counts."""
+        if not self.reason:
+            self.reason, self.broken_off_time = reason, time
 
     def step(self, time: float, effective: float, now: float) -> tuple[Setpoints | None, StepRecord | None]:
         """One control step at team ``time``; set-points act at ``effective``. ``now`` is the ground's time.
