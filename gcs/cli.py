@@ -16,7 +16,7 @@ from gcs.config import UnusableFile
 from gcs.courses import command as courses
 from gcs.courses import study_command as study
 from gcs.errors import GcsError, UnusableInput
-from gcs.faults.listing import kinds_table
+from gcs.fault_campaign import command as faults
 from gcs.faults.record import fault_notes
 from gcs.fly import INTERRUPTED, OUTSIDE_LIMITS, UNUSABLE, FlyOptions, fly, prepare
 from gcs.mission.describe import describe
@@ -25,6 +25,7 @@ from gcs.progress import FlightProgress
 from gcs.record.figures import report
 from gcs.record.summary_table import summary_table
 from gcs.reproduce import command as reproduce
+from gcs.side_by_side import end_with_parent
 from gcs.wire.address import parse_url
 from idc_controller.errors import IdcError
 
@@ -34,6 +35,7 @@ The ground station of cooplift: UAVs that carry one payload together.
   gcs check missions/delivery.plan          what will be flown, or every reason why not
   gcs fly missions/figure_eight.toml        flies it with a simulated swarm of its own
   gcs report runs/figure-eight-1            draws what happened
+  gcs faults missions/telemetry_faults.toml flies a campaign of telemetry faults
   gcs courses                               flies 200 random courses and tells how it went
   gcs study margin                          flies a mission with other margins; other studies likewise
   gcs reproduce --quick                     the paper's figures and numbers, as printed and as corrected
@@ -103,6 +105,7 @@ def _parser() -> argparse.ArgumentParser:
     )  # fmt: skip
     fly_parser.add_argument("--json", action="store_true", help="print the summary as JSON instead of a table")
     fly_parser.add_argument("--no-pictures", action="store_true", help="draw none; gcs report does it later")
+    fly_parser.add_argument("--with-parent", action="store_true", help=argparse.SUPPRESS)
     fly_parser.set_defaults(run=_fly)
 
     check = commands.add_parser(
@@ -126,12 +129,10 @@ def _parser() -> argparse.ArgumentParser:
     courses.add_arguments(courses_parser)
 
     faults_parser = commands.add_parser(
-        "faults", help="list the faults that missions may have",
-        description="Lists the kinds of fault that a mission may have, with their parameters.", formatter_class=style,
+        "faults", help="list the faults that missions may have, fly campaigns of them",
+        description=faults.DESCRIPTION, formatter_class=style,
     )  # fmt: skip
-    faults_parser.add_argument("campaign", nargs="?", type=Path, metavar="CAMPAIGN", help="not available yet")
-    faults_parser.add_argument("--kinds", action="store_true", help="list the kinds of fault with their parameters")
-    faults_parser.set_defaults(run=_faults)
+    faults.add_arguments(faults_parser)
 
     study_parser = commands.add_parser(
         "study", help="fly missions with one thing changed", description=study.DESCRIPTION, formatter_class=style
@@ -158,6 +159,8 @@ def _fly(arguments: argparse.Namespace) -> int:
         controller=arguments.controller,
         connect=tuple(parse_url(url) for url in arguments.connect),
     )
+    if arguments.with_parent:
+        end_with_parent()
     mission = prepare(options)
     # With --json standard output is the summary alone.
     console = Console(stderr=arguments.json, highlight=False)
@@ -180,15 +183,6 @@ def _fly(arguments: argparse.Namespace) -> int:
 
 def _check(arguments: argparse.Namespace) -> int:
     Console(highlight=False).print(describe(read_mission(arguments.mission, arguments.config)))
-    return 0
-
-
-def _faults(arguments: argparse.Namespace) -> int:
-    if not arguments.kinds:
-        if arguments.campaign is None:
-            raise UnusableInput("gcs faults: name what to do: --kinds lists the kinds of fault")
-        raise UnusableInput(f"{arguments.campaign}: campaigns are not available yet; --kinds lists the kinds of fault")
-    Console(highlight=False).print(kinds_table())
     return 0
 
 

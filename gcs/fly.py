@@ -157,6 +157,8 @@ def _result(run_dir: Path, mission: Mission, flight: Flight, last_time: float, w
         limits=limits,
         obstacles=bool(mission.obstacles),
     )
+    # By the clock of the records, as it may be before take-off.
+    summary["broken_off_s"] = None if math.isnan(flight.broken_off_time) else round(flight.broken_off_time, 6)
     if summary["contacts"]:
         summary |= {"outcome": "collided", "completed": False}
     write_summary(run_dir, summary)

@@ -17,7 +17,7 @@ from gcs.flight.flight import Flight, Phase, StepRecord
 from gcs.flight.team import Team
 from gcs.obstacles import ObstacleMap
 from gcs.setpoints import attitude_target, stop_plan_message
-from gcs.telemetry import measurement
+from gcs.telemetry import measurement, setpoint_flown
 from gcs.wire import px4
 from gcs.wire.address import Address
 from gcs.wire.codec import Codec, gather
@@ -135,8 +135,9 @@ class GroundStation:
         for link, queue in zip(self.links, messages, strict=True):
             if link.address is None:
                 continue
+            copies = link.copies if self._stepped else 1
             for datagram in gather(self._codec.encode(message) for message in queue):
-                out.append((datagram, link.address))
+                out += [(datagram, link.address)] * copies
                 self._recorder.datagram(now, datagram)
         return out
 
@@ -175,12 +176,17 @@ class GroundStation:
         """From a message that tells of one moment."""
         kind = message.get_type()
         is_detection = kind == "OBSTACLE_DISTANCE_3D"
-        if not is_detection and kind not in ("ATTITUDE_QUATERNION", "LOCAL_POSITION_NED"):
+        if not is_detection and kind not in ("ATTITUDE_QUATERNION", "LOCAL_POSITION_NED", "ATTITUDE_TARGET"):
             return
         link, obstacle_map = self.links[index], self._obstacle_map
         if index == 0:
             self._follow_clock(link.clock.offset)
         time = _whole_ms(message.time_boot_ms * 1e-3 - link.clock.offset + self._team_offset)
+        if kind == "ATTITUDE_TARGET":
+            told = setpoint_flown(message, link.parameters.get(px4.PARAM_THRUST_MAX, math.nan))
+            if told is not None:
+                link.confirmed(self.flight.flown(index, time, told))
+            return
         if is_detection:
             if obstacle_map is not None:
                 obstacle_map.detected(message, index, time)

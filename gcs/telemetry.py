@@ -6,9 +6,25 @@ import math
 from typing import Any
 
 import numpy as np
+import pymavlink.dialects.v20.common as mavlink
+from numpy.typing import NDArray
 
 from gcs.wire import px4
 from idc_controller.estimate.measurements import PAYLOAD, Attitude, Measurement, Position
+
+Array = NDArray[np.float64]
+
+
+def setpoint_flown(message: Any, thrust_max: float) -> Array | None:
+    """Tilt of the thrust (north, east) and thrust (N), (3,), in an ATTITUDE_TARGET; None: it tells neither.
+
+    ``thrust_max`` (N) is what the vehicle means by thrust 1.
+    """
+    if message.type_mask & mavlink.ATTITUDE_TARGET_TYPEMASK_ATTITUDE_IGNORE:
+        return None
+    w, x, y, z = message.q
+    told = (-2.0 * (x * z + w * y), -2.0 * (y * z - w * x), message.thrust * thrust_max)
+    return np.array(told) if math.isfinite(sum(told)) else None
 
 
 def measurement(message: Any, uav: int, time: float) -> Measurement | None:

@@ -27,6 +27,10 @@ class CommandState(Enum):
     UNANSWERED = "unanswered"
 
 
+LOSS_SHARE = 0.05  # of one set-point in the running mean of losses
+COPY_ABOVE = (0.02, 0.06)  # losses of copies that are sent already, at which one more is sent
+
+
 @dataclass
 class Command:
     """A COMMAND_LONG on its way; repeated until it is answered."""
@@ -67,8 +71,20 @@ class VehicleLink:
     """The vehicle's own checks, from SYS_STATUS; None: not told yet."""
     parameters: dict[str, float] = field(default_factory=dict)
     texts: deque[str] = field(default_factory=lambda: deque(maxlen=20))
+    setpoint_loss: float = 0.0
+    """Share of the set-points that do not arrive, as far as the vehicle's words tell."""
     _commands: dict[int, Command] = field(default_factory=dict)
     _wanted: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def copies(self) -> int:
+        """How often to send what must arrive."""
+        return 1 + sum(self.setpoint_loss > threshold for threshold in COPY_ABOVE)
+
+    def confirmed(self, flown: bool | None) -> None:
+        """Whether the vehicle flew what it was sent; None: that cannot be told."""
+        if flown is not None:
+            self.setpoint_loss += LOSS_SHARE * (float(not flown) - self.setpoint_loss)
 
     @property
     def armed(self) -> bool:

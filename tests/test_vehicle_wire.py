@@ -144,7 +144,7 @@ def test_streams_come_at_their_rates_with_the_stamp_of_the_sample(bench: Bench) 
     bench.run(4.0)
     counts = {kind: len(bench.got(kind)) for kind in {m.get_type() for m in bench.inbox[GROUND]}}
     expected = {
-        "ATTITUDE_QUATERNION": 200, "LOCAL_POSITION_NED": 200, "ATTITUDE": 40, "ATTITUDE_TARGET": 40,
+        "ATTITUDE_QUATERNION": 200, "LOCAL_POSITION_NED": 200, "ATTITUDE": 40, "ATTITUDE_TARGET": 200,
         "GLOBAL_POSITION_INT": 20, "EXTENDED_SYS_STATE": 20, "VFR_HUD": 8, "HEARTBEAT": 4, "SYS_STATUS": 4,
         "GPS_RAW_INT": 4, "HOME_POSITION": 2, "BATTERY_STATUS": 2,
     }  # fmt: skip

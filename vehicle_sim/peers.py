@@ -33,7 +33,6 @@ _DEFAULT_INTERVALS: dict[tuple[int, int], float] = {
     (px4.AUTOPILOT_COMPONENT, mavlink.MAVLINK_MSG_ID_SYS_STATUS): 1.0,
     (px4.AUTOPILOT_COMPONENT, mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE): 0.2,
     (px4.AUTOPILOT_COMPONENT, mavlink.MAVLINK_MSG_ID_ATTITUDE): 0.1,
-    (px4.AUTOPILOT_COMPONENT, mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET): 0.1,
     (px4.AUTOPILOT_COMPONENT, mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT): 0.2,
     (px4.AUTOPILOT_COMPONENT, mavlink.MAVLINK_MSG_ID_GPS_RAW_INT): 1.0,
     (px4.AUTOPILOT_COMPONENT, mavlink.MAVLINK_MSG_ID_HOME_POSITION): 2.0,
@@ -80,6 +79,8 @@ class Peer:
         for component in self._codecs:
             for message_id in _NAVIGATION:
                 self._defaults[component, message_id] = telemetry_interval
+        # With every sample goes what was being flown: set-points may be lost.
+        self._defaults[px4.AUTOPILOT_COMPONENT, mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET] = telemetry_interval
         # A scan is sent as soon as there is one, behind the attitude and position at which it was made.
         self._defaults[px4.AUTOPILOT_COMPONENT, _SCAN] = telemetry_interval
         self._streams: list[Stream] = []

@@ -2,15 +2,9 @@
 
 from __future__ import annotations
 
-import csv
 import dataclasses
 import hashlib
-import json
-import os
-import shutil
-import threading
-from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -18,10 +12,18 @@ from typing import Any
 from gcs.config import SystemConfig, read_system
 from gcs.courses.flights import COLUMNS, REQUIRED, FlightPlan, Result, fly_course
 from gcs.courses.generator import KINDS, generate
-from gcs.errors import UnusableInput
 from gcs.record.run_folder import make_folder, write_json
+from gcs.side_by_side import (
+    all_cores,
+    claim_folder,
+    drops_run_folder,
+    fly_side_by_side,
+    read_object,
+    remove_folder,
+    sole_flyer,
+    write_table,
+)
 
-KEPT = ("failures", "all", "none")
 SETTINGS = "campaign.json"
 
 
@@ -85,7 +87,8 @@ class Campaign:
             keep_result(self._result_path(plan), plan, result, self.options.keep)
             ended(result)
 
-        fly_all([plan for plan in self._plans if plan.course.name not in done], self.jobs, started, kept)
+        with sole_flyer(self.options.out):
+            fly_all([plan for plan in self._plans if plan.course.name not in done], self.jobs, started, kept)
 
     def write_results(self) -> tuple[Path, Path]:
         """Write ``results.csv`` and ``results.json``, in the order of the courses."""
@@ -103,17 +106,7 @@ class Campaign:
             "config": None if options.config is None else _digest(options.config),
             "obstacle_speed": options.fastest,
         }
-        path = make_folder(options.out) / SETTINGS
-        if path.exists():
-            found = _json(path)
-            for name, value in settings.items():
-                if found.get(name) != value:
-                    reason = f"was begun with {name} {found.get(name)}, not {value}: name another with --out"
-                    raise UnusableInput(f"{options.out}: {reason}")
-        elif any(options.out.iterdir()):
-            raise UnusableInput(f"{options.out}: is neither empty nor the folder of a campaign")
-        else:
-            write_json(path, settings)
+        claim_folder(options.out / SETTINGS, settings, write_json)
 
     def _plan(self, number: int, flags: tuple[str, ...], config: SystemConfig | None) -> FlightPlan:
         options = self.options
@@ -130,11 +123,6 @@ class Campaign:
         return self.options.out / "results" / f"{plan.course.name}.json"
 
 
-def all_cores() -> int:
-    """How many flights go side by side where it is not said."""
-    return len(os.sched_getaffinity(0))
-
-
 def fly_all(
     plans: Sequence[FlightPlan],
     jobs: int,
@@ -142,30 +130,14 @@ def fly_all(
     ended: Callable[[FlightPlan, Result], None],
 ) -> None:
     """Fly ``plans``, ``jobs`` at a time; both callbacks are called in the caller's thread. An interrupt ends all."""
-    waiting = list(plans)
-    stop = threading.Event()
-    flying: dict[Future[Result | None], FlightPlan] = {}
-    with ThreadPoolExecutor(jobs) as pool:
-        try:
-            while waiting or flying:
-                while waiting and len(flying) < jobs:
-                    plan = waiting.pop(0)
-                    flying[pool.submit(fly_course, plan, stop)] = plan
-                    started(plan.course.name)
-                finished, _ = wait(flying, timeout=1.0, return_when=FIRST_COMPLETED)
-                for future in finished:
-                    plan = flying.pop(future)
-                    if (result := future.result()) is not None:
-                        ended(plan, result)
-        finally:
-            stop.set()
+    fly_side_by_side(plans, jobs, fly_course, lambda plan: started(plan.course.name), ended)
 
 
 def read_result(path: Path) -> Result | None:
     """A result that was kept; None where there is none, or one of another version."""
     if not path.exists():
         return None
-    content = _json(path)
+    content = read_object(path)
     if not REQUIRED <= content.keys() <= set(COLUMNS):
         return None
     return Result(**content)
@@ -174,28 +146,8 @@ def read_result(path: Path) -> Result | None:
 def keep_result(path: Path, plan: FlightPlan, result: Result, keep: str) -> None:
     """Write a result to ``path``; remove its run folder unless ``keep``, one of :data:`KEPT`, says otherwise."""
     write_json(path, result)
-    if keep == "none" or (keep == "failures" and result.passed):
-        shutil.rmtree(plan.run_dir, ignore_errors=True)
-
-
-def write_table(path: Path, columns: Sequence[str], rows: Sequence[Mapping[str, Any]]) -> Path:
-    """Write a CSV file. Raises :class:`UnusableInput` where it cannot."""
-    try:
-        with path.open("w", newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, columns)
-            writer.writeheader()
-            writer.writerows(rows)
-    except OSError as error:
-        raise UnusableInput(f"{path}: cannot be written: {error.strerror}") from None
-    return path
-
-
-def _json(path: Path) -> dict[str, Any]:
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise UnusableInput(f"{path}: cannot be read: {error}") from None
-    return content if isinstance(content, dict) else {}
+    if drops_run_folder(keep, result.passed):
+        remove_folder(plan.run_dir)
 
 
 def _digest(path: Path) -> str:

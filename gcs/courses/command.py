@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
 from pathlib import Path
-from typing import Protocol
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-from gcs.courses.campaign import KEPT, Campaign, CampaignOptions
+from gcs.arguments import number_of_jobs, whole_number
+from gcs.courses.campaign import Campaign, CampaignOptions
 from gcs.courses.flights import Result
 from gcs.courses.generator import KINDS
 from gcs.courses.outcome import draw_distribution, outcome_table
+from gcs.progress_of_many import Flights, show_progress
+from gcs.side_by_side import KEPT
 
 DONE, OUTSIDE_LIMITS, INTERRUPTED = 0, 1, 130
 
@@ -88,49 +88,9 @@ def run(arguments: argparse.Namespace) -> int:
     return DONE if all(result.passed for result in campaign.results) else OUTSIDE_LIMITS
 
 
-class Flights(Protocol):
-    """What is flown side by side: a campaign, a study."""
-
-    results: list[Result]
-
-    @property
-    def total(self) -> int:
-        """Number of flights."""
-
-    def fly(self, started: Callable[[str], None], ended: Callable[[Result], None]) -> None:
-        """Fly those that have no result yet."""
-
-
-def fly_with_progress(campaign: Flights, console: Console, what: str = "courses") -> None:
+def fly_with_progress(campaign: Flights[Result], console: Console, what: str = "courses") -> None:
     """Fly with a progress line at a terminal; elsewhere one line a flight."""
-    failed = sum(not result.passed for result in campaign.results)
-    flying: list[str] = []
-    progress = Progress(
-        TextColumn(what),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TextColumn("{task.fields[failed]} failed  {task.fields[flying]}"),
-        TimeElapsedColumn(),
-        TimeRemainingColumn(),
-        console=console,
-        disable=not console.is_terminal,
-    )
-    with progress:
-        task = progress.add_task(what, total=campaign.total, completed=len(campaign.results), failed=failed, flying="")
-
-        def started(name: str) -> None:
-            flying.append(name)
-            progress.update(task, flying=" ".join(flying[:6]))
-
-        def ended(result: Result) -> None:
-            nonlocal failed
-            failed += not result.passed
-            flying.remove(result.name)
-            progress.update(task, advance=1, failed=failed, flying=" ".join(flying[:6]))
-            if not console.is_terminal or not result.passed:
-                console.print(_line(result), markup=False)
-
-        campaign.fly(started, ended)
+    show_progress(campaign, console, what, _line)
 
 
 def _line(result: Result) -> str:
@@ -151,22 +111,6 @@ def _count(text: str) -> int:
 
 def _seed(text: str) -> int:
     return whole_number(text, 0, 2**63 - 1)
-
-
-def number_of_jobs(text: str) -> int | None:
-    """An argument of flights at a time; None: as many as there are cores."""
-    return None if text == "auto" else whole_number(text, 1, 1000)
-
-
-def whole_number(text: str, least: int, most: int) -> int:
-    """An argument that is a whole number in a range."""
-    try:
-        value = int(text)
-    except ValueError:
-        value = least - 1
-    if not least <= value <= most:
-        raise argparse.ArgumentTypeError(f"{text} is not a whole number from {least} to {most}")
-    return value
 
 
 def _speed(text: str) -> float:

@@ -3,19 +3,11 @@
 from __future__ import annotations
 
 import dataclasses
-import json
 import math
-import os
 import shlex
-import shutil
-import subprocess
-import sys
 import threading
-import time
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -26,15 +18,12 @@ from gcs.flight.flight import SPOOL_UP
 from gcs.mission.model import Limits
 from gcs.mission.read import read_mission
 from gcs.record.run_data import read_run
+from gcs.side_by_side import Ended, fly_process
 
 AT_GOAL = 0.5
 """m, horizontally, within which the payload has arrived."""
 SEPARATION = 0.75
 """m, the least distance between the centres of two UAVs."""
-MOST_WALL_TIME = 1800.0
-"""s of wall time after which a flight is given up."""
-POLL = 0.2  # s
-BROKEN_OFF = "flight broken off: "
 
 
 @dataclass(frozen=True)
@@ -91,55 +80,13 @@ class FlightPlan:
 
 def fly_course(plan: FlightPlan, stop: threading.Event) -> Result | None:
     """Fly it and say what came of it; None if ``stop`` was set before it ended."""
-    if plan.run_dir.exists():  # of a campaign that was cut off
-        shutil.rmtree(plan.run_dir)
-    begin = time.monotonic()
-    command = [sys.executable, "-m", "gcs", "fly", str(plan.mission), *plan.options]
-    command += ["--run-dir", str(plan.run_dir), "--json", "--no-pictures"]
-    process = subprocess.Popen(
-        command,
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,  # Ctrl-C is for the campaign, which ends its flights itself
-        env={**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
-    )
-    said, errors = _ended(process, stop, begin + MOST_WALL_TIME)
-    if stop.is_set():
-        return None
-    return evaluate(plan, process.returncode, _summary(said), errors, time.monotonic() - begin)
+    ended = fly_process(plan.mission, plan.options, plan.run_dir, stop)
+    return None if ended is None else evaluate(plan, ended)
 
 
-def _ended(process: subprocess.Popen[str], stop: threading.Event, deadline: float) -> tuple[str, str]:
-    """What the process said until it ended, or was ended."""
-    while True:
-        try:
-            return process.communicate(timeout=POLL)
-        except subprocess.TimeoutExpired:
-            if stop.is_set() or time.monotonic() > deadline:
-                process.kill()  # the simulator ends with it: it reads the end of its standard input
-
-
-def _summary(text: str) -> dict[str, Any]:
-    try:
-        content = json.loads(text)
-    except ValueError:
-        return {}
-    return content if isinstance(content, dict) else {}
-
-
-def _reason(errors: str, flown: bool) -> str:
-    """Why a flight was broken off, or not flown at all, from what it said on standard error."""
-    lines = [line for line in errors.strip().splitlines() if line.strip()]
-    for line in lines:
-        if line.startswith(BROKEN_OFF):
-            return line.removeprefix(BROKEN_OFF)
-    return "" if flown or not lines else lines[-1]
-
-
-def evaluate(plan: FlightPlan, exit_code: int, summary: Mapping[str, Any], errors: str, wall: float) -> Result:
-    """The result of a flight that ended with ``exit_code`` and wrote ``summary`` and ``errors``."""
+def evaluate(plan: FlightPlan, ended: Ended) -> Result:
+    """The result of a flight."""
+    summary = ended.summary
     schedule = Schedule(read_mission(plan.mission, _config(plan.options)))
     nominal = arrival(schedule.times, schedule.positions, schedule.goal, AT_GOAL)
     nominal = schedule.landing if nominal is None else nominal
@@ -172,8 +119,8 @@ def evaluate(plan: FlightPlan, exit_code: int, summary: Mapping[str, Any], error
         passed=not failures,
         failures=" ".join(dict.fromkeys(failures)),
         outcome=outcome,
-        reason=_reason(errors, bool(summary)),
-        exit_code=exit_code,
+        reason=ended.reason,
+        exit_code=ended.exit_code,
         clearance_min_m=clearance,
         tilt_max_deg=tilt,
         uav_separation_min_m=separation,
@@ -187,7 +134,7 @@ def evaluate(plan: FlightPlan, exit_code: int, summary: Mapping[str, Any], error
         step_time_p99_ms=steps.get("p99"),
         infeasible_steps=solver.get("infeasible_steps"),
         real_time_factor=summary.get("real_time_factor"),
-        wall_s=round(wall, 1),
+        wall_s=round(ended.wall, 1),
         replay=plan.replay,
         position_rmse_m=summary.get("position_rmse_m", {}).get("total"),
         slack_max_m=(summary.get("safety") or {}).get("slack_max_m"),

@@ -17,7 +17,7 @@ from pydantic import TypeAdapter
 
 from gcs.config import default_system_path
 from gcs.config.text_file import read_text
-from gcs.courses.campaign import all_cores, fly_all, keep_result, read_result, write_table
+from gcs.courses.campaign import fly_all, keep_result, read_result
 from gcs.courses.flights import COLUMNS, FlightPlan, Result
 from gcs.courses.generator import HELD_TO, RandomCourse, generate
 from gcs.courses.moving import top_speed
@@ -26,6 +26,7 @@ from gcs.errors import UnusableInput
 from gcs.mission.model import AnyMotion, Motion
 from gcs.mission.read import read_mission
 from gcs.record.run_folder import make_folder
+from gcs.side_by_side import all_cores, sole_flyer, write_table
 
 MARGIN = "avoidance.margin"
 FAST = 0.85
@@ -190,7 +191,8 @@ class StudyFlights:
             ended(result)
 
         plans = [flight.plan for flight in self.flights if flight.plan.course.name not in self._results]
-        fly_all(plans, self.options.jobs or all_cores(), started, kept)
+        with sole_flyer(self.options.out):
+            fly_all(plans, self.options.jobs or all_cores(), started, kept)
 
     def write_rows(self) -> Path:
         """Write ``NAME.csv``, a row a flight."""

@@ -7,10 +7,11 @@ from pathlib import Path
 
 from rich.console import Console
 
-from gcs.courses.campaign import KEPT
-from gcs.courses.command import DONE, INTERRUPTED, OUTSIDE_LIMITS, fly_with_progress, number_of_jobs, whole_number
+from gcs.arguments import number_of_jobs, whole_number
+from gcs.courses.command import DONE, INTERRUPTED, OUTSIDE_LIMITS, fly_with_progress
 from gcs.courses.study import STUDIES, StudyFlights, StudyOptions
 from gcs.courses.study_figures import draw_study, study_table
+from gcs.side_by_side import KEPT
 
 WIDTH = 130
 """Characters of a line where there is no terminal that has its own."""

@@ -44,6 +44,17 @@ def system_text(base: Path, changes: Mapping[str, Any]) -> str:
     return "\n".join(lines) + "\n"
 
 
+def tables_text(data: Mapping[str, Any]) -> str:
+    """A file of the tables and arrays of tables ``data``, as :mod:`tomllib` reads them; what they hold is inline."""
+    tables = [
+        _table(f"[[{name}]]" if array else f"[{name}]", table)
+        for name, value in data.items()
+        for array in [not isinstance(value, Mapping)]
+        for table in (value if array else [value])
+    ]
+    return "\n\n".join(tables) + "\n"
+
+
 def _fields(value: Any) -> dict[str, Any]:
     """The fields of a dataclass that are set, what it is first."""
     fields = {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
@@ -61,11 +72,14 @@ def toml_value(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
-        return json.dumps(value)  # a basic string of TOML
+        # A basic string of TOML, which has no surrogates and wants one more character escaped.
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, int):
         return str(value)
     if isinstance(value, float):
         return repr(value)
     if dataclasses.is_dataclass(value):
-        return "{ " + ", ".join(f"{key} = {toml_value(v)}" for key, v in _fields(value).items()) + " }"
+        value = _fields(value)
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(f"{key} = {toml_value(v)}" for key, v in value.items()) + " }"
     return "[" + ", ".join(toml_value(item) for item in value) + "]"

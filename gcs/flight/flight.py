@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 
 CONNECT_TIMEOUT = 10.0  # s
 ARM_TIMEOUT = 6.0  # s
-DISARM_TIMEOUT = 4.0  # s
+DISARM_TIMEOUT = 10.0  # s: the heartbeat that tells it comes once a second, and may be lost
 SETTLE_BEFORE_CHECK = 0.5  # s of telemetry that are averaged before take-off
 STREAM_BEFORE_OFFBOARD = 0.5  # s
 SPOOL_UP = 2.5  # s from idle to hover thrust
@@ -101,6 +101,8 @@ class Flight:
         self._parameters = controller.parameters
         self.phase = Phase.CONNECT
         self.reason = ""
+        self.broken_off_time = math.nan
+        """When the reason to end early was found (s)."""
         """Why the flight was broken off; empty: it was not."""
         self.interrupted = False
         self.course: Course | None = None
@@ -162,12 +164,16 @@ class Flight:
             samples.append(measurement)
             del samples[:-100]
 
+    def flown(self, uav: int, time: float, told: Array) -> bool | None:
+        """A vehicle says what it flies, tilt (north, east) and thrust (N) (3,): whether that is what it was sent."""
+        return self.estimator.confirm_setpoint(uav, time, told) if self.phase in IN_THE_AIR else None
+
     def break_off(self, time: float, reason: str, *, interrupted: bool = False) -> None:
         """End the flight early and safely: on the ground at once, in the air by stopping and landing."""
         if self.phase is Phase.ENDED:
             return
         self.interrupted |= interrupted
-        self.reason = self.reason or reason
+        self._note(time, reason)
         if self.phase in (Phase.CONNECT, Phase.CHECK):
             self.phase = Phase.ENDED
         elif self.phase in (Phase.ARM, Phase.SPOOL_UP):
@@ -179,8 +185,13 @@ class Flight:
 
     def give_up(self, reason: str) -> None:
         """The vehicles cannot be reached any more: they are on their own."""
-        self.reason = self.reason or reason
+        self._note(self.time, reason)
         self.phase = Phase.ENDED
+
+    def _note(self, time: float, reason: str) -> None:
+        """The first reason counts."""
+        if not self.reason:
+            self.reason, self.broken_off_time = reason, time
 
     def step(self, time: float, effective: float, now: float) -> tuple[Setpoints | None, StepRecord | None]:
         """One control step at team ``time``; set-points act at ``effective``. ``now`` is the ground's time.

@@ -28,7 +28,7 @@ def read_mission(path: Path | str, config_path: Path | str | None = None) -> Mis
     path = Path(path)
     config = None if config_path is None else Path(config_path)
     text = read_text(path)
-    if _kind(path, text) == "toml":
+    if mission_format(path, text) == "toml":
         return _from_toml(path, config)
     system = _system(path, None, config)
     file = _waypoint_file(path, text)
@@ -39,7 +39,7 @@ def read_mission(path: Path | str, config_path: Path | str | None = None) -> Mis
     )  # fmt: skip
 
 
-def _kind(path: Path, text: str) -> str:
+def mission_format(path: Path, text: str) -> str:
     """``wpl``, ``plan`` or ``toml``: by content where it tells, else by suffix."""
     first = next((line for line in map(str.strip, text.splitlines()) if line and not line.startswith("#")), "")
     if first.startswith("QGC"):
@@ -54,7 +54,7 @@ def _kind(path: Path, text: str) -> str:
 
 
 def _waypoint_file(path: Path, text: str) -> WaypointFile:
-    kind = _kind(path, text)
+    kind = mission_format(path, text)
     if kind == "toml":
         raise UnusableFile([f"{path}: neither a QGC WPL file nor a QGroundControl plan"])
     return read_wpl(path, text) if kind == "wpl" else read_plan(path, text)
@@ -95,10 +95,15 @@ def _from_toml(path: Path, config: Path | None) -> Mission:
 
 
 def _system(mission: Path, named: str | None, config: Path | None) -> SystemConfig:
+    return read_system(system_path(mission, named, config))
+
+
+def system_path(mission: Path, named: str | None = None, config: Path | None = None) -> Path | None:
+    """The system file by which ``mission``, which may have ``named`` one, is flown; None: the packaged default."""
     if config is not None:
-        return read_system(config)
+        return config
     beside = mission.parent / (named or "system.toml")
-    return read_system(beside if named is not None or beside.is_file() else None)
+    return beside if named is not None or beside.is_file() else None
 
 
 def _home(file: WaypointFile) -> Home:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from functools import cache
@@ -71,6 +71,11 @@ def _adapter() -> TypeAdapter[MissionFile]:
     return TypeAdapter(MissionFile)
 
 
+@cache
+def _fault_adapter() -> TypeAdapter[Fault]:
+    return TypeAdapter(Fault)
+
+
 def read_mission_file(path: Path) -> tuple[TomlFile, MissionFile]:
     """Read and check the tables of a mission, without the files it names.
 
@@ -88,7 +93,7 @@ def read_mission_file(path: Path) -> tuple[TomlFile, MissionFile]:
             fault=tuple(
                 replace(
                     fault,
-                    settings={k: v for k, v in raw.items() if k not in _FAULT_KEYS},
+                    settings=_kinds_keys(raw),
                     line=file.line(("fault", i)),
                 )
                 for i, (fault, raw) in enumerate(zip(mission.fault, faults, strict=True))
@@ -138,18 +143,36 @@ def check_faults(file: TomlFile, mission: MissionFile, system: SystemConfig) -> 
 
 def _fault_parameters(file: TomlFile, mission: MissionFile) -> list[str]:
     """What is wrong with kinds and their parameters."""
-    problems: list[str] = []
-    for i, fault in enumerate(mission.fault):
-        if fault.kind not in KINDS:
-            near = get_close_matches(fault.kind, KINDS, 1)
-            hint = f": did you mean '{near[0]}'?" if near else ": gcs faults --kinds lists them"
-            problems.append(file.problem(("fault", i, "kind"), f"there is no kind '{fault.kind}'{hint}"))
-            continue
-        try:
-            file.validated(settings_adapter(fault.kind), dict(fault.settings), ("fault", i))
-        except UnusableFile as error:
-            problems += error.reasons
-    return problems
+    return [reason for i, fault in enumerate(mission.fault) for reason in _parameter_problems(file, i, fault)]
+
+
+def _parameter_problems(file: TomlFile, index: int, fault: Fault) -> Sequence[str]:
+    if fault.kind not in KINDS:
+        near = get_close_matches(fault.kind, KINDS, 1)
+        hint = f": did you mean '{near[0]}'?" if near else ": gcs faults --kinds lists them"
+        return [file.problem(("fault", index, "kind"), f"there is no kind '{fault.kind}'{hint}")]
+    try:
+        file.validated(settings_adapter(fault.kind), dict(fault.settings), ("fault", index))
+    except UnusableFile as error:
+        return error.reasons
+    return []
+
+
+def read_fault(file: TomlFile, index: int, table: Mapping[str, Any]) -> Fault:
+    """A fault from ``table``, which stands for the file's fault ``index`` (from 0).
+
+    Raises :class:`UnusableFile` for unknown kinds and keys and for wrong values; whether the fault agrees with itself
+    and with a system, :func:`gcs.mission.faults.fault_problems` tells.
+    """
+    fault = file.validated(_fault_adapter(), _known_keys(table), ("fault", index))
+    fault = replace(fault, settings=_kinds_keys(table), line=file.line(("fault", index)))
+    if problems := _parameter_problems(file, index, fault):
+        raise UnusableFile(problems)
+    return fault
+
+
+def _kinds_keys(fault: Mapping[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in fault.items() if key not in _FAULT_KEYS}
 
 
 def _known_keys(fault: Any) -> Any:

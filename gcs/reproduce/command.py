@@ -12,7 +12,7 @@ from typing import Any
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-from gcs.courses.command import number_of_jobs
+from gcs.arguments import number_of_jobs
 from gcs.errors import UnusableInput
 from gcs.mission.read import read_mission
 from gcs.record.run_data import read_run

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +31,10 @@ DETOUR_TILT = float(np.radians(5.0))
 """Link tilt for which a detour leaves room."""
 BRAKING_TIME = 2.0
 """In which the payload is brought to rest when a bent trajectory is broken off (s)."""
+RECOVERY = 1.5
+"""Time constant with which the tracker brings the payload back onto the plan (s)."""
+EXCESS_MAX = 1.0
+"""More than this off the plan is not reckoned with (m)."""
 NEGLIGIBLE = 1e-5
 """A deviation below this, in all derivatives, is none."""
 
@@ -156,7 +160,11 @@ class AvoidanceFilter:
         ahead = followed.derivatives(clock + self._rate * stages, 4)
         if self._rate != 1.0:
             ahead = ahead * (self._rate ** np.arange(5))[:, None, None]
-        start = self._start(now, ahead, estimate)
+        start = np.zeros((5, 3)) if now is None else now - ahead[:, 0]
+        if np.abs(start).max() < NEGLIGIBLE:
+            start[:] = 0.0
+        if now is not None:
+            obstacles = self._grown(obstacles, float(np.linalg.norm(estimate.x[0:3] - now[0])), stages)
         lag = _lag(start, ahead)
         plan, nearest, infeasible, programmes = self._decide(time, start, ahead, obstacles)
         still = plan is None or bool(np.abs(plan.deviation).max() < NEGLIGIBLE)
@@ -189,20 +197,15 @@ class AvoidanceFilter:
         piece = self._pieces[-1]
         return piece.mission_time + piece.rate * (time - piece.start)
 
-    def _start(self, now: Array | None, ahead: Array, estimate: Estimate) -> Array:
-        """Deviation (5, 3) from the mission of what is in force ``now``, drawn to the estimate when that is far off."""
-        if now is None:
-            return np.zeros((5, 3))
-        start = now - ahead[:, 0]
-        error = estimate.x[0:3] - now[0]
-        distance = float(np.linalg.norm(error))
-        # Only with something near: elsewhere the tracker brings the payload back, and a reference that gives way to
-        # every push would not.
-        if distance > 0.15 and self.report.nearest:
-            start[0] += 0.2 * (1.0 - 0.15 / distance) * error
-        if np.abs(start).max() < NEGLIGIBLE:
-            start[:] = 0.0
-        return start
+    def _grown(
+        self, obstacles: list[PredictedObstacle], error: float, stages: NDArray[np.float64]
+    ) -> list[PredictedObstacle]:
+        """The obstacles, larger by what the payload is off the plan (m) beyond the bound, while it comes back."""
+        excess = min(error - self.settings.tracking, EXCESS_MAX)
+        if excess <= 0.0:
+            return obstacles
+        growth = excess * np.exp(-stages / RECOVERY)
+        return [replace(obstacle, growth=obstacle.growth + growth) for obstacle in obstacles]
 
     def _decide(
         self, time: float, start: Array, ahead: Array, obstacles: list[PredictedObstacle]

@@ -30,6 +30,14 @@ from idc_controller.plan.reference import Reference
 
 Array = NDArray[np.float64]
 
+UNCLEAR = 0.012
+"""So near to the moment at which a set-point should act it is not known which one does (s)."""
+SAME = np.array([2e-4, 2e-4, 2e-3])
+"""Set-points that differ by less are the same: tilts, thrust (N)."""
+LOSS_SHARE = 0.05
+"""Of one set-point in the running mean of those that are lost."""
+LOST_MAX = 20
+"""Set-points in a row whose loss is noticed."""
 PATIENCE = 3
 """So many times in a row the payload unit may disagree with the prediction before the prediction is doubted."""
 
@@ -46,7 +54,7 @@ class ProcessNoise:
     """1/s2"""
     uav_jerk: float = 1.0
     """Of the tilt's acceleration (1/s3)."""
-    thrust: float = 0.014
+    thrust: float = 0.010
     """N/s"""
     force: float = 0.05
     """Drift of the steady force on the payload (N/s)."""
@@ -54,6 +62,8 @@ class ProcessNoise:
     """Drift of the steady force on each UAV (N/s)."""
     mass: float = 0.005
     """Drift of the payload's mass (kg/s)."""
+    setpoint_loss: float = 0.005
+    """Probability with which a set-point is reckoned to be lost on its way, at least; more where more are."""
 
 
 @dataclass(frozen=True)
@@ -157,9 +167,14 @@ class _Way:
         self.flat = reference.at(np.array(self.edges))
         self.setpoints: list[Array | None] = []
         """In force from each edge to the next."""
+        self.changes: list[Array | None] = []
+        """By how much they differ from those before."""
         for middle in middles:
             at = bisect.bisect_right(setpoints, middle, key=lambda entry: entry[0]) - 1
-            self.setpoints.append(setpoints[at][1] if at >= 0 else None)
+            now = setpoints[at][1] if at >= 0 else None
+            before = setpoints[at - 1][1] if at >= 1 else None
+            self.setpoints.append(now)
+            self.changes.append(None if now is None or before is None else now - before)
 
     def u(self, k: int) -> Array:
         """The reference's set-points between edge ``k`` and the next (3 N,)."""
@@ -189,6 +204,7 @@ class Estimator:
         self._moments: list[_Moment] = []
         self._snapshots: list[_Snapshot] = []
         self._setpoints: list[tuple[float, Array | None]] = []
+        self._setpoint_loss = np.full(model.layout.number_of_uavs, settings.process.setpoint_loss)
         self._gates = chi2.ppf(settings.gate_probability, np.arange(7))
         """By the size of a measurement."""
         self.innovations: list[InnovationRecord] = []
@@ -221,6 +237,49 @@ class Estimator:
         """Set-points (3 N,) that act from ``effective`` on; None: the vehicles are held (cradles, pad), errors stay."""
         bisect.insort(self._setpoints, (effective, u), key=lambda entry: entry[0])
 
+    def confirm_setpoint(self, uav: int, time: float, told: Array) -> bool | None:
+        """What a vehicle says it flew at ``time``: tilt (north, east) and thrust (3,).
+
+        Where that is an older set-point than it should be, those since were lost. Other words are not believed.
+        Returns whether it is the one that it should be, None where that cannot be told.
+        """
+        setpoints, N = self._setpoints, self.layout.number_of_uavs
+        at = bisect.bisect_right(setpoints, time, key=lambda entry: entry[0]) - 1
+        following = setpoints[at + 1][0] if at + 1 < len(setpoints) else np.inf
+        if at < 1 or not setpoints[at][0] + UNCLEAR < time < following - UNCLEAR:
+            return None
+        which = [2 * uav, 2 * uav + 1, 2 * N + uav]
+
+        def flew(k: int) -> bool:
+            u = setpoints[k][1]
+            return u is not None and bool((np.abs(u[which] - told) < SAME).all())
+
+        if flew(at):
+            self._learn_loss(uav, 0.0)
+            return True
+        last = next((k for k in range(at - 1, max(at - LOST_MAX, 0) - 1, -1) if flew(k)), None)
+        if last is None:
+            return None
+        for k in range(last + 1, at + 1):
+            effective, u = setpoints[k]
+            if u is None:
+                return None
+            u = u.copy()
+            u[which] = told
+            setpoints[k] = effective, u
+        self._learn_loss(uav, 1.0)
+        self._back_to(setpoints[last + 1][0])
+        return False
+
+    def _learn_loss(self, uav: int, lost: float) -> None:
+        share = self._setpoint_loss[uav] + LOSS_SHARE * (lost - self._setpoint_loss[uav])
+        self._setpoint_loss[uav] = max(share, self.settings.process.setpoint_loss)
+
+    def _back_to(self, time: float) -> None:
+        """Take the filter back to before ``time`` (s), as far as it remembers."""
+        while len(self._snapshots) > 1 and self._snapshots[-1].time >= time:
+            self._snapshots.pop()
+
     def add(self, measurement: Measurement) -> bool:
         """Take a measurement; False when it is older than the memory or older than the start."""
         oldest = max(self._snapshots[0].time, self.time - self.settings.history)
@@ -239,8 +298,7 @@ class Estimator:
             return True  # another vehicle's relay of what was applied already
         copies.append(measurement)
         if moment.time <= self.time:
-            while self._snapshots[-1].time >= moment.time:
-                self._snapshots.pop()
+            self._back_to(moment.time)
         return True
 
     def estimate(self, time: float, reference: Reference) -> Estimate:
@@ -282,7 +340,15 @@ class Estimator:
         u = way.setpoints[k]
         delta_u = np.zeros(self.layout.inputs) if u is None else u - way.u(k)
         F, B = self._transition_along(way.interval_us(k), way.acceleration(k))
-        self._filter.predict(u=delta_u, F=F, B=B, Q=self._noise(way.interval_us(k), self.adaptation.restlessness))
+        Q = self._noise(way.interval_us(k), self.adaptation.restlessness)
+        if (change := way.changes[k]) is not None:
+            # Each vehicle may still fly the set-point before.
+            N = self.layout.number_of_uavs
+            error = B * (change * np.sqrt(np.concatenate([np.repeat(self._setpoint_loss, 2), self._setpoint_loss])))
+            tilts = error[:, : 2 * N].reshape(-1, N, 2).sum(axis=2)
+            lost = np.hstack([tilts, error[:, 2 * N :]])
+            Q = Q + lost @ lost.T
+        self._filter.predict(u=delta_u, F=F, B=B, Q=Q)
 
     def _update(self, moment: _Moment, flat: FlatReference, k: int) -> None:
         """Correct the filter's error state, at time ``k`` of ``flat``, by what was measured then."""

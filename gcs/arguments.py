@@ -1,0 +1,21 @@
+"""Arguments that several commands have."""
+
+from __future__ import annotations
+
+import argparse
+
+
+def number_of_jobs(text: str) -> int | None:
+    """An argument of flights at a time; None: as many as there are cores."""
+    return None if text == "auto" else whole_number(text, 1, 1000)
+
+
+def whole_number(text: str, least: int, most: int) -> int:
+    """An argument that is a whole number in a range."""
+    try:
+        value = int(text)
+    except ValueError:
+        value = least - 1
+    if not least <= value <= most:
+        raise argparse.ArgumentTypeError(f"{text} is not a whole number from {least} to {most}")
+    return value

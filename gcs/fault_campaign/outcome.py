@@ -1,0 +1,130 @@
+"""What a campaign tells at its end: a table for the terminal, and the matrix of faults and severities."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch, Rectangle
+from rich import box
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from gcs.errors import UnusableInput
+from gcs.fault_campaign.result import ABORTED, COLLIDED, FAILED, NOT_FLOWN, OUTSIDE, VERDICTS, WITHIN, FaultResult
+from gcs.fault_campaign.tables import CONFIDENCE, Rates, rates_of
+
+MATRIX = "matrix.png"
+COLOURS = {
+    # Told apart without red and green, too.
+    WITHIN: "#009E73", OUTSIDE: "#F0E442", ABORTED: "#56B4E9", COLLIDED: "#D55E00", FAILED: "#882255",
+    NOT_FLOWN: "#BBBBBB",
+}  # fmt: skip
+_WRAPPED = ("fault", "severity")
+_WIDTH, _HEIGHT = 1.7, 0.55  # in, of a cell
+
+
+def outcome_table(results: Sequence[FaultResult], files: Sequence[Path]) -> RenderableType:
+    """Rates by fault and severity, and the replay command of every failure."""
+    passed = sum(result.passed for result in results)
+    colour = "bold green" if passed == len(results) else "bold red"
+    parts: list[RenderableType] = [Text(f"{passed} of {len(results)} flights within their limits", style=colour)]
+    parts.append(_rates(rates_of(results), results))
+    parts.append(Text(f"Rates with their {100 * CONFIDENCE:.0f} % intervals (Wilson); safe: landed without contact."))
+    idle = [result for result in results if result.notes]
+    if idle:
+        parts.append(
+            Text(f"{len(idle)} flights with a fault that never came or disturbed nothing: see notes in the table")
+        )
+    for result in results:
+        if not result.passed:
+            parts.append(Text.assemble((told(result), "red"), f"\n  {result.replay}"))
+    parts.append(Text("Results   " + "  ".join(map(str, files))))
+    return Group(*parts)
+
+
+def told(result: FaultResult) -> str:
+    """A flight and how it ended, on one line."""
+    who = ", ".join(part for part in (result.fault, result.severity) if part)
+    why = "; ".join(part for part in (result.failures, result.reason) if part)
+    return f"{who}, {result.mission}, seed {result.seed}: {result.outcome}{f' ({why})' if why else ''}"
+
+
+def _rates(rates: Sequence[Rates], results: Sequence[FaultResult]) -> Table:
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for title in (
+        "fault",
+        "severity",
+        "flights",
+        "within limits",
+        "safe",
+        "worst clearance",
+        "worst tilt",
+        "stopped in",
+    ):
+        table.add_column(title, justify="left" if title in _WRAPPED else "right", no_wrap=title not in _WRAPPED)
+    for rate in rates:
+        chosen = [result for result in results if (result.fault, result.level) == (rate.fault, rate.level)]
+        clearance = min((r.clearance_min_m for r in chosen if r.clearance_min_m is not None), default=None)
+        tilt = max((r.tilt_max_deg for r in chosen if r.tilt_max_deg is not None), default=None)
+        stop = max((r.stop_s for r in chosen if r.stop_s is not None), default=None)
+        table.add_row(
+            Text(rate.fault),
+            Text(rate.severity),
+            str(rate.flights),
+            _share(rate.within_limits_rate, rate.within_limits_low, rate.within_limits_high),
+            _share(rate.safe_rate, rate.safe_low, rate.safe_high),
+            "-" if clearance is None else f"{clearance:.2f} m",
+            "-" if tilt is None else f"{tilt:.1f} deg",
+            "-" if stop is None else f"{stop:.2f} s",
+        )
+    return table
+
+
+def _share(rate: float, low: float, high: float) -> str:
+    return f"{100 * rate:.0f} % ({100 * low:.0f} to {100 * high:.0f})"
+
+
+def draw_matrix(name: str, results: Sequence[FaultResult], folder: Path) -> Path:
+    """A row a fault, a cell a severity, in it the share of each outcome. Raises :class:`UnusableInput`."""
+    faults = list(dict.fromkeys(result.fault for result in results))
+    levels = max((result.level for result in results), default=1)
+    figure = Figure(figsize=(2.8 + _WIDTH * levels, 1.6 + _HEIGHT * max(len(faults), 1)), layout="constrained")
+    FigureCanvasAgg(figure)
+    ax = figure.subplots()
+    cells: dict[tuple[int, int], list[FaultResult]] = {}
+    for result in results:
+        cells.setdefault((faults.index(result.fault), result.level), []).append(result)
+    for (row, level), cell in cells.items():
+        left, counts = level - 0.48, Counter(result.outcome for result in cell)
+        for outcome in VERDICTS:
+            width = 0.96 * counts[outcome] / len(cell)
+            ax.add_patch(Rectangle((left, row - 0.45), width, 0.9, facecolor=COLOURS[outcome], linewidth=0.0))
+            left += width
+        lines = [cell[0].severity, f"{sum(result.passed for result in cell)} of {len(cell)}"]
+        text = "\n".join(line for line in lines if line)
+        back = {"facecolor": "white", "alpha": 0.75, "linewidth": 0.0, "boxstyle": "round,pad=0.15"}
+        ax.text(level, row, text, ha="center", va="center", fontsize=7, bbox=back)
+    ax.set_xlim(0.5, levels + 0.5)
+    ax.set_ylim(len(faults) - 0.5, -0.5)
+    ax.set_yticks(range(len(faults)), faults, fontsize=8)
+    ax.set_xticks(range(1, levels + 1))
+    ax.set_xlabel("severity; in each cell: flights within limits")
+    ax.spines[:].set_visible(False)
+    ax.tick_params(length=0)
+    ax.set_title(name, fontsize=10)
+    seen = [outcome for outcome in VERDICTS if any(result.outcome == outcome for result in results)]
+    figure.legend(
+        handles=[Patch(facecolor=COLOURS[outcome], label=outcome) for outcome in seen],
+        loc="outside lower center", ncols=min(len(seen), 3) or 1, frameon=False, fontsize=8,
+    )  # fmt: skip
+    path = folder / MATRIX
+    try:
+        figure.savefig(path, dpi=130)
+    except OSError as error:
+        raise UnusableInput(f"{path}: cannot be written: {error.strerror}") from None
+    return path
