@@ -185,7 +185,7 @@ class GroundStation:
         if kind == "ATTITUDE_TARGET":
             told = setpoint_flown(message, link.parameters.get(px4.PARAM_THRUST_MAX, math.nan))
             if told is not None:
-                link.confirmed(self.flight.flown(index, time, told))
+                link.confirmed(self.flight.flown(index, time, told, link.clock.spread))
             return
         if is_detection:
             if obstacle_map is not None:

@@ -15,7 +15,7 @@ from gcs.wire.address import Address
 from gcs.wire.clock import RemoteClock
 
 RETRY_AFTER = 0.5  # s
-TRIES = 6
+TRIES = 10  # with a third of all datagrams lost, one command in a thousand stays unanswered
 
 
 class CommandState(Enum):

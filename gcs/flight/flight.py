@@ -26,7 +26,7 @@ from idc_controller.plan.trajectory import RestTrajectory, Trajectory
 Array = NDArray[np.float64]
 
 CONNECT_TIMEOUT = 10.0  # s
-ARM_TIMEOUT = 6.0  # s
+ARM_TIMEOUT = 12.0  # s
 DISARM_TIMEOUT = 10.0  # s: the heartbeat that tells it comes once a second, and may be lost
 SETTLE_BEFORE_CHECK = 0.5  # s of telemetry that are averaged before take-off
 STREAM_BEFORE_OFFBOARD = 0.5  # s
@@ -164,9 +164,12 @@ class Flight:
             samples.append(measurement)
             del samples[:-100]
 
-    def flown(self, uav: int, time: float, told: Array) -> bool | None:
-        """A vehicle says what it flies, tilt (north, east) and thrust (N) (3,): whether that is what it was sent."""
-        return self.estimator.confirm_setpoint(uav, time, told) if self.phase in IN_THE_AIR else None
+    def flown(self, uav: int, time: float, told: Array, spread: float) -> bool | None:
+        """A vehicle says what it flies, tilt (north, east) and thrust (N) (3,): whether that is what it was sent.
+
+        ``spread``: by how much the time varies that datagrams take to it (s).
+        """
+        return self.estimator.confirm_setpoint(uav, time, told, spread) if self.phase in IN_THE_AIR else None
 
     def break_off(self, time: float, reason: str, *, interrupted: bool = False) -> None:
         """End the flight early and safely: on the ground at once, in the air by stopping and landing."""

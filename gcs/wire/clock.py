@@ -55,6 +55,12 @@ class RemoteClock:
         return self._lead + self._shortest / 2.0 if self._leads else 0.0
 
     @property
+    def spread(self) -> float:
+        """By how much that time varies (s), apart from the worst tenth."""
+        trips = sorted(self._round_trips)
+        return (trips[9 * (len(trips) - 1) // 10] - trips[0]) / 2.0 if trips else 0.0
+
+    @property
     def delay(self) -> float:
         """Time that a datagram takes one way (s): half of the usual round trip."""
         return median(self._round_trips) / 2.0 if self._round_trips else 0.0

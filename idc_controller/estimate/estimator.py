@@ -237,16 +237,18 @@ class Estimator:
         """Set-points (3 N,) that act from ``effective`` on; None: the vehicles are held (cradles, pad), errors stay."""
         bisect.insort(self._setpoints, (effective, u), key=lambda entry: entry[0])
 
-    def confirm_setpoint(self, uav: int, time: float, told: Array) -> bool | None:
+    def confirm_setpoint(self, uav: int, time: float, told: Array, spread: float = 0.0) -> bool | None:
         """What a vehicle says it flew at ``time``: tilt (north, east) and thrust (3,).
 
-        Where that is an older set-point than it should be, those since were lost. Other words are not believed.
+        ``spread`` (s): by how much the time varies that set-points take on their way. Where that is an older set-point
+        than it should be, those since were lost. Other words are not believed.
         Returns whether it is the one that it should be, None where that cannot be told.
         """
         setpoints, N = self._setpoints, self.layout.number_of_uavs
         at = bisect.bisect_right(setpoints, time, key=lambda entry: entry[0]) - 1
         following = setpoints[at + 1][0] if at + 1 < len(setpoints) else np.inf
-        if at < 1 or not setpoints[at][0] + UNCLEAR < time < following - UNCLEAR:
+        unclear = UNCLEAR + spread
+        if at < 1 or not setpoints[at][0] + unclear < time < following - unclear:
             return None
         which = [2 * uav, 2 * uav + 1, 2 * N + uav]
 
