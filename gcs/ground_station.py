@@ -25,7 +25,7 @@ from gcs.wire.codec import Codec, gather
 GROUND_SYSTEM = 255
 GROUND_COMPONENT = mavlink.MAV_COMP_ID_MISSIONPLANNER
 HEARTBEAT_INTERVAL = 1.0  # s
-TIMESYNC_INTERVAL = 0.2  # s
+TIMESYNC_INTERVAL = 0.1  # s
 SILENCE_GIVES_UP = 3.0  # s without a word of any vehicle
 CLOCK_STEP = 0.5  # s by which the team's time is corrected at most in flight
 LATENCIES = 20  # control steps whose latency is remembered

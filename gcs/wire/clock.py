@@ -6,7 +6,7 @@ import math
 from collections import deque
 from statistics import median
 
-WINDOW = 50  # round trips that are remembered
+WINDOW = 10  # round trips that are remembered: as long as the stamps, so that both tell of one time
 SLICE = 0.25  # s of which only the greatest lead is remembered
 SLICES = 4  # few, because a simulated world that has stalled does not catch up
 RESOLUTION = 1e-6  # s; TIMESYNC counts nanoseconds, and sums of times are rounded
@@ -56,9 +56,9 @@ class RemoteClock:
 
     @property
     def spread(self) -> float:
-        """By how much that time varies (s), apart from the worst tenth."""
+        """By how much that time varies (s), apart from the worst quarter."""
         trips = sorted(self._round_trips)
-        return (trips[9 * (len(trips) - 1) // 10] - trips[0]) / 2.0 if trips else 0.0
+        return (trips[3 * (len(trips) - 1) // 4] - trips[0]) / 2.0 if trips else 0.0
 
     @property
     def delay(self) -> float:

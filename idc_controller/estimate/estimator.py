@@ -22,6 +22,7 @@ from scipy.linalg import expm
 from scipy.stats import chi2
 
 from idc_controller.estimate.adaptation import Adaptation
+from idc_controller.estimate.frozen import FrozenSensors
 from idc_controller.estimate.measurement_model import MeasurementModel, Stack
 from idc_controller.estimate.measurements import PAYLOAD, Measurement, MeasurementNoise
 from idc_controller.model.linear import LinearModel
@@ -209,6 +210,7 @@ class Estimator:
         """By the size of a measurement."""
         self.innovations: list[InnovationRecord] = []
         self.discarded_late = 0
+        self._frozen = FrozenSensors(settings.measurement)
         self.adaptation = Adaptation()
         self._noise = lru_cache(maxsize=256)(self._process_noise)
         self._transition = lru_cache(maxsize=256)(self._plain_transition)
@@ -283,7 +285,9 @@ class Estimator:
             self._snapshots.pop()
 
     def add(self, measurement: Measurement) -> bool:
-        """Take a measurement; False when it is older than the memory or older than the start."""
+        """Take a measurement; False when it is older than the memory or the start, or of a sensor that is frozen."""
+        if self._frozen.is_frozen(measurement):
+            return False
         oldest = max(self._snapshots[0].time, self.time - self.settings.history)
         if measurement.time <= oldest:
             self.discarded_late += 1

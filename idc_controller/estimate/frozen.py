@@ -1,0 +1,56 @@
+"""Sensors that tell the same again and again: what is measured with noise never does."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from idc_controller.estimate.measurements import PAYLOAD, Attitude, Measurement, MeasurementNoise
+
+Array = NDArray[np.float64]
+
+REPEATS = 2
+"""Repeated so often, a value is no measurement any more."""
+
+
+@dataclass
+class _Last:
+    time: float
+    parts: tuple[Array, Array]
+    repeats: list[int]
+
+
+class FrozenSensors:
+    """Watches every channel that is known to have noise."""
+
+    def __init__(self, noise: MeasurementNoise) -> None:
+        self._noise = noise
+        self._last: dict[tuple[int, type], _Last] = {}
+
+    def is_frozen(self, measurement: Measurement) -> bool:
+        """Whether a part of it is what its source has told several times before, to the last digit."""
+        key = measurement.source, type(measurement)
+        if isinstance(measurement, Attitude):
+            parts = measurement.quaternion, measurement.rates
+        else:
+            parts = measurement.position, measurement.velocity
+        last = self._last.get(key)
+        if last is None:
+            self._last[key] = _Last(measurement.time, parts, [0, 0])
+            return False
+        if measurement.time > last.time:
+            for k, (now, before) in enumerate(zip(parts, last.parts, strict=True)):
+                last.repeats[k] = last.repeats[k] + 1 if bool((now == before).all()) else 0
+            last.time, last.parts = measurement.time, parts
+        return any(
+            repeats >= REPEATS and sigma > 0.0
+            for repeats, sigma in zip(last.repeats, self._sigmas(measurement), strict=True)
+        )
+
+    def _sigmas(self, measurement: Measurement) -> tuple[float, float]:
+        noise, of_payload = self._noise, measurement.source == PAYLOAD
+        if isinstance(measurement, Attitude):
+            return noise.attitude, noise.payload_rates if of_payload else noise.uav_rates
+        return noise.position, noise.payload_velocity if of_payload else noise.uav_velocity
