@@ -20,7 +20,7 @@ test: $(INSTALLED)
 	$(VENV)/bin/ruff check
 	$(VENV)/bin/ruff format --check
 	$(VENV)/bin/mypy
-	$(VENV)/bin/python -m pytest
+	$(VENV)/bin/python -m pytest --numprocesses auto --dist loadfile
 
 benchmark: $(INSTALLED)
 	$(VENV)/bin/python -m pytest -o addopts= -s tests/benchmarks
