@@ -1,7 +1,7 @@
 """What the safety filter costs a control step, and which solver suits which programme.
 
-    python tests/benchmarks/bench_planner.py            both tables
-    python tests/benchmarks/bench_planner.py --quick    fewer steps
+    python tests/benchmarks/test_planner_speed.py            both tables
+    python tests/benchmarks/test_planner_speed.py --quick    fewer steps
 
 Times are of the processor (ms), so that other work on the machine disturbs them little; compare within one run only.
 """
