@@ -12,19 +12,26 @@ from typing import Any
 
 from gcs.fault_campaign.sweep import FaultFlight
 from gcs.faults.record import FAULTS_FILE, fault_notes
+from gcs.record.modes import stops_after
 from gcs.side_by_side import Ended
 
 WITHIN, OUTSIDE, ABORTED, COLLIDED, FAILED, NOT_FLOWN = VERDICTS = (
     "within limits", "outside limits", "aborted", "collided", "failed", "not flown",
 )  # fmt: skip
-"""How a flight ended, from good to bad: ``aborted`` is landed safely, but before its mission was done."""
+"""How a flight ended, from good to bad: ``aborted`` is set down safely, but before its mission was done."""
+
+WITHIN_LIMITS, SAFE = REQUIREMENTS = ("within limits", "safe")
+"""What a flight passes by: completed within its limits; or set down safely in whatever way, with its limits held."""
 
 
 @dataclass(frozen=True)
 class FaultResult:
     """What came of one flight: a row of the table. m, s, deg; None: not known, or it never happened.
 
-    ``stop_s``: from the start of the case's first fault to the moment when the flight was broken off.
+    ``stop_s``: from the start of the case's first fault to the moment when the flight was broken off;
+    ``team_stop_s``: to when the last vehicle had stopped flying the ground's set-points, then ``team_spread_s`` after
+    the first one. ``landed``, ``touchdown_mps`` and ``end_tilt_deg``: whether the payload stands on the ground at the
+    end, how fast it touched, and its angle to upright.
     ``notes``: faults that never came or disturbed nothing. ``run_dir`` is empty where it was not kept.
     """
 
@@ -37,6 +44,7 @@ class FaultResult:
     mission: str
     seed: int
     outcome: str
+    passed: bool
     within_limits: bool
     failures: str
     reason: str
@@ -45,18 +53,28 @@ class FaultResult:
     tilt_max_deg: float | None
     uav_separation_min_m: float | None
     contacts: int | None
+    landed: bool | None
+    touchdown_mps: float | None
+    end_tilt_deg: float | None
     position_rmse_m: float | None
     duration_s: float | None
     stop_s: float | None
+    team_stop_s: float | None
+    team_spread_s: float | None
     notes: str
     wall_s: float
     run_dir: str
     replay: str
 
     @property
-    def passed(self) -> bool:
-        """Whether the flight was completed within its limits."""
-        return self.within_limits
+    def safe(self) -> bool:
+        """Whether the payload was set down without contact, in whatever way."""
+        return self.outcome in (WITHIN, OUTSIDE, ABORTED) and not self.contacts
+
+    def held_to(self, requirement: str) -> FaultResult:
+        """The same with ``passed`` by one of :data:`REQUIREMENTS`."""
+        passed = self.within_limits if requirement == WITHIN_LIMITS else self.safe and not self.failures
+        return dataclasses.replace(self, passed=passed)
 
 
 COLUMNS = tuple(field.name for field in dataclasses.fields(FaultResult))
@@ -70,6 +88,10 @@ def replay_command(mission: Path, options: Sequence[str]) -> str:
 def evaluate(flight: FaultFlight, ended: Ended, run_dir: Path, replay: str) -> FaultResult:
     """The result of a flight."""
     summary = ended.summary
+    landing = summary.get("landing") or {}
+    count = len(flight.case.faults)
+    stop = stop_time(summary, run_dir, count)
+    last, spread = team_stop(run_dir, count) if stop is not None else (None, None)
     angles = [angle for angle in summary.get("payload_tilt_max_deg", {}).values() if angle is not None]
     return FaultResult(
         number=flight.number,
@@ -81,6 +103,7 @@ def evaluate(flight: FaultFlight, ended: Ended, run_dir: Path, replay: str) -> F
         mission=flight.mission,
         seed=flight.seed,
         outcome=verdict(ended),
+        passed=ended.exit_code == 0,
         within_limits=ended.exit_code == 0,
         failures=" ".join(limits_not_held(summary)),
         reason=ended.reason,
@@ -89,9 +112,14 @@ def evaluate(flight: FaultFlight, ended: Ended, run_dir: Path, replay: str) -> F
         tilt_max_deg=max(angles, default=None),
         uav_separation_min_m=summary.get("uav_separation_min_m"),
         contacts=summary.get("contacts"),
+        landed=landing.get("on_ground"),
+        touchdown_mps=landing.get("speed_mps"),
+        end_tilt_deg=landing.get("tilt_deg"),
         position_rmse_m=summary.get("position_rmse_m", {}).get("total"),
         duration_s=summary.get("duration_s"),
-        stop_s=stop_time(summary, run_dir, len(flight.case.faults)),
+        stop_s=stop,
+        team_stop_s=last,
+        team_spread_s=spread,
         notes="; ".join(fault_notes(run_dir)),
         wall_s=round(ended.wall, 1),
         run_dir=str(run_dir) if run_dir.exists() else "",
@@ -115,16 +143,29 @@ def limits_not_held(summary: dict[str, Any]) -> list[str]:
 
 
 def stop_time(summary: Mapping[str, Any], run_dir: Path, count: int) -> float | None:
-    """From the start of the first of the last ``count`` faults to when the flight was broken off (s); None: it was not.
+    """From :func:`first_start` of the last ``count`` faults to when the flight was broken off (s); None: it was not."""
+    broken_off, begin = summary.get("broken_off_s"), first_start(run_dir, count)
+    return None if broken_off is None or begin is None or broken_off < begin else round(broken_off - begin, 3)
+
+
+def team_stop(run_dir: Path, count: int) -> tuple[float | None, float | None]:
+    """From :func:`first_start` to the last vehicle's stop, and from the first one's to the last one's (s)."""
+    begin = first_start(run_dir, count)
+    stops = stops_after(run_dir, begin).values() if begin is not None else ()
+    if begin is None or not stops:
+        return None, None
+    return round(max(stops) - begin, 3), round(max(stops) - min(stops), 3)
+
+
+def first_start(run_dir: Path, count: int) -> float | None:
+    """When the first of the last ``count`` faults started (s, the clock of the tables); None: none did.
 
     The faults before them are the mission's own.
     """
-    broken_off = summary.get("broken_off_s")
     try:
         record = json.loads((run_dir / FAULTS_FILE).read_text(encoding="utf-8"))
         faults = record["faults"][len(record["faults"]) - count :]
         starts = [fault["activations"][0][0] for fault in faults if fault["activations"]]
-        begin = record["take_off_s"] + min(starts)
+        return float(record["take_off_s"] + min(starts))
     except (OSError, ValueError, KeyError, TypeError, IndexError):
         return None
-    return None if broken_off is None or broken_off < begin else round(broken_off - begin, 3)

@@ -34,7 +34,7 @@ def landing_figures(run: RunData) -> dict[str, Any] | None:
 
     ``touchdown_s``: when the payload touched the ground for good (s, the clock of the tables). ``speed_mps`` and
     ``sinking_mps``: its largest speed, and the largest of its speed downwards, wherever it touched after take-off
-    (m/s). ``tilt_deg``: its angle to upright at the end (deg). ``on_ground``: it stands on ground or pad at the end, at
+    (m/s; 0 if it never left the ground). ``tilt_deg``: its angle to upright at the end (deg). ``on_ground``: it stands on ground or pad at the end, at
     rest, all rotors stopped. ``contacts_before``: how often a pair of parts began to touch until then. What never
     happened is None.
     """
@@ -45,16 +45,16 @@ def landing_figures(run: RunData) -> dict[str, Any] | None:
     airborne = np.flatnonzero(height > _AIRBORNE)
     touching = height <= _TOUCHING
     speed = np.linalg.norm(run.payload_velocity, axis=1)
-    down: float | None = None
-    fastest: float | None = None
-    touchdown = len(run.time) if len(airborne) else 0
+    fastest: float | None = 0.0
+    down: float | None = 0.0
+    touchdown = 0
     if len(airborne):
         # With the row before each: the ground has not slowed it yet.
         near = touching.copy()
         near[:-1] |= touching[1:]
         near[: airborne[0]] = False
-        if near.any():
-            fastest, down = float(speed[near].max()), float(max(run.payload_velocity[near, 2].max(), 0.0))
+        fastest = float(speed[near].max()) if near.any() else None
+        down = float(max(run.payload_velocity[near, 2].max(), 0.0)) if near.any() else None
         after = np.flatnonzero(touching[airborne[-1] :])
         touchdown = int(airborne[-1] + after[0]) if len(after) else len(run.time)
     landed = bool(len(airborne)) and touchdown < len(run.time)
