@@ -34,9 +34,9 @@ def landing_figures(run: RunData) -> dict[str, Any] | None:
 
     ``touchdown_s``: when the payload touched the ground for good (s, the clock of the tables). ``speed_mps`` and
     ``sinking_mps``: its largest speed, and the largest of its speed downwards, wherever it touched after take-off
-    (m/s; 0 if it never left the ground). ``tilt_deg``: its angle to upright at the end (deg). ``on_ground``: it stands on ground or pad at the end, at
-    rest, all rotors stopped. ``contacts_before``: how often a pair of parts began to touch until then. What never
-    happened is None.
+    (m/s; 0 if it never left the ground). ``tilt_deg``: its angle to upright at the end (deg). ``on_ground``: it stands
+    on ground or pad at the end, at rest, all rotors stopped. ``contacts_before``: how often a pair of parts began to
+    touch until then. What never happened is None.
     """
     if run.source != "truth" or run.contacts is None or len(run.time) == 0:
         return None
