@@ -117,11 +117,21 @@ class HoldController:
         self._integral_x = 0.0
         self._integral_y = 0.0
         self._last_time = plan.start
+        self._stands: tuple[float, float] | None = None
 
-    def command(self, measured: Measurement, now: float) -> tuple[Quaternion, float]:
-        """Attitude set-point (unit quaternion body to world) and thrust (N)."""
+    def command(self, measured: Measurement, now: float, standing: bool = False) -> tuple[Quaternion, float]:
+        """Attitude set-point (unit quaternion body to world) and thrust (N).
+
+        ``standing``: the payload stands on the ground. The vehicle stays where it is then: what it has learned to hold
+        the payload against the wind would drive it sideways, and its link over.
+        """
         position, velocity, acceleration = self.plan.at(now)
         x, y, z = measured.position
+        if standing:
+            self._stands = self._stands or (x, y)
+            position, velocity = (*self._stands, position[2]), (0.0, 0.0, velocity[2])
+        else:
+            self._stands = None
         v_x, v_y, v_z = measured.velocity
         error_x, error_y = position[0] - x, position[1] - y
         step = min(max(now - self._last_time, 0.0), 0.1)
@@ -131,7 +141,10 @@ class HoldController:
         size = math.hypot(i_x, i_y)
         if size > INTEGRAL_LIMIT:
             i_x, i_y = i_x * INTEGRAL_LIMIT / size, i_y * INTEGRAL_LIMIT / size
-        self._integral_x, self._integral_y = i_x, i_y
+        if standing:
+            i_x = i_y = 0.0
+        else:
+            self._integral_x, self._integral_y = i_x, i_y
 
         a_x = acceleration[0] + HORIZONTAL_KP * error_x + HORIZONTAL_KD * (velocity[0] - v_x) + i_x
         a_y = acceleration[1] + HORIZONTAL_KP * error_y + HORIZONTAL_KD * (velocity[1] - v_y) + i_y

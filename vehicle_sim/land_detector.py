@@ -32,19 +32,21 @@ class LandDetector:
         self._light_since = math.inf
         self._touching_since = math.inf
         self.in_air = False
+        self.touching = False
         self.touched_down = False
         self.hover_thrust: float | None = None
 
     def start(self) -> None:
         """The vehicle stands here: armed, or disarmed."""
         self._ground = self._altitude
-        self.in_air = self.touched_down = False
+        self.in_air = self.touching = self.touched_down = False
         self._light_since = self._touching_since = math.inf
 
     def update(self, measured: Measurement, thrust: float, now: float, learn: bool) -> None:
         """One step of the onboard loop. ``thrust`` commanded (N); ``learn`` the hover thrust from it.
 
-        ``touched_down`` says, for a vehicle that is commanded to sink, that it does not sink any more.
+        ``touching`` says, for a vehicle that is commanded to sink, that it does not sink any more; ``touched_down``
+        that it has not for a while.
         """
         step = now - self._last_time
         self._last_time = now
@@ -74,6 +76,7 @@ class LandDetector:
             self._touching_since = now
         self._light_since = min(self._light_since, now)
         self._touching_since = min(self._touching_since, now)
+        self.touching = self._touching_since < now
         self.touched_down = now - self._touching_since >= STILL_TIME
         if now - self._light_since >= STILL_TIME:
             self.start()

@@ -352,7 +352,7 @@ class Flight:
             share = max(1.0 - (time - self._since) / SPOOL_DOWN, 0.0)
         if self.phase in IN_THE_AIR:
             self.estimator.add_setpoint(effective, decision.u)
-            self.stop_plan = stop_plan(self._parameters, decision.flat, effective)
+            self.stop_plan = stop_plan(self._parameters, decision.flat, effective, estimate.x)
             self._stop_plans.append(self.stop_plan)
         self._advance(time, estimate, share)
         setpoints = Setpoints(decision.directions, decision.thrusts * share)
