@@ -16,6 +16,8 @@ from flight_in_process import GROUND, Rehearsal, address_of, short_figure, truth
 from pymavlink import mavutil
 from test_flight_end_to_end import ENVIRONMENT, addresses_of, free_port, swarm_process
 
+from gcs.record.landing import is_set_down
+from gcs.record.modes import stops_after
 from gcs.setpoints import attitude_target
 from gcs.wire import px4
 from gcs.wire.codec import Codec
@@ -265,6 +267,53 @@ def test_vehicles_whose_ground_is_gone_stop_together_and_set_the_payload_down(tm
         assert flight.leave_alone()
         summary = flight.summary()
     check_set_down(tmp_path / "run", summary)
+
+
+@pytest.mark.parametrize(("start", "velocity", "seed"), [(9.0, (0.0, -4.0), 9103), (17.0, (2.83, 2.83), 7)])
+def test_so_do_they_in_wind(tmp_path, start, velocity, seed):
+    """They have braced the payload against the wind; once it stands they must not be driven over by that."""
+    mission = short_figure(tmp_path, duration=20.0)
+    with mission.open("a") as file:
+        file.write(f"""
+[[fault]]
+kind = "partition"
+start = {start}
+
+[[fault]]
+kind = "wind"
+start = 0.0
+velocity = [{velocity[0]}, {velocity[1]}, 0.0]
+gust = 0.5
+""")
+    with Rehearsal(mission, tmp_path / "run", seed=seed) as flight:
+        flight.fly()
+        assert "no vehicle sends telemetry" in flight.flight.reason
+        assert flight.leave_alone()
+        summary = flight.summary()
+    assert is_set_down(summary["landing"]), summary["landing"]
+    assert summary["contacts"] == 0
+    assert summary["uav_separation_min_m"] >= 0.6
+    stops = stops_after(tmp_path / "run", flight.swarm.take_off_time + start)
+    assert len(stops) == 4
+    assert max(stops.values()) - min(stops.values()) < 0.01
+    assert max(stops.values()) - flight.swarm.take_off_time - start <= 0.5
+
+
+def test_for_the_vehicles_a_partition_is_a_killed_ground(tmp_path):
+    start, truths = 8.0007, []
+    mission = short_figure(tmp_path, duration=4.0, altitude=1.5)
+    with Rehearsal(mission, tmp_path / "killed", seed=4) as flight:
+        flight.fly(stop=lambda: flight.swarm.take_off_time is not None)
+        flight.fly(until=flight.swarm.take_off_time + start)
+        assert flight.leave_alone()
+    mission.write_text(f'{mission.read_text()}\n[[fault]]\nkind = "partition"\nstart = {start}\n')
+    with Rehearsal(mission, tmp_path / "parted", seed=4) as flight:
+        flight.fly()
+        assert flight.leave_alone()
+    for name in ("killed", "parted"):
+        truths.append((tmp_path / name / "truth.csv").read_text().splitlines())
+    rows = min(map(len, truths))
+    assert rows > 50 * (start + 8.0) and truths[0][:rows] == truths[1][:rows]
 
 
 def check_set_down(folder, summary):
