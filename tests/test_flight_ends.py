@@ -7,6 +7,7 @@ import re
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,11 +17,13 @@ from flight_in_process import GROUND, Rehearsal, address_of, short_figure, truth
 from pymavlink import mavutil
 from test_flight_end_to_end import ENVIRONMENT, addresses_of, free_port, swarm_process
 
+from gcs.flight.flight import Phase
 from gcs.record.landing import is_set_down
 from gcs.record.modes import stops_after
 from gcs.setpoints import attitude_target
 from gcs.wire import px4
 from gcs.wire.codec import Codec
+from idc_controller.plan.trajectory import RestTrajectory
 from vehicle_sim.passage import Passage
 
 PATIENCE = 120.0  # s of wall time for what takes a few
@@ -261,6 +264,36 @@ def test_a_vehicle_that_drops_out_in_flight_brings_all_of_them_down(tmp_path, te
     assert len(stops) == 4 and max(stops.values()) - min(stops.values()) < 0.05
     assert max(stops.values()) - 16.4 <= 0.5
     check_set_down(tmp_path / "run", summary)
+
+
+def test_nothing_is_touched_high_above_the_ground(tmp_path):
+    """Above its reference and still, as wind may hold it: no touch-down, and the vehicles are left to land at last."""
+    with Rehearsal(short_figure(tmp_path, duration=2.0, altitude=1.5), tmp_path / "run") as rehearsal:
+        rehearsal.fly(stop=lambda: rehearsal.flight.phase is Phase.LAND)
+        flight = rehearsal.flight
+        true = flight.estimator.estimate
+
+        def still_at(height):
+            def estimate(*arguments):
+                found = true(*arguments)
+                x = found.x.copy()
+                x[2], x[5] = -height, 0.0
+                return replace(found, x=x)
+
+            return estimate
+
+        reference = flight.controller.reference(flight.course.trajectory)
+        high, low = (still_at(height)(rehearsal.now, reference) for height in (5.0, 0.3))
+        flight.course._trajectory = RestTrajectory(np.array([0.0, 0.0, -1.5]), rehearsal.now - 20.0)
+        assert not flight._touched(rehearsal.now, high)
+        assert flight._touched(rehearsal.now, low)
+        assert not flight._stays_up(rehearsal.now, low)
+        flight.estimator.estimate = still_at(5.0)
+        rehearsal.fly()
+        assert flight.reason == "the payload does not come down"
+        assert rehearsal.leave_alone()
+        summary = rehearsal.summary()
+    assert is_set_down(summary["landing"])
 
 
 @pytest.mark.parametrize("moment", [13.3, 17.8])
