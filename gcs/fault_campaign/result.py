@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from gcs.fault_campaign.sweep import FaultFlight
+from gcs.faults import KINDS
 from gcs.faults.record import FAULTS_FILE, fault_notes
 from gcs.record.modes import stops_after
 from gcs.side_by_side import Ended
@@ -160,12 +161,17 @@ def team_stop(run_dir: Path, count: int) -> tuple[float | None, float | None]:
 def first_start(run_dir: Path, count: int) -> float | None:
     """When the first of the last ``count`` faults started (s, the clock of the tables); None: none did.
 
-    The faults before them are the mission's own.
+    The faults before them are the mission's own. Wind and load count only where nothing else is wrong.
     """
     try:
         record = json.loads((run_dir / FAULTS_FILE).read_text(encoding="utf-8"))
         faults = record["faults"][len(record["faults"]) - count :]
-        starts = [fault["activations"][0][0] for fault in faults if fault["activations"]]
+        broken = [fault for fault in faults if not _is_of_world(fault.get("kind"))]
+        starts = [fault["activations"][0][0] for fault in broken or faults if fault["activations"]]
         return float(record["take_off_s"] + min(starts))
     except (OSError, ValueError, KeyError, TypeError, IndexError):
         return None
+
+
+def _is_of_world(kind: str | None) -> bool:
+    return kind in KINDS and KINDS[kind].family == "world"
