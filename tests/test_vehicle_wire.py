@@ -14,7 +14,6 @@ from flying import AIRFRAME, Body
 from gcs.setpoints import stop_plan_message
 from gcs.wire import px4
 from gcs.wire.codec import DATAGRAM_LIMIT, Codec
-from vehicle_sim.parameter_table import SETPOINT_LOSS
 from vehicle_sim.sensors import Measurement
 from vehicle_sim.vehicle import Vehicle
 
@@ -487,13 +486,13 @@ def test_no_stranger_commands_a_controlled_vehicle(flying: Bench) -> None:
     flying.vehicle.step(flying.body.measure(), flying.now)
     assert flying.vehicle.autopilot.armed and flying.vehicle.autopilot.mode == px4.MODE_OFFBOARD
     assert flying.vehicle.autopilot.attitude_target[2] == pytest.approx(HOVER)
-    assert flying.vehicle.parameters["COM_OF_LOSS_T"] == pytest.approx(SETPOINT_LOSS)
+    assert flying.vehicle.parameters["COM_OF_LOSS_T"] == 0.5
     assert flying.result(command(512, mavlink.MAVLINK_MSG_ID_HOME_POSITION), STRANGER) == ACCEPTED
 
 
 def test_another_ground_may_take_over_once_the_stream_is_silent(flying: Bench) -> None:
     flying.streaming = {(STRANGER, 42): attitude_target(thrust=HOVER)}
-    flying.run(0.35)
+    flying.run(0.45)
     assert flying.result(OFFBOARD, STRANGER, 42) == DENIED
     flying.run(0.3)
     assert flying.vehicle.autopilot.failsafe  # its set-points do not fly the vehicle by themselves
@@ -543,8 +542,8 @@ def test_parameters_are_read_by_name_and_by_index(bench: Bench) -> None:
     ("name", "value", "kind", "stored"),
     [
         ("COM_OF_LOSS_T", 0.3, 9, pytest.approx(0.3)),
-        ("COM_OF_LOSS_T", math.nan, 9, pytest.approx(SETPOINT_LOSS)),
-        ("COM_OF_LOSS_T", -1.0, 9, pytest.approx(SETPOINT_LOSS)),
+        ("COM_OF_LOSS_T", math.nan, 9, 0.5),
+        ("COM_OF_LOSS_T", -1.0, 9, 0.5),
         ("COM_DL_LOSS_T", px4.parameter_to_wire(20, 6), 6, 20),
         ("COM_DL_LOSS_T", 20.0, 9, 10),
         ("COM_DL_LOSS_T", 20.0, 6, 10),  # a C cast: read byte-wise it is far out of range
@@ -592,7 +591,7 @@ def test_mutated_datagrams_neither_raise_nor_command(flying: Bench) -> None:
     assert vehicle.autopilot.armed and vehicle.autopilot.mode == px4.MODE_OFFBOARD
     assert vehicle.autopilot.changes == before
     assert vehicle.autopilot.attitude_target[2] == pytest.approx(HOVER)
-    assert vehicle.parameters["COM_OF_LOSS_T"] == pytest.approx(SETPOINT_LOSS)
+    assert vehicle.parameters["COM_OF_LOSS_T"] == 0.5
 
 
 def offset_of(kind: Any, name: str) -> int:
@@ -622,4 +621,4 @@ def test_every_message_with_random_contents_from_a_stranger_is_survived_and_chan
         vehicle.step(flying.body.measure(), flying.now)
         vehicle.datagrams_to_send(flying.now)
     assert vehicle.autopilot.changes == before
-    assert vehicle.autopilot.armed and vehicle.parameters["COM_OF_LOSS_T"] == pytest.approx(SETPOINT_LOSS)
+    assert vehicle.autopilot.armed and vehicle.parameters["COM_OF_LOSS_T"] == 0.5
