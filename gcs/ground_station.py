@@ -104,6 +104,8 @@ class GroundStation:
             if index is None:
                 continue
             known = True
+            if getattr(message, "target_system", 0) not in (0, GROUND_SYSTEM):
+                continue  # an answer to another system behind this address
             link = self.links[index]
             link.handle(message, now)
             if link.clock.known:
@@ -124,8 +126,8 @@ class GroundStation:
                 queue.append(_heartbeat())
         if now >= self._next_timesync - TOLERANCE:
             self._next_timesync = now + TIMESYNC_INTERVAL
-            for queue in messages:
-                queue.append(mavlink.MAVLink_timesync_message(0, round(now * 1e9)))
+            for link, queue in zip(self.links, messages, strict=True):
+                queue.append(mavlink.MAVLink_timesync_message(0, link.clock.ask(now)))
         self._stepped = now >= self._next_control - TOLERANCE
         if self._stepped:
             self._control(now, messages)

@@ -123,7 +123,7 @@ class VehicleLink:
             self._parameter(message)
         elif kind == "TIMESYNC":
             if message.tc1:
-                self.clock.answered(message.ts1 * 1e-9, now)
+                self.clock.answered(message.ts1, now)
         elif kind == "EXTENDED_SYS_STATE":
             self.landed_state = message.landed_state
         elif kind == "SYS_STATUS":

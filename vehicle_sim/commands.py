@@ -124,6 +124,8 @@ class CommandServer:
         wanted = _whole(message.param1, 1 << 24)
         if wanted is None or not self._vehicle.telemetry.knows(px4.AUTOPILOT_COMPONENT, wanted):
             return Answer(_UNSUPPORTED)
+        if self._vehicle.owner.is_stranger_at_its_address(sender, now):
+            return Answer(_DENIED, "Interval denied: another ground station flies by this link")
         microseconds = message.param2
         if microseconds == -1.0:
             peer.set_interval(wanted, math.inf)
