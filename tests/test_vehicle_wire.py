@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import math
-import struct
 from typing import Any
 
 import numpy as np
 import pymavlink.dialects.v20.common as mavlink
 import pytest
 from flying import AIRFRAME, Body
+from hostile_traffic import with_random_contents
 
 from gcs.setpoints import stop_plan_message
 from gcs.wire import px4
 from gcs.wire.codec import DATAGRAM_LIMIT, Codec
+from vehicle_sim.peers import REPLIES_MAX
 from vehicle_sim.sensors import Measurement
 from vehicle_sim.vehicle import Vehicle
 
@@ -490,6 +491,26 @@ def test_no_stranger_commands_a_controlled_vehicle(flying: Bench) -> None:
     assert flying.result(command(512, mavlink.MAVLINK_MSG_ID_HOME_POSITION), STRANGER) == ACCEPTED
 
 
+def test_no_stranger_behind_the_grounds_address_stops_its_telemetry(flying: Bench) -> None:
+    stop = command(511, mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, -1)
+    assert flying.result(stop, GROUND, 42) == DENIED
+    assert flying.result(stop, STRANGER, 42) == ACCEPTED
+    before = len(flying.got("ATTITUDE_QUATERNION"))
+    flying.run(0.5)
+    assert len(flying.got("ATTITUDE_QUATERNION")) >= before + 24
+    assert flying.result(stop) == ACCEPTED
+
+
+def test_who_asks_for_too_much_at_once_does_not_get_it(flying: Bench) -> None:
+    flying.collect()
+    flying.inbox.clear()
+    for _ in range(1000):
+        flying.send(mavlink.MAVLink_param_request_list_message(1, 1), STRANGER)
+    flying.collect()
+    assert len(flying.got("PARAM_VALUE", STRANGER)) == REPLIES_MAX
+    assert flying.result(command(512, mavlink.MAVLINK_MSG_ID_HOME_POSITION), STRANGER) == ACCEPTED
+
+
 def test_another_ground_may_take_over_once_the_stream_is_silent(flying: Bench) -> None:
     flying.streaming = {(STRANGER, 42): attitude_target(thrust=HOVER)}
     flying.run(0.45)
@@ -594,16 +615,6 @@ def test_mutated_datagrams_neither_raise_nor_command(flying: Bench) -> None:
     assert vehicle.parameters["COM_OF_LOSS_T"] == 0.5
 
 
-def offset_of(kind: Any, name: str) -> int:
-    """Where a field lies in a message's payload on the wire."""
-    codes = kind.native_format.decode().lstrip("<")
-    before = kind.ordered_fieldnames.index(name)
-    return sum(
-        struct.calcsize("<" + code) * max(length, 1)
-        for code, length in zip(codes[:before], kind.array_lengths[:before], strict=True)
-    )
-
-
 def test_every_message_with_random_contents_from_a_stranger_is_survived_and_changes_nothing(flying: Bench) -> None:
     rng = np.random.default_rng(11)
     writer = mavlink.MAVLink(None, 42, 1)
@@ -611,12 +622,8 @@ def test_every_message_with_random_contents_from_a_stranger_is_survived_and_chan
     before = vehicle.autopilot.changes
     for _ in range(10):
         for kind in mavlink.mavlink_map.values():
-            payload = bytearray(rng.bytes(kind.unpacker.size))
-            for name in ("target_system", "target_component"):
-                if name in kind.ordered_fieldnames:
-                    payload[offset_of(kind, name)] = 1
-            message = mavlink.MAVLink_message(kind.id, kind.msgname)
-            vehicle.receive(message._pack(writer, kind.crc_extra, bytes(payload)), STRANGER, flying.now)
+            frame = with_random_contents(kind, rng.bytes(kind.unpacker.size), 1, writer)
+            vehicle.receive(frame, STRANGER, flying.now)
         flying.send(attitude_target())
         vehicle.step(flying.body.measure(), flying.now)
         vehicle.datagrams_to_send(flying.now)
