@@ -14,9 +14,9 @@ from avoidance_scene import (
     sphere,
     straight,
     swinging,
-    system,
     wall,
 )  # fmt: skip
+from paper_system import system
 
 from idc_controller.barrier.planner import PlannerSettings
 from idc_controller.barrier.safety_filter import NEGLIGIBLE
