@@ -10,11 +10,10 @@ import sys
 
 import numpy as np
 import pytest
+from fault_passages import SYSTEM, fault
 from scripted_ground import ScriptedGround, exchange
 
-from gcs.config import read_system
 from gcs.faults.record import fault_notes
-from gcs.mission import Fault
 from vehicle_sim.faults import FaultPassage, record_faults
 from vehicle_sim.faults.active import ActiveFault
 from vehicle_sim.faults.world import Wind, WorldFaults
@@ -22,12 +21,6 @@ from vehicle_sim.passage import Passage
 from vehicle_sim.swarm import Swarm
 from vehicle_sim.truth_log import TruthLog
 from vehicle_sim.world import World
-
-SYSTEM = read_system()
-
-
-def fault(kind, start=0.0, duration=None, vehicles=None, direction=None, **settings):
-    return Fault(kind, start, duration, vehicles=vehicles, direction=direction, settings=settings)
 
 
 def lifted(*faults, seed=1, until=4.0, folder=None):
