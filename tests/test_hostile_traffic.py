@@ -1,8 +1,11 @@
 """Strangers and damaged links beside a flight: nothing crashes, no command is obeyed, and the flight is the same."""
 
+from random import Random
+
+import pymavlink.dialects.v20.ardupilotmega as mavlink
 from flight_in_process import GROUND, Rehearsal, address_of, check_within_limits, short_figure
 from hostile_messages import hostile_to_ground, hostile_to_vehicle
-from hostile_traffic import HostileTraffic, Traffic
+from hostile_traffic import HostileTraffic, Traffic, with_random_contents
 
 from gcs.flight.flight import IN_THE_AIR
 from gcs.ground_station import GROUND_SYSTEM
@@ -83,3 +86,16 @@ def test_hostile_datagrams_change_nothing_of_a_flight(tmp_path):
     assert flight.station.refused_datagrams > 0.9 * DATAGRAMS
     for name in ("truth.csv", "estimate.csv"):
         assert (tmp_path / "storm" / name).read_bytes() == (tmp_path / "calm" / name).read_bytes()
+
+
+def test_the_ground_survives_any_message_of_the_dialect(tmp_path):
+    """Every message, well formed, with whatever its fields may hold, from a vehicle that it believes."""
+    random = Random(4)
+    writer = mavlink.MAVLink(None, VEHICLE, 1)
+    with Rehearsal(short_figure(tmp_path), tmp_path / "run") as flight:
+        flight.fly(stop=lambda: flight.flight.phase.value == "fly")
+        for kind in mavlink.mavlink_map.values():
+            for _ in range(5):
+                datagram = with_random_contents(kind, random.randbytes(kind.unpacker.size), GROUND_SYSTEM, writer)
+                flight.station.receive(datagram, address_of(VEHICLE), flight.now)
+        flight.fly(until=flight.now + 1.0)
