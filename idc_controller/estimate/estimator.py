@@ -133,7 +133,7 @@ class _Way:
         times += [t for t in switches if min(abs(t - other) for other in times) > 1e-6]
         self.edges = sorted(set(times))
         self.flat = reference.at(np.array(self.edges))
-        self.setpoints = [setpoints.in_force((a + b) / 2) for a, b in pairwise(self.edges)]
+        self.setpoints = [setpoints.in_force(a, b) for a, b in pairwise(self.edges)]
         """From each edge to the next."""
 
     def u(self, k: int) -> Array:
@@ -195,12 +195,12 @@ class Estimator:
         """Set-points (3 N,) that act from ``effective`` on; None: the vehicles are held (cradles, pad), errors stay."""
         self._setpoints.add(effective, u)
 
-    def confirm_setpoint(self, uav: int, time: float, told: Array, spread: float = 0.0) -> bool | None:
-        """What a vehicle says it flew at ``time``, see :meth:`SetpointHistory.confirm`.
+    def confirm_setpoint(self, uav: int, since: float, until: float, told: Array, spread: float = 0.0) -> bool | None:
+        """What a vehicle says it flew from ``since`` to ``until`` (s), see :meth:`SetpointHistory.confirm`.
 
         Returns whether it is what it was sent, None where that cannot be told.
         """
-        confirmation = self._setpoints.confirm(uav, time, told, spread)
+        confirmation = self._setpoints.confirm(uav, since, until, told, spread)
         if confirmation is None:
             return None
         if confirmation.corrected_from is not None:
@@ -273,12 +273,12 @@ class Estimator:
 
     def _predict(self, way: _Way, k: int) -> None:
         """From edge ``k`` to the next, under the set-points in force."""
-        u, change = way.setpoints[k]
+        u, change, doubt = way.setpoints[k]
         delta_u = np.zeros(self.layout.inputs) if u is None else u - way.u(k)
         F, B = self.process_model.transition(way.interval_us(k), way.acceleration(k))
         Q = self.process_model.noise(way.interval_us(k), self.adaptation.restlessness)
         if change is not None:
-            Q = Q + self.process_model.loss_noise(B, change, self._setpoints.loss)
+            Q = Q + self.process_model.doubt_noise(B, change, doubt)
         self._filter.predict(u=delta_u, F=F, B=B, Q=Q)
 
     def _update(self, moment: _Moment, flat: FlatReference, k: int) -> None:

@@ -65,13 +65,13 @@ class ProcessModel:
         """Covariance (n, n) that an interval (us) adds; ``restlessness`` multiplies the noise of the forces."""
         return self._noise(interval_us, restlessness)
 
-    def loss_noise(self, B: Array, change: Array, loss: Array) -> Array:
-        """Covariance (n, n) that set-points add which may be lost on their way.
+    def doubt_noise(self, B: Array, change: Array, doubt: Array) -> Array:
+        """Covariance (n, n) that set-points add which may not act yet, or never.
 
-        Each vehicle i flies the one before, that differs by ``change`` (3 N,), with probability ``loss`` (N,).
+        Each vehicle flies the one before, that differs by ``change`` (3 N,), with probability ``doubt`` (N,).
         """
         N = self.layout.number_of_uavs
-        error = B * (change * np.sqrt(np.concatenate([np.repeat(loss, 2), loss])))
+        error = B * (change * np.sqrt(np.concatenate([np.repeat(doubt, 2), doubt])))
         tilts = error[:, : 2 * N].reshape(-1, N, 2).sum(axis=2)
         lost = np.hstack([tilts, error[:, 2 * N :]])
         return np.asarray(lost @ lost.T)
