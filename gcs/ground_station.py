@@ -97,6 +97,7 @@ class GroundStation:
         """Whatever came from an address. Never raises for anything that a datagram can hold."""
         messages = self._codec.decode(datagram)
         known = False
+        latest = -math.inf
         for message in messages:
             index = self._by_address.get((sender, message.get_srcSystem()))
             if index is None:
@@ -109,7 +110,7 @@ class GroundStation:
             link = self.links[index]
             link.handle(message, now)
             if link.clock.known:
-                self._learn(message, index)
+                latest = max(latest, self._learn(message, index, latest))
         if known:
             self._recorder.datagram(now, datagram)
         else:
@@ -174,12 +175,12 @@ class GroundStation:
         if self.flight.phase is Phase.CONNECT or abs(offset - self._team_offset) < CLOCK_STEP:
             self._team_offset = offset
 
-    def _learn(self, message: Any, index: int) -> None:
-        """From a message that tells of one moment."""
+    def _learn(self, message: Any, index: int, latest: float) -> float:
+        """From a message that tells of one moment: which. ``latest`` is that of those before it in its datagram."""
         kind = message.get_type()
         is_detection = kind == "OBSTACLE_DISTANCE_3D"
         if not is_detection and kind not in ("ATTITUDE_QUATERNION", "LOCAL_POSITION_NED", "ATTITUDE_TARGET"):
-            return
+            return -math.inf
         link, obstacle_map = self.links[index], self._obstacle_map
         if index == 0:
             self._follow_clock(link.clock.offset)
@@ -187,17 +188,19 @@ class GroundStation:
         if kind == "ATTITUDE_TARGET":
             told = setpoint_flown(message, link.parameters.get(px4.PARAM_THRUST_MAX, math.nan))
             if told is not None:
-                link.confirmed(self.flight.flown(index, time, told, link.clock.spread))
-            return
+                # Its stamp is that of the moment at which it began to act.
+                link.confirmed(self.flight.flown(index, time, max(time, latest), told, link.clock.spread))
+            return time
         if is_detection:
             if obstacle_map is not None:
                 obstacle_map.detected(message, index, time)
-            return
+            return time
         sample = measurement(message, index, time)
         if sample is not None:
             self.flight.measured(sample)
             if obstacle_map is not None:
                 obstacle_map.measured(sample)
+        return time
 
     def _control(self, now: float, messages: list[list[Any]]) -> None:
         time = self.team_time(now)
@@ -217,7 +220,7 @@ class GroundStation:
             default=0.0,
         )  # fmt: skip
         if self._obstacle_map is not None:
-            self._obstacle_map.update(time)
+            self._obstacle_map.update(time, self.flight.pose_noise)
             self._recorder.obstacles(self._obstacle_map, time)
         effective = _whole_ms(time + self._latency + delay + onboard)
         setpoints, record = self.flight.step(time, effective, now)

@@ -146,6 +146,11 @@ class Flight:
             return self.course.trajectory
         return self._pad
 
+    @property
+    def pose_noise(self) -> float:
+        """Factor of the noise of telemetry over that of the system file, as the filter sees it, 1 or more."""
+        return math.sqrt(self.estimator.adaptation.noise)
+
     def asked(self, times: Array) -> tuple[Array, Array]:
         """Position and velocity (K, 3) that the mission asks of the payload at ``times`` since take-off began."""
         if self.course is not None:
@@ -164,12 +169,14 @@ class Flight:
             samples.append(measurement)
             del samples[:-100]
 
-    def flown(self, uav: int, time: float, told: Array, spread: float) -> bool | None:
-        """A vehicle says what it flies, tilt (north, east) and thrust (N) (3,): whether that is what it was sent.
+    def flown(self, uav: int, since: float, until: float, told: Array, spread: float) -> bool | None:
+        """A vehicle says what it flew from ``since`` to ``until``, tilt (north, east) and thrust (N) (3,).
 
-        ``spread``: by how much the time varies that datagrams take to it (s).
+        ``spread``: by how much the time varies that datagrams take to it (s). Returns whether that is what it was sent.
         """
-        return self.estimator.confirm_setpoint(uav, time, told, spread) if self.phase in IN_THE_AIR else None
+        if self.phase not in IN_THE_AIR:
+            return None
+        return self.estimator.confirm_setpoint(uav, since, until, told, spread)
 
     def break_off(self, time: float, reason: str, *, interrupted: bool = False) -> None:
         """End the flight early and safely: on the ground at once, in the air by stopping and landing."""

@@ -97,10 +97,13 @@ class ObstacleMap:
         """Detections that could not be used."""
         return self._inbox.refused
 
-    def update(self, now: float) -> None:
-        """Learn from all that came since the last time."""
+    def update(self, now: float, pose_noise: float = 1.0) -> None:
+        """Learn from all that came since the last time.
+
+        ``pose_noise``: factor of the noise of the vehicles' poses over that of the system file.
+        """
         self._time = now
-        for clusters in self._inbox.frames(now):
+        for clusters in self._inbox.frames(now, pose_noise):
             self._learn(clusters)
         self._drop_silent(now)
 
