@@ -210,7 +210,7 @@ def test_breaking_off_stops_safely_and_smoothly(when):
     flown = fly(safety, mission, when, until_end=False)
     followed, clock = safety.followed(when, mission)
     stop = followed.stop(clock)
-    safety.forget()
+    safety.replaced(when, clock)
     before = flown.path[:, -1]
     position, points = before[0], []
     time, previous = when, None

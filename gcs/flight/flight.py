@@ -190,8 +190,9 @@ class Flight:
             self._begin_disarming(time)
         elif self.course is not None:
             safety = self.controller.safety
-            self.course.break_off(*safety.followed(time, self.course.trajectory))
-            safety.forget()
+            followed, clock = safety.followed(time, self.course.trajectory)
+            self.course.break_off(followed, clock)
+            safety.replaced(time, clock)
 
     def give_up(self, reason: str) -> None:
         """The vehicles cannot be reached any more: they are on their own."""
