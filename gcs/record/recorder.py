@@ -12,6 +12,7 @@ import numpy as np
 from gcs.flight.flight import CLEAR_OF_GROUND
 from gcs.record.tables import (
     ALARM_COLUMNS,
+    ALARMS,
     ESTIMATE_COLUMNS,
     OBSTACLE_ESTIMATE_COLUMNS,
     PLAN_COLUMNS,
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
     from gcs.obstacles import ObstacleMap
     from idc_controller.control.controller import Decision
 
-ALARMS = "alarms.csv"
 REFERENCE_INTERVAL = 0.02  # s, the grid of truth.csv
 OBSTACLE_INTERVAL = 0.1  # s
 _GRID_TOLERANCE = 1e-6
@@ -115,15 +115,8 @@ class FlightRecorder:
 
     def close(self) -> None:
         """Close all files; harmless when they are closed."""
-        for file in (
-            self._tlog,
-            self._reference,
-            self._estimate,
-            self._steps,
-            self._alarms,
-            self._plan,
-            self._obstacles,
-        ):
+        tables = (self._reference, self._estimate, self._steps, self._alarms, self._plan, self._obstacles)
+        for file in (self._tlog, *tables):
             if file is not None:
                 file.close()
 

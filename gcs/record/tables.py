@@ -43,6 +43,7 @@ OBSTACLE_ESTIMATE_COLUMNS = (
 )  # fmt: skip
 
 # What the ground noticed, of whom.
+ALARMS = "alarms.csv"
 ALARM_COLUMNS = ("time_s", "source", "alarm", "detail")
 
 Cell = float | int | bool | str

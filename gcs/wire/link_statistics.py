@@ -41,10 +41,7 @@ class LinkStatistics:
     def message(self, number: int, now: float) -> None:
         """A message with this sequence number (0 .. 255) came."""
         self.settle(now)
-        if self._newest is None:
-            ahead = 1
-        else:
-            ahead = (number - self._newest) % NUMBERS
+        ahead = 1 if self._newest is None else (number - self._newest) % NUMBERS
         if 0 < ahead < NUMBERS - REMEMBERED:
             if self._newest is not None and ahead > 1:
                 missing = {(self._newest + k) % NUMBERS for k in range(1, ahead)}

@@ -18,9 +18,10 @@ from idc_controller.estimate.measurements import PAYLOAD, Attitude
 
 Array = NDArray[np.float64]
 Key = tuple[int, type]
+Refusal = tuple[int, str]
 
 RARE = 1e-10
-"""Probability with which a sound channel is taken for a bad one at a sample: about 1e6 samples are judged in an hour."""
+"""Probability with which a sound channel is taken for a bad one at a sample; an hour has about 1e6 samples."""
 SHARE = 0.04
 """Of one sample in the running means: about a second of samples."""
 REFUSALS, WITHIN = 4, 1.0
@@ -57,14 +58,11 @@ class Consistency:
         freedom = kept * sizes
         self._square_limits = dict(zip(sizes.tolist(), (chi2.isf(RARE, freedom) / freedom).tolist(), strict=True))
 
-    def learn(
-        self, time: float, keys: Sequence[Key], white: Sequence[Array], refused: Sequence[tuple[int, str]]
-    ) -> None:
+    def learn(self, time: float, keys: Sequence[Key], white: Sequence[Array], refused: Sequence[Refusal]) -> None:
         """From the moment ``time`` (s): whitened innovations ``white`` of the channels ``keys``.
 
-        ``refused``: source and kind of those that the gate kept out.
-
-        A moment that is told again, because something of it came late, counts only for what is new in it.
+        ``refused``: source and kind of those that the gate kept out. A moment that is told again, because something of
+        it came late, counts only for what is new in it.
         """
         for key, innovation in zip(keys, white, strict=True):
             size = len(innovation)

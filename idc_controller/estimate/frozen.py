@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 REPEATS = 2
 """Repeated so often, a value is no measurement any more."""
-PARTS = {Attitude: ("attitude", "rates"), Position: ("position", "velocity")}
+PARTS: dict[type, tuple[str, str]] = {Attitude: ("attitude", "rates"), Position: ("position", "velocity")}
 
 
 @dataclass
@@ -48,7 +48,7 @@ class FrozenSensors:
         return any(self._frozen_parts(key, last))
 
     def channels(self) -> list[tuple[int, str]]:
-        """Those that are frozen as far as is known: source, and ``position``, ``velocity``, ``attitude`` or ``rates``."""
+        """Those that are frozen now: source, and ``position``, ``velocity``, ``attitude`` or ``rates``."""
         return [
             (source, name)
             for (source, kind), last in self._last.items()
