@@ -24,13 +24,14 @@ RARE = 1e-10
 """Probability with which a sound channel is taken for a bad one at a sample; an hour has about 1e6 samples."""
 SHARE = 0.04
 """Of one sample in the running means: about a second of samples."""
-REFUSALS, WITHIN = 4, 1.0
+REFUSALS, WITHIN = 3, 1.0
 """Single refusals happen; so many of one channel within such a time (s) do not."""
 MANOEUVRE = 2.5
-"""Of a UAV's attitude: how much larger than it should be its innovations' variance may be.
+"""Of a UAV's attitude: how much larger than it should be its innovations' variance may be, and all that follows of it.
 
 When set-points change quickly the attitude loop is not quite what the model says, and the innovations of all UAVs grow
-together for a second: to 2.9 times their variance in the hardest manoeuvre between two spheres.
+together for a second: to 2.9 times their variance in the hardest manoeuvre between two spheres, where the limit is
+4.5, with two refusals in a second, where it is 8.
 """
 
 
@@ -87,7 +88,7 @@ class Consistency:
             while channel.refusals and time - channel.refusals[0] > WITHIN:
                 channel.refusals.popleft()
             slack = MANOEUVRE if key[0] != PAYLOAD and key[1] is Attitude else 1.0
-            if len(channel.refusals) >= REFUSALS:
+            if len(channel.refusals) >= slack * REFUSALS:
                 found[key].append("refused")
             if float(channel.mean @ channel.mean) > slack * self._mean_limits[channel.size]:
                 found[key].append("disagrees")
