@@ -13,11 +13,14 @@ from typing import Any, Protocol
 
 import pymavlink.dialects.v20.common as mavlink
 
+from gcs.flight.alarms import Alarm
 from gcs.flight.flight import Flight, Phase, StepRecord
 from gcs.flight.team import Team
+from gcs.flight.watch import Watch
 from gcs.obstacles import ObstacleMap
 from gcs.setpoints import attitude_target, stop_plan_message
 from gcs.telemetry import measurement, setpoint_flown
+from gcs.vehicle_link import VehicleLink
 from gcs.wire import px4
 from gcs.wire.address import Address
 from gcs.wire.codec import Codec, gather
@@ -47,6 +50,10 @@ class Recorder(Protocol):
         """What is believed of the obstacles at team ``time``, once a control step."""
         ...
 
+    def alarm(self, alarm: Alarm) -> None:
+        """Something was noticed."""
+        ...
+
 
 class GroundStation:
     """All vehicles of one flight. A driver calls :meth:`receive`, :meth:`datagrams_to_send` and :meth:`next_timer`."""
@@ -63,6 +70,7 @@ class GroundStation:
         self.links = team.links
         self._recorder = recorder
         self._obstacle_map = obstacle_map
+        self.watch = Watch(flight, obstacle_map)
         self._codec = Codec(GROUND_SYSTEM, GROUND_COMPONENT)
         self._by_address: dict[tuple[Address, int], int] = {
             (link.address, link.system_id): i for i, link in enumerate(self.links) if link.address is not None
@@ -95,7 +103,10 @@ class GroundStation:
 
     def receive(self, datagram: bytes, sender: Address, now: float) -> None:
         """Whatever came from an address. Never raises for anything that a datagram can hold."""
+        unread = self._codec.unread
         messages = self._codec.decode(datagram)
+        if self._codec.unread > unread and (link := self._link_at(sender)) is not None:
+            link.statistics.damaged += 1
         known = False
         latest = -math.inf
         for message in messages:
@@ -156,6 +167,9 @@ class GroundStation:
             return None
         return max(min(self._next_control, self._next_heartbeat, self._next_timesync), 0.0)
 
+    def _link_at(self, address: Address) -> VehicleLink | None:
+        return next((link for link in self.links if link.address == address), None)
+
     def _unexpected(self, message: Any, sender: Address) -> int | None:
         """The index of a vehicle that offers itself for the first time with this message; None: nothing is learnt."""
         if message.get_type() != "HEARTBEAT" or message.get_srcComponent() != px4.AUTOPILOT_COMPONENT:
@@ -196,7 +210,9 @@ class GroundStation:
                 obstacle_map.detected(message, index, time)
             return time
         sample = measurement(message, index, time)
-        if sample is not None:
+        if sample is None:
+            link.statistics.unusable(message.get_srcComponent())
+        else:
             self.flight.measured(sample)
             if obstacle_map is not None:
                 obstacle_map.measured(sample)
@@ -224,6 +240,8 @@ class GroundStation:
             self._recorder.obstacles(self._obstacle_map, time)
         effective = _whole_ms(time + self._latency + delay + onboard)
         setpoints, record = self.flight.step(time, effective, now)
+        for alarm in self.watch.step(time, now, record):
+            self._recorder.alarm(alarm)
         self._recorder.step(self.flight, time, record)
         # The plan before the set-point: a vehicle that gets one of the two can still stop with the others.
         if (plan := self.flight.stop_plan) is not None:

@@ -35,6 +35,9 @@ def outcome_table(results: Sequence[FaultResult], files: Sequence[Path]) -> Rend
     parts: list[RenderableType] = [Text(f"{passed} of {len(results)} flights within their limits", style=colour)]
     parts.append(_rates(rates_of(results), results))
     parts.append(Text(f"Rates with their {100 * CONFIDENCE:.0f} % intervals (Wilson); safe: landed without contact."))
+    if false := sum(result.false_alarms or 0 for result in results):
+        flights = sum(bool(result.false_alarms) for result in results)
+        parts.append(Text(f"{false} alarms before any fault, in {flights} flights", style="bold red"))
     idle = [result for result in results if result.notes]
     if idle:
         parts.append(
@@ -64,6 +67,7 @@ def _rates(rates: Sequence[Rates], results: Sequence[FaultResult]) -> Table:
         "safe",
         "worst clearance",
         "worst tilt",
+        "noticed in",
         "stopped in",
     ):
         table.add_column(title, justify="left" if title in _WRAPPED else "right", no_wrap=title not in _WRAPPED)
@@ -71,6 +75,7 @@ def _rates(rates: Sequence[Rates], results: Sequence[FaultResult]) -> Table:
         chosen = [result for result in results if (result.fault, result.level) == (rate.fault, rate.level)]
         clearance = min((r.clearance_min_m for r in chosen if r.clearance_min_m is not None), default=None)
         tilt = max((r.tilt_max_deg for r in chosen if r.tilt_max_deg is not None), default=None)
+        noticed = [r.detected_s for r in chosen if r.detected_s is not None]
         stop = max((r.stop_s for r in chosen if r.stop_s is not None), default=None)
         table.add_row(
             Text(rate.fault),
@@ -80,9 +85,17 @@ def _rates(rates: Sequence[Rates], results: Sequence[FaultResult]) -> Table:
             _share(rate.safe_rate, rate.safe_low, rate.safe_high),
             "-" if clearance is None else f"{clearance:.2f} m",
             "-" if tilt is None else f"{tilt:.1f} deg",
+            _noticed(noticed, len(chosen)),
             "-" if stop is None else f"{stop:.2f} s",
         )
     return table
+
+
+def _noticed(times: Sequence[float], flights: int) -> str:
+    """The longest time, and in how many flights where it was not in all."""
+    if not times:
+        return "-"
+    return f"{max(times):.2f} s" + (f" ({len(times)} of {flights})" if len(times) < flights else "")
 
 
 def _share(rate: float, low: float, high: float) -> str:

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import dataclasses
-import json
 import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from gcs.fault_campaign.detection import detection, first_start
 from gcs.fault_campaign.sweep import FaultFlight
-from gcs.faults.record import FAULTS_FILE, fault_notes
+from gcs.faults.record import fault_notes
 from gcs.side_by_side import Ended
 
 WITHIN, OUTSIDE, ABORTED, COLLIDED, FAILED, NOT_FLOWN = VERDICTS = (
@@ -25,6 +25,7 @@ class FaultResult:
     """What came of one flight: a row of the table. m, s, deg; None: not known, or it never happened.
 
     ``stop_s``: from the start of the case's first fault to the moment when the flight was broken off.
+    ``detected_s``: from there to the first alarm, ``detected_as``. ``false_alarms``: alarms before any fault.
     ``notes``: faults that never came or disturbed nothing. ``run_dir`` is empty where it was not kept.
     """
 
@@ -48,6 +49,9 @@ class FaultResult:
     position_rmse_m: float | None
     duration_s: float | None
     stop_s: float | None
+    detected_s: float | None
+    detected_as: str
+    false_alarms: int | None
     notes: str
     wall_s: float
     run_dir: str
@@ -70,6 +74,7 @@ def replay_command(mission: Path, options: Sequence[str]) -> str:
 def evaluate(flight: FaultFlight, ended: Ended, run_dir: Path, replay: str) -> FaultResult:
     """The result of a flight."""
     summary = ended.summary
+    noticed = detection(run_dir, len(flight.case.faults))
     angles = [angle for angle in summary.get("payload_tilt_max_deg", {}).values() if angle is not None]
     return FaultResult(
         number=flight.number,
@@ -92,6 +97,9 @@ def evaluate(flight: FaultFlight, ended: Ended, run_dir: Path, replay: str) -> F
         position_rmse_m=summary.get("position_rmse_m", {}).get("total"),
         duration_s=summary.get("duration_s"),
         stop_s=stop_time(summary, run_dir, len(flight.case.faults)),
+        detected_s=noticed.after,
+        detected_as=noticed.told,
+        false_alarms=noticed.false,
         notes="; ".join(fault_notes(run_dir)),
         wall_s=round(ended.wall, 1),
         run_dir=str(run_dir) if run_dir.exists() else "",
@@ -115,16 +123,7 @@ def limits_not_held(summary: dict[str, Any]) -> list[str]:
 
 
 def stop_time(summary: Mapping[str, Any], run_dir: Path, count: int) -> float | None:
-    """From the start of the first of the last ``count`` faults to when the flight was broken off (s); None: it was not.
-
-    The faults before them are the mission's own.
-    """
+    """From the first of the last ``count`` faults to when the flight was broken off (s); None: it was not."""
     broken_off = summary.get("broken_off_s")
-    try:
-        record = json.loads((run_dir / FAULTS_FILE).read_text(encoding="utf-8"))
-        faults = record["faults"][len(record["faults"]) - count :]
-        starts = [fault["activations"][0][0] for fault in faults if fault["activations"]]
-        begin = record["take_off_s"] + min(starts)
-    except (OSError, ValueError, KeyError, TypeError, IndexError):
-        return None
-    return None if broken_off is None or broken_off < begin else round(broken_off - begin, 3)
+    begin = first_start(run_dir, count)
+    return None if begin is None or broken_off is None or broken_off < begin else round(broken_off - begin, 3)

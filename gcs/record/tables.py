@@ -42,6 +42,10 @@ OBSTACLE_ESTIMATE_COLUMNS = (
     "size_x_m", "size_y_m", "size_z_m", "yaw_rad", "growth_m",
 )  # fmt: skip
 
+# What the ground noticed, of whom.
+ALARMS = "alarms.csv"
+ALARM_COLUMNS = ("time_s", "source", "alarm", "detail")
+
 Cell = float | int | bool | str
 
 

@@ -40,6 +40,11 @@ class Codec:
         self.skipped_bytes = 0
 
     @property
+    def unread(self) -> int:
+        """Grows with every datagram that holds something that cannot be read."""
+        return self.bad_frames + self.skipped_bytes
+
+    @property
     def system_id(self) -> int:
         """The sender's system id in every encoded frame."""
         return self._mavlink.srcSystem

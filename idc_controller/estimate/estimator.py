@@ -101,6 +101,10 @@ class InnovationRecord:
     """Source and kind of what the gate kept out."""
     surprised: bool = False
     """Most sources disagreed at once, and the prediction was given up for them."""
+    keys: tuple[tuple[int, type], ...] = ()
+    """Source and kind of all that was measured (K,)."""
+    white: tuple[Array, ...] = ()
+    """The innovation of each with variance 1 (m,)."""
 
 
 @dataclass
@@ -166,7 +170,7 @@ class Estimator:
         """By the size of a measurement."""
         self.innovations: list[InnovationRecord] = []
         self.discarded_late = 0
-        self._frozen = FrozenSensors(settings.measurement)
+        self.frozen = FrozenSensors(settings.measurement)
         self.adaptation = Adaptation()
 
     def start(self, time: float, x: Array) -> None:
@@ -214,7 +218,7 @@ class Estimator:
 
     def add(self, measurement: Measurement) -> bool:
         """Take a measurement; False when it is older than the memory or the start, or of a sensor that is frozen."""
-        if self._frozen.is_frozen(measurement):
+        if self.frozen.is_frozen(measurement):
             return False
         oldest = max(self._snapshots[0].time, self.time - self.settings.history)
         if measurement.time <= oldest:
@@ -321,7 +325,7 @@ class Estimator:
             nis = float(kf.y @ kf.SI @ kf.y)
             kf.P = (kf.P + kf.P.T) / 2
         self.innovations.append(
-            InnovationRecord(moment.time, nis, int(keep.sum()), tuple(rejected), surprised=surprised)
+            InnovationRecord(moment.time, nis, int(keep.sum()), tuple(rejected), surprised, keys, stack.split(white))
         )
 
     def _innovation(self, copies: list[Measurement], flat: FlatReference, k: int) -> Array:
