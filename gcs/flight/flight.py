@@ -35,7 +35,9 @@ SPOOL_DOWN = 2.0  # s from hover thrust to idle
 TOUCH_DEPTH = 0.06  # m above the reference at which the payload must be standing
 TOUCH_SPEED = 0.05  # m/s
 TOUCH_STEPS = 4
-TOUCH_GRACE = 3.0  # s after the descent's end at which it counts as touched in any case
+TOUCH_GRACE = 3.0  # s after the descent's end at which it counts as touched without these signs
+TOUCH_HEIGHT = 1.0  # m above the ground: higher up nothing can have been touched, wherever the reference is
+NOT_DOWN = 15.0  # s after the descent's end at which a payload that is still higher will not come down by itself
 LOST_TILT = math.radians(45.0)  # of the payload, at which nothing can be planned any more
 LOST_AFTER = 0.5  # s
 LEARN_ABOVE = 0.3  # m above the ground: below it the ground may carry part of the load
@@ -348,6 +350,9 @@ class Flight:
         if self.phase in IN_THE_AIR and self._is_out_of_control(time, estimate):
             self._leave_alone(time, "control of the payload is lost")
             return None, None
+        if self.phase is Phase.LAND and self._stays_up(time, estimate):
+            self._leave_alone(time, "the payload does not come down")
+            return None, None
         estimated = self._stopwatch()
         decision = self.controller.decide(
             estimate, trajectory, standing=self.phase not in IN_THE_AIR, learn_load=self._learns(estimate)
@@ -360,7 +365,7 @@ class Flight:
             share = max(1.0 - (time - self._since) / SPOOL_DOWN, 0.0)
         if self.phase in IN_THE_AIR:
             self.estimator.add_setpoint(effective, decision.u)
-            self.stop_plan = stop_plan(self._parameters, decision.flat, effective)
+            self.stop_plan = stop_plan(self._parameters, decision.flat, effective, estimate.x)
             self._stop_plans.append(self.stop_plan)
         self._advance(time, estimate, share)
         setpoints = Setpoints(decision.directions, decision.thrusts * share)
@@ -399,8 +404,16 @@ class Flight:
                 self.estimator.add_setpoint(estimate.time, None)
                 self._enter(Phase.SPOOL_DOWN, time)
 
+    def _stays_up(self, time: float, estimate: Estimate) -> bool:
+        assert self.course is not None
+        late = self.controller.safety.mission_time(time) - self.course.trajectory.end
+        return late > NOT_DOWN and self._height(estimate) > TOUCH_HEIGHT
+
     def _touched(self, clock: float, estimate: Estimate) -> bool:
         assert self.course is not None
+        if self._height(estimate) > TOUCH_HEIGHT:
+            self._touch_steps = 0
+            return False
         trajectory = self.course.trajectory
         layout = self.controller.layout
         depth = trajectory.position(clock)[2] - estimate.x[layout.r_0][2]
@@ -409,9 +422,12 @@ class Flight:
         return self._touch_steps >= TOUCH_STEPS or clock > trajectory.end + TOUCH_GRACE
 
     def _learns(self, estimate: Estimate) -> bool:
+        return self._height(estimate) > LEARN_ABOVE
+
+    def _height(self, estimate: Estimate) -> float:
+        """Of the payload's lower face above the ground (m)."""
         ground = -self._parameters.payload_size[2] / 2.0
-        height = ground - estimate.x[self.controller.layout.r_0][2]
-        return bool(height > LEARN_ABOVE)
+        return float(ground - estimate.x[self.controller.layout.r_0][2])
 
     def _mean_position(self, source: int) -> Array:
         samples = self._seen[source, Position]
