@@ -381,6 +381,9 @@ def test_time_to_the_stop_of_the_team(tmp_path):
     rows = ["1.0,1,OFFBOARD,1,0", "1.0,2,OFFBOARD,1,0", "8.45,2,AUTO.LOITER,1,1", "8.5,1,AUTO.LOITER,1,1"]
     (tmp_path / "modes.csv").write_text("\n".join(["time_s,vehicle,mode,armed,failsafe", *rows, ""]))
     assert team_stop(tmp_path, 1) == (0.5, 0.05)
+    faults.insert(0, {"kind": "wind", "activations": [[0.0, None]]})  # not what they stopped for
+    (tmp_path / "faults.json").write_text(json.dumps({"take_off_s": 3.0, "end_s": 20.0, "faults": faults}))
+    assert team_stop(tmp_path, 2) == (0.5, 0.05)
 
 
 def test_time_to_the_stop(tmp_path):
