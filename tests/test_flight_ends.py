@@ -11,7 +11,7 @@ from flight_in_process import Rehearsal, short_figure, truth_of
 from programs import PATIENCE, GcsProcess, addresses_of, free_port, swarm_process
 from pymavlink import mavutil
 
-from gcs.flight.flight import Phase
+from gcs.flight.phase import Phase
 from gcs.record.landing import is_set_down
 from gcs.record.modes import stops_after
 from gcs.wire import px4
