@@ -142,10 +142,11 @@ def fly(options: FlyOptions, mission: Mission, progress: Callable[[Flight], None
         except KeyboardInterrupt:
             station.flight.give_up("interrupted twice: the vehicles were left to land on their own")
             station.flight.interrupted = True
-    return _result(run_dir, mission, station.flight, recorder.last_time, time.monotonic() - wall)
+    return _result(run_dir, mission, station, recorder.last_time, time.monotonic() - wall)
 
 
-def _result(run_dir: Path, mission: Mission, flight: Flight, last_time: float, wall: float) -> FlightResult:
+def _result(run_dir: Path, mission: Mission, station: GroundStation, last_time: float, wall: float) -> FlightResult:
+    flight = station.flight
     limits = dataclasses.asdict(mission.limits) if mission.limits is not None else None
     begun = not math.isnan(flight.takeoff_time)
     duration = last_time - flight.takeoff_time if begun else 0.0
@@ -160,6 +161,7 @@ def _result(run_dir: Path, mission: Mission, flight: Flight, last_time: float, w
     )
     # By the clock of the records, as it may be before take-off.
     summary["broken_off_s"] = None if math.isnan(flight.broken_off_time) else round(flight.broken_off_time, 6)
+    summary["alarms"] = len(station.watch.alarms)
     # The ground may have lost sight of what the vehicles did, or be wrong about it: the truth decides.
     if begun and (landing := summary["landing"]) is not None:
         down = is_set_down(landing)

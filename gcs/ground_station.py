@@ -13,11 +13,15 @@ from typing import Any, Protocol
 
 import pymavlink.dialects.v20.common as mavlink
 
-from gcs.flight.flight import Flight, Phase, StepRecord
+from gcs.flight.alarms import Alarm
+from gcs.flight.flight import Flight, StepRecord
+from gcs.flight.phase import Phase
 from gcs.flight.team import Team
+from gcs.flight.watch import Watch
 from gcs.obstacles import ObstacleMap
 from gcs.setpoints import attitude_target, stop_plan_message
 from gcs.telemetry import measurement, setpoint_flown
+from gcs.vehicle_link import VehicleLink
 from gcs.wire import px4
 from gcs.wire.address import Address
 from gcs.wire.codec import Codec, gather
@@ -47,6 +51,10 @@ class Recorder(Protocol):
         """What is believed of the obstacles at team ``time``, once a control step."""
         ...
 
+    def alarm(self, alarm: Alarm) -> None:
+        """Something was noticed."""
+        ...
+
 
 class GroundStation:
     """All vehicles of one flight. A driver calls :meth:`receive`, :meth:`datagrams_to_send` and :meth:`next_timer`."""
@@ -63,6 +71,7 @@ class GroundStation:
         self.links = team.links
         self._recorder = recorder
         self._obstacle_map = obstacle_map
+        self.watch = Watch(flight, obstacle_map)
         self._codec = Codec(GROUND_SYSTEM, GROUND_COMPONENT)
         self._by_address: dict[tuple[Address, int], int] = {
             (link.address, link.system_id): i for i, link in enumerate(self.links) if link.address is not None
@@ -95,8 +104,12 @@ class GroundStation:
 
     def receive(self, datagram: bytes, sender: Address, now: float) -> None:
         """Whatever came from an address. Never raises for anything that a datagram can hold."""
+        unread = self._codec.unread
         messages = self._codec.decode(datagram)
+        if self._codec.unread > unread and (link := self._link_at(sender)) is not None:
+            link.statistics.damaged += 1
         known = False
+        latest = -math.inf
         for message in messages:
             index = self._by_address.get((sender, message.get_srcSystem()))
             if index is None:
@@ -104,10 +117,12 @@ class GroundStation:
             if index is None:
                 continue
             known = True
+            if getattr(message, "target_system", 0) not in (0, GROUND_SYSTEM):
+                continue  # an answer to another system behind this address
             link = self.links[index]
             link.handle(message, now)
             if link.clock.known:
-                self._learn(message, index)
+                latest = max(latest, self._learn(message, index, latest))
         if known:
             self._recorder.datagram(now, datagram)
         else:
@@ -124,8 +139,8 @@ class GroundStation:
                 queue.append(_heartbeat())
         if now >= self._next_timesync - TOLERANCE:
             self._next_timesync = now + TIMESYNC_INTERVAL
-            for queue in messages:
-                queue.append(mavlink.MAVLink_timesync_message(0, round(now * 1e9)))
+            for link, queue in zip(self.links, messages, strict=True):
+                queue.append(mavlink.MAVLink_timesync_message(0, link.clock.ask(now)))
         self._stepped = now >= self._next_control - TOLERANCE
         if self._stepped:
             self._control(now, messages)
@@ -153,6 +168,9 @@ class GroundStation:
             return None
         return max(min(self._next_control, self._next_heartbeat, self._next_timesync), 0.0)
 
+    def _link_at(self, address: Address) -> VehicleLink | None:
+        return next((link for link in self.links if link.address == address), None)
+
     def _unexpected(self, message: Any, sender: Address) -> int | None:
         """The index of a vehicle that offers itself for the first time with this message; None: nothing is learnt."""
         if message.get_type() != "HEARTBEAT" or message.get_srcComponent() != px4.AUTOPILOT_COMPONENT:
@@ -172,12 +190,12 @@ class GroundStation:
         if self.flight.phase is Phase.CONNECT or abs(offset - self._team_offset) < CLOCK_STEP:
             self._team_offset = offset
 
-    def _learn(self, message: Any, index: int) -> None:
-        """From a message that tells of one moment."""
+    def _learn(self, message: Any, index: int, latest: float) -> float:
+        """From a message that tells of one moment: which. ``latest`` is that of those before it in its datagram."""
         kind = message.get_type()
         is_detection = kind == "OBSTACLE_DISTANCE_3D"
         if not is_detection and kind not in ("ATTITUDE_QUATERNION", "LOCAL_POSITION_NED", "ATTITUDE_TARGET"):
-            return
+            return -math.inf
         link, obstacle_map = self.links[index], self._obstacle_map
         if index == 0:
             self._follow_clock(link.clock.offset)
@@ -185,17 +203,21 @@ class GroundStation:
         if kind == "ATTITUDE_TARGET":
             told = setpoint_flown(message, link.parameters.get(px4.PARAM_THRUST_MAX, math.nan))
             if told is not None:
-                link.confirmed(self.flight.flown(index, time, told, link.clock.spread))
-            return
+                # Its stamp is that of the moment at which it began to act.
+                link.confirmed(self.flight.flown(index, time, max(time, latest), told, link.clock.spread))
+            return time
         if is_detection:
             if obstacle_map is not None:
                 obstacle_map.detected(message, index, time)
-            return
+            return time
         sample = measurement(message, index, time)
-        if sample is not None:
+        if sample is None:
+            link.statistics.unusable(message.get_srcComponent())
+        else:
             self.flight.measured(sample)
             if obstacle_map is not None:
                 obstacle_map.measured(sample)
+        return time
 
     def _control(self, now: float, messages: list[list[Any]]) -> None:
         time = self.team_time(now)
@@ -215,10 +237,12 @@ class GroundStation:
             default=0.0,
         )  # fmt: skip
         if self._obstacle_map is not None:
-            self._obstacle_map.update(time)
+            self._obstacle_map.update(time, self.flight.pose_noise)
             self._recorder.obstacles(self._obstacle_map, time)
         effective = _whole_ms(time + self._latency + delay + onboard)
         setpoints, record = self.flight.step(time, effective, now)
+        for alarm in self.watch.step(time, now, record):
+            self._recorder.alarm(alarm)
         self._recorder.step(self.flight, time, record)
         # The plan before the set-point: a vehicle that gets one of the two can still stop with the others.
         if (plan := self.flight.stop_plan) is not None:

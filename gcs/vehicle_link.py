@@ -13,6 +13,7 @@ import pymavlink.dialects.v20.common as mavlink
 from gcs.wire import px4
 from gcs.wire.address import Address
 from gcs.wire.clock import RemoteClock
+from gcs.wire.link_statistics import LinkStatistics
 
 RETRY_AFTER = 0.5  # s
 TRIES = 10  # with a third of all datagrams lost, one command in a thousand stays unanswered
@@ -73,6 +74,9 @@ class VehicleLink:
     texts: deque[str] = field(default_factory=lambda: deque(maxlen=20))
     setpoint_loss: float = 0.0
     """Share of the set-points that do not arrive, as far as the vehicle's words tell."""
+    lost_setpoints: int = 0
+    """How often set-points were found to be lost."""
+    statistics: LinkStatistics = field(default_factory=LinkStatistics)
     _commands: dict[int, Command] = field(default_factory=dict)
     _wanted: dict[str, float] = field(default_factory=dict)
 
@@ -85,6 +89,7 @@ class VehicleLink:
         """Whether the vehicle flew what it was sent; None: that cannot be told."""
         if flown is not None:
             self.setpoint_loss += LOSS_SHARE * (float(not flown) - self.setpoint_loss)
+            self.lost_setpoints += not flown
 
     @property
     def armed(self) -> bool:
@@ -105,6 +110,8 @@ class VehicleLink:
         """Learn from one message of this vehicle."""
         kind = message.get_type()
         self.heard = now
+        if message.get_srcComponent() == px4.AUTOPILOT_COMPONENT:
+            self.statistics.message(message.get_seq(), now)
         if kind == "ATTITUDE_QUATERNION" or kind == "LOCAL_POSITION_NED":
             if message.get_srcComponent() == px4.PAYLOAD_UNIT_COMPONENT:
                 self.payload_heard = now
@@ -123,7 +130,7 @@ class VehicleLink:
             self._parameter(message)
         elif kind == "TIMESYNC":
             if message.tc1:
-                self.clock.answered(message.ts1 * 1e-9, now)
+                self.clock.answered(message.ts1, now)
         elif kind == "EXTENDED_SYS_STATE":
             self.landed_state = message.landed_state
         elif kind == "SYS_STATUS":

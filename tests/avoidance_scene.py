@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 import coal
 import numpy as np
+from paper_system import system
 from scipy.spatial import ConvexHull
 
 from idc_controller.barrier.navigator import NavigatorSettings
@@ -11,22 +12,12 @@ from idc_controller.barrier.obstacles import PredictedObstacle, Shape
 from idc_controller.barrier.planner import PlannerSettings
 from idc_controller.barrier.safety_filter import AvoidanceFilter
 from idc_controller.estimate.estimator import Estimate
-from idc_controller.parameters import SystemParameters, polygon_attachments
 from idc_controller.plan.flatness import Load, flat_forces
 from idc_controller.plan.paths import Leg
 from idc_controller.plan.trajectory import Limits
 from idc_controller.plan.waypoints import WaypointTrajectory
 
 STEP = 0.05  # s
-
-
-def system(n=4):
-    """The paper's system with ``n`` UAVs."""
-    return SystemParameters(
-        m_0=3.1, J_0=np.diag([0.29, 0.29, 0.55]), payload_size=np.array([1.0, 1.0, 0.5]), m=np.full(n, 0.7),
-        J=np.array([0.01 * np.eye(3)] * n), p=polygon_attachments(n, 1.0, -0.25), l=np.full(n, 3.2), disc_radius=0.3,
-        thrust_max=30.0, motor_time_constant=0.05, attitude_kp=100.0, attitude_kd=16.0,
-    )  # fmt: skip
 
 
 def hull_of(parameters, derivatives, rim=16):

@@ -193,3 +193,15 @@ def truth_of(folder):
     with (folder / "truth.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
     return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+
+
+def position_rmse(truth_folder, run_folder):
+    """Position RMSE (m) of the payload about the mission, 10 s after take-off and on."""
+    truth = truth_of(truth_folder)
+    reference = np.genfromtxt(run_folder / "reference.csv", delimiter=",", names=True)
+    at = reference["time_s"]
+    late = at > at[0] + 10.0
+    squared = sum(
+        (np.interp(at, truth["time_s"], truth[f"payload_{axis}_m"]) - reference[f"{axis}_m"]) ** 2 for axis in "xyz"
+    )
+    return float(np.sqrt(squared[late].mean()))

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gcs.wire import px4
-from gcs.wire.codec import DATAGRAM_LIMIT, Codec, gather
+from gcs.wire.codec import BAD_FRAMES_MAX, DATAGRAM_LIMIT, Codec, gather
 
 
 def attitude(stamp: int = 7) -> mavlink.MAVLink_attitude_quaternion_message:
@@ -65,6 +65,14 @@ def test_garbage_bad_checksums_and_cut_frames_do_not_hide_what_follows() -> None
     messages = codec.decode(b"\xfd\xfe garbage \xfd" + bytes(bad) + good + good[:-4] + good + b"\xfd\x00")
     assert len(messages) == 2 and all(message.get_type() == "COMMAND_LONG" for message in messages)
     assert codec.bad_frames >= 1 and codec.skipped_bytes > 0 and codec.decoded == 2
+
+
+def test_a_datagram_of_bad_frames_alone_is_given_up() -> None:
+    codec = Codec(2, 1)
+    assert codec.decode(b"\xfe" * 65507) == []
+    assert codec.bad_frames == BAD_FRAMES_MAX
+    assert codec.bad_frames + codec.skipped_bytes >= 65507
+    assert len(codec.decode(Codec(1, 1).encode(command()))) == 1
 
 
 def test_a_cut_datagram_does_not_poison_the_next() -> None:

@@ -7,11 +7,12 @@ import threading
 
 import numpy as np
 import pytest
+from course_results import result_of
 
 from gcs.cli import main
 from gcs.courses import campaign as campaigns
 from gcs.courses.campaign import Campaign, CampaignOptions
-from gcs.courses.flights import COLUMNS, FlightPlan, Result, evaluate, fly_course
+from gcs.courses.flights import COLUMNS, FlightPlan, evaluate, fly_course
 from gcs.courses.generator import KINDS, RandomCourse, generate
 from gcs.courses.moving import MOTIONS, displacement, motion_for, top_speed
 from gcs.courses.outcome import draw_distribution, from_bad_end, outcome_table
@@ -249,15 +250,7 @@ def test_a_flight_is_ended_when_asked(tmp_path):
 # Campaign
 
 
-def result_of(course, passed=True, **figures):
-    values = dict.fromkeys(COLUMNS) | {
-        "number": course.number, "name": course.name, "kind": course.kind, "passed": passed,
-        "failures": "" if passed else "clearance", "outcome": "completed", "reason": "", "exit_code": 0,
-        "clearance_min_m": 0.4 if passed else 0.1, "tilt_max_deg": 2.0, "uav_separation_min_m": 0.9, "contacts": 0,
-        "arrival_s": 30.0, "nominal_arrival_s": 28.0, "delay_s": 2.0, "wall_s": 1.0,
-        "replay": f"gcs fly {course.name}.toml",
-    }  # fmt: skip
-    return Result(**(values | figures))
+FAILED = {"passed": False, "failures": "clearance", "clearance_min_m": 0.1}
 
 
 @pytest.fixture
@@ -268,7 +261,7 @@ def flown(monkeypatch):
     def fly(plan, stop):
         numbers.append(plan.course.number)
         plan.run_dir.mkdir(parents=True)
-        return result_of(plan.course, passed=plan.course.number % 4 != 0)
+        return result_of(plan.course, **({} if plan.course.number % 4 else FAILED))
 
     monkeypatch.setattr(campaigns, "fly_course", fly)
     return numbers
@@ -358,6 +351,7 @@ def test_distribution_counts_from_the_bad_end():
 
 def test_nothing_known_is_drawn_and_told(tmp_path):
     course = RandomCourse(1, "poles", "0001-poles", "")
-    result = result_of(course, False, clearance_min_m=None, tilt_max_deg=None, uav_separation_min_m=None, delay_s=None)
+    unknown = dict.fromkeys(("clearance_min_m", "tilt_max_deg", "uav_separation_min_m", "delay_s"))
+    result = result_of(course, **(FAILED | unknown))
     assert draw_distribution([result], tmp_path).exists()
     outcome_table([result], tmp_path)

@@ -3,18 +3,15 @@
 import csv
 import json
 import math
-import os
 import signal
-import subprocess
-import sys
 
 import numpy as np
 import pytest
+from fault_passages import SYSTEM, fault
+from programs import PATIENCE, process
 from scripted_ground import ScriptedGround, exchange
 
-from gcs.config import read_system
 from gcs.faults.record import fault_notes
-from gcs.mission import Fault
 from vehicle_sim.faults import FaultPassage, record_faults
 from vehicle_sim.faults.active import ActiveFault
 from vehicle_sim.faults.world import Wind, WorldFaults
@@ -22,12 +19,6 @@ from vehicle_sim.passage import Passage
 from vehicle_sim.swarm import Swarm
 from vehicle_sim.truth_log import TruthLog
 from vehicle_sim.world import World
-
-SYSTEM = read_system()
-
-
-def fault(kind, start=0.0, duration=None, vehicles=None, direction=None, **settings):
-    return Fault(kind, start, duration, vehicles=vehicles, direction=direction, settings=settings)
 
 
 def lifted(*faults, seed=1, until=4.0, folder=None):
@@ -199,18 +190,10 @@ def test_vehicle_sim_writes_what_its_faults_did(tmp_path):
         '[mission]\nname = "m"\n[reference]\nkind = "waypoints"\npoints = [[0, 0, -2]]\n'
         '[[fault]]\nkind = "partition"\nstart = 1.0\n'
     )
-    command = [sys.executable, "-m", "vehicle_sim", "--lockstep", "--base-port", "0", "--mission", str(mission)]
-    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
-    with subprocess.Popen(
-        [*command, "--run-dir", str(tmp_path / "run")], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-        env=environment,
-    ) as process:  # fmt: skip
-        for line in process.stdout:
-            if line.strip() == "ready":
-                break
-        process.send_signal(signal.SIGTERM)
-        said = process.communicate(timeout=300)[1]
-    assert process.returncode == 0
+    with process("--lockstep", "--base-port", "0", "--mission", mission, "--run-dir", tmp_path / "run") as (swarm, *_):
+        swarm.send_signal(signal.SIGTERM)
+        said = swarm.communicate(timeout=PATIENCE)[1]
+    assert swarm.returncode == 0
     assert "fault 1, partition (line 6 of the mission), never came: nothing took off" in said
     assert json.loads((tmp_path / "run" / "faults.json").read_text())["faults"][0]["occurrences"] == 0
     assert fault_notes(tmp_path / "run")

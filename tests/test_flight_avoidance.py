@@ -1,13 +1,13 @@
 """Obstacles avoided in whole flights: simulator, vehicles, MAVLink over UDP and ground in lockstep, with noise."""
 
 import json
-import os
 import subprocess
 import sys
 
 import numpy as np
 import pytest
 from flight_in_process import system_file, truth_of
+from programs import ENVIRONMENT
 
 FIGURE = """
 [mission]
@@ -70,7 +70,7 @@ def flown(folder, text):
     command = [sys.executable, "-m", "gcs", "fly", str(folder / "mission.toml"), "--json", "--no-pictures"]
     done = subprocess.run(
         [*command, "--run-dir", str(folder / "run")],
-        capture_output=True, text=True, timeout=500, env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
+        capture_output=True, text=True, timeout=500, env=ENVIRONMENT,
     )  # fmt: skip
     assert done.stdout, done.stderr
     return done.returncode, json.loads(done.stdout), done.stderr

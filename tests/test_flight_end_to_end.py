@@ -1,12 +1,5 @@
 """Missions from end to end: estimator, controller, MAVLink bytes, onboard loops and PyBullet world, in lockstep."""
 
-import json
-import os
-import socket
-import subprocess
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 from flight_in_process import (
@@ -15,22 +8,14 @@ from flight_in_process import (
     copied_mission,
     flown,
     noiseless,
+    position_rmse,
     short_figure,
     truth_of,
 )
+from programs import addresses_of, free_port, gcs_fly, swarm_process
 
 from gcs.mission.read import read_mission
 from gcs.mission.route import FlyTo
-
-ENVIRONMENT = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[1]), "OPENBLAS_NUM_THREADS": "1"}
-
-
-def gcs_fly(mission, folder, *options):
-    """A flight by the command itself: (exit code, summary)."""
-    command = [sys.executable, "-m", "gcs", "fly", str(mission), "--run-dir", str(folder), "--json", *map(str, options)]
-    done = subprocess.run(command, env=ENVIRONMENT, cwd=folder.parent, capture_output=True, text=True, timeout=500)
-    assert "Traceback" not in done.stderr, done.stderr
-    return done.returncode, json.loads(done.stdout) if done.stdout else done.stderr
 
 
 @pytest.fixture(scope="module")
@@ -136,42 +121,6 @@ def test_every_waypoint_is_passed_and_every_hold_held(tmp_path, name):
 # Two programs
 
 
-def swarm_process(*arguments):
-    command = [sys.executable, "-m", "vehicle_sim", *map(str, arguments)]
-    return subprocess.Popen(command, env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-
-
-def addresses_of(process):
-    """What it prints until it is ready: {"clock" or "vehicle 1" ...: url}."""
-    told = {}
-    for line in process.stdout:
-        if line.strip() == "ready":
-            return told
-        who, _, url = line.strip().partition(": ")
-        told[who] = url
-    raise AssertionError(process.stderr.read())
-
-
-def free_port():
-    """A port for which the next four are most likely free, too."""
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
-    return port if port < 60000 else port - 10000
-
-
-def truth_against_reference(truth_folder, run):
-    """Position RMSE (m) of the payload about the mission, 10 s after take-off and on."""
-    truth = truth_of(truth_folder)
-    reference = np.genfromtxt(run / "reference.csv", delimiter=",", names=True)
-    at = reference["time_s"]
-    late = at > at[0] + 10.0
-    squared = sum(
-        (np.interp(at, truth["time_s"], truth[f"payload_{axis}_m"]) - reference[f"{axis}_m"]) ** 2 for axis in "xyz"
-    )
-    return float(np.sqrt(squared[late].mean()))
-
-
 def test_two_programs_with_two_beliefs_of_the_mass_in_lockstep(tmp_path):
     ground = short_figure(tmp_path, duration=12.0)
     heavy = tmp_path / "heavy"
@@ -187,4 +136,4 @@ def test_two_programs_with_two_beliefs_of_the_mass_in_lockstep(tmp_path):
     finally:
         swarm.terminate()
         swarm.communicate(timeout=300)
-    assert truth_against_reference(tmp_path / "world", tmp_path / "run") <= 0.035
+    assert position_rmse(tmp_path / "world", tmp_path / "run") <= 0.035

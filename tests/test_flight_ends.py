@@ -2,64 +2,21 @@
 
 import json
 import os
-import random
-import re
 import signal
-import subprocess
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
-import pymavlink.dialects.v20.common as mavlink
 import pytest
-from flight_in_process import GROUND, Rehearsal, address_of, short_figure, truth_of
+from flight_in_process import Rehearsal, short_figure, truth_of
+from programs import PATIENCE, GcsProcess, addresses_of, free_port, swarm_process
 from pymavlink import mavutil
-from test_flight_end_to_end import ENVIRONMENT, addresses_of, free_port, swarm_process
 
-from gcs.flight.flight import Phase
+from gcs.flight.phase import Phase
 from gcs.record.landing import is_set_down
 from gcs.record.modes import stops_after
-from gcs.setpoints import attitude_target
 from gcs.wire import px4
-from gcs.wire.codec import Codec
 from idc_controller.plan.trajectory import RestTrajectory
 from vehicle_sim.passage import Passage
-
-PATIENCE = 120.0  # s of wall time for what takes a few
-
-
-class GcsProcess:
-    """The command itself, followed by the phases that it prints."""
-
-    def __init__(self, mission, folder, *options):
-        command = [sys.executable, "-m", "gcs", "fly", mission, "--run-dir", folder, *options]
-        self.folder = folder
-        self.process = subprocess.Popen(
-            [*map(str, command)], env=ENVIRONMENT, cwd=folder.parent, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-            text=True,
-        )  # fmt: skip
-        self.output = []
-
-    def until_phase(self, phase):
-        for line in self.process.stdout:
-            self.output.append(line)
-            if re.match(rf"\s*[\d.]+ s  {phase}$", line.rstrip()):
-                return
-        raise AssertionError("".join(self.output) + self.process.stderr.read())
-
-    def end(self):
-        """(exit code, standard error)"""
-        out, errors = self.process.communicate(timeout=PATIENCE)
-        self.output.append(out)
-        assert "Traceback" not in errors, errors
-        return self.process.returncode, errors
-
-    def child(self):
-        """Process id of the vehicle-sim that it started."""
-        children = Path(f"/proc/{self.process.pid}/task/{self.process.pid}/children").read_text().split()
-        assert len(children) == 1
-        return int(children[0])
 
 
 def check_records_closed(folder):
@@ -362,106 +319,3 @@ def check_set_down(folder, summary):
     truth = truth_of(folder)
     sinking = np.diff(truth["payload_z_m"]) / np.diff(truth["time_s"])
     assert sinking.max() < 1.0
-
-
-class Stranger:
-    """Another MAVLink system that sends what it likes to every vehicle, and to the ground."""
-
-    def __init__(self, seed=1):
-        self.codec = Codec(254, 190)
-        self.random = random.Random(seed)
-        self.sent = 0
-        self.next = 15.0
-
-    def is_due(self, flight):
-        """Twenty times a second: whoever answers every answer at once stops the virtual clock."""
-        if flight.now < self.next:
-            return False
-        self.next = flight.now + 0.05
-        return True
-
-    def commands(self, flight):
-        """The first things that somebody would try."""
-        if flight.now > 18.0 or not self.is_due(flight):
-            return
-        for i in (1, 2, 3, 4):
-            for message in (
-                mavlink.MAVLink_command_long_message(i, 1, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0, 0, 21196, *[0] * 5),
-                mavlink.MAVLink_command_long_message(i, 1, mavlink.MAV_CMD_DO_SET_MODE, 0, 1, 4, 6, *[0] * 4),
-                mavlink.MAVLink_command_long_message(i, 1, mavlink.MAV_CMD_NAV_LAND, 0, *[0] * 7),
-                attitude_target(i, flight.now, (0.5, 0.0, -0.8), 0.0, 30.0),
-                mavlink.MAVLink_param_set_message(i, 1, b"COM_OF_LOSS_T", 60.0, mavlink.MAV_PARAM_TYPE_REAL32),
-                mavlink.MAVLink_set_mode_message(i, 1, px4.MODE_LAND),
-            ):
-                flight.swarm.receive(i, self.codec.encode(message), ("10.9.8.7", 4000), flight.now)
-                self.sent += 1
-
-    def noise(self, flight):
-        """Random bytes, and datagrams of the vehicles and of the ground with bits turned over."""
-        if not self.is_due(flight):
-            return
-        sound = self.codec.encode(attitude_target(1, flight.now, (0.0, 0.0, -1.0), 0.0, 30.0))
-        for _ in range(10):
-            self.sent += 1
-            if self.random.random() < 0.5:
-                datagram = self.random.randbytes(self.random.randrange(300))
-            else:
-                bent = bytearray(sound * self.random.randrange(1, 3))
-                for _ in range(self.random.randrange(1, 6)):
-                    bent[self.random.randrange(len(bent))] = self.random.randrange(256)
-                datagram = bytes(bent)
-            if self.random.random() < 0.5:
-                i = self.random.randrange(1, 5)
-                sender = GROUND if self.random.random() < 0.5 else ("10.9.8.7", 4000)
-                flight.swarm.receive(i, datagram, sender, flight.now)
-            else:
-                sender = address_of(self.random.randrange(1, 5)) if self.random.random() < 0.5 else ("10.9.8.7", 4000)
-                flight.station.receive(datagram, sender, flight.now)
-
-
-@pytest.mark.parametrize("kind", ["commands", "noise"])
-def test_strangers_and_noise_on_the_wire_change_nothing(tmp_path, kind):
-    stranger = Stranger()
-    with Rehearsal(short_figure(tmp_path, duration=8.0), tmp_path / "run", seed=9) as flight:
-        flight.fly(getattr(stranger, kind))
-        refused = sum(vehicle.refused_setpoints for vehicle in flight.swarm.vehicles)
-        summary = flight.summary()
-    assert stranger.sent > 500
-    assert kind == "noise" or refused >= stranger.sent / 6
-    assert summary["completed"], flight.flight.reason
-    assert summary["position_rmse_m"]["total"] < 0.03
-    assert max(summary["payload_tilt_max_deg"].values()) < 5.0
-
-
-def test_the_ground_survives_any_message_of_the_dialect(tmp_path):
-    """Every message, well formed, with whatever its fields may hold, from a vehicle that it believes."""
-    generator = np.random.default_rng(4)
-    with Rehearsal(short_figure(tmp_path), tmp_path / "run") as flight:
-        flight.fly(stop=lambda: flight.flight.phase.value == "fly")
-        encoder = Codec(1, 1)
-        for kind in mavlink.mavlink_map.values():
-            frame = bytearray(kind.unpacker.size)
-            for _ in range(5):
-                frame[:] = generator.bytes(len(frame))
-                try:
-                    fields = kind.unpacker.unpack(bytes(frame))
-                    message = kind(*_in_order(kind, fields))
-                    datagram = encoder.encode(message)
-                except Exception:  # what cannot be packed cannot arrive
-                    continue
-                flight.station.receive(datagram, address_of(1), flight.now)
-        flight.station.datagrams_to_send(flight.now + 0.05)
-
-
-def _in_order(kind, fields):
-    """Unpacked wire values as the constructor takes them: arrays put together, in the order of the definition."""
-    values, at = [], 0
-    for length in kind.array_lengths:
-        if length:
-            part = fields[at : at + 1] if isinstance(fields[at], bytes) else fields[at : at + length]
-            values.append(part[0] if isinstance(part[0], bytes) else list(part))
-            at += 1 if isinstance(part[0], bytes) else length
-        else:
-            values.append(fields[at])
-            at += 1
-    return [values[i] for i in kind.orders]

@@ -3,9 +3,8 @@
 import contextlib
 import threading
 
-import numpy as np
 import pytest
-from flight_in_process import short_figure, truth_of
+from flight_in_process import position_rmse, short_figure, truth_of
 from virtual_time import VirtualTime
 
 from gcs.drivers.connection import Connection
@@ -75,21 +74,9 @@ def fly_in_real_time(mission, folder, stalls=()):
     return station.flight
 
 
-def rmse_in_figure(folder):
-    """Position RMSE (m) of the payload about the mission, 10 s after take-off and on."""
-    truth = truth_of(folder)
-    reference = np.genfromtxt(folder / "reference.csv", delimiter=",", names=True)
-    at = reference["time_s"]
-    late = at > at[0] + 10.0
-    squared = sum(
-        (np.interp(at, truth["time_s"], truth[f"payload_{axis}_m"]) - reference[f"{axis}_m"]) ** 2 for axis in "xyz"
-    )
-    return float(np.sqrt(squared[late].mean()))
-
-
 def check_flown(flight, folder, rmse):
     assert flight.completed, flight.reason
-    assert rmse_in_figure(folder) <= rmse
+    assert position_rmse(folder, folder) <= rmse
     truth = truth_of(folder)
     assert truth["contacts"].max() == 0
     assert truth["payload_z_m"][-1] == pytest.approx(-0.3, abs=0.02)  # on the pad again

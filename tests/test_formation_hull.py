@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from avoidance_scene import hull_of, system
+from avoidance_scene import hull_of
+from paper_system import system
 from proxsuite import proxqp
 
 from idc_controller.barrier.formation import Formation

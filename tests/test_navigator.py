@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from avoidance_scene import Scene, pole, straight, system, wall
+from avoidance_scene import Scene, pole, straight, wall
+from paper_system import system
 
 from idc_controller.barrier.navigator import Navigator, NavigatorSettings
 from idc_controller.plan.room import Formation, first_conflict

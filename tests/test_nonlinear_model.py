@@ -1,9 +1,10 @@
 """The nonlinear model against a second derivation, and against what mechanics conserves."""
 
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
+from paper_system import system
 
 from idc_controller.model.nonlinear import (
     Inputs,
@@ -18,25 +19,20 @@ from idc_controller.model.nonlinear import (
     uav_positions,
     uav_velocities,
 )
-from idc_controller.parameters import SystemParameters, polygon_attachments
 from idc_controller.rotations import hat
 
 
 def make_parameters(n, *, rng=None):
     """Table I for ``n`` UAVs; with a generator, every UAV, link and attachment point is different."""
-    p = polygon_attachments(n, 1.0, -0.25)
-    m, l, J = np.full(n, 0.7), np.full(n, 3.2), np.tile(0.01 * np.eye(3), (n, 1, 1))
-    J_0 = np.diag([0.29, 0.29, 0.55])
-    if rng is not None:
-        p = p + rng.uniform(-0.1, 0.1, p.shape)
-        m, l = m * rng.uniform(0.8, 1.2, n), l * rng.uniform(0.8, 1.2, n)
-        A = rng.normal(size=(n, 3, 3))
-        J = J + 0.001 * A @ np.swapaxes(A, 1, 2)
-        B = rng.normal(size=(3, 3))
-        J_0 = J_0 + 0.01 * B @ B.T
-    return SystemParameters(
-        m_0=3.1, J_0=J_0, payload_size=np.array([1.0, 1.0, 0.5]), m=m, J=J, p=p, l=l, disc_radius=0.3,
-        thrust_max=30.0, motor_time_constant=0.05, attitude_kp=100.0, attitude_kd=16.0,
+    same = system(n)
+    if rng is None:
+        return same
+    p = same.p + rng.uniform(-0.1, 0.1, same.p.shape)
+    m, l = same.m * rng.uniform(0.8, 1.2, n), same.l * rng.uniform(0.8, 1.2, n)
+    A = rng.normal(size=(n, 3, 3))
+    B = rng.normal(size=(3, 3))
+    return replace(
+        same, p=p, m=m, l=l, J=same.J + 0.001 * A @ np.swapaxes(A, 1, 2), J_0=same.J_0 + 0.01 * B @ B.T
     )  # fmt: skip
 
 

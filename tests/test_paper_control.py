@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from avoidance_scene import system
+from paper_system import system
 from scipy.linalg import solve_discrete_are
 
 from gcs.reproduce.controls import PaperControl, PaperVariant, formation_points, minimal_state

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from avoidance_scene import system
+from paper_system import system
 from test_nonlinear_model import make_parameters, newton_euler, random_state
 
 from idc_controller.model.nonlinear import (

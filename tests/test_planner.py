@@ -5,9 +5,9 @@ from types import SimpleNamespace
 import daqp
 import numpy as np
 import pytest
-from avoidance_scene import system
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from paper_system import system
 from proxsuite import proxqp
 
 import idc_controller.barrier.planner as planner_module

@@ -3,7 +3,8 @@
 import coal
 import numpy as np
 import pytest
-from avoidance_scene import Scene, estimate_at, pole, sphere, swinging, system, wall
+from avoidance_scene import Scene, estimate_at, pole, sphere, swinging, wall
+from paper_system import system
 
 from idc_controller.barrier.printed_filter import PrintedFilter
 from idc_controller.model.linear import LinearModel

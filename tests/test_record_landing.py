@@ -112,7 +112,8 @@ def test_the_truth_decides_how_a_flight_ended(tmp_path, rows, landed, completed,
     flown = SimpleNamespace(
         completed=completed, landed=landed, takeoff_time=0.0, broken_off_time=1.0, reason="", interrupted=False
     )
-    summary = _result(run, read_mission(path), flown, 9.0, 1.0).summary
+    station = SimpleNamespace(flight=flown, watch=SimpleNamespace(alarms=[]))
+    summary = _result(run, read_mission(path), station, 9.0, 1.0).summary
     assert (summary["outcome"], summary["completed"]) == (outcome, outcome == "completed")
     assert summary["limits"]["touchdown_speed"][2] == (outcome != "failed")
 

@@ -14,9 +14,9 @@ from avoidance_scene import (
     sphere,
     straight,
     swinging,
-    system,
     wall,
 )  # fmt: skip
+from paper_system import system
 
 from idc_controller.barrier.planner import PlannerSettings
 from idc_controller.barrier.safety_filter import NEGLIGIBLE
@@ -210,7 +210,7 @@ def test_breaking_off_stops_safely_and_smoothly(when):
     flown = fly(safety, mission, when, until_end=False)
     followed, clock = safety.followed(when, mission)
     stop = followed.stop(clock)
-    safety.forget()
+    safety.replaced(when, clock)
     before = flown.path[:, -1]
     position, points = before[0], []
     time, previous = when, None

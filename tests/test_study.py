@@ -5,11 +5,12 @@ import dataclasses
 from pathlib import Path
 
 import pytest
+from course_results import result_of
 
 from gcs.cli import main
 from gcs.config import default_system_path, read_system
 from gcs.courses import campaign as campaigns
-from gcs.courses.flights import COLUMNS, REQUIRED, Result
+from gcs.courses.flights import REQUIRED
 from gcs.courses.moving import top_speed
 from gcs.courses.study import MOVING, STUDIES, STUDY_COLUMNS, StudyFlights, StudyOptions
 from gcs.courses.study_figures import draw_study, worst
@@ -29,16 +30,6 @@ def system_of(flight):
     return read_system(Path(options[options.index("--config") + 1]) if "--config" in options else None)
 
 
-def result_of(plan, **figures):
-    values = dict.fromkeys(COLUMNS) | {
-        "number": plan.course.number, "name": plan.course.name, "kind": plan.course.kind, "passed": True,
-        "failures": "", "outcome": "completed", "reason": "", "exit_code": 0, "clearance_min_m": 0.6,
-        "tilt_max_deg": 2.0, "uav_separation_min_m": 0.9, "contacts": 0, "arrival_s": 30.0, "nominal_arrival_s": 28.0,
-        "delay_s": 2.0, "wall_s": 1.0, "replay": plan.replay, "position_rmse_m": 0.4,
-    }  # fmt: skip
-    return Result(**(values | figures))
-
-
 @pytest.fixture
 def flown(monkeypatch):
     """Nothing is flown: what would be is noted; those without avoidance collide."""
@@ -47,8 +38,15 @@ def flown(monkeypatch):
     def fly(plan, stop):
         plans.append(plan)
         if "mpc" in plan.options and plan.held_to.clearance:
-            return result_of(plan, passed=False, failures="contact", contacts=2, outcome="collided", clearance_min_m=0)
-        return result_of(plan)
+            figures = {
+                "passed": False,
+                "failures": "contact",
+                "contacts": 2,
+                "outcome": "collided",
+                "clearance_min_m": 0,
+            }
+            return result_of(plan.course, replay=plan.replay, **figures)
+        return result_of(plan.course, replay=plan.replay)
 
     monkeypatch.setattr(campaigns, "fly_course", fly)
     return plans
@@ -203,6 +201,6 @@ def test_nothing_known_is_drawn_and_told(tmp_path):
     flights = flights_of("rate-noise", tmp_path, quick=True)
     unknown = dict.fromkeys(("clearance_min_m", "tilt_max_deg", "contacts", "position_rmse_m", "delay_s"))
     for flight in flights.flights:
-        flights._add(flight.plan, result_of(flight.plan, **unknown))
+        flights._add(flight.plan, result_of(flight.plan.course, replay=flight.plan.replay, **unknown))
     assert draw_study(STUDIES["rate-noise"], flights.rows, tmp_path / "x.png").exists()
     assert worst(flights.results, "clearance_min_m", 2, min) == "-"

@@ -1,16 +1,12 @@
 """The drivers: lockstep over real sockets, real time on a clock of the test's own."""
 
 import contextlib
-import os
-import re
 import socket
-import subprocess
-import sys
 import threading
-from pathlib import Path
 
 import pymavlink.dialects.v20.common as mavlink
 import pytest
+from programs import PATIENCE, process
 from scripted_ground import LockstepClient, ScriptedGround
 from test_swarm import CONFIG, rows
 
@@ -24,36 +20,10 @@ from vehicle_sim.errors import SimulationError
 from vehicle_sim.swarm import Swarm
 
 SYSTEM = CONFIG.parameters()
-PATIENCE = 120.0  # s of wall time for what takes one or two
 
 
 def scripted_ground(addresses, lift=0.6):
     return ScriptedGround(addresses, float(SYSTEM.hover_thrust.mean()), SYSTEM.thrust_max, lift=lift)
-
-
-@contextlib.contextmanager
-def process(*arguments):
-    """A vehicle-sim of its own, with the addresses that it tells: (process, clock or None, vehicles)."""
-    command = [sys.executable, "-m", "vehicle_sim", *map(str, arguments)]
-    pipe = subprocess.PIPE
-    # Importable from any folder, installed or not.
-    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[1])}
-    with subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=pipe, text=True, env=environment) as started:
-        try:
-            told = []
-            for line in started.stdout:
-                if line == "ready\n":
-                    break
-                told.append(re.fullmatch(r"(clock|vehicle \d): udp://([\d.]+):(\d+)\n", line).groups())
-            else:
-                raise AssertionError(started.stderr.read())
-            addresses = {who: (host, int(port)) for who, host, port in told}
-            clock = addresses.pop("clock", None)
-            assert [*addresses] == [f"vehicle {i}" for i in range(1, len(addresses) + 1)]
-            yield started, clock, list(addresses.values())
-        finally:
-            if started.poll() is None:
-                started.kill()
 
 
 @pytest.fixture

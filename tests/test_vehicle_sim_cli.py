@@ -6,8 +6,8 @@ import socket
 
 import pymavlink.dialects.v20.common as mavlink
 import pytest
+from programs import PATIENCE, process
 from test_swarm import rows
-from test_swarm_drivers import PATIENCE, process
 
 from gcs.config import default_system_path
 from gcs.wire.codec import Codec

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import argparse
-import math
 from collections.abc import Callable
+from functools import partial
 from importlib import metadata
 from pathlib import Path
 from typing import NoReturn
 
 from rich_argparse import RawDescriptionRichHelpFormatter
 
+from gcs.arguments import number, whole_number
 from gcs.errors import UnusableInput
 
 BASE_PORT = 14540
@@ -74,7 +75,8 @@ def parse(argv: list[str] | None) -> argparse.Namespace:
         help="on a virtual clock shared with one ground station, at port BASE - 1: as fast as both can, "
         "and the same every time",
     )  # fmt: skip
-    add("--speed", type=_speed, default=None, metavar="X", help="real time times X (default: 1)")
+    add("--speed", type=partial(number, least=0.001, most=1000.0), default=None, metavar="X",
+        help="real time times X (default: 1)")  # fmt: skip
     add("--gui", action="store_true", help="show the world in a window")
     add("--with-parent", action="store_true", help=argparse.SUPPRESS)
     add("--version", action="version", version=f"vehicle-sim {_version()}")
@@ -86,27 +88,8 @@ def parse(argv: list[str] | None) -> argparse.Namespace:
     return options
 
 
-def _whole(low: int, high: int) -> Callable[[str], int]:
-    def convert(text: str) -> int:
-        try:
-            value = int(text)
-        except ValueError:
-            value = low - 1
-        if not low <= value <= high:
-            raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from {low} to {high}")
-        return value
-
-    return convert
-
-
-def _speed(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not 0.001 <= value <= 1000.0:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number from 0.001 to 1000")
-    return value
+def _whole(least: int, most: int) -> Callable[[str], int]:
+    return partial(whole_number, least=least, most=most)
 
 
 def _version() -> str:

@@ -54,13 +54,17 @@ def rejected_for_now(text: str) -> Answer:
     return Answer(mavlink.MAV_RESULT_TEMPORARILY_REJECTED, text)
 
 
+Target = tuple[Quaternion | None, Three, float]
+
+
 class Autopilot:
     """One vehicle's autopilot.
 
     Public state, to be read only: ``armed``, ``failsafe`` (it flies on its own against the ground's intention),
     ``changes`` (rises with every change of what a HEARTBEAT shows), ``measurement`` (the last usable one, or None),
-    ``attitude_target`` (attitude or None, rates, thrust 0 .. 1) as last flown, ``notices`` (texts for people, to be
-    taken away by whoever tells them). ``stop_plan``: the newest of the ground in control, to be set.
+    ``attitude_target`` (attitude or None, rates, thrust 0 .. 1) as last flown, ``target_since`` (s: from when on),
+    ``notices`` (texts for people, to be taken away by whoever tells them). ``stop_plan``: the newest of the ground in
+    control, to be set.
     """
 
     def __init__(self, airframe: Airframe, parameters: ParameterTable) -> None:
@@ -84,7 +88,8 @@ class Autopilot:
         self.failsafe = False
         self.changes = 0
         self.measurement: Measurement | None = None
-        self.attitude_target: tuple[Quaternion | None, Three, float] = (LEVEL, NO_RATES, 0.0)
+        self.attitude_target: Target = (LEVEL, NO_RATES, 0.0)
+        self.target_since = -math.inf
         self.notices: list[str] = []
         self.stop_plan: StopPlan | None = None
 
@@ -253,7 +258,7 @@ class Autopilot:
         if thrust > self._thrust_max:
             thrust = self._thrust_max
         self._thrust = thrust
-        self.attitude_target = (attitude, rates, thrust / self._thrust_max)
+        self._show_target((attitude, rates, thrust / self._thrust_max))
         if thrust <= 0.0:
             return IDLE
         tau_x, tau_y, tau_z = self._attitude_control.torque(measured.attitude, measured.rates, attitude, rates)
@@ -331,6 +336,10 @@ class Autopilot:
         plan = HoldPlan(told.start, told.duration, told.control_points, told.yaw, descent_start, descent_speed)
         return plan if math.dist(plan.at(now).position, measured.position) <= STOP_PLAN_DISTANCE else None
 
+    def _show_target(self, target: Target) -> None:
+        if target != self.attitude_target:
+            self.attitude_target, self.target_since = target, self._now
+
     def _stop(self) -> None:
         """Rotors off. The vehicle is then in HOLD, and any ground may begin anew."""
         self.armed = False
@@ -340,6 +349,6 @@ class Autopilot:
         self._setpoint_time = -math.inf
         self.stop_plan = None
         self._thrust = 0.0
-        self.attitude_target = (LEVEL, NO_RATES, 0.0)
+        self._show_target((LEVEL, NO_RATES, 0.0))
         self._mode = px4.MODE_HOLD
         self._land.start()

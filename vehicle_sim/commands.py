@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pymavlink.dialects.v20.common as mavlink
 
 from gcs.wire import px4
-from vehicle_sim.autopilot import ACCEPTED, Answer
-from vehicle_sim.control_owner import Sender
+from vehicle_sim.autopilot import ACCEPTED, Answer, Autopilot
+from vehicle_sim.control_owner import ControlOwner, Sender
 from vehicle_sim.peers import Peer
-
-if TYPE_CHECKING:
-    from vehicle_sim.vehicle import Vehicle
+from vehicle_sim.telemetry import Telemetry
 
 INTERVAL_MIN = 0.004  # s; a faster stream than the onboard loop has nothing to tell
 
@@ -34,8 +32,10 @@ Handler = Callable[[Any, Sender, Peer, float], None]
 class CommandServer:
     """COMMAND_LONG, COMMAND_INT and SET_MODE."""
 
-    def __init__(self, vehicle: Vehicle) -> None:
-        self._vehicle = vehicle
+    def __init__(self, autopilot: Autopilot, owner: ControlOwner, telemetry: Telemetry) -> None:
+        self._autopilot = autopilot
+        self._owner = owner
+        self._telemetry = telemetry
         self._commands: dict[int, Callable[[Any, Sender, Peer, float], Answer]] = {
             mavlink.MAV_CMD_COMPONENT_ARM_DISARM: self._arm_disarm,
             mavlink.MAV_CMD_DO_SET_MODE: self._do_set_mode,
@@ -54,7 +54,7 @@ class CommandServer:
 
     def _on_command(self, message: Any, sender: Sender, peer: Peer, now: float) -> None:
         run = self._commands.get(message.command)
-        if message.command not in _HARMLESS and self._vehicle.owner.is_stranger(sender, now):
+        if message.command not in _HARMLESS and self._owner.is_stranger(sender, now):
             answer = Answer(_DENIED, "Command denied: another ground station is in control")
         elif run is None:
             answer = Answer(_UNSUPPORTED)
@@ -68,7 +68,7 @@ class CommandServer:
         )
 
     def _on_set_mode(self, message: Any, sender: Sender, peer: Peer, now: float) -> None:
-        if self._vehicle.owner.is_stranger(sender, now):
+        if self._owner.is_stranger(sender, now):
             answer = Answer(_DENIED, "Mode denied: another ground station is in control")
         elif not message.base_mode & mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED:
             answer = Answer(_DENIED, "Mode denied: only custom modes are known")
@@ -78,15 +78,15 @@ class CommandServer:
 
     def _enter_mode(self, custom_mode: int, sender: Sender, now: float) -> Answer:
         if custom_mode == px4.MODE_OFFBOARD:
-            return self._vehicle.owner.enter_offboard(sender, now)
-        return self._vehicle.autopilot.enter_mode(custom_mode, now)
+            return self._owner.enter_offboard(sender, now)
+        return self._autopilot.enter_mode(custom_mode, now)
 
     def _arm_disarm(self, message: Any, sender: Sender, peer: Peer, now: float) -> Answer:
         force = message.param2 == px4.FORCE_ARM_DISARM
         if message.param1 == 1.0:
-            return self._vehicle.autopilot.arm(now, force)
+            return self._autopilot.arm(now, force)
         if message.param1 == 0.0:
-            return self._vehicle.autopilot.disarm(force)
+            return self._autopilot.disarm(force)
         return Answer(_DENIED, f"Arming denied: param1 {message.param1} is neither 0 nor 1")
 
     def _do_set_mode(self, message: Any, sender: Sender, peer: Peer, now: float) -> Answer:
@@ -101,20 +101,19 @@ class CommandServer:
         return self._enter_mode(px4.encode_custom_mode(main, sub), sender, now)
 
     def _land(self, message: Any, sender: Sender, peer: Peer, now: float) -> Answer:
-        return self._vehicle.autopilot.enter_mode(px4.MODE_LAND, now)
+        return self._autopilot.enter_mode(px4.MODE_LAND, now)
 
     def _take_off(self, message: Any, sender: Sender, peer: Peer, now: float) -> Answer:
-        return self._vehicle.autopilot.enter_mode(px4.MODE_TAKEOFF, now)
+        return self._autopilot.enter_mode(px4.MODE_TAKEOFF, now)
 
     def _return(self, message: Any, sender: Sender, peer: Peer, now: float) -> Answer:
-        return self._vehicle.autopilot.enter_mode(px4.MODE_RETURN, now)
+        return self._autopilot.enter_mode(px4.MODE_RETURN, now)
 
     def _request_message(self, message: Any, sender: Sender, peer: Peer, now: float) -> Answer:
         wanted = _whole(message.param1, 1 << 24)
-        telemetry = self._vehicle.telemetry
-        if wanted is None or not telemetry.knows(px4.AUTOPILOT_COMPONENT, wanted):
+        if wanted is None or not self._telemetry.knows(px4.AUTOPILOT_COMPONENT, wanted):
             return Answer(_UNSUPPORTED)
-        built = telemetry.build(px4.AUTOPILOT_COMPONENT, wanted, now)
+        built = self._telemetry.build(px4.AUTOPILOT_COMPONENT, wanted, now)
         if built is None:
             return Answer(mavlink.MAV_RESULT_TEMPORARILY_REJECTED)
         peer.reply(built)
@@ -122,8 +121,10 @@ class CommandServer:
 
     def _set_message_interval(self, message: Any, sender: Sender, peer: Peer, now: float) -> Answer:
         wanted = _whole(message.param1, 1 << 24)
-        if wanted is None or not self._vehicle.telemetry.knows(px4.AUTOPILOT_COMPONENT, wanted):
+        if wanted is None or not self._telemetry.knows(px4.AUTOPILOT_COMPONENT, wanted):
             return Answer(_UNSUPPORTED)
+        if self._owner.is_stranger_at_its_address(sender, now):
+            return Answer(_DENIED, "Interval denied: another ground station flies by this link")
         microseconds = message.param2
         if microseconds == -1.0:
             peer.set_interval(wanted, math.inf)
@@ -136,9 +137,7 @@ class CommandServer:
         return ACCEPTED
 
     def _request_capabilities(self, message: Any, sender: Sender, peer: Peer, now: float) -> Answer:
-        peer.reply(
-            self._vehicle.telemetry.build(px4.AUTOPILOT_COMPONENT, mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION, now)
-        )
+        peer.reply(self._telemetry.build(px4.AUTOPILOT_COMPONENT, mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION, now))
         return ACCEPTED
 
 

@@ -51,6 +51,11 @@ class ControlOwner:
         owner = self._owner
         return owner is not None and owner != sender and self.in_control(now) is not None
 
+    def is_stranger_at_its_address(self, sender: Sender, now: float) -> bool:
+        """Whether another ground is in control, and is reached at the same address."""
+        owner = self._owner
+        return owner is not None and owner[0] == sender[0] and self.is_stranger(sender, now)
+
     def take(self, setpoint: AttitudeSetpoint, sender: Sender, now: float) -> None:
         """A sane set-point of a sender that is no stranger. One that was overtaken by a later one is dropped."""
         stream = self._streams.get(sender)

@@ -3,25 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pymavlink.dialects.v20.common as mavlink
 
 from gcs.wire import px4
-from vehicle_sim.control_owner import Sender
-from vehicle_sim.parameter_table import Parameter, ParameterRefusalError
+from vehicle_sim.control_owner import ControlOwner, Sender
+from vehicle_sim.parameter_table import Parameter, ParameterRefusalError, ParameterTable
 from vehicle_sim.peers import Peer
-
-if TYPE_CHECKING:
-    from vehicle_sim.vehicle import Vehicle
 
 
 class ParameterServer:
     """PARAM_REQUEST_READ, PARAM_REQUEST_LIST and PARAM_SET. A refused PARAM_SET is answered with the value kept."""
 
-    def __init__(self, vehicle: Vehicle) -> None:
-        self._vehicle = vehicle
-        self._table = vehicle.parameters
+    def __init__(self, table: ParameterTable, owner: ControlOwner) -> None:
+        self._table = table
+        self._owner = owner
         self.handlers: dict[int, Callable[[Any, Sender, Peer, float], None]] = {
             mavlink.MAVLINK_MSG_ID_PARAM_REQUEST_READ: self._on_read,
             mavlink.MAVLINK_MSG_ID_PARAM_REQUEST_LIST: self._on_list,
@@ -44,7 +41,7 @@ class ParameterServer:
 
     def _on_set(self, message: Any, sender: Sender, peer: Peer, now: float) -> None:
         name = message.param_id
-        if self._vehicle.owner.is_stranger(sender, now):
+        if self._owner.is_stranger(sender, now):
             peer.tell(f"{name} denied: another ground is in control")
         else:
             try:

@@ -14,6 +14,7 @@ from vehicle_sim.telemetry import Telemetry
 
 PEER_TIMEOUT = 10.0  # s of silence after which a peer is forgotten
 PEERS_MAX = 8
+REPLIES_MAX = 200  # answers that wait for one peer; whoever asks for more at once gets no more
 
 TIME_TOLERANCE = 1e-6  # s: sums of steps are not exact
 
@@ -119,8 +120,9 @@ class Peer:
 
     def reply(self, message: Any) -> None:
         """Send a message (or a tuple of them) of the autopilot with the next datagrams."""
-        self._replies += [self.codec.encode(each) for each in _each(message)]
-        self.next_due = -math.inf
+        if len(self._replies) < REPLIES_MAX:
+            self._replies += [self.codec.encode(each) for each in _each(message)]
+            self.next_due = -math.inf
 
     def tell(self, text: str, severity: int = mavlink.MAV_SEVERITY_WARNING) -> None:
         """A text for people, in pieces of a STATUSTEXT's length."""

@@ -197,10 +197,12 @@ class Telemetry:
         )
 
     def _attitude_target(self, now: float) -> Any:
+        """Stamped with the moment at which it began to act, as PX4 does it."""
         attitude, rates, thrust = self._autopilot.attitude_target
+        since = max(self._autopilot.target_since, self._boot_time)
         mask = 0 if attitude is not None else mavlink.ATTITUDE_TARGET_TYPEMASK_ATTITUDE_IGNORE
         return mavlink.MAVLink_attitude_target_message(
-            self.time_boot_ms(now), mask, list(attitude or LEVEL), *rates, thrust
+            self.time_boot_ms(since), mask, list(attitude or LEVEL), *rates, thrust
         )
 
     def _vfr_hud(self, now: float) -> Any:

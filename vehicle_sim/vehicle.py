@@ -69,8 +69,8 @@ class Vehicle:
             self._add_peer(ground_address).offer()
         self._told_changes = 0
         self._latest = -math.inf
-        commands = CommandServer(self)
-        parameter_server = ParameterServer(self)
+        commands = CommandServer(self.autopilot, self.owner, self.telemetry)
+        parameter_server = ParameterServer(self.parameters, self.owner)
         # A further protocol (missions, ...) registers its messages here.
         self._handlers: dict[int, Callable[[Any, Sender, Peer, float], None]] = {
             mavlink.MAVLINK_MSG_ID_SET_ATTITUDE_TARGET: self._on_setpoint,

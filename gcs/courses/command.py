@@ -7,7 +7,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from gcs.arguments import number_of_jobs, whole_number
+from gcs.arguments import number, number_of_jobs, whole_number
 from gcs.courses.campaign import Campaign, CampaignOptions
 from gcs.courses.flights import Result
 from gcs.courses.generator import KINDS
@@ -114,10 +114,4 @@ def _seed(text: str) -> int:
 
 
 def _speed(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = 0.0
-    if not 0.5 <= value <= 20.0:
-        raise argparse.ArgumentTypeError(f"{text} is not a speed from 0.5 to 20 m/s")
-    return value
+    return number(text, 0.5, 20.0)

@@ -15,7 +15,7 @@ from rich.text import Text
 
 from gcs.courses.flights import SEPARATION, Result
 from gcs.courses.generator import HELD_TO
-from gcs.errors import UnusableInput
+from gcs.record.pictures import save_picture
 
 _QUANTITIES = (
     # field, title, unit, limit, whether high values are the bad ones
@@ -101,12 +101,7 @@ def draw_distribution(results: Sequence[Result], folder: Path) -> Path:
             ax.axvline(limit, color="#D55E00", lw=1.5, label=f"limit {limit:g} {unit}")
             ax.legend(frameon=False, fontsize=9)
     figure.suptitle(f"{len(results)} random courses, {sum(result.passed for result in results)} passed")
-    path = folder / _PICTURE
-    try:
-        figure.savefig(path, dpi=130)
-    except OSError as error:
-        raise UnusableInput(f"{path}: cannot be written: {error.strerror}") from None
-    return path
+    return save_picture(figure, folder / _PICTURE, 130)
 
 
 def _values(results: Sequence[Result], field: str) -> np.ndarray:

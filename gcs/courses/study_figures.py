@@ -16,8 +16,8 @@ from rich.text import Text
 
 from gcs.courses.flights import Result
 from gcs.courses.study import Study, StudyRow
-from gcs.errors import UnusableInput
 from gcs.record.figures import LIMIT, SERIES
+from gcs.record.pictures import save_picture
 
 _MARKERS = "os^Dv"
 _HIGHEST_ANGLE = 30.0
@@ -93,11 +93,7 @@ def draw_study(study: Study, rows: Sequence[StudyRow], path: Path) -> Path:
     }
     figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=5, frameon=False, fontsize=9)
     figure.suptitle(f"{study.name}: {study.about} ({len(rows)} flights)", fontsize=11)
-    try:
-        figure.savefig(path, dpi=110)
-    except OSError as error:
-        raise UnusableInput(f"{path}: cannot be written: {error.strerror}") from None
-    return path
+    return save_picture(figure, path, 110)
 
 
 def _draw(ax: Axes, study: Study, rows: Sequence[StudyRow], figure: str, limit: str) -> None:

@@ -8,9 +8,7 @@ from collections.abc import Iterator
 
 from gcs.errors import UnusableInput
 from gcs.wire.address import Address
-
-RECEIVE_BUFFER = 4 * 1024 * 1024  # bytes: a whole team's telemetry while the ground thinks
-DATAGRAM_MAX = 65536
+from gcs.wire.udp import RECEIVE_BUFFER, arrived
 
 
 class Connection:
@@ -34,15 +32,8 @@ class Connection:
             return
 
     def receive(self) -> Iterator[tuple[bytes, Address]]:
-        """All datagrams that have come."""
-        while True:
-            try:
-                datagram, sender = self.socket.recvfrom(DATAGRAM_MAX)
-            except BlockingIOError:
-                return
-            except OSError:
-                continue  # the echo of a datagram to a closed port
-            yield datagram, sender
+        """The datagrams that have come."""
+        return arrived(self.socket)
 
     def wait(self, timeout: float) -> None:
         """Until something can be received, but not longer than ``timeout`` (s)."""

@@ -56,7 +56,7 @@ class CampaignTables:
     """The whole file."""
 
     campaign: CampaignTable
-    fault: Annotated[tuple[SweptTable, ...], Field(min_length=1, max_length=1000)]
+    fault: Annotated[tuple[SweptTable, ...], Field(max_length=1000)] = ()
     limits: Limits | None = field(default=None)
 
 
@@ -125,6 +125,8 @@ def _disagreements(file: TomlFile, tables: CampaignTables) -> Iterator[str]:
         for value, number in Counter(getattr(table, key) or ()).items():
             if number > 1:
                 yield file.problem(("campaign", key), f"{value} stands {number} times")
+    if not tables.fault and not table.clean:
+        yield file.problem(("campaign",), "has no fault: needs [[fault]], or clean = true")
     if table.clean and any(fault.name == CLEAN for fault in tables.fault):
         yield file.problem(("campaign", "clean"), f"a fault is named '{CLEAN}', as the flights without are")
 

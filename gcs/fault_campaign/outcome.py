@@ -48,6 +48,9 @@ def outcome_table(
     parts: list[RenderableType] = [Text(f"{passed} of {len(results)} flights {how}", style=colour)]
     parts.append(_rates(rates_of(results), results))
     parts.append(Text(f"Rates with their {100 * CONFIDENCE:.0f} % intervals (Wilson); safe: set down without contact."))
+    if false := sum(result.false_alarms or 0 for result in results):
+        flights = sum(bool(result.false_alarms) for result in results)
+        parts.append(Text(f"{false} alarms before any fault, in {flights} flights", style="bold red"))
     idle = [result for result in results if result.notes]
     if idle:
         parts.append(
@@ -79,6 +82,7 @@ def _rates(rates: Sequence[Rates], results: Sequence[FaultResult]) -> Table:
         "worst tilt",
         "least apart",
         "touched with",
+        "noticed in",
         "stopped in",
         "all in",
     ):
@@ -88,6 +92,7 @@ def _rates(rates: Sequence[Rates], results: Sequence[FaultResult]) -> Table:
         clearance = min((r.clearance_min_m for r in chosen if r.clearance_min_m is not None), default=None)
         apart = min((r.uav_separation_min_m for r in chosen if r.uav_separation_min_m is not None), default=None)
         tilt = max((r.tilt_max_deg for r in chosen if r.tilt_max_deg is not None), default=None)
+        noticed = [r.detected_s for r in chosen if r.detected_s is not None]
         touch = max((r.touchdown_mps for r in chosen if r.touchdown_mps is not None), default=None)
         stop = max((r.stop_s for r in chosen if r.stop_s is not None), default=None)
         team = max((r.team_stop_s for r in chosen if r.team_stop_s is not None), default=None)
@@ -101,10 +106,18 @@ def _rates(rates: Sequence[Rates], results: Sequence[FaultResult]) -> Table:
             "-" if tilt is None else f"{tilt:.1f} deg",
             "-" if apart is None else f"{apart:.2f} m",
             "-" if touch is None else f"{touch:.2f} m/s",
+            _noticed(noticed, len(chosen)),
             "-" if stop is None else f"{stop:.2f} s",
             "-" if team is None else f"{team:.2f} s",
         )
     return table
+
+
+def _noticed(times: Sequence[float], flights: int) -> str:
+    """The longest time, and in how many flights where it was not in all."""
+    if not times:
+        return "-"
+    return f"{max(times):.2f} s" + (f" ({len(times)} of {flights})" if len(times) < flights else "")
 
 
 def _share(rate: float, low: float, high: float) -> str:

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import dataclasses
-import json
 import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from gcs.fault_campaign.detection import detection, first_start
 from gcs.fault_campaign.sweep import FaultFlight
-from gcs.faults import KINDS
-from gcs.faults.record import FAULTS_FILE, fault_notes
+from gcs.faults.record import fault_notes
 from gcs.record.modes import stops_after
 from gcs.side_by_side import Ended
 
@@ -33,6 +32,7 @@ class FaultResult:
     ``team_stop_s``: to when the last vehicle had stopped flying the ground's set-points, then ``team_spread_s`` after
     the first one. ``landed``, ``touchdown_mps`` and ``end_tilt_deg``: whether the payload stands on the ground at the
     end, how fast it touched, and its angle to upright.
+    ``detected_s``: from there to the first alarm, ``detected_as``. ``false_alarms``: alarms before any fault.
     ``notes``: faults that never came or disturbed nothing. ``run_dir`` is empty where it was not kept.
     """
 
@@ -62,6 +62,9 @@ class FaultResult:
     stop_s: float | None
     team_stop_s: float | None
     team_spread_s: float | None
+    detected_s: float | None
+    detected_as: str
+    false_alarms: int | None
     notes: str
     wall_s: float
     run_dir: str
@@ -93,6 +96,7 @@ def evaluate(flight: FaultFlight, ended: Ended, run_dir: Path, replay: str) -> F
     count = len(flight.case.faults)
     stop = stop_time(summary, run_dir, count)
     last, spread = team_stop(run_dir, count) if stop is not None else (None, None)
+    noticed = detection(run_dir, count)
     angles = [angle for angle in summary.get("payload_tilt_max_deg", {}).values() if angle is not None]
     return FaultResult(
         number=flight.number,
@@ -121,6 +125,9 @@ def evaluate(flight: FaultFlight, ended: Ended, run_dir: Path, replay: str) -> F
         stop_s=stop,
         team_stop_s=last,
         team_spread_s=spread,
+        detected_s=noticed.after,
+        detected_as=noticed.told,
+        false_alarms=noticed.false,
         notes="; ".join(fault_notes(run_dir)),
         wall_s=round(ended.wall, 1),
         run_dir=str(run_dir) if run_dir.exists() else "",
@@ -156,22 +163,3 @@ def team_stop(run_dir: Path, count: int) -> tuple[float | None, float | None]:
     if begin is None or not stops:
         return None, None
     return round(max(stops) - begin, 3), round(max(stops) - min(stops), 3)
-
-
-def first_start(run_dir: Path, count: int) -> float | None:
-    """When the first of the last ``count`` faults started (s, the clock of the tables); None: none did.
-
-    The faults before them are the mission's own. Wind and load count only where nothing else is wrong.
-    """
-    try:
-        record = json.loads((run_dir / FAULTS_FILE).read_text(encoding="utf-8"))
-        faults = record["faults"][len(record["faults"]) - count :]
-        broken = [fault for fault in faults if not _is_of_world(fault.get("kind"))]
-        starts = [fault["activations"][0][0] for fault in broken or faults if fault["activations"]]
-        return float(record["take_off_s"] + min(starts))
-    except (OSError, ValueError, KeyError, TypeError, IndexError):
-        return None
-
-
-def _is_of_world(kind: str | None) -> bool:
-    return kind in KINDS and KINDS[kind].family == "world"

@@ -71,6 +71,8 @@ class ObstacleMap:
         self._names = {obstacle.name for obstacle in known}
         self._next_number = 1
         self._time = -math.inf
+        self.vanished: list[str] = []
+        """Followed obstacles that are no longer seen where a vehicle could not miss them; for the caller to clear."""
 
     @classmethod
     def of_mission(cls, mission: Mission) -> ObstacleMap:
@@ -97,10 +99,13 @@ class ObstacleMap:
         """Detections that could not be used."""
         return self._inbox.refused
 
-    def update(self, now: float) -> None:
-        """Learn from all that came since the last time."""
+    def update(self, now: float, pose_noise: float = 1.0) -> None:
+        """Learn from all that came since the last time.
+
+        ``pose_noise``: factor of the noise of the vehicles' poses over that of the system file.
+        """
         self._time = now
-        for clusters in self._inbox.frames(now):
+        for clusters in self._inbox.frames(now, pose_noise):
             self._learn(clusters)
         self._drop_silent(now)
 
@@ -229,10 +234,13 @@ class ObstacleMap:
             if track.known is not None:
                 if not track.is_gone and silent > GHOST_AFTER and self._would_be_seen(track, now):
                     track.is_gone = True
-            elif not track.is_believed or (
-                silent > GHOST_AFTER
-                and (self._would_be_seen(track, now) or (silent > FORGET_AFTER and not track.is_static))
-            ):
+                    self.vanished.append(track.name)
+            elif not track.is_believed:
+                self._remove(track)
+            elif silent > GHOST_AFTER and self._would_be_seen(track, now):
+                self._remove(track)
+                self.vanished.append(track.name)
+            elif silent > FORGET_AFTER and not track.is_static:
                 self._remove(track)
         for key, (_, when) in tuple(self._memory.items()):
             if now - when > _MEMORY:

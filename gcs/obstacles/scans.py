@@ -108,8 +108,11 @@ class ScanInbox:
         """Those that have told where they are."""
         return tuple(self._positions)
 
-    def frames(self, now: float) -> list[list[Cluster]]:
-        """What can be placed, oldest first: the clusters of all vehicles at (nearly) one time."""
+    def frames(self, now: float, pose_noise: float = 1.0) -> list[list[Cluster]]:
+        """What can be placed, oldest first: the clusters of all vehicles at (nearly) one time.
+
+        ``pose_noise``: factor of the poses' noise over what :class:`SensorModel` says.
+        """
         placed: list[tuple[float, list[Cluster]]] = []
         for key, scan in tuple(self._waiting.items()):
             pose = self._pose(key[0], scan.time)
@@ -120,7 +123,7 @@ class ScanInbox:
             if pose is None:
                 self.refused += scan.count
                 continue
-            placed.append((scan.time, self._placed(key[0], scan, *pose)))
+            placed.append((scan.time, self._placed(key[0], scan, *pose, pose_noise)))
         placed.sort(key=lambda entry: entry[0])
         frames: list[list[Cluster]] = []
         begin = -math.inf
@@ -131,7 +134,7 @@ class ScanInbox:
             frames[-1] += clusters
         return frames
 
-    def _placed(self, uav: int, scan: _Scan, position: Array, quaternion: Array) -> list[Cluster]:
+    def _placed(self, uav: int, scan: _Scan, position: Array, quaternion: Array, pose_noise: float) -> list[Cluster]:
         rotation = rotation_from_quaternion(quaternion)
         s = self._sensors
         body = np.array([point for points in scan.points.values() for point in points])
@@ -139,7 +142,7 @@ class ScanInbox:
         world = position + body @ rotation.T
         origins = np.broadcast_to(position, body.shape)
         cut = distance > scan.reach - _CUT * s.range_noise
-        variance = s.position**2 + (s.attitude * distance) ** 2
+        variance = pose_noise**2 * (s.position**2 + (s.attitude * distance) ** 2)
         clusters, end = [], 0
         for number, points in scan.points.items():
             own = slice(end, end + len(points))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 from pathlib import Path
+from typing import Self
 
 from gcs.errors import UnusableInput
 
@@ -58,7 +59,7 @@ class AppendOnlyFile:
             except OSError as error:
                 self.error = self.error or error
 
-    def __enter__(self) -> AppendOnlyFile:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:

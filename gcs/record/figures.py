@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from gcs.errors import UnusableInput
 from gcs.record.clearance import ObstacleTrack
+from gcs.record.pictures import save_picture
 from gcs.record.run_data import RunData, read_run
 from gcs.record.summary import payload_angles, position_error
 
@@ -47,12 +48,7 @@ def report(run_dir: Path | str) -> list[Path]:
         drawings |= {"thrust": draw_thrust, "separation": draw_separation}
     pictures = []
     for name, draw in drawings.items():
-        path = run.folder / f"{name}.png"
-        try:
-            draw(run).savefig(path, dpi=_DPI)
-        except OSError as error:
-            raise UnusableInput(f"{path}: cannot be written: {error.strerror}") from None
-        pictures.append(path)
+        pictures.append(save_picture(draw(run), run.folder / f"{name}.png", _DPI))
     return pictures
 
 

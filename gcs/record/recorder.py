@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gcs.flight.flight import CLEAR_OF_GROUND
+from gcs.flight.phase import CLEAR_OF_GROUND
 from gcs.record.tables import (
+    ALARM_COLUMNS,
+    ALARMS,
     ESTIMATE_COLUMNS,
     OBSTACLE_ESTIMATE_COLUMNS,
     PLAN_COLUMNS,
@@ -22,6 +24,7 @@ from gcs.record.tlog import TelemetryLog
 from idc_controller.rotations import quaternion_from_euler
 
 if TYPE_CHECKING:
+    from gcs.flight.alarms import Alarm
     from gcs.flight.flight import Flight, StepRecord
     from gcs.obstacles import ObstacleMap
     from idc_controller.control.controller import Decision
@@ -40,6 +43,7 @@ class FlightRecorder:
         self._reference = TableWriter(run_dir / "reference.csv", REFERENCE_COLUMNS)
         self._estimate = TableWriter(run_dir / "estimate.csv", ESTIMATE_COLUMNS)
         self._steps = TableWriter(run_dir / "steps.csv", STEP_COLUMNS)
+        self._alarms = TableWriter(run_dir / ALARMS, ALARM_COLUMNS)
         self._run_dir = run_dir
         self._obstacles: TableWriter | None = None
         self._next_obstacles = -math.inf
@@ -92,6 +96,10 @@ class FlightRecorder:
                  shape.yaw, belief.growth]
             )  # fmt: skip
 
+    def alarm(self, alarm: Alarm) -> None:
+        """Something was noticed."""
+        self._alarms.write([round(alarm.time, 6), alarm.source, alarm.what, alarm.detail])
+
     def _write_reference(self, flight: Flight, time: float) -> None:
         if flight.ended:
             return
@@ -107,7 +115,8 @@ class FlightRecorder:
 
     def close(self) -> None:
         """Close all files; harmless when they are closed."""
-        for file in (self._tlog, self._reference, self._estimate, self._steps, self._plan, self._obstacles):
+        tables = (self._reference, self._estimate, self._steps, self._alarms, self._plan, self._obstacles)
+        for file in (self._tlog, *tables):
             if file is not None:
                 file.close()
 

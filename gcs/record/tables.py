@@ -44,6 +44,10 @@ OBSTACLE_ESTIMATE_COLUMNS = (
 # What each vehicle flew from when on, as it stood on board, and whether against the ground's intention.
 MODE_COLUMNS = ("time_s", "vehicle", "mode", "armed", "failsafe")
 
+# What the ground noticed, of whom.
+ALARMS = "alarms.csv"
+ALARM_COLUMNS = ("time_s", "source", "alarm", "detail")
+
 Cell = float | int | bool | str
 
 
@@ -54,45 +58,23 @@ def truth_columns(number_of_uavs: int) -> tuple[str, ...]:
     return ("time_s", *PAYLOAD_COLUMNS, *uavs, "contacts")
 
 
-class TableWriter:
+class TableWriter(AppendOnlyFile):
     """Writes a CSV file: the header once, then rows; the same rows give the same bytes.
 
-    Numbers are written in the shortest form that reads back to the same double. Rows reach the operating
-    system whole and at once (see :class:`AppendOnlyFile`, whose errors this raises and whose ``error`` it
-    shows).
+    Numbers are written in the shortest form that reads back to the same double.
     """
 
     def __init__(self, path: Path | str, columns: Sequence[str]) -> None:
+        super().__init__(path)
         self.columns = tuple(columns)
-        self._file = AppendOnlyFile(path)
-        self._file.append(_line(self.columns))
-
-    @property
-    def path(self) -> Path:
-        """Where the table is."""
-        return self._file.path
-
-    @property
-    def error(self) -> OSError | None:
-        """Why writing stopped before ``close()``, if it did."""
-        return self._file.error
+        self.append(_line(self.columns))
 
     def write(self, row: Iterable[Cell]) -> None:
         """Append one row, a value a column. Raises :class:`ValueError` for another number of values."""
         cells = [_cell(value) for value in row]
         if len(cells) != len(self.columns):
             raise ValueError(f"{self.path.name}: {len(cells)} values for {len(self.columns)} columns")
-        self._file.append(_line(cells))
-
-    def close(self) -> None:
-        """Close the file; harmless when it is closed already."""
-        self._file.close()
-
-    def __enter__(self) -> TableWriter:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
+        self.append(_line(cells))
 
 
 def _cell(value: Cell) -> str:

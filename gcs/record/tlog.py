@@ -38,42 +38,22 @@ def frames_in(datagram: bytes) -> Iterator[bytes]:
             at += 1
 
 
-class TelemetryLog:
-    """Writes a tlog; see :class:`AppendOnlyFile` for the errors raised and for what a killed process leaves.
+class TelemetryLog(AppendOnlyFile):
+    """Writes a tlog.
 
     ``start_epoch`` is the wall-clock time (s since 1970, UTC) of flight time 0; with a given one the file
     repeats to the byte.
     """
 
     def __init__(self, path: Path | str, start_epoch: float) -> None:
-        self._file = AppendOnlyFile(path)
+        super().__init__(path)
         self._start_us = round(start_epoch * 1e6)
         self.frames = 0
-
-    @property
-    def path(self) -> Path:
-        """Where the log is."""
-        return self._file.path
-
-    @property
-    def error(self) -> OSError | None:
-        """Why writing stopped before ``close()``, if it did."""
-        return self._file.error
 
     def write(self, now: float, datagram: bytes) -> None:
         """Record a datagram that was sent or received at flight time ``now`` (s): one record a frame."""
         stamp = _STAMP.pack((self._start_us + round(now * 1e6)) & ~0x3)
         frames = list(frames_in(datagram))
         if frames:
-            self._file.append(b"".join(stamp + frame for frame in frames))
+            self.append(b"".join(stamp + frame for frame in frames))
             self.frames += len(frames)
-
-    def close(self) -> None:
-        """Close the file; harmless when it is closed already."""
-        self._file.close()
-
-    def __enter__(self) -> TelemetryLog:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from gcs.record.figures import FLOWN, LIMIT, OBSTACLE, SERIES
+from gcs.record.pictures import save_picture
 from gcs.record.run_data import RunData
 from gcs.record.summary import payload_angles
 from gcs.reproduce.scene import RADIUS
@@ -274,4 +275,4 @@ def _finish(ax: Axes, x: str, y: str) -> None:
 
 
 def _save(figure: Figure, path: Path) -> None:
-    figure.savefig(path, dpi=DPI)
+    save_picture(figure, path, DPI)

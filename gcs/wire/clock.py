@@ -9,7 +9,7 @@ from statistics import median
 WINDOW = 10  # round trips that are remembered: as long as the stamps, so that both tell of one time
 SLICE = 0.25  # s of which only the greatest lead is remembered
 SLICES = 4  # few, because a simulated world that has stalled does not catch up
-RESOLUTION = 1e-6  # s; TIMESYNC counts nanoseconds, and sums of times are rounded
+OPEN_REQUESTS = 100  # TIMESYNC requests whose answers are waited for
 REBOOT = 1.0  # s; a boot time that falls behind by more belongs to another boot
 
 
@@ -23,6 +23,7 @@ class RemoteClock:
     def __init__(self) -> None:
         self._leads: deque[list[float]] = deque(maxlen=SLICES)  # [beginning of the slice, greatest lead in it]
         self._lead = -math.inf
+        self._asked: deque[int] = deque(maxlen=OPEN_REQUESTS)
         self._round_trips: deque[float] = deque(maxlen=WINDOW)
         self._shortest = 0.0
 
@@ -38,10 +39,19 @@ class RemoteClock:
             self._leads[-1][1] = lead
             self._lead = max(self._lead, lead)
 
-    def answered(self, sent: float, arrival: float) -> None:
-        """A TIMESYNC request of ``sent`` was answered at ``arrival`` (s, ground)."""
-        if arrival >= sent - RESOLUTION:
-            self._round_trips.append(max(arrival - sent, 0.0))
+    def ask(self, now: float) -> int:
+        """``ts1`` (ns) of a TIMESYNC request that goes out at ``now`` (s, ground)."""
+        self._asked.append(round(now * 1e9))
+        return self._asked[-1]
+
+    def answered(self, ts1: int, arrival: float) -> None:
+        """A TIMESYNC answer to ``ts1`` (ns) came at ``arrival`` (s, ground).
+
+        Counted once, and only if :meth:`ask` gave it: others may ask from the ground's address, too.
+        """
+        if ts1 in self._asked:
+            self._asked.remove(ts1)
+            self._round_trips.append(max(arrival - ts1 * 1e-9, 0.0))
             self._shortest = min(self._round_trips)
 
     @property

@@ -13,6 +13,9 @@ MESSAGE_ID_OF_NAME: dict[str, int] = {kind.msgname: number for number, kind in m
 #: Frames are gathered into datagrams up to this size, which every usual path carries unfragmented (bytes).
 DATAGRAM_LIMIT = 1200
 
+#: Frames of one datagram that may be broken; more make it no datagram of MAVLink, and the rest is not looked at.
+BAD_FRAMES_MAX = 32
+
 _V1, _V2 = mavlink.PROTOCOL_MARKER_V1, mavlink.PROTOCOL_MARKER_V2
 _SIGNED = mavlink.MAVLINK_IFLAG_SIGNED
 _SIGNATURE_LENGTH = mavlink.MAVLINK_SIGNATURE_BLOCK_LEN
@@ -35,6 +38,11 @@ class Codec:
         self.bad_frames = 0
         self.unknown_messages = 0
         self.skipped_bytes = 0
+
+    @property
+    def unread(self) -> int:
+        """Grows with every datagram that holds something that cannot be read."""
+        return self.bad_frames + self.skipped_bytes
 
     @property
     def system_id(self) -> int:
@@ -60,6 +68,7 @@ class Codec:
         messages: list[Any] = []
         end = len(datagram)
         position = 0
+        give_up = self.bad_frames + BAD_FRAMES_MAX
         while position < end:
             marker = datagram[position]
             length = 0
@@ -88,6 +97,9 @@ class Codec:
             message = None if flags & ~_SIGNED else self._decode_frame(datagram[position:following])
             if message is None:
                 self.bad_frames += 1
+                if self.bad_frames >= give_up:
+                    self.skipped_bytes += end - position
+                    break
                 position += 1  # its length may be what is wrong
                 continue
             messages.append(message)

@@ -111,8 +111,8 @@ class AvoidanceFilter:
         self._plan_time = 0.0
         self._rate = 1.0
         self._turn = 0
-        self._restart = False
-        """The next step follows a mission whose clock is the time itself."""
+        self._taken_up: tuple[float, float] | None = None
+        """When a new mission was given, and its clock then; until the next step."""
         self.report = SafetyReport()
 
     def correct(self, time: float, u: Array, estimate: Estimate) -> Array:
@@ -133,18 +133,18 @@ class AvoidanceFilter:
         if piece is None or (piece.deviation is None and piece.rate == 1.0):
             return self.navigator.followed(mission), self._clock(time)
         position, velocity = evaluate(piece, self.settings.chain, np.array([time]))[:2, 0]
-        self._restart = True
         return RestTrajectory(position + 0.5 * BRAKING_TIME * velocity, time), time
 
     def blocked(self, time: float) -> str:
         """Why the mission cannot go on; empty: it can."""
         return self.navigator.blocked(time)
 
-    def forget(self) -> None:
-        """The mission is replaced by one whose clock is that of what is followed now."""
+    def replaced(self, time: float, clock: float) -> None:
+        """The mission is replaced by another one, whose clock is at ``clock`` at ``time`` (s)."""
         self.navigator.forget()
-        if self._restart:
+        if clock != self._clock(time):
             self._rate = 1.0
+        self._taken_up = time, clock
 
     def filter(self, time: float, mission: Trajectory, estimate: Estimate) -> SafeTrajectory:
         """The trajectory to track from ``time`` on, and what was tracked before."""
@@ -170,7 +170,7 @@ class AvoidanceFilter:
         still = plan is None or bool(np.abs(plan.deviation).max() < NEGLIGIBLE)
         deviation = None if still or plan is None else plan.deviation
         self._pieces.append(_Piece(time, followed, clock, self._rate, deviation))
-        self._restart = False
+        self._taken_up = None
         self._plan, self._plan_time = (None if deviation is None else plan), time
         while len(self._pieces) > 2 and self._pieces[1].start < time - MEMORY:
             self._pieces.popleft()
@@ -192,7 +192,10 @@ class AvoidanceFilter:
 
     def _clock(self, time: float) -> float:
         """The followed trajectory's clock at ``time`` (s)."""
-        if not self._pieces or self._restart:
+        if self._taken_up is not None:
+            begin, clock = self._taken_up
+            return clock + self._rate * (time - begin)
+        if not self._pieces:
             return time
         piece = self._pieces[-1]
         return piece.mission_time + piece.rate * (time - piece.start)

@@ -67,8 +67,8 @@ class SafetyFilter(Protocol):
         """Why the mission cannot go on; empty: it can."""
         ...
 
-    def forget(self) -> None:
-        """The mission is replaced by one whose clock is that of what is followed now."""
+    def replaced(self, time: float, clock: float) -> None:
+        """The mission is replaced by another one, whose clock is at ``clock`` at ``time`` (s)."""
         ...
 
 
@@ -97,5 +97,5 @@ class NoObstacles:
         """Never."""
         return ""
 
-    def forget(self) -> None:
-        """There is nothing to forget."""
+    def replaced(self, time: float, clock: float) -> None:
+        """It has nothing to forget."""

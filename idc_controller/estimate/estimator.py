@@ -12,59 +12,27 @@ import bisect
 import contextlib
 from copy import copy
 from dataclasses import dataclass, field
-from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
 from filterpy.kalman import KalmanFilter
 from numpy.typing import NDArray
-from scipy.linalg import expm
 from scipy.stats import chi2
 
 from idc_controller.estimate.adaptation import Adaptation
 from idc_controller.estimate.frozen import FrozenSensors
 from idc_controller.estimate.measurement_model import MeasurementModel, Stack
 from idc_controller.estimate.measurements import PAYLOAD, Measurement, MeasurementNoise
+from idc_controller.estimate.process_model import ProcessModel, ProcessNoise
+from idc_controller.estimate.setpoint_history import SetpointHistory
 from idc_controller.model.linear import LinearModel
 from idc_controller.plan.flatness import FlatReference
 from idc_controller.plan.reference import Reference
 
 Array = NDArray[np.float64]
 
-UNCLEAR = 0.012
-"""So near to the moment at which a set-point should act it is not known which one does (s)."""
-SAME = np.array([2e-4, 2e-4, 2e-3])
-"""Set-points that differ by less are the same: tilts, thrust (N)."""
-LOSS_SHARE = 0.05
-"""Of one set-point in the running mean of those that are lost."""
-LOST_MAX = 20
-"""Set-points in a row whose loss is noticed."""
 PATIENCE = 3
 """So many times in a row the payload unit may disagree with the prediction before the prediction is doubted."""
-
-
-@dataclass(frozen=True)
-class ProcessNoise:
-    """Densities of the white noise that drives what the model leaves out, each per square root of a second."""
-
-    payload_acceleration: float = 0.003
-    """m/s2"""
-    payload_angular_acceleration: float = 0.003
-    """rad/s2"""
-    link_acceleration: float = 0.0015
-    """1/s2"""
-    uav_jerk: float = 1.0
-    """Of the tilt's acceleration (1/s3)."""
-    thrust: float = 0.010
-    """N/s"""
-    force: float = 0.05
-    """Drift of the steady force on the payload (N/s)."""
-    uav_force: float = 0.01
-    """Drift of the steady force on each UAV (N/s)."""
-    mass: float = 0.005
-    """Drift of the payload's mass (kg/s)."""
-    setpoint_loss: float = 0.005
-    """Probability with which a set-point is reckoned to be lost on its way, at least; more where more are."""
 
 
 @dataclass(frozen=True)
@@ -133,6 +101,10 @@ class InnovationRecord:
     """Source and kind of what the gate kept out."""
     surprised: bool = False
     """Most sources disagreed at once, and the prediction was given up for them."""
+    keys: tuple[tuple[int, type], ...] = ()
+    """Source and kind of all that was measured (K,)."""
+    white: tuple[Array, ...] = ()
+    """The innovation of each with variance 1 (m,)."""
 
 
 @dataclass
@@ -157,25 +129,16 @@ class _Way:
         start: float,
         moments: list[float],
         end: float,
-        setpoints: list[tuple[float, Array | None]],
+        setpoints: SetpointHistory,
         reference: Reference,
     ) -> None:
-        switches = [t for t, _ in setpoints if start + 1e-6 < t < end - 1e-6]
         times = sorted([start, *moments, end])
+        switches = setpoints.switches(start + 1e-6, end - 1e-6)
         times += [t for t in switches if min(abs(t - other) for other in times) > 1e-6]
         self.edges = sorted(set(times))
-        middles = [(a + b) / 2 for a, b in pairwise(self.edges)]
         self.flat = reference.at(np.array(self.edges))
-        self.setpoints: list[Array | None] = []
-        """In force from each edge to the next."""
-        self.changes: list[Array | None] = []
-        """By how much they differ from those before."""
-        for middle in middles:
-            at = bisect.bisect_right(setpoints, middle, key=lambda entry: entry[0]) - 1
-            now = setpoints[at][1] if at >= 0 else None
-            before = setpoints[at - 1][1] if at >= 1 else None
-            self.setpoints.append(now)
-            self.changes.append(None if now is None or before is None else now - before)
+        self.setpoints = [setpoints.in_force(a, b) for a, b in pairwise(self.edges)]
+        """From each edge to the next."""
 
     def u(self, k: int) -> Array:
         """The reference's set-points between edge ``k`` and the next (3 N,)."""
@@ -196,37 +159,34 @@ class Estimator:
     def __init__(self, model: LinearModel, settings: EstimatorSettings) -> None:
         self.model, self.settings, self.layout = model, settings, model.layout
         self.measurement_model = MeasurementModel(model, settings.measurement)
-        n = self.layout.size
-        self.size = n + 6
-        self._force, self._uav_force, self._mass = slice(n, n + 3), slice(n + 3, n + 5), n + 5
-        self._forces = slice(n, n + 5)
+        self.process_model = ProcessModel(model, settings.process)
+        self.size = self.process_model.size
         self._filter = KalmanFilter(dim_x=self.size, dim_z=1)
         self._filter.x = np.zeros(self.size)
         self._moments: list[_Moment] = []
         self._snapshots: list[_Snapshot] = []
-        self._setpoints: list[tuple[float, Array | None]] = []
-        self._setpoint_loss = np.full(model.layout.number_of_uavs, settings.process.setpoint_loss)
+        self._setpoints = SetpointHistory(model.layout.number_of_uavs, settings.process.setpoint_loss)
         self._gates = chi2.ppf(settings.gate_probability, np.arange(7))
         """By the size of a measurement."""
         self.innovations: list[InnovationRecord] = []
         self.discarded_late = 0
-        self._frozen = FrozenSensors(settings.measurement)
+        self.frozen = FrozenSensors(settings.measurement)
         self.adaptation = Adaptation()
-        self._noise = lru_cache(maxsize=256)(self._process_noise)
-        self._transition = lru_cache(maxsize=256)(self._plain_transition)
 
     def start(self, time: float, x: Array) -> None:
         """Begin at ``time`` from the state ``x`` (12 + 11 N,), known to within a start on the ground."""
-        layout, s = self.layout, self.settings
+        layout, s, process = self.layout, self.settings, self.process_model
         sigma = np.empty(self.size)
         sigma[layout.r_0], sigma[layout.v_0] = 0.05, 0.02
         sigma[layout.Theta], sigma[layout.omega] = 0.02, 0.02
         sigma[layout.s], sigma[layout.s_dot] = 0.02, 0.02
         sigma[layout.n], sigma[layout.n_dot], sigma[layout.n_acc] = 0.03, 0.1, 0.3
         sigma[layout.f] = 0.5
-        sigma[self._force], sigma[self._uav_force], sigma[self._mass] = s.force_sigma, s.uav_force_sigma, s.mass_sigma
+        sigma[process.force], sigma[process.uav_force] = s.force_sigma, s.uav_force_sigma
+        sigma[process.mass] = s.mass_sigma
         full = np.concatenate([x, np.zeros(self.size - len(x))])
-        self._moments, self._setpoints = [], []
+        self._moments = []
+        self._setpoints.clear()
         self.adaptation = Adaptation()
         self._snapshots = [_Snapshot(time, full, np.diag(sigma**2), copy(self.adaptation))]
 
@@ -237,47 +197,19 @@ class Estimator:
 
     def add_setpoint(self, effective: float, u: Array | None) -> None:
         """Set-points (3 N,) that act from ``effective`` on; None: the vehicles are held (cradles, pad), errors stay."""
-        bisect.insort(self._setpoints, (effective, u), key=lambda entry: entry[0])
+        self._setpoints.add(effective, u)
 
-    def confirm_setpoint(self, uav: int, time: float, told: Array, spread: float = 0.0) -> bool | None:
-        """What a vehicle says it flew at ``time``: tilt (north, east) and thrust (3,).
+    def confirm_setpoint(self, uav: int, since: float, until: float, told: Array, spread: float = 0.0) -> bool | None:
+        """What a vehicle says it flew from ``since`` to ``until`` (s), see :meth:`SetpointHistory.confirm`.
 
-        ``spread`` (s): by how much the time varies that set-points take on their way. Where that is an older set-point
-        than it should be, those since were lost. Other words are not believed.
-        Returns whether it is the one that it should be, None where that cannot be told.
+        Returns whether it is what it was sent, None where that cannot be told.
         """
-        setpoints, N = self._setpoints, self.layout.number_of_uavs
-        at = bisect.bisect_right(setpoints, time, key=lambda entry: entry[0]) - 1
-        following = setpoints[at + 1][0] if at + 1 < len(setpoints) else np.inf
-        unclear = UNCLEAR + spread
-        if at < 1 or not setpoints[at][0] + unclear < time < following - unclear:
+        confirmation = self._setpoints.confirm(uav, since, until, told, spread)
+        if confirmation is None:
             return None
-        which = [2 * uav, 2 * uav + 1, 2 * N + uav]
-
-        def flew(k: int) -> bool:
-            u = setpoints[k][1]
-            return u is not None and bool((np.abs(u[which] - told) < SAME).all())
-
-        if flew(at):
-            self._learn_loss(uav, 0.0)
-            return True
-        last = next((k for k in range(at - 1, max(at - LOST_MAX, 0) - 1, -1) if flew(k)), None)
-        if last is None:
-            return None
-        for k in range(last + 1, at + 1):
-            effective, u = setpoints[k]
-            if u is None:
-                return None
-            u = u.copy()
-            u[which] = told
-            setpoints[k] = effective, u
-        self._learn_loss(uav, 1.0)
-        self._back_to(setpoints[last + 1][0])
-        return False
-
-    def _learn_loss(self, uav: int, lost: float) -> None:
-        share = self._setpoint_loss[uav] + LOSS_SHARE * (lost - self._setpoint_loss[uav])
-        self._setpoint_loss[uav] = max(share, self.settings.process.setpoint_loss)
+        if confirmation.corrected_from is not None:
+            self._back_to(confirmation.corrected_from)
+        return confirmation.as_sent
 
     def _back_to(self, time: float) -> None:
         """Take the filter back to before ``time`` (s), as far as it remembers."""
@@ -286,7 +218,7 @@ class Estimator:
 
     def add(self, measurement: Measurement) -> bool:
         """Take a measurement; False when it is older than the memory or the start, or of a sensor that is frozen."""
-        if self._frozen.is_frozen(measurement):
+        if self.frozen.is_frozen(measurement):
             return False
         oldest = max(self._snapshots[0].time, self.time - self.settings.history)
         if measurement.time <= oldest:
@@ -312,7 +244,7 @@ class Estimator:
         pending = self._moments[bisect.bisect_right(self._moments, self.time, key=lambda m: m.time) :]
         time = max(time, self.time, pending[-1].time if pending else time)
         way = _Way(self.time, [m.time for m in pending], time, self._setpoints, reference)
-        load = reference.load
+        load, process = reference.load, self.process_model
         believed = np.concatenate([load.force, load.uav_force[:2], [load.mass - self.model.parameters.m_0]])
         n = self.layout.size
 
@@ -339,21 +271,18 @@ class Estimator:
                 moment = next(waiting, None)
         x = absolute(kf.x, len(way.edges) - 1)
         self._forget()
-        return Estimate(time, x[:n], x[self._force], np.append(x[self._uav_force], 0.0), float(x[self._mass]), kf.P)
+        return Estimate(
+            time, x[:n], x[process.force], np.append(x[process.uav_force], 0.0), float(x[process.mass]), kf.P
+        )
 
     def _predict(self, way: _Way, k: int) -> None:
         """From edge ``k`` to the next, under the set-points in force."""
-        u = way.setpoints[k]
+        u, change, doubt = way.setpoints[k]
         delta_u = np.zeros(self.layout.inputs) if u is None else u - way.u(k)
-        F, B = self._transition_along(way.interval_us(k), way.acceleration(k))
-        Q = self._noise(way.interval_us(k), self.adaptation.restlessness)
-        if (change := way.changes[k]) is not None:
-            # Each vehicle may still fly the set-point before.
-            N = self.layout.number_of_uavs
-            error = B * (change * np.sqrt(np.concatenate([np.repeat(self._setpoint_loss, 2), self._setpoint_loss])))
-            tilts = error[:, : 2 * N].reshape(-1, N, 2).sum(axis=2)
-            lost = np.hstack([tilts, error[:, 2 * N :]])
-            Q = Q + lost @ lost.T
+        F, B = self.process_model.transition(way.interval_us(k), way.acceleration(k))
+        Q = self.process_model.noise(way.interval_us(k), self.adaptation.restlessness)
+        if change is not None:
+            Q = Q + self.process_model.doubt_noise(B, change, doubt)
         self._filter.predict(u=delta_u, F=F, B=B, Q=Q)
 
     def _update(self, moment: _Moment, flat: FlatReference, k: int) -> None:
@@ -396,7 +325,7 @@ class Estimator:
             nis = float(kf.y @ kf.SI @ kf.y)
             kf.P = (kf.P + kf.P.T) / 2
         self.innovations.append(
-            InnovationRecord(moment.time, nis, int(keep.sum()), tuple(rejected), surprised=surprised)
+            InnovationRecord(moment.time, nis, int(keep.sum()), tuple(rejected), surprised, keys, stack.split(white))
         )
 
     def _innovation(self, copies: list[Measurement], flat: FlatReference, k: int) -> Array:
@@ -426,7 +355,8 @@ class Estimator:
         added = np.zeros(self.size)
         added[layout.v_0], added[layout.omega] = surprise.velocity**2, surprise.rates**2
         added[layout.s_dot] = surprise.link_rate**2
-        added[self._force] = np.maximum(surprise.force**2 - np.diag(self._filter.P)[self._force], 0.0)
+        force = self.process_model.force
+        added[force] = np.maximum(surprise.force**2 - np.diag(self._filter.P)[force], 0.0)
         self._filter.P = self._filter.P + np.diag(added)
 
     def _forget(self) -> None:
@@ -435,44 +365,7 @@ class Estimator:
         del self._snapshots[:keep]
         oldest = self._snapshots[0].time
         del self._moments[: bisect.bisect_right(self._moments, oldest, key=lambda m: m.time)]
-        del self._setpoints[: max(bisect.bisect_right(self._setpoints, oldest, key=lambda e: e[0]) - 1, 0)]
-
-    def _transition_along(self, interval_us: int, acceleration: Array) -> tuple[Array, Array]:
-        """F and B; an excess of mass acts along g e3 - a, which turns with the manoeuvre."""
-        F, B, B_d = self._transition(interval_us)
-        direction = np.array([0.0, 0.0, self.model.parameters.g]) - acceleration
-        F = F.copy()
-        F[: self.layout.size, self._mass] = B_d[:, :3] @ direction
-        return F, B
-
-    def _plain_transition(self, interval_us: int) -> tuple[Array, Array, Array]:
-        n = self.layout.size
-        A_k, B_k, B_dk = self.model.discretised(interval_us)
-        F = np.eye(self.size)
-        F[:n, :n], F[:n, self._forces] = A_k, B_dk
-        return F, np.vstack([B_k, np.zeros((self.size - n, self.layout.inputs))]), B_dk
-
-    def _process_noise(self, interval_us: int, restlessness: float) -> Array:
-        """Van Loan's integral of the process noise; ``restlessness`` multiplies that of the forces."""
-        p, layout, n = self.settings.process, self.layout, self.layout.size
-        density = np.zeros(self.size)
-        density[layout.v_0] = p.payload_acceleration
-        density[layout.omega] = p.payload_angular_acceleration
-        density[layout.s_dot] = p.link_acceleration
-        density[layout.n_acc] = p.uav_jerk
-        density[layout.f] = p.thrust
-        density[self._force], density[self._mass] = restlessness * p.force, p.mass
-        density[self._uav_force] = restlessness * p.uav_force
-        A = np.zeros((self.size, self.size))
-        A[:n, :n], A[:n, self._forces] = self.model.A, self.model.B_d
-        A[:n, self._mass] = self.model.B_d[:, 2] * self.model.parameters.g
-        dt = interval_us * 1e-6
-        m = self.size
-        block = np.zeros((2 * m, 2 * m))
-        block[:m, :m], block[:m, m:], block[m:, m:] = -A, np.diag(density**2), A.T
-        big = expm(block * dt)
-        Q = big[m:, m:].T @ big[:m, m:]
-        return (Q + Q.T) / 2
+        self._setpoints.forget(oldest)
 
 
 def _whitened(residual: Array, S: Array, stack: Stack) -> tuple[Array, Array]:

@@ -7,12 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from idc_controller.estimate.measurements import PAYLOAD, Attitude, Measurement, MeasurementNoise
+from idc_controller.estimate.measurements import PAYLOAD, Attitude, Measurement, MeasurementNoise, Position
 
 Array = NDArray[np.float64]
 
 REPEATS = 2
 """Repeated so often, a value is no measurement any more."""
+PARTS: dict[type, tuple[str, str]] = {Attitude: ("attitude", "rates"), Position: ("position", "velocity")}
 
 
 @dataclass
@@ -44,13 +45,23 @@ class FrozenSensors:
             for k, (now, before) in enumerate(zip(parts, last.parts, strict=True)):
                 last.repeats[k] = last.repeats[k] + 1 if bool((now == before).all()) else 0
             last.time, last.parts = measurement.time, parts
-        return any(
-            repeats >= REPEATS and sigma > 0.0
-            for repeats, sigma in zip(last.repeats, self._sigmas(measurement), strict=True)
-        )
+        return any(self._frozen_parts(key, last))
 
-    def _sigmas(self, measurement: Measurement) -> tuple[float, float]:
-        noise, of_payload = self._noise, measurement.source == PAYLOAD
-        if isinstance(measurement, Attitude):
+    def channels(self) -> list[tuple[int, str]]:
+        """Those that are frozen now: source, and ``position``, ``velocity``, ``attitude`` or ``rates``."""
+        return [
+            (source, name)
+            for (source, kind), last in self._last.items()
+            for name, frozen in zip(PARTS[kind], self._frozen_parts((source, kind), last), strict=True)
+            if frozen
+        ]
+
+    def _frozen_parts(self, key: tuple[int, type], last: _Last) -> list[bool]:
+        sigmas = self._sigmas(*key)
+        return [repeats >= REPEATS and sigma > 0.0 for repeats, sigma in zip(last.repeats, sigmas, strict=True)]
+
+    def _sigmas(self, source: int, kind: type) -> tuple[float, float]:
+        noise, of_payload = self._noise, source == PAYLOAD
+        if kind is Attitude:
             return noise.attitude, noise.payload_rates if of_payload else noise.uav_rates
         return noise.position, noise.payload_velocity if of_payload else noise.uav_velocity

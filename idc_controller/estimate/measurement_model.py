@@ -49,6 +49,11 @@ class Stack:
     heights: NDArray[np.int_]
     """Rows of their heights (K,); those of the vertical velocities are three below."""
 
+    def split(self, rows: Array) -> tuple[Array, ...]:
+        """``rows`` (m,) by channel."""
+        ends = self.starts + self.sizes
+        return tuple(rows[a:b] for a, b in zip(self.starts.tolist(), ends.tolist(), strict=True))
+
 
 class MeasurementModel:
     """Channels for every source, and measured less reference in the filter's coordinates."""

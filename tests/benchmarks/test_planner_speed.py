@@ -21,7 +21,8 @@ from threadpoolctl import threadpool_limits
 sys.path.insert(0, str(Path(__file__).parents[2]))
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from avoidance_scene import STEP, avoidance, estimate_at, pole, sphere, straight, system
+from avoidance_scene import STEP, avoidance, estimate_at, pole, sphere, straight
+from paper_system import system
 
 import idc_controller.barrier.planner as planner_module
 from idc_controller.control.controller import ControllerSettings, IntegratedDecisionController

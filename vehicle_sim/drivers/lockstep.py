@@ -8,9 +8,10 @@ from collections.abc import Iterator
 
 from gcs.wire.address import Address
 from gcs.wire.lockstep import Done, Tick, decode_done
+from gcs.wire.udp import arrived
 from vehicle_sim.drivers.ending import Ending
 from vehicle_sim.drivers.landing import LANDING_TIME
-from vehicle_sim.drivers.sockets import SwarmSockets, arrived
+from vehicle_sim.drivers.sockets import SwarmSockets
 from vehicle_sim.swarm import Swarm
 
 ANSWER_TIME = 5.0  # s of wall time for the ground to answer a tick

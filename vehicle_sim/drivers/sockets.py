@@ -7,10 +7,8 @@ import socket
 from collections.abc import Iterator
 
 from gcs.wire.address import Address
+from gcs.wire.udp import RECEIVE_BUFFER, arrived
 from vehicle_sim.errors import SimulationError
-
-RECEIVE_BUFFER = 4 << 20  # bytes asked for; the system may give less
-_DATAGRAM_MAX = 65535
 
 
 class SwarmSockets:
@@ -50,18 +48,6 @@ class SwarmSockets:
 
     def __exit__(self, *_: object) -> None:
         self.close()
-
-
-def arrived(endpoint: socket.socket) -> Iterator[tuple[bytes, Address]]:
-    """What a non-blocking socket holds, in order."""
-    # No more than this: whoever sends faster than we read must not keep us here.
-    for _ in range(4096):
-        try:
-            yield endpoint.recvfrom(_DATAGRAM_MAX)
-        except BlockingIOError:
-            return
-        except OSError:  # a refusal by a peer of old: no datagram of anybody
-            continue
 
 
 def url(endpoint: socket.socket) -> str:

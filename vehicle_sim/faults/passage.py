@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from typing import Any
 
 from gcs.config import SystemConfig
 from gcs.faults import timing as timing_kinds
@@ -89,46 +90,30 @@ class FaultPassage(Passage):
 
     def own_sample(self, vehicle: int, sample: Measurement) -> Measurement | None:
         """What the vehicle itself measures."""
-        changed: Measurement | None = sample
-        for stage in self._samples.get((OWN, vehicle), ()):
-            moment = stage.fault.schedule.at(sample.time)
-            if moment is not None and changed is not None:
-                before, changed = changed, stage.own(vehicle, changed, moment)
-                _count(stage, changed is not before)
-        return changed
+        return self._through(OWN, vehicle, sample.time, sample)
 
     def told(self, vehicle: int, sample: Measurement | None) -> Told:
         """What the vehicle tells."""
         told = Told(sample, sample)
-        stages = self._samples.get((TOLD, vehicle))
-        if stages is None or sample is None:
-            return told
-        for stage in stages:
-            moment = stage.fault.schedule.at(sample.time)
-            if moment is not None:
-                before, told = told, stage.told(vehicle, told, moment)
-                _count(stage, told is not before)
-        return told
+        return told if sample is None else self._through(TOLD, vehicle, sample.time, told)
 
     def payload_sample(self, vehicle: int, sample: Measurement) -> Measurement | None:
         """What the vehicle relays."""
-        changed: Measurement | None = sample
-        for stage in self._samples.get((PAYLOAD, vehicle), ()):
-            moment = stage.fault.schedule.at(sample.time)
-            if moment is not None and changed is not None:
-                before, changed = changed, stage.payload(vehicle, changed, moment)
-                _count(stage, changed is not before)
-        return changed
+        return self._through(PAYLOAD, vehicle, sample.time, sample)
 
     def range_sample(self, vehicle: int, sample: RangeSample) -> RangeSample | None:
         """What the vehicle sees."""
-        changed = sample
-        for stage in self._samples.get((SCAN, vehicle), ()):
-            moment = stage.fault.schedule.at(sample.time)
-            if moment is not None:
-                before, changed = changed, stage.scan(vehicle, changed, moment)
-                _count(stage, changed is not before)
-        return changed
+        return self._through(SCAN, vehicle, sample.time, sample)
+
+    def _through(self, hook: str, vehicle: int, time: float, sample: Any) -> Any:
+        """What the faults at a hook, which is a method of theirs, leave of a sample of ``time`` (s); None: nothing."""
+        for stage in self._samples.get((hook, vehicle), ()):
+            moment = stage.fault.schedule.at(time)
+            if moment is not None and sample is not None:
+                before, sample = sample, getattr(stage, hook)(vehicle, sample, moment)
+                stage.fault.seen += 1
+                stage.fault.disturbed += sample is not before
+        return sample
 
     # Datagrams
 
@@ -157,8 +142,3 @@ def _sample_stages(fault: ActiveFault, system: SystemConfig) -> Iterable[tuple[i
         yield from ((vehicle, StaleStamps(fault)) for vehicle in fault.vehicles)
     else:
         yield from ((vehicle, sensor_stage(fault, vehicle)) for vehicle in fault.vehicles)
-
-
-def _count(stage: SampleStage, changed: bool) -> None:
-    stage.fault.seen += 1
-    stage.fault.disturbed += changed

@@ -1,0 +1,22 @@
+"""Fixtures that several modules share."""
+
+from __future__ import annotations
+
+import pymavlink.dialects.v20.common as mavlink
+import pytest
+from vehicle_bench import Bench
+
+
+@pytest.fixture
+def bench() -> Bench:
+    bench = Bench()
+    bench.run(0.1)
+    bench.send(mavlink.MAVLink_heartbeat_message(6, 8, 0, 0, 0, 3))
+    bench.run(0.1)
+    return bench
+
+
+@pytest.fixture
+def flying(bench: Bench) -> Bench:
+    bench.fly()
+    return bench

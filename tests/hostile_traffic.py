@@ -1,0 +1,141 @@
+"""What strangers and damaged links put on the wire beside a flight: random, damaged, forged and hostile datagrams."""
+
+import random
+import struct
+from collections import deque
+
+import pymavlink.dialects.v20.ardupilotmega as mavlink
+
+from gcs.record.tlog import frames_in
+from gcs.wire.codec import Codec
+from vehicle_sim.passage import Passage
+
+REMEMBERED = 64  # genuine datagrams that may be imitated
+
+
+def offset_of(kind, name):
+    """Where a field lies in a message's payload on the wire."""
+    codes = kind.native_format.decode().lstrip("<")
+    before = kind.ordered_fieldnames.index(name)
+    return sum(
+        struct.calcsize("<" + code) * max(length, 1)
+        for code, length in zip(codes[:before], kind.array_lengths[:before], strict=True)
+    )
+
+
+def with_random_contents(kind, contents, target_system, writer):
+    """A frame of ``kind`` with these random contents, but addressed to ``target_system``."""
+    payload = bytearray(contents)
+    for name, value in (("target_system", target_system), ("target_component", 1)):
+        if name in kind.ordered_fieldnames:
+            payload[offset_of(kind, name)] = value
+    return mavlink.MAVLink_message(kind.id, kind.msgname)._pack(writer, kind.crc_extra, bytes(payload))
+
+
+class Traffic(Passage):
+    """Lets everything through, and remembers the last genuine datagrams each way of one vehicle."""
+
+    def __init__(self, vehicle):
+        self._vehicle = vehicle
+        self.to_it = deque(maxlen=REMEMBERED)
+        self.from_it = deque(maxlen=REMEMBERED)
+
+    def to_vehicle(self, vehicle, arriving, now):
+        if vehicle == self._vehicle:
+            self.to_it.extend(datagram for datagram, _ in arriving)
+        return arriving
+
+    def from_vehicle(self, vehicle, leaving, now):
+        if vehicle == self._vehicle:
+            self.from_it.extend(datagram for datagram, _ in leaving)
+        return leaving
+
+
+class HostileTraffic:
+    """Draws datagrams, each with the address it comes from; none of them may be obeyed.
+
+    ``genuine``: what one sender has sent lately from ``address``, to be imitated; from there comes only what has no
+    right checksum. ``strangers``: (address, system) of those who send the rest; another system may share the address.
+    ``hostile``: messages to choose from. ``target_system``: whom all that is addressed is for.
+    """
+
+    def __init__(self, seed, genuine, address, strangers, hostile, target_system):
+        self._random = random.Random(seed)
+        self._genuine = genuine
+        self._address = address
+        self._strangers = strangers
+        self._elsewhere = [stranger for stranger, _ in strangers if stranger != address]
+        self._hostile = hostile
+        self._target_system = target_system
+        self._writers = {system: mavlink.MAVLink(None, system, 1) for _, system in strangers}
+        self._reader = Codec(254, 1)
+        self._kinds = tuple(mavlink.mavlink_map.values())
+        self._makers = (
+            self._noise, self._damaged, self._spliced, self._forged, self._hostile_message, self._any_message
+        )  # fmt: skip
+
+    def draw(self):
+        """(datagram, address of the sender)."""
+        return self._random.choice(self._makers)()
+
+    def _noise(self):
+        data = self._random.randbytes(self._random.randrange(300))
+        if self._random.random() < 0.7:
+            data = self._random.choice((b"\xfd", b"\xfe")) + data
+        return self._from_anybody(data)
+
+    def _damaged(self):
+        """Flipped bytes, a wrong checksum, or cut short."""
+        draw = self._random
+        data = bytearray(draw.choice(self._genuine))
+        what = draw.randrange(4)
+        if what == 0:
+            del data[draw.randrange(len(data)) :]
+        elif what == 1:
+            frames = _frames(data)
+            for frame in frames:
+                frame[-1 - draw.randrange(2)] ^= draw.randrange(1, 256)
+            data = bytearray(b"".join(frames))
+        else:
+            for _ in range(draw.randrange(1, 12)):
+                data[draw.randrange(len(data))] ^= draw.randrange(1, 256)
+        return self._from_anybody(bytes(data))
+
+    def _spliced(self):
+        draw = self._random
+        head, tail = draw.choice(self._genuine), draw.choice(self._genuine)
+        return self._from_anybody(head[: draw.randrange(len(head))] + tail[draw.randrange(len(tail)) :])
+
+    def _forged(self):
+        """A genuine frame with other contents and a right checksum."""
+        draw = self._random
+        address, system = draw.choice(self._strangers)
+        frame = draw.choice(_frames(draw.choice(self._genuine)))
+        for _ in range(draw.randrange(9)):
+            frame[draw.randrange(10, len(frame) - 2)] = draw.choice((0, 1, 0x7F, 0x80, 0xFF, draw.randrange(256)))
+        frame[5] = system
+        if draw.random() < 0.2:
+            frame[6] = draw.randrange(256)
+        kind = mavlink.mavlink_map[int.from_bytes(frame[7:10], "little")]
+        struct.pack_into("<H", frame, len(frame) - 2, mavlink.x25crc(bytes(frame[1:-2]) + bytes([kind.crc_extra])).crc)
+        return bytes(frame), address
+
+    def _hostile_message(self):
+        address, system = self._random.choice(self._strangers)
+        return self._random.choice(self._hostile).pack(self._writers[system]), address
+
+    def _any_message(self):
+        address, system = self._random.choice(self._strangers)
+        kind = self._random.choice(self._kinds)
+        contents = self._random.randbytes(kind.unpacker.size)
+        return with_random_contents(kind, contents, self._target_system, self._writers[system]), address
+
+    def _from_anybody(self, data):
+        """From the one who is imitated, as a damaged link would deliver it, unless some of it is still whole."""
+        if self._random.random() < 0.5 and not self._reader.decode(data):
+            return data, self._address
+        return data, self._random.choice(self._elsewhere)
+
+
+def _frames(datagram):
+    return [bytearray(frame) for frame in frames_in(bytes(datagram))]

@@ -1,0 +1,64 @@
+"""What the ground learns from datagrams, and what it does not."""
+
+import pymavlink.dialects.v20.common as mavlink
+import pytest
+from flight_in_process import MISSIONS, address_of
+
+from gcs.fly import ground_station
+from gcs.ground_station import GROUND_COMPONENT, GROUND_SYSTEM
+from gcs.mission.read import read_mission
+from gcs.record.recorder import FlightRecorder
+from gcs.vehicle_link import CommandState
+from gcs.wire.codec import Codec
+
+ARM = mavlink.MAV_CMD_COMPONENT_ARM_DISARM
+
+
+@pytest.fixture
+def station(tmp_path):
+    with FlightRecorder(tmp_path, 0.0) as recorder:
+        yield ground_station(
+            read_mission(MISSIONS / "hover.toml"), [address_of(i) for i in range(1, 5)], recorder, "idc"
+        )
+
+
+def tell(station, message, system=1, address=None, now=0.0):
+    station.receive(Codec(system, 1).encode(message), address or address_of(system), now)
+
+
+@pytest.mark.parametrize(
+    ("target", "state"),
+    [
+        ((42, 190), CommandState.PENDING),
+        ((GROUND_SYSTEM, GROUND_COMPONENT), CommandState.REFUSED),
+        ((0, 0), CommandState.REFUSED),  # as autopilots answer that do not tell
+    ],
+)
+def test_an_answer_to_another_system_at_the_same_address_is_not_ours(station, target, state):
+    command = station.links[0].command(ARM, 1.0)
+    tell(station, mavlink.MAVLink_command_ack_message(ARM, mavlink.MAV_RESULT_DENIED, 0, 0, *target))
+    assert command.state is state
+
+
+def test_an_answer_of_one_who_is_not_the_vehicle_does_not_count(station):
+    command = station.links[0].command(ARM, 1.0)
+    answer = mavlink.MAVLink_command_ack_message(ARM, mavlink.MAV_RESULT_DENIED)
+    tell(station, answer, system=1, address=address_of(2))
+    tell(station, answer, system=2, address=address_of(1))
+    tell(station, answer, system=1, address=("10.0.0.66", 14540))
+    assert command.state is CommandState.PENDING
+    assert station.refused_datagrams == 3
+
+
+def test_only_our_own_timesync_requests_tell_of_the_way_and_each_once(station):
+    clock = station.links[0].clock
+    sent = [m for m, address in station.datagrams_to_send(1.0) if address == address_of(1)]
+    [request] = [m for data in sent for m in Codec(2, 1).decode(data) if m.get_type() == "TIMESYNC"]
+    for ts1 in (0, 1, 900_000_000, -(2**63)):
+        tell(station, mavlink.MAVLink_timesync_message(5, ts1), now=1.02)
+    assert clock.delay == 0.0
+    tell(station, mavlink.MAVLink_timesync_message(5, request.ts1), now=1.04)
+    assert clock.delay == pytest.approx(0.02)
+    for _ in range(50):
+        tell(station, mavlink.MAVLink_timesync_message(5, request.ts1), now=1.9)
+    assert clock.delay == pytest.approx(0.02)

@@ -1,0 +1,101 @@
+"""Strangers and damaged links beside a flight: nothing crashes, no command is obeyed, and the flight is the same."""
+
+from random import Random
+
+import pymavlink.dialects.v20.ardupilotmega as mavlink
+from flight_in_process import GROUND, Rehearsal, address_of, check_within_limits, short_figure
+from hostile_messages import hostile_to_ground, hostile_to_vehicle
+from hostile_traffic import HostileTraffic, Traffic, with_random_contents
+
+from gcs.flight.phase import IN_THE_AIR
+from gcs.ground_station import GROUND_SYSTEM
+from gcs.wire import px4
+
+DATAGRAMS = 200_000  # to the vehicle, and as many to the ground
+EXCHANGES = 1500  # in which they come; the flight has some more
+VEHICLE = 1  # the team's time is its time
+OTHER_HOST = ("10.0.0.66", 40002)
+AGAINST_VEHICLE = [
+    (OTHER_HOST, GROUND_SYSTEM),
+    (OTHER_HOST, 42),
+    ((GROUND[0], GROUND[1] + 1), GROUND_SYSTEM),
+    (address_of(2), 2),
+    (GROUND, 42),
+    (GROUND, VEHICLE),
+]
+AGAINST_GROUND = [
+    (OTHER_HOST, VEHICLE),
+    (OTHER_HOST, 77),
+    (address_of(2), VEHICLE),
+    (address_of(VEHICLE), 2),
+    (address_of(VEHICLE), 77),
+    (address_of(VEHICLE), GROUND_SYSTEM),
+]
+
+
+class Storm:
+    """Hostile traffic at every moment in the air, as much to one vehicle as to the ground."""
+
+    def __init__(self, seed):
+        self.traffic = Traffic(VEHICLE)
+        self.left = DATAGRAMS
+        self._to_vehicle = HostileTraffic(
+            seed, self.traffic.to_it, GROUND, AGAINST_VEHICLE, hostile_to_vehicle(VEHICLE), VEHICLE
+        )
+        self._to_ground = HostileTraffic(
+            seed + 1, self.traffic.from_it, address_of(VEHICLE), AGAINST_GROUND, hostile_to_ground(), GROUND_SYSTEM
+        )
+        self._last = -1.0
+
+    def __call__(self, rehearsal):
+        now = rehearsal.now
+        if rehearsal.flight.phase not in IN_THE_AIR or now <= self._last:
+            return
+        self._last = now
+        vehicle = rehearsal.swarm.vehicles[VEHICLE - 1]
+        before = state(vehicle)
+        for _ in range(min(-(-DATAGRAMS // EXCHANGES), self.left)):
+            vehicle.receive(*self._to_vehicle.draw(), now)
+            rehearsal.station.receive(*self._to_ground.draw(), now)
+            self.left -= 1
+        assert state(vehicle) == before
+        assert vehicle.autopilot.armed
+        assert vehicle.autopilot.mode == px4.MODE_OFFBOARD
+
+
+def state(vehicle):
+    """All of a vehicle that somebody could want to change."""
+    autopilot, table = vehicle.autopilot, vehicle.parameters
+    return (
+        autopilot.changes, autopilot.armed, autopilot.mode, autopilot.failsafe, autopilot.stop_plan,
+        [table.by_index(i).value for i in range(len(table))],
+    )  # fmt: skip
+
+
+def test_hostile_datagrams_change_nothing_of_a_flight(tmp_path):
+    mission = short_figure(tmp_path, duration=6.0)
+    with Rehearsal(mission, tmp_path / "calm", seed=3) as calm:
+        calm.fly()
+        check_within_limits(calm.summary())
+    storm = Storm(seed=5)
+    with Rehearsal(mission, tmp_path / "storm", seed=3, passage=storm.traffic) as flight:
+        flight.fly(storm)
+        check_within_limits(flight.summary())
+    assert storm.left == 0
+    assert flight.swarm.vehicles[VEHICLE - 1].refused_setpoints > 0.01 * DATAGRAMS
+    assert flight.station.refused_datagrams > 0.9 * DATAGRAMS
+    for name in ("truth.csv", "estimate.csv"):
+        assert (tmp_path / "storm" / name).read_bytes() == (tmp_path / "calm" / name).read_bytes()
+
+
+def test_the_ground_survives_any_message_of_the_dialect(tmp_path):
+    """Every message, well formed, with whatever its fields may hold, from a vehicle that it believes."""
+    random = Random(4)
+    writer = mavlink.MAVLink(None, VEHICLE, 1)
+    with Rehearsal(short_figure(tmp_path), tmp_path / "run") as flight:
+        flight.fly(stop=lambda: flight.flight.phase.value == "fly")
+        for kind in mavlink.mavlink_map.values():
+            for _ in range(5):
+                datagram = with_random_contents(kind, random.randbytes(kind.unpacker.size), GROUND_SYSTEM, writer)
+                flight.station.receive(datagram, address_of(VEHICLE), flight.now)
+        flight.fly(until=flight.now + 1.0)

@@ -1,0 +1,81 @@
+"""What only a plan has: surveys, fences, rally points."""
+
+import math
+from pathlib import Path
+
+import pytest
+from mission_files import (
+    CIRCLE,
+    DEGREE,
+    HOME,
+    RETURN,
+    TAKE_OFF,
+    A,
+    area,
+    legs,
+    north,
+    plan,
+    read,
+    row,
+    survey,
+)
+
+from gcs.mission import Pole, Wall
+
+
+def test_survey_is_flown_by_its_stored_items(tmp_path: Path) -> None:
+    mission = read(tmp_path, plan(mission__items=[survey()]))
+    assert north(mission) == [10, 20, 0]
+    assert legs(mission)[1].source == "item 1.1 (NAV_WAYPOINT)"
+    assert any(note.startswith("item 1.2 (DO_SET_CAM_TRIGG_DIST)") for note in mission.notes)
+    corridor = survey(complexItemType="CorridorScan", version=2)
+    assert north(read(tmp_path, plan(mission__items=[corridor]))) == [10, 20, 0]
+
+
+def test_fence(tmp_path: Path) -> None:
+    triangle = area(5)
+    del triangle["polygon"][0]
+    document = plan(
+        TAKE_OFF,
+        A,
+        RETURN,
+        geoFence__circles=[CIRCLE],
+        geoFence__polygons=[area(5), triangle, area(70, inclusion=True)],
+    )
+    mission = read(tmp_path, document)
+    pole, box, *edges = mission.obstacles
+    assert isinstance(pole, Pole) and isinstance(box, Wall)
+    assert pole.position == pytest.approx((30.0, 0.0), abs=0.1)
+    assert (pole.radius, pole.known, pole.motion) == (5.0, True, None)
+    assert box.position[:2] == pytest.approx((30.0, 0.0), abs=0.1)
+    assert box.size[:2] == pytest.approx((10.0, 10.0), abs=0.1)
+    assert box.position[2] == -box.size[2] / 2
+    assert len(edges) == 3
+    assert all(isinstance(e, Wall) and math.dist(e.position[:2], (30.0, 0.0)) < 5.2 for e in edges)
+    assert mission.boundary is not None and mission.boundary[0] == pytest.approx((100.0, 70.0), abs=0.5)
+
+
+def test_ways_across_the_fence_are_noted(tmp_path: Path) -> None:
+    behind = row(16, north=60.0)
+    for fence in ({"geoFence__circles": [CIRCLE]}, {"geoFence__polygons": [area(5)]}):
+        notes = read(tmp_path, plan(TAKE_OFF, behind, row(177, 2, -1), **fence)).notes
+        assert [n for n in notes if n.startswith("item 2") and "leads across fence" in n]
+        assert not read(tmp_path, plan(TAKE_OFF, A, RETURN, **fence)).notes
+
+
+def test_walls_stand_inside_their_polygon(tmp_path: Path) -> None:
+    for turn in (1, -1):  # either sense
+        kite = area(5)
+        kite["polygon"] = [*kite["polygon"], [HOME[0] + 28 / DEGREE, HOME[1] + 15 / DEGREE]][::turn]
+        for wall in read(tmp_path, plan(TAKE_OFF, A, RETURN, geoFence__polygons=[kite])).obstacles:
+            assert isinstance(wall, Wall)
+            if abs(wall.position[0] - 35.0) < 0.2:  # the northern edge
+                assert 34.8 < wall.position[0] < 34.99
+                break
+        else:
+            pytest.fail("no northern edge")
+
+
+def test_rally_points_are_left_out(tmp_path: Path) -> None:
+    mission = read(tmp_path, plan(TAKE_OFF, A, RETURN, rallyPoints__points=[[47, 8, 1]]))
+    assert mission.notes[0].startswith("rallyPoints: 1 left out")

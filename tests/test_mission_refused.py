@@ -1,0 +1,201 @@
+"""Mission files that cannot be flown: every reason, and where it stands."""
+
+# ruff: noqa: E501 (the tables of cases: one case a line)
+
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+from mission_files import (
+    CIRCLE,
+    HOME,
+    RETURN,
+    TAKE_OFF,
+    A,
+    B,
+    area,
+    plan,
+    refusal,
+    row,
+    simple,
+    survey,
+    wpl,
+)
+
+from gcs.config import UnusableFile
+from gcs.mission import read_mission
+
+INF = (3, 16, 0, 0, 0, 0, "inf", 8.5, 5)
+
+
+@pytest.mark.parametrize(
+    ("content", "where", "reason"),
+    [
+        ("", "", "the file is empty"),
+        ("\n \n", "", "the file is empty"),
+        ("# nothing\n", "", "only comments"),
+        ("QGC WPL 110\n", "", "home is missing"),
+        ("QGC WPL 120\n0 1 0 16\n", "line 1", "version 120 is not supported"),
+        ("QGC WPL\n0 1 0 16\n", "line 1", "expected 'QGC WPL 110'"),
+        ("QGC PARAM 110\n", "line 1", "expected 'QGC WPL 110'"),
+        ("0 1 0 16 0 0 0 0 47 8 488 1\n", "line 1", "expected 'QGC WPL 110'"),
+        (wpl(), "", "there is no waypoint"),
+        (wpl(RETURN), "", "there is no waypoint"),
+        (wpl(TAKE_OFF, A).replace("\n1\t", "\n2\t"), "line 3", "index: 2, expected 1"),
+        ("QGC WPL 110\n1 0 3 16 0 0 0 0 47 8 5 1\n", "line 2", "row 0, which is home, is missing"),
+        (wpl(TAKE_OFF, A, home="0 22 0 0 0 0 47 8 15"), "line 2", "row 0 must be home"),
+        (wpl(TAKE_OFF, A, home="0 16 0 0 0 0 0 0 0"), "line 2", "gives no place"),
+        (wpl(TAKE_OFF, A, home="9 16 0 0 0 0 47 8 0"), "line 2", "frame 9, BODY_OFFSET_NED"),
+        (wpl(TAKE_OFF, A, home="0 16 0 0 0 0 91 8 0"), "line 2", "latitude: 91 is outside"),
+        (wpl(TAKE_OFF, A).replace("\t16\t", "\tWP\t", 2), "line 2", "command: 'WP' is not a number"),
+        (wpl(TAKE_OFF, (3, 16, 0)), "line 4", "6 columns, expected 12"),
+        (wpl(TAKE_OFF, (3, 16.5, *A[2:])), "line 4", "command: 16.5 is not a whole number"),
+        (wpl(TAKE_OFF, INF), "line 4", "latitude: is not finite"),
+        (wpl(TAKE_OFF, (3, 16, 0, 0, 0, 0, "1e999", 8, 5)), "line 4", "latitude: is not finite"),
+        (wpl(TAKE_OFF, (3, 16, 0, 0, 0, 0, "nan", 8, 5)), "line 4", "one is given without the other"),
+        (wpl(TAKE_OFF, (3, 16, 0, 0, 0, 0, 95, 8, 5)), "line 4", "latitude: 95 is outside"),
+        (wpl(TAKE_OFF, (3, 16, 0, 0, 0, 0, 47, 188, 5)), "line 4", "longitude: 188 is outside"),
+        (wpl(TAKE_OFF, (3, 16, 0, 0, 0, 0, 48, 9, 5)), "line 4", "km from home"),
+        (wpl(TAKE_OFF, (3, 16, 0, 0, 0, 0, -47.4, -171.4, 5)), "line 4", "km from home"),
+        (wpl(TAKE_OFF, row(16, north=10.0, alt=-1.0)), "line 4", "altitude: below ground: 1 m lower"),
+        (wpl(TAKE_OFF, row(16, north=10.0, alt=100.0, frame=0)), "line 4", "altitude: below ground: 388 m lower"),
+        (wpl(TAKE_OFF, row(16, north=10.0, alt=0.0)), "line 4", "on the ground"),
+        (wpl(TAKE_OFF, row(16, north=10.0, alt=1e6)), "line 4", "nothing flies there"),
+        (wpl(TAKE_OFF, A, row(21, north=10.0, alt=-7.0)), "line 5", "altitude: below ground"),
+        (wpl(row(22, alt=0), A), "line 3", "how high to take off"),
+        (wpl(row(22, alt=-3), A), "line 3", "altitude: below ground"),
+        (wpl(TAKE_OFF, row(16, -2, north=10.0)), "line 4", "-2 s is negative"),
+        (wpl(TAKE_OFF, row(16, north=10.0, frame=1)), "line 4", "frame 1, LOCAL_NED"),
+        (wpl(TAKE_OFF, row(16, north=10.0, frame=99)), "line 4", "frame 99, is not supported"),
+        (wpl(TAKE_OFF, row(16, north=10.0, frame=2)), "line 4", "has no coordinates"),
+        (wpl(TAKE_OFF, A, home=f"3 16 0 0 0 0 {HOME[0]} {HOME[1]} 0").replace("2\t0\t3", "2\t0\t0"), "line 4", "how high home is"),
+        (wpl(row(5001, 4, north=1.0), row(5001, 4, north=2.0)), "line 3", "a fence or rally point"),
+        (wpl(row(5003, 4, north=1.0)), "line 3", "a fence or rally point"),
+        (wpl(row(5100, north=1.0)), "line 3", "a fence or rally point"),
+        (wpl(TAKE_OFF, row(31, north=1.0)), "line 4", "navigation by NAV_LOITER_TO_ALT"),
+        (wpl(TAKE_OFF, row(84, north=1.0)), "line 4", "navigation by NAV_VTOL_TAKEOFF"),
+        (wpl(TAKE_OFF, row(94, north=1.0)), "line 4", "navigation by NAV_PAYLOAD_PLACE"),
+        (wpl(TAKE_OFF, row(213, north=1.0)), "line 4", "navigation by NAV_SET_YAW_SPEED"),
+        (wpl(TAKE_OFF, row(77, north=1.0)), "line 4", "navigation by command 77"),
+        (wpl(TAKE_OFF, row(115, 90), A), "line 4", "CONDITION_YAW is not supported"),
+        (wpl(TAKE_OFF, row(207, 1), A), "line 4", "DO_FENCE_ENABLE is not supported"),
+        (wpl(TAKE_OFF, row(208, 1), A), "line 4", "DO_PARACHUTE is not supported"),
+        (wpl(TAKE_OFF, row(31999), A), "line 4", "command 31999 is not supported"),
+        (wpl(TAKE_OFF, row(178, 1, 0), A), "line 4", "would never arrive"),
+        (wpl(TAKE_OFF, row(178, 9, 1), A), "line 4", "param 1 (speed type): 9 is unknown"),
+        (wpl(TAKE_OFF, row(18, 0, 0, 5, north=9.0)), "line 4", "param 1 (turns): 0 turns"),
+        (wpl(TAKE_OFF, row(93, -1, 12, 30), A), "line 4", "until a time of day"),
+        (wpl(TAKE_OFF, A, row(177, 9, 1)), "line 5", "param 1 (target): 9: there is no such item"),
+        (wpl(TAKE_OFF, A, row(177, 0, 1)), "line 5", "param 1 (target): 0: is home"),
+        (wpl(TAKE_OFF, A, row(177, 1.5, 1)), "line 5", "param 1 (target): 1.5 is not a whole number"),
+        (wpl(TAKE_OFF, A, row(177, 1, -2)), "line 5", "param 2 (repeats): -2"),
+        (wpl(TAKE_OFF, A, row(601, 3, 1)), "line 5", "param 1 (tag): 3: there is no such item"),
+        (wpl(TAKE_OFF, row(600, 3), A, row(600, 3)), "line 6", "tag: 3 stands twice"),
+        (wpl(TAKE_OFF, A, row(177, 3, -1)), "line 5", "a loop without a waypoint"),
+        (wpl(TAKE_OFF, A, row(177, 3, 5)), "line 5", "a loop without a waypoint"),
+        (wpl(TAKE_OFF, A, row(178, 1, 2), row(93, 1, alt=0), row(177, 3, -1)), "line 7", "a loop without a waypoint"),
+        (wpl(TAKE_OFF, row(177, 3, -1), row(177, 2, -1), A), "line 5", "a loop without a waypoint"),
+        (wpl(row(177, 3, -1), A, RETURN), "", "no waypoint is ever reached"),
+        (wpl(row(16, alt=0), RETURN), "line 3", "still on the pad"),
+        (wpl(RETURN, A), "line 4", "comes after the landing"),
+        (wpl(TAKE_OFF, A, row(21, alt=0), TAKE_OFF, B), "line 6", "comes after the landing"),
+    ],
+)  # fmt: skip
+def test_wpl_refused(tmp_path: Path, content: str, where: str, reason: str) -> None:
+    reasons = refusal(tmp_path, content)
+    assert any(reason in r and where in r for r in reasons), reasons
+
+
+def item_with(**changes: Any) -> dict[str, Any]:
+    return plan(mission__items=[simple(TAKE_OFF, 1), {**simple(A, 2), **changes}])
+
+
+@pytest.mark.parametrize(
+    ("document", "where", "reason"),
+    [
+        (plan(TAKE_OFF, A, fileType="Parameters"), "plan", "fileType"),
+        (plan(TAKE_OFF, A, version=2), "plan", "version: 2 is not supported"),
+        (plan(TAKE_OFF, A, version=None), "plan", "version: null is not supported"),
+        (plan(TAKE_OFF, A, mission__version=1), "mission", "version: 1 is not supported"),
+        (plan(TAKE_OFF, A, geoFence__version=1), "geoFence", "version: 1 is not supported"),
+        (plan(TAKE_OFF, A, rallyPoints__version=1), "rallyPoints", "version: 1 is not supported"),
+        (plan(TAKE_OFF, A, mission=None), "mission", "there is nothing to fly"),
+        (plan(TAKE_OFF, A, mission=[]), "mission", "must be an object"),
+        (plan(), "mission", "there is no waypoint"),
+        (plan(TAKE_OFF, A, mission__items={}), "mission", "items: missing, or not a list"),
+        (plan(TAKE_OFF, A, mission__plannedHomePosition=None), "mission", "plannedHomePosition: missing"),
+        (plan(TAKE_OFF, A, mission__plannedHomePosition=[47, "8", 1]), "mission", "plannedHomePosition"),
+        (plan(TAKE_OFF, A, mission__plannedHomePosition=[0, 0, 0]), "mission", "gives no place"),
+        (plan(TAKE_OFF, A, mission__plannedHomePosition=[147, 8, 0]), "mission", "latitude: 147"),
+        (plan(TAKE_OFF, row(31, north=2.0)), "item 2 (NAV_LOITER_TO_ALT)", "navigation by"),
+        (plan(TAKE_OFF, row(5002, 3, north=2.0)), "item 2", "a fence or rally point"),
+        (plan(TAKE_OFF, row(16, north=3.0, alt=-2)), "item 2 (NAV_WAYPOINT)", "altitude: below ground"),
+        (plan(TAKE_OFF, A, row(177, 8, 1)), "item 3 (DO_JUMP)", "8: there is no such item"),
+        (item_with(type="Simple"), "item 2", 'type: "Simple"'),
+        (item_with(params=[0, 0, 0]), "item 2", "params: expected a list of 7"),
+        (item_with(params=[0, 0, 0, 0, "47", 8, 5]), "item 2", 'params[4] (latitude): "47" is not a number'),
+        (item_with(params=[0, 0, 0, 0, True, 8, 5]), "item 2", "params[4] (latitude): true is not a number"),
+        (item_with(params=[0, 0, 0, 0, 10**400, 8, 5]), "item 2", "params[4] (latitude): is not finite"),
+        (item_with(params=[0, 0, 0, 0, math.inf, 8, 5]), "item 2", "params[4] (latitude): is not finite"),
+        (item_with(command=None), "item 2", "command: missing"),
+        (item_with(command=16.5), "item 2", "command: 16.5 is not a whole number"),
+        (item_with(frame="3"), "item 2", "frame"),
+        (item_with(doJumpId=1), "item 2", "1 stands twice"),
+        (item_with(autoContinue=1), "item 2", "autoContinue"),
+        (plan(mission__items=[survey(version=6)]), "item 1", "version: 6 is not supported"),
+        (plan(mission__items=[survey(TransectStyleComplexItem={"version": 9, "Items": [simple(A, 1)]})]), "item 1", "version: 9"),
+        (plan(mission__items=[survey(complexItemType="StructureScan", version=2, TransectStyleComplexItem=None)]),
+         "item 1", "a StructureScan is flown by the items stored with it"),
+        (plan(mission__items=[survey(TransectStyleComplexItem={"version": 1, "Items": []})]), "item 1", "Items: missing"),
+        (plan(mission__items=[survey(TransectStyleComplexItem={"version": 1, "Items": [3]})]), "item 1", "a list of SimpleItem"),
+        (plan(mission__items=[survey(complexItemType="fwLandingPattern")]), "item 1", '"fwLandingPattern" is not supported'),
+        (plan(mission__items=[survey(complexItemType=["survey"])]), "item 1", "is not supported"),
+        (plan(TAKE_OFF, A, geoFence__circles=[{**CIRCLE, "version": 2}]), "geoFence", "version: 2"),
+        (plan(TAKE_OFF, A, geoFence__circles=[{**CIRCLE, "circle": {"center": [47], "radius": 1}}]), "geoFence", "center"),
+        (plan(TAKE_OFF, A, geoFence__circles=[{**CIRCLE, "inclusion": None}]), "geoFence", "inclusion"),
+        (plan(TAKE_OFF, A, geoFence__polygons=[area(5, polygon=[[47, 8]])]), "geoFence", "3 to 500 corners"),
+        (plan(TAKE_OFF, A, geoFence__polygons=[area(0)]), "geoFence", "has no area"),
+        (plan(TAKE_OFF, A, geoFence__polygons=[area(9, inclusion=True)]), "geoFence", "home is outside"),
+        (plan(TAKE_OFF, A, geoFence__polygons=[area(70, inclusion=True), area(80, inclusion=True)]), "geoFence", "at most one"),
+        (plan(TAKE_OFF, row(16, north=110.0), geoFence__polygons=[area(70, inclusion=True)]), "item 2", "outside the fence"),
+        (plan(TAKE_OFF, row(16, north=31.0), geoFence__circles=[CIRCLE]), "item 2", "inside fence circle 1"),
+        (plan(TAKE_OFF, row(18, 1, 0, 10, north=20.0), geoFence__circles=[CIRCLE]), "item 2", "inside fence circle 1"),
+        (plan(TAKE_OFF, row(16, north=31.0), geoFence__polygons=[area(5)]), "item 2", "inside fence polygon 1"),
+    ],
+)  # fmt: skip
+def test_plan_refused(tmp_path: Path, document: dict[str, Any], where: str, reason: str) -> None:
+    reasons = refusal(tmp_path, document)
+    assert any(reason in r and where in r for r in reasons), reasons
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("{", "line 1: not valid JSON"),
+        ('{\n"fileType": "Plan",\n}', "line 3: not valid JSON"),
+        ('{"a": ' * 50_000, "nested too deeply"),
+        ('{"a": ' + "9" * 5000 + "}", "not valid JSON"),
+        ("[]", "not a plan"),
+        ("hello", "line 1: not valid JSON"),
+    ],
+)
+def test_malformed_json(tmp_path: Path, text: str, reason: str) -> None:
+    assert any(reason in r for r in refusal(tmp_path, text, "mission.plan"))
+
+
+def test_every_reason_is_collected(tmp_path: Path) -> None:
+    bad = wpl(TAKE_OFF, row(16, north=10.0, alt=-1.0), row(31), row(177, 9, 1))
+    assert len(refusal(tmp_path, bad)) == 3
+    assert len(refusal(tmp_path, plan(TAKE_OFF, A, version=7, mission__version=7))) == 2
+
+
+def test_too_many_rows(tmp_path: Path) -> None:
+    assert any("more than 10000 rows" in r for r in refusal(tmp_path, wpl(*[A] * 10_005)))
+
+
+def test_not_a_mission(tmp_path: Path) -> None:
+    assert "neither QGC WPL" in refusal(tmp_path, "hello world\n", "mission.doc")[0]
+    assert "not UTF-8" in refusal(tmp_path, b"QGC WPL 110\n\xff\xfe", "mission.txt")[0]
+    with pytest.raises(UnusableFile, match="No such file"):
+        read_mission(tmp_path / "none.plan")

@@ -1,0 +1,86 @@
+"""What vehicles say of the set-points that they fly, and what the history makes of it."""
+
+import numpy as np
+import pytest
+
+from idc_controller.estimate.setpoint_history import SetpointHistory
+
+N = 2
+SECOND = [2, 3, 5]  # the second vehicle's tilt (north, east) and thrust
+SENT = [np.full(3 * N, 0.01 * k) for k in range(5)]
+
+
+@pytest.fixture
+def history():
+    history = SetpointHistory(N, least_loss=0.005)
+    for k, u in enumerate(SENT):
+        history.add(0.05 * k, u)
+    return history
+
+
+def test_what_was_never_told_of_acts_when_it_should(history):
+    force = history.in_force(0.10, 0.15)
+    assert force.u is SENT[2]
+    assert force.change == pytest.approx(SENT[2] - SENT[1])
+    assert (force.doubt == 0.005).all()
+
+
+def test_one_that_came_late_acts_from_then_on(history):
+    told = history.confirm(1, 0.12, 0.14, SENT[2][SECOND], spread=0.01)
+    assert told is not None and told.as_sent
+    assert told.corrected_from == pytest.approx(0.10)
+    mean = history.in_force(0.10, 0.15).u
+    assert mean[SECOND] == pytest.approx(0.4 * SENT[1][SECOND] + 0.6 * SENT[2][SECOND])
+    assert mean[[0, 1, 4]] == pytest.approx(SENT[2][[0, 1, 4]])
+    assert history.in_force(0.05, 0.10).u[SECOND] == pytest.approx(SENT[1][SECOND])
+
+
+def test_one_that_came_early_acts_before_its_time(history):
+    told = history.confirm(1, 0.08, 0.11, SENT[2][SECOND], spread=0.02)
+    assert told.corrected_from == pytest.approx(0.08)
+    mean = history.in_force(0.05, 0.10).u
+    assert mean[SECOND] == pytest.approx(0.6 * SENT[1][SECOND] + 0.4 * SENT[2][SECOND])
+
+
+def test_what_is_told_is_doubted_less(history):
+    history.confirm(1, 0.10, 0.14, SENT[2][SECOND], spread=0.01)
+    first, second = history.in_force(0.10, 0.15).doubt
+    assert second < first
+    unknown = history.in_force(0.15, 0.20).doubt
+    assert unknown[1] == pytest.approx(0.005 + (0.01 / 0.05) ** 2)  # it may come late by as much
+
+
+def test_one_that_was_taken_for_lost_may_still_come(history):
+    lost = history.confirm(1, 0.05, 0.14, SENT[1][SECOND], spread=0.0)
+    assert not lost.as_sent
+    assert history.in_force(0.10, 0.15).u[SECOND] == pytest.approx(SENT[1][SECOND])
+    assert history.loss[1] > history.loss[0]
+    late = history.confirm(1, 0.145, 0.148, SENT[2][SECOND], spread=0.0)
+    assert late.as_sent and late.corrected_from == pytest.approx(0.10)
+    mean = history.in_force(0.10, 0.15).u
+    assert mean[SECOND] == pytest.approx(0.9 * SENT[1][SECOND] + 0.1 * SENT[2][SECOND])
+
+
+def test_the_same_told_again_changes_nothing(history):
+    history.confirm(1, 0.12, 0.13, SENT[2][SECOND], spread=0.01)
+    again = history.confirm(1, 0.12, 0.14, SENT[2][SECOND], spread=0.01)
+    assert again is not None and again.corrected_from is None
+
+
+def test_words_of_what_was_never_sent_are_not_believed(history):
+    assert history.confirm(1, 0.10, 0.14, np.array([0.3, 0.3, 9.0]), spread=0.0) is None
+    assert history.in_force(0.10, 0.15).u is SENT[2]
+
+
+def test_held_vehicles_fly_nothing(history):
+    history.add(0.25, None)
+    assert history.in_force(0.26, 0.30).u is None
+    assert history.confirm(1, 0.25, 0.28, SENT[4][SECOND], spread=0.0) is not None
+
+
+def test_what_is_over_is_forgotten_but_for_what_may_still_act(history):
+    history.forget(0.19)
+    assert history.switches(-1.0, 1.0) == pytest.approx([0.0, 0.05, 0.10, 0.15, 0.20])
+    history.add(0.25, SENT[0])
+    history.forget(0.26)
+    assert history.switches(-1.0, 1.0) == pytest.approx([0.10, 0.15, 0.20, 0.25])

@@ -1,0 +1,128 @@
+"""Commands to a vehicle, and its answers."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pymavlink.dialects.v20.common as mavlink
+import pytest
+from vehicle_bench import (
+    ACCEPTED,
+    ARM,
+    DENIED,
+    DISARM,
+    GROUND,
+    OFFBOARD,
+    REJECTED,
+    UNSUPPORTED,
+    Bench,
+    attitude_target,
+    command,
+)
+
+from gcs.wire import px4
+
+
+def test_arm_and_offboard_sequence(bench: Bench) -> None:
+    [ack] = [m for m in bench.ask(OFFBOARD) if m.get_type() == "COMMAND_ACK"]
+    assert ack.result == REJECTED
+    assert "no set-points" in bench.got("STATUSTEXT")[-1].text
+    bench.streaming[GROUND, 255] = attitude_target(thrust=0.0)
+    bench.run(0.2)
+    assert bench.got("SYS_STATUS")[-1].onboard_control_sensors_health & mavlink.MAV_SYS_STATUS_PREARM_CHECK
+    assert bench.result(OFFBOARD) == ACCEPTED
+    bench.run(0.01)
+    beat = bench.got("HEARTBEAT")[-1]  # told at once, not with the next second
+    assert beat.custom_mode == px4.MODE_OFFBOARD and not beat.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED
+    assert (beat.type, beat.autopilot) == (mavlink.MAV_TYPE_QUADROTOR, mavlink.MAV_AUTOPILOT_PX4)
+    assert bench.result(ARM) == ACCEPTED
+    bench.run(0.01)
+    beat = bench.got("HEARTBEAT")[-1]
+    assert beat.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED and beat.system_status == mavlink.MAV_STATE_ACTIVE
+    assert bench.result(DISARM) == ACCEPTED
+
+
+def test_disarming_in_the_air_is_refused(flying: Bench) -> None:
+    assert flying.result(DISARM) == DENIED
+    assert flying.result(command(400, 0, px4.FORCE_ARM_DISARM)) == ACCEPTED
+
+
+def test_setpoint_loss_is_told(flying: Bench) -> None:
+    flying.streaming.clear()
+    flying.run(0.55)
+    beat = flying.got("HEARTBEAT")[-1]
+    assert beat.custom_mode == px4.MODE_HOLD and beat.system_status == mavlink.MAV_STATE_CRITICAL
+    assert "Set-points lost" in flying.got("STATUSTEXT")[-1].text
+
+
+@pytest.mark.parametrize(
+    ("message", "result"),
+    [
+        (command(22, math.nan, 0, 0, math.nan, math.nan, math.nan, math.nan), DENIED),
+        (command(20), DENIED),
+        (command(21, math.nan, math.nan), REJECTED),  # not flying
+        (command(176, 1, 4, 4), DENIED),
+        (command(176, 1, 3), ACCEPTED),
+        (command(176, 1, 4, 3), ACCEPTED),
+        (command(176, 0, 6), DENIED),
+        (command(176, math.nan, math.nan, math.nan), DENIED),
+        (command(176, 1, 300), DENIED),
+        (command(400, math.nan), DENIED),
+        (command(400, 2), DENIED),
+        (command(400, 0), ACCEPTED),
+        (command(520, 1), ACCEPTED),
+        (command(512, mavlink.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN), ACCEPTED),
+        (command(512, 99999), UNSUPPORTED),
+        (command(512, math.inf), UNSUPPORTED),
+        (command(511, 30, math.nan), DENIED),
+        (command(511, 30, 1), DENIED),
+        (command(511, 31, -1), ACCEPTED),
+        (command(300), UNSUPPORTED),
+    ],
+)
+def test_commands_are_answered(bench: Bench, message: Any, result: int) -> None:
+    assert bench.result(message) == result
+
+
+def test_commands_as_command_int_and_mode_as_set_mode(bench: Bench) -> None:
+    as_int = mavlink.MAVLink_command_int_message(1, 1, 0, 400, 0, 0, 1, 0, 0, 0, 0, 0, 0)
+    assert bench.result(as_int) == ACCEPTED and bench.vehicle.autopilot.armed
+    bench.send(DISARM)
+    bench.send(mavlink.MAVLink_set_mode_message(1, 1, px4.MODE_POSCTL))
+    assert bench.vehicle.autopilot.mode == px4.MODE_POSCTL
+
+
+@pytest.mark.parametrize("target", [(2, 1), (1, 25), (7, 0)])
+def test_commands_to_others_are_not_answered(bench: Bench, target: tuple[int, int]) -> None:
+    assert bench.ask(command(400, 1, system=target[0], component=target[1])) == []
+    assert not bench.vehicle.autopilot.armed
+
+
+def test_its_own_words_coming_back_are_ignored(bench: Bench) -> None:
+    bench.send(ARM, GROUND, system=1)
+    assert not bench.vehicle.autopilot.armed
+
+
+def test_message_requests_and_intervals(bench: Bench) -> None:
+    bench.send(command(512, mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION))
+    bench.send(command(512, mavlink.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN))
+    bench.send(command(511, mavlink.MAVLINK_MSG_ID_ODOMETRY, 20000))
+    bench.send(command(511, mavlink.MAVLINK_MSG_ID_ATTITUDE, -1))
+    bench.run(0.1)
+    assert bench.got("AUTOPILOT_VERSION")[0].uid == 1
+    assert bench.got("GPS_GLOBAL_ORIGIN")[0].latitude == bench.got("HOME_POSITION")[0].latitude
+    bench.inbox.clear()
+    bench.run(1.0)
+    assert len(bench.got("ODOMETRY")) == 50 and not bench.got("ATTITUDE")
+    bench.send(command(511, mavlink.MAVLINK_MSG_ID_ATTITUDE, 0))
+    bench.run(1.0)
+    assert len(bench.got("ATTITUDE")) in (10, 11)
+
+
+def test_timesync_and_ping_are_answered_to_the_asker(bench: Bench) -> None:
+    [answer] = bench.ask(mavlink.MAVLink_timesync_message(0, 123456789))
+    assert answer.ts1 == 123456789 and answer.tc1 == round(bench.now * 1e9)
+    assert bench.ask(mavlink.MAVLink_timesync_message(5, 6)) == []
+    [answer] = bench.ask(mavlink.MAVLink_ping_message(77, 8, 0, 0))
+    assert (answer.time_usec, answer.seq, answer.target_system, answer.target_component) == (77, 8, 255, 190)

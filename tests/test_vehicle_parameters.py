@@ -1,0 +1,58 @@
+"""The parameter protocol of a vehicle."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pymavlink.dialects.v20.common as mavlink
+import pytest
+from vehicle_bench import (
+    Bench,
+)
+
+from gcs.wire import px4
+from vehicle_sim.parameter_table import SETPOINT_LOSS
+
+
+def value_of(messages: list[Any]) -> dict[str, Any]:
+    values = [m for m in messages if m.get_type() == "PARAM_VALUE"]
+    return {m.param_id: px4.parameter_from_wire(m.param_value, m.param_type) for m in values}
+
+
+def test_parameter_list_is_complete_and_byte_wise(bench: Bench) -> None:
+    bench.send(mavlink.MAVLink_param_request_list_message(1, 1))
+    bench.collect()
+    values = bench.got("PARAM_VALUE")
+    assert [m.param_index for m in values] == list(range(values[0].param_count))
+    table = value_of(values)
+    assert table["SYS_AUTOSTART"] == 4001 and isinstance(table["SYS_AUTOSTART"], int)
+    assert table[px4.PARAM_THRUST_MAX] == 30.0 and table[px4.PARAM_ONBOARD_RATE] == 250
+
+
+def test_parameters_are_read_by_name_and_by_index(bench: Bench) -> None:
+    ask = mavlink.MAVLink_param_request_read_message
+    assert value_of(bench.ask(ask(1, 1, b"MIS_TAKEOFF_ALT", -1))) == {"MIS_TAKEOFF_ALT": 2.5}
+    [first] = bench.ask(ask(1, 1, b"", 0))
+    assert first.param_index == 0
+    assert bench.ask(ask(1, 1, b"NO_SUCH", -1)) == [] and bench.ask(ask(1, 1, b"", 999)) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "kind", "stored"),
+    [
+        ("COM_OF_LOSS_T", 0.3, 9, pytest.approx(0.3)),
+        ("COM_OF_LOSS_T", math.nan, 9, pytest.approx(SETPOINT_LOSS)),
+        ("COM_OF_LOSS_T", -1.0, 9, pytest.approx(SETPOINT_LOSS)),
+        ("COM_DL_LOSS_T", px4.parameter_to_wire(20, 6), 6, 20),
+        ("COM_DL_LOSS_T", 20.0, 9, 10),
+        ("COM_DL_LOSS_T", 20.0, 6, 10),  # a C cast: read byte-wise it is far out of range
+        (px4.PARAM_THRUST_MAX, 99.0, 9, 30.0),
+    ],
+)
+def test_parameters_are_set_or_the_kept_value_is_answered(
+    bench: Bench, name: str, value: float, kind: int, stored: Any
+) -> None:
+    answer = value_of(bench.ask(mavlink.MAVLink_param_set_message(1, 1, name.encode(), value, kind)))
+    assert answer == {name: stored}
+    assert bench.vehicle.parameters[name] == stored

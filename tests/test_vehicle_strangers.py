@@ -1,0 +1,133 @@
+"""Who may command a vehicle, and how little all others can do to it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pymavlink.dialects.v20.common as mavlink
+import pytest
+from hostile_traffic import with_random_contents
+from vehicle_bench import (
+    ACCEPTED,
+    ARM,
+    DENIED,
+    GROUND,
+    HOVER,
+    OFFBOARD,
+    STRANGER,
+    Bench,
+    attitude_target,
+    command,
+)
+
+from gcs.wire import px4
+from gcs.wire.codec import Codec
+from vehicle_sim.parameter_table import SETPOINT_LOSS
+from vehicle_sim.peers import REPLIES_MAX
+
+
+def test_no_stranger_commands_a_controlled_vehicle(flying: Bench) -> None:
+    kill, land, mode = command(400, 0, px4.FORCE_ARM_DISARM), command(21), command(176, 1, 4, 6)
+    for sender, system in ((STRANGER, 255), (GROUND, 42), (STRANGER, 42)):
+        for message in (kill, land, mode, OFFBOARD, command(185, 1)):
+            assert flying.result(message, sender, system) == DENIED
+        flying.send(mavlink.MAVLink_set_mode_message(1, 1, px4.MODE_LAND), sender, system)
+        flying.ask(mavlink.MAVLink_param_set_message(1, 1, b"COM_OF_LOSS_T", 9.0, 9), sender, system)
+        refused = flying.vehicle.refused_setpoints
+        flying.send(attitude_target(thrust=0.0), sender, system)
+        assert flying.vehicle.refused_setpoints == refused + 1
+    flying.vehicle.step(flying.body.measure(), flying.now)
+    assert flying.vehicle.autopilot.armed and flying.vehicle.autopilot.mode == px4.MODE_OFFBOARD
+    assert flying.vehicle.autopilot.attitude_target[2] == pytest.approx(HOVER)
+    assert flying.vehicle.parameters["COM_OF_LOSS_T"] == pytest.approx(SETPOINT_LOSS)
+    assert flying.result(command(512, mavlink.MAVLINK_MSG_ID_HOME_POSITION), STRANGER) == ACCEPTED
+
+
+def test_no_stranger_behind_the_grounds_address_stops_its_telemetry(flying: Bench) -> None:
+    stop = command(511, mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, -1)
+    assert flying.result(stop, GROUND, 42) == DENIED
+    assert flying.result(stop, STRANGER, 42) == ACCEPTED
+    before = len(flying.got("ATTITUDE_QUATERNION"))
+    flying.run(0.5)
+    assert len(flying.got("ATTITUDE_QUATERNION")) >= before + 24
+    assert flying.result(stop) == ACCEPTED
+
+
+def test_who_asks_for_too_much_at_once_does_not_get_it(flying: Bench) -> None:
+    flying.collect()
+    flying.inbox.clear()
+    for _ in range(1000):
+        flying.send(mavlink.MAVLink_param_request_list_message(1, 1), STRANGER)
+    flying.collect()
+    assert len(flying.got("PARAM_VALUE", STRANGER)) == REPLIES_MAX
+    assert flying.result(command(512, mavlink.MAVLINK_MSG_ID_HOME_POSITION), STRANGER) == ACCEPTED
+
+
+def test_another_ground_may_take_over_once_the_stream_is_silent(flying: Bench) -> None:
+    flying.streaming = {(STRANGER, 42): attitude_target(thrust=HOVER)}
+    flying.run(0.35)
+    assert flying.result(OFFBOARD, STRANGER, 42) == DENIED
+    flying.run(0.3)
+    assert flying.vehicle.autopilot.failsafe  # its set-points do not fly the vehicle by themselves
+    assert flying.result(OFFBOARD, STRANGER, 42) == ACCEPTED
+    flying.streaming[GROUND, 255] = attitude_target(thrust=0.0)
+    flying.run(0.3)
+    assert not flying.vehicle.autopilot.failsafe
+    assert flying.vehicle.autopilot.attitude_target[2] == pytest.approx(HOVER)
+    assert flying.result(command(21), GROUND, 255) == DENIED
+
+
+def test_a_strangers_stream_before_control_does_not_fly(bench: Bench) -> None:
+    bench.streaming = {(STRANGER, 42): attitude_target(thrust=0.9), (GROUND, 255): attitude_target(thrust=0.1)}
+    bench.run(0.3)
+    assert bench.result(OFFBOARD) == ACCEPTED and bench.result(ARM) == ACCEPTED
+    bench.run(0.3)
+    assert bench.vehicle.autopilot.attitude_target[2] == pytest.approx(0.1)
+
+
+def test_mutated_datagrams_neither_raise_nor_command(flying: Bench) -> None:
+    """Random flips in what a ground could send: with a wrong checksum nothing may be obeyed."""
+    rng = np.random.default_rng(7)
+    codec = Codec(255, 190)
+    seeds = [
+        codec.encode(message)
+        for message in (
+            command(400, 0, px4.FORCE_ARM_DISARM), command(176, 1, 4, 6), attitude_target(thrust=0.0), command(21),
+            mavlink.MAVLink_set_mode_message(1, 1, px4.MODE_LAND),
+            mavlink.MAVLink_param_set_message(1, 1, b"COM_OF_LOSS_T", 9.0, 9),
+        )
+    ]  # fmt: skip
+    vehicle, now = flying.vehicle, flying.now
+    before = vehicle.autopilot.changes
+    for number in range(20_000):
+        frame = bytearray(seeds[number % len(seeds)])
+        kind = number % 5
+        if kind == 4:
+            frame = frame[: rng.integers(0, len(frame))] + rng.bytes(rng.integers(0, 30))
+        else:
+            for index in rng.choice(len(frame), kind % 3 + 1, replace=False):
+                frame[index] ^= int(rng.integers(1, 256))
+        vehicle.receive(bytes(frame), GROUND, now)
+        if number % 100 == 0:
+            flying.send(attitude_target(), GROUND)
+            vehicle.step(flying.body.measure(), now)
+            vehicle.datagrams_to_send(now)
+    assert vehicle.autopilot.armed and vehicle.autopilot.mode == px4.MODE_OFFBOARD
+    assert vehicle.autopilot.changes == before
+    assert vehicle.autopilot.attitude_target[2] == pytest.approx(HOVER)
+    assert vehicle.parameters["COM_OF_LOSS_T"] == pytest.approx(SETPOINT_LOSS)
+
+
+def test_every_message_with_random_contents_from_a_stranger_is_survived_and_changes_nothing(flying: Bench) -> None:
+    rng = np.random.default_rng(11)
+    writer = mavlink.MAVLink(None, 42, 1)
+    vehicle = flying.vehicle
+    before = vehicle.autopilot.changes
+    for _ in range(10):
+        for kind in mavlink.mavlink_map.values():
+            frame = with_random_contents(kind, rng.bytes(kind.unpacker.size), 1, writer)
+            vehicle.receive(frame, STRANGER, flying.now)
+        flying.send(attitude_target())
+        vehicle.step(flying.body.measure(), flying.now)
+        vehicle.datagrams_to_send(flying.now)
+    assert vehicle.autopilot.changes == before
+    assert vehicle.autopilot.armed and vehicle.parameters["COM_OF_LOSS_T"] == pytest.approx(SETPOINT_LOSS)

@@ -1,0 +1,125 @@
+"""What a vehicle streams, to whom, and when."""
+
+from __future__ import annotations
+
+import numpy as np
+import pymavlink.dialects.v20.common as mavlink
+import pytest
+from vehicle_bench import (
+    ARM,
+    GROUND,
+    REJECTED,
+    STRANGER,
+    Bench,
+)
+
+from gcs.wire.codec import DATAGRAM_LIMIT
+from vehicle_sim.sensors import Measurement
+
+
+def test_it_says_nothing_to_nobody_and_offers_itself_to_the_ground_address_with_heartbeats() -> None:
+    assert Bench().vehicle.next_timer() is None
+    bench = Bench(ground_address=GROUND)
+    assert bench.vehicle.next_timer() is not None
+    bench.run(3.01)
+    assert {m.get_type() for m in bench.inbox[GROUND]} == {"HEARTBEAT"}
+    assert 4 <= len(bench.inbox[GROUND]) <= 6
+    bench.send(mavlink.MAVLink_heartbeat_message(6, 8, 0, 0, 0, 3))
+    bench.run(0.5)
+    assert bench.got("ATTITUDE_QUATERNION")
+
+
+def test_streams_come_at_their_rates_with_the_stamp_of_the_sample(bench: Bench) -> None:
+    bench.run(0.01)
+    bench.inbox.clear()
+    bench.datagrams.clear()
+    bench.run(4.0)
+    counts = {kind: len(bench.got(kind)) for kind in {m.get_type() for m in bench.inbox[GROUND]}}
+    expected = {
+        "ATTITUDE_QUATERNION": 200, "LOCAL_POSITION_NED": 200, "ATTITUDE": 40, "ATTITUDE_TARGET": 200,
+        "GLOBAL_POSITION_INT": 20, "EXTENDED_SYS_STATE": 20, "VFR_HUD": 8, "HEARTBEAT": 4, "SYS_STATUS": 4,
+        "GPS_RAW_INT": 4, "HOME_POSITION": 2, "BATTERY_STATUS": 2,
+    }  # fmt: skip
+    assert counts == expected
+    stamps = [m.time_boot_ms for m in bench.got("ATTITUDE_QUATERNION")]
+    assert stamps == [m.time_boot_ms for m in bench.got("LOCAL_POSITION_NED")]
+    assert np.all(np.diff(stamps) == 20) and stamps[0] % 20 == 0
+    assert len(bench.got("ATTITUDE_QUATERNION", component=25)) == 200
+    # Everything due at one instant shares a datagram.
+    assert len(bench.datagrams) == 200
+    assert max(len(datagram) for _, datagram, _ in bench.datagrams) <= DATAGRAM_LIMIT
+
+
+def test_the_payload_unit_is_relayed_as_a_component_with_its_own_stamp(bench: Bench) -> None:
+    sample = Measurement(123.456, (0.5, 0.5, -0.5, 0.5), (1, 2, 3), (4, 5, -6), (7, 8, 9))
+    bench.vehicle.relay(sample)
+    bench.body.tick += 10
+    bench.collect()
+    attitude = bench.got("ATTITUDE_QUATERNION", component=25)[-1]
+    position = bench.got("LOCAL_POSITION_NED", component=25)[-1]
+    assert attitude.time_boot_ms == position.time_boot_ms == 123456
+    assert (attitude.q1, attitude.q3, attitude.yawspeed) == (0.5, -0.5, 3.0)
+    assert (position.x, position.z, position.vy) == (4.0, -6.0, 8.0)
+    before = len(bench.got("ATTITUDE_QUATERNION", component=25))
+    bench.body.tick += 10
+    bench.collect()
+    assert len(bench.got("ATTITUDE_QUATERNION", component=25)) == before  # the same sample is told once
+
+
+def test_sequence_numbers_have_no_gaps_on_any_link(bench: Bench) -> None:
+    bench.send(mavlink.MAVLink_heartbeat_message(6, 8, 0, 0, 0, 3), STRANGER)
+    bench.ask(mavlink.MAVLink_param_request_list_message(1, 1), STRANGER)
+    bench.run(1.0)
+    for address in (GROUND, STRANGER):
+        for component in (1, 25):
+            numbers = [m.get_seq() for m in bench.inbox[address] if m.get_srcComponent() == component]
+            assert len(numbers) > 50 and np.all(np.diff(numbers) % 256 == 1)
+
+
+def test_positions_on_the_globe_are_those_of_the_local_frame(bench: Bench) -> None:
+    bench.body.position = np.array([100.0, 0.0, -10.0])
+    bench.run(0.3)
+    message = bench.got("GLOBAL_POSITION_INT")[-1]
+    home = bench.got("HOME_POSITION")[0]
+    assert (message.lat - home.latitude) * 1e-7 * 111_200 == pytest.approx(100.0, abs=0.3)
+    assert message.lon == home.longitude
+    assert message.alt - home.altitude == pytest.approx(message.relative_alt, abs=2)
+
+
+def test_next_timer_is_when_there_is_something_to_send(bench: Bench) -> None:
+    bench.collect()
+    due = bench.vehicle.next_timer()
+    assert due is not None and bench.now < due <= bench.now + 0.02
+    assert bench.vehicle.datagrams_to_send(due - 0.001) == []
+    bench.send(mavlink.MAVLink_param_request_list_message(1, 1))
+    assert bench.vehicle.next_timer() < due
+
+
+def test_silent_peers_are_forgotten_and_their_number_is_bounded(bench: Bench) -> None:
+    for port in range(50):
+        bench.send(mavlink.MAVLink_heartbeat_message(6, 8, 0, 0, 0, 3), ("10.0.0.1", port))
+    bench.run(1.0)
+    assert len(bench.inbox) == 8
+    bench.run(10.0)
+    bench.datagrams.clear()
+    bench.run(1.0)
+    assert bench.datagrams == [] and bench.vehicle.next_timer() is None
+    bench.send(mavlink.MAVLink_heartbeat_message(6, 8, 0, 0, 0, 3), STRANGER)
+    bench.run(0.1)
+    assert bench.got("HEARTBEAT", STRANGER)
+
+
+def test_lost_samples_stop_the_telemetry_and_the_health_bits(bench: Bench) -> None:
+    for _ in range(200):
+        bench.vehicle.step(None, bench.now)
+        bench.collect()
+        bench.body.tick += 1
+    bench.inbox.clear()
+    for _ in range(600):
+        bench.vehicle.step(None, bench.now)
+        bench.collect()
+        bench.body.tick += 1
+    assert not bench.got("ATTITUDE_QUATERNION") and not bench.got("LOCAL_POSITION_NED")
+    health = bench.got("SYS_STATUS")[-1].onboard_control_sensors_health
+    assert not health & (mavlink.MAV_SYS_STATUS_SENSOR_3D_GYRO | mavlink.MAV_SYS_STATUS_PREARM_CHECK)
+    assert bench.result(ARM) == REJECTED

@@ -1,0 +1,123 @@
+"""Contacts and obstacles in the PyBullet world."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from paper_system import system
+from world_runs import uav_array
+
+from idc_controller.model.nonlinear import (
+    hover_state,
+    uav_positions,
+)
+from vehicle_sim.errors import SimulationError
+from vehicle_sim.world import World
+
+
+def test_uav_driven_into_a_sphere_counts_as_contact():
+    parameters = system(4)
+    with World(parameters) as world:
+        world.place(hover_state(parameters, (0, 0, -10.0)))
+        front_right = uav_positions(parameters, hover_state(parameters, (0, 0, -10.0)))[0]
+        world.add_obstacle("ball", "sphere", front_right + np.array([1.0, 0, 0]), radius=0.5)
+        assert world.closest_distance("ball") == pytest.approx(0.2, abs=1e-3)
+        seen = []
+        lift = parameters.hover_thrust.tolist()
+        for _ in range(1000):
+            world.step(lift, [(0.0, 0.0, 0.0)] * 4, uav_forces=[(1.0, 0.0, 0.0)] * 4)
+            seen.append(world.contacts())
+        assert seen[0] == 0
+        assert max(seen) >= 1
+        assert not world.touching_ground()
+
+
+def test_a_link_meets_a_pole_and_a_wall_stops_the_payload():
+    parameters = system(4)
+    with World(parameters) as world:
+        world.place(hover_state(parameters, (0, 0, -6.0)))
+        world.add_obstacle("pole", "pole", (0.6, 0.5), radius=0.05, size=(0, 0, 8.0))
+        assert world.closest_distance("pole") == pytest.approx(0.04, abs=2e-3)
+        world.move_obstacle("pole", (0.55, 0.5, -4.0))
+        world.add_obstacle("wall", "wall", (-2.5, 0, -6.0), size=(1.0, 4.0, 0.2))
+        # Payload to wall: 2.5 - 0.5 - 0.5; turned by 90 degrees the wall is 2 m long towards it, and they touch.
+        assert world.closest_distance("wall") == pytest.approx(1.5, abs=3e-3)
+        world.move_obstacle("wall", (-2.5, 0, -6.0), yaw=math.pi / 2)
+        assert world.closest_distance("wall") == pytest.approx(0.0, abs=3e-3)
+        world.move_obstacle("wall", (-20.0, 0, -6.0))
+        world.step([14.0] * 4, [(0.0, 0.0, 0.0)] * 4)
+        assert world.contacts() == 1  # link 1 and the pole
+        world.move_obstacle("pole", (0.0, 0.0, -4.0))
+        world.move_obstacle("wall", (-0.99, 0, -6.0))
+        world.place(hover_state(parameters, (0, 0, -6.0)))
+        world.step([14.0] * 4, [(0.0, 0.0, 0.0)] * 4)
+        assert world.contacts() == 2  # the payload with the pole and with the wall
+        assert world.closest_distance("pole") < 0
+        world.move_obstacle("pole", (50.0, 50.0, -4.0))
+        assert world.closest_distance("pole", within=10.0) == math.inf
+        assert [(o.name, o.shape) for o in world.obstacles()] == [("pole", "pole"), ("wall", "wall")]
+        assert world.obstacles()[0].position_in_world == (50.0, 50.0, -4.0)
+
+
+def test_wall_yaw_turns_clockwise_seen_from_above():
+    with World(system(4)) as world:
+        world.place(hover_state(system(4), (0, 0, -10.0)))
+        # A long wall to the north-east, lying towards the payload only when yaw is +45 degrees (north to east).
+        world.add_obstacle("wall", "wall", (3.0, 3.0, -10.0), size=(4.0, 0.1, 0.4), yaw=math.pi / 4)
+        towards = world.closest_distance("wall")
+        world.move_obstacle("wall", (3.0, 3.0, -10.0), yaw=-math.pi / 4)
+        assert towards < world.closest_distance("wall") - 1.0
+
+
+def test_discs_that_meet_count():
+    parameters = system(4)
+    with World(parameters) as world:
+        hover = hover_state(parameters, (0, 0, -10.0))
+        tilt = np.array([0.0, 0.21 / 3.2, 0.0])
+        q = hover.q + np.array([tilt, -tilt, 0 * tilt, 0 * tilt])
+        world.place(replace(hover, q=q / np.linalg.norm(q, axis=1, keepdims=True)))
+        world.step([14.0] * 4, [(0.0, 0.0, 0.0)] * 4)
+        assert world.contacts() == 1
+
+
+def test_toppled_system_on_the_ground_counts():
+    parameters = system(4)
+    with World(parameters) as world:
+        # Links on their way down when the payload reaches the ground: too fast for the cradles.
+        state = hover_state(parameters, (5, 0, -0.26))
+        world.place(replace(state, Omega=np.tile([0.0, 0.5, 0.0], (4, 1))))
+        counts, speeds = [], []
+        for _ in range(2500):
+            world.step([0.0] * 4, [(0.0, 0.0, 0.0)] * 4)
+            counts.append(world.contacts())
+            speeds.append(np.abs(uav_array(world.state(), "velocity_in_world")).max())
+        assert counts[0] == 0
+        assert max(counts) >= 2  # discs or links on the ground
+        # The wreck lies still instead of flying apart; free fall from 4 m ends at 9 m/s.
+        assert max(speeds) < 12.0
+        assert speeds[-1] < 0.5
+        assert uav_array(world.state(), "position_in_world")[:, 2].min() > -0.8
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        (("a", "cube", (0, 0, 0), 1.0), "shape"),
+        (("a", "sphere", (0, 0, 0)), "radius"),
+        (("a", "sphere", (0, math.nan, 0), 1.0), "finite"),
+        (("a", "sphere", (0, 0), 1.0), "three numbers"),
+        (("a", "pole", (0, 0), 1.0), "height"),
+        (("a", "wall", (0, 0, 0), 0.0, (1, 0, 1)), "size"),
+        (("taken", "sphere", (0, 0, 0), 1.0), "taken"),
+    ],
+)
+def test_obstacles_without_a_meaning_are_refused(arguments, reason):
+    with World(system(4)) as world:
+        world.add_obstacle("taken", "sphere", (9, 9, -9), radius=1.0)
+        with pytest.raises(SimulationError, match=reason):
+            world.add_obstacle(*arguments)
+        with pytest.raises(SimulationError, match="nobody"):
+            world.move_obstacle("nobody", (0, 0, 0))
+        with pytest.raises(SimulationError, match="nobody"):
+            world.closest_distance("nobody")

@@ -1,0 +1,246 @@
+"""The PyBullet world against the constrained dynamics."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from paper_system import system
+from world_runs import angle_between, link_lengths, run, uav_array, unequal
+
+from idc_controller.model.nonlinear import (
+    Inputs,
+    accelerations,
+    hover_inputs,
+    hover_state,
+    rk4_step,
+    thrust_forces,
+    uav_positions,
+    uav_velocities,
+)
+from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
+from vehicle_sim.errors import UnsupportedWorld
+from vehicle_sim.multibody import MAX_VEHICLES
+from vehicle_sim.world import World
+
+
+def displaced(parameters, y, altitude=20.0):
+    """State at rest beside hover: y = position, small rotation vector, tilts of the links in the world (2 each)."""
+    tilt = y[6:].reshape(-1, 2)
+    q_world = np.column_stack([tilt, np.sqrt(1 - np.sum(tilt**2, axis=1))])
+    angle = np.linalg.norm(y[3:6])
+    axis = y[3:6] / angle if angle > 0 else np.zeros(3)
+    quaternion_0 = np.append(math.cos(angle / 2), math.sin(angle / 2) * axis)
+    hover = hover_state(parameters)
+    R_0 = rotation_from_quaternion(quaternion_0)
+    return replace(hover, r_0=y[:3] - [0, 0, altitude], quaternion_0=quaternion_0, q=q_world @ R_0)
+
+
+def displacement(parameters, state, altitude=20.0):
+    """The y of :func:`displaced`, of a world's state."""
+    w, *xyz = state.payload_quaternion
+    R_0 = rotation_from_quaternion(state.payload_quaternion)
+    link = state.payload_position_in_world + parameters.p @ R_0.T - uav_array(state, "position_in_world")
+    tilt = (link / parameters.l[:, None])[:, :2]
+    position = np.add(state.payload_position_in_world, [0, 0, altitude])
+    return np.concatenate([position, 2 * np.array(xyz) / w, tilt.ravel()])
+
+
+def hover_modes(parameters):
+    """Frequencies (rad/s), shapes and left eigenvectors of the oscillations about hover, by finite differences."""
+    size, h = 6 + 2 * parameters.number_of_uavs, 1e-6
+    inputs = hover_inputs(parameters)
+
+    def second_derivative(y):
+        state = displaced(parameters, y)
+        acceleration = accelerations(parameters, state, inputs)
+        q_ddot = np.cross(acceleration.Omega_dot, state.q) @ state.R_0.T  # at rest, in the world
+        return np.concatenate([acceleration.r_0_ddot, acceleration.omega_0_dot, q_ddot[:, :2].ravel()])
+
+    columns = [(second_derivative(h * e) - second_derivative(-h * e)) / (2 * h) for e in np.eye(size)]
+    values, shapes = np.linalg.eig(-np.array(columns).T)
+    np.testing.assert_allclose(values.imag, 0.0, atol=1e-6)
+    left = np.linalg.pinv(shapes)
+    moving = values.real > 0.1
+    return np.sqrt(values.real[moving]), shapes.real.T[moving], left.real[moving]
+
+
+@pytest.mark.parametrize("n", [3, 4, 6])
+def test_hover_modes(n):
+    parameters = system(n)
+    frequencies, shapes, left = hover_modes(parameters)
+    # Of 6 + 2N coordinates, position and yaw of the whole cost no energy.
+    assert len(frequencies) == 2 + 2 * n
+    lift = [(0.0, 0.0, -float(f)) for f in parameters.hover_thrust]
+    zeros, no_torque = [0.0] * n, [(0.0, 0.0, 0.0)] * n
+    chosen = np.unique(np.round(frequencies, 4), return_index=True)[1]
+    assert len(chosen) >= 3
+    with World(parameters, physics_hz=500) as world:
+        for mode in chosen:
+            omega, shape, projection = frequencies[mode], shapes[mode], left[mode]
+            world.place(displaced(parameters, 0.01 * shape / np.abs(shape).max()))
+            start = world.time
+            times, values = [], []
+            while world.time - start < 3.3 * 2 * np.pi / omega:
+                world.step(zeros, no_torque, uav_forces=lift)
+                times.append(world.time)
+                values.append(projection @ displacement(parameters, world.state()))
+            t, y = np.array(times), np.array(values)
+            before = np.flatnonzero(y[:-1] * y[1:] < 0)
+            crossings = t[before] - y[before] * (t[before + 1] - t[before]) / (y[before + 1] - y[before])
+            assert len(crossings) >= 6
+            measured = np.pi * (len(crossings) - 1) / (crossings[-1] - crossings[0])
+            assert measured == pytest.approx(omega, rel=1e-3)
+
+
+def forced(parameters, hz, seconds, law):
+    """World and Runge-Kutta side by side under ``law(time) -> (world forces on UAVs, thrusts, torques)``.
+
+    Runge-Kutta takes the law as it is; the world takes it at the beginning of each step, as any controller would.
+    Yields pairs every 0.1 s.
+    """
+    state = hover_state(parameters, (0, 0, -20.0))
+    h, tenth = 0.01, round(0.1 * hz)
+
+    def inputs(time):
+        def at(since, s):
+            F, f, tau = law(time + since)
+            return Inputs(F=F + thrust_forces(s.quaternion, f), tau=tau)
+
+        return at
+
+    with World(parameters, physics_hz=hz) as world:
+        world.place(state)
+        for k in range(round(10 * seconds)):
+            for j in range(tenth):
+                F, f, tau = law((k * tenth + j) / hz)
+                world.step(f.tolist(), tau.tolist(), uav_forces=F.tolist())
+                assert world.contacts() == 0
+            for j in range(10):
+                state = rk4_step(parameters, state, inputs(0.1 * k + h * j), h)
+            yield world.state(), state
+
+
+def world_force_law(parameters, seed=0):
+    """Everybody pushed to and fro sideways, each a little differently; thrust off, torques on."""
+    n = parameters.number_of_uavs
+    rng = np.random.default_rng(seed)
+    rate, sign = rng.uniform(1.0, 4.0, (n, 3)), rng.choice([-1.0, 1.0], (n, 3))
+    lift = np.outer(parameters.hover_thrust, [0, 0, -1.0])
+    together = np.outer(parameters.hover_thrust / parameters.hover_thrust.mean(), [1.2, 0.8, 0.3]) * 4 / n
+    apart = np.array([0.15, 0.15, 0.1])
+
+    def law(t):
+        F = lift + together * np.sin(np.array([2.0, 1.5, 2.5]) * t) + apart * sign * np.sin(rate * t)
+        return F, np.zeros(n), 0.005 * sign * np.sin(rate * t)
+
+    return law
+
+
+@pytest.mark.parametrize("parameters", [system(3), system(4), system(6), unequal()], ids=["3", "4", "6", "unequal"])
+def test_forced_motion_agrees_with_an_independent_integration(parameters):
+    pairs = list(forced(parameters, 1000, 5.0, world_force_law(parameters)))
+    path = np.array([world.payload_position_in_world for world, _ in pairs])
+    assert np.linalg.norm(path[-1] - path[0]) > 1.0  # it really travelled
+    payload = [np.linalg.norm(world.payload_position_in_world - state.r_0) for world, state in pairs]
+    attitude = [angle_between(world.payload_quaternion, state.quaternion_0) for world, state in pairs]
+    uavs = [
+        np.linalg.norm(uav_array(world, "position_in_world") - uav_positions(parameters, state), axis=1).max()
+        for world, state in pairs
+    ]
+    uav_attitude = [
+        max(angle_between(a, b) for a, b in zip(uav_array(world, "quaternion"), state.quaternion, strict=True))
+        for world, state in pairs
+    ]
+    assert max(payload) < 1e-3
+    assert max(attitude) < 0.1
+    assert max(uavs) < 3e-3
+    assert max(uav_attitude) < 0.1
+    for world, _ in pairs:
+        np.testing.assert_allclose(link_lengths(parameters, world), parameters.l, atol=1e-9)
+
+
+def test_thrust_and_torque_act_in_the_uavs_frames():
+    parameters = system(4)
+
+    def law(t):
+        f = parameters.hover_thrust * (1 + np.array([0.03, 0.05, 0.04, 0.02]) * np.sin(3 * t))
+        tau = 0.004 * np.sin(2 * t) * np.array([[1.0, 0.5, 2.0]] * 4)
+        return np.zeros((4, 3)), f, tau
+
+    for world, state in forced(parameters, 1000, 2.0, law):
+        assert np.linalg.norm(world.payload_position_in_world - state.r_0) < 1e-3
+        np.testing.assert_allclose(uav_array(world, "position_in_world"), uav_positions(parameters, state), atol=3e-3)
+        np.testing.assert_allclose(uav_array(world, "velocity_in_world"), uav_velocities(parameters, state), atol=0.01)
+        np.testing.assert_allclose(uav_array(world, "rates_in_body"), state.omega, atol=0.01)
+        np.testing.assert_allclose(world.payload_rates_in_payload, state.omega_0, atol=0.01)
+    assert np.abs(state.omega).max() > 0.1
+
+
+def random_state(n, seed):
+    rng = np.random.default_rng(seed)
+    q = rng.normal(size=(n, 3))
+    q /= np.linalg.norm(q, axis=1, keepdims=True)
+    Omega = np.cross(q, rng.normal(size=(n, 3)))
+    quaternions = np.array([quaternion_from_euler(*rng.uniform(-1.5, 1.5, 3)) for _ in range(n + 1)])
+    return replace(
+        hover_state(system(n)), r_0=np.array([1.0, 2.0, -20.0]), r_0_dot=rng.normal(size=3),
+        quaternion_0=quaternions[0], omega_0=rng.normal(size=3), q=q, Omega=Omega, quaternion=quaternions[1:],
+        omega=rng.normal(size=(n, 3)),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("n", [3, 4, 8, MAX_VEHICLES])
+def test_any_state_is_placed_read_and_moved_on_rightly(n):
+    parameters, state = system(n), random_state(n, n)
+    rng = np.random.default_rng(100 + n)
+    f, tau, F, F_0 = rng.uniform(5, 10, n), rng.normal(size=(n, 3)), rng.normal(size=(n, 3)), rng.normal(size=3)
+    hz = 100_000
+    with World(parameters, physics_hz=hz) as world:
+        world.place(state)
+        now = world.state()
+        np.testing.assert_allclose(now.payload_position_in_world, state.r_0, atol=1e-12)
+        np.testing.assert_allclose(now.payload_velocity_in_world, state.r_0_dot, atol=1e-12)
+        np.testing.assert_allclose(now.payload_rates_in_payload, state.omega_0, atol=1e-12)
+        np.testing.assert_allclose(uav_array(now, "position_in_world"), uav_positions(parameters, state), atol=1e-12)
+        np.testing.assert_allclose(uav_array(now, "velocity_in_world"), uav_velocities(parameters, state), atol=1e-12)
+        np.testing.assert_allclose(uav_array(now, "rates_in_body"), state.omega, atol=1e-12)
+        for measured, given in zip(uav_array(now, "quaternion"), state.quaternion, strict=True):
+            assert angle_between(measured, given) < 1e-5
+        world.step(f.tolist(), tau.tolist(), F_0.tolist(), F.tolist())
+        after = world.state()
+    inputs = Inputs(F=F + thrust_forces(state.quaternion, f), tau=tau, F_0=F_0)
+    expected = rk4_step(parameters, state, inputs, 1.5 / hz)  # what is placed belongs to half a step earlier
+    tolerance = 0.01 / hz  # of velocities: 0.01 m/s2 of accelerations of some 10 m/s2
+    np.testing.assert_allclose(after.payload_velocity_in_world, expected.r_0_dot, atol=tolerance)
+    np.testing.assert_allclose(after.payload_rates_in_payload, expected.omega_0, atol=tolerance)
+    np.testing.assert_allclose(
+        uav_array(after, "velocity_in_world"), uav_velocities(parameters, expected), atol=tolerance
+    )
+    np.testing.assert_allclose(uav_array(after, "rates_in_body"), expected.omega, atol=10 * tolerance)
+    assert uav_array(after, "thrust").tolist() == f.tolist()
+
+
+def test_a_world_that_the_engine_computes_wrongly_is_refused():
+    assert MAX_VEHICLES >= 8
+    with pytest.raises(UnsupportedWorld, match=f"{MAX_VEHICLES + 1} vehicles"):
+        World(system(MAX_VEHICLES + 1))
+    oblique = np.diag([0.29, 0.29, 0.55])
+    oblique[0, 1] = oblique[1, 0] = 0.05
+    with pytest.raises(UnsupportedWorld, match="J_0"):
+        World(replace(system(), J_0=oblique))
+    with pytest.raises(UnsupportedWorld, match="J_0"):
+        World(replace(system(), J_0=np.diag([0.1, 0.1, 0.55])))
+
+
+def test_a_body_thrown_in_the_air_keeps_its_velocity_and_every_rate():
+    """No damping, no joint motor, no limit: without forces nothing changes but by gravity."""
+    parameters = system(4)
+    spin = np.array([0.0, 0.0, 150.0])
+    hover = hover_state(parameters, (0, 0, -500.0))
+    start = replace(hover, r_0_dot=np.array([150.0, 0, 0]), omega=np.tile(spin, (4, 1)))
+    with World(parameters) as world:
+        world.place(start)
+        state = run(world, 0.5, [0.0] * 4)
+        assert state.payload_velocity_in_world == pytest.approx((150.0, 0.0, 9.81 * 0.501), abs=1e-6)
+        np.testing.assert_allclose(uav_array(state, "rates_in_body"), np.tile(spin, (4, 1)), atol=1e-6)

@@ -1,0 +1,109 @@
+"""The ground of the PyBullet world, its pad and its cradles."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from paper_system import system
+from world_runs import STANDING_ON_GROUND, STANDING_ON_PAD, angle_between, run, uav_array, unequal
+
+from idc_controller.model.nonlinear import (
+    hover_state,
+    uav_positions,
+)
+from vehicle_sim.world import World
+
+
+@pytest.mark.parametrize("parameters", [system(3), system(4), system(8), unequal()], ids=["3", "4", "8", "unequal"])
+def test_standing_on_the_pad_nothing_moves(parameters):
+    with World(parameters) as world:
+        before = world.state()
+        after = run(world, 2.0, [0.0] * parameters.number_of_uavs)
+        assert after.time == pytest.approx(2.0)
+        assert after.payload_position_in_world == pytest.approx((0, 0, STANDING_ON_PAD), abs=1e-4)
+        assert angle_between(before.payload_quaternion, after.payload_quaternion) < 0.01
+        np.testing.assert_allclose(
+            uav_array(after, "position_in_world"), uav_array(before, "position_in_world"), atol=1e-4
+        )
+        assert np.abs(uav_array(after, "velocity_in_world")).max() < 1e-3
+        assert uav_array(after, "cradled").all()
+        assert world.touching_ground()
+        assert world.contacts() == 0
+
+
+def test_at_the_start_links_are_upright_on_the_attachment_points():
+    parameters = system(4)
+    with World(parameters) as world:
+        expected = uav_positions(parameters, hover_state(parameters, (0, 0, STANDING_ON_PAD)))
+        np.testing.assert_allclose(uav_array(world.state(), "position_in_world"), expected, atol=1e-12)
+
+
+def test_each_cradle_lets_go_when_its_uav_lifts_more_than_itself():
+    parameters = system(4)
+    weight = float(parameters.m[0] * parameters.g)
+    with World(parameters) as world:
+        state = run(world, 0.5, [0.0, 0.5 * weight, 0.99 * weight, 1.2 * weight])
+        assert uav_array(state, "cradled").tolist() == [True, True, True, False]
+        state = run(world, 1.0, [1.2 * weight] * 4)
+        assert not uav_array(state, "cradled").any()
+        assert world.touching_ground()  # the UAVs carry themselves, not the payload
+        assert state.payload_position_in_world[2] == pytest.approx(STANDING_ON_PAD, abs=1e-3)
+        # Links stay upright on the pull of their UAVs.
+        np.testing.assert_allclose(uav_array(state, "position_in_world")[:, :2], parameters.p[:, :2], atol=0.01)
+
+
+def land(world, offset=0.0):
+    """Set the system down from 0.1 m above its stand at ``offset`` m north, sinking at 0.2 m/s; then motors off."""
+    parameters = world.parameters
+    height = STANDING_ON_PAD if offset == 0.0 else STANDING_ON_GROUND
+    start = hover_state(parameters, (offset, 0.0, height - 0.1))
+    world.place(replace(start, r_0_dot=np.array([0.0, 0.0, 0.2])))
+    hover = parameters.hover_thrust.tolist()
+    assert not uav_array(world.state(), "cradled").any()
+    while not world.touching_ground():
+        assert world.time < 2.0
+        world.step(hover, [(0.0, 0.0, 0.0)] * 4)
+    for factor in np.linspace(1.0, 0.0, 1000):
+        world.step([factor * f for f in hover], [(0.0, 0.0, 0.0)] * 4)
+    return run(world, 2.0, [0.0] * 4)
+
+
+def test_landed_uavs_are_caught_where_they_stand_and_can_take_off_again():
+    parameters = system(4)
+    with World(parameters) as world:
+        state = land(world)
+        assert uav_array(state, "cradled").all()
+        assert state.payload_position_in_world == pytest.approx((0, 0, STANDING_ON_PAD), abs=2e-3)
+        expected = uav_positions(parameters, hover_state(parameters, (0, 0, STANDING_ON_PAD)))
+        np.testing.assert_allclose(uav_array(state, "position_in_world"), expected, atol=0.03)
+        assert np.abs(uav_array(state, "velocity_in_world")).max() < 1e-3
+        assert world.contacts() == 0
+        state = run(world, 1.0, (1.03 * parameters.hover_thrust).tolist())
+        assert not uav_array(state, "cradled").any()
+        assert state.payload_position_in_world[2] < STANDING_ON_PAD - 0.05
+        assert not world.touching_ground()
+
+
+def test_landing_beside_the_pad_stands_on_the_ground():
+    with World(system(4)) as world:
+        state = land(world, offset=5.0)
+        assert state.payload_position_in_world == pytest.approx((5.0, 0, STANDING_ON_GROUND), abs=2e-3)
+        assert uav_array(state, "cradled").all()
+        assert world.touching_ground()
+        assert world.contacts() == 0
+
+
+def test_a_payload_that_hangs_on_some_cradles_stands_for_the_others():
+    with World(system()) as world:
+        world._cradles.release(3)
+        world.touching_ground = lambda: False
+        run(world, 0.01, [0.0] * 4)
+        assert uav_array(world.state(), "cradled").all()
+
+
+def test_no_cradle_catches_in_the_air():
+    with World(system(4)) as world:
+        world.place(hover_state(system(4), (0, 0, -1.5)))
+        state = run(world, 0.05, [0.0] * 4)
+        assert not uav_array(state, "cradled").any()
+        assert state.payload_velocity_in_world[2] == pytest.approx(9.81 * 0.051, rel=1e-6)

@@ -1,0 +1,39 @@
+"""The PyBullet world repeats to the last bit, and ends once."""
+
+import math
+
+import pytest
+from paper_system import system
+from world_runs import run
+
+from vehicle_sim.world import World
+
+
+def scenario(world, look):
+    """Take-off, a bump against a sphere, fall to the ground; ``look`` at the state on the way or only at the end."""
+    hover = world.parameters.hover_thrust
+    world.add_obstacle("ball", "sphere", (0.6, 0.5, -5.0), radius=0.5)
+    for k in range(2000):
+        factor = 1.2 if k < 1000 else 0.5
+        sway = 0.01 * math.sin(0.05 * k)
+        world.step((factor * hover).tolist(), [(sway, -sway, 0.0)] * 4, (0.1, 0.0, 0.0))
+        if look:
+            world.state()
+            world.contacts()
+            world.closest_distance("ball")
+    return world.state()
+
+
+def test_repeats_to_the_last_bit_whoever_looks_and_whatever_runs_beside_it():
+    with World(system(4)) as first:
+        one = scenario(first, look=False)
+    with World(system(4)) as second, World(system(3)) as other:
+        run(other, 0.1, [8.0] * 3)
+        assert scenario(second, look=True) == one
+        assert other.time == pytest.approx(0.1)
+
+
+def test_closing_twice_is_harmless():
+    world = World(system(4))
+    world.close()
+    world.close()
