@@ -242,10 +242,11 @@ def test_nothing_is_touched_high_above_the_ground(tmp_path):
 
         reference = flight.controller.reference(flight.course.trajectory)
         high, low = (still_at(height)(rehearsal.now, reference) for height in (5.0, 0.3))
-        flight.course._trajectory = RestTrajectory(np.array([0.0, 0.0, -1.5]), rehearsal.now - 20.0)
-        assert not flight._touched(rehearsal.now, high)
-        assert flight._touched(rehearsal.now, low)
-        assert not flight._stays_up(rehearsal.now, low)
+        descent = RestTrajectory(np.array([0.0, 0.0, -1.5]), rehearsal.now - 20.0)
+        assert not flight.payload.has_touched(rehearsal.now, descent, high)
+        assert flight.payload.has_touched(rehearsal.now, descent, low)
+        assert not flight.payload.stays_up(rehearsal.now, descent, low)
+        flight.course._trajectory = descent
         flight.estimator.estimate = still_at(5.0)
         rehearsal.fly()
         assert flight.reason == "the payload does not come down"

@@ -6,6 +6,7 @@ import math
 from collections import deque
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.stats import chi2
 
 from gcs.flight.alarms import Alarm, AlarmBook, Events
@@ -13,10 +14,13 @@ from gcs.flight.flight import Flight, StepRecord
 from gcs.flight.phase import IN_THE_AIR
 from gcs.obstacles import ObstacleMap
 from gcs.vehicle_link import VehicleLink
+from idc_controller.control.controller import Decision
 from idc_controller.estimate.adaptation import LEVELS
 from idc_controller.estimate.consistency import RARE, Consistency
 from idc_controller.estimate.estimator import Estimate
 from idc_controller.estimate.measurements import PAYLOAD
+
+Array = NDArray[np.float64]
 
 MISSED = 5
 """So many samples of a vehicle or of the payload in a row that do not come are silence: with a loss of 1 % they all get
@@ -30,6 +34,10 @@ LATE, UNSTEADY = 0.025, 0.0125
 """Time that datagrams take one way, and by how much it varies (s): half and a quarter of a control period."""
 CLOCK_STEP, CLOCK_MEMORY = 0.01, 5.0
 """So much (s) may a vehicle's clock go wrong within the memory (s): twenty times what a bad quartz does."""
+HARD, SETTLED = 0.1, 2.0
+"""A set-point of tilt that changes by more (rad) from one step to the next asks of the attitude loop what its linear
+model does not tell. UAVs' attitudes, and what is judged of all sensors together, say nothing of faults until so long
+(s) after: avoiding an obstacle that is found late changes set-points by up to 0.8 rad."""
 NOISY = 4.0
 """Factor of all sensors' variances; clean flights reach 2."""
 FORCE = float(chi2.isf(RARE, 3))
@@ -49,6 +57,8 @@ class Watch:
         self._offsets: dict[str, deque[tuple[float, float]]] = {_name(link): deque() for link in self._team.links}
         self._consistency = Consistency(flight.estimator.settings.gate_probability)
         self._judged = 0
+        self._tilts: Array | None = None
+        self._calm_from = -math.inf
         self._stopped = False
 
     @property
@@ -66,12 +76,15 @@ class Watch:
             self._links(time, now)
         innovations = self._flight.estimator.innovations
         if airborne and record is not None and self._flight.payload.is_clear(record.estimate):
+            calm = self._is_calm(time, record.decision)
             for told in innovations[self._judged :]:
                 self._consistency.learn(told.time, told.keys, told.white, told.rejected)
-                if told.surprised:
+                if told.surprised and calm:
                     self._events.add(("team", "surprised"), told.time)
+            if not calm:
+                self._consistency.forget_attitudes()
             self._measurements(time)
-            self._model(time, record.estimate)
+            self._model(time, record.estimate, calm)
         self._judged = len(innovations)
         if airborne:
             for events in (self._events, self._setpoints):
@@ -85,6 +98,14 @@ class Watch:
             if not flight.interrupted:
                 self._book.tell(flight.broken_off_time, "team", "stopped", flight.reason)
         return self.alarms[known:]
+
+    def _is_calm(self, time: float, decision: Decision) -> bool:
+        """Whether the set-points have not changed hard for a while."""
+        tilts = decision.u[: 2 * len(self._team.links)]
+        if self._tilts is not None and float(np.abs(tilts - self._tilts).max()) > HARD:
+            self._calm_from = time + SETTLED
+        self._tilts = tilts
+        return time >= self._calm_from
 
     def _count(self, link: VehicleLink, time: float, now: float) -> None:
         """Also before take-off, so that nothing of that counts."""
@@ -134,11 +155,11 @@ class Watch:
             for complaint in complaints:
                 self._book.tell(time, self._source(source), complaint, kind.__name__.lower())
 
-    def _model(self, time: float, estimate: Estimate) -> None:
+    def _model(self, time: float, estimate: Estimate, calm: bool) -> None:
         adaptation, force, n = self._flight.estimator.adaptation, estimate.force, len(estimate.x)
-        if adaptation.noise > NOISY:
+        if calm and adaptation.noise > NOISY:
             self._book.tell(time, "team", "noisy", "all sensors")
-        if adaptation.level >= LEVELS:
+        if calm and adaptation.level >= LEVELS:
             self._book.tell(time, "payload", "restless", "forces change quickly")
         covariance = estimate.covariance[n : n + 3, n : n + 3]
         if float(force @ np.linalg.solve(covariance, force)) > FORCE:

@@ -30,8 +30,8 @@ MANOEUVRE = 2.5
 """Of a UAV's attitude: how much larger than it should be its innovations' variance may be, and all that follows of it.
 
 When set-points change quickly the attitude loop is not quite what the model says, and the innovations of all UAVs grow
-together for a second: to 2.9 times their variance in the hardest manoeuvre between two spheres, where the limit is
-4.5, with two refusals in a second, where it is 8.
+together for a second: to 2.9 times their variance in quick manoeuvres, where the limit is 4.5, with two refusals in a
+second, where it is 8. Manoeuvres that are harder than that are for the caller to leave out.
 """
 
 
@@ -80,6 +80,12 @@ class Consistency:
             channel.square += SHARE * (square - channel.square)
             if (key[0], key[1].__name__) in refused:
                 channel.refusals.append(time)
+
+    def forget_attitudes(self) -> None:
+        """What was learnt of the UAVs' attitudes does not count."""
+        for source, kind in tuple(self._channels):
+            if source != PAYLOAD and kind is Attitude:
+                del self._channels[source, kind]
 
     def complaints(self, time: float) -> dict[Key, list[str]]:
         """What is wrong with channels at ``time`` (s): ``refused``, ``disagrees`` (biased) or ``noisy``."""
