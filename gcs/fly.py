@@ -26,6 +26,7 @@ from gcs.mission.faults import check_faults_of
 from gcs.mission.model import Mission
 from gcs.mission.read import read_mission
 from gcs.obstacles import ObstacleMap
+from gcs.record.landing import is_set_down
 from gcs.record.recorder import FlightRecorder
 from gcs.record.run_folder import open_run_folder, write_manifest
 from gcs.record.summary import summarise, within_limits, write_summary
@@ -161,6 +162,11 @@ def _result(run_dir: Path, mission: Mission, station: GroundStation, last_time: 
     # By the clock of the records, as it may be before take-off.
     summary["broken_off_s"] = None if math.isnan(flight.broken_off_time) else round(flight.broken_off_time, 6)
     summary["alarms"] = len(station.watch.alarms)
+    # The ground may have lost sight of what the vehicles did, or be wrong about it: the truth decides.
+    if begun and (landing := summary["landing"]) is not None:
+        down = is_set_down(landing)
+        outcome = "failed" if not down else "completed" if flight.completed else "aborted"
+        summary |= {"outcome": outcome, "completed": outcome == "completed"}
     if summary["contacts"]:
         summary |= {"outcome": "collided", "completed": False}
     write_summary(run_dir, summary)

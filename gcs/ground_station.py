@@ -14,7 +14,8 @@ from typing import Any, Protocol
 import pymavlink.dialects.v20.common as mavlink
 
 from gcs.flight.alarms import Alarm
-from gcs.flight.flight import Flight, Phase, StepRecord
+from gcs.flight.flight import Flight, StepRecord
+from gcs.flight.phase import Phase
 from gcs.flight.team import Team
 from gcs.flight.watch import Watch
 from gcs.obstacles import ObstacleMap

@@ -8,7 +8,8 @@ from types import TracebackType
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-from gcs.flight.flight import Flight, Phase
+from gcs.flight.flight import Flight
+from gcs.flight.phase import Phase
 
 
 class FlightProgress:

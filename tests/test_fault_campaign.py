@@ -22,7 +22,7 @@ from gcs.fault_campaign.base_mission import read_base
 from gcs.fault_campaign.campaign import FaultCampaign, FaultCampaignOptions
 from gcs.fault_campaign.campaign_file import read_campaign
 from gcs.fault_campaign.outcome import draw_matrix, outcome_table
-from gcs.fault_campaign.result import COLUMNS, NOT_FLOWN, VERDICTS, evaluate, stop_time
+from gcs.fault_campaign.result import COLUMNS, NOT_FLOWN, VERDICTS, evaluate, stop_time, team_stop
 from gcs.fault_campaign.sweep import flights_of
 from gcs.fault_campaign.tables import interval, rates_of, write_tables
 from gcs.mission import Fault, read_mission
@@ -298,6 +298,26 @@ def test_the_command(tmp_path, flown, capsys):
     assert len(flown) == 6
 
 
+def test_a_campaign_may_require_a_safe_landing_alone(tmp_path, flown, monkeypatch, capsys):
+    landing = {"on_ground": True, "speed_mps": 0.5, "tilt_deg": 1.5}
+    aborted = SUMMARY | {"completed": False, "outcome": "aborted", "limits": {}, "landing": landing}
+    ends = {"0.1": aborted, "0.3": aborted | OUTSIDE, "slow": aborted | {"outcome": "collided", "contacts": 1}}
+
+    def fly(mission, options, run_dir, stop):
+        return Ended(1, next(end for name, end in ends.items() if name in mission.stem), "", 1.0)
+
+    monkeypatch.setattr(campaigns, "fly_process", fly)
+    for require, passed in (("safe", 2), ("within limits", 0)):  # what is on record is judged anew
+        text = CAMPAIGN.replace("seeds =", f'require = "{require}"\nseeds =')
+        assert main(["faults", str(campaign_file(tmp_path, text)), "--out", str(tmp_path / "out")]) == 1
+        assert f"{passed} of 6 flights" in capsys.readouterr().out
+        frame = pandas.read_parquet(tmp_path / "out" / "results.parquet")
+        assert frame["passed"].tolist() == [passed > 0] * 2 + [False] * 4
+        assert frame["outcome"].tolist() == ["aborted"] * 4 + ["collided"] * 2
+    assert frame["touchdown_mps"].tolist() == [0.5] * 6 and frame["landed"].all()
+    assert frame["end_tilt_deg"].tolist() == [1.5] * 6
+
+
 def test_an_interrupt_keeps_the_results(tmp_path, flown, monkeypatch, capsys):
     def interrupted(campaign, console, what, line):
         campaign._fly(campaign.flights[0], None)
@@ -354,6 +374,18 @@ def test_all_outcomes_are_drawn_and_told(tmp_path):
     outcome_table(made, [])
 
 
+def test_time_to_the_stop_of_the_team(tmp_path):
+    faults = [{"activations": [[5.0, None]]}]
+    (tmp_path / "faults.json").write_text(json.dumps({"take_off_s": 3.0, "end_s": 20.0, "faults": faults}))
+    assert team_stop(tmp_path, 1) == (None, None)
+    rows = ["1.0,1,OFFBOARD,1,0", "1.0,2,OFFBOARD,1,0", "8.45,2,AUTO.LOITER,1,1", "8.5,1,AUTO.LOITER,1,1"]
+    (tmp_path / "modes.csv").write_text("\n".join(["time_s,vehicle,mode,armed,failsafe", *rows, ""]))
+    assert team_stop(tmp_path, 1) == (0.5, 0.05)
+    faults.insert(0, {"kind": "wind", "activations": [[0.0, None]]})  # not what they stopped for
+    (tmp_path / "faults.json").write_text(json.dumps({"take_off_s": 3.0, "end_s": 20.0, "faults": faults}))
+    assert team_stop(tmp_path, 2) == (0.5, 0.05)
+
+
 def test_time_to_the_stop(tmp_path):
     faults = [{"activations": [[5.0, 6.0]]}, {"activations": []}, {"activations": [[4.0, None]]}]
     (tmp_path / "faults.json").write_text(json.dumps({"take_off_s": 3.0, "end_s": 20.0, "faults": faults}))
@@ -373,7 +405,7 @@ REAL = """
 [campaign]
 name = "real"
 missions = ["hop.toml"]
-seeds = [1]
+seeds = [1, 2, 3]
 
 [limits]
 position_rmse = 0.1
@@ -387,26 +419,32 @@ severity = { probability = [0.05, 0.1] }
 """
 
 
-def test_killed_in_the_middle_it_goes_on(tmp_path):
-    """Two real flights, one after the other; the campaign is killed when the first has ended."""
+def test_killed_twice_in_the_middle_it_is_complete_and_none_is_flown_twice(tmp_path):
+    """Six real flights, two at a time; the campaign is killed when one has ended, and again after two more."""
     path, out = campaign_file(tmp_path, REAL), tmp_path / "out"
     (tmp_path / "hop.toml").write_text(HOP)
-    command = [sys.executable, "-m", "gcs", "faults", str(path), "--out", str(out), "--jobs", "1", "--keep", "all"]
-    with subprocess.Popen(
-        command, stdout=subprocess.PIPE, text=True, env={**os.environ, "PYTHONUNBUFFERED": "1"}
-    ) as cut:
-        first = cut.stdout.readline()  # a line a flight
-        cut.send_signal(signal.SIGKILL)
-        cut.wait(60)
-    assert first.startswith("loss-probability-0.05")
-    [kept] = (out / "results").glob("*.json")
-    stamp = kept.stat().st_mtime_ns
+    command = [sys.executable, "-m", "gcs", "faults", str(path), "--out", str(out), "--jobs", "2", "--keep", "all"]
+    told, kept = [], {}
+    for ended in (1, 2):
+        with subprocess.Popen(
+            command, stdout=subprocess.PIPE, text=True, env={**os.environ, "PYTHONUNBUFFERED": "1"}
+        ) as cut:
+            told += [cut.stdout.readline().partition(":")[0] for _ in range(ended)]  # a line a flight
+            cut.send_signal(signal.SIGKILL)
+            cut.wait(60)
+        results = {result.stem: result.stat().st_mtime_ns for result in (out / "results").glob("*.json")}
+        assert kept.items() <= results.items() and set(told) <= set(results) and len(results) < 6
+        kept = results
     again = subprocess.run(command, capture_output=True, text=True, timeout=300)
     assert again.returncode == 0, again.stdout + again.stderr
-    assert kept.stat().st_mtime_ns == stamp and len(list((out / "results").glob("*.json"))) == 2
-    assert "2 of 2 flights within their limits" in again.stdout
+    assert "6 of 6 flights within their limits" in again.stdout
     frame = pandas.read_parquet(out / "results.parquet")
-    assert frame["severity"].tolist() == ["probability 0.05", "probability 0.1"] and (frame["notes"] == "").all()
+    assert frame["number"].tolist() == [1, 2, 3, 4, 5, 6] and (frame["notes"] == "").all()
+    told += [line.partition(":")[0] for line in again.stdout.splitlines() if line.startswith("loss-")]
+    # One that had ended when the campaign was killed, but not been told yet, is not told later.
+    assert len(told) == len(set(told)) >= 4 and set(told) <= set(frame["name"])
+    results = {result.stem: result.stat().st_mtime_ns for result in (out / "results").glob("*.json")}
+    assert kept.items() <= results.items() and set(results) == set(frame["name"])
     names = {entry.name for entry in (out / "flights").iterdir()}
     assert names == set(frame["name"]) and all(
         json.loads((Path(d) / "faults.json").read_text()) for d in frame["run_dir"]

@@ -3,6 +3,7 @@
 import json
 import os
 import signal
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,7 +11,11 @@ from flight_in_process import Rehearsal, short_figure, truth_of
 from programs import PATIENCE, GcsProcess, addresses_of, free_port, swarm_process
 from pymavlink import mavutil
 
+from gcs.flight.phase import Phase
+from gcs.record.landing import is_set_down
+from gcs.record.modes import stops_after
 from gcs.wire import px4
+from idc_controller.plan.trajectory import RestTrajectory
 from vehicle_sim.passage import Passage
 
 
@@ -212,7 +217,40 @@ def test_a_vehicle_that_drops_out_in_flight_brings_all_of_them_down(tmp_path, te
         assert flight.leave_alone()
         summary = flight.summary()
     assert not summary["completed"]
+    stops = stops_after(tmp_path / "run", 16.4)
+    assert len(stops) == 4 and max(stops.values()) - min(stops.values()) < 0.05
+    assert max(stops.values()) - 16.4 <= 0.5
     check_set_down(tmp_path / "run", summary)
+
+
+def test_nothing_is_touched_high_above_the_ground(tmp_path):
+    """Above its reference and still, as wind may hold it: no touch-down, and the vehicles are left to land at last."""
+    with Rehearsal(short_figure(tmp_path, duration=2.0, altitude=1.5), tmp_path / "run") as rehearsal:
+        rehearsal.fly(stop=lambda: rehearsal.flight.phase is Phase.LAND)
+        flight = rehearsal.flight
+        true = flight.estimator.estimate
+
+        def still_at(height):
+            def estimate(*arguments):
+                found = true(*arguments)
+                x = found.x.copy()
+                x[2], x[5] = -height, 0.0
+                return replace(found, x=x)
+
+            return estimate
+
+        reference = flight.controller.reference(flight.course.trajectory)
+        high, low = (still_at(height)(rehearsal.now, reference) for height in (5.0, 0.3))
+        flight.course._trajectory = RestTrajectory(np.array([0.0, 0.0, -1.5]), rehearsal.now - 20.0)
+        assert not flight._touched(rehearsal.now, high)
+        assert flight._touched(rehearsal.now, low)
+        assert not flight._stays_up(rehearsal.now, low)
+        flight.estimator.estimate = still_at(5.0)
+        rehearsal.fly()
+        assert flight.reason == "the payload does not come down"
+        assert rehearsal.leave_alone()
+        summary = rehearsal.summary()
+    assert is_set_down(summary["landing"])
 
 
 @pytest.mark.parametrize("moment", [13.3, 17.8])
@@ -222,6 +260,53 @@ def test_vehicles_whose_ground_is_gone_stop_together_and_set_the_payload_down(tm
         assert flight.leave_alone()
         summary = flight.summary()
     check_set_down(tmp_path / "run", summary)
+
+
+@pytest.mark.parametrize(("start", "velocity", "seed"), [(9.0, (0.0, -4.0), 9103), (17.0, (2.83, 2.83), 7)])
+def test_so_do_they_in_wind(tmp_path, start, velocity, seed):
+    """They have braced the payload against the wind; once it stands they must not be driven over by that."""
+    mission = short_figure(tmp_path, duration=20.0)
+    with mission.open("a") as file:
+        file.write(f"""
+[[fault]]
+kind = "partition"
+start = {start}
+
+[[fault]]
+kind = "wind"
+start = 0.0
+velocity = [{velocity[0]}, {velocity[1]}, 0.0]
+gust = 0.5
+""")
+    with Rehearsal(mission, tmp_path / "run", seed=seed) as flight:
+        flight.fly()
+        assert "no vehicle sends telemetry" in flight.flight.reason
+        assert flight.leave_alone()
+        summary = flight.summary()
+    assert is_set_down(summary["landing"]), summary["landing"]
+    assert summary["contacts"] == 0
+    assert summary["uav_separation_min_m"] >= 0.6
+    stops = stops_after(tmp_path / "run", flight.swarm.take_off_time + start)
+    assert len(stops) == 4
+    assert max(stops.values()) - min(stops.values()) < 0.01
+    assert max(stops.values()) - flight.swarm.take_off_time - start <= 0.5
+
+
+def test_for_the_vehicles_a_partition_is_a_killed_ground(tmp_path):
+    start, truths = 8.0007, []
+    mission = short_figure(tmp_path, duration=4.0, altitude=1.5)
+    with Rehearsal(mission, tmp_path / "killed", seed=4) as flight:
+        flight.fly(stop=lambda: flight.swarm.take_off_time is not None)
+        flight.fly(until=flight.swarm.take_off_time + start)
+        assert flight.leave_alone()
+    mission.write_text(f'{mission.read_text()}\n[[fault]]\nkind = "partition"\nstart = {start}\n')
+    with Rehearsal(mission, tmp_path / "parted", seed=4) as flight:
+        flight.fly()
+        assert flight.leave_alone()
+    for name in ("killed", "parted"):
+        truths.append((tmp_path / name / "truth.csv").read_text().splitlines())
+    rows = min(map(len, truths))
+    assert rows > 50 * (start + 8.0) and truths[0][:rows] == truths[1][:rows]
 
 
 def check_set_down(folder, summary):

@@ -7,7 +7,7 @@ from flight_in_process import GROUND, Rehearsal, address_of, check_within_limits
 from hostile_messages import hostile_to_ground, hostile_to_vehicle
 from hostile_traffic import HostileTraffic, Traffic, with_random_contents
 
-from gcs.flight.flight import IN_THE_AIR
+from gcs.flight.phase import IN_THE_AIR
 from gcs.ground_station import GROUND_SYSTEM
 from gcs.wire import px4
 

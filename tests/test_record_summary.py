@@ -88,11 +88,15 @@ def test_summary_by_hand(run) -> None:
         "clearance_min_m": None,
         "uav_separation_min_m": 0.75,
         "contacts": 3,
+        "landing": {
+            "on_ground": False, "tilt_deg": 0.0, "touchdown_s": None, "speed_mps": None, "sinking_mps": None,
+            "contacts_before": 3,
+        },
         "step_time_ms": {"p50": 6.0, "p99": 10.9, "max": 11.0},
         "solver": {"mpc_p50_ms": 5.0, "planner_p50_ms": 0.5, "infeasible_steps": 2},
         "safety": None,
         "limits": {},
-    }
+    }  # fmt: skip
 
 
 def test_error_counts_from_settle_on_and_within_the_reference_only(tmp_path) -> None:

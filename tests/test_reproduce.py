@@ -160,8 +160,8 @@ def recorded(folder, tilt_deg, contacts):
         "payload_tilt_max_deg": {"roll": 80.0, "pitch": 0.0, "yaw": 0.0}, "position_rmse_m": {"total": 1.0},
     }  # fmt: skip
     return RunData(
-        folder, "truth", time, position, quaternion, uavs, level, np.full((T, 4), 14.0), np.array(contacts), obstacles,
-        None, None, {}, summary,
+        folder, "truth", time, position, quaternion, np.zeros((T, 3)), uavs, level, np.full((T, 4), 14.0),
+        np.array(contacts), obstacles, None, None, {}, summary,
     )  # fmt: skip
 
 

@@ -5,6 +5,7 @@ import pytest
 from scipy.interpolate import BPoly
 
 from gcs.config import read_system
+from idc_controller.model.linear import StateLayout
 from idc_controller.plan.flatness import Load, flat_reference
 from idc_controller.plan.lissajous import LissajousCurve, LissajousTrajectory
 from idc_controller.plan.stop import BRAKING_LIMIT, stop_plan
@@ -48,3 +49,26 @@ def test_a_fast_team_takes_longer():
     speed = np.linalg.norm(flat.payload[1, 0])
     assert speed > 6.0
     assert stop_plan(PARAMETERS, flat, time).duration == pytest.approx(1.5 * speed / BRAKING_LIMIT)
+
+
+def test_it_starts_where_the_team_is_and_moves_all_of_it_alike():
+    curve = LissajousTrajectory(LissajousCurve((6.0, 3.0), -2.5), 0.5, 40.0, LIMITS, start=10.0)
+    flat = flat_reference(PARAMETERS, curve, np.array([13.7]), LOAD)
+    layout = StateLayout(PARAMETERS.number_of_uavs)
+    x = flat.x[0].copy()
+    x[layout.r_0] += (1.5, -0.8, 0.2)
+    x[layout.v_0] += (0.3, 0.0, 0.0)
+    x[layout.s] += np.tile([0.1, 0.0], 4)  # each link leans: its UAV is l_i s_i farther south
+    x[layout.s][0] += 0.05  # one more than the others: it is not left behind
+    usual, plan = stop_plan(PARAMETERS, flat, 13.7), stop_plan(PARAMETERS, flat, 13.7, x)
+    moved = plan.control_points - usual.control_points
+    link = PARAMETERS.l[0]
+    assert moved[:, 0] == pytest.approx(np.tile([1.5 - link * (0.1 + 0.05 / 4), -0.8, 0.2], (4, 1)))
+    way = BPoly(plan.control_points[0][:, None, :], [0.0, plan.duration])
+    before = BPoly(usual.control_points[0][:, None, :], [0.0, usual.duration])
+    assert way.derivative()(0.0) - before.derivative()(0.0) == pytest.approx([0.3, 0.0, 0.0], abs=1e-9)
+    places = plan.control_points[:, -1] - plan.control_points[0, -1]
+    assert places == pytest.approx(PARAMETERS.p - PARAMETERS.p[0], abs=1e-6)
+    # What is not known is not reckoned with.
+    x[layout.r_0] = np.nan
+    assert stop_plan(PARAMETERS, flat, 13.7, x).control_points == pytest.approx(usual.control_points)

@@ -91,7 +91,7 @@ def test_two_swarms_side_by_side_fly_alike_and_land_without_their_ground(tmp_pat
             assert running.stdout.read() == ""
     for name in "abc":
         check_landed(rows(tmp_path / name / "truth.csv"))
-        assert [path.name for path in (tmp_path / name).iterdir()] == ["truth.csv"]
+        assert {path.name for path in (tmp_path / name).iterdir()} == {"truth.csv", "modes.csv"}
     truths = [(tmp_path / name / "truth.csv").read_bytes() for name in "abc"]
     assert truths[0] == truths[1]
     assert truths[0] != truths[2]

@@ -93,6 +93,14 @@ def test_landing_beside_the_pad_stands_on_the_ground():
         assert world.contacts() == 0
 
 
+def test_a_payload_that_hangs_on_some_cradles_stands_for_the_others():
+    with World(system()) as world:
+        world._cradles.release(3)
+        world.touching_ground = lambda: False
+        run(world, 0.01, [0.0] * 4)
+        assert uav_array(world.state(), "cradled").all()
+
+
 def test_no_cradle_catches_in_the_air():
     with World(system(4)) as world:
         world.place(hover_state(system(4), (0, 0, -1.5)))

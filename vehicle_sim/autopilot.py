@@ -14,7 +14,7 @@ import pymavlink.dialects.v20.common as mavlink
 from gcs.wire import px4
 from vehicle_sim.airframe import Airframe
 from vehicle_sim.attitude_control import LEVEL, NO_RATES, AttitudeController, Quaternion, Three
-from vehicle_sim.hold_control import HoldController, HoldPlan, attitude_of_force, yaw_of
+from vehicle_sim.hold_control import DESCENT_RAMP, HoldController, HoldPlan, attitude_of_force, yaw_of
 from vehicle_sim.land_detector import LandDetector
 from vehicle_sim.parameter_table import ParameterTable
 from vehicle_sim.rotors import IDLE, Four, Mixer
@@ -249,7 +249,7 @@ class Autopilot:
         attitude: Quaternion | None
         rates = NO_RATES
         if self._hold is not None:
-            attitude, thrust = self._hold.command(measured, now)
+            attitude, thrust = self._hold.command(measured, now, self._is_standing(now))
         elif self._mode == px4.MODE_OFFBOARD and self._setpoint is not None:
             attitude, rates, share, _ = self._setpoint
             thrust = self._thrust if share is None else share * self._thrust_max
@@ -286,8 +286,7 @@ class Autopilot:
             self.failsafe = True
             self.notices.append("No ground station: descending")
         if self.armed and self._hold is not None:
-            descent = self._hold.plan.descent_start
-            landed = self._land.touched_down and now - descent > 1.0
+            landed = self._land.touched_down and self._is_standing(now)
             if self._is_descending and (landed or not self._land.in_air):
                 self.notices.append("Touch-down: disarmed")
                 self._stop()
@@ -295,6 +294,11 @@ class Autopilot:
     @property
     def _is_descending(self) -> bool:
         return self._hold is not None and self._hold.plan.is_descending(self._now)
+
+    def _is_standing(self, now: float) -> bool:
+        """Whether it would sink, but something under its payload keeps it from that."""
+        sinks = self._hold is not None and now - self._hold.plan.descent_start > DESCENT_RAMP
+        return sinks and self._land.touching
 
     def _land_here(self, now: float) -> Answer:
         if not self.armed:

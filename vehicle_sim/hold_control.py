@@ -31,6 +31,7 @@ TILT_LIMIT = 0.35  # horizontal acceleration, in g
 VERTICAL_LIMIT = 0.35  # vertical acceleration, in g
 
 DESCENT_RAMP = 1.0  # s to reach the descent speed
+STILL: Three = (0.0, 0.0, 0.0)
 
 
 class PlannedState(NamedTuple):
@@ -117,11 +118,23 @@ class HoldController:
         self._integral_x = 0.0
         self._integral_y = 0.0
         self._last_time = plan.start
+        self._stands: Three | None = None
 
-    def command(self, measured: Measurement, now: float) -> tuple[Quaternion, float]:
-        """Attitude set-point (unit quaternion body to world) and thrust (N)."""
-        position, velocity, acceleration = self.plan.at(now)
+    def command(self, measured: Measurement, now: float, standing: bool = False) -> tuple[Quaternion, float]:
+        """Attitude set-point (unit quaternion body to world) and thrust (N).
+
+        ``standing``: the payload stands on the ground. The vehicle then carries itself alone, where it is: what it has
+        learned to hold the payload against the wind would drive it aside, and its link over.
+        """
         x, y, z = measured.position
+        if standing:
+            self._stands = self._stands or measured.position
+            position, velocity, acceleration = PlannedState(self._stands, STILL, STILL)
+            carried = self._thrust_min
+        else:
+            self._stands = None
+            position, velocity, acceleration = self.plan.at(now)
+            carried = self._hover_thrust
         v_x, v_y, v_z = measured.velocity
         error_x, error_y = position[0] - x, position[1] - y
         step = min(max(now - self._last_time, 0.0), 0.1)
@@ -131,7 +144,10 @@ class HoldController:
         size = math.hypot(i_x, i_y)
         if size > INTEGRAL_LIMIT:
             i_x, i_y = i_x * INTEGRAL_LIMIT / size, i_y * INTEGRAL_LIMIT / size
-        self._integral_x, self._integral_y = i_x, i_y
+        if standing:
+            i_x = i_y = 0.0
+        else:
+            self._integral_x, self._integral_y = i_x, i_y
 
         a_x = acceleration[0] + HORIZONTAL_KP * error_x + HORIZONTAL_KD * (velocity[0] - v_x) + i_x
         a_y = acceleration[1] + HORIZONTAL_KP * error_y + HORIZONTAL_KD * (velocity[1] - v_y) + i_y
@@ -143,7 +159,7 @@ class HoldController:
         a_z = min(max(a_z, -VERTICAL_LIMIT * g), VERTICAL_LIMIT * g)
 
         up = g - a_z
-        thrust = self._hover_thrust / g * math.sqrt(a_x * a_x + a_y * a_y + up * up)
+        thrust = carried / g * math.sqrt(a_x * a_x + a_y * a_y + up * up)
         return attitude_of_force(a_x, a_y, -up, self.plan.yaw), max(thrust, self._thrust_min)
 
 

@@ -10,6 +10,7 @@ LIFTED = 0.15  # m above where it was armed
 STILL = 0.1  # m/s, vertical
 STILL_TIME = 0.5  # s
 TOUCHED_THRUST = 0.85  # of the hover thrust: the ground carries the rest
+TOUCHED_SINKING = 0.25  # m/s, half of a descent: over a payload that stands a vehicle may still sink aside
 VELOCITY_FILTER = 0.2  # s
 ALTITUDE_FILTER = 0.1  # s
 HOVER_FILTER = 2.0  # s
@@ -32,19 +33,21 @@ class LandDetector:
         self._light_since = math.inf
         self._touching_since = math.inf
         self.in_air = False
+        self.touching = False
         self.touched_down = False
         self.hover_thrust: float | None = None
 
     def start(self) -> None:
         """The vehicle stands here: armed, or disarmed."""
         self._ground = self._altitude
-        self.in_air = self.touched_down = False
+        self.in_air = self.touching = self.touched_down = False
         self._light_since = self._touching_since = math.inf
 
     def update(self, measured: Measurement, thrust: float, now: float, learn: bool) -> None:
         """One step of the onboard loop. ``thrust`` commanded (N); ``learn`` the hover thrust from it.
 
-        ``touched_down`` says, for a vehicle that is commanded to sink, that it does not sink any more.
+        ``touching`` says, for a vehicle that is commanded to sink, that something keeps it from that;
+        ``touched_down`` that this has lasted.
         """
         step = now - self._last_time
         self._last_time = now
@@ -70,10 +73,11 @@ class LandDetector:
         still = abs(self._velocity) < STILL
         if not still or thrust > 0.5 * (self._weight + hover):
             self._light_since = now
-        if not still or thrust > TOUCHED_THRUST * hover:
+        if self._velocity > TOUCHED_SINKING or thrust > TOUCHED_THRUST * hover:
             self._touching_since = now
         self._light_since = min(self._light_since, now)
         self._touching_since = min(self._touching_since, now)
+        self.touching = self._touching_since < now
         self.touched_down = now - self._touching_since >= STILL_TIME
         if now - self._light_since >= STILL_TIME:
             self.start()

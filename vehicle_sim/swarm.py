@@ -9,6 +9,7 @@ from functools import partial
 from gcs.config import SystemConfig
 from gcs.mission import Home as MissionHome
 from gcs.mission import Pole, Sphere, Wall
+from gcs.wire import px4
 from vehicle_sim.airframe import Airframe
 from vehicle_sim.moving_obstacles import MovingObstacles
 from vehicle_sim.passage import Passage
@@ -90,6 +91,8 @@ class Swarm:
         self._rotors = [
             Rotors(airframe.rotors, airframe.motor_time_constant, 1.0 / rates.physics) for airframe in airframes
         ]
+        self._changes = [0 for _ in self.vehicles]
+        self._modes = [("", False, False) for _ in self.vehicles]
         self._commands: list[Four] = [IDLE for _ in self.vehicles]
         noise = config.sensors
         attitude = math.radians(noise.attitude_deg)
@@ -218,6 +221,17 @@ class Swarm:
             vehicle.relay(passage.payload_sample(vehicle.system_id, payload_sample))
             self._commands[i] = vehicle.step(passage.own_sample(vehicle.system_id, sample), now)
             vehicle.tell(passage.told(vehicle.system_id, vehicle.autopilot.measurement))
+            if self._truth is not None and vehicle.autopilot.changes != self._changes[i]:
+                self._record_mode(i, now)
+
+    def _record_mode(self, index: int, now: float) -> None:
+        """Write down what a vehicle flies, if that is something else than before."""
+        autopilot = self.vehicles[index].autopilot
+        self._changes[index] = autopilot.changes
+        mode = px4.mode_name(autopilot.mode), autopilot.armed, autopilot.failsafe
+        if self._truth is not None and mode != self._modes[index]:
+            self._modes[index] = mode
+            self._truth.write_mode(now, index + 1, *mode)
 
     def _scan(self, state: WorldState) -> None:
         """Let every vehicle look around."""

@@ -1,4 +1,4 @@
-"""``truth.csv`` and ``obstacles.csv``: what really happened, written by the world and by nobody else."""
+"""``truth.csv``, ``obstacles.csv`` and ``modes.csv``: what really happened, written by the world and by nobody else."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gcs.record.run_folder import make_folder
-from gcs.record.tables import OBSTACLE_COLUMNS, TableWriter, truth_columns
+from gcs.record.tables import MODE_COLUMNS, OBSTACLE_COLUMNS, TableWriter, truth_columns
 
 if TYPE_CHECKING:  # the physics engine is not needed to write down what it found
     from vehicle_sim.obstacle_bodies import Obstacle
@@ -15,7 +15,7 @@ if TYPE_CHECKING:  # the physics engine is not needed to write down what it foun
 
 
 class TruthLog:
-    """Writes ``truth.csv``, and ``obstacles.csv`` from the first row with obstacles on.
+    """Writes ``truth.csv``; ``obstacles.csv`` and ``modes.csv`` from their first row on.
 
     Rows are equal to the byte for equal states. Raises ``gcs.errors.UnusableInput`` if the folder cannot be
     written or holds a truth already; it is made if it is absent. A full disk stops the writing, not the
@@ -26,12 +26,17 @@ class TruthLog:
         self._run_dir = make_folder(run_dir)
         self._truth = TableWriter(self._run_dir / "truth.csv", truth_columns(number_of_uavs))
         self._obstacles: TableWriter | None = None
+        self._modes: TableWriter | None = None
         self._closed = False
 
     @property
     def error(self) -> OSError | None:
         """Why writing stopped before ``close()``, if it did."""
-        return self._truth.error or (self._obstacles.error if self._obstacles is not None else None)
+        return next((table.error for table in self._tables if table.error is not None), None)
+
+    @property
+    def _tables(self) -> list[TableWriter]:
+        return [table for table in (self._truth, self._obstacles, self._modes) if table is not None]
 
     def write(self, state: WorldState, contacts: int, obstacles: Sequence[Obstacle] = ()) -> None:
         """Append a state, and the obstacles as they stand then.
@@ -58,12 +63,19 @@ class TruthLog:
             numbers = (*obstacle.position_in_world, obstacle.radius, *obstacle.size, obstacle.yaw)
             self._obstacles.write([float(state.time), obstacle.name, obstacle.shape, *map(float, numbers)])
 
+    def write_mode(self, time: float, vehicle: int, mode: str, armed: bool, failsafe: bool) -> None:
+        """Append what a vehicle (its system id) flies from ``time`` (s) on."""
+        if self._closed:
+            return
+        if self._modes is None:
+            self._modes = TableWriter(self._run_dir / "modes.csv", MODE_COLUMNS)
+        self._modes.write([float(time), vehicle, mode, armed, failsafe])
+
     def close(self) -> None:
-        """Close both files; harmless when they are closed already."""
+        """Close all files; harmless when they are closed already."""
         self._closed = True
-        self._truth.close()
-        if self._obstacles is not None:
-            self._obstacles.close()
+        for table in self._tables:
+            table.close()
 
     def __enter__(self) -> TruthLog:
         return self

@@ -39,7 +39,8 @@ class World:
 
     At the start the payload stands on a pad at the origin, level, links upright, each UAV on top of its link in a
     cradle. A cradle lets go when its UAV's thrust lifts more than the UAV's own weight, and takes hold again, where
-    the UAV is then, once the payload stands on pad or ground and the UAV is slow and no longer lifts its weight.
+    the UAV is then, once the payload stands on pad or ground, or hangs low on the links of UAVs that are held, and the
+    UAV is slow and no longer lifts its weight.
 
     ``physics_hz`` steps a second. Equal calls give equal results to the last bit on one machine.
     Raises :class:`~vehicle_sim.errors.UnsupportedWorld` for a system that the engine would compute wrongly.
@@ -294,7 +295,9 @@ class World:
                 cradles.release(i)
             elif low:
                 a, b, c = link[6]
-                if cradles.wants_latch(i, upward, (a * a + b * b + c * c) ** 0.5) and self.touching_ground():
+                # A payload that has been caught by some hangs on their links as well as it stands.
+                stands = cradles.number_held > 0 or self.touching_ground()
+                if stands and cradles.wants_latch(i, upward, (a * a + b * b + c * c) ** 0.5):
                     cradles.latch(i, link[0], link[1])
 
     def _contacts_and_standing(self) -> tuple[int, bool]:

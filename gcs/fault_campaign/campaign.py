@@ -106,7 +106,9 @@ class FaultCampaign:
         mission, run_dir = self._mission_path(flight), self._run_dir(flight)
         options = ("--controller", self.file.controller)
         ended = fly_process(mission, options, run_dir, stop)
-        return None if ended is None else evaluate(flight, ended, run_dir, replay_command(mission, options))
+        if ended is None:
+            return None
+        return evaluate(flight, ended, run_dir, replay_command(mission, options)).held_to(self.file.require)
 
     def _read(self, flight: FaultFlight) -> FaultResult | None:
         """The result that was kept; None where there is none, or one of another version."""
@@ -117,7 +119,8 @@ class FaultCampaign:
         if set(content) != set(COLUMNS):
             return None
         # In a campaign that has grown it stands elsewhere.
-        return dataclasses.replace(FaultResult(**content), number=flight.number, level=flight.case.level)
+        result = dataclasses.replace(FaultResult(**content), number=flight.number, level=flight.case.level)
+        return result.held_to(self.file.require)
 
     def _mission_path(self, flight: FaultFlight) -> Path:
         return self.options.out / "missions" / f"{flight.name}.toml"

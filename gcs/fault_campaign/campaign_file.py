@@ -37,6 +37,7 @@ class CampaignTable:
     seed_count: Annotated[int, Field(ge=1, le=10_000)] | None = None
     clean: bool = False
     controller: Literal["idc", "mpc", "paper"] = "idc"
+    require: Literal["within limits", "safe"] = "within limits"
 
 
 @strict
@@ -69,6 +70,7 @@ class CampaignFile:
     cases: tuple[Case, ...]
     limits: Limits | None
     controller: str
+    require: str
 
 
 @cache
@@ -100,9 +102,8 @@ def read_campaign(path: Path) -> CampaignFile:
         raise UnusableFile(list(dict.fromkeys(problems)))
     if tables.campaign.clean:
         cases = (Case(CLEAN, 1, "", ()), *cases)
-    return CampaignFile(
-        tables.campaign.name, missions, _seeds(tables.campaign), cases, tables.limits, tables.campaign.controller
-    )
+    table = tables.campaign
+    return CampaignFile(table.name, missions, _seeds(table), cases, tables.limits, table.controller, table.require)
 
 
 def _seeds(table: CampaignTable) -> tuple[int, ...]:

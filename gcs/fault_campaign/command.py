@@ -10,7 +10,7 @@ from rich.console import Console
 from gcs.arguments import number_of_jobs
 from gcs.errors import UnusableInput
 from gcs.fault_campaign.campaign import FaultCampaign, FaultCampaignOptions
-from gcs.fault_campaign.campaign_file import read_campaign
+from gcs.fault_campaign.campaign_file import CampaignFile, read_campaign
 from gcs.fault_campaign.result import FaultResult
 from gcs.fault_campaign.sweep import plain
 from gcs.faults.listing import kinds_table
@@ -29,7 +29,7 @@ Flies a campaign of faults: faults x severities x missions x seeds, side by side
 
 Every flight is a mission file that `gcs fly` repeats. A campaign that was cut off goes on when started again; one whose
 file has grown flies what is new. Writes results.csv and results.parquet (a row a flight), rates.csv and matrix.png.
-Exit status: 0 all within their limits; 1 not all; 2 unusable input; 130 interrupted, results kept.
+Exit status: 0 all passed (by default: within their limits); 1 not all; 2 unusable input; 130 interrupted, results kept.
 """
 
 
@@ -66,7 +66,7 @@ def run(arguments: argparse.Namespace) -> int:
         interrupted = True
     results = campaign.results
     if results:
-        _tell(file.name, results, out, console)
+        _tell(file, results, out, console)
     if interrupted:
         left = campaign.total - len(results)
         Console(stderr=True, highlight=False).print(f"interrupted with {left} flights to go: start again to go on")
@@ -74,15 +74,15 @@ def run(arguments: argparse.Namespace) -> int:
     return DONE if all(result.passed for result in results) else OUTSIDE_LIMITS
 
 
-def _tell(name: str, results: list[FaultResult], out: Path, console: Console) -> None:
+def _tell(file: CampaignFile, results: list[FaultResult], out: Path, console: Console) -> None:
     # Only here: pandas takes its time to be imported, and this module is imported by every `gcs fly`.
     from gcs.fault_campaign.outcome import draw_matrix, outcome_table
     from gcs.fault_campaign.tables import write_tables
 
-    files = [*write_tables(results, out), draw_matrix(name, results, out)]
+    files = [*write_tables(results, out), draw_matrix(file.name, results, out)]
     if not console.is_terminal:
         console.width = WIDTH
-    console.print(outcome_table(results, files))
+    console.print(outcome_table(results, files, file.require))
 
 
 def _line(result: FaultResult) -> str:

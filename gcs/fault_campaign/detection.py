@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from gcs.errors import UnusableInput
+from gcs.faults import KINDS
 from gcs.faults.record import FAULTS_FILE
 from gcs.record.tables import ALARMS, read_text_table
 
@@ -26,15 +27,22 @@ class Detection:
 def first_start(run_dir: Path, count: int | None = None) -> float | None:
     """When the first of the last ``count`` faults of a flight (None: of all) came, by the clock of the tables (s).
 
-    The faults before them are the mission's own. None: none came, or there is no record of them.
+    The faults before them are the mission's own; among them wind and load count only where nothing else is wrong.
+    None: none came, or there is no record of them.
     """
     try:
         record = json.loads((run_dir / FAULTS_FILE).read_text(encoding="utf-8"))
         faults = record["faults"][0 if count is None else len(record["faults"]) - count :]
+        if count is not None:
+            faults = [fault for fault in faults if not _is_of_world(fault.get("kind"))] or faults
         starts = [fault["activations"][0][0] for fault in faults if fault["activations"]]
         return float(record["take_off_s"] + min(starts))
     except (OSError, ValueError, KeyError, TypeError, IndexError):
         return None
+
+
+def _is_of_world(kind: str | None) -> bool:
+    return kind in KINDS and KINDS[kind].family == "world"
 
 
 def detection(run_dir: Path, count: int) -> Detection:

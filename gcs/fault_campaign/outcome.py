@@ -15,7 +15,17 @@ from rich.table import Table
 from rich.text import Text
 
 from gcs.errors import UnusableInput
-from gcs.fault_campaign.result import ABORTED, COLLIDED, FAILED, NOT_FLOWN, OUTSIDE, VERDICTS, WITHIN, FaultResult
+from gcs.fault_campaign.result import (
+    ABORTED,
+    COLLIDED,
+    FAILED,
+    NOT_FLOWN,
+    OUTSIDE,
+    VERDICTS,
+    WITHIN,
+    WITHIN_LIMITS,
+    FaultResult,
+)
 from gcs.fault_campaign.tables import CONFIDENCE, Rates, rates_of
 
 MATRIX = "matrix.png"
@@ -28,13 +38,16 @@ _WRAPPED = ("fault", "severity")
 _WIDTH, _HEIGHT = 1.7, 0.55  # in, of a cell
 
 
-def outcome_table(results: Sequence[FaultResult], files: Sequence[Path]) -> RenderableType:
+def outcome_table(
+    results: Sequence[FaultResult], files: Sequence[Path], requirement: str = WITHIN_LIMITS
+) -> RenderableType:
     """Rates by fault and severity, and the replay command of every failure."""
     passed = sum(result.passed for result in results)
     colour = "bold green" if passed == len(results) else "bold red"
-    parts: list[RenderableType] = [Text(f"{passed} of {len(results)} flights within their limits", style=colour)]
+    how = "within their limits" if requirement == WITHIN_LIMITS else "set down safely, with their limits held"
+    parts: list[RenderableType] = [Text(f"{passed} of {len(results)} flights {how}", style=colour)]
     parts.append(_rates(rates_of(results), results))
-    parts.append(Text(f"Rates with their {100 * CONFIDENCE:.0f} % intervals (Wilson); safe: landed without contact."))
+    parts.append(Text(f"Rates with their {100 * CONFIDENCE:.0f} % intervals (Wilson); safe: set down without contact."))
     if false := sum(result.false_alarms or 0 for result in results):
         flights = sum(bool(result.false_alarms) for result in results)
         parts.append(Text(f"{false} alarms before any fault, in {flights} flights", style="bold red"))
@@ -67,16 +80,22 @@ def _rates(rates: Sequence[Rates], results: Sequence[FaultResult]) -> Table:
         "safe",
         "worst clearance",
         "worst tilt",
+        "least apart",
+        "touched with",
         "noticed in",
         "stopped in",
+        "all in",
     ):
         table.add_column(title, justify="left" if title in _WRAPPED else "right", no_wrap=title not in _WRAPPED)
     for rate in rates:
         chosen = [result for result in results if (result.fault, result.level) == (rate.fault, rate.level)]
         clearance = min((r.clearance_min_m for r in chosen if r.clearance_min_m is not None), default=None)
+        apart = min((r.uav_separation_min_m for r in chosen if r.uav_separation_min_m is not None), default=None)
         tilt = max((r.tilt_max_deg for r in chosen if r.tilt_max_deg is not None), default=None)
         noticed = [r.detected_s for r in chosen if r.detected_s is not None]
+        touch = max((r.touchdown_mps for r in chosen if r.touchdown_mps is not None), default=None)
         stop = max((r.stop_s for r in chosen if r.stop_s is not None), default=None)
+        team = max((r.team_stop_s for r in chosen if r.team_stop_s is not None), default=None)
         table.add_row(
             Text(rate.fault),
             Text(rate.severity),
@@ -85,8 +104,11 @@ def _rates(rates: Sequence[Rates], results: Sequence[FaultResult]) -> Table:
             _share(rate.safe_rate, rate.safe_low, rate.safe_high),
             "-" if clearance is None else f"{clearance:.2f} m",
             "-" if tilt is None else f"{tilt:.1f} deg",
+            "-" if apart is None else f"{apart:.2f} m",
+            "-" if touch is None else f"{touch:.2f} m/s",
             _noticed(noticed, len(chosen)),
             "-" if stop is None else f"{stop:.2f} s",
+            "-" if team is None else f"{team:.2f} s",
         )
     return table
 
@@ -126,7 +148,7 @@ def draw_matrix(name: str, results: Sequence[FaultResult], folder: Path) -> Path
     ax.set_ylim(len(faults) - 0.5, -0.5)
     ax.set_yticks(range(len(faults)), faults, fontsize=8)
     ax.set_xticks(range(1, levels + 1))
-    ax.set_xlabel("severity; in each cell: flights within limits")
+    ax.set_xlabel("severity; in each cell: flights that passed")
     ax.spines[:].set_visible(False)
     ax.tick_params(length=0)
     ax.set_title(name, fontsize=10)

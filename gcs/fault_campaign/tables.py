@@ -13,12 +13,12 @@ import pyarrow.parquet
 from scipy.stats import binomtest
 
 from gcs.errors import UnusableInput
-from gcs.fault_campaign.result import ABORTED, OUTSIDE, WITHIN, FaultResult
+from gcs.fault_campaign.result import FaultResult
 
 CONFIDENCE = 0.95
 _DTYPES = {
     "int": "Int64", "int | None": "Int64", "float": "Float64", "float | None": "Float64",
-    "bool": "boolean", "str": "string",
+    "bool": "boolean", "bool | None": "boolean", "str": "string",
 }  # fmt: skip
 
 
@@ -26,7 +26,7 @@ _DTYPES = {
 class Rates:
     """Of all flights with one fault at one severity: counts, and rates with the ends of their Wilson intervals.
 
-    ``safe``: landed without contact, in whatever way.
+    ``safe``: set down without contact, in whatever way.
     """
 
     fault: str
@@ -53,7 +53,7 @@ def rates_of(results: Sequence[FaultResult]) -> list[Rates]:
     for group in groups.values():
         first, count = group[0], len(group)
         within = sum(result.within_limits for result in group)
-        safe = sum(result.outcome in (WITHIN, OUTSIDE, ABORTED) and not result.contacts for result in group)
+        safe = sum(result.safe for result in group)
         rates.append(
             Rates(
                 first.fault, first.kind, first.level, first.severity, count,

@@ -6,19 +6,21 @@ import math
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
-from enum import Enum
 
 import numpy as np
 import pymavlink.dialects.v20.common as mavlink
 from numpy.typing import NDArray
 
 from gcs.flight.course import Course
+from gcs.flight.pad import Pad
+from gcs.flight.payload_watch import PayloadWatch
+from gcs.flight.phase import IN_THE_AIR, Phase
 from gcs.flight.team import Team
 from gcs.mission.model import Mission
 from gcs.wire import px4
 from idc_controller.control.controller import Decision, IntegratedDecisionController
 from idc_controller.estimate.estimator import Estimate, Estimator
-from idc_controller.estimate.measurements import PAYLOAD, Measurement, Position
+from idc_controller.estimate.measurements import Measurement
 from idc_controller.plan.reference import Reference
 from idc_controller.plan.stop import StopPlan, stop_plan
 from idc_controller.plan.trajectory import RestTrajectory, Trajectory
@@ -32,38 +34,9 @@ SETTLE_BEFORE_CHECK = 0.5  # s of telemetry that are averaged before take-off
 STREAM_BEFORE_OFFBOARD = 0.5  # s
 SPOOL_UP = 2.5  # s from idle to hover thrust
 SPOOL_DOWN = 2.0  # s from hover thrust to idle
-TOUCH_DEPTH = 0.06  # m above the reference at which the payload must be standing
-TOUCH_SPEED = 0.05  # m/s
-TOUCH_STEPS = 4
-TOUCH_GRACE = 3.0  # s after the descent's end at which it counts as touched in any case
-LOST_TILT = math.radians(45.0)  # of the payload, at which nothing can be planned any more
-LOST_AFTER = 0.5  # s
-LEARN_ABOVE = 0.3  # m above the ground: below it the ground may carry part of the load
-
-
-class Phase(Enum):
-    """Where the flight is."""
-
-    CONNECT = "connect"
-    CHECK = "check"
-    ARM = "arm"
-    SPOOL_UP = "spool up"
-    CLIMB = "climb"
-    FLY = "fly"
-    HOLD = "hold"
-    LAND = "land"
-    ON_THEIR_OWN = "vehicles land on their own"
-    SPOOL_DOWN = "spool down"
-    DISARM = "disarm"
-    ENDED = "ended"
-
-
 STOP_PLANS = 100  # control steps whose stop plans are remembered
 TOLERANCE = 0.01  # s
 ALONE_TIMEOUT = 120.0  # s for the vehicles to land on their own
-
-IN_THE_AIR = (Phase.CLIMB, Phase.FLY, Phase.HOLD, Phase.LAND)
-CLEAR_OF_GROUND = (Phase.FLY, Phase.HOLD)
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,9 +74,9 @@ class Flight:
         self._parameters = controller.parameters
         self.phase = Phase.CONNECT
         self.reason = ""
+        """Why the flight was broken off; empty: it was not."""
         self.broken_off_time = math.nan
         """When the reason to end early was found (s)."""
-        """Why the flight was broken off; empty: it was not."""
         self.interrupted = False
         self.course: Course | None = None
         self.time = 0.0
@@ -113,11 +86,10 @@ class Flight:
         self.landed = False
         self._called = math.nan
         self._since = math.nan
-        self._seen: dict[tuple[int, type], list[Measurement]] = {}
+        self._on_pad = Pad(controller.parameters.number_of_uavs)
+        self.payload = PayloadWatch(controller.parameters)
         self._pad: Trajectory | None = None
         self._asked: int | None = None
-        self._touch_steps = 0
-        self._in_control = math.inf
         self._descends = False
         self._down: Trajectory | None = None
         self._stop_plans: deque[StopPlan] = deque(maxlen=STOP_PLANS)
@@ -165,9 +137,7 @@ class Flight:
         if self._started:
             self.estimator.add(measurement)
         elif self.phase in (Phase.CHECK, Phase.ARM):
-            samples = self._seen.setdefault((measurement.source, type(measurement)), [])
-            samples.append(measurement)
-            del samples[:-100]
+            self._on_pad.measured(measurement)
 
     def flown(self, uav: int, since: float, until: float, told: Array, spread: float) -> bool | None:
         """A vehicle says what it flew from ``since`` to ``until``, tilt (north, east) and thrust (N) (3,).
@@ -245,17 +215,14 @@ class Flight:
             return
         if time - self._since < SETTLE_BEFORE_CHECK:
             return
-        n = self._parameters.number_of_uavs
-        if any((source, Position) not in self._seen for source in (PAYLOAD, *range(n))):
+        if not self._on_pad.is_known:
             if time - self._since > CONNECT_TIMEOUT:
                 self.give_up("no position of every vehicle and of the payload")
             return
-        payload = self._mean_position(PAYLOAD)
-        positions = np.array([self._mean_position(i) for i in range(n)])
-        if (problem := self.team.misplaced(positions, payload)) is not None:
+        if (problem := self.team.misplaced(self._on_pad.vehicles, self._on_pad.payload)) is not None:
             self.give_up(problem)
             return
-        self._pad = RestTrajectory(payload, time)
+        self._pad = RestTrajectory(self._on_pad.payload, time)
         self._enter(Phase.ARM, time)
 
     def _arm(self, time: float, now: float) -> Setpoints | None:
@@ -345,12 +312,15 @@ class Flight:
         trajectory = self._trajectory(time)
         begin = self._stopwatch()
         estimate = self.estimator.estimate(effective, self.controller.reference(trajectory))
-        if self.phase in IN_THE_AIR and self._is_out_of_control(time, estimate):
+        if self.phase in IN_THE_AIR and self.payload.is_out_of_control(time, estimate):
             self._leave_alone(time, "control of the payload is lost")
+            return None, None
+        if self.phase is Phase.LAND and self.payload.stays_up(*self._descent(time), estimate):
+            self._leave_alone(time, "the payload does not come down")
             return None, None
         estimated = self._stopwatch()
         decision = self.controller.decide(
-            estimate, trajectory, standing=self.phase not in IN_THE_AIR, learn_load=self._learns(estimate)
+            estimate, trajectory, standing=self.phase not in IN_THE_AIR, learn_load=self.payload.is_clear(estimate)
         )
         decided = self._stopwatch()
         share = 1.0
@@ -360,18 +330,11 @@ class Flight:
             share = max(1.0 - (time - self._since) / SPOOL_DOWN, 0.0)
         if self.phase in IN_THE_AIR:
             self.estimator.add_setpoint(effective, decision.u)
-            self.stop_plan = stop_plan(self._parameters, decision.flat, effective)
+            self.stop_plan = stop_plan(self._parameters, decision.flat, effective, estimate.x)
             self._stop_plans.append(self.stop_plan)
         self._advance(time, estimate, share)
         setpoints = Setpoints(decision.directions, decision.thrusts * share)
         return setpoints, StepRecord(estimate, decision, estimated - begin, decided - estimated)
-
-    def _is_out_of_control(self, time: float, estimate: Estimate) -> bool:
-        """Whether the payload has been tipped, or its state unknown, for longer than any manoeuvre takes."""
-        tilt = np.abs(estimate.x[self.controller.layout.Theta][:2]).max()
-        if np.all(np.isfinite(estimate.x)) and tilt < LOST_TILT:
-            self._in_control = time
-        return time - self._in_control > LOST_AFTER
 
     def _trajectory(self, time: float) -> Trajectory:
         if self._down is not None:
@@ -379,6 +342,11 @@ class Flight:
         trajectory = self.reference
         assert trajectory is not None
         return trajectory
+
+    def _descent(self, time: float) -> tuple[float, Trajectory]:
+        """The course and its clock (s)."""
+        assert self.course is not None
+        return self.controller.safety.mission_time(time), self.course.trajectory
 
     def _advance(self, time: float, estimate: Estimate, share: float) -> None:
         """From one phase to the next."""
@@ -393,29 +361,11 @@ class Flight:
         elif self.course is not None:
             clock = self.controller.safety.mission_time(time)
             self.phase = Phase(self.course.phase(clock))
-            if self.phase is Phase.LAND and self._touched(clock, estimate):
+            if self.phase is Phase.LAND and self.payload.has_touched(*self._descent(time), estimate):
                 position = estimate.x[self.controller.layout.r_0]
                 self._down = RestTrajectory(position, time)
                 self.estimator.add_setpoint(estimate.time, None)
                 self._enter(Phase.SPOOL_DOWN, time)
-
-    def _touched(self, clock: float, estimate: Estimate) -> bool:
-        assert self.course is not None
-        trajectory = self.course.trajectory
-        layout = self.controller.layout
-        depth = trajectory.position(clock)[2] - estimate.x[layout.r_0][2]
-        still = abs(estimate.x[layout.v_0][2]) < TOUCH_SPEED
-        self._touch_steps = self._touch_steps + 1 if depth > TOUCH_DEPTH and still else 0
-        return self._touch_steps >= TOUCH_STEPS or clock > trajectory.end + TOUCH_GRACE
-
-    def _learns(self, estimate: Estimate) -> bool:
-        ground = -self._parameters.payload_size[2] / 2.0
-        height = ground - estimate.x[self.controller.layout.r_0][2]
-        return bool(height > LEARN_ABOVE)
-
-    def _mean_position(self, source: int) -> Array:
-        samples = self._seen[source, Position]
-        return np.mean([s.position for s in samples if isinstance(s, Position)], axis=0)
 
     @property
     def _idle(self) -> Setpoints:

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from scipy.stats import chi2
 
 from gcs.flight.alarms import Alarm, AlarmBook, Events
-from gcs.flight.flight import IN_THE_AIR, LEARN_ABOVE, Flight, StepRecord
+from gcs.flight.flight import Flight, StepRecord
+from gcs.flight.phase import IN_THE_AIR
 from gcs.obstacles import ObstacleMap
 from gcs.vehicle_link import VehicleLink
 from idc_controller.control.controller import Decision
@@ -74,7 +75,7 @@ class Watch:
         if airborne:
             self._links(time, now)
         innovations = self._flight.estimator.innovations
-        if airborne and record is not None and self._is_clear(record.estimate):
+        if airborne and record is not None and self._flight.payload.is_clear(record.estimate):
             calm = self._is_calm(time, record.decision)
             for told in innovations[self._judged :]:
                 self._consistency.learn(told.time, told.keys, told.white, told.rejected)
@@ -97,12 +98,6 @@ class Watch:
             if not flight.interrupted:
                 self._book.tell(flight.broken_off_time, "team", "stopped", flight.reason)
         return self.alarms[known:]
-
-    def _is_clear(self, estimate: Estimate) -> bool:
-        """Whether nothing but the vehicles carries the payload: on touching the ground all seems wrong."""
-        flight = self._flight
-        ground = -flight.controller.parameters.payload_size[2] / 2.0
-        return bool(ground - estimate.x[flight.controller.layout.r_0][2] > LEARN_ABOVE)
 
     def _is_calm(self, time: float, decision: Decision) -> bool:
         """Whether the set-points have not changed hard for a while."""

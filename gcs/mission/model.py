@@ -186,12 +186,14 @@ class Fault:
 @strict
 @dataclass(frozen=True)
 class Limits:
-    """What the flight is held to; None: not held to it. m, s, deg."""
+    """What the flight is held to; None: not held to it. m, s, deg, m/s."""
 
     position_rmse: Positive | None = None
     settle: NotNegative = 10.0
     payload_tilt_deg: Positive | None = None
     clearance: NotNegative | None = None
+    uav_separation: NotNegative | None = None
+    touchdown_speed: Positive | None = None
 
 
 @dataclass(frozen=True)

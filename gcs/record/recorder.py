@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gcs.flight.flight import CLEAR_OF_GROUND
+from gcs.flight.phase import CLEAR_OF_GROUND
 from gcs.record.tables import (
     ALARM_COLUMNS,
     ALARMS,

@@ -47,6 +47,7 @@ class RunData:
     time: Array  # (T,)
     payload_position: Array  # (T, 3)
     payload_quaternion: Array  # (T, 4)
+    payload_velocity: Array  # (T, 3)
     uav_position: Array  # (T, N, 3)
     uav_quaternion: Array  # (T, N, 4)
     thrust: Array  # (T, N)
@@ -69,6 +70,13 @@ class RunData:
             return np.empty((0, 3))
         return np.column_stack([self.reference[name] for name in REFERENCE_COLUMNS[1:4]])
 
+    @property
+    def payload_size(self) -> Array:
+        """Edges of the payload's box (3,) (m)."""
+        system = self.manifest.get("system")
+        size = _find(system, "payload_size") or _find(_find(system, "payload"), "size")
+        return np.asarray(_DEFAULT_PAYLOAD_SIZE if size is None else size, dtype=float)
+
     def uav_separation(self) -> Array:
         """Smallest distance between the centres of two UAVs (T,) (m)."""
         first, second = np.triu_indices(self.number_of_uavs, k=1)
@@ -77,16 +85,14 @@ class RunData:
 
     def clearance(self) -> Array:
         """Distance from the formation to each obstacle (T, number of obstacles) (m), NaN where unknown."""
-        system = self.manifest.get("system")
-        size = _find(system, "payload_size") or _find(_find(system, "payload"), "size")
-        radius = _find(system, "disc_radius")
+        radius = _find(self.manifest.get("system"), "disc_radius")
         return clearance_over_time(
             self.payload_position,
             self.payload_quaternion,
             self.uav_position,
             self.uav_quaternion,
             self.obstacles,
-            _DEFAULT_PAYLOAD_SIZE if size is None else size,
+            self.payload_size,
             _DEFAULT_DISC_RADIUS if radius is None else radius,
         )
 
@@ -128,6 +134,7 @@ def read_run(run_dir: Path | str) -> RunData:
         time=time,
         payload_position=stack("payload", position),
         payload_quaternion=stack("payload", quaternion),
+        payload_velocity=stack("payload", ("vx_mps", "vy_mps", "vz_mps")),
         uav_position=uavs(position),
         uav_quaternion=uavs(quaternion),
         thrust=uavs(("thrust_n",))[:, :, 0],

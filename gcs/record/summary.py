@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gcs.record.landing import landing_figures, onsets
 from gcs.record.run_data import SUMMARY, RunData, Table, read_run
 from gcs.record.run_folder import write_json
 from gcs.record.safety import safety_figures
@@ -17,7 +18,7 @@ from idc_controller.rotations import euler_from_quaternion
 Array = NDArray[np.float64]
 
 OUTCOMES = ("completed", "aborted", "collided", "failed")
-LIMITS = ("position_rmse", "payload_tilt_deg", "clearance", "uav_separation")
+LIMITS = ("position_rmse", "payload_tilt_deg", "clearance", "uav_separation", "touchdown_speed")
 DEFAULT_SETTLE = 10.0  # s
 _DIGITS = 6  # of a metre, a degree or a millisecond: below what is simulated faithfully
 
@@ -35,7 +36,7 @@ def summarise(
     """The content of ``summary.json``, from the truth in ``run_dir`` or, where there is none, the estimate.
 
     How the flight ended is the caller's to say. ``limits`` is the mission's table of that name: ``settle`` (s) and
-    any of :data:`LIMITS` (m, deg), None for no limit. A limit is held when its figure is known and within it, a
+    any of :data:`LIMITS` (m, deg, m/s), None for no limit. A limit is held when its figure is known and within it, a
     clearance also when there is no obstacle (``obstacles`` says whether the mission has any; None: as on record).
     Figures that the records cannot tell are None. Raises :class:`UnusableInput` like :func:`read_run`, and
     ``ValueError`` for an unknown outcome or limit.
@@ -53,11 +54,13 @@ def summarise(
     clearance = _least(run.clearance()) if run.obstacles and run.number_of_uavs else None
     separation = _least(run.uav_separation()) if run.number_of_uavs > 1 else None
     has_obstacles = bool(run.obstacles) if obstacles is None else obstacles
+    landing = landing_figures(run)
     figures = {
         "position_rmse": rmse["total"],
         "payload_tilt_deg": max((angle for angle in tilt.values() if angle is not None), default=None),
         "clearance": clearance,
         "uav_separation": separation,
+        "touchdown_speed": None if landing is None else landing["speed_mps"],
     }
     return _rounded(
         {
@@ -70,7 +73,8 @@ def summarise(
             "payload_tilt_max_deg": tilt,
             "clearance_min_m": clearance,
             "uav_separation_min_m": separation,
-            "contacts": _contacts(run.contacts),
+            "contacts": None if run.contacts is None else onsets(run.contacts),
+            "landing": landing,
             "step_time_ms": _step_times(run.steps),
             "solver": _solver(run.steps),
             "safety": safety_figures(run),
@@ -137,13 +141,6 @@ def payload_tilt_max(run: RunData) -> dict[str, float | None]:
     if len(powered):
         angles = angles[powered[0] : powered[-1] + 1]
     return dict(zip(("roll", "pitch", "yaw"), np.max(angles, axis=0).tolist(), strict=True))
-
-
-def _contacts(touching_pairs: Array | None) -> int | None:
-    """How often a pair began to touch; a touch that lasts counts once."""
-    if touching_pairs is None:
-        return None
-    return int(np.clip(np.diff(touching_pairs, prepend=0.0), 0.0, None).sum())
 
 
 def _step_times(steps: Table | None) -> dict[str, float | None]:

@@ -41,6 +41,8 @@ OBSTACLE_ESTIMATE_COLUMNS = (
     "time_s", "name", "kind", "x_m", "y_m", "z_m", "vx_mps", "vy_mps", "vz_mps", "radius_m",
     "size_x_m", "size_y_m", "size_z_m", "yaw_rad", "growth_m",
 )  # fmt: skip
+# What each vehicle flew from when on, as it stood on board, and whether against the ground's intention.
+MODE_COLUMNS = ("time_s", "vehicle", "mode", "armed", "failsafe")
 
 # What the ground noticed, of whom.
 ALARMS = "alarms.csv"

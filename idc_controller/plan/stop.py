@@ -3,6 +3,9 @@
 All of them start from one moment of one reference and take the same time, so the payload stays level without a word
 between them. Along each axis the position is the quartic that takes over position, velocity and acceleration and ends
 without velocity and acceleration; a quartic is a Bezier curve of five control points, as many as fit into a message.
+
+In wind the team is not where the reference has it. The plan starts where the team is: all of it is moved alike, so
+that nobody is torn towards a place that the payload was meant to have.
 """
 
 from __future__ import annotations
@@ -12,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from idc_controller.model.linear import StateLayout
 from idc_controller.parameters import SystemParameters
 from idc_controller.plan.flatness import FlatReference
 
@@ -42,10 +46,16 @@ class StopPlan:
     """(N, 5, 3) (m, NED)."""
 
 
-def stop_plan(parameters: SystemParameters, flat: FlatReference, time: float) -> StopPlan:
-    """From the first instant of the reference ``flat``, which is ``time`` (s), to rest."""
+def stop_plan(parameters: SystemParameters, flat: FlatReference, time: float, x: Array | None = None) -> StopPlan:
+    """From the first instant of the reference ``flat``, which is ``time`` (s), to rest.
+
+    ``x`` (12 + 11 N,) is the state then; None: that of the reference.
+    """
     links = flat.links
     position, velocity, acceleration = flat.payload[:3, 0]
+    if x is not None and np.all(np.isfinite(x)):
+        off = _beside(parameters, x - flat.x[0])
+        position, velocity = position + off[0], velocity + off[1]
     l = parameters.l[:, None]
     state = np.stack(
         [
@@ -58,3 +68,12 @@ def stop_plan(parameters: SystemParameters, flat: FlatReference, time: float) ->
     duration = max(BRAKING_TIME, 1.5 * float(np.linalg.norm(velocity)) / BRAKING_LIMIT)
     scaled = state * np.array([1.0, duration, duration**2])[:, None]
     return StopPlan(time, duration, _CONTROL_POINTS @ scaled)
+
+
+def _beside(parameters: SystemParameters, error: Array) -> Array:
+    """Position and velocity (2, 3) of the UAVs' centre beside the reference's: the mean of r_0 - l_i s_i."""
+    layout = StateLayout(parameters.number_of_uavs)
+    off = np.array([error[layout.r_0], error[layout.v_0]])
+    for row, tilt in zip(off, (layout.s, layout.s_dot), strict=True):
+        row[:2] -= np.mean(parameters.l[:, None] * error[tilt].reshape(-1, 2), axis=0)
+    return off

@@ -1,0 +1,99 @@
+"""How the payload came to the ground: how fast it touched, whether it stands there upright, what was hit before."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from itertools import product
+from typing import Any
+
+import coal
+import numpy as np
+from numpy.typing import NDArray
+
+from gcs.record.run_data import RunData
+from idc_controller.rotations import rotation_from_quaternion
+
+Array = NDArray[np.float64]
+
+UPRIGHT_DEG = 15.0
+TOUCHDOWN_SPEED = 1.0
+"""m/s: a payload that touches the ground faster was dropped, not set down."""
+
+# The pad about home, which the payload stands on before take-off: as the simulated world builds it.
+PAD_THICKNESS = 0.05  # m
+PAD_MARGIN = 0.25  # m, by which it is larger than the payload on every side
+
+_TOUCHING = 0.02  # m between the lowest corner and what is under it
+_AIRBORNE = 0.1  # m
+_AT_REST = 0.1  # m/s
+_STOPPED = 0.5  # N of a UAV's thrust
+
+
+def landing_figures(run: RunData) -> dict[str, Any] | None:
+    """The ``landing`` entry of the summary, from the truth; None without one.
+
+    ``touchdown_s``: when the payload touched the ground for good (s, the clock of the tables). ``speed_mps`` and
+    ``sinking_mps``: its largest speed, and the largest of its speed downwards, wherever it touched after take-off
+    (m/s; 0 if it never left the ground). ``tilt_deg``: its angle to upright at the end (deg). ``on_ground``: it stands
+    on ground or pad at the end, at rest, all rotors stopped. ``contacts_before``: how often a pair of parts began to
+    touch until then. What never happened is None.
+    """
+    if run.source != "truth" or run.contacts is None or len(run.time) == 0:
+        return None
+    rotation = rotation_from_quaternion(run.payload_quaternion)
+    height = _height(run, rotation)
+    airborne = np.flatnonzero(height > _AIRBORNE)
+    touching = height <= _TOUCHING
+    speed = np.linalg.norm(run.payload_velocity, axis=1)
+    fastest: float | None = 0.0
+    down: float | None = 0.0
+    touchdown = 0
+    if len(airborne):
+        # With the row before each: the ground has not slowed it yet.
+        near = touching.copy()
+        near[:-1] |= touching[1:]
+        near[: airborne[0]] = False
+        fastest = float(speed[near].max()) if near.any() else None
+        down = float(max(run.payload_velocity[near, 2].max(), 0.0)) if near.any() else None
+        after = np.flatnonzero(touching[airborne[-1] :])
+        touchdown = int(airborne[-1] + after[0]) if len(after) else len(run.time)
+    landed = bool(len(airborne)) and touchdown < len(run.time)
+    stopped = bool(np.all(run.thrust[-1] < _STOPPED))
+    return {
+        "on_ground": bool(touching[-1] and speed[-1] < _AT_REST and stopped),
+        "tilt_deg": float(np.rad2deg(np.arccos(np.clip(rotation[-1, 2, 2], -1.0, 1.0)))),
+        "touchdown_s": float(run.time[touchdown]) if landed else None,
+        "speed_mps": fastest,
+        "sinking_mps": down,
+        "contacts_before": onsets(run.contacts[:touchdown]),
+    }
+
+
+def is_set_down(landing: Mapping[str, Any]) -> bool:
+    """Whether the payload was set down safely, by the figures of :func:`landing_figures`."""
+    speed = landing["speed_mps"]
+    return bool(
+        landing["on_ground"]
+        and landing["tilt_deg"] <= UPRIGHT_DEG
+        and (speed is None or speed < TOUCHDOWN_SPEED)
+        and not landing["contacts_before"]
+    )
+
+
+def onsets(touching_pairs: Array) -> int:
+    """How often a pair began to touch; a touch that lasts counts once."""
+    return int(np.clip(np.diff(touching_pairs, prepend=0.0), 0.0, None).sum())
+
+
+def _height(run: RunData, rotation: Array) -> Array:
+    """Least distance of the payload to the ground and to the pad (T,) (m)."""
+    size = run.payload_size
+    corners = np.array(list(product((-0.5, 0.5), repeat=3))) * size
+    height = np.min(-run.payload_position[:, None, 2] - rotation[:, 2] @ corners.T, axis=1)
+    pad = coal.Box(*size[:2] + 2.0 * PAD_MARGIN, PAD_THICKNESS)
+    place = coal.Transform3s(np.eye(3), np.array([0.0, 0.0, -0.5 * PAD_THICKNESS]))
+    payload, request = coal.Box(*size), coal.DistanceRequest()
+    for t in np.flatnonzero(height < _AIRBORNE + PAD_THICKNESS):
+        pose = coal.Transform3s(rotation[t], run.payload_position[t])
+        height[t] = min(height[t], coal.distance(payload, pose, pad, place, request, coal.DistanceResult()))
+    return np.asarray(height)
