@@ -209,9 +209,9 @@ def test_lost_setpoints_are_answered_within_half_a_second_by_braking_and_holding
     flying.run(0.05 - flying.body.now % 0.05)
     altitude, speed, start = flying.body.position[2], flying.body.velocity[0], flying.body.position[0]
     flying.ground_is_there = False
-    flying.run(0.35)
+    flying.run(0.40)
     assert not flying.pilot.failsafe
-    flying.run(0.15)
+    flying.run(0.10)
     assert flying.pilot.failsafe and flying.pilot.mode == px4.MODE_HOLD
     assert flying.pilot.armed
     flying.run(4.4)

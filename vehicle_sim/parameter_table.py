@@ -15,10 +15,6 @@ from vehicle_sim.errors import SimulationError
 REAL: int = mavlink.MAV_PARAM_TYPE_REAL32
 INTEGER: int = mavlink.MAV_PARAM_TYPE_INT32
 
-SETPOINT_LOSS = 0.44
-"""s without set-points until a vehicle stops: a control step less than 0.5 s, so that the others, who hear of it from
-the ground, have stopped within 0.5 s of the loss, too."""
-
 
 class ParameterRefusalError(SimulationError):
     """A parameter that does not exist or may not take the value; ``str`` says why."""
@@ -98,7 +94,7 @@ def vehicle_parameters(airframe: Airframe, system_id: int, onboard_rate: int) ->
             Parameter("CAL_GYRO0_ID", 1, INTEGER),
             Parameter("CAL_ACC0_ID", 1, INTEGER),
             Parameter("CAL_MAG0_ID", 1, INTEGER),
-            Parameter(px4.PARAM_SETPOINT_LOSS, SETPOINT_LOSS, limits=(0.1, 60.0)),
+            Parameter(px4.PARAM_SETPOINT_LOSS, 0.5, limits=(0.1, 60.0)),
             Parameter(px4.PARAM_LAND_DELAY, 5.0, limits=(0.0, 3600.0)),
             Parameter(px4.PARAM_LINK_LOSS, 10, INTEGER, limits=(5, 300)),
             Parameter(px4.PARAM_LAND_SPEED, 0.5, limits=(0.1, 1.0)),

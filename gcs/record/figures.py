@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from gcs.errors import UnusableInput
 from gcs.record.clearance import ObstacleTrack
 from gcs.record.pictures import save_picture
-from gcs.record.run_data import RunData, read_run
-from gcs.record.summary import payload_angles, position_error
+from gcs.record.run_data import RunData, position_error, read_run
+from gcs.record.summary import payload_angles
 
 Array = NDArray[np.float64]
 

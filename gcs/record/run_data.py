@@ -97,6 +97,17 @@ class RunData:
         )
 
 
+def position_error(run: RunData) -> tuple[Array, Array]:
+    """Times (K,) (s) within the reference's span, and position minus reference then (K, 3) (m)."""
+    if run.reference is None or len(run.reference["time_s"]) == 0:
+        return np.empty(0), np.empty((0, 3))
+    at = run.reference["time_s"]
+    inside = (run.time >= at[0]) & (run.time <= at[-1])
+    time = run.time[inside]
+    wanted = [np.interp(time, at, axis) for axis in run.reference_position.T]
+    return time, run.payload_position[inside] - np.column_stack(wanted)
+
+
 def read_run(run_dir: Path | str) -> RunData:
     """Read what a run folder holds; files and rows that a cut-off flight did not write are just absent.
 

@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from gcs.record.run_data import RunData
+from gcs.record.run_data import RunData, Table
 from gcs.record.tables import PLAN_COLUMNS, read_table
+from gcs.record.way_back import ways_back
 
 GRAVITY = 9.81  # m/s2
 
@@ -53,6 +54,7 @@ def safety_figures(run: RunData) -> dict[str, Any] | None:
         "uav_tracking_max_m": uav,
         "uav_tracking_bound_m": _bound(plan["uav_bound_m"]),
         "slack_max_m": float(plan["slack_m"].max()),
+        "way_back_max_s": max((after for _, after in ways_back(run, _room(run, plan))), default=None),
         "detours": int(plan["detours"].max()),
         "clock_rate_min": float(plan["clock_rate"].min()),
     }
@@ -61,6 +63,11 @@ def safety_figures(run: RunData) -> dict[str, Any] | None:
 def _bound(values: Any) -> float | None:
     known = values[np.isfinite(values)]
     return float(known[0]) if len(known) else None
+
+
+def _room(run: RunData, plan: Table) -> float:
+    margin = run.manifest.get("system", {}).get("avoidance", {}).get("margin", 0.5)
+    return float(margin) + (_bound(plan["payload_bound_m"]) or 0.0)
 
 
 def _link_length(run: RunData) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcs.record.landing import landing_figures, onsets
-from gcs.record.run_data import SUMMARY, RunData, Table, read_run
+from gcs.record.run_data import SUMMARY, RunData, Table, position_error, read_run
 from gcs.record.run_folder import write_json
 from gcs.record.safety import safety_figures
 from idc_controller.rotations import euler_from_quaternion
@@ -94,17 +94,6 @@ def write_summary(run_dir: Path | str, summary: Mapping[str, Any]) -> Path:
 def within_limits(summary: Mapping[str, Any]) -> bool:
     """Whether every limit of a summary was held."""
     return all(held for _, _, held in summary["limits"].values())
-
-
-def position_error(run: RunData) -> tuple[Array, Array]:
-    """Times (K,) (s) within the reference's span, and position minus reference then (K, 3) (m)."""
-    if run.reference is None or len(run.reference["time_s"]) == 0:
-        return np.empty(0), np.empty((0, 3))
-    at = run.reference["time_s"]
-    inside = (run.time >= at[0]) & (run.time <= at[-1])
-    time = run.time[inside]
-    wanted = [np.interp(time, at, axis) for axis in run.reference_position.T]
-    return time, run.payload_position[inside] - np.column_stack(wanted)
 
 
 def position_rmse(run: RunData, settle: float) -> dict[str, float | None]:

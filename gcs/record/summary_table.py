@@ -58,6 +58,8 @@ def summary_table(summary: Mapping[str, Any], run_dir: Path | str, pictures: Seq
         errors = f"{_number(safety['payload_tracking_max_m'], 3)} / {_number(safety['uav_tracking_max_m'], 3)}"
         row("off the plan, payload / UAVs, largest", f"{errors} m (margins allow {bounds} m)")
         row("barrier missed by at most", _number(safety["slack_max_m"], 3, "m"))
+        if safety["way_back_max_s"] is not None:
+            row("back on the way after it was free", _number(safety["way_back_max_s"], 1, "s"))
     if solver["infeasible_steps"]:
         row("steps without a feasible solution", str(solver["infeasible_steps"]))
 

@@ -1,0 +1,44 @@
+"""How soon a payload that went round an obstacle is back, on a run whose times can be written down by hand."""
+
+import numpy as np
+import pytest
+
+from gcs.record.run_data import read_run
+from gcs.record.tables import REFERENCE_COLUMNS, TableWriter
+from gcs.record.way_back import ways_back
+from vehicle_sim.obstacle_bodies import Obstacle
+from vehicle_sim.truth_log import TruthLog
+from vehicle_sim.world_state import UavState, WorldState
+
+LEVEL, REST = (1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+CORNERS = np.array([[x, y, -3.0] for x in (-0.5, 0.5) for y in (-0.5, 0.5)])
+
+
+def flown(folder, back_at, until=20.0):
+    """North at 1 m/s past a sphere of 0.5 m at 10 m; 2 m aside from 5 s until ``back_at``."""
+    sphere = Obstacle("s", "sphere", (10.0, 0.0, -5.0), 0.5, (0.0, 0.0, 0.0), 0.0)
+    with TruthLog(folder, 4) as log, TableWriter(folder / "reference.csv", REFERENCE_COLUMNS) as reference:
+        for time in np.arange(0.0, until + 1e-9, 0.02):
+            aside = 2.0 if 5.0 <= time < back_at else 0.05
+            place = np.array([time, aside, -5.0])
+            uavs = tuple(UavState(tuple(place + c), LEVEL, REST, REST, 9.0, False) for c in CORNERS)
+            log.write(WorldState(time, tuple(place), LEVEL, REST, REST, uavs), 0, [sphere])
+            reference.write([time, time, 0.0, -5.0, 1.0, 0.0, 0.0])
+    return read_run(folder)
+
+
+def test_the_way_is_free_when_the_formation_would_pass_and_the_payload_is_back_later(tmp_path):
+    ((free, after),) = ways_back(flown(tmp_path / "run", back_at=14.0), room=0.6)
+    # The discs' rim is 0.8 m behind the payload, and 0.6 m behind the sphere's far side at 10.5 m: 1.9 m past it.
+    assert free == pytest.approx(10.5 + 0.6 + 0.8, abs=0.25)
+    assert free + after == pytest.approx(14.0, abs=0.021)
+
+
+def test_one_that_never_comes_back_counts_until_the_end(tmp_path):
+    ((free, after),) = ways_back(flown(tmp_path / "run", back_at=99.0), room=0.6)
+    assert free + after == pytest.approx(20.0)
+
+
+def test_without_an_obstacle_in_the_way_there_is_no_way_back(tmp_path):
+    run = flown(tmp_path / "run", back_at=6.0, until=8.0)
+    assert ways_back(run, room=0.6) == []
