@@ -113,6 +113,14 @@ def test_attitudes_may_be_off_in_manoeuvres():
     assert (KEYS[3], "noisy") in learnt(300, changed=lambda k, i, white: white * (3.0 if i == 3 else 1.0))
 
 
+def test_attitudes_that_are_left_out_are_forgotten_and_nothing_else():
+    judge = Consistency(GATE)
+    for k in range(50):
+        judge.learn(0.04 * k, KEYS, [np.full(size, 5.0) for size in SIZES], ())
+    judge.forget_attitudes()
+    assert set(judge.complaints(2.0)) == set(KEYS[:3])
+
+
 def test_what_is_judged_again_counts_once():
     judge = Consistency(GATE)
     for k in range(2 * REFUSALS):

@@ -179,7 +179,10 @@ def test_moving_spheres(name, record_property):
     limited = rows[:, 4] > 0.45
     assert np.mean((rows[:, 2] < 2.5 * rows[:, 4]) | limited) > 0.85
     assert np.mean(rows[:, 0] < 3.0 * rows[:, 3] + 0.03) > 0.95
-    assert rows[:, 4].max() <= 0.5
+    # Larger bodies only for what was misjudged before: it stood, and went off again.
+    assert rows[:, 4].max() <= (0.5 if foreseen is not None else 1.5)
+    if name == "stop and go":
+        assert rows[:, 4].max() > 0.7
 
 
 def test_a_third_of_the_scans_lost():

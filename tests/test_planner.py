@@ -155,6 +155,7 @@ def test_optimum_is_that_of_another_solver(planner, monkeypatch, seed):
     assert np.all(multipliers[rows @ x - lower > 1e-5] >= -1e-6)
     qp = proxqp.dense.QP(n, 0, len(rows))
     qp.settings.eps_abs, qp.settings.max_iter = 1e-7, 20000
+    qp.settings.eps_primal_inf = 1e-12  # slacks make it feasible, but some of them have to be large
     qp.init(H, f, None, None, rows, np.maximum(lower, -1e20), np.minimum(upper, 1e20))
     qp.solve()
     other = qp.results.x
@@ -220,8 +221,10 @@ def test_slack_says_by_how_much_safety_is_missed(planner):
     plan, _, _ = solved(planner, np.zeros((5, 3)), cruising(0.0), [obstacle])
     missing = SETTINGS.margin + SETTINGS.tracking - 0.2
     p = np.exp(-SETTINGS.barrier_rates[0] * 0.1)
-    # h hardly changes in the first stage: its row, h_1 - p h_0, is missed by that share of the room.
-    assert plan.slack == pytest.approx((1.0 - p) * missing, rel=0.25)
+    # h hardly changes in the first stage. Its row, of h and a slack that fades, is kept with this much of it.
+    fading = np.exp(-SETTINGS.chain.period / SETTINGS.slack_time_constant)
+    assert plan.slack == pytest.approx((1.0 - p) / (fading - p) * missing, rel=0.25)
+    assert plan.slack > missing
     assert plan.cost > SETTINGS.slack_linear * plan.slack * 0.9
 
 

@@ -64,7 +64,7 @@ def test_obstacle_is_avoided_and_the_mission_goes_on(name):
     assert min(flown.clearance().values()) >= MARGIN - TOLERANCE
     check_arrived(flown)
     check_smooth(flown)
-    assert max(r.slack for r in flown.reports) < 0.01
+    assert max(r.slack for r in flown.reports) < 0.03
     assert not any(r.infeasible for r in flown.reports)
     assert any(r.active for r in flown.reports)
     assert {r.nearest for r in flown.reports} == {"", CROSSING[name][0][0]}

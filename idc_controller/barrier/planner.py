@@ -4,10 +4,10 @@ Decision variables are the knots of the snap of the payload's deviation from the
 feature and an obstacle lies a plane; with h the room on the safe side of it (linear in the decision), every stage asks
 for
 
-    (E - p_1) .. (E - p_m) h_k >= -slack,     E h_k = h_k+1,   0 < p_i < 1,
+    (E - p_1) .. (E - p_m) (h_k + slack_k) >= 0,     E h_k = h_k+1,   0 < p_i < 1,
 
 the discrete form of the exponential barrier of degree m with the real poles ln(p_i) / period. Without poles these are
-plain distance rows. A slack, one an obstacle, keeps the programme feasible and says by how much safety would be missed.
+plain distance rows. Slacks, two an obstacle, keep the programme feasible and say by how much safety would be missed.
 """
 
 from __future__ import annotations
@@ -54,6 +54,9 @@ class PlannerSettings:
     """What the discs may deviate beyond that (m)."""
     slack_linear: float = 1000.0
     slack_quadratic: float = 100.0
+    slack_time_constant: float = 0.8
+    """With which one slack fades over the horizon and the other sets in (s): room that has to be given up now is to be
+    won back, and what cannot be kept later excuses nothing now."""
     limit_slack_linear: float = 3000.0
     limit_slack_quadratic: float = 1000.0
     """Beyond its limits the plan cannot be tracked: they weigh more than the margins."""
@@ -125,6 +128,10 @@ class Planner:
             self._constants.append(C)
             self._gains.append(np.linalg.solve(H, G))
         self._hessian = block_diag(*self.hessians)
+        fading = np.exp(-np.arange(chain.stages + 1) * chain.period / settings.slack_time_constant)
+        # The barrier of h + slack in place of h: nested sets that are larger by the slack, now and later.
+        shares = settings.barrier @ np.column_stack([fading, 1.0 - fading])
+        self._slack_shares = np.vstack([shares, shares])
         self._limited = np.arange(3, chain.stages + 1, 3)
         limits = settings.acceleration_limit
         diagonal = np.sqrt(0.5)
@@ -148,7 +155,7 @@ class Planner:
         """
         s, knots = self.settings, self.settings.chain.knots
         obstacles = len(separations)
-        n = 3 * knots + obstacles + 1
+        n = 3 * knots + 2 * obstacles + 1
         H = np.zeros((n, n))
         H[: 3 * knots, : 3 * knots] = self._hessian
         f = np.zeros(n)
@@ -171,7 +178,7 @@ class Planner:
         for j, separation in enumerate(separations):
             row = slice(j * each, (j + 1) * each)
             A[row, : 3 * knots], b[row] = self._barrier_rows(separation, base, mission, acceleration)
-            A[row, 3 * knots + j] = -1.0
+            A[row, 3 * knots + 2 * j : 3 * knots + 2 * j + 2] = -self._slack_shares
         row = slice(obstacles * each, m)
         A[row, : 3 * knots], b[row] = self._limit_matrix, self._limit_bounds(base, mission)
         A[row, -1] = -1.0

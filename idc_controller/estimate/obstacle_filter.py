@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,6 +24,10 @@ _HYSTERESIS = 1.0
 _SMOOTHING = 0.3
 _LEAST_POINTS = 5
 _EVERY_FRAME_UNTIL, _THEN_EVERY = 6, 20
+_AHEAD = 1.0  # s, by which predictions are judged
+_EXPECTED_ERROR = 0.15  # m, of a prediction by that time that is good
+_SETTLED = 3.0  # s in which it is found out how a new obstacle moves
+_FRAME = 0.05  # s
 _DOUBTFUL = 2.5  # a score from which other shapes are tried at once
 
 
@@ -31,7 +36,11 @@ class FilterSettings:
     """Of one obstacle's filter."""
 
     growth_limit: float = 0.5
-    """The growth is never more than this (m)."""
+    """The growth is never more than this (m) for an obstacle that moves as foreseen, and"""
+    misjudged_limit: float = 1.5
+    """never more than this for one that does not: it may come faster than one can give way."""
+    misjudged_memory: float = 8.0
+    """Time constant with which it is forgotten how wrong a prediction was (s)."""
     static_speed: float = 0.1
     """An obstacle whose speed is surely below this is taken to stand (m/s)."""
 
@@ -57,6 +66,9 @@ class ObstacleFilter:
         predicted = self._surface.guess(first) if known is None or known.kind != "wall" else first.points.mean(axis=0)
         fit = self._surface.fit(first, predicted, iterations=8)
         self._bank = MotionBank(models, first.time, fit.position, fit.variance)
+        self._since = self._judged = first.time
+        self._foreseen: deque[tuple[float, Array]] = deque()
+        self._misjudged = 0.0
         self.frames = 1
         if known is None:
             self._scores["sphere"] = fit.score
@@ -114,18 +126,37 @@ class ObstacleFilter:
             seen = seen.moved(velocity * late, bank.time, (0.5 * late) ** 2)
         fit = self._surface.fit(seen, bank.state[0])
         bank.measured(fit.position, fit.variance)
+        self._judge()
         self.frames += 1
         if self._known is None and len(seen.points) >= _LEAST_POINTS:
             self._note(self.kind, fit.score)
             if self.frames <= _EVERY_FRAME_UNTIL or self.frames % _THEN_EVERY == 0 or fit.score > _DOUBTFUL:
                 self._consider_kinds(seen)
 
+    def _judge(self) -> None:
+        """Compare what was foreseen a second ago with what came."""
+        bank = self._bank
+        position, velocity, _ = bank.state
+        self._misjudged *= float(np.exp(-(bank.time - self._judged) / self.settings.misjudged_memory))
+        self._judged = bank.time
+        while self._foreseen and self._foreseen[0][0] <= bank.time + _FRAME:
+            time, expected = self._foreseen.popleft()
+            error = float(np.linalg.norm(position + velocity * (time - bank.time) - expected))
+            self._misjudged = max(self._misjudged, error - _EXPECTED_ERROR)
+        if bank.time - self._since > _SETTLED:
+            ahead = bank.time + _AHEAD
+            self._foreseen.append((ahead, bank.predict(np.array([ahead]))[0][0]))
+
     def predict(self, times: Array) -> tuple[Array, Array]:
         """Where the centre will be at ``times`` (K,): (K, 3), and by how much to take the body larger (K,)."""
         mean, covariance = self._bank.predict(times)
         # Gershgorin's bound on the largest eigenvalue; exact where one axis, or one diagonal, dominates.
         variance = np.abs(covariance).sum(axis=-1).max(axis=-1) + self._surface.size_sigma**2
-        return mean + self._surface.offset, np.minimum(np.sqrt(variance), self.settings.growth_limit)
+        s, elapsed = self.settings, np.maximum(np.asarray(times) - self._bank.time, 0.0)
+        misjudged = self._misjudged
+        variance += (misjudged * (elapsed / _AHEAD) ** 2) ** 2
+        limit = min(s.growth_limit + 1.5 * misjudged, s.misjudged_limit)
+        return mean + self._surface.offset, np.minimum(np.sqrt(variance), limit)
 
     def _note(self, kind: str, score: float) -> None:
         old = self._scores.get(kind)
