@@ -101,6 +101,16 @@ def test_a_payload_that_hangs_on_some_cradles_stands_for_the_others():
         assert uav_array(world.state(), "cradled").all()
 
 
+def test_wind_does_not_move_what_stands_in_its_cradles():
+    with World(system()) as world:
+        for _ in range(500):
+            world.step([0.0] * 4, [(0.0, 0.0, 0.0)] * 4, (20.0, 0.0, 0.0), [(1.0, 0.0, 0.0)] * 4)
+        assert np.linalg.norm(world.state().payload_position_in_world[:2]) < 1e-3
+        for _ in range(100):  # one that is free is blown at
+            world.step([8.0, 0.0, 0.0, 0.0], [(0.0, 0.0, 0.0)] * 4, None, [(0.0, 5.0, 0.0)] * 4)
+        assert world.state().uavs[0].velocity_in_world[1] > 0.1
+
+
 def test_no_cradle_catches_in_the_air():
     with World(system(4)) as world:
         world.place(hover_state(system(4), (0, 0, -1.5)))

@@ -108,8 +108,8 @@ class World:
         """Advance by one physics step, everything held over it.
 
         ``thrusts`` N numbers (N) along -z of the UAVs; ``torques`` N triples in the UAVs' frames (N m);
-        ``payload_force`` (3,) and ``uav_forces`` N triples: external forces at the centres of mass, NED (N). Plain
-        floats are faster than arrays.
+        ``payload_force`` (3,) and ``uav_forces`` N triples: external forces at the centres of mass, NED (N); without
+        effect while all UAVs are in their cradles. Plain floats are faster than arrays.
 
         The engine integrates semi-implicitly: inputs sampled at the beginning of a step give positions of second
         order at its end, with velocities that belong to half a step earlier; :meth:`state` brings those forward.
@@ -122,6 +122,9 @@ class World:
             apply_force(body, uav, (0.0, 0.0, thrusts[i]), _ORIGIN, link_frame, client)
             x, y, z = torques[i]
             apply_torque(body, uav, (x, -y, -z), link_frame, client)
+        if self._cradles.number_held == self.number_of_uavs:
+            # A payload between held links hangs as much as it stands: wind would swing what the ground should hold.
+            payload_force = uav_forces = None
         if uav_forces is not None:
             for uav, force, state in zip(uavs, uav_forces, self._uav_states, strict=True):
                 apply_force(body, uav, flipped(force), state[0], world_frame, client)
