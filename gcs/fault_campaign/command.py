@@ -18,7 +18,7 @@ from gcs.progress_of_many import show_progress
 from gcs.side_by_side import KEPT
 
 DONE, OUTSIDE_LIMITS, INTERRUPTED = 0, 1, 130
-WIDTH = 130
+WIDTH = 150
 """Characters of a line where there is no terminal that has its own."""
 
 DESCRIPTION = """\

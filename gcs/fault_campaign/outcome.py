@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -71,46 +71,41 @@ def told(result: FaultResult) -> str:
 
 
 def _rates(rates: Sequence[Rates], results: Sequence[FaultResult]) -> Table:
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for title in (
-        "fault",
-        "severity",
-        "flights",
-        "within limits",
-        "safe",
-        "worst clearance",
-        "worst tilt",
-        "least apart",
-        "touched with",
-        "noticed in",
-        "stopped in",
-        "all in",
-    ):
-        table.add_column(title, justify="left" if title in _WRAPPED else "right", no_wrap=title not in _WRAPPED)
+    """A row a fault and severity; without columns of which nothing is known."""
+    columns: dict[str, list[str]] = {}
     for rate in rates:
         chosen = [result for result in results if (result.fault, result.level) == (rate.fault, rate.level)]
-        clearance = min((r.clearance_min_m for r in chosen if r.clearance_min_m is not None), default=None)
-        apart = min((r.uav_separation_min_m for r in chosen if r.uav_separation_min_m is not None), default=None)
-        tilt = max((r.tilt_max_deg for r in chosen if r.tilt_max_deg is not None), default=None)
         noticed = [r.detected_s for r in chosen if r.detected_s is not None]
-        touch = max((r.touchdown_mps for r in chosen if r.touchdown_mps is not None), default=None)
-        stop = max((r.stop_s for r in chosen if r.stop_s is not None), default=None)
-        team = max((r.team_stop_s for r in chosen if r.team_stop_s is not None), default=None)
-        table.add_row(
-            Text(rate.fault),
-            Text(rate.severity),
-            str(rate.flights),
-            _share(rate.within_limits_rate, rate.within_limits_low, rate.within_limits_high),
-            _share(rate.safe_rate, rate.safe_low, rate.safe_high),
-            "-" if clearance is None else f"{clearance:.2f} m",
-            "-" if tilt is None else f"{tilt:.1f} deg",
-            "-" if apart is None else f"{apart:.2f} m",
-            "-" if touch is None else f"{touch:.2f} m/s",
-            _noticed(noticed, len(chosen)),
-            "-" if stop is None else f"{stop:.2f} s",
-            "-" if team is None else f"{team:.2f} s",
-        )
+        for title, cell in (
+            ("fault", rate.fault),
+            ("severity", rate.severity),
+            ("flights", str(rate.flights)),
+            ("within limits", _share(rate.within_limits_rate, rate.within_limits_low, rate.within_limits_high)),
+            ("safe", _share(rate.safe_rate, rate.safe_low, rate.safe_high)),
+            ("worst clearance", _told(min, (r.clearance_min_m for r in chosen), ".2f", "m")),
+            ("worst tilt", _told(max, (r.tilt_max_deg for r in chosen), ".1f", "deg")),
+            ("least apart", _told(min, (r.uav_separation_min_m for r in chosen), ".2f", "m")),
+            ("touched with", _told(max, (r.touchdown_mps for r in chosen), ".2f", "m/s")),
+            ("noticed in", _noticed(noticed, len(chosen))),
+            ("stopped in", _told(max, (r.stop_s for r in chosen), ".2f", "s")),
+            ("all in", _told(max, (r.team_stop_s for r in chosen), ".2f", "s")),
+        ):
+            columns.setdefault(title, []).append(cell)
+    known = {title: cells for title, cells in columns.items() if set(cells) - {"", "-"}}
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for title, cells in known.items():
+        # Titles may wrap between their words, figures not.
+        least = max(len(part) for part in (*title.split(), *([] if title in _WRAPPED else cells)))
+        table.add_column(title, justify="left" if title in _WRAPPED else "right", min_width=least)
+    for row in zip(*known.values(), strict=True):
+        table.add_row(*map(Text, row))
     return table
+
+
+def _told(pick: Callable[[Iterable[float]], float], values: Iterable[float | None], digits: str, unit: str) -> str:
+    """The least or the largest of what is known."""
+    known = [value for value in values if value is not None]
+    return f"{pick(known):{digits}} {unit}" if known else "-"
 
 
 def _noticed(times: Sequence[float], flights: int) -> str:
