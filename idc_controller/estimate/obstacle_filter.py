@@ -39,6 +39,8 @@ class FilterSettings:
     """The growth is never more than this (m) for an obstacle that moves as foreseen, and"""
     misjudged_limit: float = 1.5
     """never more than this for one that does not: it may come faster than one can give way."""
+    misjudged_share: float = 1.5
+    """By how much it may be more, for what a prediction by a second was wrong by."""
     misjudged_memory: float = 8.0
     """Time constant with which it is forgotten how wrong a prediction was (s)."""
     static_speed: float = 0.1
@@ -153,9 +155,8 @@ class ObstacleFilter:
         # Gershgorin's bound on the largest eigenvalue; exact where one axis, or one diagonal, dominates.
         variance = np.abs(covariance).sum(axis=-1).max(axis=-1) + self._surface.size_sigma**2
         s, elapsed = self.settings, np.maximum(np.asarray(times) - self._bank.time, 0.0)
-        misjudged = self._misjudged
-        variance += (misjudged * (elapsed / _AHEAD) ** 2) ** 2
-        limit = min(s.growth_limit + 1.5 * misjudged, s.misjudged_limit)
+        variance += (self._misjudged * (elapsed / _AHEAD) ** 2) ** 2
+        limit = min(s.growth_limit + s.misjudged_share * self._misjudged, s.misjudged_limit)
         return mean + self._surface.offset, np.minimum(np.sqrt(variance), limit)
 
     def _note(self, kind: str, score: float) -> None:

@@ -14,6 +14,8 @@ Array = NDArray[np.float64]
 
 UNCLEAR = 0.012
 """So near to the moment at which a set-point should act it is not known which one does (s)."""
+LEAST_PERIOD = 0.012
+"""Set-points that follow each other sooner are taken to come after this time (s)."""
 SAME = np.array([2e-4, 2e-4, 2e-3])
 """Set-points that differ by less are the same: tilts, thrust (N)."""
 LOSS_SHARE = 0.05
@@ -92,7 +94,7 @@ class SetpointHistory:
             return InForce(now, None, self.loss)
         entry = self._entries[at]
         # One that comes sooner or later than it should leaves as much variance as one that is lost that often.
-        period = max(entry.effective - self._entries[at - 1].effective, UNCLEAR)
+        period = max(entry.effective - self._entries[at - 1].effective, LEAST_PERIOD)
         unknown = np.minimum(self.loss + (self._spread / period) ** 2, 1.0)
         doubt = np.where(entry.known, (PUNCTUAL / period) ** 2 / 3.0, unknown)
         return InForce(self._mean(at, start, end), now - before, doubt)
