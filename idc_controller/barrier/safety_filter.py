@@ -15,6 +15,7 @@ from idc_controller.barrier.planner import Plan, Planner, PlannerSettings
 from idc_controller.barrier.separation import Separation, separations
 from idc_controller.control.safety import SafetyReport
 from idc_controller.estimate.estimator import Estimate
+from idc_controller.model.air import Air
 from idc_controller.parameters import SystemParameters
 from idc_controller.plan.chain import Chain
 from idc_controller.plan.flatness import PayloadTrajectory
@@ -35,6 +36,10 @@ RECOVERY = 1.5
 """Time constant with which the tracker brings the payload back onto the plan (s)."""
 EXCESS_MAX = 1.0
 """More than this off the plan is not reckoned with (m)."""
+BEARABLE_DRAG = 0.45
+"""Drag on the payload, over its weight, above which the mission is flown more slowly."""
+SLOWEST_IN_WIND = 0.6
+"""Rate of the mission's clock that it is not slowed beyond for this: slower, it counts as held up."""
 NEGLIGIBLE = 1e-5
 """A deviation below this, in all derivatives, is none."""
 
@@ -111,6 +116,7 @@ class AvoidanceFilter:
         self._plan_time = 0.0
         self._rate = 1.0
         self._turn = 0
+        self._weight = parameters.m_0 * parameters.g
         self._taken_up: tuple[float, float] | None = None
         """When a new mission was given, and its clock then; until the next step."""
         self.report = SafetyReport()
@@ -146,7 +152,7 @@ class AvoidanceFilter:
             self._rate = 1.0
         self._taken_up = time, clock
 
-    def filter(self, time: float, mission: Trajectory, estimate: Estimate) -> SafeTrajectory:
+    def filter(self, time: float, mission: Trajectory, estimate: Estimate, air: Air | None = None) -> SafeTrajectory:
         """The trajectory to track from ``time`` on, and what was tracked before."""
         chain = self.settings.chain
         stages = chain.period * np.arange(chain.stages + 1, dtype=np.float64)
@@ -187,7 +193,11 @@ class AvoidanceFilter:
             payload_bound=self.settings.tracking,
             uav_bound=self.settings.tracking + self.settings.uav_tracking,
         )
-        self._rate = _clock_rate(self._rate, lag)
+        bearable = None
+        if air is not None:
+            bent = 0.0 if deviation is None else deviation[:, 1]
+            bearable = self._bearable_rate(air, ahead[1] / max(self._rate, SLOWEST_IN_WIND), bent)
+        self._rate = _clock_rate(self._rate, lag, bearable)
         return SafeTrajectory(list(self._pieces), chain)
 
     def _clock(self, time: float) -> float:
@@ -199,6 +209,16 @@ class AvoidanceFilter:
             return time
         piece = self._pieces[-1]
         return piece.mission_time + piece.rate * (time - piece.start)
+
+    def _bearable_rate(self, air: Air, mission: Array, bent: Array | float) -> float:
+        """Largest rate of the clock at which drag stays bearable.
+
+        Velocities over the stages (K + 1, 3) (m/s): of the ``mission`` at rate 1, and by which it is ``bent``.
+        """
+        rates = np.linspace(1.0, SLOWEST_IN_WIND, 8)
+        drag = np.linalg.norm(air.on_payload(rates[:, None, None] * mission + bent), axis=2).max(axis=1)
+        bearable = np.flatnonzero(drag <= BEARABLE_DRAG * self._weight)
+        return float(rates[bearable[0]] if len(bearable) else SLOWEST_IN_WIND)
 
     def _grown(
         self, obstacles: list[PredictedObstacle], error: float, stages: NDArray[np.float64]
@@ -324,10 +344,12 @@ def _lag(start: Array, ahead: Array) -> float:
     return max(0.0, float(-start[0] @ velocity) / speed) if speed > 0.05 else float(np.linalg.norm(start[0, :2]))
 
 
-def _clock_rate(rate: float, lag: float) -> float:
-    """The mission's clock slows from 1.2 m of lag and stands from 2.4 m."""
-    wanted = float(np.clip((2.4 - lag) / 1.2, 0.0, 1.0))
-    changed = rate + float(np.clip(wanted - rate, -0.05, 0.05))
+def _clock_rate(rate: float, lag: float, bearable: float | None) -> float:
+    """The mission's clock slows from 1.2 m of lag and stands from 2.4 m, and goes no faster than is ``bearable``."""
+    wanted, step = float(np.clip((2.4 - lag) / 1.2, 0.0, 1.0)), 0.05
+    if bearable is not None and bearable <= wanted:
+        wanted, step = bearable, 0.01  # seen long before: no haste, that would only be another disturbance
+    changed = rate + float(np.clip(wanted - rate, -step, step))
     return 1.0 if changed > 0.999 else changed
 
 

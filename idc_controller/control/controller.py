@@ -18,6 +18,8 @@ from idc_controller.control.safety import SafetyFilter, SafetyReport
 from idc_controller.control.standing import StandingTracker
 from idc_controller.control.tracker import Tracker
 from idc_controller.estimate.estimator import Estimate
+from idc_controller.estimate.wind import WindEstimator
+from idc_controller.model.air import Air
 from idc_controller.model.linear import LinearModel
 from idc_controller.parameters import SystemParameters
 from idc_controller.plan.flatness import FlatReference, Load, PayloadTrajectory
@@ -35,10 +37,12 @@ class ControllerSettings:
     """Control period (s)."""
     horizon: int = 20
     """Stages over which the tracker wants the reference."""
-    load_time_constant: float = 0.5
+    load_time_constant: float = 0.25
     """With which the reference follows the estimated load (s): it must be slower than the estimate itself."""
     force_limit: float = 0.4
     """Largest steady force that the reference leans against, as a share of the payload's weight."""
+    drag_limit: float = 0.65
+    """The same where wind explains the force: of drag, and of drag and steady force together."""
     position_error_limit: float = 0.3
     """An error of the payload's position is answered as if it were at most this (m)."""
     velocity_error_limit: float = 0.6
@@ -89,7 +93,9 @@ class IntegratedDecisionController:
         self._standing = StandingTracker(model, settings.period)
         self._tracked: PayloadTrajectory | None = None
         self._stopwatch = stopwatch
+        self._weight = self.parameters.m_0 * self.parameters.g
         self.load = Load(self.parameters.m_0, np.zeros(3))
+        self.wind = WindEstimator(self.parameters.payload_size, settings.period, settings.drag_limit * self._weight)
         self._times = settings.period * np.append(np.arange(settings.horizon + 1), 0.5)
 
     def reference(self, mission: PayloadTrajectory) -> Reference:
@@ -109,7 +115,7 @@ class IntegratedDecisionController:
         ``standing``: the payload stands on the ground. ``learn_load`` is off while the ground may carry part of it.
         """
         begin = self._stopwatch()
-        trajectory = mission if standing else self.safety.filter(estimate.time, mission, estimate)
+        trajectory = mission if standing else self.safety.filter(estimate.time, mission, estimate, self.load.air)
         self._tracked = None if standing else trajectory
         planned = self._stopwatch()
         if learn_load and not standing:
@@ -150,11 +156,24 @@ class IntegratedDecisionController:
     def _learn(self, estimate: Estimate) -> None:
         share = self.settings.period / self.settings.load_time_constant
         mass = self.load.mass + share * (self.parameters.m_0 + estimate.mass_excess - self.load.mass)
-        limit = self.settings.force_limit * self.parameters.m_0 * self.parameters.g
-        force = self.load.force + share * (_limited(estimate.force, limit) - self.load.force)
+        velocity = estimate.x[self.layout.v_0]
+        drag, uav_drag = _drag(self.load.air, velocity)
+        force, uav_force = self.load.force + drag, self.load.uav_force + uav_drag
+        self.wind.learn(estimate.force, estimate.uav_force, velocity)
+        drag, uav_drag = _drag(self.wind.air, velocity)
         uav_limit = self.settings.force_limit * float(self.parameters.m.min()) * self.parameters.g
-        uav_force = self.load.uav_force + share * (_limited(estimate.uav_force, uav_limit) - self.load.uav_force)
-        self.load = Load(float(np.clip(mass, 0.5 * self.parameters.m_0, 2.0 * self.parameters.m_0)), force, uav_force)
+        # What is believed of the wind changes what is left over, not the whole.
+        force, uav_force = force - drag, uav_force - uav_drag
+        limit = self._weight * (self.settings.force_limit if self.wind.air is None else self.settings.drag_limit)
+        force = force + share * (_limited(estimate.force, limit) - drag - force)
+        uav_force = uav_force + share * (_limited(estimate.uav_force, uav_limit) - uav_drag - uav_force)
+        mass = float(np.clip(mass, 0.5 * self.parameters.m_0, 2.0 * self.parameters.m_0))
+        self.load = Load(mass, force, uav_force, self.wind.air)
+
+
+def _drag(air: Air | None, velocity: Array) -> tuple[Array, Array]:
+    """On the payload and on each UAV (3,) (N), at ``velocity`` (3,) (m/s)."""
+    return (np.zeros(3), np.zeros(3)) if air is None else (air.on_payload(velocity), air.on_uav(velocity))
 
 
 def _limited(error: Array, limit: float) -> Array:

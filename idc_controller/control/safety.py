@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from idc_controller.estimate.estimator import Estimate
+from idc_controller.model.air import Air
 from idc_controller.plan.flatness import PayloadTrajectory
 from idc_controller.plan.trajectory import Trajectory
 
@@ -47,8 +48,8 @@ class SafetyFilter(Protocol):
     report: SafetyReport
     """Of the last step."""
 
-    def filter(self, time: float, mission: Trajectory, estimate: Estimate) -> PayloadTrajectory:
-        """The trajectory to track from ``time`` on; it also tells what was tracked before."""
+    def filter(self, time: float, mission: Trajectory, estimate: Estimate, air: Air | None = None) -> PayloadTrajectory:
+        """The trajectory to track from ``time`` on; it also tells what was tracked before. ``air``: what is known."""
         ...
 
     def correct(self, time: float, u: Array, estimate: Estimate) -> Array:
@@ -77,7 +78,7 @@ class NoObstacles:
 
     report = SafetyReport()
 
-    def filter(self, time: float, mission: Trajectory, estimate: Estimate) -> PayloadTrajectory:
+    def filter(self, time: float, mission: Trajectory, estimate: Estimate, air: Air | None = None) -> PayloadTrajectory:
         """``mission`` itself."""
         return mission
 

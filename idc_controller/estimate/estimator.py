@@ -244,14 +244,17 @@ class Estimator:
         pending = self._moments[bisect.bisect_right(self._moments, self.time, key=lambda m: m.time) :]
         time = max(time, self.time, pending[-1].time if pending else time)
         way = _Way(self.time, [m.time for m in pending], time, self._setpoints, reference)
-        load, process = reference.load, self.process_model
-        believed = np.concatenate([load.force, load.uav_force[:2], [load.mass - self.model.parameters.m_0]])
+        process = self.process_model
+        # Drag is believed to change with the velocity, so what is estimated of it is what is left over.
+        believed = np.empty((len(way.edges), self.size - self.layout.size))
+        believed[:, :3], believed[:, 3:5] = way.flat.links.on_payload, way.flat.links.on_uavs[:, :2]
+        believed[:, 5] = reference.load.mass - self.model.parameters.m_0
         n = self.layout.size
 
         def absolute(error: Array, k: int) -> Array:
             x = error.copy()
             x[:n] += way.flat.x[k]
-            x[n:] += believed
+            x[n:] += believed[k]
             return x
 
         kf = self._filter
@@ -259,7 +262,7 @@ class Estimator:
         kf.x, kf.P = last.x.copy(), last.P
         self.adaptation = copy(last.adaptation)
         kf.x[:n] -= way.flat.x[0]
-        kf.x[n:] -= believed
+        kf.x[n:] -= believed[0]
         waiting = iter(pending)
         moment = next(waiting, None)
         for k in range(len(way.edges)):

@@ -19,6 +19,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from idc_controller.model.air import Air
 from idc_controller.model.linear import StateLayout
 from idc_controller.parameters import SystemParameters
 
@@ -52,6 +53,10 @@ class FlatForces:
     """(K, N) (N)"""
     force: Array
     """Thrust vectors of the UAVs (K, N, 3) (N)."""
+    on_payload: Array
+    """What the load's force on the payload is believed to be (K, 3) (N)."""
+    on_uavs: Array
+    """The same on each of the UAVs (K, 3) (N)."""
 
 
 @dataclass(frozen=True)
@@ -76,19 +81,29 @@ class FlatReference:
 class Load:
     """What is believed of the payload, its mass (kg) and a steady ``force`` on it (3,), and of the wind.
 
-    ``uav_force``: level force on each of the UAVs, the same for all (3,). Forces in N, NED.
+    ``uav_force``: level force on each of the UAVs, the same for all (3,). Forces in N, NED. ``air``: its drag comes on
+    top of the steady forces and changes with the velocity; None: there is none.
     """
 
     mass: float
     force: Array
     uav_force: Array = field(default_factory=lambda: np.zeros(3))
+    air: Air | None = None
 
 
 def flat_forces(parameters: SystemParameters, derivatives: Array, load: Load) -> FlatForces:
     """Link directions, tensions and UAV forces for payload ``derivatives`` (5, K, 3) under ``load``."""
     acceleration, jerk, snap = derivatives[2], derivatives[3], derivatives[4]
     gravity = parameters.g * E3
-    w = gravity - acceleration + load.force / load.mass
+    on_payload = np.broadcast_to(load.force, acceleration.shape)
+    on_uavs = np.broadcast_to(load.uav_force, acceleration.shape)
+    if load.air is not None:
+        drag, drag_dot, drag_ddot = load.air.on_payload_along(derivatives)
+        on_payload = on_payload + drag
+        # The UAVs' own velocity differs little from the payload's.
+        on_uavs = on_uavs + load.air.on_uav(derivatives[1])
+        jerk, snap = jerk - drag_dot / load.mass, snap - drag_ddot / load.mass
+    w = gravity - acceleration + on_payload / load.mass
     norm = np.sqrt(_dot(w, w))
     q = w / norm
     norm_dot = -_dot(q, jerk)
@@ -99,8 +114,8 @@ def flat_forces(parameters: SystemParameters, derivatives: Array, load: Load) ->
     tension = _tensions(parameters, q, load.mass * norm[:, 0])
     uav_acceleration = acceleration[:, None, :] - parameters.l[:, None] * q_ddot[:, None, :]
     force = parameters.m[:, None] * (uav_acceleration - gravity) - tension[..., None] * q[:, None, :]
-    force -= load.uav_force
-    return FlatForces(q, q_dot, q_ddot, tension, force)
+    force -= on_uavs[:, None, :]
+    return FlatForces(q, q_dot, q_ddot, tension, force, on_payload, on_uavs)
 
 
 def flat_reference(
