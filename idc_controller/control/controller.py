@@ -37,7 +37,7 @@ class ControllerSettings:
     """Control period (s)."""
     horizon: int = 20
     """Stages over which the tracker wants the reference."""
-    load_time_constant: float = 0.25
+    load_time_constant: float = 0.5
     """With which the reference follows the estimated load (s): it must be slower than the estimate itself."""
     force_limit: float = 0.4
     """Largest steady force that the reference leans against, as a share of the payload's weight."""

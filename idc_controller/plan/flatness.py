@@ -2,7 +2,7 @@
 
 With the payload level, its position up to snap fixes everything else: all links are parallel to
 
-    w = g e3 + d / m_0 - a,   q = w / |w|,   (d: a steady force on the payload, w: one on each UAV)
+    w = g e3 + d / m_0 - a,   q = w / |w|,   (d: the force on the payload, w: that on each UAV)
 
 they share the tension m_0 |w| so that no moment acts on the payload, and the force of UAV i is
 

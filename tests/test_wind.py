@@ -1,0 +1,77 @@
+"""Drag of moving air, and what is learnt of the wind from the forces that it makes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from idc_controller.estimate.wind import WindEstimator
+from idc_controller.model.air import Air, box_coefficients
+
+SIZE = np.array([1.0, 1.0, 0.5])
+PERIOD = 0.05
+LIMIT = 1e3
+TIMES = PERIOD * np.arange(600)
+
+
+def eight(times):
+    """Derivatives 0 .. 4 (5, K, 3) of a figure eight."""
+    orders = np.arange(5)[:, None]
+    x = 6.0 * 0.5**orders * np.sin(0.5 * times + orders * np.pi / 2)
+    y = -3.0 * np.sin(times + orders * np.pi / 2)
+    return np.stack([x, y, np.zeros_like(x)], axis=2)
+
+
+def learnt(force_at, times=TIMES, noise=0.05, seed=5):
+    """What a payload on a figure eight believes at the end; ``force_at`` (velocity) -> force on it and on each UAV."""
+    estimator, generator = WindEstimator(SIZE, PERIOD, LIMIT), np.random.default_rng(seed)
+    for velocity in eight(times)[1]:
+        force, uav_force = force_at(velocity)
+        estimator.learn(force + noise * generator.standard_normal(3), uav_force, velocity)
+    return estimator.air
+
+
+@pytest.mark.parametrize("limit", [np.inf, 12.0], ids=["plain", "fading"])
+def test_rates_of_the_drag_are_its_derivatives(limit):
+    air, h = Air(np.array([2.0, 1.0, 0.2]), box_coefficients(SIZE), 0.02, limit), 1e-4
+    force, rate, acceleration = air.on_payload_along(eight(TIMES))
+    before, after = (air.on_payload_along(eight(TIMES + d)) for d in (-h, h))
+    assert force == pytest.approx(air.on_payload(eight(TIMES)[1]))
+    assert rate == pytest.approx((after[0] - before[0]) / (2 * h), abs=1e-3)
+    assert acceleration == pytest.approx((after[1] - before[1]) / (2 * h), abs=1e-2)
+    assert np.linalg.norm(force, axis=1).max() < limit
+
+
+@pytest.mark.parametrize("wind", [(2.1, 2.1), (-3.0, 0.5), (0.0, -4.0)])
+@pytest.mark.parametrize("factor", [0.7, 1.0, 1.4])
+def test_a_steady_wind_is_learnt_and_so_is_how_much_it_drags(wind, factor):
+    true = Air(np.array([*wind, 0.0]), factor * box_coefficients(SIZE), 0.018)
+    air = learnt(lambda velocity: (true.on_payload(velocity), true.on_uav(velocity)))
+    assert air.wind == pytest.approx(true.wind, abs=0.3)
+    for velocity in ([0.0, 0.0, 0.0], [3.0, 2.0, 0.0], [-3.0, 2.0, 0.0], [-2.0, -3.0, 0.0]):
+        expected = true.on_payload(np.array(velocity))
+        assert air.on_payload(np.array(velocity)) == pytest.approx(expected, abs=0.12 * np.linalg.norm(expected) + 0.3)
+    assert air.uav == pytest.approx(true.uav, rel=0.2)
+
+
+def test_without_a_force_there_is_no_wind():
+    assert learnt(lambda _: (np.zeros(3), np.zeros(3))) is None
+
+
+def test_a_force_that_is_the_same_at_all_velocities_is_no_wind():
+    assert learnt(lambda _: (np.array([0.0, 8.0, 0.0]), np.zeros(3))) is None
+
+
+def test_a_force_that_points_along_the_velocity_is_no_wind():
+    assert learnt(lambda velocity: (1.5 * velocity, np.zeros(3))) is None
+
+
+def test_a_wind_that_has_ended_is_forgotten():
+    true = Air(np.array([2.1, 2.1, 0.0]), box_coefficients(SIZE), 0.018)
+    estimator = WindEstimator(SIZE, PERIOD, LIMIT)
+    for velocity in eight(TIMES)[1]:
+        estimator.learn(true.on_payload(velocity), true.on_uav(velocity), velocity)
+    assert estimator.air is not None
+    for velocity in eight(TIMES)[1]:
+        estimator.learn(np.zeros(3), np.zeros(3), velocity)
+    assert estimator.air is None
