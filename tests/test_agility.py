@@ -31,16 +31,26 @@ def along_north(distance):
     return lambda t: np.array([distance(t), 0.0, 0.0])
 
 
+def agilities(motion, until):
+    return [judged(motion, until, seed) for seed in range(1, 11)]
+
+
+def stopping(t):
+    return 2.0 * min(t, 3.0)
+
+
 def test_steady_motion_is_not_agile():
-    agility = judged(along_north(lambda t: 2.0 * t), until=8.0)
-    assert agility.unlike < 0.3
-    assert agility.misjudged < 0.1
-    assert agility.growth_limit < SETTINGS.limit + 0.15
+    worst = max(agilities(along_north(lambda t: 2.0 * t), until=8.0), key=lambda agility: agility.misjudged)
+    assert worst.misjudged < 0.25
+    assert worst.growth_limit < SETTINGS.limit_misjudged - 0.5
 
 
 def test_what_stops_dead_moves_unlike_any_model():
-    agility = judged(along_north(lambda t: 2.0 * min(t, 3.0)), until=4.0)
-    assert agility.unlike > 0.6
+    steady = agilities(along_north(lambda t: 2.0 * t), until=4.0)
+    stopped = agilities(along_north(stopping), until=4.0)
+    assert np.mean([agility.unlike for agility in steady]) < 0.5
+    assert min(agility.unlike for agility in stopped) > 0.6
+    agility = stopped[0]
     spread = np.sqrt(agility.variance(np.array([1.0, 2.0])))
     assert spread[0] > 0.6 * 0.5 * SETTINGS.unlike_acceleration
     assert spread[1] == pytest.approx(4.0 * spread[0])

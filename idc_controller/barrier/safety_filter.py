@@ -35,6 +35,9 @@ RECOVERY = 1.5
 """Time constant with which the tracker brings the payload back onto the plan (s)."""
 EXCESS_MAX = 1.0
 """More than this off the plan is not reckoned with (m)."""
+SAME_STAGE = 0.7
+"""Of a stage: until then the plan stays. Planned more often, its stages would fall between those of the plan before,
+where that one asks for nothing, and the two would disagree by turns."""
 NEGLIGIBLE = 1e-5
 """A deviation below this, in all derivatives, is none."""
 
@@ -149,6 +152,8 @@ class AvoidanceFilter:
     def filter(self, time: float, mission: Trajectory, estimate: Estimate) -> SafeTrajectory:
         """The trajectory to track from ``time`` on, and what was tracked before."""
         chain = self.settings.chain
+        if self._taken_up is None and self._pieces and time < self._pieces[-1].start + SAME_STAGE * chain.period:
+            return SafeTrajectory(list(self._pieces), chain)
         stages = chain.period * np.arange(chain.stages + 1, dtype=np.float64)
         obstacles = list(self.obstacles.predict(time + stages))
         clock = self.navigator.advance(self._clock(time))

@@ -1,8 +1,9 @@
 """Of how much more acceleration an obstacle is capable than the motion models allow for.
 
-Two things tell it. Innovations tell at once that it moves unlike any model, but not how much harm that does. A prediction
-that has proved wrong a second later tells that; it comes late, but for an obstacle that stops and goes off again not too
-late. Both count as an acceleration, with which the obstacle may leave any prediction, and both are forgotten slowly.
+Two things tell it. Innovations tell at once that it moves unlike any model, but not how much harm that does. A
+prediction that has proved wrong a second later tells that; it comes late, but for an obstacle that stops and goes off
+again not too late. Both count as an acceleration, with which the obstacle may leave any prediction, and both are
+forgotten slowly.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ class AgilitySettings:
     memory: float = 8.0
     """Time constant with which either is forgotten (s)."""
     limit: float = 0.5
-    """No body is taken larger by more than this (m) as long as predictions prove right; for what they prove wrong by,"""
+    """No body is taken larger by more than this (m) while predictions prove right; for what they prove wrong by,"""
     limit_share: float = 1.5
     """by this much of it more,"""
     limit_misjudged: float = 1.5
