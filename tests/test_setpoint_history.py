@@ -84,3 +84,25 @@ def test_what_is_over_is_forgotten_but_for_what_may_still_act(history):
     history.add(0.25, SENT[0])
     history.forget(0.26)
     assert history.switches(-1.0, 1.0) == pytest.approx([0.10, 0.15, 0.20, 0.25])
+
+
+def test_when_one_began_is_told_once(history):
+    first = history.confirm(1, 0.12, 0.13, SENT[2][SECOND], spread=0.01)
+    assert first.began == pytest.approx((0.10, 0.12))
+    again = history.confirm(1, 0.12, 0.14, SENT[2][SECOND], spread=0.01)
+    assert again.began is None
+
+
+def test_one_that_comes_long_before_its_time_is_found(history):
+    early = history.confirm(1, 0.09, 0.11, SENT[4][SECOND], spread=0.0)
+    assert early is not None and early.as_sent is None
+    assert early.began == pytest.approx((0.20, 0.09))
+    assert history.in_force(0.10, 0.15).u[SECOND] == pytest.approx(SENT[4][SECOND])
+
+
+def test_of_equal_ones_none_is_said_to_have_begun():
+    history = SetpointHistory(N, least_loss=0.005)
+    for k in range(5):
+        history.add(0.05 * k, SENT[1])
+    told = history.confirm(1, 0.10, 0.14, SENT[1][SECOND], spread=0.0)
+    assert told is None or told.began is None

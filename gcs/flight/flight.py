@@ -21,6 +21,7 @@ from gcs.wire import px4
 from idc_controller.control.controller import Decision, IntegratedDecisionController
 from idc_controller.estimate.estimator import Estimate, Estimator
 from idc_controller.estimate.measurements import Measurement
+from idc_controller.estimate.setpoint_history import Confirmation
 from idc_controller.plan.reference import Reference
 from idc_controller.plan.stop import StopPlan, stop_plan
 from idc_controller.plan.trajectory import RestTrajectory, Trajectory
@@ -139,10 +140,10 @@ class Flight:
         elif self.phase in (Phase.CHECK, Phase.ARM):
             self._on_pad.measured(measurement)
 
-    def flown(self, uav: int, since: float, until: float, told: Array, spread: float) -> bool | None:
+    def flown(self, uav: int, since: float, until: float, told: Array, spread: float) -> Confirmation | None:
         """A vehicle says what it flew from ``since`` to ``until``, tilt (north, east) and thrust (N) (3,).
 
-        ``spread``: by how much the time varies that datagrams take to it (s). Returns whether that is what it was sent.
+        ``spread``: by how much the time varies that datagrams take to it (s). Returns what the estimator learns of it.
         """
         if self.phase not in IN_THE_AIR:
             return None
@@ -173,6 +174,18 @@ class Flight:
         """The first reason counts."""
         if not self.reason:
             self.reason, self.broken_off_time = reason, time
+
+    def watch_team(self, time: float, now: float) -> None:
+        """Whether all vehicles still take part at team ``time``, ``now`` on the ground's clock: if not, none does.
+
+        Asked whenever something has come: who stops late, stops elsewhere.
+        """
+        if self.phase not in (Phase.SPOOL_UP, *IN_THE_AIR) or (problem := self.team.dropped_out(now)) is None:
+            return
+        if self.phase is Phase.SPOOL_UP:
+            self.break_off(time, problem.reason)
+        else:
+            self._leave_alone(time, problem.reason, problem.unheard)
 
     def step(self, time: float, effective: float, now: float) -> tuple[Setpoints | None, StepRecord | None]:
         """One control step at team ``time``; set-points act at ``effective``. ``now`` is the ground's time.
@@ -301,12 +314,6 @@ class Flight:
         return self.phase in (Phase.SPOOL_UP, *IN_THE_AIR, Phase.SPOOL_DOWN)
 
     def _fly(self, time: float, effective: float, now: float) -> tuple[Setpoints | None, StepRecord | None]:
-        if self.phase is not Phase.SPOOL_DOWN and (problem := self.team.dropped_out(now)) is not None:
-            if self.phase is Phase.SPOOL_UP:
-                self.break_off(time, problem.reason)
-            else:
-                self._leave_alone(time, problem.reason, problem.unheard)
-            return None, None
         if self.phase in IN_THE_AIR and (blocked := self.controller.safety.blocked(time)):
             self.break_off(time, blocked)
         trajectory = self._trajectory(time)

@@ -56,10 +56,15 @@ class InForce(NamedTuple):
 
 
 class Confirmation(NamedTuple):
-    """``as_sent``: whether a vehicle flew what it was sent. ``corrected_from``: when the history has changed (s)."""
+    """``as_sent``: whether a vehicle flew what it was sent; None: that cannot be told yet.
 
-    as_sent: bool
+    ``corrected_from``: when the history has changed (s). ``began``: when the one flown should have begun to act, and
+    when it did (s); None: that was known.
+    """
+
+    as_sent: bool | None = None
     corrected_from: float | None = None
+    began: tuple[float, float] | None = None
 
 
 class SetpointHistory:
@@ -104,7 +109,10 @@ class SetpointHistory:
         if all(entry.exact for entry in near) or any(entry.flown is None for entry in near):
             return self._entries[at].flown
         flown = np.array([entry.flown for entry in near])
-        starts = np.maximum.accumulate([entry.starts for entry in near], axis=0)
+        # What is not known of begins after what is known to have begun before it, and before what is known after it.
+        starts, known = np.array([entry.starts for entry in near]), np.array([entry.known for entry in near])
+        after = np.minimum.accumulate(np.where(known, starts, np.inf)[::-1], axis=0)[::-1]
+        starts = np.maximum.accumulate(np.minimum(starts, after), axis=0)
         starts[0] = -np.inf
         edges = np.clip(np.vstack([starts, np.full(self._N, np.inf)]), start, end)
         shares = np.diff(edges, axis=0) / (end - start)  # (entries, N)
@@ -125,7 +133,9 @@ class SetpointHistory:
             return u is not None and bool((np.abs(u[which] - told) < SAME).all())
 
         newest = self._at(until + unclear)
-        flown = next((k for k in range(newest, max(newest - LOST_MAX, -1), -1) if is_told(entries[k].sent)), None)
+        # Those that should act already; then those that would come earlier than they should.
+        candidates = (*range(newest, max(newest - LOST_MAX, -1), -1), *range(newest + 1, len(entries)))
+        flown = next((k for k in candidates if is_told(entries[k].sent)), None)
         if flown is None:
             return None
         changed = math.inf
@@ -135,13 +145,18 @@ class SetpointHistory:
         first = flown
         while first > 0 and is_told(entries[first - 1].sent):
             first -= 1
+        began = None
         if first and flown - first < LOST_MAX:
+            if first == flown and not entries[first].known[uav]:
+                began = entries[first].effective, since
             changed = min(changed, self._begins(entries[first], uav, which, since))
+        as_sent = None
         if overdue or entries[flown].effective + unclear < until:
-            self._learn(uav, float(bool(overdue)))
-        elif changed == math.inf:
+            as_sent = not overdue
+            self._learn(uav, float(not as_sent))
+        elif changed == math.inf and began is None:
             return None
-        return Confirmation(as_sent=not overdue, corrected_from=changed if changed < math.inf else None)
+        return Confirmation(as_sent, changed if changed < math.inf else None, began)
 
     def _overwrite(self, entry: _Entry, uav: int, which: list[int], told: Array) -> float:
         """One that never came: returns from when on that changes anything."""
