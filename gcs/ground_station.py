@@ -245,7 +245,7 @@ class GroundStation:
                 self.flight.give_up(f"nothing was heard of any vehicle for {SILENCE_GIVES_UP:g} s")
         delays = [link.setpoint_delay for link in self.links]
         if self._obstacle_map is not None:
-            self._obstacle_map.update(time, self.flight.pose_noise)
+            self._obstacle_map.update(time, self.flight.pose_noise, self.flight.untrusted_poses)
             self._recorder.obstacles(self._obstacle_map, time)
         effective = _whole_ms(time + self._latency + max(delays))
         setpoints, record = self.flight.step(time, effective, now)

@@ -124,6 +124,12 @@ class Flight:
         """Factor of the noise of telemetry over that of the system file, as the filter sees it, 1 or more."""
         return math.sqrt(self.estimator.adaptation.noise)
 
+    @property
+    def untrusted_poses(self) -> frozenset[int]:
+        """UAVs (0 .. N-1) whose position or attitude the filter has left out lately; none when that is all of them."""
+        untrusted = self.estimator.untrusted_poses
+        return untrusted if len(untrusted) < len(self.team.links) else frozenset()
+
     def asked(self, times: Array) -> tuple[Array, Array]:
         """Position and velocity (K, 3) that the mission asks of the payload at ``times`` since take-off began."""
         if self.course is not None:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections import deque
 from statistics import median
 
-REMEMBERED = 11  # set-points: half a second
+REMEMBERED = 5  # set-points: a quarter of a second
 ON_THEIR_WAY = 40  # set-points that may yet be told of
-ENOUGH = 5
+ENOUGH = 3
 
 
 class SetpointWay:

@@ -34,6 +34,9 @@ Array = NDArray[np.float64]
 PATIENCE = 3
 """So many times in a row the payload unit may disagree with the prediction before the prediction is doubted."""
 
+DISTRUST = 0.5
+"""For how long a pose that was left out counts as wrong (s)."""
+
 
 @dataclass(frozen=True)
 class Surprise:
@@ -171,6 +174,7 @@ class Estimator:
         self.innovations: list[InnovationRecord] = []
         self.discarded_late = 0
         self.frozen = FrozenSensors(settings.measurement)
+        self._untrusted: dict[int, float] = {}
         self.adaptation = Adaptation()
 
     def start(self, time: float, x: Array) -> None:
@@ -208,6 +212,14 @@ class Estimator:
             self._back_to(confirmation.corrected_from)
         return confirmation
 
+    @property
+    def untrusted_poses(self) -> frozenset[int]:
+        """UAVs whose position or attitude was frozen or refused within :data:`DISTRUST`."""
+        if not self._untrusted:
+            return frozenset()
+        now = self.time
+        return frozenset(uav for uav, time in self._untrusted.items() if uav != PAYLOAD and now - time < DISTRUST)
+
     def _back_to(self, time: float) -> None:
         """Take the filter back to before ``time`` (s), as far as it remembers."""
         while len(self._snapshots) > 1 and self._snapshots[-1].time >= time:
@@ -216,6 +228,8 @@ class Estimator:
     def add(self, measurement: Measurement) -> bool:
         """Take a measurement; False when it is older than the memory or the start, or of sensors that are frozen."""
         frozen = self.frozen.frozen(measurement)
+        if frozen[0]:
+            self._untrusted[measurement.source] = measurement.time
         if all(frozen):
             return False
         if any(frozen):
@@ -325,6 +339,9 @@ class Estimator:
         keep = np.repeat(accepted, stack.sizes)
         if not accepted.all():
             self._keep_sound_parts(residual, S, stack, accepted, keep)
+            for c in np.flatnonzero(~accepted):
+                if not keep[stack.starts[c]]:
+                    self._untrusted[keys[c][0]] = moment.time
         adaptation.learn(moment.time, keys, white, mean_squares, keep, stack.of_payload)
         nis = 0.0
         if keep.any():
