@@ -11,6 +11,7 @@ from collections import deque
 from statistics import median
 from typing import Any, Protocol
 
+import numpy as np
 import pymavlink.dialects.v20.common as mavlink
 
 from gcs.flight.alarms import Alarm
@@ -243,27 +244,24 @@ class GroundStation:
             heard = any(math.isfinite(link.heard) for link in self.links)
             if heard:
                 self.flight.give_up(f"nothing was heard of any vehicle for {SILENCE_GIVES_UP:g} s")
-        delays = [link.setpoint_delay for link in self.links]
+        # All are to act at once: what has a shorter way waits.
+        delays = np.array([link.setpoint_delay for link in self.links])
+        waits = delays.max() - delays
+        waits[waits < TOGETHER] = 0.0
+        leaves = time + self._latency + waits
         if self._obstacle_map is not None:
             self._obstacle_map.update(time, self.flight.pose_noise, self.flight.untrusted_poses)
             self._recorder.obstacles(self._obstacle_map, time)
-        effective = _whole_ms(time + self._latency + max(delays))
-        setpoints, record = self.flight.step(time, effective, now)
+        effective = _whole_ms(time + self._latency + delays.max())
+        setpoints, record = self.flight.step(time, effective, leaves, now)
         for alarm in self.watch.step(time, now, record):
             self._recorder.alarm(alarm)
         self._recorder.step(self.flight, time, record)
         if setpoints is None:
             self._held.clear()
-        for i, (link, queue) in enumerate(zip(self.links, messages, strict=True)):
-            # All are to act at once: what has a shorter way waits here.
-            wait = max(delays) - delays[i]
-            if wait < TOGETHER:
-                wait = 0.0
+        for i, (queue, wait) in enumerate(zip(messages, waits.tolist(), strict=True)):
             closing = self._closing_the_loop(i, now, setpoints)
-            if not closing:
-                continue
-            link.way.sent(effective, time + self._latency + wait)
-            if wait:
+            if wait and closing:
                 self._held.append((now + wait, i, closing))
             else:
                 queue.extend(closing)

@@ -193,10 +193,12 @@ class Flight:
         else:
             self._leave_alone(time, problem.reason, problem.unheard)
 
-    def step(self, time: float, effective: float, now: float) -> tuple[Setpoints | None, StepRecord | None]:
-        """One control step at team ``time``; set-points act at ``effective``. ``now`` is the ground's time.
+    def step(
+        self, time: float, effective: float, leaves: Array, now: float
+    ) -> tuple[Setpoints | None, StepRecord | None]:
+        """One control step at team ``time``; set-points leave at ``leaves`` (N,) and act at ``effective`` (s).
 
-        None as set-points: nothing is to be sent.
+        ``now`` is the ground's time. None as set-points: nothing is to be sent.
         """
         self.time = time
         match self.phase:
@@ -213,7 +215,7 @@ class Flight:
             case Phase.ENDED:
                 pass
             case _:
-                return self._fly(time, effective, now)
+                return self._fly(time, effective, leaves)
         return None, None
 
     # On the ground
@@ -319,7 +321,7 @@ class Flight:
     def _started(self) -> bool:
         return self.phase in (Phase.SPOOL_UP, *IN_THE_AIR, Phase.SPOOL_DOWN)
 
-    def _fly(self, time: float, effective: float, now: float) -> tuple[Setpoints | None, StepRecord | None]:
+    def _fly(self, time: float, effective: float, leaves: Array) -> tuple[Setpoints | None, StepRecord | None]:
         if self.phase in IN_THE_AIR and (blocked := self.controller.safety.blocked(time)):
             self.break_off(time, blocked)
         trajectory = self._trajectory(time)
@@ -342,7 +344,7 @@ class Flight:
         elif self.phase is Phase.SPOOL_DOWN:
             share = max(1.0 - (time - self._since) / SPOOL_DOWN, 0.0)
         if self.phase in IN_THE_AIR:
-            self.estimator.add_setpoint(effective, decision.u)
+            self.estimator.add_setpoint(effective, decision.u, leaves)
             self.stop_plan = stop_plan(self._parameters, decision.flat, effective, estimate.x)
             self._stop_plans.append(self.stop_plan)
         self._advance(time, estimate, share)

@@ -199,9 +199,12 @@ class Estimator:
         """Time of the last measurement that was applied (s)."""
         return self._snapshots[-1].time
 
-    def add_setpoint(self, effective: float, u: Array | None) -> None:
-        """Set-points (3 N,) that act from ``effective`` on; None: the vehicles are held (cradles, pad), errors stay."""
-        self._setpoints.add(effective, u)
+    def add_setpoint(self, effective: float, u: Array | None, leaves: Array | None = None) -> None:
+        """Set-points (3 N,) that act from ``effective`` on; None: the vehicles are held (cradles, pad), errors stay.
+
+        ``leaves`` (N,): when they leave the ground (s), where that is known.
+        """
+        self._setpoints.add(effective, u, leaves)
 
     def confirm_setpoint(
         self, uav: int, since: float, until: float, told: Array, spread: float = 0.0

@@ -33,6 +33,8 @@ class _Entry:
     """Set-points of all vehicles; None: they are held. What is believed of them, vehicle by vehicle."""
 
     effective: float
+    leaves: Array
+    """When they leave the ground, vehicle by vehicle (N,) (s)."""
     sent: Array | None
     flown: Array | None
     starts: Array
@@ -58,13 +60,13 @@ class InForce(NamedTuple):
 class Confirmation(NamedTuple):
     """``as_sent``: whether a vehicle flew what it was sent; None: that cannot be told yet.
 
-    ``corrected_from``: when the history has changed (s). ``began``: when the one flown should have begun to act, and
-    when it did (s); None: that was known.
+    ``corrected_from``: when the history has changed (s). ``delay``: from when the one flown left the ground until it
+    began to act (s); None: that was known.
     """
 
     as_sent: bool | None = None
     corrected_from: float | None = None
-    began: tuple[float, float] | None = None
+    delay: float | None = None
 
 
 class SetpointHistory:
@@ -81,10 +83,14 @@ class SetpointHistory:
         """Forget the set-points, not what is known of the links."""
         self._entries = []
 
-    def add(self, effective: float, u: Array | None) -> None:
-        """Set-points (3 N,) that act from ``effective`` on; None: the vehicles are held."""
+    def add(self, effective: float, u: Array | None, leaves: Array | None = None) -> None:
+        """Set-points (3 N,) that act from ``effective`` on; None: the vehicles are held.
+
+        ``leaves`` (N,): when they leave the ground (s); None: when they act.
+        """
         starts, known = np.full(self._N, effective), np.zeros(self._N, dtype=bool)
-        bisect.insort(self._entries, _Entry(effective, u, u, starts, known), key=_effective)
+        entry = _Entry(effective, starts.copy() if leaves is None else leaves, u, u, starts, known)
+        bisect.insort(self._entries, entry, key=_effective)
 
     def switches(self, start: float, end: float) -> list[float]:
         """Times between ``start`` and ``end`` at which other set-points should begin to act."""
@@ -112,7 +118,7 @@ class SetpointHistory:
         # What is not known of begins after what is known to have begun before it, and before what is known after it.
         starts, known = np.array([entry.starts for entry in near]), np.array([entry.known for entry in near])
         after = np.minimum.accumulate(np.where(known, starts, np.inf)[::-1], axis=0)[::-1]
-        starts = np.maximum.accumulate(np.minimum(starts, after), axis=0)
+        starts = np.maximum.accumulate(np.where(known, starts, np.minimum(starts, after)), axis=0)
         starts[0] = -np.inf
         edges = np.clip(np.vstack([starts, np.full(self._N, np.inf)]), start, end)
         shares = np.diff(edges, axis=0) / (end - start)  # (entries, N)
@@ -145,18 +151,19 @@ class SetpointHistory:
         first = flown
         while first > 0 and is_told(entries[first - 1].sent):
             first -= 1
-        began = None
+        delay = None
         if first and flown - first < LOST_MAX:
             if first == flown and not entries[first].known[uav]:
-                began = entries[first].effective, since
+                delay = max(since - float(entries[first].leaves[uav]), 0.0)
+                changed = min(changed, self._expect(entries[first + 1 :], uav, delay))
             changed = min(changed, self._begins(entries[first], uav, which, since))
         as_sent = None
         if overdue or entries[flown].effective + unclear < until:
             as_sent = not overdue
             self._learn(uav, float(not as_sent))
-        elif changed == math.inf and began is None:
+        elif changed == math.inf and delay is None:
             return None
-        return Confirmation(as_sent, changed if changed < math.inf else None, began)
+        return Confirmation(as_sent, changed if changed < math.inf else None, delay)
 
     def _overwrite(self, entry: _Entry, uav: int, which: list[int], told: Array) -> float:
         """One that never came: returns from when on that changes anything."""
@@ -179,6 +186,16 @@ class SetpointHistory:
         if abs(since - entry.starts[uav]) > PUNCTUAL:
             changed = min(changed, since, float(entry.starts[uav]))
             entry.starts[uav], entry.exact = since, False
+        return changed
+
+    def _expect(self, later: list[_Entry], uav: int, delay: float) -> float:
+        """What is on its way will take as long, where that is clearly longer than was thought."""
+        changed = math.inf
+        for entry in later:
+            start = float(entry.leaves[uav]) + delay
+            if not entry.known[uav] and start > entry.starts[uav] + UNCLEAR:
+                changed = min(changed, float(entry.starts[uav]))
+                entry.starts[uav], entry.exact = start, False
         return changed
 
     def forget(self, before: float) -> None:
