@@ -11,10 +11,11 @@ from collections import deque
 from statistics import median
 from typing import Any, Protocol
 
+import numpy as np
 import pymavlink.dialects.v20.common as mavlink
 
 from gcs.flight.alarms import Alarm
-from gcs.flight.flight import Flight, StepRecord
+from gcs.flight.flight import Flight, Setpoints, StepRecord
 from gcs.flight.phase import Phase
 from gcs.flight.team import Team
 from gcs.flight.watch import Watch
@@ -33,6 +34,7 @@ TIMESYNC_INTERVAL = 0.1  # s
 SILENCE_GIVES_UP = 3.0  # s without a word of any vehicle
 CLOCK_STEP = 0.5  # s by which the team's time is corrected at most in flight
 LATENCIES = 20  # control steps whose latency is remembered
+TOGETHER = 0.004  # s; vehicles that act within it act at once
 TOLERANCE = 1e-6  # s, for timers that are sums of periods
 
 
@@ -84,6 +86,8 @@ class GroundStation:
         self._team_offset = 0.0
         self._last_step = -math.inf
         self._stepped = False
+        self._held: list[tuple[float, int, list[Any]]] = []
+        """Set-points that wait for those on longer ways: when they are due, the vehicle's index, the messages."""
         self._thinking: deque[float] = deque(maxlen=LATENCIES)
         self._latency = 0.0
         self.refused_datagrams = 0
@@ -141,16 +145,23 @@ class GroundStation:
             self._next_timesync = now + TIMESYNC_INTERVAL
             for link, queue in zip(self.links, messages, strict=True):
                 queue.append(mavlink.MAVLink_timesync_message(0, link.clock.ask(now)))
+        self.flight.watch_team(self.team_time(now), now)
         self._stepped = now >= self._next_control - TOLERANCE
         if self._stepped:
             self._control(now, messages)
+        carries_setpoints = [self._stepped] * len(self.links)
+        for due, i, queue in self._held:
+            if due <= now + TOLERANCE:
+                messages[i].extend(queue)
+                carries_setpoints[i] = True
+        self._held = [entry for entry in self._held if entry[0] > now + TOLERANCE]
         for link, queue in zip(self.links, messages, strict=True):
             queue.extend(link.requests_to_send(now))
         out = []
-        for link, queue in zip(self.links, messages, strict=True):
+        for link, queue, repeated in zip(self.links, messages, carries_setpoints, strict=True):
             if link.address is None:
                 continue
-            copies = link.copies if self._stepped else 1
+            copies = link.copies if repeated else 1
             for datagram in gather(self._codec.encode(message) for message in queue):
                 out += [(datagram, link.address)] * copies
                 self._recorder.datagram(now, datagram)
@@ -166,7 +177,8 @@ class GroundStation:
         """When :meth:`datagrams_to_send` is to be called again (s, ground time); None: never."""
         if self.ended:
             return None
-        return max(min(self._next_control, self._next_heartbeat, self._next_timesync), 0.0)
+        held = min((due for due, _, _ in self._held), default=math.inf)
+        return max(min(self._next_control, self._next_heartbeat, self._next_timesync, held), 0.0)
 
     def _link_at(self, address: Address) -> VehicleLink | None:
         return next((link for link in self.links if link.address == address), None)
@@ -204,18 +216,20 @@ class GroundStation:
             told = setpoint_flown(message, link.parameters.get(px4.PARAM_THRUST_MAX, math.nan))
             if told is not None:
                 # Its stamp is that of the moment at which it began to act.
-                link.confirmed(self.flight.flown(index, time, max(time, latest), told, link.clock.spread))
+                confirmation = self.flight.flown(index, time, max(time, latest), told, link.clock.spread)
+                if confirmation is not None:
+                    link.confirmed(confirmation)
             return time
         if is_detection:
             if obstacle_map is not None:
                 obstacle_map.detected(message, index, time)
             return time
         sample = measurement(message, index, time)
-        if sample is None:
+        if sample is None or not (sample.has_pose and sample.has_motion):
             link.statistics.unusable(message.get_srcComponent())
-        else:
+        if sample is not None:
             self.flight.measured(sample)
-            if obstacle_map is not None:
+            if obstacle_map is not None and sample.has_pose:
                 obstacle_map.measured(sample)
         return time
 
@@ -230,37 +244,40 @@ class GroundStation:
             heard = any(math.isfinite(link.heard) for link in self.links)
             if heard:
                 self.flight.give_up(f"nothing was heard of any vehicle for {SILENCE_GIVES_UP:g} s")
-        delay = max(link.clock.delay for link in self.links)
-        onboard = min(
-            (1.0 / link.parameters[px4.PARAM_ONBOARD_RATE] for link in self.links
-             if link.parameters.get(px4.PARAM_ONBOARD_RATE, 0.0) > 0.0),
-            default=0.0,
-        )  # fmt: skip
+        # All are to act at once: what has a shorter way waits.
+        delays = np.array([link.setpoint_delay for link in self.links])
+        waits = delays.max() - delays
+        waits[waits < TOGETHER] = 0.0
+        leaves = time + self._latency + waits
         if self._obstacle_map is not None:
-            self._obstacle_map.update(time, self.flight.pose_noise)
+            self._obstacle_map.update(time, self.flight.pose_noise, self.flight.untrusted_poses)
             self._recorder.obstacles(self._obstacle_map, time)
-        effective = _whole_ms(time + self._latency + delay + onboard)
-        setpoints, record = self.flight.step(time, effective, now)
+        effective = _whole_ms(time + self._latency + delays.max())
+        setpoints, record = self.flight.step(time, effective, leaves, now)
         for alarm in self.watch.step(time, now, record):
             self._recorder.alarm(alarm)
         self._recorder.step(self.flight, time, record)
+        if setpoints is None:
+            self._held.clear()
+        for i, (queue, wait) in enumerate(zip(messages, waits.tolist(), strict=True)):
+            closing = self._closing_the_loop(i, now, setpoints)
+            if wait and closing:
+                self._held.append((now + wait, i, closing))
+            else:
+                queue.extend(closing)
+
+    def _closing_the_loop(self, i: int, now: float, setpoints: Setpoints | None) -> list[Any]:
+        """Stop plan and set-point of one vehicle, as far as there are any."""
+        link, messages = self.links[i], []
         # The plan before the set-point: a vehicle that gets one of the two can still stop with the others.
         if (plan := self.flight.stop_plan) is not None:
-            for link, queue, points in zip(self.links, messages, plan.control_points.tolist(), strict=True):
-                start = plan.start - self._team_offset + link.clock.offset
-                queue.append(stop_plan_message(start, plan.duration, points))
-        if setpoints is None:
-            return
-        for i, (link, queue) in enumerate(zip(self.links, messages, strict=True)):
-            queue.append(
-                attitude_target(
-                    link.system_id,
-                    now + link.clock.offset,
-                    setpoints.directions[i],
-                    float(setpoints.thrusts[i]),
-                    link.parameters[px4.PARAM_THRUST_MAX],
-                )
-            )
+            start = plan.start - self._team_offset + link.clock.offset
+            messages.append(stop_plan_message(start, plan.duration, plan.control_points[i].tolist()))
+        if setpoints is not None:
+            direction, thrust = setpoints.directions[i], float(setpoints.thrusts[i])
+            thrust_max = link.parameters[px4.PARAM_THRUST_MAX]
+            messages.append(attitude_target(link.system_id, now + link.clock.offset, direction, thrust, thrust_max))
+        return messages
 
 
 def _whole_ms(time: float) -> float:

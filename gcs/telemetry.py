@@ -30,7 +30,8 @@ def setpoint_flown(message: Any, thrust_max: float) -> Array | None:
 def measurement(message: Any, uav: int, time: float) -> Measurement | None:
     """The measurement in ``message`` of UAV ``uav`` (0 .. N-1), true at ``time`` (s, team time).
 
-    None for messages that measure nothing and for values that cannot be measurements (not finite, no rotation).
+    None for messages that measure nothing and for values that cannot be measurements (not finite, no rotation). Where
+    only the pose or only the motion cannot be one, that part is nan: an unknown rate is told so in MAVLink.
     The payload's navigation unit is a component of its own, relayed by every vehicle.
     """
     component = message.get_srcComponent()
@@ -45,12 +46,17 @@ def measurement(message: Any, uav: int, time: float) -> Measurement | None:
         quaternion = (message.q1, message.q2, message.q3, message.q4)
         rates = (message.rollspeed, message.pitchspeed, message.yawspeed)
         norm = math.sqrt(sum(c * c for c in quaternion))
-        if not (math.isfinite(sum(rates)) and 0.9 < norm < 1.1):
-            return None
-        return Attitude(time, source, np.array(quaternion) / norm, np.array(rates))
+        attitude = Attitude(time, source, np.array(quaternion) / (norm or 1.0), np.array(rates))
+        return _sound(attitude, 0.9 < norm < 1.1, math.isfinite(sum(rates)))
     if kind == "LOCAL_POSITION_NED":
-        values = (message.x, message.y, message.z, message.vx, message.vy, message.vz)
-        if not math.isfinite(sum(values)):
-            return None
-        return Position(time, source, np.array(values[:3]), np.array(values[3:]))
+        position, velocity = (message.x, message.y, message.z), (message.vx, message.vy, message.vz)
+        told = Position(time, source, np.array(position), np.array(velocity))
+        return _sound(told, math.isfinite(sum(position)), math.isfinite(sum(velocity)))
     return None
+
+
+def _sound(told: Measurement, pose: bool, motion: bool) -> Measurement | None:
+    """As far as its ``pose`` and its ``motion`` can be measurements."""
+    if pose and motion:
+        return told
+    return told.without(not pose, not motion) if pose or motion else None

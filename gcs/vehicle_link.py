@@ -6,6 +6,7 @@ import math
 from collections import deque
 from dataclasses import dataclass, field
 from enum import Enum
+from statistics import median
 from typing import Any
 
 import pymavlink.dialects.v20.common as mavlink
@@ -14,7 +15,9 @@ from gcs.wire import px4
 from gcs.wire.address import Address
 from gcs.wire.clock import RemoteClock
 from gcs.wire.link_statistics import LinkStatistics
+from idc_controller.estimate.setpoint_history import Confirmation
 
+DELAYS = 3  # set-points whose median is the delay: a way that gets longer must be followed at once
 RETRY_AFTER = 0.5  # s
 TRIES = 10  # with a third of all datagrams lost, one command in a thousand stays unanswered
 
@@ -72,6 +75,8 @@ class VehicleLink:
     """The vehicle's own checks, from SYS_STATUS; None: not told yet."""
     parameters: dict[str, float] = field(default_factory=dict)
     texts: deque[str] = field(default_factory=lambda: deque(maxlen=20))
+    setpoint_delays: deque[float] = field(default_factory=lambda: deque(maxlen=DELAYS))
+    """How long the last set-points took, that it told of."""
     setpoint_loss: float = 0.0
     """Share of the set-points that do not arrive, as far as the vehicle's words tell."""
     lost_setpoints: int = 0
@@ -85,9 +90,20 @@ class VehicleLink:
         """How often to send what must arrive."""
         return 1 + sum(self.setpoint_loss > threshold for threshold in COPY_ABOVE)
 
-    def confirmed(self, flown: bool | None) -> None:
-        """Whether the vehicle flew what it was sent; None: that cannot be told."""
-        if flown is not None:
+    @property
+    def setpoint_delay(self) -> float:
+        """From when a set-point is sent until the vehicle flies it (s): as it says, else by round trips."""
+        if len(self.setpoint_delays) == DELAYS:
+            # Round trips tell less: on a way that loses or reorders, those that arrive are not late.
+            return median(self.setpoint_delays)
+        onboard = self.parameters.get(px4.PARAM_ONBOARD_RATE, 0.0)
+        return self.clock.delay + (1.0 / onboard if onboard > 0.0 else 0.0)
+
+    def confirmed(self, confirmation: Confirmation) -> None:
+        """The vehicle has told of a set-point that it flew."""
+        if confirmation.delay is not None:
+            self.setpoint_delays.append(confirmation.delay)
+        if (flown := confirmation.as_sent) is not None:
             self.setpoint_loss += LOSS_SHARE * (float(not flown) - self.setpoint_loss)
             self.lost_setpoints += not flown
 
@@ -103,6 +119,11 @@ class VehicleLink:
 
     @property
     def telemetry_heard(self) -> float:
+        """When its own attitude or position came last."""
+        return max(self.attitude_heard, self.position_heard)
+
+    @property
+    def whole_telemetry_heard(self) -> float:
         """When the staler of its own attitude and position came last."""
         return min(self.attitude_heard, self.position_heard)
 

@@ -121,6 +121,17 @@ def test_attitudes_that_are_left_out_are_forgotten_and_nothing_else():
     assert set(judge.complaints(2.0)) == set(KEYS[:3])
 
 
+def test_half_of_a_measurement_is_judged_by_itself():
+    rng, judge, key = np.random.default_rng(4), Consistency(GATE), (1, Position)
+    for k in range(200):
+        white = rng.standard_normal(6) if k < 50 else rng.standard_normal(3) + (2.0 if k >= 100 else 0.0)
+        judge.learn(0.04 * k, [key], [white], [])
+        complaints = judge.complaints(0.04 * k)
+        if k < 100:
+            assert complaints == {}
+    assert "disagrees" in complaints[key]
+
+
 def test_what_is_judged_again_counts_once():
     judge = Consistency(GATE)
     for k in range(2 * REFUSALS):

@@ -157,10 +157,40 @@ def test_outliers_are_kept_out(offset):
     estimator, estimate = run(
         [*moments[:40], *[[sample(1, Position, s[0].time, rng, offset), *s[:4], *s[6:]] for s in moments[40:]]]
     )
-    if not np.isinf(offset):  # that is the same again and again, and does not even come to the gate
+    if np.isfinite(offset):  # what is no number does not even come to the gate
         assert all((1, "Position") in record.rejected for record in estimator.innovations[40:])
     sigma = np.sqrt(np.diag(estimate.covariance))[: LAYOUT.size]
     assert np.all(np.abs(estimate.x - sound.x) < 3.0 * sigma)
+
+
+def spoilt(s, **parts):
+    """Measurements of one moment, of which the position of UAV 1 is ``parts``."""
+    return [replace(m, **parts) if m.source == 1 and isinstance(m, Position) else m for m in s]
+
+
+@pytest.mark.parametrize(
+    "position",
+    [lambda k: np.full(3, np.nan), lambda k: np.ones(3), lambda k: HOVER + 0.1 * INTERVAL * k + 1.0],
+    ids=["unknown", "frozen", "drifting"],
+)
+def test_a_velocity_is_used_whatever_becomes_of_its_position(position):
+    moments = samples_of(2.0)
+    estimator, estimate = run([spoilt(s, position=position(k)) for k, s in enumerate(moments)])
+    _, without = run([[m for m in s if m.source != 1 or not isinstance(m, Position)] for s in moments])
+    sigma, blind = (np.sqrt(np.diag(e.covariance))[LAYOUT.s_dot][2:4] for e in (estimate, without))
+    assert np.all(sigma < 0.7 * blind)
+    assert np.all(
+        np.abs(estimate.x - REFERENCE.at(np.zeros(1)).x[0]) < 5.0 * np.sqrt(np.diag(estimate.covariance))[: LAYOUT.size]
+    )
+    assert not any(record.surprised for record in estimator.innovations)
+
+
+def test_a_position_is_used_when_its_velocity_is_unknown():
+    moments = samples_of(2.0)
+    _, estimate = run([spoilt(s, velocity=np.full(3, np.nan)) for s in moments])
+    _, without = run([[m for m in s if m.source != 1 or not isinstance(m, Position)] for s in moments])
+    sigma, blind = (np.sqrt(np.diag(e.covariance))[LAYOUT.s][2:4] for e in (estimate, without))
+    assert np.all(sigma < 0.7 * blind)
 
 
 def test_a_single_vehicle_never_overrules_the_others():
@@ -327,10 +357,10 @@ def test_a_setpoint_that_a_vehicle_did_not_fly_counts_as_lost():
             for measurement in samples:
                 estimator.add(measurement)
         estimator.estimate(0.28, REFERENCE)
-    assert lost.confirm_setpoint(1, 0.15, 0.18, sent[1][second]) is True
-    assert lost.confirm_setpoint(1, 0.15, 0.201, sent[1][second]) is True  # the next may come a little later
+    assert lost.confirm_setpoint(1, 0.15, 0.18, sent[1][second]).as_sent is not False
+    assert lost.confirm_setpoint(1, 0.15, 0.201, sent[1][second]).as_sent is True  # the next may come a little later
     assert lost.confirm_setpoint(1, 0.22, 0.23, np.array([0.3, 0.3, 9.0])) is None  # that it was never sent
-    assert lost.confirm_setpoint(1, 0.15, 0.23, sent[1][second]) is False
+    assert lost.confirm_setpoint(1, 0.15, 0.23, sent[1][second]).as_sent is False
     a, b = lost.estimate(0.3, REFERENCE), other.estimate(0.3, REFERENCE)
     # The change of the set-points, which tells how far to trust them, stays that of those that were sent.
     assert a.x[: LAYOUT.n_acc.start] == pytest.approx(b.x[: LAYOUT.n_acc.start], abs=2e-3)

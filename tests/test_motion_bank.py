@@ -138,18 +138,17 @@ def test_prediction_is_what_advancing_would_give_when_models_do_not_change():
 def test_an_axis_that_was_not_seen_is_left_alone():
     bank = followed(lambda t: np.array([t, 0.0, 0.0]), until=2.0)
     before = bank.x[:, 1].copy()
-    bank.measured(np.array([1.9, np.nan, 0.0]), VARIANCE)
+    off = bank.measured(np.array([1.9, np.nan, 0.0]), VARIANCE)
     np.testing.assert_array_equal(bank.x[:, 1], before)
+    assert np.isfinite(off)
 
 
-def test_what_stops_dead_is_trusted_less_afterwards():
-    def stops(t):
-        return np.array([2.0 * min(t, 3.0), 0.0, 0.0])
-
-    steady = followed(lambda t: np.array([2.0 * t, 0.0, 0.0]), until=4.0)
-    stopped = followed(stops, until=4.0)
-    ahead = np.array([1.0])
-    assert steady.surprise < 0.3
-    assert stopped.surprise > 0.6
-    spread = [np.sqrt(bank.predict(bank.time + ahead)[1][0, 0, 0]) for bank in (steady, stopped)]
-    assert spread[1] > 1.5 * spread[0]
+def test_the_innovation_that_is_returned_is_in_units_of_its_own_spread():
+    near, far = (followed(lambda t: np.array([t, 0.0, 0.0]), until=2.0) for _ in range(2))
+    ahead = near.time + 0.1
+    for bank in (near, far):
+        bank.advance(ahead)
+    spread = np.sqrt(near.position_variance + VARIANCE)
+    expected = near.state[0]
+    assert near.measured(expected, VARIANCE) == pytest.approx(0.0, abs=1e-12)
+    assert far.measured(expected + 3.0 * spread, VARIANCE) == pytest.approx(9.0)

@@ -203,6 +203,19 @@ def test_when_all_links_are_silent_nothing_is_dropped_for_being_unseen():
     assert len(m.predict(np.array([3.0]))) == 1
 
 
+def test_what_a_vehicle_sees_that_is_not_where_it_says_is_left_out():
+    m, scene = map_of(), Scene(0)
+    for k in range(10):
+        t = 0.1 * k
+        scene.feed(m, t, HERE, [sphere((5.0, 0.0, -6.0))])
+        m.update(t, untrusted=frozenset(range(4)))
+    assert m.tracks == []
+    assert m.refused > 0
+    scene.feed(m, 1.0, HERE, [sphere((5.0, 0.0, -6.0))])
+    m.update(1.0, untrusted=frozenset({0, 1, 2}))
+    assert len(m.tracks) == 1
+
+
 def test_scans_wait_for_their_pose_and_nonsense_is_refused():
     m = map_of()
     scene = Scene(0)
@@ -211,8 +224,8 @@ def test_scans_wait_for_their_pose_and_nonsense_is_refused():
         m.detected(message, i, 1.0)
     m.update(1.0)
     assert m.tracks == []
-    m.measured(Position(1.0, i, position, np.zeros(3)))
-    m.measured(Attitude(1.0, i, quaternion, np.zeros(3)))
+    m.measured(Position(1.0, i, position, np.full(3, np.nan)))  # of its motion nothing is known
+    m.measured(Attitude(1.0, i, quaternion, np.full(3, np.nan)))
     m.update(1.05)
     assert len(m.tracks) == 1
     assert m.refused == 0

@@ -84,3 +84,37 @@ def test_what_is_over_is_forgotten_but_for_what_may_still_act(history):
     history.add(0.25, SENT[0])
     history.forget(0.26)
     assert history.switches(-1.0, 1.0) == pytest.approx([0.10, 0.15, 0.20, 0.25])
+
+
+def test_when_one_began_is_told_once(history):
+    first = history.confirm(1, 0.12, 0.13, SENT[2][SECOND], spread=0.01)
+    assert first.delay == pytest.approx(0.02)
+    again = history.confirm(1, 0.12, 0.14, SENT[2][SECOND], spread=0.01)
+    assert again.delay is None
+
+
+def test_one_that_comes_long_before_its_time_is_found(history):
+    early = history.confirm(1, 0.09, 0.11, SENT[4][SECOND], spread=0.0)
+    assert early is not None and early.as_sent is None
+    assert early.delay == 0.0
+    assert history.in_force(0.10, 0.15).u[SECOND] == pytest.approx(SENT[4][SECOND])
+
+
+def test_of_equal_ones_it_cannot_be_told_how_long_they_took():
+    history = SetpointHistory(N, least_loss=0.005)
+    for k in range(5):
+        history.add(0.05 * k, SENT[1])
+    told = history.confirm(1, 0.10, 0.14, SENT[1][SECOND], spread=0.0)
+    assert told is None or told.delay is None
+
+
+def test_what_left_after_one_that_came_late_is_expected_late():
+    history = SetpointHistory(N, least_loss=0.005)
+    for k, u in enumerate(SENT):
+        history.add(0.05 * k + 0.01, u, np.full(N, 0.05 * k))
+    told = history.confirm(1, 0.17, 0.171, SENT[2][SECOND], spread=0.0)
+    assert told.delay == pytest.approx(0.07)
+    assert told.corrected_from == pytest.approx(0.11)
+    mean = history.in_force(0.16, 0.21).u  # where the next one should have acted
+    assert mean[SECOND] == pytest.approx(0.2 * SENT[1][SECOND] + 0.8 * SENT[2][SECOND])
+    assert mean[[0, 1, 4]] == pytest.approx(SENT[3][[0, 1, 4]])

@@ -21,6 +21,7 @@ from gcs.wire import px4
 from idc_controller.control.controller import Decision, IntegratedDecisionController
 from idc_controller.estimate.estimator import Estimate, Estimator
 from idc_controller.estimate.measurements import Measurement
+from idc_controller.estimate.setpoint_history import Confirmation
 from idc_controller.plan.reference import Reference
 from idc_controller.plan.stop import StopPlan, stop_plan
 from idc_controller.plan.trajectory import RestTrajectory, Trajectory
@@ -123,6 +124,12 @@ class Flight:
         """Factor of the noise of telemetry over that of the system file, as the filter sees it, 1 or more."""
         return math.sqrt(self.estimator.adaptation.noise)
 
+    @property
+    def untrusted_poses(self) -> frozenset[int]:
+        """UAVs (0 .. N-1) whose position or attitude the filter has left out lately; none when that is all of them."""
+        untrusted = self.estimator.untrusted_poses
+        return untrusted if len(untrusted) < len(self.team.links) else frozenset()
+
     def asked(self, times: Array) -> tuple[Array, Array]:
         """Position and velocity (K, 3) that the mission asks of the payload at ``times`` since take-off began."""
         if self.course is not None:
@@ -139,10 +146,10 @@ class Flight:
         elif self.phase in (Phase.CHECK, Phase.ARM):
             self._on_pad.measured(measurement)
 
-    def flown(self, uav: int, since: float, until: float, told: Array, spread: float) -> bool | None:
+    def flown(self, uav: int, since: float, until: float, told: Array, spread: float) -> Confirmation | None:
         """A vehicle says what it flew from ``since`` to ``until``, tilt (north, east) and thrust (N) (3,).
 
-        ``spread``: by how much the time varies that datagrams take to it (s). Returns whether that is what it was sent.
+        ``spread``: by how much the time varies that datagrams take to it (s). Returns what the estimator learns of it.
         """
         if self.phase not in IN_THE_AIR:
             return None
@@ -174,10 +181,24 @@ class Flight:
         if not self.reason:
             self.reason, self.broken_off_time = reason, time
 
-    def step(self, time: float, effective: float, now: float) -> tuple[Setpoints | None, StepRecord | None]:
-        """One control step at team ``time``; set-points act at ``effective``. ``now`` is the ground's time.
+    def watch_team(self, time: float, now: float) -> None:
+        """Whether all vehicles still take part at team ``time``, ``now`` on the ground's clock: if not, none does.
 
-        None as set-points: nothing is to be sent.
+        Asked whenever something has come: who stops late, stops elsewhere.
+        """
+        if self.phase not in (Phase.SPOOL_UP, *IN_THE_AIR) or (problem := self.team.dropped_out(now)) is None:
+            return
+        if self.phase is Phase.SPOOL_UP:
+            self.break_off(time, problem.reason)
+        else:
+            self._leave_alone(time, problem.reason, problem.unheard)
+
+    def step(
+        self, time: float, effective: float, leaves: Array, now: float
+    ) -> tuple[Setpoints | None, StepRecord | None]:
+        """One control step at team ``time``; set-points leave at ``leaves`` (N,) and act at ``effective`` (s).
+
+        ``now`` is the ground's time. None as set-points: nothing is to be sent.
         """
         self.time = time
         match self.phase:
@@ -194,7 +215,7 @@ class Flight:
             case Phase.ENDED:
                 pass
             case _:
-                return self._fly(time, effective, now)
+                return self._fly(time, effective, leaves)
         return None, None
 
     # On the ground
@@ -300,13 +321,7 @@ class Flight:
     def _started(self) -> bool:
         return self.phase in (Phase.SPOOL_UP, *IN_THE_AIR, Phase.SPOOL_DOWN)
 
-    def _fly(self, time: float, effective: float, now: float) -> tuple[Setpoints | None, StepRecord | None]:
-        if self.phase is not Phase.SPOOL_DOWN and (problem := self.team.dropped_out(now)) is not None:
-            if self.phase is Phase.SPOOL_UP:
-                self.break_off(time, problem.reason)
-            else:
-                self._leave_alone(time, problem.reason, problem.unheard)
-            return None, None
+    def _fly(self, time: float, effective: float, leaves: Array) -> tuple[Setpoints | None, StepRecord | None]:
         if self.phase in IN_THE_AIR and (blocked := self.controller.safety.blocked(time)):
             self.break_off(time, blocked)
         trajectory = self._trajectory(time)
@@ -329,7 +344,7 @@ class Flight:
         elif self.phase is Phase.SPOOL_DOWN:
             share = max(1.0 - (time - self._since) / SPOOL_DOWN, 0.0)
         if self.phase in IN_THE_AIR:
-            self.estimator.add_setpoint(effective, decision.u)
+            self.estimator.add_setpoint(effective, decision.u, leaves)
             self.stop_plan = stop_plan(self._parameters, decision.flat, effective, estimate.x)
             self._stop_plans.append(self.stop_plan)
         self._advance(time, estimate, share)

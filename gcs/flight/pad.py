@@ -20,7 +20,7 @@ class Pad:
 
     def measured(self, measurement: Measurement) -> None:
         """Telemetry of a vehicle or of the payload."""
-        if isinstance(measurement, Position):
+        if isinstance(measurement, Position) and measurement.has_pose:
             samples = self._positions[measurement.source]
             samples.append(measurement.position)
             del samples[:-SAMPLES]

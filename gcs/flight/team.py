@@ -15,7 +15,7 @@ from idc_controller.parameters import SystemParameters
 
 Array = NDArray[np.float64]
 
-SILENCE = 0.5
+SILENCE = 0.48
 """Telemetry older than this means that a vehicle is lost (s): as soon as it may take the ground for lost itself."""
 LATE = 0.11
 """Datagrams that usually take longer one way cannot close the loop (s)."""
@@ -25,6 +25,7 @@ NEEDED_PARAMETERS = (
     px4.PARAM_ATTITUDE_KD,
     px4.PARAM_MOTOR_LAG,
     px4.PARAM_ONBOARD_RATE,
+    px4.PARAM_SETPOINT_LOSS,
     px4.PARAM_LAND_DELAY,
 )
 TOLERANCE = 0.01
@@ -55,7 +56,7 @@ class Team:
                 _unheard(v)
                 if now - v.heard > SILENCE
                 else "sends no attitude and position"
-                if now - v.telemetry_heard > SILENCE
+                if now - v.whole_telemetry_heard > SILENCE
                 else "relays no payload navigation data"
                 if now - v.payload_heard > SILENCE
                 else "does not tell " + ", ".join(p for p in NEEDED_PARAMETERS if p not in v.parameters)
@@ -161,7 +162,12 @@ class Team:
                 return DropOut(f"{name} has disarmed itself{_told(link)}", 0.0)
             if not link.offboard:
                 mode = px4.mode_name(link.custom_mode)
-                return DropOut(f"{name} has left OFFBOARD for {mode}{_told(link)}", SILENCE)
+                unheard = link.parameters[px4.PARAM_SETPOINT_LOSS] + link.clock.delay
+                return DropOut(f"{name} has left OFFBOARD for {mode}{_told(link)}", unheard)
+        # Of one vehicle the filter can do without the attitude, or without the position, but not of several.
+        partly = [str(link.system_id) for link in self.links if now - link.whole_telemetry_heard > SILENCE]
+        if len(partly) > 1:
+            return DropOut(f"vehicles {' and '.join(partly)} do not send all telemetry for {SILENCE:g} s", 0.0)
         return None
 
     def _first(self, problem: Callable[[VehicleLink], str | None]) -> str | None:

@@ -135,7 +135,7 @@ class Watch:
         tell = self._book.tell
         for link in self._team.links:
             name, clock = _name(link), link.clock
-            if (silent := now - link.telemetry_heard) > self._silence:
+            if (silent := now - link.whole_telemetry_heard) > self._silence:
                 tell(time, name, "silent", f"no telemetry for {silent:.2f} s")
             if clock.delay > LATE:
                 tell(time, name, "late", f"{clock.delay * 1e3:.0f} ms one way")

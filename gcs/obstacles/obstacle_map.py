@@ -99,13 +99,14 @@ class ObstacleMap:
         """Detections that could not be used."""
         return self._inbox.refused
 
-    def update(self, now: float, pose_noise: float = 1.0) -> None:
+    def update(self, now: float, pose_noise: float = 1.0, untrusted: frozenset[int] = frozenset()) -> None:
         """Learn from all that came since the last time.
 
-        ``pose_noise``: factor of the noise of the vehicles' poses over that of the system file.
+        ``pose_noise``: factor of the noise of the vehicles' poses over that of the system file. ``untrusted``: vehicles
+        (0 .. N-1) whose poses are wrong.
         """
         self._time = now
-        for clusters in self._inbox.frames(now, pose_noise):
+        for clusters in self._inbox.frames(now, pose_noise, untrusted):
             self._learn(clusters)
         self._drop_silent(now)
 

@@ -108,10 +108,13 @@ class ScanInbox:
         """Those that have told where they are."""
         return tuple(self._positions)
 
-    def frames(self, now: float, pose_noise: float = 1.0) -> list[list[Cluster]]:
+    def frames(
+        self, now: float, pose_noise: float = 1.0, untrusted: frozenset[int] = frozenset()
+    ) -> list[list[Cluster]]:
         """What can be placed, oldest first: the clusters of all vehicles at (nearly) one time.
 
-        ``pose_noise``: factor of the poses' noise over what :class:`SensorModel` says.
+        ``pose_noise``: factor of the poses' noise over what :class:`SensorModel` says. ``untrusted``: vehicles that are
+        not where they say, nor is what they see.
         """
         placed: list[tuple[float, list[Cluster]]] = []
         for key, scan in tuple(self._waiting.items()):
@@ -120,7 +123,7 @@ class ScanInbox:
                 continue
             del self._waiting[key]
             self._waiting_points[key[0]] -= scan.count
-            if pose is None:
+            if pose is None or key[0] in untrusted:
                 self.refused += scan.count
                 continue
             placed.append((scan.time, self._placed(key[0], scan, *pose, pose_noise)))
@@ -159,10 +162,11 @@ class ScanInbox:
             return None
         dt = time - attitude.time
         quaternion = attitude.quaternion
-        if abs(dt) > 1e-4:
+        if abs(dt) > 1e-4 and attitude.has_motion:
             quaternion = quaternion_product(quaternion, np.append(1.0, 0.5 * dt * attitude.rates))
             quaternion = quaternion / np.linalg.norm(quaternion)
-        return position.position + (time - position.time) * position.velocity, quaternion
+        velocity = position.velocity if position.has_motion else np.zeros(3)
+        return position.position + (time - position.time) * velocity, quaternion
 
 
 def _nearest(history: deque[Any] | None, time: float) -> Any:

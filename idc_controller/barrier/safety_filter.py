@@ -40,6 +40,9 @@ BEARABLE_DRAG = 0.45
 """Drag on the payload, over its weight, above which the mission is flown more slowly."""
 SLOWEST_IN_WIND = 0.6
 """Rate of the mission's clock that it is not slowed beyond for this: slower, it counts as held up."""
+SAME_STAGE = 0.7
+"""Of a stage: until then the plan stays. Planned more often, its stages would fall between those of the plan before,
+where that one asks for nothing, and the two would disagree by turns."""
 NEGLIGIBLE = 1e-5
 """A deviation below this, in all derivatives, is none."""
 
@@ -155,6 +158,8 @@ class AvoidanceFilter:
     def filter(self, time: float, mission: Trajectory, estimate: Estimate, air: Air | None = None) -> SafeTrajectory:
         """The trajectory to track from ``time`` on, and what was tracked before."""
         chain = self.settings.chain
+        if self._taken_up is None and self._pieces and time < self._pieces[-1].start + SAME_STAGE * chain.period:
+            return SafeTrajectory(list(self._pieces), chain)
         stages = chain.period * np.arange(chain.stages + 1, dtype=np.float64)
         obstacles = list(self.obstacles.predict(time + stages))
         clock = self.navigator.advance(self._clock(time))

@@ -120,7 +120,7 @@ class IntegratedDecisionController:
         planned = self._stopwatch()
         if learn_load and not standing:
             self._learn(estimate)
-        reference = Reference(self.parameters, trajectory, self.load)
+        reference = Reference(self.parameters, trajectory, self._upright() if standing else self.load)
         # The stages 0 .. N_p, then the middle of the first: a set-point is held for one period, and the reference's at
         # the middle of it leaves the least error.
         flat = reference.at(estimate.time + self._times)
@@ -152,6 +152,11 @@ class IntegratedDecisionController:
             tracker_time=tracked - ready,
             safety=self.safety.report,
         )
+
+    def _upright(self) -> Load:
+        """On the ground, which holds the payload against the wind, the links need not lean."""
+        _, uav_drag = _drag(self.load.air, np.zeros(3))
+        return Load(self.load.mass, np.zeros(3), self.load.uav_force + uav_drag)
 
     def _learn(self, estimate: Estimate) -> None:
         share = self.settings.period / self.settings.load_time_constant

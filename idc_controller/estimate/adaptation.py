@@ -57,7 +57,7 @@ class Adaptation:
 
     def persists(self, time: float, keys: Sequence[object], white: Array) -> bool:
         """Whether the innovation ``white`` (m,) points where the last one pointed."""
-        if not self._follows(time, keys):
+        if not self._follows(time, keys, white):
             return False
         product = float(white @ self._last)
         return product > PERSISTENT * float(np.linalg.norm(white) * np.linalg.norm(self._last))
@@ -77,7 +77,7 @@ class Adaptation:
             self.noise = min(self.noise * 1.3, NOISE_MAX)
         elif middle < 1.0:
             self.noise = max(self.noise * 0.97, 1.0)
-        if self._follows(time, keys):
+        if self._follows(time, keys, white):
             product = white * self._last
             self._common = self._common.copy()  # one as it was may be kept
             for k, part in enumerate((of_payload, ~of_payload)):
@@ -92,5 +92,5 @@ class Adaptation:
                 self.level, self._since_change = self.level - 1, 0
         self._time, self._keys, self._last = time, keys, white
 
-    def _follows(self, time: float, keys: Sequence[object]) -> bool:
-        return keys == self._keys and 0.0 < time - self._time <= GAP
+    def _follows(self, time: float, keys: Sequence[object], white: Array) -> bool:
+        return keys == self._keys and len(white) == len(self._last) and 0.0 < time - self._time <= GAP

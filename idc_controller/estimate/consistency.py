@@ -49,7 +49,8 @@ class Consistency:
 
     def __init__(self, gate_probability: float) -> None:
         """``gate_probability`` of the outlier gate: beyond it a sample counts as one at the gate."""
-        self._channels: dict[Key, _Channel] = {}
+        self._channels: dict[tuple[Key, int], _Channel] = {}
+        """By what is measured, and how many numbers of it: now and then only the half of it comes."""
         sizes = np.arange(1, 7)
         kept = (2.0 - SHARE) / SHARE
         # Variance of a running mean is 1 / kept; its square sum times kept is chi-squared with ``size`` degrees of
@@ -67,9 +68,9 @@ class Consistency:
         """
         for key, innovation in zip(keys, white, strict=True):
             size = len(innovation)
-            channel = self._channels.get(key)
+            channel = self._channels.get((key, size))
             if channel is None:
-                channel = self._channels[key] = _Channel(size, np.zeros(size))
+                channel = self._channels[key, size] = _Channel(size, np.zeros(size))
             if time <= channel.time:
                 continue
             channel.time = time
@@ -83,14 +84,15 @@ class Consistency:
 
     def forget_attitudes(self) -> None:
         """What was learnt of the UAVs' attitudes does not count."""
-        for source, kind in tuple(self._channels):
+        for channel in tuple(self._channels):
+            (source, kind), _ = channel
             if source != PAYLOAD and kind is Attitude:
-                del self._channels[source, kind]
+                del self._channels[channel]
 
     def complaints(self, time: float) -> dict[Key, list[str]]:
         """What is wrong with channels at ``time`` (s): ``refused``, ``disagrees`` (biased) or ``noisy``."""
         found: dict[Key, list[str]] = defaultdict(list)
-        for key, channel in self._channels.items():
+        for (key, _), channel in self._channels.items():
             while channel.refusals and time - channel.refusals[0] > WITHIN:
                 channel.refusals.popleft()
             slack = MANOEUVRE if key[0] != PAYLOAD and key[1] is Attitude else 1.0

@@ -24,7 +24,7 @@ from idc_controller.estimate.frozen import FrozenSensors
 from idc_controller.estimate.measurement_model import MeasurementModel, Stack
 from idc_controller.estimate.measurements import PAYLOAD, Measurement, MeasurementNoise
 from idc_controller.estimate.process_model import ProcessModel, ProcessNoise
-from idc_controller.estimate.setpoint_history import SetpointHistory
+from idc_controller.estimate.setpoint_history import Confirmation, SetpointHistory
 from idc_controller.model.linear import LinearModel
 from idc_controller.plan.flatness import FlatReference
 from idc_controller.plan.reference import Reference
@@ -33,6 +33,9 @@ Array = NDArray[np.float64]
 
 PATIENCE = 3
 """So many times in a row the payload unit may disagree with the prediction before the prediction is doubted."""
+
+DISTRUST = 0.5
+"""For how long a pose that was left out counts as wrong (s)."""
 
 
 @dataclass(frozen=True)
@@ -171,6 +174,7 @@ class Estimator:
         self.innovations: list[InnovationRecord] = []
         self.discarded_late = 0
         self.frozen = FrozenSensors(settings.measurement)
+        self._untrusted: dict[int, float] = {}
         self.adaptation = Adaptation()
 
     def start(self, time: float, x: Array) -> None:
@@ -195,21 +199,29 @@ class Estimator:
         """Time of the last measurement that was applied (s)."""
         return self._snapshots[-1].time
 
-    def add_setpoint(self, effective: float, u: Array | None) -> None:
-        """Set-points (3 N,) that act from ``effective`` on; None: the vehicles are held (cradles, pad), errors stay."""
-        self._setpoints.add(effective, u)
+    def add_setpoint(self, effective: float, u: Array | None, leaves: Array | None = None) -> None:
+        """Set-points (3 N,) that act from ``effective`` on; None: the vehicles are held (cradles, pad), errors stay.
 
-    def confirm_setpoint(self, uav: int, since: float, until: float, told: Array, spread: float = 0.0) -> bool | None:
-        """What a vehicle says it flew from ``since`` to ``until`` (s), see :meth:`SetpointHistory.confirm`.
-
-        Returns whether it is what it was sent, None where that cannot be told.
+        ``leaves`` (N,): when they leave the ground (s), where that is known.
         """
+        self._setpoints.add(effective, u, leaves)
+
+    def confirm_setpoint(
+        self, uav: int, since: float, until: float, told: Array, spread: float = 0.0
+    ) -> Confirmation | None:
+        """What a vehicle says it flew from ``since`` to ``until`` (s), see :meth:`SetpointHistory.confirm`."""
         confirmation = self._setpoints.confirm(uav, since, until, told, spread)
-        if confirmation is None:
-            return None
-        if confirmation.corrected_from is not None:
+        if confirmation is not None and confirmation.corrected_from is not None:
             self._back_to(confirmation.corrected_from)
-        return confirmation.as_sent
+        return confirmation
+
+    @property
+    def untrusted_poses(self) -> frozenset[int]:
+        """UAVs whose position or attitude was frozen or refused within :data:`DISTRUST`."""
+        if not self._untrusted:
+            return frozenset()
+        now = self.time
+        return frozenset(uav for uav, time in self._untrusted.items() if uav != PAYLOAD and now - time < DISTRUST)
 
     def _back_to(self, time: float) -> None:
         """Take the filter back to before ``time`` (s), as far as it remembers."""
@@ -217,9 +229,14 @@ class Estimator:
             self._snapshots.pop()
 
     def add(self, measurement: Measurement) -> bool:
-        """Take a measurement; False when it is older than the memory or the start, or of a sensor that is frozen."""
-        if self.frozen.is_frozen(measurement):
+        """Take a measurement; False when it is older than the memory or the start, or of sensors that are frozen."""
+        frozen = self.frozen.frozen(measurement)
+        if frozen[0]:
+            self._untrusted[measurement.source] = measurement.time
+        if all(frozen):
             return False
+        if any(frozen):
+            measurement = measurement.without(*frozen)
         oldest = max(self._snapshots[0].time, self.time - self.settings.history)
         if measurement.time <= oldest:
             self.discarded_late += 1
@@ -295,18 +312,23 @@ class Estimator:
         y = np.concatenate([self._innovation(copies, flat, k) for copies in moment.measurements.values()])
         H = np.zeros((len(y), self.size))
         self.measurement_model.observe(stack, flat, k, into=H[:, :n])
-        keys = tuple(moment.measurements)
+        present = np.isfinite(y)
+        if not present.any():
+            return
+        if not present.all():
+            stack, y, H = stack.only(present), y[present], H[present]
+        keys = stack.keys
         residual = y - H @ kf.x
         adaptation = self.adaptation
 
-        def gate() -> tuple[Array, Array, Array, NDArray[np.bool_]]:
+        def gate() -> tuple[Array, Array, Array, NDArray[np.bool_], Array]:
             R = stack.variance * adaptation.noise
             S = H @ kf.P @ H.T
             S.flat[:: len(R) + 1] += R
             white, mean_squares = _whitened(residual, S, stack)
-            return R, white, mean_squares, mean_squares * stack.sizes <= self._gates[stack.sizes]  # nan is out, too
+            return R, white, mean_squares, mean_squares * stack.sizes <= self._gates[stack.sizes], S  # nan is out, too
 
-        R, white, mean_squares, accepted = gate()
+        R, white, mean_squares, accepted, S = gate()
         surprised = False
         if not accepted.all():
             by_payload, by_most = self._refusals(keys, accepted)
@@ -316,11 +338,16 @@ class Estimator:
             elif by_most:
                 adaptation.noisier(mean_squares)
             if surprised or by_most:
-                R, white, mean_squares, accepted = gate()
+                R, white, mean_squares, accepted, S = gate()
         else:
             adaptation.payload_refused = 0
         rejected = [(source, kind.__name__) for (source, kind), good in zip(keys, accepted, strict=True) if not good]
         keep = np.repeat(accepted, stack.sizes)
+        if not accepted.all():
+            self._keep_sound_parts(residual, S, stack, accepted, keep)
+            for c in np.flatnonzero(~accepted):
+                if not keep[stack.starts[c]]:
+                    self._untrusted[keys[c][0]] = moment.time
         adaptation.learn(moment.time, keys, white, mean_squares, keep, stack.of_payload)
         nis = 0.0
         if keep.any():
@@ -331,12 +358,26 @@ class Estimator:
             InnovationRecord(moment.time, nis, int(keep.sum()), tuple(rejected), surprised, keys, stack.split(white))
         )
 
+    def _keep_sound_parts(
+        self, residual: Array, S: Array, stack: Stack, accepted: NDArray[np.bool_], keep: NDArray[np.bool_]
+    ) -> None:
+        """Of what was refused, the pose or the motion may be right: a drifting position, say, with a true velocity."""
+        for c in np.flatnonzero(~accepted):
+            half = int(stack.sizes[c]) // 2
+            for first in (stack.starts[c], stack.starts[c] + half):
+                rows = slice(first, first + half)
+                part = residual[rows]
+                with contextlib.suppress(np.linalg.LinAlgError):
+                    keep[rows] = float(part @ np.linalg.solve(S[rows, rows], part)) <= self._gates[half]
+
     def _innovation(self, copies: list[Measurement], flat: FlatReference, k: int) -> Array:
         """Of one source and kind. Relays of one sample agree; where one of them is corrupted the median is not."""
         first = copies[0]
         if all(copy.agrees(first) for copy in copies[1:]):
             return self.measurement_model.innovation(first, flat, k)
-        told = [self.measurement_model.innovation(copy, flat, k) for copy in copies]
+        told = np.array([self.measurement_model.innovation(copy, flat, k) for copy in copies])
+        if np.isnan(told).any():
+            told = told[~np.isnan(told).any(axis=1)] if not np.isnan(told).any(axis=1).all() else told[:1]
         return np.asarray(np.median(told, axis=0))
 
     def _refusals(self, keys: tuple[tuple[int, type], ...], accepted: NDArray[np.bool_]) -> tuple[bool, bool]:

@@ -30,8 +30,8 @@ class FrozenSensors:
         self._noise = noise
         self._last: dict[tuple[int, type], _Last] = {}
 
-    def is_frozen(self, measurement: Measurement) -> bool:
-        """Whether a part of it is what its source has told several times before, to the last digit."""
+    def frozen(self, measurement: Measurement) -> tuple[bool, bool]:
+        """Whether its pose, and whether its motion, is what its source has told several times before, to the digit."""
         key = measurement.source, type(measurement)
         if isinstance(measurement, Attitude):
             parts = measurement.quaternion, measurement.rates
@@ -40,12 +40,12 @@ class FrozenSensors:
         last = self._last.get(key)
         if last is None:
             self._last[key] = _Last(measurement.time, parts, [0, 0])
-            return False
+            return False, False
         if measurement.time > last.time:
             for k, (now, before) in enumerate(zip(parts, last.parts, strict=True)):
                 last.repeats[k] = last.repeats[k] + 1 if bool((now == before).all()) else 0
             last.time, last.parts = measurement.time, parts
-        return any(self._frozen_parts(key, last))
+        return self._frozen_parts(key, last)
 
     def channels(self) -> list[tuple[int, str]]:
         """Those that are frozen now: source, and ``position``, ``velocity``, ``attitude`` or ``rates``."""
@@ -56,9 +56,10 @@ class FrozenSensors:
             if frozen
         ]
 
-    def _frozen_parts(self, key: tuple[int, type], last: _Last) -> list[bool]:
-        sigmas = self._sigmas(*key)
-        return [repeats >= REPEATS and sigma > 0.0 for repeats, sigma in zip(last.repeats, sigmas, strict=True)]
+    def _frozen_parts(self, key: tuple[int, type], last: _Last) -> tuple[bool, bool]:
+        of_pose, of_motion = self._sigmas(*key)
+        pose, motion = last.repeats
+        return pose >= REPEATS and of_pose > 0.0, motion >= REPEATS and of_motion > 0.0
 
     def _sigmas(self, source: int, kind: type) -> tuple[float, float]:
         noise, of_payload = self._noise, source == PAYLOAD

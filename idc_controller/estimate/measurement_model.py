@@ -32,6 +32,8 @@ class Channel:
 class Stack:
     """Channels one below the other, as the measurements of one moment are taken."""
 
+    keys: tuple[tuple[int, type], ...]
+    """Source and kind of each (K,)."""
     rows: Array
     """(m, n), links upright."""
     variance: Array
@@ -53,6 +55,23 @@ class Stack:
         """``rows`` (m,) by channel."""
         ends = self.starts + self.sizes
         return tuple(rows[a:b] for a, b in zip(self.starts.tolist(), ends.tolist(), strict=True))
+
+    def only(self, present: NDArray[np.bool_]) -> Stack:
+        """What is left when of its rows only those ``present`` (m,) are there. It cannot be observed any more."""
+        sizes = np.add.reduceat(present, self.starts, dtype=int)
+        left = sizes > 0
+        keys = tuple(key for key, some in zip(self.keys, left.tolist(), strict=True) if some)
+        none = np.zeros(0, dtype=int)
+        return Stack(
+            keys, self.rows[present], self.variance[present],
+            *_blocks(sizes[left]), self.of_payload[present], uavs=none, heights=none,
+        )  # fmt: skip
+
+
+def _blocks(sizes: NDArray[np.int_]) -> tuple[NDArray[np.int_], NDArray[np.int_], tuple[NDArray[np.int_], ...]]:
+    """Sizes, first rows, and rows by size, of channels one below the other."""
+    starts = np.cumsum(sizes) - sizes
+    return sizes, starts, tuple(starts[sizes == size][:, None] + np.arange(size) for size in np.unique(sizes))
 
 
 class MeasurementModel:
@@ -96,15 +115,14 @@ class MeasurementModel:
         if (found := self._stacks.get(keys)) is None:
             channels = [self.channels[key] for key in keys]
             sizes = np.array([len(channel.variance) for channel in channels])
-            starts = np.cumsum(sizes) - sizes
+            _, starts, _ = _blocks(sizes)
             tilted = [(i, start + 2) for (i, kind), start in zip(keys, starts.tolist(), strict=True)
                       if kind is Position and i != PAYLOAD]  # fmt: skip
             found = self._stacks[keys] = Stack(
+                keys,
                 np.vstack([channel.rows for channel in channels]),
                 np.concatenate([channel.variance for channel in channels]),
-                sizes,
-                starts,
-                tuple(starts[sizes == size][:, None] + np.arange(size) for size in np.unique(sizes)),
+                *_blocks(sizes),
                 np.repeat([i == PAYLOAD for i, _ in keys], sizes),
                 np.array([i for i, _ in tilted], dtype=int),
                 np.array([row for _, row in tilted], dtype=int),
@@ -123,7 +141,7 @@ class MeasurementModel:
             into[stack.heights[:, None] + 3, self.layout.s_dot.start + columns] = slope
 
     def innovation(self, measurement: Measurement, reference: FlatReference, k: int) -> Array:
-        """Measured less what the reference's time ``k`` predicts, (m,)."""
+        """Measured less what the reference's time ``k`` predicts, (m,); nan where nothing was measured."""
         i = measurement.source
         if isinstance(measurement, Attitude):
             if i == PAYLOAD:

@@ -1,7 +1,11 @@
-"""What is measured: of each UAV and of the payload, pose and motion, each with the time it was true."""
+"""What is measured: of each UAV and of the payload, pose and motion, each with the time it was true.
+
+Of a pose or of a motion that was not measured all numbers are nan.
+"""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,11 +30,26 @@ class Attitude:
     rates: Array
     """Body frame (3,) (rad/s)."""
 
+    @property
+    def has_pose(self) -> bool:
+        """Whether the attitude was measured."""
+        return not math.isnan(self.quaternion[0])
+
+    @property
+    def has_motion(self) -> bool:
+        """Whether the rates were measured."""
+        return not math.isnan(self.rates[0])
+
     def agrees(self, other: object) -> bool:
         """Whether both tell the same."""
         if not isinstance(other, Attitude):
             return False
-        return bool((self.quaternion == other.quaternion).all() and (self.rates == other.rates).all())
+        return _same(self.quaternion, other.quaternion) and _same(self.rates, other.rates)
+
+    def without(self, pose: bool, motion: bool) -> Attitude:
+        """As if the attitude (``pose``) or the rates (``motion``) had not been measured."""
+        quaternion, rates = _unless(pose, self.quaternion), _unless(motion, self.rates)
+        return Attitude(self.time, self.source, quaternion, rates)
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,14 +65,36 @@ class Position:
     velocity: Array
     """World, NED (3,) (m/s)."""
 
+    @property
+    def has_pose(self) -> bool:
+        """Whether the position was measured."""
+        return not math.isnan(self.position[0])
+
+    @property
+    def has_motion(self) -> bool:
+        """Whether the velocity was measured."""
+        return not math.isnan(self.velocity[0])
+
     def agrees(self, other: object) -> bool:
         """Whether both tell the same."""
         if not isinstance(other, Position):
             return False
-        return bool((self.position == other.position).all() and (self.velocity == other.velocity).all())
+        return _same(self.position, other.position) and _same(self.velocity, other.velocity)
+
+    def without(self, pose: bool, motion: bool) -> Position:
+        """As if the position (``pose``) or the velocity (``motion``) had not been measured."""
+        return Position(self.time, self.source, _unless(pose, self.position), _unless(motion, self.velocity))
 
 
 Measurement = Attitude | Position
+
+
+def _same(a: Array, b: Array) -> bool:
+    return bool((a == b).all()) or bool(np.array_equal(a, b, equal_nan=True))
+
+
+def _unless(lost: bool, values: Array) -> Array:
+    return np.full(len(values), np.nan) if lost else values
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,6 @@ Array = NDArray[np.float64]
 
 _LOG_2PI = float(np.log(2.0 * np.pi))
 _DIAGONAL = np.arange(3)
-_OFF_SHARE = 0.15  # of a new innovation in their average
 
 
 @dataclass(frozen=True)
@@ -45,13 +44,6 @@ class BankSettings:
     """The same of the acceleration (m/s2)."""
     change: float = 0.1
     """Share of the models' weight that moves to the others in a second."""
-    surprise: tuple[float, float] = (0.9, 1.5)
-    """Squared innovations over their variance, averaged over a second (0.5 is usual): from the first on the obstacle
-    moves unlike any model, from the second on altogether."""
-    surprise_memory: float = 8.0
-    """Time constant with which that is forgotten (s)."""
-    surprise_acceleration: float = 2.0
-    """Acceleration that an obstacle which surprises is taken to be capable of (m/s2, one standard deviation)."""
 
 
 class MotionModels:
@@ -148,9 +140,6 @@ class MotionBank:
         # A Singer acceleration starts as large as it usually is.
         self.P[2 : 2 + len(s.singer), :, 2, 2] = np.array([sigma for sigma, _ in s.singer])[:, None] ** 2
         self.weight = np.full(m, 1.0 / m)
-        self._off = 0.5
-        self.surprise = 0.0
-        """How much the obstacle has moved unlike any model lately, 0 .. 1."""
 
     @property
     def state(self) -> tuple[Array, Array, Array]:
@@ -171,22 +160,21 @@ class MotionBank:
         if dt <= 0.0:
             return
         self._mix(dt)
-        self.surprise *= float(np.exp(-dt / self.models.settings.surprise_memory))
         F, Q = self.models.step(dt)
         F_transposed = F.transpose(0, 2, 1)
         self.x = self.x @ F_transposed
         self.P = F[:, None] @ self.P @ F_transposed[:, None] + Q[:, None]
         self.time = time
 
-    def measured(self, position: Array, variance: Array) -> None:
-        """The obstacle was at ``position`` (3,) with ``variance`` (3,) at the bank's time; a nan axis was not seen."""
+    def measured(self, position: Array, variance: Array) -> float:
+        """The obstacle was at ``position`` (3,) with ``variance`` (3,) at the bank's time; a nan axis was not seen.
+
+        Returns the square of the mixture's innovation over its variance, mean over the axes seen.
+        """
         seen = np.isfinite(position)
         S = self.P[:, :, 0, 0] + variance
         expected = self.weight @ self.x[:, :, 0]
         off = np.where(seen, (position - expected) ** 2 / (self.position_variance + variance), 0.0)
-        self._off += _OFF_SHARE * (min(float(off.sum()) / max(int(seen.sum()), 1), 10.0) - self._off)
-        low, high = self.models.settings.surprise
-        self.surprise = max(self.surprise, min((self._off - low) / (high - low), 1.0))
         y = np.where(seen, position - self.x[:, :, 0], 0.0)
         log_likelihood = -0.5 * ((y**2 / S + np.log(S) + _LOG_2PI) * seen).sum(axis=1)
         K = self.P[:, :, :, 0] / S[..., None] * seen[:, None]
@@ -195,6 +183,7 @@ class MotionBank:
         weight = self.weight * np.exp(np.maximum(log_likelihood - log_likelihood.max(), -50.0))
         weight = np.maximum(weight, 1e-6 * weight.sum())
         self.weight = weight / weight.sum()
+        return float(off.sum()) / max(int(seen.sum()), 1)
 
     def shift(self, by: Array) -> None:
         """Move the point that is tracked by (3,) (m)."""
@@ -214,9 +203,6 @@ class MotionBank:
         apart = (means - mean).transpose(1, 0, 2)
         covariance = np.matmul((apart * w[:, None]).transpose(0, 2, 1), apart)
         covariance[:, _DIAGONAL, _DIAGONAL] += (w @ variances.reshape(len(w), -1)).reshape(k, 3)
-        if self.surprise > 0.01:
-            strayed = 0.5 * self.surprise * self.models.settings.surprise_acceleration * dt**2
-            covariance[:, _DIAGONAL, _DIAGONAL] += strayed[:, None] ** 2
         return mean, covariance
 
     def _mix(self, dt: float) -> None:

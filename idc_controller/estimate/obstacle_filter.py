@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections import deque
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from idc_controller.barrier.obstacles import Shape
+from idc_controller.estimate.agility import AHEAD, Agility, AgilitySettings
 from idc_controller.estimate.flat_surface import FlatSurface
 from idc_controller.estimate.motion_bank import MotionBank, MotionModels
 from idc_controller.estimate.round_surface import RoundSurface
@@ -24,10 +24,6 @@ _HYSTERESIS = 1.0
 _SMOOTHING = 0.3
 _LEAST_POINTS = 5
 _EVERY_FRAME_UNTIL, _THEN_EVERY = 6, 20
-_AHEAD = 1.0  # s, by which predictions are judged
-_EXPECTED_ERROR = 0.15  # m, of a prediction by that time that is good
-_SETTLED = 3.0  # s in which it is found out how a new obstacle moves
-_FRAME = 0.05  # s
 _DOUBTFUL = 2.5  # a score from which other shapes are tried at once
 
 
@@ -35,14 +31,7 @@ _DOUBTFUL = 2.5  # a score from which other shapes are tried at once
 class FilterSettings:
     """Of one obstacle's filter."""
 
-    growth_limit: float = 0.5
-    """The growth is never more than this (m) for an obstacle that moves as foreseen, and"""
-    misjudged_limit: float = 1.5
-    """never more than this for one that does not: it may come faster than one can give way."""
-    misjudged_share: float = 1.5
-    """By how much it may be more, for what a prediction by a second was wrong by."""
-    misjudged_memory: float = 8.0
-    """Time constant with which it is forgotten how wrong a prediction was (s)."""
+    agility: AgilitySettings = field(default_factory=AgilitySettings)
     static_speed: float = 0.1
     """An obstacle whose speed is surely below this is taken to stand (m/s)."""
 
@@ -68,9 +57,7 @@ class ObstacleFilter:
         predicted = self._surface.guess(first) if known is None or known.kind != "wall" else first.points.mean(axis=0)
         fit = self._surface.fit(first, predicted, iterations=8)
         self._bank = MotionBank(models, first.time, fit.position, fit.variance)
-        self._since = self._judged = first.time
-        self._foreseen: deque[tuple[float, Array]] = deque()
-        self._misjudged = 0.0
+        self._agility = Agility(first.time, self.settings.agility)
         self.frames = 1
         if known is None:
             self._scores["sphere"] = fit.score
@@ -103,6 +90,11 @@ class ObstacleFilter:
         return dict(zip(self._bank.models.names, self._bank.weight.tolist(), strict=True))
 
     @property
+    def agility(self) -> Agility:
+        """How far it may leave its predictions."""
+        return self._agility
+
+    @property
     def is_static(self) -> bool:
         """Whether it surely stands."""
         _, velocity, _ = self._bank.state
@@ -111,6 +103,7 @@ class ObstacleFilter:
     def advance(self, time: float) -> None:
         """Carry the motion on to ``time``, if it is not there yet."""
         self._bank.advance(time)
+        self._agility.advance(time)
 
     @property
     def position_sigma(self) -> float:
@@ -127,7 +120,8 @@ class ObstacleFilter:
             _, velocity, _ = bank.state
             seen = seen.moved(velocity * late, bank.time, (0.5 * late) ** 2)
         fit = self._surface.fit(seen, bank.state[0])
-        bank.measured(fit.position, fit.variance)
+        self._agility.advance(bank.time)
+        self._agility.innovation(bank.measured(fit.position, fit.variance))
         self._judge()
         self.frames += 1
         if self._known is None and len(seen.points) >= _LEAST_POINTS:
@@ -136,28 +130,20 @@ class ObstacleFilter:
                 self._consider_kinds(seen)
 
     def _judge(self) -> None:
-        """Compare what was foreseen a second ago with what came."""
-        bank = self._bank
-        position, velocity, _ = bank.state
-        self._misjudged *= float(np.exp(-(bank.time - self._judged) / self.settings.misjudged_memory))
-        self._judged = bank.time
-        while self._foreseen and self._foreseen[0][0] <= bank.time + _FRAME:
-            time, expected = self._foreseen.popleft()
-            error = float(np.linalg.norm(position + velocity * (time - bank.time) - expected))
-            self._misjudged = max(self._misjudged, error - _EXPECTED_ERROR)
-        if bank.time - self._since > _SETTLED:
-            ahead = bank.time + _AHEAD
-            self._foreseen.append((ahead, bank.predict(np.array([ahead]))[0][0]))
+        """Compare what was foreseen a second ago with what came, and foresee anew."""
+        position, velocity, _ = self._bank.state
+        self._agility.judge(position, velocity)
+        if self._agility.is_judged:
+            mean, _ = self._bank.predict(np.array([self._bank.time + AHEAD]))
+            self._agility.foresee(mean[0])
 
     def predict(self, times: Array) -> tuple[Array, Array]:
         """Where the centre will be at ``times`` (K,): (K, 3), and by how much to take the body larger (K,)."""
         mean, covariance = self._bank.predict(times)
         # Gershgorin's bound on the largest eigenvalue; exact where one axis, or one diagonal, dominates.
         variance = np.abs(covariance).sum(axis=-1).max(axis=-1) + self._surface.size_sigma**2
-        s, elapsed = self.settings, np.maximum(np.asarray(times) - self._bank.time, 0.0)
-        variance += (self._misjudged * (elapsed / _AHEAD) ** 2) ** 2
-        limit = min(s.growth_limit + s.misjudged_share * self._misjudged, s.misjudged_limit)
-        return mean + self._surface.offset, np.minimum(np.sqrt(variance), limit)
+        variance += self._agility.variance(np.maximum(np.asarray(times) - self._bank.time, 0.0))
+        return mean + self._surface.offset, np.minimum(np.sqrt(variance), self._agility.growth_limit)
 
     def _note(self, kind: str, score: float) -> None:
         old = self._scores.get(kind)

@@ -33,6 +33,8 @@ class _Entry:
     """Set-points of all vehicles; None: they are held. What is believed of them, vehicle by vehicle."""
 
     effective: float
+    leaves: Array
+    """When they leave the ground, vehicle by vehicle (N,) (s)."""
     sent: Array | None
     flown: Array | None
     starts: Array
@@ -56,10 +58,15 @@ class InForce(NamedTuple):
 
 
 class Confirmation(NamedTuple):
-    """``as_sent``: whether a vehicle flew what it was sent. ``corrected_from``: when the history has changed (s)."""
+    """``as_sent``: whether a vehicle flew what it was sent; None: that cannot be told yet.
 
-    as_sent: bool
+    ``corrected_from``: when the history has changed (s). ``delay``: from when the one flown left the ground until it
+    began to act (s); None: that was known.
+    """
+
+    as_sent: bool | None = None
     corrected_from: float | None = None
+    delay: float | None = None
 
 
 class SetpointHistory:
@@ -76,10 +83,14 @@ class SetpointHistory:
         """Forget the set-points, not what is known of the links."""
         self._entries = []
 
-    def add(self, effective: float, u: Array | None) -> None:
-        """Set-points (3 N,) that act from ``effective`` on; None: the vehicles are held."""
+    def add(self, effective: float, u: Array | None, leaves: Array | None = None) -> None:
+        """Set-points (3 N,) that act from ``effective`` on; None: the vehicles are held.
+
+        ``leaves`` (N,): when they leave the ground (s); None: when they act.
+        """
         starts, known = np.full(self._N, effective), np.zeros(self._N, dtype=bool)
-        bisect.insort(self._entries, _Entry(effective, u, u, starts, known), key=_effective)
+        entry = _Entry(effective, starts.copy() if leaves is None else leaves, u, u, starts, known)
+        bisect.insort(self._entries, entry, key=_effective)
 
     def switches(self, start: float, end: float) -> list[float]:
         """Times between ``start`` and ``end`` at which other set-points should begin to act."""
@@ -104,7 +115,10 @@ class SetpointHistory:
         if all(entry.exact for entry in near) or any(entry.flown is None for entry in near):
             return self._entries[at].flown
         flown = np.array([entry.flown for entry in near])
-        starts = np.maximum.accumulate([entry.starts for entry in near], axis=0)
+        # What is not known of begins after what is known to have begun before it, and before what is known after it.
+        starts, known = np.array([entry.starts for entry in near]), np.array([entry.known for entry in near])
+        after = np.minimum.accumulate(np.where(known, starts, np.inf)[::-1], axis=0)[::-1]
+        starts = np.maximum.accumulate(np.where(known, starts, np.minimum(starts, after)), axis=0)
         starts[0] = -np.inf
         edges = np.clip(np.vstack([starts, np.full(self._N, np.inf)]), start, end)
         shares = np.diff(edges, axis=0) / (end - start)  # (entries, N)
@@ -125,7 +139,9 @@ class SetpointHistory:
             return u is not None and bool((np.abs(u[which] - told) < SAME).all())
 
         newest = self._at(until + unclear)
-        flown = next((k for k in range(newest, max(newest - LOST_MAX, -1), -1) if is_told(entries[k].sent)), None)
+        # Those that should act already; then those that would come earlier than they should.
+        candidates = (*range(newest, max(newest - LOST_MAX, -1), -1), *range(newest + 1, len(entries)))
+        flown = next((k for k in candidates if is_told(entries[k].sent)), None)
         if flown is None:
             return None
         changed = math.inf
@@ -135,13 +151,19 @@ class SetpointHistory:
         first = flown
         while first > 0 and is_told(entries[first - 1].sent):
             first -= 1
+        delay = None
         if first and flown - first < LOST_MAX:
+            if first == flown and not entries[first].known[uav]:
+                delay = max(since - float(entries[first].leaves[uav]), 0.0)
+                changed = min(changed, self._expect(entries[first + 1 :], uav, delay))
             changed = min(changed, self._begins(entries[first], uav, which, since))
+        as_sent = None
         if overdue or entries[flown].effective + unclear < until:
-            self._learn(uav, float(bool(overdue)))
-        elif changed == math.inf:
+            as_sent = not overdue
+            self._learn(uav, float(not as_sent))
+        elif changed == math.inf and delay is None:
             return None
-        return Confirmation(as_sent=not overdue, corrected_from=changed if changed < math.inf else None)
+        return Confirmation(as_sent, changed if changed < math.inf else None, delay)
 
     def _overwrite(self, entry: _Entry, uav: int, which: list[int], told: Array) -> float:
         """One that never came: returns from when on that changes anything."""
@@ -164,6 +186,16 @@ class SetpointHistory:
         if abs(since - entry.starts[uav]) > PUNCTUAL:
             changed = min(changed, since, float(entry.starts[uav]))
             entry.starts[uav], entry.exact = since, False
+        return changed
+
+    def _expect(self, later: list[_Entry], uav: int, delay: float) -> float:
+        """What is on its way will take as long, where that is clearly longer than was thought."""
+        changed = math.inf
+        for entry in later:
+            start = float(entry.leaves[uav]) + delay
+            if not entry.known[uav] and start > entry.starts[uav] + UNCLEAR:
+                changed = min(changed, float(entry.starts[uav]))
+                entry.starts[uav], entry.exact = start, False
         return changed
 
     def forget(self, before: float) -> None:

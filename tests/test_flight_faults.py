@@ -1,0 +1,42 @@
+"""Single faults of one vehicle, or of the payload's unit, in flight: the team goes on, within narrow limits."""
+
+import pytest
+from flight_in_process import short_figure
+
+from gcs.faults.link import Jitter, Latency, Reordering
+from gcs.faults.sensors import AttitudeLost, PositionLost, RatesLost
+from gcs.faults.values import Bias, Drift, NotANumber, Stuck
+from gcs.testing import fault
+
+pytest_plugins = ["gcs.pytest_plugin"]
+
+START = 13.0  # s after take-off: on the way
+LIMITS = {"position_rmse": 0.15, "settle": 0.0, "payload_tilt_deg": 4.0, "uav_separation": 0.75}
+
+
+def of_one(parameters, direction=None):
+    return [fault(parameters, start=START, vehicles=[3], direction=direction)]
+
+
+FAULTS = {
+    "one link late": of_one(Latency(delay=0.06)),
+    "one link's set-points late": of_one(Latency(delay=0.06), "command"),
+    "all links late": [fault(Latency(delay=0.06), start=START), fault(Jitter(spread=0.02), start=START)],
+    "out of order": [fault(Reordering(probability=0.2), start=START)],
+    "position drifting": of_one(Drift(rate=0.1, channel="position")),
+    "position biased": of_one(Bias(amount=0.5, channel="position")),
+    "position stuck": of_one(Stuck(channel="position")),
+    "velocity unknown": of_one(NotANumber(channel="velocity")),
+    "position lost": of_one(PositionLost()),
+    "attitude lost": of_one(AttitudeLost()),
+    "rates lost": of_one(RatesLost()),
+    "payload's position stuck": [fault(Stuck(channel="payload_position"), start=START)],
+}
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_the_mission_is_flown_to_its_end(name, fly_with_faults, tmp_path):
+    mission = short_figure(tmp_path, duration=12.0)
+    flight = fly_with_faults(mission, FAULTS[name], limits=LIMITS, seed=31)
+    assert flight.within_limits, flight.failures
+    assert flight.summary["contacts"] == 0
