@@ -35,6 +35,9 @@ SETTLE_BEFORE_CHECK = 0.5  # s of telemetry that are averaged before take-off
 STREAM_BEFORE_OFFBOARD = 0.5  # s
 SPOOL_UP = 2.5  # s from idle to hover thrust
 SPOOL_DOWN = 2.0  # s from hover thrust to idle
+STANDING_SHARE = 0.8  # of the hover thrust, with which the payload stands and the links are taut
+LEAN = 0.05  # sine of a link's tilt with which it stays upright as the thrust fades
+UPRIGHT_TIMEOUT = 5.0  # s that are waited for this
 STOP_PLANS = 100  # control steps whose stop plans are remembered
 TOLERANCE = 0.01  # s
 ALONE_TIMEOUT = 120.0  # s for the vehicles to land on their own
@@ -93,6 +96,7 @@ class Flight:
         self._asked: int | None = None
         self._descends = False
         self._down: Trajectory | None = None
+        self._leaning = True
         self._stop_plans: deque[StopPlan] = deque(maxlen=STOP_PLANS)
         self.stop_plan: StopPlan | None = None
         """What all vehicles are to do together when they hear no more; goes out with the set-points."""
@@ -338,11 +342,7 @@ class Flight:
             estimate, trajectory, standing=self.phase not in IN_THE_AIR, learn_load=self.payload.is_clear(estimate)
         )
         decided = self._stopwatch()
-        share = 1.0
-        if self.phase is Phase.SPOOL_UP:
-            share = min((time - self._since) / SPOOL_UP, 1.0)
-        elif self.phase is Phase.SPOOL_DOWN:
-            share = max(1.0 - (time - self._since) / SPOOL_DOWN, 0.0)
+        share = self._thrust_share(time, estimate)
         if self.phase in IN_THE_AIR:
             self.estimator.add_setpoint(effective, decision.u, leaves)
             self.stop_plan = stop_plan(self._parameters, decision.flat, effective, estimate.x)
@@ -350,6 +350,21 @@ class Flight:
         self._advance(time, estimate, share)
         setpoints = Setpoints(decision.directions, decision.thrusts * share)
         return setpoints, StepRecord(estimate, decision, estimated - begin, decided - estimated)
+
+    def _thrust_share(self, time: float, estimate: Estimate) -> float:
+        """Of the thrust that carries payload and vehicles."""
+        if self.phase is Phase.SPOOL_UP:
+            return min((time - self._since) / SPOOL_UP, 1.0)
+        if self.phase is not Phase.SPOOL_DOWN:
+            return 1.0
+        if self._leaning:
+            # With part of the thrust the payload stands, and the links that lean against the wind can come upright.
+            lean = float(np.abs(estimate.x[self.controller.layout.s]).max())
+            share = max(1.0 - (time - self._since) / SPOOL_DOWN, STANDING_SHARE)
+            if share > STANDING_SHARE or (lean > LEAN and time - self._since < UPRIGHT_TIMEOUT):
+                return share
+            self._leaning, self._since = False, time - (1.0 - STANDING_SHARE) * SPOOL_DOWN
+        return max(1.0 - (time - self._since) / SPOOL_DOWN, 0.0)
 
     def _trajectory(self, time: float) -> Trajectory:
         if self._down is not None:

@@ -43,6 +43,8 @@ class ControllerSettings:
     """Largest steady force that the reference leans against, as a share of the payload's weight."""
     drag_limit: float = 0.65
     """The same where wind explains the force: of drag, and of drag and steady force together."""
+    upright_time_constant: float = 0.5
+    """With which links come upright over a payload that stands on the ground (s)."""
     position_error_limit: float = 0.3
     """An error of the payload's position is answered as if it were at most this (m)."""
     velocity_error_limit: float = 0.6
@@ -118,9 +120,11 @@ class IntegratedDecisionController:
         trajectory = mission if standing else self.safety.filter(estimate.time, mission, estimate, self.load.air)
         self._tracked = None if standing else trajectory
         planned = self._stopwatch()
-        if learn_load and not standing:
+        if standing:
+            self._let_go()
+        elif learn_load:
             self._learn(estimate)
-        reference = Reference(self.parameters, trajectory, self._upright() if standing else self.load)
+        reference = Reference(self.parameters, trajectory, self.load)
         # The stages 0 .. N_p, then the middle of the first: a set-point is held for one period, and the reference's at
         # the middle of it leaves the least error.
         flat = reference.at(estimate.time + self._times)
@@ -153,10 +157,11 @@ class IntegratedDecisionController:
             safety=self.safety.report,
         )
 
-    def _upright(self) -> Load:
-        """On the ground, which holds the payload against the wind, the links need not lean."""
-        _, uav_drag = _drag(self.load.air, np.zeros(3))
-        return Load(self.load.mass, np.zeros(3), self.load.uav_force + uav_drag)
+    def _let_go(self) -> None:
+        """The ground holds the payload: links that lean against the wind come upright."""
+        share = self.settings.period / self.settings.upright_time_constant
+        drag, uav_drag = _drag(self.load.air, np.zeros(3))
+        self.load = Load(self.load.mass, (1.0 - share) * (self.load.force + drag), self.load.uav_force + uav_drag)
 
     def _learn(self, estimate: Estimate) -> None:
         share = self.settings.period / self.settings.load_time_constant
