@@ -9,7 +9,6 @@ estimated along with the state, so that neither leaves an offset.
 from __future__ import annotations
 
 import bisect
-import contextlib
 from copy import copy
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -17,11 +16,11 @@ from itertools import pairwise
 import numpy as np
 from filterpy.kalman import KalmanFilter
 from numpy.typing import NDArray
-from scipy.stats import chi2
 
 from idc_controller.estimate.adaptation import Adaptation
 from idc_controller.estimate.frozen import FrozenSensors
-from idc_controller.estimate.measurement_model import MeasurementModel, Stack
+from idc_controller.estimate.gate import Judgement, OutlierGate
+from idc_controller.estimate.measurement_model import MeasurementModel
 from idc_controller.estimate.measurements import PAYLOAD, Measurement, MeasurementNoise
 from idc_controller.estimate.process_model import ProcessModel, ProcessNoise
 from idc_controller.estimate.setpoint_history import Confirmation, SetpointHistory
@@ -169,8 +168,7 @@ class Estimator:
         self._moments: list[_Moment] = []
         self._snapshots: list[_Snapshot] = []
         self._setpoints = SetpointHistory(model.layout.number_of_uavs, settings.process.setpoint_loss)
-        self._gates = chi2.ppf(settings.gate_probability, np.arange(7))
-        """By the size of a measurement."""
+        self._gate = OutlierGate(settings.gate_probability)
         self.innovations: list[InnovationRecord] = []
         self.discarded_late = 0
         self.frozen = FrozenSensors(settings.measurement)
@@ -321,54 +319,36 @@ class Estimator:
         residual = y - H @ kf.x
         adaptation = self.adaptation
 
-        def gate() -> tuple[Array, Array, Array, NDArray[np.bool_], Array]:
-            R = stack.variance * adaptation.noise
-            S = H @ kf.P @ H.T
-            S.flat[:: len(R) + 1] += R
-            white, mean_squares = _whitened(residual, S, stack)
-            return R, white, mean_squares, mean_squares * stack.sizes <= self._gates[stack.sizes], S  # nan is out, too
+        def judge() -> Judgement:
+            return self._gate.judge(residual, H @ kf.P @ H.T, stack, adaptation.noise)
 
-        R, white, mean_squares, accepted, S = gate()
+        found = judge()
         surprised = False
-        if not accepted.all():
-            by_payload, by_most = self._refusals(keys, accepted)
-            surprised = by_payload or (by_most and adaptation.persists(moment.time, keys, white))
+        if not found.accepted.all():
+            by_payload, by_most = self._refusals(keys, found.accepted)
+            surprised = by_payload or (by_most and adaptation.persists(moment.time, keys, found.white))
             if surprised:
                 self._doubt()
             elif by_most:
-                adaptation.noisier(mean_squares)
+                adaptation.noisier(found.mean_squares)
             if surprised or by_most:
-                R, white, mean_squares, accepted, S = gate()
+                found = judge()
         else:
             adaptation.payload_refused = 0
-        rejected = [(source, kind.__name__) for (source, kind), good in zip(keys, accepted, strict=True) if not good]
-        keep = np.repeat(accepted, stack.sizes)
-        if not accepted.all():
-            self._keep_sound_parts(residual, S, stack, accepted, keep)
-            for c in np.flatnonzero(~accepted):
-                if not keep[stack.starts[c]]:
-                    self._untrusted[keys[c][0]] = moment.time
-        adaptation.learn(moment.time, keys, white, mean_squares, keep, stack.of_payload)
+        keep = self._gate.sound_rows(residual, found, stack)
+        refused = [c for c, good in enumerate(found.accepted.tolist()) if not good]
+        for c in refused:
+            if not keep[stack.starts[c]]:
+                self._untrusted[keys[c][0]] = moment.time
+        adaptation.learn(moment.time, keys, found.white, found.mean_squares, keep, stack.of_payload)
         nis = 0.0
         if keep.any():
-            kf.update(y[keep], R=np.diag(R[keep]), H=H[keep])
+            kf.update(y[keep], R=np.diag(found.variance[keep]), H=H[keep])
             nis = float(kf.y @ kf.SI @ kf.y)
             kf.P = (kf.P + kf.P.T) / 2
-        self.innovations.append(
-            InnovationRecord(moment.time, nis, int(keep.sum()), tuple(rejected), surprised, keys, stack.split(white))
-        )
-
-    def _keep_sound_parts(
-        self, residual: Array, S: Array, stack: Stack, accepted: NDArray[np.bool_], keep: NDArray[np.bool_]
-    ) -> None:
-        """Of what was refused, the pose or the motion may be right: a drifting position, say, with a true velocity."""
-        for c in np.flatnonzero(~accepted):
-            half = int(stack.sizes[c]) // 2
-            for first in (stack.starts[c], stack.starts[c] + half):
-                rows = slice(first, first + half)
-                part = residual[rows]
-                with contextlib.suppress(np.linalg.LinAlgError):
-                    keep[rows] = float(part @ np.linalg.solve(S[rows, rows], part)) <= self._gates[half]
+        rejected = tuple((keys[c][0], keys[c][1].__name__) for c in refused)
+        white = stack.split(found.white)
+        self.innovations.append(InnovationRecord(moment.time, nis, int(keep.sum()), rejected, surprised, keys, white))
 
     def _innovation(self, copies: list[Measurement], flat: FlatReference, k: int) -> Array:
         """Of one source and kind. Relays of one sample agree; where one of them is corrupted the median is not."""
@@ -376,9 +356,8 @@ class Estimator:
         if all(copy.agrees(first) for copy in copies[1:]):
             return self.measurement_model.innovation(first, flat, k)
         told = np.array([self.measurement_model.innovation(copy, flat, k) for copy in copies])
-        if np.isnan(told).any():
-            told = told[~np.isnan(told).any(axis=1)] if not np.isnan(told).any(axis=1).all() else told[:1]
-        return np.asarray(np.median(told, axis=0))
+        whole = ~np.isnan(told).any(axis=1)
+        return np.asarray(np.median(told[whole] if whole.any() else told, axis=0))
 
     def _refusals(self, keys: tuple[tuple[int, type], ...], accepted: NDArray[np.bool_]) -> tuple[bool, bool]:
         """Whether the payload unit insists on what the prediction excludes, and whether most sources exclude it.
@@ -410,14 +389,3 @@ class Estimator:
         oldest = self._snapshots[0].time
         del self._moments[: bisect.bisect_right(self._moments, oldest, key=lambda m: m.time)]
         self._setpoints.forget(oldest)
-
-
-def _whitened(residual: Array, S: Array, stack: Stack) -> tuple[Array, Array]:
-    """Each measurement's innovation with variance 1 (m,), by its own block of ``S``; and its mean squares (K,)."""
-    white = np.full(len(residual), np.inf)
-    for rows in stack.rows_by_size:
-        with contextlib.suppress(np.linalg.LinAlgError):  # of a filter that is lost already
-            factor = np.linalg.cholesky(S[rows[:, :, None], rows[:, None, :]])
-            white[rows] = np.linalg.solve(factor, residual[rows][..., None])[..., 0]
-    mean_squares = np.add.reduceat(white**2, stack.starts) / stack.sizes
-    return white, np.nan_to_num(mean_squares, nan=np.inf)
