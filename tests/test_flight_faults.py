@@ -6,6 +6,7 @@ from flight_in_process import short_figure
 from gcs.faults.link import Jitter, Latency, Reordering
 from gcs.faults.sensors import AttitudeLost, PositionLost, RatesLost
 from gcs.faults.values import Bias, Drift, NotANumber, Stuck
+from gcs.faults.world import Wind
 from gcs.testing import fault
 
 pytest_plugins = ["gcs.pytest_plugin"]
@@ -38,5 +39,14 @@ FAULTS = {
 def test_the_mission_is_flown_to_its_end(name, fly_with_faults, tmp_path):
     mission = short_figure(tmp_path, duration=12.0)
     flight = fly_with_faults(mission, FAULTS[name], limits=LIMITS, seed=31)
+    assert flight.within_limits, flight.failures
+    assert flight.summary["contacts"] == 0
+
+
+def test_wind_is_foreseen_along_the_way(fly_with_faults, tmp_path):
+    """Half a minute for it to be learnt, then the drag of 3 m/s against the payload's own motion costs little."""
+    limits = {"position_rmse": 0.3, "settle": 15.0, "payload_tilt_deg": 4.0, "uav_separation": 0.75}
+    wind = [fault(Wind(velocity=(2.1, -2.1, 0.0), gust=0.3), start=2.0)]
+    flight = fly_with_faults(short_figure(tmp_path, duration=25.0), wind, limits=limits, seed=32)
     assert flight.within_limits, flight.failures
     assert flight.summary["contacts"] == 0
