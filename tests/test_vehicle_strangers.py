@@ -21,6 +21,7 @@ from vehicle_bench import (
 
 from gcs.wire import px4
 from gcs.wire.codec import Codec
+from vehicle_sim.parameter_table import SETPOINT_LOSS
 from vehicle_sim.peers import REPLIES_MAX
 
 
@@ -37,7 +38,7 @@ def test_no_stranger_commands_a_controlled_vehicle(flying: Bench) -> None:
     flying.vehicle.step(flying.body.measure(), flying.now)
     assert flying.vehicle.autopilot.armed and flying.vehicle.autopilot.mode == px4.MODE_OFFBOARD
     assert flying.vehicle.autopilot.attitude_target[2] == pytest.approx(HOVER)
-    assert flying.vehicle.parameters["COM_OF_LOSS_T"] == 0.5
+    assert flying.vehicle.parameters["COM_OF_LOSS_T"] == pytest.approx(SETPOINT_LOSS)
     assert flying.result(command(512, mavlink.MAVLINK_MSG_ID_HOME_POSITION), STRANGER) == ACCEPTED
 
 
@@ -113,7 +114,7 @@ def test_mutated_datagrams_neither_raise_nor_command(flying: Bench) -> None:
     assert vehicle.autopilot.armed and vehicle.autopilot.mode == px4.MODE_OFFBOARD
     assert vehicle.autopilot.changes == before
     assert vehicle.autopilot.attitude_target[2] == pytest.approx(HOVER)
-    assert vehicle.parameters["COM_OF_LOSS_T"] == 0.5
+    assert vehicle.parameters["COM_OF_LOSS_T"] == pytest.approx(SETPOINT_LOSS)
 
 
 def test_every_message_with_random_contents_from_a_stranger_is_survived_and_changes_nothing(flying: Bench) -> None:
@@ -129,4 +130,4 @@ def test_every_message_with_random_contents_from_a_stranger_is_survived_and_chan
         vehicle.step(flying.body.measure(), flying.now)
         vehicle.datagrams_to_send(flying.now)
     assert vehicle.autopilot.changes == before
-    assert vehicle.autopilot.armed and vehicle.parameters["COM_OF_LOSS_T"] == 0.5
+    assert vehicle.autopilot.armed and vehicle.parameters["COM_OF_LOSS_T"] == pytest.approx(SETPOINT_LOSS)
