@@ -64,7 +64,7 @@ def test_who_asks_for_too_much_at_once_does_not_get_it(flying: Bench) -> None:
 
 def test_another_ground_may_take_over_once_the_stream_is_silent(flying: Bench) -> None:
     flying.streaming = {(STRANGER, 42): attitude_target(thrust=HOVER)}
-    flying.run(SETPOINT_LOSS - 0.05)
+    flying.run(SETPOINT_LOSS - 0.08)
     assert flying.result(OFFBOARD, STRANGER, 42) == DENIED
     flying.run(0.3)
     assert flying.vehicle.autopilot.failsafe  # its set-points do not fly the vehicle by themselves
