@@ -1,0 +1,45 @@
+"""A small fault campaign, and what its flights would come to."""
+
+from flight_in_process import short_figure
+
+from gcs.fault_campaign.campaign_file import read_campaign
+from gcs.fault_campaign.sweep import flights_of
+
+CAMPAIGN = """
+[campaign]
+name = "a test"
+missions = ["short_figure.toml"]
+seeds = [3, 7]
+
+[[fault]]
+name = "loss"
+kind = "packet_loss"
+start = 5.0
+severity = { probability = [0.1, 0.3] }
+
+[[fault]]
+name = "slow"
+kind = "latency"
+start = 4.0
+duration = 2.0
+delay = 0.05
+"""
+
+
+def campaign_file(folder, text=CAMPAIGN):
+    short_figure(folder, 2.0, 1.5)
+    path = folder / "campaign.toml"
+    path.write_text(text)
+    return path
+
+
+def flights(folder, text=CAMPAIGN):
+    return list(flights_of(read_campaign(campaign_file(folder, text))))
+
+
+SUMMARY = {
+    "completed": True, "outcome": "completed", "contacts": 0, "clearance_min_m": None, "uav_separation_min_m": 0.9,
+    "payload_tilt_max_deg": {"roll": 1.0, "pitch": 2.5, "yaw": None}, "duration_s": 20.0,
+    "position_rmse_m": {"total": 0.02}, "limits": {"position_rmse": [0.02, 0.03, True]},
+}  # fmt: skip
+OUTSIDE = {"limits": {"position_rmse": [0.2, 0.03, False]}}

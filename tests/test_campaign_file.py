@@ -1,0 +1,153 @@
+"""Fault campaigns: the file, and the flights that it asks for."""
+
+import dataclasses
+import tomllib
+from pathlib import Path
+
+import pytest
+from flight_in_process import short_figure
+from small_campaign import CAMPAIGN, campaign_file, flights
+
+from gcs.cli import main
+from gcs.config import UnusableFile
+from gcs.fault_campaign.base_mission import read_base
+from gcs.fault_campaign.campaign import FaultCampaign, FaultCampaignOptions
+from gcs.fault_campaign.campaign_file import read_campaign
+from gcs.mission import Fault, read_mission
+from gcs.mission.model import Limits
+
+MISSIONS = Path(__file__).parents[1] / "missions"
+
+
+def test_every_case_in_every_mission_with_every_seed(tmp_path):
+    found = flights(tmp_path, CAMPAIGN.replace('.toml"]', f'.toml", "{MISSIONS}/square.waypoints"]'))
+    assert len(found) == 3 * 2 * 2 and [flight.number for flight in found] == list(range(1, 13))
+    told = [(f.case.name, f.case.severity, f.mission, f.seed) for f in found[:5]]
+    assert told == [
+        ("loss", "probability 0.1", "short_figure", 3), ("loss", "probability 0.1", "short_figure", 7),
+        ("loss", "probability 0.1", "square", 3), ("loss", "probability 0.1", "square", 7),
+        ("loss", "probability 0.3", "short_figure", 3),
+    ]  # fmt: skip
+    assert len({flight.name for flight in found}) == 12
+
+
+def test_each_flight_is_a_mission_file(tmp_path):
+    file = read_campaign(campaign_file(tmp_path, CAMPAIGN + "\n[limits]\nclearance = 0.4\n"))
+    campaign = FaultCampaign(file, FaultCampaignOptions(tmp_path / "out"))
+    missions = [read_mission(tmp_path / "out" / "missions" / f"{f.name}.toml") for f in campaign.flights]
+    base = read_mission(tmp_path / "short_figure.toml")
+    for mission, flight in zip(missions, campaign.flights, strict=True):
+        assert (mission.seed, mission.limits) == (flight.seed, Limits(clearance=0.4))
+        assert (mission.system, mission.reference) == (base.system, base.reference)
+    assert [m.faults[0].settings for m in missions[::2]] == [
+        {"probability": 0.1},
+        {"probability": 0.3},
+        {"delay": 0.05},
+    ]
+    assert (missions[4].faults[0].start, missions[4].faults[0].duration) == (4.0, 2.0)
+
+
+@pytest.mark.parametrize("name", ["square.waypoints", "fenced_delivery.plan", "pole_course.toml"])
+def test_a_mission_made_of_another_is_the_same_otherwise(name, tmp_path):
+    base = read_base(MISSIONS / name)
+    base.write_files(tmp_path)
+    fault = Fault("packet_loss", 1.0, vehicles=(1, 2), settings={"probability": 0.2})
+    (tmp_path / "made.toml").write_text(base.text('a "new"\x7f \N{DUCK}', 5, [fault]))
+    made, read = read_mission(tmp_path / "made.toml"), read_mission(MISSIONS / name)
+    assert (made.seed, dataclasses.replace(made.faults[0], line=1)) == (5, fault)
+    assert made.name == 'a "new"\x7f \N{DUCK}'
+    same = dataclasses.replace(made, name=read.name, path=read.path, seed=read.seed, faults=read.faults)
+    assert same == read
+
+
+def test_a_mission_keeps_its_own_faults(tmp_path):
+    own = '[[fault]]\nkind = "wind"\nstart = 1.0\nvelocity = [1.0, 0.0, 0.0]\n'
+    path = short_figure(tmp_path, 2.0)
+    path.write_text(path.read_text() + own)
+    faults = tomllib.loads(read_base(path).text("made", 1, [Fault("partition", 2.0)]))["fault"]
+    assert [fault["kind"] for fault in faults] == ["wind", "partition"]
+
+
+def test_tables_of_one_name_are_flown_together(tmp_path):
+    text = CAMPAIGN + '[[fault]]\nname = "slow"\nkind = "jitter"\nstart = 4.0\nseverity = { spread = [0.01, 0.02] }\n'
+    slow = [flight for flight in flights(tmp_path, text) if flight.case.name == "slow"][::2]
+    assert [[f.kind for f in flight.case.faults_for(3)] for flight in slow] == [["latency", "jitter"]] * 2
+    assert [flight.case.faults_for(3)[1].settings for flight in slow] == [{"spread": 0.01}, {"spread": 0.02}]
+    assert slow[0].case.kind == "latency + jitter"
+
+
+def test_starts_are_drawn_for_every_seed(tmp_path):
+    found = flights(tmp_path, CAMPAIGN.replace("start = 5.0", "start_between = [5.0, 9.0]"))[:4]
+    starts = [flight.case.faults_for(flight.seed)[0].start for flight in found]
+    assert starts[:2] == starts[2:] and starts[0] != starts[1]  # the same at every severity
+    assert all(5.0 <= start <= 9.0 for start in starts)
+
+
+def test_flights_without_a_fault_and_counted_seeds(tmp_path):
+    counted = CAMPAIGN.replace("seeds = [3, 7]", "first_seed = 10\nseed_count = 3\nclean = true")
+    found = flights(tmp_path, counted)
+    assert [(f.case.name, f.seed, f.case.kind) for f in found[:4]] == [
+        ("no fault", 10, ""), ("no fault", 11, ""), ("no fault", 12, ""), ("loss", 10, "packet_loss"),
+    ]  # fmt: skip
+    assert "[[fault]]" not in found[0].text
+
+
+def test_the_example_can_be_flown(tmp_path):
+    file = read_campaign(MISSIONS / "telemetry_faults.toml")
+    campaign = FaultCampaign(file, FaultCampaignOptions(tmp_path / "out"))
+    assert campaign.total == 34
+    for flight in campaign.flights[::5]:
+        read_mission(tmp_path / "out" / "missions" / f"{flight.name}.toml")
+
+
+SWEEP = "{ probability = [0.1, 0.3] }"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("seeds = [3, 7]", "seeds = [3]\ncolour = 1", "line 6: campaign.colour: unknown key"),
+        ("seeds = [3, 7]", "", "line 2: campaign: needs either seeds or seed_count"),
+        ("seeds = [3, 7]", "seeds = [3, 3]", "line 5: campaign.seeds: 3 stands 2 times"),
+        ("seeds = [3, 7]", "seeds = [3]\nseed_count = 2", "line 6: campaign.seed_count: seeds are listed already"),
+        ("seeds = [3, 7]", "seeds = []", "line 5: campaign.seeds: needs at least 1"),
+        ("seeds = [3, 7]", 'seeds = [3]\ncontroller = "pid"', "line 6: campaign.controller: input should be 'idc'"),
+        ("short_figure.toml", "long_figure.toml", "line 4: campaign.missions[1]: there is no file long_figure.toml"),
+        ("packet_loss", "paket_loss", "line 9: fault[1].kind: there is no kind 'paket_loss': did you mean 'packet"),
+        (SWEEP, "{ probability = [0.1, 3] }", "line 11: fault[1].probability: input should be"),
+        (SWEEP, "{ share = [0.1] }", "line 11: fault[1].share: unknown key"),
+        (SWEEP, "{ probability = 0.1 }", "line 11: fault[1].severity.probability: input should"),
+        (SWEEP, "{ probability = [] }", "line 11: fault[1].severity.probability: needs at least"),
+        (SWEEP, "{ probability = [0.1, 0.1] }", "'loss': probability 0.1 stands twice"),
+        (SWEEP, "{ start = [1.0] }", "line 11: fault[1].severity.start: start stands in the"),
+        (SWEEP, "{ kind = ['bias'] }", "line 11: fault[1].severity.kind: kind cannot be swept"),
+        (SWEEP, "{ probability = [0.1, 0.3], duration = [1.0] }", "lists of different lengths"),
+        ("delay = 0.05", "delay = 0.05\nevery = 1.0", "fault[2].every: 1 s is not more than the duration"),
+        ("delay = 0.05", "delay = 0.05\nvehicles = [9]", "fault[2].vehicles: there is no vehicle 9"),
+        ("delay = 0.05", "", "line 13: fault[2].delay: missing key"),
+        ("delay = 0.05", "delay = 0.05\nstart_between = [1, 2]", "fault[2].start_between: goes without start"),
+        ("start = 5.0", "start_between = [5.0, 2.0]", "line 10: fault[1].start_between: 5 s is not before 2 s"),
+        ("start = 5.0", "", "line 7: fault[1].start: missing key"),
+        ('name = "slow"\n', "", "fault[2].name: missing key"),
+        ("[[fault]]", "[[error]]", "error: unknown key"),
+        ("delay = 0.05", "delay = 0.05\n[limits]\nspeed = 1.0", "limits.speed: unknown key"),
+        ("[campaign]", "[campaign", "line 2: not valid TOML"),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_is_told_with_its_line(old, new, told, tmp_path, capsys):
+    assert old in CAMPAIGN
+    path = campaign_file(tmp_path, CAMPAIGN.replace(old, new))
+    with pytest.raises(UnusableFile) as raised:
+        read_campaign(path)
+    assert any(told in reason and reason.startswith(str(path)) for reason in raised.value.reasons), raised.value.reasons
+    assert main(["faults", str(path), "--out", str(tmp_path / "out")]) == 2
+    assert told in capsys.readouterr().err and not (tmp_path / "out").exists()
+
+
+def test_what_is_wrong_with_a_mission_is_told(tmp_path):
+    path = campaign_file(tmp_path)
+    mission = tmp_path / "short_figure.toml"
+    mission.write_text(mission.read_text().replace("altitude", "height"))
+    with pytest.raises(UnusableFile) as raised:
+        read_campaign(path)
+    assert any("short_figure.toml: line" in reason for reason in raised.value.reasons)

@@ -1,0 +1,76 @@
+"""Fault campaigns: figures of a flight, statistics, tables and pictures."""
+
+import dataclasses
+import json
+
+import pandas
+import pytest
+from scipy.stats import binomtest
+from small_campaign import OUTSIDE, SUMMARY, flights
+
+from gcs.fault_campaign.outcome import draw_matrix, outcome_table
+from gcs.fault_campaign.result import COLUMNS, NOT_FLOWN, VERDICTS, evaluate, stop_time, team_stop
+from gcs.fault_campaign.tables import interval, rates_of, write_tables
+from gcs.side_by_side import Ended
+
+
+def results(tmp_path, within, outside=0, **figures):
+    flight = flights(tmp_path)[0]
+    made = [evaluate(flight, Ended(0, SUMMARY, "", 1.0), tmp_path / "none", "gcs fly x") for _ in range(within)]
+    made += [evaluate(flight, Ended(1, SUMMARY | OUTSIDE, "", 1.0), tmp_path / "none", "gcs fly x")] * outside
+    return [dataclasses.replace(result, **figures) for result in made]
+
+
+def test_rates_have_wilson_intervals(tmp_path):
+    [rates] = rates_of(results(tmp_path, 7, 3))
+    assert (rates.flights, rates.within_limits, rates.safe, rates.safe_rate) == (10, 7, 10, 1.0)
+    # Wilson (1927), by hand: z = 1.96, n = 10, p = 0.7.
+    assert (rates.within_limits_low, rates.within_limits_high) == pytest.approx((0.3968, 0.8922), abs=1e-4)
+    assert interval(0, 5) == pytest.approx(tuple(binomtest(0, 5).proportion_ci(method="wilson")))
+    [hit] = rates_of(results(tmp_path, 1, contacts=2))
+    assert hit.safe == 0
+
+
+def test_the_tables_say_the_same(tmp_path):
+    made = results(tmp_path, 2, 1)
+    made.append(dataclasses.replace(made[0], clearance_min_m=0.25, contacts=None, outcome=NOT_FLOWN, level=2))
+    table, parquet, rates = write_tables(made, tmp_path)
+    frame = pandas.read_parquet(parquet)
+    assert tuple(frame.columns) == COLUMNS and len(frame) == 4
+    assert frame["clearance_min_m"].isna().tolist() == [True, True, True, False]
+    assert frame["seed"].dtype == "Int64" and frame["within_limits"].tolist() == [True, True, False, True]
+    some = ["fault", "seed", "within_limits", "clearance_min_m", "contacts", "tilt_max_deg", "replay"]
+    read = pandas.read_csv(table)
+    pandas.testing.assert_frame_equal(read[some].astype(frame[some].dtypes), frame[some])
+    assert pandas.read_csv(rates)["flights"].tolist() == [3, 1]
+
+
+def test_all_outcomes_are_drawn_and_told(tmp_path):
+    [result] = results(tmp_path, 1)
+    made = [dataclasses.replace(result, outcome=o, level=i % 3 + 1, notes="x") for i, o in enumerate(VERDICTS)]
+    assert draw_matrix("a test", made, tmp_path).stat().st_size > 5_000
+    outcome_table(made, [])
+
+
+def test_time_to_the_stop_of_the_team(tmp_path):
+    faults = [{"activations": [[5.0, None]]}]
+    (tmp_path / "faults.json").write_text(json.dumps({"take_off_s": 3.0, "end_s": 20.0, "faults": faults}))
+    assert team_stop(tmp_path, 1) == (None, None)
+    rows = ["1.0,1,OFFBOARD,1,0", "1.0,2,OFFBOARD,1,0", "8.45,2,AUTO.LOITER,1,1", "8.5,1,AUTO.LOITER,1,1"]
+    (tmp_path / "modes.csv").write_text("\n".join(["time_s,vehicle,mode,armed,failsafe", *rows, ""]))
+    assert team_stop(tmp_path, 1) == (0.5, 0.05)
+    faults.insert(0, {"kind": "wind", "activations": [[0.0, None]]})  # not what they stopped for
+    (tmp_path / "faults.json").write_text(json.dumps({"take_off_s": 3.0, "end_s": 20.0, "faults": faults}))
+    assert team_stop(tmp_path, 2) == (0.5, 0.05)
+
+
+def test_time_to_the_stop(tmp_path):
+    faults = [{"activations": [[5.0, 6.0]]}, {"activations": []}, {"activations": [[4.0, None]]}]
+    (tmp_path / "faults.json").write_text(json.dumps({"take_off_s": 3.0, "end_s": 20.0, "faults": faults}))
+    assert stop_time({"broken_off_s": 9.25}, tmp_path, 3) == 2.25
+    faults[:0] = [{"activations": [[1.0, None]]}]  # the mission's own
+    (tmp_path / "faults.json").write_text(json.dumps({"take_off_s": 3.0, "end_s": 20.0, "faults": faults}))
+    assert stop_time({"broken_off_s": 9.25}, tmp_path, 3) == 2.25
+    assert stop_time({"broken_off_s": 6.5}, tmp_path, 3) is None  # for another reason
+    assert stop_time({"broken_off_s": None}, tmp_path, 3) is None
+    assert stop_time({"broken_off_s": 6.25}, tmp_path / "none", 3) is None
