@@ -126,7 +126,7 @@ class GroundStation:
             link = self.links[index]
             link.handle(message, now)
             if link.clock.known:
-                latest = max(latest, self._learn(message, index, latest))
+                latest = max(latest, self._learn(message, index, latest, now))
         if known:
             self._recorder.datagram(now, datagram)
         else:
@@ -202,7 +202,7 @@ class GroundStation:
         if self.flight.phase is Phase.CONNECT or abs(offset - self._team_offset) < CLOCK_STEP:
             self._team_offset = offset
 
-    def _learn(self, message: Any, index: int, latest: float) -> float:
+    def _learn(self, message: Any, index: int, latest: float, now: float) -> float:
         """From a message that tells of one moment: which. ``latest`` is that of those before it in its datagram."""
         kind = message.get_type()
         is_detection = kind == "OBSTACLE_DISTANCE_3D"
@@ -216,7 +216,8 @@ class GroundStation:
             told = setpoint_flown(message, link.parameters.get(px4.PARAM_THRUST_MAX, math.nan))
             if told is not None:
                 # Its stamp is that of the moment at which it began to act.
-                confirmation = self.flight.flown(index, time, max(time, latest), told, link.clock.spread)
+                until = min(max(time, latest), self.team_time(now))
+                confirmation = self.flight.flown(index, time, until, told, link.clock.spread, link.longest_way)
                 if confirmation is not None:
                     link.confirmed(confirmation)
             return time

@@ -18,6 +18,7 @@ from gcs.wire.link_statistics import LinkStatistics
 from idc_controller.estimate.setpoint_history import Confirmation
 
 DELAYS = 3  # set-points whose median is the delay: a way that gets longer must be followed at once
+CLOCK_ERROR = 0.01  # s by which a vehicle's stamps may be wrong without a fault
 RETRY_AFTER = 0.5  # s
 TRIES = 10  # with a third of all datagrams lost, one command in a thousand stays unanswered
 
@@ -96,8 +97,17 @@ class VehicleLink:
         if len(self.setpoint_delays) == DELAYS:
             # Round trips tell less: on a way that loses or reorders, those that arrive are not late.
             return median(self.setpoint_delays)
-        onboard = self.parameters.get(px4.PARAM_ONBOARD_RATE, 0.0)
-        return self.clock.delay + (1.0 / onboard if onboard > 0.0 else 0.0)
+        return self.clock.delay + self._onboard_period
+
+    @property
+    def longest_way(self) -> float:
+        """The longest that a set-point can take (s), by round trips."""
+        return self.clock.longest_trip + 2.0 * self._onboard_period + CLOCK_ERROR
+
+    @property
+    def _onboard_period(self) -> float:
+        rate = self.parameters.get(px4.PARAM_ONBOARD_RATE, 0.0)
+        return 1.0 / rate if rate > 0.0 else 0.0
 
     def confirmed(self, confirmation: Confirmation) -> None:
         """The vehicle has told of a set-point that it flew."""

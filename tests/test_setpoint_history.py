@@ -7,6 +7,7 @@ from idc_controller.estimate.setpoint_history import SetpointHistory
 
 N = 2
 SECOND = [2, 3, 5]  # the second vehicle's tilt (north, east) and thrust
+WAY = 0.12  # s that set-points should take
 SENT = [np.full(3 * N, 0.01 * k) for k in range(5)]
 
 
@@ -14,7 +15,7 @@ SENT = [np.full(3 * N, 0.01 * k) for k in range(5)]
 def history():
     history = SetpointHistory(N, least_loss=0.005)
     for k, u in enumerate(SENT):
-        history.add(0.05 * k, u)
+        history.add(0.05 * k, u, np.full(N, 0.05 * k - WAY))
     return history
 
 
@@ -88,7 +89,7 @@ def test_what_is_over_is_forgotten_but_for_what_may_still_act(history):
 
 def test_when_one_began_is_told_once(history):
     first = history.confirm(1, 0.12, 0.13, SENT[2][SECOND], spread=0.01)
-    assert first.delay == pytest.approx(0.02)
+    assert first.delay == pytest.approx(0.02 + WAY)
     again = history.confirm(1, 0.12, 0.14, SENT[2][SECOND], spread=0.01)
     assert again.delay is None
 
@@ -96,7 +97,7 @@ def test_when_one_began_is_told_once(history):
 def test_one_that_comes_long_before_its_time_is_found(history):
     early = history.confirm(1, 0.09, 0.11, SENT[4][SECOND], spread=0.0)
     assert early is not None and early.as_sent is None
-    assert early.delay == 0.0
+    assert early.delay == pytest.approx(WAY - 0.11)
     assert history.in_force(0.10, 0.15).u[SECOND] == pytest.approx(SENT[4][SECOND])
 
 
@@ -118,3 +119,13 @@ def test_what_left_after_one_that_came_late_is_expected_late():
     mean = history.in_force(0.16, 0.21).u  # where the next one should have acted
     assert mean[SECOND] == pytest.approx(0.2 * SENT[1][SECOND] + 0.8 * SENT[2][SECOND])
     assert mean[[0, 1, 4]] == pytest.approx(SENT[3][[0, 1, 4]])
+
+
+@pytest.mark.parametrize("since", [0.05, 0.19])
+def test_a_beginning_that_cannot_be_is_not_believed(since):
+    history = SetpointHistory(N, least_loss=0.005)
+    for k, u in enumerate(SENT):
+        history.add(0.05 * k + 0.004, u, np.full(N, 0.05 * k))
+    told = history.confirm(1, since, 0.11, SENT[2][SECOND], spread=0.0, longest=0.03)
+    assert told is None or (told.delay is None and told.corrected_from is None)
+    assert history.in_force(0.104, 0.154).u is SENT[2]

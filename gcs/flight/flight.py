@@ -150,14 +150,17 @@ class Flight:
         elif self.phase in (Phase.CHECK, Phase.ARM):
             self._on_pad.measured(measurement)
 
-    def flown(self, uav: int, since: float, until: float, told: Array, spread: float) -> Confirmation | None:
+    def flown(
+        self, uav: int, since: float, until: float, told: Array, spread: float, longest: float
+    ) -> Confirmation | None:
         """A vehicle says what it flew from ``since`` to ``until``, tilt (north, east) and thrust (N) (3,).
 
-        ``spread``: by how much the time varies that datagrams take to it (s). Returns what the estimator learns of it.
+        ``spread``: by how much the time varies that datagrams take to it (s); ``longest``: the longest that set-points
+        can take to it (s). Returns what the estimator learns of it.
         """
         if self.phase not in IN_THE_AIR:
             return None
-        return self.estimator.confirm_setpoint(uav, since, until, told, spread)
+        return self.estimator.confirm_setpoint(uav, since, until, told, spread, longest)
 
     def break_off(self, time: float, reason: str, *, interrupted: bool = False) -> None:
         """End the flight early and safely: on the ground at once, in the air by stopping and landing."""

@@ -9,6 +9,7 @@ from statistics import median
 WINDOW = 10  # round trips that are remembered: as long as the stamps, so that both tell of one time
 SLICE = 0.25  # s of which only the greatest lead is remembered
 SLICES = 4  # few, because a simulated world that has stalled does not catch up
+RECENT = 4  # round trips
 OPEN_REQUESTS = 100  # TIMESYNC requests whose answers are waited for
 REBOOT = 1.0  # s; a boot time that falls behind by more belongs to another boot
 
@@ -69,6 +70,11 @@ class RemoteClock:
         """By how much that time varies (s), apart from the worst quarter."""
         trips = sorted(self._round_trips)
         return (trips[3 * (len(trips) - 1) // 4] - trips[0]) / 2.0 if trips else 0.0
+
+    @property
+    def longest_trip(self) -> float:
+        """The longest of the last few round trips (s): there and back, neither way takes longer."""
+        return max(list(self._round_trips)[-RECENT:], default=math.inf)
 
     @property
     def delay(self) -> float:

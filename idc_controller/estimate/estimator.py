@@ -205,10 +205,10 @@ class Estimator:
         self._setpoints.add(effective, u, leaves)
 
     def confirm_setpoint(
-        self, uav: int, since: float, until: float, told: Array, spread: float = 0.0
+        self, uav: int, since: float, until: float, told: Array, spread: float = 0.0, longest: float = np.inf
     ) -> Confirmation | None:
         """What a vehicle says it flew from ``since`` to ``until`` (s), see :meth:`SetpointHistory.confirm`."""
-        confirmation = self._setpoints.confirm(uav, since, until, told, spread)
+        confirmation = self._setpoints.confirm(uav, since, until, told, spread, longest)
         if confirmation is not None and confirmation.corrected_from is not None:
             self._back_to(confirmation.corrected_from)
         return confirmation

@@ -124,12 +124,15 @@ class SetpointHistory:
         shares = np.diff(edges, axis=0) / (end - start)  # (entries, N)
         return np.asarray(np.einsum("ki,ki->i", np.hstack([np.repeat(shares, 2, axis=1), shares]), flown))
 
-    def confirm(self, uav: int, since: float, until: float, told: Array, spread: float) -> Confirmation | None:
+    def confirm(
+        self, uav: int, since: float, until: float, told: Array, spread: float, longest: float = math.inf
+    ) -> Confirmation | None:
         """A vehicle says that it flew ``told``, tilt (north, east) and thrust (3,), from ``since`` to ``until`` (s).
 
         ``spread`` (s): by how much the time varies that set-points take on their way. From now on the history has it
         when the vehicle began to fly this one, and, where others should have come since, that they were lost. Words
-        that tell of none that was sent are not believed: None.
+        that tell of none that was sent are not believed: None. Nor is a beginning that is earlier than the set-point
+        left, or later by more than ``longest`` (s): then a clock is wrong.
         """
         self._spread[uav] = spread
         entries, unclear = self._entries, UNCLEAR + spread
@@ -152,9 +155,10 @@ class SetpointHistory:
         while first > 0 and is_told(entries[first - 1].sent):
             first -= 1
         delay = None
-        if first and flown - first < LOST_MAX:
+        took = since - float(entries[first].leaves[uav])
+        if first and flown - first < LOST_MAX and -PUNCTUAL <= took <= longest:
             if first == flown and not entries[first].known[uav]:
-                delay = max(since - float(entries[first].leaves[uav]), 0.0)
+                delay = max(took, 0.0)
                 changed = min(changed, self._expect(entries[first + 1 :], uav, delay))
             changed = min(changed, self._begins(entries[first], uav, which, since))
         as_sent = None
