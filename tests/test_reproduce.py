@@ -138,8 +138,9 @@ def test_missions_that_are_not_there_are_refused_before_anything_starts(tmp_path
 def test_simulations_repeat():
     case = replace(plan(quick=True).cases["noise", "printed_0.008_1"], duration=1.0)
     first, second = simulate(case), simulate(case)
-    np.testing.assert_array_equal(first.position, second.position)
-    assert not np.array_equal(simulate(replace(case, seed=2)).position, first.position)
+    # Within one process sums may differ in the last digit, with where arrays happen to lie in memory.
+    np.testing.assert_allclose(first.position, second.position, rtol=0.0, atol=1e-9)
+    assert np.abs(simulate(replace(case, seed=2)).position - first.position).max() > 1e-6
 
 
 def recorded(folder, tilt_deg, contacts):
