@@ -18,7 +18,7 @@ from gcs.courses.moving import MOTIONS, displacement, motion_for, top_speed
 from gcs.courses.outcome import draw_distribution, from_bad_end, outcome_table
 from gcs.courses.schedule import Schedule, arrival
 from gcs.errors import UnusableInput
-from gcs.flight.flight import SPOOL_UP
+from gcs.flight.spool import SPOOL_UP
 from gcs.mission import Lissajous, Sphere, mover, read_mission, rest_position
 from gcs.record.run_folder import open_run_folder
 from gcs.record.tables import truth_columns

@@ -14,7 +14,7 @@ import numpy as np
 from gcs.courses.generator import HELD_TO, RandomCourse
 from gcs.courses.schedule import Schedule, arrival
 from gcs.errors import GcsError
-from gcs.flight.flight import SPOOL_UP
+from gcs.flight.spool import SPOOL_UP
 from gcs.mission.model import Limits
 from gcs.mission.read import read_mission
 from gcs.record.run_data import read_run

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcs.flight.course import Course
-from gcs.flight.flight import SPOOL_UP
+from gcs.flight.spool import SPOOL_UP
 from gcs.mission.model import RESTING_ALTITUDE, Mission
 from idc_controller.parameters import SystemParameters
 

@@ -15,6 +15,7 @@ from gcs.flight.course import Course
 from gcs.flight.pad import Pad
 from gcs.flight.payload_watch import PayloadWatch
 from gcs.flight.phase import IN_THE_AIR, Phase
+from gcs.flight.spool import SpoolDown, spooling_up
 from gcs.flight.team import Team
 from gcs.mission.model import Mission
 from gcs.wire import px4
@@ -33,11 +34,6 @@ ARM_TIMEOUT = 12.0  # s
 DISARM_TIMEOUT = 10.0  # s: the heartbeat that tells it comes once a second, and may be lost
 SETTLE_BEFORE_CHECK = 0.5  # s of telemetry that are averaged before take-off
 STREAM_BEFORE_OFFBOARD = 0.5  # s
-SPOOL_UP = 2.5  # s from idle to hover thrust
-SPOOL_DOWN = 2.0  # s from hover thrust to idle
-STANDING_SHARE = 0.8  # of the hover thrust, with which the payload stands and the links are taut
-LEAN = 0.05  # sine of a link's tilt with which it stays upright as the thrust fades
-UPRIGHT_TIMEOUT = 5.0  # s that are waited for this
 STOP_PLANS = 100  # control steps whose stop plans are remembered
 TOLERANCE = 0.01  # s
 ALONE_TIMEOUT = 120.0  # s for the vehicles to land on their own
@@ -96,7 +92,7 @@ class Flight:
         self._asked: int | None = None
         self._descends = False
         self._down: Trajectory | None = None
-        self._leaning = True
+        self._spool_down: SpoolDown | None = None
         self._stop_plans: deque[StopPlan] = deque(maxlen=STOP_PLANS)
         self.stop_plan: StopPlan | None = None
         """What all vehicles are to do together when they hear no more; goes out with the set-points."""
@@ -357,17 +353,10 @@ class Flight:
     def _thrust_share(self, time: float, estimate: Estimate) -> float:
         """Of the thrust that carries payload and vehicles."""
         if self.phase is Phase.SPOOL_UP:
-            return min((time - self._since) / SPOOL_UP, 1.0)
-        if self.phase is not Phase.SPOOL_DOWN:
+            return spooling_up(time - self._since)
+        if self._spool_down is None:
             return 1.0
-        if self._leaning:
-            # With part of the thrust the payload stands, and the links that lean against the wind can come upright.
-            lean = float(np.abs(estimate.x[self.controller.layout.s]).max())
-            share = max(1.0 - (time - self._since) / SPOOL_DOWN, STANDING_SHARE)
-            if share > STANDING_SHARE or (lean > LEAN and time - self._since < UPRIGHT_TIMEOUT):
-                return share
-            self._leaning, self._since = False, time - (1.0 - STANDING_SHARE) * SPOOL_DOWN
-        return max(1.0 - (time - self._since) / SPOOL_DOWN, 0.0)
+        return self._spool_down.share(time, float(np.abs(estimate.x[self.controller.layout.s]).max()))
 
     def _trajectory(self, time: float) -> Trajectory:
         if self._down is not None:
@@ -398,6 +387,7 @@ class Flight:
                 position = estimate.x[self.controller.layout.r_0]
                 self._down = RestTrajectory(position, time)
                 self.estimator.add_setpoint(estimate.time, None)
+                self._spool_down = SpoolDown(time)
                 self._enter(Phase.SPOOL_DOWN, time)
 
     @property

@@ -90,11 +90,6 @@ class ObstacleFilter:
         return dict(zip(self._bank.models.names, self._bank.weight.tolist(), strict=True))
 
     @property
-    def agility(self) -> Agility:
-        """How far it may leave its predictions."""
-        return self._agility
-
-    @property
     def is_static(self) -> bool:
         """Whether it surely stands."""
         _, velocity, _ = self._bank.state
