@@ -26,6 +26,7 @@ from gcs.vehicle_link import VehicleLink
 from gcs.wire import px4
 from gcs.wire.address import Address
 from gcs.wire.codec import Codec, gather
+from idc_controller.estimate.measurements import Attitude, Position
 
 GROUND_SYSTEM = 255
 GROUND_COMPONENT = mavlink.MAV_COMP_ID_MISSIONPLANNER
@@ -251,10 +252,14 @@ class GroundStation:
         waits[waits < TOGETHER] = 0.0
         leaves = time + self._latency + waits
         if self._obstacle_map is not None:
-            self._obstacle_map.update(time, self.flight.pose_noise, self.flight.untrusted_poses)
+            untrusted = self.flight.estimator.untrusted
+            self._obstacle_map.update(time, self.flight.pose_noise, untrusted(Position), untrusted(Attitude))
             self._recorder.obstacles(self._obstacle_map, time)
         effective = _whole_ms(time + self._latency + delays.max())
         setpoints, record = self.flight.step(time, effective, leaves, now)
+        if self._obstacle_map is not None and record is not None:
+            for sample in self.flight.estimator.vehicles(record.estimate):
+                self._obstacle_map.estimated(sample)
         for alarm in self.watch.step(time, now, record):
             self._recorder.alarm(alarm)
         self._recorder.step(self.flight, time, record)

@@ -11,7 +11,7 @@ from idc_controller.barrier.navigator import NavigatorSettings
 from idc_controller.barrier.obstacles import PredictedObstacle, Shape
 from idc_controller.barrier.planner import PlannerSettings
 from idc_controller.barrier.safety_filter import AvoidanceFilter
-from idc_controller.estimate.estimator import Estimate
+from idc_controller.estimate.estimate import Estimate
 from idc_controller.plan.flatness import Load, flat_forces
 from idc_controller.plan.paths import Leg
 from idc_controller.plan.trajectory import Limits

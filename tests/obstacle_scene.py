@@ -76,11 +76,17 @@ class Scene:
                 )))  # fmt: skip
         return found
 
-    def feed(self, obstacle_map, time, centre, obstacles):
-        """Hand a map what it would get from telemetry at ``time``."""
+    def feed(self, obstacle_map, time, centre, obstacles, off=None):
+        """Hand a map what it would get from telemetry at ``time``.
+
+        ``off`` (3,): what the vehicles are off by where they say they are (m), while the ground knows better.
+        """
         for i, position, quaternion, scan in self.look(time, centre, obstacles):
             obstacle_map.measured(Attitude(time, i, quaternion, np.zeros(3)))
-            obstacle_map.measured(Position(time, i, position, np.zeros(3)))
+            told = position if off is None else position + off
+            obstacle_map.measured(Position(time, i, told, np.zeros(3)))
+            if off is not None:
+                obstacle_map.estimated(Position(time, i, position, np.zeros(3)))
             for message in messages_of(scan):
                 obstacle_map.detected(message, i, time)
 

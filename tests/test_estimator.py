@@ -193,6 +193,47 @@ def test_a_position_is_used_when_its_velocity_is_unknown():
     assert np.all(sigma < 0.7 * blind)
 
 
+@pytest.mark.parametrize(
+    ("position", "velocity", "left_out"), [(0.1, 0.0, (True, False)), (0.0, 0.5, (False, True))], ids=["p", "v"]
+)
+def test_of_positions_and_velocities_that_contradict_each_other_those_that_fit_are_used(position, velocity, left_out):
+    north, begin = np.array([1.0, 0.0, 0.0]), 2.0
+    spoilt = [
+        [
+            replace(
+                m,
+                position=m.position + position * max(m.time - begin, 0.0) * north,
+                velocity=m.velocity + velocity * (m.time > begin) * north,
+            )
+            if m.source != PAYLOAD and isinstance(m, Position)
+            else m
+            for m in moment
+        ]
+        for moment in samples_of(8.0)
+    ]
+    estimator, estimate = run(spoilt)
+    assert estimator.left_out == left_out
+    assert estimator.untrusted(Position) == {0, 1, 2, 3}
+    error = np.abs(estimate.x - REFERENCE.at(np.zeros(1)).x[0])
+    assert max(error[:12].max(), error[LAYOUT.s].max()) < 0.02
+
+
+def test_vehicles_tell_what_is_estimated_of_them():
+    rng = np.random.default_rng(3)
+    moved = next_to_hover(rng)
+    flat = REFERENCE.at(np.zeros(1))
+    of_moved = Estimator(MODEL, EstimatorSettings()).measurement_model
+    for told in of_moved.vehicles(0.0, moved):
+        channel = of_moved.channels[told.source, type(told)]
+        expected = channel.rows @ (moved - flat.x[0])
+        assert of_moved.innovation(told, flat, 0) == pytest.approx(expected, abs=2e-3)
+
+
+def next_to_hover(rng):
+    """A state next to hover."""
+    return REFERENCE.at(np.zeros(1)).x[0] + 0.01 * rng.standard_normal(LAYOUT.size)
+
+
 def test_a_single_vehicle_never_overrules_the_others():
     estimator, _ = run([[sample(1, Position, s[0].time, offset=2.0), *s[:4], *s[6:]] for s in samples_of(3.0)])
     assert not any(record.surprised for record in estimator.innovations)

@@ -1,10 +1,10 @@
-"""Single faults of one vehicle, or of the payload's unit, in flight: the team goes on, within narrow limits."""
+"""Single faults of one vehicle, of one channel of all, or of the payload's unit: the team goes on, within limits."""
 
 import pytest
 from flight_in_process import short_figure
 
 from gcs.faults.link import Jitter, Latency, Reordering
-from gcs.faults.sensors import AttitudeLost, PositionLost, RatesLost
+from gcs.faults.sensors import AttitudeLost, PositionDrift, PositionLost, RatesLost
 from gcs.faults.values import Bias, Drift, NotANumber, Stuck
 from gcs.faults.world import Wind
 from gcs.testing import fault
@@ -15,23 +15,31 @@ START = 13.0  # s after take-off: on the way
 LIMITS = {"position_rmse": 0.15, "settle": 0.0, "payload_tilt_deg": 4.0, "uav_separation": 0.75}
 
 
-def of_one(parameters, direction=None):
-    return [fault(parameters, start=START, vehicles=[3], direction=direction)]
+def of_one(parameters, direction=None, start=START):
+    return [fault(parameters, start=start, vehicles=[3], direction=direction)]
+
+
+def of_all(parameters):
+    return [fault(parameters, start=START)]
 
 
 FAULTS = {
     "one link late": of_one(Latency(delay=0.06)),
     "one link's set-points late": of_one(Latency(delay=0.06), "command"),
-    "all links late": [fault(Latency(delay=0.06), start=START), fault(Jitter(spread=0.02), start=START)],
-    "out of order": [fault(Reordering(probability=0.2), start=START)],
+    "all links late": [*of_all(Latency(delay=0.06)), *of_all(Jitter(spread=0.02))],
+    "out of order": of_all(Reordering(probability=0.2)),
     "position drifting": of_one(Drift(rate=0.1, channel="position")),
     "position biased": of_one(Bias(amount=0.5, channel="position")),
     "position stuck": of_one(Stuck(channel="position")),
     "velocity unknown": of_one(NotANumber(channel="velocity")),
     "position lost": of_one(PositionLost()),
+    "position lost while it climbs, and for the vehicle it does so still": of_one(PositionLost(), start=5.0),
     "attitude lost": of_one(AttitudeLost()),
     "rates lost": of_one(RatesLost()),
-    "payload's position stuck": [fault(Stuck(channel="payload_position"), start=START)],
+    "payload's position stuck": of_all(Stuck(channel="payload_position")),
+    "all positions drifting": of_all(PositionDrift(velocity=(0.1, 0.0, 0.0))),
+    "all velocities biased": of_all(Bias(amount=0.5, channel="velocity")),
+    "all attitudes stuck": of_all(Stuck(channel="attitude")),
 }
 
 

@@ -203,17 +203,23 @@ def test_when_all_links_are_silent_nothing_is_dropped_for_being_unseen():
     assert len(m.predict(np.array([3.0]))) == 1
 
 
-def test_what_a_vehicle_sees_that_is_not_where_it_says_is_left_out():
-    m, scene = map_of(), Scene(0)
+def test_what_a_vehicle_sees_that_is_not_where_it_says_is_placed_by_the_estimate():
+    m, scene, truth = map_of(), Scene(0), np.array([5.0, 0.0, -6.0])
+    away, everyone = np.array([0.0, 1.0, 0.0]), frozenset(range(4))
     for k in range(10):
         t = 0.1 * k
-        scene.feed(m, t, HERE, [sphere((5.0, 0.0, -6.0))])
-        m.update(t, untrusted=frozenset(range(4)))
-    assert m.tracks == []
-    assert m.refused > 0
-    scene.feed(m, 1.0, HERE, [sphere((5.0, 0.0, -6.0))])
-    m.update(1.0, untrusted=frozenset({0, 1, 2}))
+        scene.feed(m, t, HERE, [sphere(truth)], off=away)
+        m.update(t, misplaced=everyone)
     assert len(m.tracks) == 1
+    assert nearest(m, 0.9, truth)[1] < 0.1
+
+
+def test_without_a_pose_and_an_estimate_nothing_is_placed():
+    m, scene = map_of(), Scene(0)
+    for k in range(10):
+        scene.feed(m, 0.1 * k, HERE, [sphere((5.0, 0.0, -6.0))])
+        m.update(0.1 * k, misaligned=frozenset(range(4)))
+    assert m.tracks == []
 
 
 def test_scans_wait_for_their_pose_and_nonsense_is_refused():

@@ -20,7 +20,8 @@ from gcs.flight.team import Team
 from gcs.mission.model import Mission
 from gcs.wire import px4
 from idc_controller.control.controller import Decision, IntegratedDecisionController
-from idc_controller.estimate.estimator import Estimate, Estimator
+from idc_controller.estimate.estimate import Estimate
+from idc_controller.estimate.estimator import Estimator
 from idc_controller.estimate.measurements import Measurement
 from idc_controller.estimate.setpoint_history import Confirmation
 from idc_controller.plan.reference import Reference
@@ -90,6 +91,7 @@ class Flight:
         self.payload = PayloadWatch(controller.parameters)
         self._pad: Trajectory | None = None
         self._asked: int | None = None
+        self._forced = False
         self._descends = False
         self._down: Trajectory | None = None
         self._spool_down: SpoolDown | None = None
@@ -123,12 +125,6 @@ class Flight:
     def pose_noise(self) -> float:
         """Factor of the noise of telemetry over that of the system file, as the filter sees it, 1 or more."""
         return math.sqrt(self.estimator.adaptation.noise)
-
-    @property
-    def untrusted_poses(self) -> frozenset[int]:
-        """UAVs (0 .. N-1) whose position or attitude the filter has left out lately; none when that is all of them."""
-        untrusted = self.estimator.untrusted_poses
-        return untrusted if len(untrusted) < len(self.team.links) else frozenset()
 
     def asked(self, times: Array) -> tuple[Array, Array]:
         """Position and velocity (K, 3) that the mission asks of the payload at ``times`` since take-off began."""
@@ -215,6 +211,8 @@ class Flight:
                 self._watch_landing(time, now)
             case Phase.DISARM:
                 self._disarm(time)
+                # One that is not disarmed yet must not take itself for forsaken, and rise.
+                return self._idle, None
             case Phase.ENDED:
                 pass
             case _:
@@ -279,6 +277,10 @@ class Flight:
         if self.team.answered and self.team.disarmed:
             self.landed = True
             self._enter(Phase.ENDED, time)
+        elif self.team.refusal is not None and not self._forced:
+            # The payload stands and the rotors idle, whatever a vehicle without a position of its own believes.
+            self._forced = True
+            self._ask(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0.0, px4.FORCE_ARM_DISARM)
         elif self.team.refusal is not None or time - self._since > DISARM_TIMEOUT:
             self.reason = self.reason or self.team.refusal or "not every vehicle has disarmed"
             self._enter(Phase.ENDED, time)

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from idc_controller.estimate.estimator import Estimate
+from idc_controller.estimate.estimate import Estimate
 from idc_controller.model.linear import StateLayout
 from idc_controller.parameters import SystemParameters
 from idc_controller.plan.trajectory import Trajectory

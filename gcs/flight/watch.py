@@ -17,7 +17,7 @@ from gcs.vehicle_link import VehicleLink
 from idc_controller.control.controller import Decision
 from idc_controller.estimate.adaptation import LEVELS
 from idc_controller.estimate.consistency import RARE, Consistency
-from idc_controller.estimate.estimator import Estimate
+from idc_controller.estimate.estimate import Estimate
 from idc_controller.estimate.measurements import PAYLOAD
 
 Array = NDArray[np.float64]
@@ -151,6 +151,9 @@ class Watch:
     def _measurements(self, time: float) -> None:
         for source, channel in self._flight.estimator.frozen.channels():
             self._book.tell(time, self._source(source), "frozen", channel)
+        for left_out, name in zip(self._flight.estimator.left_out, ("positions", "velocities"), strict=True):
+            if left_out:
+                self._book.tell(time, "team", "contradicts", f"{name} of all vehicles are left out")
         for (source, kind), complaints in self._consistency.complaints(time).items():
             for complaint in complaints:
                 self._book.tell(time, self._source(source), complaint, kind.__name__.lower())

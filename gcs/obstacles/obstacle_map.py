@@ -90,6 +90,10 @@ class ObstacleMap:
         """A vehicle's position or attitude."""
         self._inbox.measured(sample)
 
+    def estimated(self, sample: Measurement) -> None:
+        """What the ground thinks of a vehicle's position or attitude: for one that does not know them itself."""
+        self._inbox.estimated(sample)
+
     def detected(self, message: Any, uav: int, time: float) -> None:
         """An OBSTACLE_DISTANCE_3D of UAV ``uav`` (0 .. N-1), true at ``time``. Nonsense is counted and left out."""
         self._inbox.detected(message, uav, time)
@@ -99,14 +103,20 @@ class ObstacleMap:
         """Detections that could not be used."""
         return self._inbox.refused
 
-    def update(self, now: float, pose_noise: float = 1.0, untrusted: frozenset[int] = frozenset()) -> None:
+    def update(
+        self,
+        now: float,
+        pose_noise: float = 1.0,
+        misplaced: frozenset[int] = frozenset(),
+        misaligned: frozenset[int] = frozenset(),
+    ) -> None:
         """Learn from all that came since the last time.
 
-        ``pose_noise``: factor of the noise of the vehicles' poses over that of the system file. ``untrusted``: vehicles
-        (0 .. N-1) whose poses are wrong.
+        ``pose_noise``: factor of the noise of the vehicles' poses over that of the system file. ``misplaced``: vehicles
+        (0 .. N-1) whose positions are wrong; ``misaligned``: whose attitudes are. Both are placed by what is estimated.
         """
         self._time = now
-        for clusters in self._inbox.frames(now, pose_noise, untrusted):
+        for clusters in self._inbox.frames(now, pose_noise, misplaced, misaligned):
             self._learn(clusters)
         self._drop_silent(now)
 

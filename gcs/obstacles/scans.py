@@ -61,6 +61,7 @@ class ScanInbox:
         self._sensors = sensors
         self._attitudes: dict[int, deque[Attitude]] = {}
         self._positions: dict[int, deque[Position]] = {}
+        self._estimated: dict[tuple[int, type], deque[Measurement]] = {}
         self._waiting: dict[tuple[int, int], _Scan] = {}
         self._waiting_points: dict[int, int] = {}
         self.refused = 0
@@ -74,6 +75,10 @@ class ScanInbox:
             self._attitudes.setdefault(sample.source, deque(maxlen=_POSES)).append(sample)
         else:
             self._positions.setdefault(sample.source, deque(maxlen=_POSES)).append(sample)
+
+    def estimated(self, sample: Measurement) -> None:
+        """What the ground thinks of a vehicle's position or attitude: for one that does not know them itself."""
+        self._estimated.setdefault((sample.source, type(sample)), deque(maxlen=_POSES)).append(sample)
 
     def detected(self, message: Any, uav: int, time: float) -> None:
         """An OBSTACLE_DISTANCE_3D of UAV ``uav`` (0 .. N-1), true at ``time``."""
@@ -109,24 +114,30 @@ class ScanInbox:
         return tuple(self._positions)
 
     def frames(
-        self, now: float, pose_noise: float = 1.0, untrusted: frozenset[int] = frozenset()
+        self,
+        now: float,
+        pose_noise: float = 1.0,
+        misplaced: frozenset[int] = frozenset(),
+        misaligned: frozenset[int] = frozenset(),
     ) -> list[list[Cluster]]:
         """What can be placed, oldest first: the clusters of all vehicles at (nearly) one time.
 
-        ``pose_noise``: factor of the poses' noise over what :class:`SensorModel` says. ``untrusted``: vehicles that are
-        not where they say, nor is what they see.
+        ``pose_noise``: factor of the poses' noise over what :class:`SensorModel` says. ``misplaced``: vehicles that are
+        not where they say; ``misaligned``: whose attitude is not what they say. They are placed by what is estimated.
         """
         placed: list[tuple[float, list[Cluster]]] = []
         for key, scan in tuple(self._waiting.items()):
-            pose = self._pose(key[0], scan.time)
+            uav = key[0]
+            pose = self._pose(uav, scan.time, uav in misplaced, uav in misaligned)
             if pose is None and now - scan.time <= PATIENCE:
                 continue
             del self._waiting[key]
-            self._waiting_points[key[0]] -= scan.count
-            if pose is None or key[0] in untrusted:
+            self._waiting_points[uav] -= scan.count
+            pose = pose or self._pose(uav, scan.time, misplaced=True, misaligned=True)
+            if pose is None:
                 self.refused += scan.count
                 continue
-            placed.append((scan.time, self._placed(key[0], scan, *pose, pose_noise)))
+            placed.append((scan.time, self._placed(uav, scan, *pose, pose_noise)))
         placed.sort(key=lambda entry: entry[0])
         frames: list[list[Cluster]] = []
         begin = -math.inf
@@ -154,10 +165,11 @@ class ScanInbox:
             clusters.append(Cluster(uav, number, seen))
         return clusters
 
-    def _pose(self, uav: int, time: float) -> tuple[Array, Array] | None:
+    def _pose(self, uav: int, time: float, misplaced: bool, misaligned: bool) -> tuple[Array, Array] | None:
         """Position (3,) and attitude (4,) at ``time``, from the samples next to it."""
-        attitude = _nearest(self._attitudes.get(uav), time)
-        position = _nearest(self._positions.get(uav), time)
+        estimated = self._estimated
+        attitude = _nearest(estimated.get((uav, Attitude)) if misaligned else self._attitudes.get(uav), time)
+        position = _nearest(estimated.get((uav, Position)) if misplaced else self._positions.get(uav), time)
         if attitude is None or position is None:
             return None
         dt = time - attitude.time

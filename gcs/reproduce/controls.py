@@ -14,7 +14,7 @@ from gcs.flight import stack
 from gcs.reproduce.scene import MARGIN, RADIUS, KnownSpheres, Sphere, configuration, printed_reference
 from idc_controller.barrier.formation import Formation
 from idc_controller.control.safety import NoObstacles, SafetyFilter
-from idc_controller.estimate.estimator import Estimate
+from idc_controller.estimate.estimate import Estimate
 from idc_controller.model.linear import LinearModel, StateLayout
 from idc_controller.paper.avoidance import (
     Encounter,

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from idc_controller.barrier.formation import Formation
 from idc_controller.barrier.obstacles import ObstacleSource, PredictedObstacle
 from idc_controller.control.safety import NoObstacles
-from idc_controller.estimate.estimator import Estimate
+from idc_controller.estimate.estimate import Estimate
 from idc_controller.model.linear import LinearModel
 
 Array = NDArray[np.float64]

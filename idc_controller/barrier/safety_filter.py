@@ -14,7 +14,7 @@ from idc_controller.barrier.obstacles import ObstacleSource, PredictedObstacle
 from idc_controller.barrier.planner import Plan, Planner, PlannerSettings
 from idc_controller.barrier.separation import Separation, separations
 from idc_controller.control.safety import SafetyReport
-from idc_controller.estimate.estimator import Estimate
+from idc_controller.estimate.estimate import Estimate
 from idc_controller.model.air import Air
 from idc_controller.parameters import SystemParameters
 from idc_controller.plan.chain import Chain

@@ -17,7 +17,7 @@ from idc_controller.control.force_components import setpoints_from_force_compone
 from idc_controller.control.safety import SafetyFilter, SafetyReport
 from idc_controller.control.standing import StandingTracker
 from idc_controller.control.tracker import Tracker
-from idc_controller.estimate.estimator import Estimate
+from idc_controller.estimate.estimate import Estimate
 from idc_controller.estimate.wind import WindEstimator
 from idc_controller.model.air import Air
 from idc_controller.model.linear import LinearModel

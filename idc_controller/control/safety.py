@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from idc_controller.estimate.estimator import Estimate
+from idc_controller.estimate.estimate import Estimate
 from idc_controller.model.air import Air
 from idc_controller.plan.flatness import PayloadTrajectory
 from idc_controller.plan.trajectory import Trajectory

@@ -11,19 +11,21 @@ from __future__ import annotations
 import bisect
 from copy import copy
 from dataclasses import dataclass, field
-from itertools import pairwise
 
 import numpy as np
 from filterpy.kalman import KalmanFilter
 from numpy.typing import NDArray
 
 from idc_controller.estimate.adaptation import Adaptation
+from idc_controller.estimate.dead_reckoning import DeadReckoning
+from idc_controller.estimate.estimate import Estimate, InnovationRecord
 from idc_controller.estimate.frozen import FrozenSensors
 from idc_controller.estimate.gate import Judgement, OutlierGate
 from idc_controller.estimate.measurement_model import MeasurementModel
-from idc_controller.estimate.measurements import PAYLOAD, Measurement, MeasurementNoise
+from idc_controller.estimate.measurements import PAYLOAD, Measurement, MeasurementNoise, Position
 from idc_controller.estimate.process_model import ProcessModel, ProcessNoise
 from idc_controller.estimate.setpoint_history import Confirmation, SetpointHistory
+from idc_controller.estimate.way import Way
 from idc_controller.model.linear import LinearModel
 from idc_controller.plan.flatness import FlatReference
 from idc_controller.plan.reference import Reference
@@ -33,8 +35,11 @@ Array = NDArray[np.float64]
 PATIENCE = 3
 """So many times in a row the payload unit may disagree with the prediction before the prediction is doubted."""
 
+OUTLIER = 25.0
+"""Square of an innovation with variance 1 that is certainly none."""
+
 DISTRUST = 0.5
-"""For how long a pose that was left out counts as wrong (s)."""
+"""For how long what was left out counts as wrong (s)."""
 
 
 @dataclass(frozen=True)
@@ -75,40 +80,6 @@ class EstimatorSettings:
     surprise: Surprise = field(default_factory=Surprise)
 
 
-@dataclass(frozen=True, eq=False)
-class Estimate:
-    """The state at one moment. ``x`` (12 + 11 N,) in the linear model's coordinates, absolute."""
-
-    time: float
-    x: Array
-    force: Array
-    """Steady force on the payload (3,) (N, NED)."""
-    uav_force: Array
-    """Steady level force on each of the UAVs (3,) (N, NED)."""
-    mass_excess: float
-    """Payload mass less nominal (kg)."""
-    covariance: Array
-    """Of x, forces (3 + 2) and mass excess (12 + 11 N + 6,) squared."""
-
-
-@dataclass(frozen=True, eq=False)
-class InnovationRecord:
-    """How well the measurements of one moment agreed with the prediction."""
-
-    time: float
-    normalised_squared: float
-    """y' S^-1 y of what was accepted; on average ``degrees_of_freedom``."""
-    degrees_of_freedom: int
-    rejected: tuple[tuple[int, str], ...]
-    """Source and kind of what the gate kept out."""
-    surprised: bool = False
-    """Most sources disagreed at once, and the prediction was given up for them."""
-    keys: tuple[tuple[int, type], ...] = ()
-    """Source and kind of all that was measured (K,)."""
-    white: tuple[Array, ...] = ()
-    """The innovation of each with variance 1 (m,)."""
-
-
 @dataclass
 class _Moment:
     time: float
@@ -121,38 +92,6 @@ class _Snapshot:
     x: Array  # absolute, augmented
     P: Array
     adaptation: Adaptation
-
-
-class _Way:
-    """The times between the last update and the moment asked for, with the exact reference at all of them."""
-
-    def __init__(
-        self,
-        start: float,
-        moments: list[float],
-        end: float,
-        setpoints: SetpointHistory,
-        reference: Reference,
-    ) -> None:
-        times = sorted([start, *moments, end])
-        switches = setpoints.switches(start + 1e-6, end - 1e-6)
-        times += [t for t in switches if min(abs(t - other) for other in times) > 1e-6]
-        self.edges = sorted(set(times))
-        self.flat = reference.at(np.array(self.edges))
-        self.setpoints = [setpoints.in_force(a, b) for a, b in pairwise(self.edges)]
-        """From each edge to the next."""
-
-    def u(self, k: int) -> Array:
-        """The reference's set-points between edge ``k`` and the next (3 N,)."""
-        return (self.flat.u[k] + self.flat.u[k + 1]) / 2
-
-    def acceleration(self, k: int) -> Array:
-        """The reference's acceleration between edge ``k`` and the next (3,) (m/s2)."""
-        return (self.flat.payload[2, k] + self.flat.payload[2, k + 1]) / 2
-
-    def interval_us(self, k: int) -> int:
-        """Time from edge ``k`` to the next (us)."""
-        return max(round((self.edges[k + 1] - self.edges[k]) * 1e6), 1)
 
 
 class Estimator:
@@ -172,8 +111,13 @@ class Estimator:
         self.innovations: list[InnovationRecord] = []
         self.discarded_late = 0
         self.frozen = FrozenSensors(settings.measurement)
-        self._untrusted: dict[int, float] = {}
+        self._reckoning = DeadReckoning(model.layout.number_of_uavs)
+        self.left_out = (False, False)
+        """Whether the positions, and the velocities, of all vehicles are used no more: they have contradicted each
+        other, and these explain less."""
+        self._untrusted: dict[tuple[int, type], float] = {}
         self.adaptation = Adaptation()
+        self._adapts = True
 
     def start(self, time: float, x: Array) -> None:
         """Begin at ``time`` from the state ``x`` (12 + 11 N,), known to within a start on the ground."""
@@ -213,13 +157,19 @@ class Estimator:
             self._back_to(confirmation.corrected_from)
         return confirmation
 
-    @property
-    def untrusted_poses(self) -> frozenset[int]:
-        """UAVs whose position or attitude was frozen or refused within :data:`DISTRUST`."""
-        if not self._untrusted:
-            return frozenset()
-        now = self.time
-        return frozenset(uav for uav, time in self._untrusted.items() if uav != PAYLOAD and now - time < DISTRUST)
+    def untrusted(self, kind: type[Measurement]) -> frozenset[int]:
+        """UAVs whose attitude, or whose position or velocity, was frozen or refused within :data:`DISTRUST`."""
+        if kind is Position and any(self.left_out):
+            return frozenset(range(self.layout.number_of_uavs))
+        return frozenset(
+            source
+            for (source, of), time in self._untrusted.items()
+            if of is kind and source != PAYLOAD and self.time - time < DISTRUST
+        )
+
+    def vehicles(self, estimate: Estimate) -> list[Measurement]:
+        """Positions and attitudes of the UAVs."""
+        return self.measurement_model.vehicles(estimate.time, estimate.x)
 
     def _back_to(self, time: float) -> None:
         """Take the filter back to before ``time`` (s), as far as it remembers."""
@@ -229,13 +179,15 @@ class Estimator:
     def add(self, measurement: Measurement) -> bool:
         """Take a measurement; False when it is older than the memory or the start, or of sensors that are frozen."""
         frozen = self.frozen.frozen(measurement)
-        if frozen[0]:
-            self._untrusted[measurement.source] = measurement.time
+        if frozen[0] or (frozen[1] and isinstance(measurement, Position)):
+            self._untrusted[measurement.source, type(measurement)] = measurement.time
         if all(frozen):
             return False
         if any(frozen):
             measurement = measurement.without(*frozen)
         oldest = max(self._snapshots[0].time, self.time - self.settings.history)
+        if isinstance(measurement, Position):
+            self._reckoning.add(measurement)
         if measurement.time <= oldest:
             self.discarded_late += 1
             return False
@@ -256,9 +208,32 @@ class Estimator:
 
     def estimate(self, time: float, reference: Reference) -> Estimate:
         """Apply all that was added and predict to ``time`` (s), the moment at which the next set-points act."""
+        if self._reckoning.vehicles_astray and not any(self.left_out):
+            self._leave_out(time, reference)
+        estimate = self._advance(time, reference)
+        self._forget()
+        return estimate
+
+    def _leave_out(self, time: float, reference: Reference) -> None:
+        """Positions or velocities of all vehicles, since they contradict each other: what fits the rest less.
+
+        The filter's memory is gone through without the ones and without the others, all else taken for sound.
+        """
+        kept, known = self._snapshots[:1], len(self.innovations)
+        misfits = []
+        self._adapts = False
+        for self.left_out in (True, False), (False, True):
+            self._snapshots = kept.copy()
+            self._advance(time, reference)
+            misfits.append(np.mean([_misfit(record) for record in self.innovations[known:]] or [0.0]))
+            del self.innovations[known:]
+        self.left_out = (True, False) if misfits[0] <= misfits[1] else (False, True)
+        self._snapshots, self._adapts = kept, True
+
+    def _advance(self, time: float, reference: Reference) -> Estimate:
         pending = self._moments[bisect.bisect_right(self._moments, self.time, key=lambda m: m.time) :]
         time = max(time, self.time, pending[-1].time if pending else time)
-        way = _Way(self.time, [m.time for m in pending], time, self._setpoints, reference)
+        way = Way(self.time, [m.time for m in pending], time, self._setpoints, reference)
         process = self.process_model
         # Drag is believed to change with the velocity, so what is estimated of it is what is left over.
         believed = np.empty((len(way.edges), self.size - self.layout.size))
@@ -288,12 +263,11 @@ class Estimator:
                 self._snapshots.append(_Snapshot(moment.time, absolute(kf.x, k), kf.P, copy(self.adaptation)))
                 moment = next(waiting, None)
         x = absolute(kf.x, len(way.edges) - 1)
-        self._forget()
         return Estimate(
             time, x[:n], x[process.force], np.append(x[process.uav_force], 0.0), float(x[process.mass]), kf.P
         )
 
-    def _predict(self, way: _Way, k: int) -> None:
+    def _predict(self, way: Way, k: int) -> None:
         """From edge ``k`` to the next, under the set-points in force."""
         u, change, doubt = way.setpoints[k]
         delta_u = np.zeros(self.layout.inputs) if u is None else u - way.u(k)
@@ -324,7 +298,9 @@ class Estimator:
 
         found = judge()
         surprised = False
-        if not found.accepted.all():
+        if found.accepted.all():
+            adaptation.payload_refused = 0
+        elif self._adapts:
             by_payload, by_most = self._refusals(keys, found.accepted)
             surprised = by_payload or (by_most and adaptation.persists(moment.time, keys, found.white))
             if surprised:
@@ -333,14 +309,13 @@ class Estimator:
                 adaptation.noisier(found.mean_squares)
             if surprised or by_most:
                 found = judge()
-        else:
-            adaptation.payload_refused = 0
         keep = self._gate.sound_rows(residual, found, stack)
         refused = [c for c, good in enumerate(found.accepted.tolist()) if not good]
         for c in refused:
-            if not keep[stack.starts[c]]:
-                self._untrusted[keys[c][0]] = moment.time
-        adaptation.learn(moment.time, keys, found.white, found.mean_squares, keep, stack.of_payload)
+            if keys[c][1] is Position or not keep[stack.starts[c]]:
+                self._untrusted[keys[c]] = moment.time
+        if self._adapts:
+            adaptation.learn(moment.time, keys, found.white, found.mean_squares, keep, stack.of_payload)
         nis = 0.0
         if keep.any():
             kf.update(y[keep], R=np.diag(found.variance[keep]), H=H[keep])
@@ -352,6 +327,8 @@ class Estimator:
 
     def _innovation(self, copies: list[Measurement], flat: FlatReference, k: int) -> Array:
         """Of one source and kind. Relays of one sample agree; where one of them is corrupted the median is not."""
+        if any(self.left_out) and copies[0].source != PAYLOAD and isinstance(copies[0], Position):
+            copies = [copy.without(*self.left_out) for copy in copies]
         first = copies[0]
         if all(copy.agrees(first) for copy in copies[1:]):
             return self.measurement_model.innovation(first, flat, k)
@@ -389,3 +366,8 @@ class Estimator:
         oldest = self._snapshots[0].time
         del self._moments[: bisect.bisect_right(self._moments, oldest, key=lambda m: m.time)]
         self._setpoints.forget(oldest)
+
+
+def _misfit(record: InnovationRecord) -> float:
+    """Mean square of the innovations with variance 1, each counted as an outlier at most."""
+    return float(np.mean([min(float(white @ white) / len(white), OUTLIER) for white in record.white]))

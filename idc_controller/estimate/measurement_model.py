@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from idc_controller.estimate.measurements import PAYLOAD, Attitude, Measurement, MeasurementNoise, Position
 from idc_controller.model.linear import LinearModel
 from idc_controller.plan.flatness import FlatReference
-from idc_controller.rotations import euler_from_quaternion
+from idc_controller.rotations import euler_from_quaternion, quaternion_from_euler, rotation_from_quaternion
 
 Array = NDArray[np.float64]
 
@@ -165,3 +165,33 @@ class MeasurementModel:
             position = position + self.parameters.p[i] - l * reference.links.q[k]
             velocity = velocity - l * reference.links.q_dot[k]
         return np.concatenate([measurement.position - position, measurement.velocity - velocity])
+
+    def vehicles(self, time: float, x: Array) -> list[Measurement]:
+        """What sensors without noise would tell of the UAVs in the state ``x`` (n,), at ``time`` (s); heading north."""
+        layout, p, l = self.layout, self.parameters.p, self.parameters.l[:, None]
+        attached = p @ rotation_from_quaternion(quaternion_from_euler(*x[layout.Theta])).T
+        s, s_dot = _pairs(x[layout.s]), _pairs(x[layout.s_dot])
+        down = _third(s)
+        position = x[layout.r_0] + attached - l * np.column_stack([s, down])
+        sinking = -(s * s_dot).sum(axis=1) / down
+        velocity = x[layout.v_0] + np.cross(x[layout.omega], attached) - l * np.column_stack([s_dot, sinking])
+        n, n_dot = _pairs(x[layout.n]), _pairs(x[layout.n_dot])
+        # The shortest turn from level that tilts the thrust, along -e3, to (n, -n_z).
+        turn = np.column_stack([1.0 + _third(n), n[:, 1], -n[:, 0], np.zeros(len(n))])
+        turn /= np.linalg.norm(turn, axis=1)[:, None]
+        _, a, b, _ = turn.T
+        # n' = -R (omega x e3), for omega without a part along the thrust.
+        of_n_dot = np.array([[-2.0 * a * b, 1.0 - 2.0 * b**2], [2.0 * a**2 - 1.0, 2.0 * a * b]])
+        rates = np.zeros((len(n), 3))
+        rates[:, :2] = np.einsum("rcn,nc->nr", of_n_dot / (1.0 - 2.0 * (a**2 + b**2)), n_dot)
+        told: list[Measurement] = [Position(time, i, position[i], velocity[i]) for i in range(len(n))]
+        return told + [Attitude(time, i, turn[i], rates[i]) for i in range(len(n))]
+
+
+def _pairs(values: Array) -> Array:
+    return values.reshape(-1, 2)
+
+
+def _third(lateral: Array) -> Array:
+    """Of unit vectors with these lateral parts (N, 2)."""
+    return np.sqrt(np.maximum(1.0 - (lateral**2).sum(axis=1), 0.01))

@@ -1,0 +1,92 @@
+"""Positions that do not go where their own velocities take them."""
+
+import numpy as np
+import pytest
+
+from idc_controller.estimate.dead_reckoning import WINDOW, DeadReckoning
+from idc_controller.estimate.measurements import PAYLOAD, Position
+
+VEHICLES = 4
+INTERVAL = 0.04  # s
+NOISE = 0.02  # m and m/s
+
+
+def path(t):
+    """Position and velocity in a quick figure eight."""
+    return (
+        np.array([4.0 * np.sin(0.7 * t), 3.0 * np.sin(1.4 * t), -5.0]),
+        np.array([2.8 * np.cos(0.7 * t), 4.2 * np.cos(1.4 * t), 0.0]),
+    )
+
+
+def astray_after(duration, spoil, seed=1, begin=5.0):
+    """How long after ``begin`` all are first said to be astray (s); None: not within ``duration``.
+
+    ``spoil(source, elapsed, position, velocity, rng)`` gives what is told from ``begin`` on.
+    """
+    rng, reckoning = np.random.default_rng(seed), DeadReckoning(VEHICLES)
+    for k in range(round((begin + duration) / INTERVAL)):
+        t = k * INTERVAL
+        for source in (PAYLOAD, *range(VEHICLES)):
+            position, velocity = path(t)
+            position = position + NOISE * rng.standard_normal(3)
+            velocity = velocity + NOISE * rng.standard_normal(3)
+            if t >= begin:
+                position, velocity = spoil(source, t - begin, position, velocity, rng)
+            reckoning.add(Position(t, source, position, velocity))
+        if reckoning.vehicles_astray:
+            return t - begin
+    return None
+
+
+NORTH = np.array([1.0, 0.0, 0.0])
+
+
+def of_vehicles(change):
+    return lambda source, elapsed, p, v, rng: (p, v) if source == PAYLOAD else change(elapsed, p, v, rng)
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda elapsed, p, v, rng: (p + 0.1 * elapsed * NORTH, v),
+        lambda elapsed, p, v, rng: (p + 0.5 * NORTH, v),
+        lambda elapsed, p, v, rng: (p, v - 0.2 * NORTH),
+        lambda elapsed, p, v, rng: (1.1 * p, v),
+    ],
+    ids=["drift", "bias", "velocity biased", "scale"],
+)
+def test_what_contradicts_itself_is_noticed_within_the_window(change, seed):
+    found = astray_after(WINDOW, of_vehicles(change), seed)
+    assert found is not None and found > 0.0
+
+
+def spikes(p, v, rng):
+    return p + 2.0 * (rng.random(3) < 0.2) * rng.choice([-1.0, 1.0], 3), v
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize(
+    "spoil",
+    [
+        lambda source, elapsed, p, v, rng: (p, v),
+        lambda source, elapsed, p, v, rng: (p + 5.0 * NOISE * rng.standard_normal(3), v),
+        lambda source, elapsed, p, v, rng: spikes(p, v, rng),
+        lambda source, elapsed, p, v, rng: (p + 0.1 * elapsed * NORTH * (source in (0, 1)), v),
+        lambda source, elapsed, p, v, rng: (p + 0.1 * elapsed * NORTH, v),
+        lambda source, elapsed, p, v, rng: (np.full(3, np.nan), v),
+    ],
+    ids=["sound", "noise times 5", "spikes", "two of four", "the payload unit, too", "unknown"],
+)
+def test_nothing_else_is(spoil, seed):
+    assert astray_after(30.0, spoil, seed) is None
+
+
+def test_a_gap_in_the_samples_is_no_contradiction():
+    reckoning = DeadReckoning(VEHICLES)
+    for k in range(400):
+        if k % 100 < 80:
+            for source in (PAYLOAD, *range(VEHICLES)):
+                reckoning.add(Position(k * INTERVAL, source, *path(k * INTERVAL)))
+        assert not reckoning.vehicles_astray
