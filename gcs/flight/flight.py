@@ -8,17 +8,16 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import pymavlink.dialects.v20.common as mavlink
 from numpy.typing import NDArray
 
 from gcs.flight.course import Course
+from gcs.flight.orders import Arming, Disarming, LandingAlone
 from gcs.flight.pad import Pad
 from gcs.flight.payload_watch import PayloadWatch
 from gcs.flight.phase import IN_THE_AIR, Phase
 from gcs.flight.spool import SpoolDown, spooling_up
 from gcs.flight.team import Team
 from gcs.mission.model import Mission
-from gcs.wire import px4
 from idc_controller.control.controller import Decision, IntegratedDecisionController
 from idc_controller.estimate.estimate import Estimate
 from idc_controller.estimate.estimator import Estimator
@@ -31,13 +30,9 @@ from idc_controller.plan.trajectory import RestTrajectory, Trajectory
 Array = NDArray[np.float64]
 
 CONNECT_TIMEOUT = 10.0  # s
-ARM_TIMEOUT = 12.0  # s
-DISARM_TIMEOUT = 10.0  # s: the heartbeat that tells it comes once a second, and may be lost
 SETTLE_BEFORE_CHECK = 0.5  # s of telemetry that are averaged before take-off
-STREAM_BEFORE_OFFBOARD = 0.5  # s
 STOP_PLANS = 100  # control steps whose stop plans are remembered
 TOLERANCE = 0.01  # s
-ALONE_TIMEOUT = 120.0  # s for the vehicles to land on their own
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,9 +85,9 @@ class Flight:
         self._on_pad = Pad(controller.parameters.number_of_uavs)
         self.payload = PayloadWatch(controller.parameters)
         self._pad: Trajectory | None = None
-        self._asked: int | None = None
-        self._forced = False
-        self._descends = False
+        self._arming: Arming | None = None
+        self._disarming: Disarming | None = None
+        self._landing_alone: LandingAlone | None = None
         self._down: Trajectory | None = None
         self._spool_down: SpoolDown | None = None
         self._stop_plans: deque[StopPlan] = deque(maxlen=STOP_PLANS)
@@ -206,7 +201,7 @@ class Flight:
             case Phase.CHECK:
                 self._check(time)
             case Phase.ARM:
-                return self._arm(time, now), None
+                return self._arm(time), None
             case Phase.ON_THEIR_OWN:
                 self._watch_landing(time, now)
             case Phase.DISARM:
@@ -245,23 +240,16 @@ class Flight:
             self.give_up(problem)
             return
         self._pad = RestTrajectory(self._on_pad.payload, time)
+        self._arming = Arming(self.team, time)
         self._enter(Phase.ARM, time)
 
-    def _arm(self, time: float, now: float) -> Setpoints | None:
-        refusal = self.team.refusal
-        if refusal is None and time - self._since > ARM_TIMEOUT:
-            refusal = "not every vehicle is armed"
-        if refusal is not None:
-            self.break_off(time, refusal)
+    def _arm(self, time: float) -> Setpoints | None:
+        assert self._arming is not None and self._pad is not None
+        outcome = self._arming.step(time)
+        if outcome.problem:
+            self.break_off(time, outcome.problem)
             return None
-        if self._asked is None:
-            # A vehicle enters OFFBOARD only while set-points come in.
-            if time - self._since > STREAM_BEFORE_OFFBOARD:
-                self._ask(mavlink.MAV_CMD_DO_SET_MODE, mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, px4.MainMode.OFFBOARD)
-        elif self.team.answered and self._asked == mavlink.MAV_CMD_DO_SET_MODE:
-            self._ask(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1.0)
-        elif self.team.answered and self.team.armed:
-            assert self._pad is not None
+        if outcome.done:
             rest = Reference(self._parameters, self._pad, self.controller.load)
             self.estimator.start(time, rest.at(np.array([time])).x[0])
             self.estimator.add_setpoint(time, None)
@@ -269,24 +257,16 @@ class Flight:
             self._enter(Phase.SPOOL_UP, time)
         return self._idle
 
-    def _ask(self, command: int, *parameters: float) -> None:
-        self._asked = command
-        self.team.command_all(command, *parameters)
-
     def _disarm(self, time: float) -> None:
-        if self.team.answered and self.team.disarmed:
-            self.landed = True
-            self._enter(Phase.ENDED, time)
-        elif self.team.refusal is not None and not self._forced:
-            # The payload stands and the rotors idle, whatever a vehicle without a position of its own believes.
-            self._forced = True
-            self._ask(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0.0, px4.FORCE_ARM_DISARM)
-        elif self.team.refusal is not None or time - self._since > DISARM_TIMEOUT:
-            self.reason = self.reason or self.team.refusal or "not every vehicle has disarmed"
+        assert self._disarming is not None
+        outcome = self._disarming.step(time)
+        if outcome.done or outcome.problem:
+            self.landed = outcome.done
+            self.reason = self.reason or outcome.problem
             self._enter(Phase.ENDED, time)
 
     def _begin_disarming(self, time: float) -> None:
-        self._ask(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0.0)
+        self._disarming = Disarming(self.team, time)
         self._enter(Phase.DISARM, time)
 
     # Without one of the vehicles
@@ -300,24 +280,14 @@ class Flight:
         self.break_off(time, reason)
         heard = [plan for plan in self._stop_plans if plan.start <= time - unheard + TOLERANCE]
         self.stop_plan = heard[-1] if heard else self.stop_plan
-        self._ask(
-            mavlink.MAV_CMD_DO_SET_MODE,
-            mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, px4.MainMode.AUTO, px4.AutoMode.LOITER,
-        )  # fmt: skip
-        self._descends = False
+        self._landing_alone = LandingAlone(self.team, time)
         self._enter(Phase.ON_THEIR_OWN, time)
 
     def _watch_landing(self, time: float, now: float) -> None:
-        if not self._descends and time - self._since >= self.team.land_delay:
-            self._descends = True
-            self._ask(
-                mavlink.MAV_CMD_DO_SET_MODE,
-                mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, px4.MainMode.AUTO, px4.AutoMode.LAND,
-            )  # fmt: skip
-        if self.team.heard_are_disarmed(now):
-            self.landed = True
-            self._enter(Phase.ENDED, time)
-        elif time - self._since > ALONE_TIMEOUT:
+        assert self._landing_alone is not None
+        outcome = self._landing_alone.step(time, now)
+        if outcome.done or outcome.problem:
+            self.landed = outcome.done
             self._enter(Phase.ENDED, time)
 
     # In the air, and on the way there and back
