@@ -230,9 +230,9 @@ class GroundStation:
         if sample is None or not (sample.has_pose and sample.has_motion):
             link.statistics.unusable(message.get_srcComponent())
         if sample is not None:
-            self.flight.measured(sample)
-            if obstacle_map is not None and sample.has_pose:
-                obstacle_map.measured(sample)
+            believed = self.flight.measured(sample)
+            if obstacle_map is not None and believed is not None:
+                obstacle_map.measured(believed)
         return time
 
     def _control(self, now: float, messages: list[list[Any]]) -> None:

@@ -130,12 +130,13 @@ class Flight:
         position, velocity = self._pad.derivatives(times, 1)
         return position, velocity
 
-    def measured(self, measurement: Measurement) -> None:
-        """Telemetry of a vehicle or of the payload."""
+    def measured(self, measurement: Measurement) -> Measurement | None:
+        """Telemetry of a vehicle or of the payload; returns what is to be believed of it."""
         if self._started:
-            self.estimator.add(measurement)
-        elif self.phase in (Phase.CHECK, Phase.ARM):
+            return self.estimator.add(measurement)
+        if self.phase in (Phase.CHECK, Phase.ARM):
             self._on_pad.measured(measurement)
+        return measurement
 
     def flown(
         self, uav: int, since: float, until: float, told: Array, spread: float, longest: float

@@ -68,8 +68,8 @@ class ScanInbox:
         """Messages that made no sense, and scans that no pose was known for."""
 
     def measured(self, sample: Measurement) -> None:
-        """A pose of a vehicle, or half of one."""
-        if sample.source < 0:
+        """A position or an attitude of a vehicle."""
+        if sample.source < 0 or not sample.has_pose:
             return
         if isinstance(sample, Attitude):
             self._attitudes.setdefault(sample.source, deque(maxlen=_POSES)).append(sample)
@@ -166,19 +166,21 @@ class ScanInbox:
         return clusters
 
     def _pose(self, uav: int, time: float, misplaced: bool, misaligned: bool) -> tuple[Array, Array] | None:
-        """Position (3,) and attitude (4,) at ``time``, from the samples next to it."""
-        estimated = self._estimated
-        attitude = _nearest(estimated.get((uav, Attitude)) if misaligned else self._attitudes.get(uav), time)
-        position = _nearest(estimated.get((uav, Position)) if misplaced else self._positions.get(uav), time)
+        """Position (3,) and attitude (4,) at ``time``, from the samples next to it, motion told or estimated."""
+        attitudes, positions = self._estimated.get((uav, Attitude)), self._estimated.get((uav, Position))
+        attitude = _nearest(attitudes if misaligned else self._attitudes.get(uav), time)
+        position = _nearest(positions if misplaced else self._positions.get(uav), time)
         if attitude is None or position is None:
             return None
-        dt = time - attitude.time
-        quaternion = attitude.quaternion
-        if abs(dt) > 1e-4 and attitude.has_motion:
-            quaternion = quaternion_product(quaternion, np.append(1.0, 0.5 * dt * attitude.rates))
+        turning = attitude if attitude.has_motion else _nearest(attitudes, time)
+        moving = position if position.has_motion else _nearest(positions, time)
+        quaternion, place = attitude.quaternion, position.position
+        if turning is not None and abs(dt := time - attitude.time) > 1e-4:
+            quaternion = quaternion_product(quaternion, np.append(1.0, 0.5 * dt * turning.rates))
             quaternion = quaternion / np.linalg.norm(quaternion)
-        velocity = position.velocity if position.has_motion else np.zeros(3)
-        return position.position + (time - position.time) * velocity, quaternion
+        if moving is not None:
+            place = place + (time - position.time) * moving.velocity
+        return place, quaternion
 
 
 def _nearest(history: deque[Any] | None, time: float) -> Any:

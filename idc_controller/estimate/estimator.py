@@ -158,7 +158,10 @@ class Estimator:
         return confirmation
 
     def untrusted(self, kind: type[Measurement]) -> frozenset[int]:
-        """UAVs whose attitude, or whose position or velocity, was frozen or refused within :data:`DISTRUST`."""
+        """UAVs whose pose of this ``kind`` was missing, frozen or refused within :data:`DISTRUST`.
+
+        Of positions a refusal of the velocity counts as well: poses between two samples are told by it.
+        """
         if kind is Position and any(self.left_out):
             return frozenset(range(self.layout.number_of_uavs))
         return frozenset(
@@ -176,21 +179,21 @@ class Estimator:
         while len(self._snapshots) > 1 and self._snapshots[-1].time >= time:
             self._snapshots.pop()
 
-    def add(self, measurement: Measurement) -> bool:
-        """Take a measurement; False when it is older than the memory or the start, or of sensors that are frozen."""
+    def add(self, measurement: Measurement) -> Measurement | None:
+        """Take a measurement; returns what is used of it: nothing of sensors that are frozen, or of what is too old."""
         frozen = self.frozen.frozen(measurement)
-        if frozen[0] or (frozen[1] and isinstance(measurement, Position)):
-            self._untrusted[measurement.source, type(measurement)] = measurement.time
-        if all(frozen):
-            return False
         if any(frozen):
             measurement = measurement.without(*frozen)
+        if not measurement.has_pose:
+            self._untrusted[measurement.source, type(measurement)] = measurement.time
+        if all(frozen):
+            return None
         oldest = max(self._snapshots[0].time, self.time - self.settings.history)
         if isinstance(measurement, Position):
             self._reckoning.add(measurement)
         if measurement.time <= oldest:
             self.discarded_late += 1
-            return False
+            return None
         key = (measurement.source, type(measurement))
         at = bisect.bisect_left(self._moments, measurement.time - self.settings.simultaneous, key=lambda m: m.time)
         if at < len(self._moments) and self._moments[at].time <= measurement.time + self.settings.simultaneous:
@@ -200,11 +203,11 @@ class Estimator:
             self._moments.insert(at, moment)
         copies = moment.measurements.setdefault(key, [])
         if copies and key[0] == PAYLOAD and moment.time <= self.time:
-            return True  # another vehicle's relay of what was applied already
+            return measurement  # another vehicle's relay of what was applied already
         copies.append(measurement)
         if moment.time <= self.time:
             self._back_to(moment.time)
-        return True
+        return measurement
 
     def estimate(self, time: float, reference: Reference) -> Estimate:
         """Apply all that was added and predict to ``time`` (s), the moment at which the next set-points act."""
