@@ -146,8 +146,12 @@ class GroundStation:
             self._next_timesync = now + TIMESYNC_INTERVAL
             for link, queue in zip(self.links, messages, strict=True):
                 queue.append(mavlink.MAVLink_timesync_message(0, link.clock.ask(now)))
-        self.flight.watch_team(self.team_time(now), now)
         self._stepped = now >= self._next_control - TOLERANCE
+        if self.flight.watch_team(self.team_time(now), now):
+            # The plan that they are to stop by comes before the command to stop, or they stop by another one.
+            self._held.clear()
+            for i, queue in enumerate(messages):
+                queue.extend(self._closing_the_loop(i, now, None))
         if self._stepped:
             self._control(now, messages)
         carries_setpoints = [self._stepped] * len(self.links)
@@ -267,7 +271,7 @@ class GroundStation:
             self._held.clear()
         for i, (queue, wait) in enumerate(zip(messages, waits.tolist(), strict=True)):
             closing = self._closing_the_loop(i, now, setpoints)
-            if wait and closing:
+            if wait and setpoints is not None:
                 self._held.append((now + wait, i, closing))
             else:
                 queue.extend(closing)

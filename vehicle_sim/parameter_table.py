@@ -15,7 +15,7 @@ from vehicle_sim.errors import SimulationError
 REAL: int = mavlink.MAV_PARAM_TYPE_REAL32
 INTEGER: int = mavlink.MAV_PARAM_TYPE_INT32
 
-SETPOINT_LOSS = 0.48
+SETPOINT_LOSS = 0.46
 """s without set-points until a vehicle stops."""
 
 

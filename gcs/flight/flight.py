@@ -176,17 +176,18 @@ class Flight:
         if not self.reason:
             self.reason, self.broken_off_time = reason, time
 
-    def watch_team(self, time: float, now: float) -> None:
-        """Whether all vehicles still take part at team ``time``, ``now`` on the ground's clock: if not, none does.
+    def watch_team(self, time: float, now: float) -> bool:
+        """Whether one has dropped out at team ``time``, ``now`` on the ground's clock, so that now all are left alone.
 
         Asked whenever something has come: who stops late, stops elsewhere.
         """
         if self.phase not in (Phase.SPOOL_UP, *IN_THE_AIR) or (problem := self.team.dropped_out(now)) is None:
-            return
+            return False
         if self.phase is Phase.SPOOL_UP:
             self.break_off(time, problem.reason)
-        else:
-            self._leave_alone(time, problem.reason, problem.unheard)
+            return False
+        self._leave_alone(time, problem.reason, problem.unheard)
+        return True
 
     def step(
         self, time: float, effective: float, leaves: Array, now: float

@@ -15,7 +15,7 @@ from idc_controller.parameters import SystemParameters
 
 Array = NDArray[np.float64]
 
-SILENCE = 0.48
+SILENCE = 0.46
 """Telemetry older than this means that a vehicle is lost (s): as soon as it may take the ground for lost itself."""
 LATE = 0.11
 """Datagrams that usually take longer one way cannot close the loop (s)."""
