@@ -12,8 +12,9 @@ from obstacle_scene import ATTITUDE_NOISE, MOTIONS, NOISE, POSITION_NOISE, REACH
 from gcs.mission import HarmonicMotion, Pole, Sphere, Wall
 from gcs.mission.read import read_mission
 from gcs.obstacles import ObstacleMap
-from gcs.obstacles.scans import SensorModel
+from gcs.obstacles.scans import ScanInbox, SensorModel
 from idc_controller.estimate.measurements import Attitude, Position
+from vehicle_sim.range_sensor import Detection, RangeSample
 from vehicle_sim.swarm import Swarm
 
 SENSORS = SensorModel(NOISE, POSITION_NOISE, ATTITUDE_NOISE)
@@ -212,6 +213,19 @@ def test_what_a_vehicle_sees_that_is_not_where_it_says_is_placed_by_the_estimate
         m.update(t, misplaced=everyone)
     assert len(m.tracks) == 1
     assert nearest(m, 0.9, truth)[1] < 0.1
+
+
+def test_motion_between_samples_is_the_estimated_one_where_none_is_told():
+    inbox, t, turning = ScanInbox(SENSORS), 0.02, np.array([0.0, 1.0, 0.0])
+    level, unknown, moving = np.array([1.0, 0.0, 0.0, 0.0]), np.full(3, np.nan), np.array([0.0, 2.0, 0.0])
+    inbox.measured(Attitude(0.0, 0, level, unknown))
+    inbox.measured(Position(0.0, 0, HERE, unknown))
+    inbox.estimated(Attitude(0.0, 0, level, turning))
+    inbox.estimated(Position(0.0, 0, HERE + 1.0, moving))
+    for message in messages_of(RangeSample(t, REACH, (Detection(1, (5.0, 0.0, 0.0)),))):
+        inbox.detected(message, 0, t)
+    [[cluster]] = inbox.frames(t)
+    assert cluster.seen.points[0] == pytest.approx(HERE + np.array([5.0, 2.0 * t, -5.0 * t]), abs=2e-3)
 
 
 def test_without_a_pose_and_an_estimate_nothing_is_placed():
