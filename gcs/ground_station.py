@@ -16,7 +16,7 @@ import pymavlink.dialects.v20.common as mavlink
 
 from gcs.flight.alarms import Alarm
 from gcs.flight.flight import Flight, Setpoints, StepRecord
-from gcs.flight.phase import Phase
+from gcs.flight.phase import IN_THE_AIR, Phase
 from gcs.flight.team import Team
 from gcs.flight.watch import Watch
 from gcs.obstacles import ObstacleMap
@@ -34,6 +34,7 @@ HEARTBEAT_INTERVAL = 1.0  # s
 TIMESYNC_INTERVAL = 0.1  # s
 SILENCE_GIVES_UP = 3.0  # s without a word of any vehicle
 CLOCK_STEP = 0.5  # s by which the team's time is corrected at most in flight
+LEAD_RATE, LEAD_MAX = 0.02, 0.01  # s/s, and s at once, by which it follows a clock ahead of where that has ever been
 LATENCIES = 20  # control steps whose latency is remembered
 TOGETHER = 0.004  # s; vehicles that act within it act at once
 TOLERANCE = 1e-6  # s, for timers that are sums of periods
@@ -84,7 +85,8 @@ class GroundStation:
         self._next_heartbeat = -math.inf
         self._next_timesync = -math.inf
         self._began = math.nan
-        self._team_offset = 0.0
+        self._team_offset = self._lead = 0.0
+        self._led_at = -math.inf
         self._last_step = -math.inf
         self._stepped = False
         self._held: list[tuple[float, int, list[Any]]] = []
@@ -202,10 +204,19 @@ class GroundStation:
                 link.found_instead = system_id
         return None
 
-    def _follow_clock(self, offset: float) -> None:
-        """The team's time is the first vehicle's; in flight a jump is a reboot, and time goes on."""
-        if self.flight.phase is Phase.CONNECT or abs(offset - self._team_offset) < CLOCK_STEP:
-            self._team_offset = offset
+    def _follow_clock(self, offset: float, now: float) -> None:
+        """The team's time is the first vehicle's; in flight a jump is a reboot, and time goes on.
+
+        Datagrams that are late, and a simulated world that has stalled, hold that vehicle's clock back against the
+        ground's for a while. Only a clock that is wrong gets ahead of where it has been, and is followed slowly.
+        """
+        if self.flight.phase is Phase.CONNECT:
+            self._team_offset = self._lead = offset
+        elif abs(offset - self._team_offset) < CLOCK_STEP:
+            allowed = self._lead + min(LEAD_MAX, LEAD_RATE * (now - self._led_at))
+            self._team_offset = min(offset, allowed)
+        if self._team_offset >= self._lead:
+            self._lead, self._led_at = self._team_offset, now
 
     def _learn(self, message: Any, index: int, latest: float, now: float) -> float:
         """From a message that tells of one moment: which. ``latest`` is that of those before it in its datagram."""
@@ -215,7 +226,7 @@ class GroundStation:
             return -math.inf
         link, obstacle_map = self.links[index], self._obstacle_map
         if index == 0:
-            self._follow_clock(link.clock.offset)
+            self._follow_clock(link.clock.offset + link.clock.set_back, now)
         time = _whole_ms(message.time_boot_ms * 1e-3 - link.clock.offset + self._team_offset)
         if kind == "ATTITUDE_TARGET":
             told = setpoint_flown(message, link.parameters.get(px4.PARAM_THRUST_MAX, math.nan))
@@ -246,7 +257,9 @@ class GroundStation:
         if self.flight.phase is not Phase.CONNECT and time <= self._last_step:
             return  # a better guess of the vehicle's clock has set the time back a little
         self._last_step = time
-        if self.team.silent(now, SILENCE_GIVES_UP) and now - self._began > SILENCE_GIVES_UP:
+        silent = self.team.silent(now, SILENCE_GIVES_UP) and now - self._began > SILENCE_GIVES_UP
+        # Who is not heard may hear: the descent is to be ordered first.
+        if silent and not self.flight.owes_descent:
             heard = any(math.isfinite(link.heard) for link in self.links)
             if heard:
                 self.flight.give_up(f"nothing was heard of any vehicle for {SILENCE_GIVES_UP:g} s")
@@ -258,6 +271,8 @@ class GroundStation:
         if self._obstacle_map is not None:
             untrusted = self.flight.estimator.untrusted
             self._obstacle_map.update(time, self.flight.pose_noise, untrusted(Position), untrusted(Attitude))
+            if self._obstacle_map.is_blind and self.flight.phase in IN_THE_AIR and not self.flight.reason:
+                self.break_off(now, "no vehicle tells anything of obstacles that can be")
             self._recorder.obstacles(self._obstacle_map, time)
         effective = _whole_ms(time + self._latency + delays.max())
         setpoints, record = self.flight.step(time, effective, leaves, now)
@@ -286,7 +301,7 @@ class GroundStation:
         if setpoints is not None:
             direction, thrust = setpoints.directions[i], float(setpoints.thrusts[i])
             thrust_max = link.parameters[px4.PARAM_THRUST_MAX]
-            messages.append(attitude_target(link.system_id, now + link.clock.offset, direction, thrust, thrust_max))
+            messages.append(attitude_target(link.system_id, link.stamp(now), direction, thrust, thrust_max))
         return messages
 
 

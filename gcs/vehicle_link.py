@@ -19,6 +19,7 @@ from idc_controller.estimate.setpoint_history import Confirmation
 
 DELAYS = 3  # set-points whose median is the delay: a way that gets longer must be followed at once
 CLOCK_ERROR = 0.01  # s by which a vehicle's stamps may be wrong without a fault
+STEP_BACK = 1.0  # s by which a clock may be set back so that no stamp goes back; more: the clock has begun anew
 RETRY_AFTER = 0.5  # s
 TRIES = 10  # with a third of all datagrams lost, one command in a thousand stays unanswered
 
@@ -83,6 +84,7 @@ class VehicleLink:
     lost_setpoints: int = 0
     """How often set-points were found to be lost."""
     statistics: LinkStatistics = field(default_factory=LinkStatistics)
+    _last_stamp: float = -math.inf
     _commands: dict[int, Command] = field(default_factory=dict)
     _wanted: dict[str, float] = field(default_factory=dict)
 
@@ -98,6 +100,17 @@ class VehicleLink:
             # Round trips tell less: on a way that loses or reorders, those that arrive are not late.
             return median(self.setpoint_delays)
         return self.clock.delay + self._onboard_period
+
+    def stamp(self, now: float) -> float:
+        """For a set-point that is sent at ``now`` (s), by the vehicle's clock (s).
+
+        Where that is set back, stamps are not: the vehicle would take the set-points for overtaken ones.
+        """
+        stamp = now + self.clock.offset
+        if 0.0 < self._last_stamp - stamp < STEP_BACK:
+            stamp = self._last_stamp + 0.001
+        self._last_stamp = stamp
+        return stamp
 
     @property
     def longest_way(self) -> float:
@@ -141,13 +154,14 @@ class VehicleLink:
         """Learn from one message of this vehicle."""
         kind = message.get_type()
         self.heard = now
+        in_order = False
         if message.get_srcComponent() == px4.AUTOPILOT_COMPONENT:
-            self.statistics.message(message.get_seq(), now)
+            in_order = self.statistics.message(message.get_seq(), now)
         if kind == "ATTITUDE_QUATERNION" or kind == "LOCAL_POSITION_NED":
             if message.get_srcComponent() == px4.PAYLOAD_UNIT_COMPONENT:
                 self.payload_heard = now
             elif message.get_srcComponent() == px4.AUTOPILOT_COMPONENT:
-                self.clock.stamped(message.time_boot_ms * 1e-3, now)
+                self.clock.stamped(message.time_boot_ms * 1e-3, now, in_order)
                 if kind == "ATTITUDE_QUATERNION":
                     self.attitude_heard = now
                 else:

@@ -288,6 +288,40 @@ def test_loss_while_it_balances_on_its_link_holds_before_it_disarms() -> None:
     assert not flight.pilot.armed
 
 
+def test_a_hold_that_is_asked_for_as_it_lifts_the_load_keeps_the_thrust() -> None:
+    flight = Flight()
+    flight.run(0.02)
+    flight.pilot.enter_offboard(flight.target, 0.0, flight.body.now)
+    flight.target = setpoint(thrust=0.8 * flight.hover)
+    assert flight.pilot.arm(flight.body.now).text == ""
+    flight.run(1.0)
+    assert not flight.pilot.in_air
+    assert flight.pilot.enter_mode(px4.MODE_HOLD, flight.body.now).text == ""
+    flight.run(0.1)
+    assert flight.pilot.armed
+    assert flight.pilot.attitude_target[2] == pytest.approx(0.8 * flight.hover, rel=0.1)
+
+
+def test_one_sensor_that_fails_does_not_blind_the_others(flying: Flight) -> None:
+    measure, known = flying.body.measure, flying.body.position[0]
+    flying.body.measure = lambda: measure()._replace(position=(math.nan, 0.0, 0.0))
+    flying.target = setpoint(tuple(quaternion_from_euler(0.1, 0.0, 0.0)), thrust=flying.hover)
+    flying.run(2.0)
+    seen = flying.pilot.measurement
+    assert seen is not None and seen.position[0] == pytest.approx(known, abs=0.1)
+    assert euler_from_quaternion(np.array(seen.attitude))[0] == pytest.approx(0.1, abs=0.02)
+    assert not flying.pilot.is_navigating(flying.body.now)
+
+
+def test_an_attitude_that_is_lost_on_board_goes_on_with_the_rates(flying: Flight) -> None:
+    measure = flying.body.measure
+    flying.body.measure = lambda: measure()._replace(attitude=(math.nan,) * 4)
+    for roll in (0.1, -0.1, 0.05):
+        flying.target = setpoint(tuple(quaternion_from_euler(roll, 0.0, 0.0)), thrust=flying.hover)
+        flying.run(1.0)
+        assert euler_from_quaternion(flying.body.attitude)[0] == pytest.approx(roll, abs=0.03)
+
+
 def test_commanded_hold_stays_while_a_ground_is_there_and_lands_when_none_is(flying: Flight) -> None:
     assert flying.pilot.enter_mode(px4.MODE_HOLD, flying.body.now).text == ""
     flying.run(12.0)

@@ -231,6 +231,32 @@ def test_a_vehicle_that_drops_out_in_flight_brings_all_of_them_down(tmp_path, te
     check_set_down(tmp_path / "run", summary)
 
 
+class Deaf(Passage):
+    """From ``at`` (s) on the ground hears nothing, while it is heard."""
+
+    def __init__(self, at):
+        self.at = at
+
+    def from_vehicle(self, vehicle, leaving, now):
+        return () if now >= self.at else leaving
+
+
+def test_vehicles_that_are_not_heard_but_hear_are_told_to_descend(tmp_path):
+    modes = []
+
+    def look(flight):
+        modes.append({vehicle.autopilot.mode for vehicle in flight.swarm.vehicles})
+
+    mission = short_figure(tmp_path, duration=20.0)
+    with Rehearsal(mission, tmp_path / "run", seed=1201, passage=Deaf(16.4)) as flight:
+        flight.fly(look)
+        assert "no vehicle sends telemetry" in flight.flight.reason
+        assert modes[-1] == {px4.MODE_LAND}
+        assert flight.leave_alone()
+        summary = flight.summary()
+    check_set_down(tmp_path / "run", summary)
+
+
 def test_nothing_is_touched_high_above_the_ground(tmp_path):
     """Above its reference and still, as wind may hold it: no touch-down, and the vehicles are left to land at last."""
     with Rehearsal(short_figure(tmp_path, duration=2.0, altitude=1.5), tmp_path / "run") as rehearsal:

@@ -383,3 +383,32 @@ def test_in_flight_the_ground_finds_what_the_vehicles_sense(tmp_path):
     times = sorted({float(row["time_s"]) for row in rows})
     np.testing.assert_allclose(np.diff(times), 0.1, atol=1e-6)
     assert len(times) > 40
+
+
+def blinded(kind):
+    """A map whose vehicles see an obstacle for a second and then tell what can not be."""
+    m, scene, here = map_of(), Scene(0), [sphere((5.0, 0.0, -6.0))]
+    run(m, lambda t: here, 1.0, scene=scene)
+    frozen = [messages_of(scan) for _, _, _, scan in scene.look(1.0, HERE, here)]
+    for k in range(20, 80):
+        t = k / 20
+        scene.feed(m, t, HERE, [])
+        if k % 2 == 0:
+            for uav, messages in enumerate(frozen):
+                for message in messages:
+                    message.time_boot_ms = round(t * 1e3)
+                    if kind == "nan":
+                        message.x = np.nan
+                    m.detected(message, uav, t)
+        m.update(t)
+        yield m
+
+
+@pytest.mark.parametrize("kind", ["nan", "frozen"])
+def test_blind_vehicles_are_found_out_and_nothing_is_forgotten(kind):
+    told = [m.is_blind for m in blinded(kind)]
+    assert not told[0] and all(told[20:])
+    *_, last = blinded(kind)
+    (left,) = last.predict(np.array([4.0]))
+    # The first scan that sticks is believed, with the attitude of the second.
+    assert kind == "frozen" or np.linalg.norm(left.positions[0] - [5.0, 0.0, -6.0]) < 0.3

@@ -97,9 +97,11 @@ def stop_plan(flying: Bench, start: float, x: float = 0.0, duration: float = 4.0
     return message
 
 
-def test_without_setpoints_it_follows_the_plan_that_came_with_the_last_one(flying: Bench) -> None:
+@pytest.mark.parametrize("wrapped", [0.0, 2**32 * 1e-3])
+def test_without_setpoints_it_follows_the_plan_that_came_with_the_last_one(flying: Bench, wrapped: float) -> None:
+    """The ground knows the vehicle's clock by stamps of 32 bits of milliseconds."""
     x = flying.body.position[0]
-    flying.send(stop_plan(flying, flying.now, x=3.0))
+    flying.send(stop_plan(flying, flying.now + wrapped, x=3.0))
     flying.streaming.clear()
     flying.run(5.0)
     assert flying.vehicle.autopilot.failsafe

@@ -220,7 +220,7 @@ class Autopilot:
             self._hold.plan = replace(self._hold.plan, descent_start=math.inf)
         else:
             self._hold = None
-            if self._land.in_air:
+            if self.armed and self._is_up:
                 self._begin_hold(now, descent_start=math.inf)
         return ACCEPTED
 
@@ -232,6 +232,9 @@ class Autopilot:
         if measurement is not None and measurement.is_usable():
             self.measurement = measurement
             self._measured_at = now
+        elif measurement is not None and self.measurement is not None:
+            # One sensor that fails does not blind the others.
+            self.measurement = measurement.completed(self.measurement)
         measured = self.measurement
         if measured is None:
             return IDLE
@@ -267,8 +270,7 @@ class Autopilot:
     def _watch(self, now: float) -> None:
         """Failsafes and touch-down."""
         if self._mode == px4.MODE_OFFBOARD and not self.failsafe and not self.has_fresh_setpoints(now):
-            # Off the ground, or upright on its link only because its rotors turn.
-            if self.armed and (self._land.in_air or self._thrust > STANDING_THRUST * self._weight):
+            if self.armed and self._is_up:
                 self.failsafe = True
                 self._begin_hold(now, descent_start=now + self._parameters[px4.PARAM_LAND_DELAY])
                 self.notices.append("Set-points lost: braking and holding")
@@ -294,6 +296,11 @@ class Autopilot:
     @property
     def _is_descending(self) -> bool:
         return self._hold is not None and self._hold.plan.is_descending(self._now)
+
+    @property
+    def _is_up(self) -> bool:
+        """Off the ground, or upright on its link only because its rotors turn."""
+        return self._land.in_air or self._thrust > STANDING_THRUST * self._weight
 
     def _is_standing(self, now: float) -> bool:
         """Whether it would sink, but something under its payload keeps it from that."""

@@ -42,11 +42,13 @@ _DEFAULT_INTERVALS: dict[tuple[int, int], float] = {
     (px4.PAYLOAD_UNIT_COMPONENT, _HEARTBEAT): 1.0,
 }
 
+HASTE, REPEATS = 0.04, 3  # s between the repetitions of what has changed, and how many there are
+
 
 class Stream:
     """One message that is sent again and again, at whole multiples of its interval, so that streams coincide."""
 
-    __slots__ = ("component", "due", "interval", "last_stamp", "message_id", "once_a_sample")
+    __slots__ = ("component", "due", "hasty", "interval", "last_stamp", "message_id", "once_a_sample")
 
     def __init__(self, component: int, message_id: int, interval: float) -> None:
         """``interval`` in s; due at once."""
@@ -54,12 +56,16 @@ class Stream:
         self.message_id = message_id
         self.interval = interval
         self.due = -math.inf
+        self.hasty = 0
         self.once_a_sample = message_id in _OF_ONE_SAMPLE
         self.last_stamp: int | None = None
 
     def advance(self, now: float) -> None:
-        """To the next multiple of the interval."""
+        """To the next multiple of the interval; in haste sooner."""
         self.due = (math.floor((now + TIME_TOLERANCE) / self.interval) + 1) * self.interval
+        if self.hasty:
+            self.hasty -= 1
+            self.due = min(self.due, now + HASTE)
 
 
 class Peer:
@@ -112,10 +118,10 @@ class Peer:
         self.next_due = -math.inf
 
     def hasten_heartbeat(self) -> None:
-        """The state has changed: tell it at once."""
+        """The state has changed: tell it at once, and again, because a datagram may be lost."""
         for stream in self._streams:
             if stream.message_id in (_HEARTBEAT, mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE):
-                stream.due = -math.inf
+                stream.due, stream.hasty = -math.inf, REPEATS
         self.next_due = -math.inf
 
     def reply(self, message: Any) -> None:

@@ -23,6 +23,8 @@ from vehicle_sim.sensors import Measurement, Told
 from vehicle_sim.setpoints import SetpointError, read_setpoint, read_stop_plan
 from vehicle_sim.telemetry import Home, Telemetry
 
+STAMP_WRAP = 2**32 * 1e-3  # s after which stamps of 32 bits begin anew
+
 
 class Vehicle:
     """A quadrotor that speaks MAVLink like a PX4 autopilot.
@@ -205,8 +207,10 @@ class Vehicle:
         except SetpointError:
             self.refused_setpoints += 1
             return
-        behind = self._clock(now) - now
-        self.autopilot.stop_plan = plan._replace(start=plan.start - behind)
+        start = plan.start - (self._clock(now) - now)
+        # The ground knows this clock by stamps of 32 bits, which may have begun anew since.
+        start += round((now - start) / STAMP_WRAP) * STAMP_WRAP
+        self.autopilot.stop_plan = plan._replace(start=start)
 
     def _on_timesync(self, message: Any, sender: Sender, peer: Peer, now: float) -> None:
         if message.tc1 == 0:  # a question

@@ -105,6 +105,11 @@ class Flight:
         return self.ended and self.landed and not self.reason and not self.interrupted
 
     @property
+    def owes_descent(self) -> bool:
+        """Whether vehicles hold that are still to be told to descend."""
+        return self._landing_alone is not None and not self._landing_alone.descends
+
+    @property
     def expected_end(self) -> float:
         """When the course ends (s); inf while that is not known."""
         return self.course.trajectory.end if self.course is not None else math.inf

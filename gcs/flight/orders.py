@@ -75,13 +75,14 @@ class LandingAlone:
 
     def __init__(self, team: Team, time: float) -> None:
         self._team, self._since = team, time
-        self._descends = False
+        self.descends = False
+        """Whether they have been told to."""
         _set_mode(team, px4.MainMode.AUTO, px4.AutoMode.LOITER)
 
     def step(self, time: float, now: float) -> Outcome:
         """At ``time`` (s), ``now`` on the ground's clock."""
-        if not self._descends and time - self._since >= self._team.land_delay:
-            self._descends = True
+        if not self.descends and time - self._since >= self._team.land_delay:
+            self.descends = True
             _set_mode(self._team, px4.MainMode.AUTO, px4.AutoMode.LAND)
         if self._team.heard_are_disarmed(now):
             return DONE

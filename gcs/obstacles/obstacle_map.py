@@ -120,6 +120,11 @@ class ObstacleMap:
             self._learn(clusters)
         self._drop_silent(now)
 
+    @property
+    def is_blind(self) -> bool:
+        """Whether what all vehicles tell of obstacles can not be."""
+        return self._inbox.has_vehicles and not self._inbox.seeing(self._time)
+
     # For the controller and the records
 
     def predict(self, times: Array) -> list[PredictedObstacle]:
@@ -238,6 +243,8 @@ class ObstacleMap:
                     break
 
     def _drop_silent(self, now: float) -> None:
+        if self.is_blind:
+            return
         for track in tuple(self.tracks):
             silent = now - track.last_seen
             if silent <= UNCONFIRMED_AFTER:
@@ -259,7 +266,7 @@ class ObstacleMap:
 
     def _would_be_seen(self, track: Track, now: float) -> bool:
         """Whether a vehicle whose telemetry comes in is so near that its sensor could not miss the obstacle."""
-        places = [self._inbox.position(uav, now, _LINK_ALIVE) for uav in self._inbox.vehicles]
+        places = [self._inbox.position(uav, now, _LINK_ALIVE) for uav in self._inbox.seeing(now)]
         near = np.array([place for place in places if place is not None])
         if not len(near):
             return False

@@ -20,6 +20,8 @@ Array = NDArray[np.float64]
 POSE_GAP = 0.1  # s between a scan and the pose by which it is placed
 PATIENCE = 0.3  # s for which a scan waits for its pose
 TOGETHER = 0.02  # s within which scans of several vehicles count as one frame
+BLIND_AFTER = 0.5  # s in which a vehicle tells nothing but what can not be, or the same to the digit
+BLIND_FOR = 1.0  # s after the last of it
 _POSES = 30
 _CUT = 4.0  # standard deviations from the sensor's range at which a point may have been cut off by it
 _POINTS_MAX = 2000  # of a vehicle that wait at a time
@@ -64,6 +66,9 @@ class ScanInbox:
         self._estimated: dict[tuple[int, type], deque[Measurement]] = {}
         self._waiting: dict[tuple[int, int], _Scan] = {}
         self._waiting_points: dict[int, int] = {}
+        self._last_points: dict[int, dict[int, list[tuple[float, float, float]]]] = {}
+        self._sound: dict[int, float] = {}
+        self._nonsense: dict[int, float] = {}
         self.refused = 0
         """Messages that made no sense, and scans that no pose was known for."""
 
@@ -92,6 +97,7 @@ class ScanInbox:
             or waiting >= _POINTS_MAX
         ):
             self.refused += 1
+            self._nonsense[uav] = time
             return
         key = uav, message.time_boot_ms
         scan = self._waiting.get(key)
@@ -109,9 +115,18 @@ class ScanInbox:
         return history[-1].position
 
     @property
-    def vehicles(self) -> tuple[int, ...]:
-        """Those that have told where they are."""
-        return tuple(self._positions)
+    def has_vehicles(self) -> bool:
+        """Whether any has told where it is."""
+        return bool(self._positions)
+
+    def seeing(self, now: float) -> tuple[int, ...]:
+        """Vehicles that have told where they are, but those whose words of obstacles make no sense."""
+
+        def is_blind(uav: int) -> bool:
+            nonsense = self._nonsense.get(uav, -math.inf)
+            return now - nonsense <= BLIND_FOR and nonsense - self._sound.get(uav, -math.inf) > BLIND_AFTER
+
+        return tuple(uav for uav in self._positions if not is_blind(uav))
 
     def frames(
         self,
@@ -134,7 +149,13 @@ class ScanInbox:
             del self._waiting[key]
             self._waiting_points[uav] -= scan.count
             pose = pose or self._pose(uav, scan.time, misplaced=True, misaligned=True)
-            if pose is None:
+            frozen = scan.points == self._last_points.get(uav) and self._sensors.range_noise > 0.0
+            self._last_points[uav] = scan.points
+            if frozen:
+                self._nonsense[uav] = scan.time
+            else:
+                self._sound[uav] = scan.time
+            if pose is None or frozen:
                 self.refused += scan.count
                 continue
             placed.append((scan.time, self._placed(uav, scan, *pose, pose_noise)))

@@ -11,6 +11,7 @@ SLICE = 0.25  # s of which only the greatest lead is remembered
 SLICES = 4  # few, because a simulated world that has stalled does not catch up
 RECENT = 4  # round trips
 OPEN_REQUESTS = 100  # TIMESYNC requests whose answers are waited for
+SET_BACK = 0.005  # s; a later stamp that is earlier by more: the clock has been set back
 REBOOT = 1.0  # s; a boot time that falls behind by more belongs to another boot
 
 
@@ -24,15 +25,26 @@ class RemoteClock:
     def __init__(self) -> None:
         self._leads: deque[list[float]] = deque(maxlen=SLICES)  # [beginning of the slice, greatest lead in it]
         self._lead = -math.inf
+        self._newest = -math.inf
+        self.set_back = 0.0
+        """By how much it has been set back in all (s)."""
         self._asked: deque[int] = deque(maxlen=OPEN_REQUESTS)
         self._round_trips: deque[float] = deque(maxlen=WINDOW)
         self._shortest = 0.0
 
-    def stamped(self, boot_time: float, arrival: float) -> None:
-        """Telemetry stamped ``boot_time`` (s, vehicle) arrived at ``arrival`` (s, ground)."""
+    def stamped(self, boot_time: float, arrival: float, in_order: bool = False) -> None:
+        """Telemetry stamped ``boot_time`` (s, vehicle) arrived at ``arrival`` (s, ground).
+
+        ``in_order``: it was sent after all that came before.
+        """
         lead = boot_time - arrival
-        if lead < self._lead - REBOOT:
+        if in_order and boot_time < self._newest - SET_BACK:
+            self.set_back += self._lead - lead
             self._leads.clear()
+        elif lead < self._lead - REBOOT:
+            self._leads.clear()
+        if in_order:
+            self._newest = boot_time
         if not self._leads or arrival - self._leads[-1][0] >= SLICE:
             self._leads.append([arrival, lead])
             self._lead = max(greatest for _, greatest in self._leads)

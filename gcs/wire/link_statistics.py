@@ -38,8 +38,8 @@ class LinkStatistics:
         self.not_finite += component == px4.AUTOPILOT_COMPONENT
         self.payload_not_finite += component == px4.PAYLOAD_UNIT_COMPONENT
 
-    def message(self, number: int, now: float) -> None:
-        """A message with this sequence number (0 .. 255) came."""
+    def message(self, number: int, now: float) -> bool:
+        """A message with this sequence number (0 .. 255) came; whether it was sent after all that came before."""
         self.settle(now)
         ahead = 1 if self._newest is None else (number - self._newest) % NUMBERS
         if 0 < ahead < NUMBERS - REMEMBERED:
@@ -48,12 +48,14 @@ class LinkStatistics:
                 self._gaps.append((now, missing))
             self._newest = number
             self._seen.append(number)
-        elif any(number in missing for _, missing in self._gaps):
+            return True
+        if any(number in missing for _, missing in self._gaps):
             self.overtaken += 1
             for _, missing in self._gaps:
                 missing.discard(number)
         elif number in self._seen:
             self.twice += 1
+        return False
 
     def settle(self, now: float) -> None:
         """Gaps that are not filled by ``now`` (s) are losses."""
