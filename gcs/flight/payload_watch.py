@@ -13,6 +13,8 @@ from idc_controller.plan.trajectory import Trajectory
 
 TOUCH_DEPTH = 0.06  # m above the reference at which the payload must be standing
 TOUCH_SPEED = 0.05  # m/s
+TOUCH_NEAR = 0.08  # m above the ground, a pad's height, where it stands even if it bounces,
+TOUCH_DEPTH_NEAR = 0.03  # m above the reference
 TOUCH_STEPS = 4
 TOUCH_GRACE = 3.0  # s after the descent's end at which it counts as touched without these signs
 TOUCH_HEIGHT = 1.0  # m above the ground: higher up nothing can have been touched, wherever the reference is
@@ -53,7 +55,9 @@ class PayloadWatch:
             return False
         depth = descent.position(clock)[2] - estimate.x[self._layout.r_0][2]
         still = abs(estimate.x[self._layout.v_0][2]) < TOUCH_SPEED
-        self._touch_steps = self._touch_steps + 1 if depth > TOUCH_DEPTH and still else 0
+        near = self.height(estimate) < TOUCH_NEAR
+        stands = depth > TOUCH_DEPTH_NEAR if near else depth > TOUCH_DEPTH and still
+        self._touch_steps = self._touch_steps + 1 if stands else 0
         return self._touch_steps >= TOUCH_STEPS or clock > descent.end + TOUCH_GRACE
 
     def stays_up(self, clock: float, descent: Trajectory, estimate: Estimate) -> bool:

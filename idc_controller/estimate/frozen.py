@@ -11,6 +11,8 @@ from idc_controller.estimate.measurements import PAYLOAD, Attitude, Measurement,
 
 Array = NDArray[np.float64]
 
+RELAYED_WITHIN = 0.02
+"""Stamps of one sample of the payload unit that several vehicles relay may differ by this (s)."""
 REPEATS = 2
 """Repeated so often, a value is no measurement any more."""
 PARTS: dict[type, tuple[str, str]] = {Attitude: ("attitude", "rates"), Position: ("position", "velocity")}
@@ -41,7 +43,7 @@ class FrozenSensors:
         if last is None:
             self._last[key] = _Last(measurement.time, parts, [0, 0])
             return False, False
-        if measurement.time > last.time:
+        if measurement.time > last.time + (RELAYED_WITHIN if measurement.source == PAYLOAD else 0.0):
             for k, (now, before) in enumerate(zip(parts, last.parts, strict=True)):
                 last.repeats[k] = last.repeats[k] + 1 if bool((now == before).all()) else 0
             last.time, last.parts = measurement.time, parts

@@ -1,0 +1,40 @@
+"""Whether the payload has touched the ground, by an estimate that knows nothing of the ground."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from flight_in_process import MISSIONS
+
+from gcs.config import read_system
+from gcs.flight.payload_watch import PayloadWatch
+from idc_controller.plan.trajectory import RestTrajectory
+
+PARAMETERS = read_system(MISSIONS / "system.toml").parameters()
+HALF = float(PARAMETERS.payload_size[2]) / 2.0
+
+
+def touched(heights, velocities, below):
+    """After how many control steps it is noticed; the reference is ``below`` (m) the ground. None: not at all."""
+    watch = PayloadWatch(PARAMETERS)
+    descent = RestTrajectory(np.array([0.0, 0.0, -HALF + below]), 0.0)
+    for k, (height, velocity) in enumerate(zip(heights, velocities, strict=True)):
+        x = np.zeros(56)
+        x[2], x[5] = -HALF - height, velocity
+        if watch.has_touched(0.0, descent, SimpleNamespace(x=x)):
+            return k + 1
+    return None
+
+
+def test_it_stands_where_the_reference_sinks_on():
+    assert touched([0.05] * 6, [0.0] * 6, below=0.1) == 4
+
+
+def test_a_payload_that_bounces_on_its_pad_stands():
+    assert touched([0.05, 0.06, 0.04, 0.05, 0.05], [0.2, -0.1, 0.2, -0.15, 0.1], below=0.05) == 4
+
+
+@pytest.mark.parametrize(("height", "velocity"), [(0.3, 0.2), (0.05, 0.2), (1.5, 0.0)])
+def test_one_that_follows_its_reference_down_or_is_high_up_does_not(height, velocity):
+    below = 0.3 if height > 1.0 else -height + 0.02
+    assert touched([height] * 20, [velocity] * 20, below) is None
