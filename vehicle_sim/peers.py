@@ -121,7 +121,7 @@ class Peer:
         """The state has changed: tell it at once, and again, because a datagram may be lost."""
         for stream in self._streams:
             if stream.message_id in (_HEARTBEAT, mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE):
-                stream.due, stream.hasty = -math.inf, REPEATS
+                stream.due, stream.hasty = -math.inf, REPEATS if self.is_streaming else 0
         self.next_due = -math.inf
 
     def reply(self, message: Any) -> None:
