@@ -51,11 +51,12 @@ def of_vehicles(change):
     "change",
     [
         lambda elapsed, p, v, rng: (p + 0.1 * elapsed * NORTH, v),
+        lambda elapsed, p, v, rng: (p + 0.07 * elapsed * NORTH, v),
         lambda elapsed, p, v, rng: (p + 0.5 * NORTH, v),
         lambda elapsed, p, v, rng: (p, v - 0.2 * NORTH),
         lambda elapsed, p, v, rng: (1.1 * p, v),
     ],
-    ids=["drift", "bias", "velocity biased", "scale"],
+    ids=["drift", "slow drift", "bias", "velocity biased", "scale"],
 )
 def test_what_contradicts_itself_is_noticed_within_the_window(change, seed):
     found = astray_after(WINDOW, of_vehicles(change), seed)
