@@ -19,6 +19,7 @@ from vehicle_sim.land_detector import LandDetector
 from vehicle_sim.parameter_table import ParameterTable
 from vehicle_sim.rotors import IDLE, Four, Mixer
 from vehicle_sim.sensors import Measurement
+from vehicle_sim.setpoint_stream import SetpointStream
 from vehicle_sim.setpoints import AttitudeSetpoint, StopPlan
 
 MEASUREMENT_TIMEOUT = 0.2  # s without a usable sample: the navigation has failed
@@ -77,8 +78,7 @@ class Autopilot:
         self._land = LandDetector(self._weight, self._thrust_max)
         self._mode = px4.MODE_HOLD
         self._hold: HoldController | None = None
-        self._setpoint: AttitudeSetpoint | None = None
-        self._setpoint_time = -math.inf
+        self._setpoints = SetpointStream()
         self._link_time = -math.inf
         self._measured_at = -math.inf
         self._thrust = 0.0  # N, as commanded last
@@ -131,7 +131,7 @@ class Autopilot:
 
     def has_fresh_setpoints(self, now: float) -> bool:
         """Whether the set-points of OFFBOARD have not stopped."""
-        return now - self._setpoint_time < self.setpoint_loss_time - _TIME_TOLERANCE
+        return now - self._setpoints.last_time < self.setpoint_loss_time - _TIME_TOLERANCE
 
     def is_navigating(self, now: float) -> bool:
         """Whether the sensors deliver."""
@@ -184,8 +184,7 @@ class Autopilot:
             self.failsafe = False
             self._hold = None
             self.notices.append("Set-points are back")
-        self._setpoint = setpoint
-        self._setpoint_time = now
+        self._setpoints.add(setpoint, now)
 
     def enter_offboard(self, setpoint: AttitudeSetpoint, received: float, now: float) -> Answer:
         """Fly the set-points of a ground, the last of which was ``received`` (s) a moment ago."""
@@ -194,8 +193,8 @@ class Autopilot:
         self._mode = px4.MODE_OFFBOARD
         self.failsafe = False
         self._hold = None
-        self._setpoint = setpoint
-        self._setpoint_time = received
+        self._setpoints.clear()
+        self._setpoints.add(setpoint, received)
         return ACCEPTED
 
     def enter_mode(self, custom_mode: int, now: float) -> Answer:
@@ -253,8 +252,8 @@ class Autopilot:
         rates = NO_RATES
         if self._hold is not None:
             attitude, thrust = self._hold.command(measured, now, self._is_standing(now))
-        elif self._mode == px4.MODE_OFFBOARD and self._setpoint is not None:
-            attitude, rates, share, _ = self._setpoint
+        elif self._mode == px4.MODE_OFFBOARD and (setpoint := self._setpoints.at(now)) is not None:
+            attitude, rates, share, _ = setpoint
             thrust = self._thrust if share is None else share * self._thrust_max
         else:  # armed, on the ground, waiting
             attitude, thrust = attitude_of_force(0.0, 0.0, -1.0, yaw_of(measured.attitude)), 0.0
@@ -352,8 +351,7 @@ class Autopilot:
         self.armed = False
         self.failsafe = False
         self._hold = None
-        self._setpoint = None
-        self._setpoint_time = -math.inf
+        self._setpoints.clear()
         self.stop_plan = None
         self._thrust = 0.0
         self._show_target((LEVEL, NO_RATES, 0.0))
