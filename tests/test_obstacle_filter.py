@@ -1,8 +1,10 @@
 """Shape and motion of one obstacle from the points of four UAVs' sensors, against the truth."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from obstacle_scene import MOTIONS, Scene, pole, random_motion, sphere, stop_and_go, wall
+from obstacle_scene import MOTIONS, NOISE, Scene, pole, random_motion, sphere, stop_and_go, wall
 
 from idc_controller.barrier.obstacles import Shape
 from idc_controller.estimate.motion_bank import BankSettings, MotionModels
@@ -72,6 +74,24 @@ def test_standing_spheres(radius, seed):
     assert track.is_static
     assert uncovered(track, obstacle) < 0.08
     assert track.predict(np.array([track.time + 1.0]))[1][0] < 0.12
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_sensors_noisier_than_they_should_be_are_found_out(seed):
+    obstacle, scene, rng = sphere((0.0, 0.0, -5.5)), Scene(seed), np.random.default_rng([seed, 13])
+    track, bare, speeds = None, [], []
+    for k in range(60):
+        seen = scene.frame(k * PERIOD, np.array([-4.0, 0.3, -6.0]), obstacle)
+        seen = replace(seen, points=seen.points + rng.normal(0.0, 5 * NOISE, seen.points.shape))
+        if track is None:
+            track = ObstacleFilter(MODELS, seen)
+        else:
+            track.update(seen)
+        if k >= 20:
+            bare.append(uncovered(track, obstacle) - track.predict(np.array([track.time]))[1][0])
+            speeds.append(np.linalg.norm(track.state[1]))
+    assert max(bare) < 0.25
+    assert np.sqrt(np.mean(np.square(speeds))) < 0.1
 
 
 @pytest.mark.parametrize("seed", range(2))

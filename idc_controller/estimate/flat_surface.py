@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from idc_controller.barrier.obstacles import Shape
-from idc_controller.estimate.surface_fit import EndOfSurface, Fit, score
+from idc_controller.estimate.surface_fit import EndOfSurface, Fit, score, unexplained
 from idc_controller.estimate.surface_points import SurfacePoints
 
 Array = NDArray[np.float64]
@@ -76,7 +76,7 @@ class FlatSurface:
         sign = np.where(towards < 0.0, -1.0, 1.0)
         depth = sign[:, None] * (normal @ flat.T - level[:, None])
         # The upright plane through two of the points that holds most of the others and has none before it.
-        tolerance = 2.0 * np.sqrt(seen.noise**2 + seen.pose_variance.mean())
+        tolerance = 2.0 * np.sqrt(seen.noise**2 + seen.pose_variance.mean() + seen.scatter)
         votes = np.maximum(1.0 - (depth / tolerance) ** 2, 0.0).sum(axis=1) - (depth > 1.5 * tolerance).sum(axis=1)
         votes = np.where(length > 4.0 * seen.noise, votes + 1e-3 * np.minimum(length, 5.0), votes - len(flat))
         best = int(np.argmax(votes))
@@ -95,11 +95,11 @@ class FlatSurface:
         rays = seen.rays @ rotation
         front = np.abs(q[:, 0]) < 0.5
         shift = 0.0
-        noise = (seen.noise * rays) ** 2 + seen.pose_variance[:, None] + 0.015**2
+        noise = (seen.noise * rays) ** 2 + (seen.pose_variance + seen.scatter)[:, None] + 0.015**2
         self._yaw_variance += YAW_WALK**2
         for _ in range(iterations):
             residual = q[:, 0] - shift
-            front = np.abs(residual) < 3.0 * np.sqrt(seen.noise**2 + seen.pose_variance)
+            front = np.abs(residual) < 3.0 * np.sqrt(seen.noise**2 + seen.pose_variance + seen.scatter)
             if np.count_nonzero(front) < 3:
                 break
             weight = front / (noise[:, 0] * (1.0 + residual**2 / (9.0 * np.maximum(noise[:, 0], 0.0025))))
@@ -122,14 +122,14 @@ class FlatSurface:
                 break
         q[:, 0] -= shift
         common = float(np.mean(seen.pose_variance)) / seen.sensors
-        front_variance = seen.noise**2 / max(int(np.count_nonzero(front)), 1) + common
+        front_variance = (seen.noise**2 + seen.scatter) / max(int(np.count_nonzero(front)), 1) + common
         for (axis, sign), end in self._ends.items():
             end.seen(sign * q[:, axis], seen.cut)
         self._learn_thickness(q, front, seen)
         position = predicted + rotation[:, 0] * shift
         variance = rotation[:, :2] ** 2 @ np.array([front_variance, _SIDEWAYS**2])
         variance[2] = _SIDEWAYS**2
-        return Fit(position, variance, self._score(q, noise))
+        return Fit(position, variance, *self._judged(q, noise))
 
     def _fit_known(self, seen: SurfacePoints, predicted: Array) -> Fit:
         """Only the place is to be found: every point moves the face that it lies on."""
@@ -150,12 +150,13 @@ class FlatSurface:
             of_face = own[(face == axis) & np.isfinite(own)]
             if len(of_face):
                 shift[axis] = float(np.median(of_face))
-                variance[axis] = 2.0 * seen.noise**2 / len(of_face) + common
+                variance[axis] = 2.0 * (seen.noise**2 + seen.scatter) / len(of_face) + common
+        off = np.where(np.isfinite(own), own - shift[face], 0.5)
+        own_variance = seen.noise**2 + seen.pose_variance + seen.scatter
         return Fit(
-            predicted + rotation @ shift,
-            rotation**2 @ variance,
-            score(np.where(np.isfinite(own), own - shift[face], 0.5), seen.noise**2 + seen.pose_variance),
-        )
+            predicted + rotation @ shift, rotation**2 @ variance,
+            score(off, own_variance), unexplained(off, own_variance, fitted=1),
+        )  # fmt: skip
 
     def _learn_thickness(self, q: Array, front: NDArray[np.bool_], seen: SurfacePoints) -> None:
         """From points behind the front, which lie on the top or on a side."""
@@ -168,14 +169,16 @@ class FlatSurface:
         else:
             self._thickness += 0.2 * (depth - self._thickness) if depth > self._thickness - 0.3 else 0.0
 
-    def _score(self, q: Array, noise: Array) -> float:
+    def _judged(self, q: Array, noise: Array) -> tuple[float, float]:
+        """Score and what is unexplained of points (n, 3) in the box's frame, of variance ``noise`` (n, 3)."""
         lo, hi = self._extent()
         # To the front, the sides and the top; the bottom and the back are seen by nobody who matters.
         distance = np.stack([q[:, 0], q[:, 1] - lo[1], q[:, 1] - hi[1], q[:, 2] - lo[2], q[:, 2] - hi[2]])
         variance = np.stack([noise[:, 0], noise[:, 1], noise[:, 1], noise[:, 2], noise[:, 2]])
         best = np.argmin(distance**2 / variance, axis=0)
         pick = np.arange(len(q))
-        return score(distance[best, pick], variance[best, pick])
+        off, own = distance[best, pick], variance[best, pick]
+        return score(off, own), unexplained(off, own, fitted=2)
 
     def _extent(self) -> tuple[Array, Array]:
         """Lowest and highest coordinates of the box in its own frame, about the reference point (3,), (3,)."""

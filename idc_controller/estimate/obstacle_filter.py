@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,7 @@ from idc_controller.estimate.agility import AHEAD, Agility, AgilitySettings
 from idc_controller.estimate.flat_surface import FlatSurface
 from idc_controller.estimate.motion_bank import MotionBank, MotionModels
 from idc_controller.estimate.round_surface import RoundSurface
+from idc_controller.estimate.surface_fit import Fit
 from idc_controller.estimate.surface_points import SurfacePoints
 
 Array = NDArray[np.float64]
@@ -24,6 +25,7 @@ _HYSTERESIS = 1.0
 _SMOOTHING = 0.3
 _LEAST_POINTS = 5
 _EVERY_FRAME_UNTIL, _THEN_EVERY = 6, 20
+_SCATTER_MAX = 0.5**2  # m2
 _DOUBTFUL = 2.5  # a score from which other shapes are tried at once
 
 
@@ -53,7 +55,12 @@ class ObstacleFilter:
         self.frames = 0
         self._known = known
         self._scores: dict[str, float] = {}
+        self._scatter = 0.0
         self._surface = _surface(known.kind if known else "sphere", known)
+        if known is None and len(first.points) >= _LEAST_POINTS:
+            # Before the kind is chosen: with much scatter a wall would take in anything.
+            self._learn_scatter(min(_fresh_fit(kind, first)[1].unexplained for kind in KINDS), share=1.0)
+        first = replace(first, scatter=self._scatter)
         predicted = self._surface.guess(first) if known is None or known.kind != "wall" else first.points.mean(axis=0)
         fit = self._surface.fit(first, predicted, iterations=8)
         self._bank = MotionBank(models, first.time, fit.position, fit.variance)
@@ -61,7 +68,7 @@ class ObstacleFilter:
         self.frames = 1
         if known is None:
             self._scores["sphere"] = fit.score
-            self._consider_kinds(first)
+            self._consider_kinds(first, fit)
 
     @property
     def time(self) -> float:
@@ -108,6 +115,7 @@ class ObstacleFilter:
     def update(self, seen: SurfacePoints) -> None:
         """One frame of points on this obstacle; one that comes late is carried to the present by the motion."""
         bank = self._bank
+        seen = replace(seen, scatter=self._scatter)
         if seen.time > bank.time:
             bank.advance(seen.time)
         elif seen.time < bank.time:
@@ -122,7 +130,9 @@ class ObstacleFilter:
         if self._known is None and len(seen.points) >= _LEAST_POINTS:
             self._note(self.kind, fit.score)
             if self.frames <= _EVERY_FRAME_UNTIL or self.frames % _THEN_EVERY == 0 or fit.score > _DOUBTFUL:
-                self._consider_kinds(seen)
+                self._consider_kinds(seen, fit)
+            elif self._scatter > 0.0:
+                self._learn_scatter(fit.unexplained)
 
     def _judge(self) -> None:
         """Compare what was foreseen a second ago with what came, and foresee anew."""
@@ -136,7 +146,7 @@ class ObstacleFilter:
         """Where the centre will be at ``times`` (K,): (K, 3), and by how much to take the body larger (K,)."""
         mean, covariance = self._bank.predict(times)
         # Gershgorin's bound on the largest eigenvalue; exact where one axis, or one diagonal, dominates.
-        variance = np.abs(covariance).sum(axis=-1).max(axis=-1) + self._surface.size_sigma**2
+        variance = np.abs(covariance).sum(axis=-1).max(axis=-1) + self._surface.size_sigma**2 + self._scatter
         variance += self._agility.variance(np.maximum(np.asarray(times) - self._bank.time, 0.0))
         return mean + self._surface.offset, np.minimum(np.sqrt(variance), self._agility.growth_limit)
 
@@ -144,18 +154,20 @@ class ObstacleFilter:
         old = self._scores.get(kind)
         self._scores[kind] = score if old is None else old + _SMOOTHING * (score - old)
 
-    def _consider_kinds(self, seen: SurfacePoints) -> None:
+    def _consider_kinds(self, seen: SurfacePoints, own: Fit) -> None:
         """Try the other shapes on this frame alone, and change to one that is clearly better."""
         if len(seen.points) < _LEAST_POINTS:
             return
+        unexplained = own.unexplained
         tried: dict[str, tuple[Surface, Array]] = {}
         for kind in KINDS:
             if kind == self.kind:
                 continue
-            surface = _surface(kind, None)
-            fit = surface.fit(seen, surface.guess(seen), iterations=8)
+            surface, fit = _fresh_fit(kind, seen)
             self._note(kind, fit.score)
+            unexplained = min(unexplained, fit.unexplained)
             tried[kind] = surface, fit.position
+        self._learn_scatter(unexplained)
         cost = {kind: self._scores[kind] + _COMPLEXITY[kind] for kind in KINDS}
         best = min(KINDS, key=lambda kind: cost[kind])
         hysteresis = _HYSTERESIS if self.frames > 1 else 0.0
@@ -164,6 +176,16 @@ class ObstacleFilter:
             self._surface, place = tried[best]
             self._bank.shift(place - old)
 
+    def _learn_scatter(self, unexplained: float, share: float = _SMOOTHING) -> None:
+        """Points that lie on no shape are of sensors that are worse than they should be."""
+        self._scatter = min(max(self._scatter + share * unexplained, 0.0), _SCATTER_MAX)
+
 
 def _surface(kind: str, known: Shape | None) -> Surface:
     return FlatSurface(known) if kind == "wall" else RoundSurface(kind, known)
+
+
+def _fresh_fit(kind: str, seen: SurfacePoints) -> tuple[Surface, Fit]:
+    """Of one frame alone."""
+    surface = _surface(kind, None)
+    return surface, surface.fit(seen, surface.guess(seen), iterations=8)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from idc_controller.barrier.obstacles import Shape
-from idc_controller.estimate.surface_fit import EndOfSurface, Fit, score
+from idc_controller.estimate.surface_fit import EndOfSurface, Fit, score, unexplained
 from idc_controller.estimate.surface_points import SurfacePoints
 
 Array = NDArray[np.float64]
@@ -17,6 +17,7 @@ RADIUS_SIGMA_LEAST = 0.015  # m
 RADII = {"sphere": (0.1, 1.6), "pole": (0.04, 1.6)}  # m
 _CENTRE_SIGMA = 2.0  # m: how little the guess of the centre counts
 _CLOSE_ENOUGH = 0.004  # m: a smaller last step of the search changes nothing that matters
+_SCATTER_LOSS = 18.0  # by trial: by how much more the centre is off than the linear fit believes (variance)
 _INSIDE = 0.1  # m: a point so far within a pole's side lies on its end
 
 
@@ -93,7 +94,9 @@ class RoundSurface:
         position = np.zeros(3)
         position[:n_axes] = theta[:n_axes]
         spread = np.full(3, 0.02**2)
-        spread[:n_axes] = np.diag(covariance)[:n_axes] + common
+        # Where points scatter by as much as the body is wide, their normals are no more than guesses.
+        guessed = 1.0 + _SCATTER_LOSS * seen.scatter / theta[-1] ** 2
+        spread[:n_axes] = guessed * np.diag(covariance)[:n_axes] + common
         residual, _, variance = self._residuals(points, rays, theta, seen)
         if self.kind == "pole":
             on_side = residual > -_INSIDE - 0.2 * theta[-1]
@@ -105,7 +108,8 @@ class RoundSurface:
             self._variance = max(float(covariance[-1, -1]), RADIUS_SIGMA_LEAST**2)
             if self.kind == "pole":
                 self._top.seen(-seen.points[:, 2], seen.cut)
-        return Fit(position, spread, score(residual, variance))
+        fitted = n_axes + (self.known is None)
+        return Fit(position, spread, score(residual, variance), unexplained(residual, variance, fitted))
 
     def _residuals(self, points: Array, rays: Array, theta: Array, seen: SurfacePoints) -> tuple[Array, Array, Array]:
         """Distance to the surface (n,), its normals (n, axes), variance of the distance (n,)."""
@@ -113,5 +117,7 @@ class RoundSurface:
         distance = np.maximum(np.sqrt(np.einsum("ij,ij->i", d, d)), 1e-3)
         normal = d / distance[:, None]
         incidence = np.einsum("ij,ij->i", normal, rays)
-        variance = (seen.noise * incidence) ** 2 + seen.pose_variance + 0.015**2
-        return distance - theta[-1], normal, variance
+        variance = (seen.noise * incidence) ** 2 + seen.pose_variance + seen.scatter + 0.015**2
+        # Scatter across the surface puts points outside of it on average, the more so the smaller it is.
+        outside = 0.5 * (self._axes - 1) * seen.scatter / theta[-1]
+        return distance - theta[-1] - outside, normal, variance

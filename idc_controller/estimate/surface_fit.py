@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 _SCORE_CAP = 16.0
+_MEDIAN_OF_SQUARE = 0.455  # of a normal variable of variance 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,11 +23,19 @@ class Fit:
     """(3,) (m2)"""
     score: float
     """Mean squared distance of the points to the surface over its variance: about 1 for the right shape."""
+    unexplained: float
+    """How much larger their squared distances are than their variance (m2), by the median: about 0."""
 
 
 def score(residual: Array, variance: Array) -> float:
     """See :class:`Fit`; single points that do not belong count for little."""
     return float(np.mean(np.minimum(residual**2 / variance, _SCORE_CAP)))
+
+
+def unexplained(residual: Array, variance: Array, fitted: int) -> float:
+    """See :class:`Fit`, where ``fitted`` quantities were found from the same points; points far off do not count."""
+    n = len(residual)
+    return float(np.median(residual**2) / _MEDIAN_OF_SQUARE * n / max(n - fitted, 1) - np.median(variance))
 
 
 class EndOfSurface:

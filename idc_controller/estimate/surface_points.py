@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +27,8 @@ class SurfacePoints:
     """Variance of each point from its sensor's own position and attitude, on every axis (n,) (m2)."""
     sensors: int = 1
     """How many sensors contributed: what of their poses' errors averages out."""
+    scatter: float = 0.0
+    """Variance of each point on its own beyond that, on every axis (m2): of sensors worse than they should be."""
 
     @property
     def rays(self) -> Array:
@@ -39,9 +41,10 @@ class SurfacePoints:
 
         ``variance`` (m2) of that motion adds to the points'.
         """
-        return SurfacePoints(
-            time, self.points + by, self.origins + by, self.cut, self.noise, self.pose_variance + variance, self.sensors
-        )
+        return replace(
+            self, time=time, points=self.points + by, origins=self.origins + by,
+            pose_variance=self.pose_variance + variance,
+        )  # fmt: skip
 
 
 def joined(parts: list[SurfacePoints]) -> SurfacePoints:
