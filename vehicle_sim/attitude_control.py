@@ -17,7 +17,7 @@ class AttitudeController:
     """torque = J (kp e - kd (omega - omega_setpoint)), the e of two attitudes being their angle for small angles.
 
     e = 2 sign(w) (x, y, z) of the rotation from the attitude to the set-point, in the body frame: the shorter way
-    round, whichever sign either quaternion has.
+    round, whichever sign either quaternion has. ``asked``: the angular acceleration in brackets, as it was last (rad/s2).
     """
 
     def __init__(self, inertia: Sequence[Sequence[float]], kp: float, kd: float) -> None:
@@ -30,6 +30,7 @@ class AttitudeController:
         )  # fmt: skip
         self._two_kp = 2.0 * kp
         self._kd = kd
+        self.asked: Three = NO_RATES
 
     def torque(self, attitude: Quaternion, rates: Three, setpoint: Quaternion | None, setpoint_rates: Three) -> Three:
         """Body torques (N m). Unit quaternions body to world; rates in the body frame (rad/s).
@@ -47,6 +48,7 @@ class AttitudeController:
             x += gain * (aw * bx - ax * bw - ay * bz + az * by)
             y += gain * (aw * by + ax * bz - ay * bw - az * bx)
             z += gain * (aw * bz - ax * by + ay * bx - az * bw)
+        self.asked = x, y, z
         j_xx, j_yy, j_zz, j_xy, j_xz, j_yz = self._j
         return (
             j_xx * x + j_xy * y + j_xz * z,

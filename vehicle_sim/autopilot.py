@@ -16,6 +16,7 @@ from vehicle_sim.airframe import Airframe
 from vehicle_sim.attitude_control import LEVEL, NO_RATES, AttitudeController, Quaternion, Three
 from vehicle_sim.hold_control import DESCENT_RAMP, HoldController, HoldPlan, attitude_of_force, yaw_of
 from vehicle_sim.land_detector import LandDetector
+from vehicle_sim.navigation import Navigation
 from vehicle_sim.parameter_table import ParameterTable
 from vehicle_sim.rotors import IDLE, Four, Mixer
 from vehicle_sim.sensors import Measurement
@@ -75,6 +76,7 @@ class Autopilot:
         self._g = airframe.g
         self._attitude_control = AttitudeController(airframe.inertia, airframe.attitude_kp, airframe.attitude_kd)
         self._mixer = Mixer(airframe.rotors)
+        self._navigation = Navigation(airframe.motor_time_constant)
         self._land = LandDetector(self._weight, self._thrust_max)
         self._mode = px4.MODE_HOLD
         self._hold: HoldController | None = None
@@ -113,6 +115,11 @@ class Autopilot:
         if not self._land.in_air:
             return mavlink.MAV_LANDED_STATE_ON_GROUND
         return mavlink.MAV_LANDED_STATE_LANDING if self._is_descending else mavlink.MAV_LANDED_STATE_IN_AIR
+
+    @property
+    def told_measurement(self) -> Measurement | None:
+        """:attr:`measurement` as it is to be told: NaN where it was not measured."""
+        return self._navigation.told
 
     @property
     def hover_thrust(self) -> float | None:
@@ -228,12 +235,10 @@ class Autopilot:
     def step(self, measurement: Measurement | None, now: float) -> Four:
         """One step of the onboard loop: four rotor-speed commands (rad/s). None: no sample came this time."""
         self._now = now
-        if measurement is not None and measurement.is_usable():
-            self.measurement = measurement
-            self._measured_at = now
-        elif measurement is not None and self.measurement is not None:
-            # One sensor that fails does not blind the others.
-            self.measurement = measurement.completed(self.measurement)
+        if measurement is not None:
+            self.measurement = self._navigation.update(measurement, self._attitude_control.asked)
+            if measurement.is_usable():
+                self._measured_at = now
         measured = self.measurement
         if measured is None:
             return IDLE
@@ -262,6 +267,7 @@ class Autopilot:
         self._thrust = thrust
         self._show_target((attitude, rates, thrust / self._thrust_max))
         if thrust <= 0.0:
+            self._attitude_control.asked = NO_RATES
             return IDLE
         tau_x, tau_y, tau_z = self._attitude_control.torque(measured.attitude, measured.rates, attitude, rates)
         return self._mixer.rotor_speeds(thrust, tau_x, tau_y, tau_z)

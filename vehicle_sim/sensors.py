@@ -37,43 +37,12 @@ class Measurement(NamedTuple):
         total = sum(self.attitude) + sum(self.rates) + sum(self.position) + sum(self.velocity)
         return _is_number(total) and math.isfinite(self.time)
 
-    def completed(self, known: Measurement) -> Measurement:
-        """With what was ``known`` last in place of every channel that has a number which is none.
-
-        An attitude that is not measured goes on with the rates.
-        """
-        time = self.time if math.isfinite(self.time) else known.time
-        rates = self.rates if _is_number(sum(self.rates)) else known.rates
-        return Measurement(
-            time,
-            self.attitude if _is_number(sum(self.attitude)) else _turned(known.attitude, rates, time - known.time),
-            rates,
-            self.position if _is_number(sum(self.position)) else known.position,
-            self.velocity if _is_number(sum(self.velocity)) else known.velocity,
-        )
-
     def can_be_told(self) -> bool:
         """Whether every number fits a float of 32 bits: usable or not, NaN and infinity included."""
         if -_FAR < sum(self.attitude) + sum(self.rates) + sum(self.position) + sum(self.velocity) < _FAR:
             return True
         numbers = (*self.attitude, *self.rates, *self.position, *self.velocity)
         return all(abs(x) < _FLOAT32 or x != x or math.isinf(x) for x in numbers)
-
-
-def _turned(
-    attitude: tuple[float, float, float, float], rates: tuple[float, float, float], duration: float
-) -> tuple[float, float, float, float]:
-    """By body rates (rad/s) for a short ``duration`` (s)."""
-    w, x, y, z = attitude
-    p, q, r = (0.5 * duration * rate for rate in rates)
-    turned = (
-        w - x * p - y * q - z * r,
-        x + w * p + y * r - z * q,
-        y + w * q + z * p - x * r,
-        z + w * r + x * q - y * p,
-    )
-    length = math.hypot(*turned)
-    return (turned[0] / length, turned[1] / length, turned[2] / length, turned[3] / length)
 
 
 def _is_number(total: float) -> bool:

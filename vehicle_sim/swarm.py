@@ -220,7 +220,7 @@ class Swarm:
             )
             vehicle.relay(passage.payload_sample(vehicle.system_id, payload_sample))
             self._commands[i] = vehicle.step(passage.own_sample(vehicle.system_id, sample), now)
-            vehicle.tell(passage.told(vehicle.system_id, vehicle.autopilot.measurement))
+            vehicle.tell(passage.told(vehicle.system_id, vehicle.autopilot.told_measurement))
             if self._truth is not None and vehicle.autopilot.changes != self._changes[i]:
                 self._record_mode(i, now)
 

@@ -252,12 +252,12 @@ class Telemetry:
     @property
     def _own_attitude(self) -> Measurement | None:
         """Whose attitude and rates are told."""
-        return self._autopilot.measurement if self.told is None else self.told.attitude
+        return self._autopilot.told_measurement if self.told is None else self.told.attitude
 
     @property
     def _own_position(self) -> Measurement | None:
         """Whose position and velocity are told."""
-        return self._autopilot.measurement if self.told is None else self.told.position
+        return self._autopilot.told_measurement if self.told is None else self.told.position
 
     @property
     def _own_whole(self) -> Measurement | None:

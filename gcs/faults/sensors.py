@@ -10,7 +10,7 @@ from gcs.faults.kind import kind, parameter
 _Vector = tuple[float, float, float]
 _Blind = Annotated[
     bool,
-    parameter("true: the vehicle itself is blind, too, and goes on with the last it knew; false: it has a second one"),
+    parameter("true: the vehicle itself is blind, too, and has to do with the others; false: it has a second one"),
 ]
 
 
