@@ -17,7 +17,7 @@ class AttitudeController:
     """torque = J (kp e - kd (omega - omega_setpoint)), the e of two attitudes being their angle for small angles.
 
     e = 2 sign(w) (x, y, z) of the rotation from the attitude to the set-point, in the body frame: the shorter way
-    round, whichever sign either quaternion has. ``asked``: the angular acceleration in brackets, as it was last (rad/s2).
+    round, whichever sign either quaternion has. ``asked``: the acceleration in brackets, as it was last (rad/s2).
     """
 
     def __init__(self, inertia: Sequence[Sequence[float]], kp: float, kd: float) -> None:
