@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from idc_controller.estimate.adaptation import Adaptation
 from idc_controller.estimate.dead_reckoning import DeadReckoning
+from idc_controller.estimate.distrust import Distrust
 from idc_controller.estimate.estimate import Estimate, InnovationRecord
 from idc_controller.estimate.frozen import FrozenSensors
 from idc_controller.estimate.gate import Judgement, OutlierGate
@@ -92,6 +93,7 @@ class _Snapshot:
     x: Array  # absolute, augmented
     P: Array
     adaptation: Adaptation
+    distrust: Distrust
 
 
 class Estimator:
@@ -117,6 +119,7 @@ class Estimator:
         other, and these explain less."""
         self._untrusted: dict[tuple[int, type], float] = {}
         self.adaptation = Adaptation()
+        self._distrust = Distrust(model.layout.number_of_uavs)
         self._adapts = True
 
     def start(self, time: float, x: Array) -> None:
@@ -134,7 +137,8 @@ class Estimator:
         self._moments = []
         self._setpoints.clear()
         self.adaptation = Adaptation()
-        self._snapshots = [_Snapshot(time, full, np.diag(sigma**2), copy(self.adaptation))]
+        self._distrust = Distrust(layout.number_of_uavs)
+        self._snapshots = [_Snapshot(time, full, np.diag(sigma**2), copy(self.adaptation), copy(self._distrust))]
 
     @property
     def time(self) -> float:
@@ -253,7 +257,7 @@ class Estimator:
         kf = self._filter
         last = self._snapshots[-1]
         kf.x, kf.P = last.x.copy(), last.P
-        self.adaptation = copy(last.adaptation)
+        self.adaptation, self._distrust = copy(last.adaptation), copy(last.distrust)
         kf.x[:n] -= way.flat.x[0]
         kf.x[n:] -= believed[0]
         waiting = iter(pending)
@@ -263,7 +267,8 @@ class Estimator:
                 self._predict(way, k - 1)
             while moment is not None and moment.time == way.edges[k]:
                 self._update(moment, way.flat, k)
-                self._snapshots.append(_Snapshot(moment.time, absolute(kf.x, k), kf.P, copy(self.adaptation)))
+                now = absolute(kf.x, k), kf.P, copy(self.adaptation), copy(self._distrust)
+                self._snapshots.append(_Snapshot(moment.time, *now))
                 moment = next(waiting, None)
         x = absolute(kf.x, len(way.edges) - 1)
         return Estimate(
@@ -287,7 +292,11 @@ class Estimator:
         y = np.concatenate([self._innovation(copies, flat, k) for copies in moment.measurements.values()])
         H = np.zeros((len(y), self.size))
         self.measurement_model.observe(stack, flat, k, into=H[:, :n])
+        whole = stack
         present = np.isfinite(y)
+        if self._distrust.halves:
+            self._distrust.reconsider(stack, y - H @ kf.x, H, kf.P, self.adaptation.noise)
+            present &= ~self._distrust.rows(stack)
         if not present.any():
             return
         if not present.all():
@@ -317,7 +326,13 @@ class Estimator:
         for c in refused:
             if keys[c][1] is Position or not keep[stack.starts[c]]:
                 self._untrusted[keys[c]] = moment.time
+        for half in self._distrust.halves:
+            if half.kind is Position or not half.which:
+                self._untrusted[half.source, half.kind] = moment.time
         if self._adapts:
+            kept = present.copy()
+            kept[present] = keep
+            self._distrust.learn(whole, present, kept)
             adaptation.learn(moment.time, keys, found.white, found.mean_squares, keep, stack.of_payload)
         nis = 0.0
         if keep.any():
