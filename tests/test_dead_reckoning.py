@@ -3,12 +3,14 @@
 import numpy as np
 import pytest
 
-from idc_controller.estimate.dead_reckoning import WINDOW, DeadReckoning
-from idc_controller.estimate.measurements import PAYLOAD, Position
+from idc_controller.estimate.dead_reckoning import WINDOW, DeadReckoning, Group
+from idc_controller.estimate.measurements import PAYLOAD, Attitude, Position
+from idc_controller.rotations import quaternion_from_euler, quaternion_product
 
 VEHICLES = 4
 INTERVAL = 0.04  # s
 NOISE = 0.02  # m and m/s
+POSITIONS = Group(of_payload=False, kind=Position)
 
 
 def path(t):
@@ -19,8 +21,8 @@ def path(t):
     )
 
 
-def astray_after(duration, spoil, seed=1, begin=5.0):
-    """How long after ``begin`` all are first said to be astray (s); None: not within ``duration``.
+def astray_after(duration, spoil, seed=1, begin=5.0, group=POSITIONS):
+    """How long after ``begin`` a ``group`` alone is first said to be astray (s); None: not within ``duration``.
 
     ``spoil(source, elapsed, position, velocity, rng)`` gives what is told from ``begin`` on.
     """
@@ -34,7 +36,8 @@ def astray_after(duration, spoil, seed=1, begin=5.0):
             if t >= begin:
                 position, velocity = spoil(source, t - begin, position, velocity, rng)
             reckoning.add(Position(t, source, position, velocity))
-        if reckoning.vehicles_astray:
+        if reckoning.astray:
+            assert reckoning.astray == (group,)
             return t - begin
     return None
 
@@ -84,10 +87,52 @@ def test_nothing_else_is(spoil, seed):
     assert astray_after(30.0, spoil, seed) is None
 
 
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda elapsed, p, v: (p, v + 0.5 * NORTH),
+        lambda elapsed, p, v: (p, v + 0.1 * elapsed * NORTH),
+        lambda elapsed, p, v: (p + 0.5 * NORTH, v),
+    ],
+    ids=["velocity biased", "velocity drifts", "bias"],
+)
+def test_of_the_payload_unit_alone_too(change, seed):
+    def spoil(source, elapsed, p, v, rng):
+        return change(elapsed, p, v) if source == PAYLOAD else (p, v)
+
+    found = astray_after(2.0 * WINDOW, spoil, seed, group=Group(True, Position))
+    assert found is not None and found > 0.0
+
+
+def attitude_astray_after(duration, bias, jump=0.0, begin=5.0, seed=1):
+    """As above, of the payload's attitude; ``bias`` of its rates (rad/s), ``jump`` of its roll (rad)."""
+    rng, reckoning, q = np.random.default_rng(seed), DeadReckoning(VEHICLES), np.array([1.0, 0.0, 0.0, 0.0])
+    for k in range(round((begin + duration) / INTERVAL)):
+        t = k * INTERVAL
+        rates = np.array([0.3 * np.sin(t), 0.2 * np.cos(1.3 * t), 0.1])
+        is_off = t >= begin
+        noisy = quaternion_product(q, quaternion_from_euler(*(rng.normal(0.0, 0.0035, 3) + is_off * jump * NORTH)))
+        reckoning.add(Attitude(t, PAYLOAD, noisy, rates + rng.normal(0.0, 0.008, 3) + is_off * bias))
+        for _ in range(10):
+            q = quaternion_product(q, np.append(1.0, 0.05 * INTERVAL * rates))
+        if reckoning.astray:
+            assert reckoning.astray == (Group(True, Attitude),)
+            return t - begin
+    return None
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_attitudes_that_do_not_go_where_the_rates_take_them(seed):
+    assert attitude_astray_after(60.0, 0.0, seed=seed) is None
+    assert attitude_astray_after(2.0 * WINDOW, 0.1, seed=seed) > 0.0
+    assert attitude_astray_after(2.0 * WINDOW, 0.0, jump=0.1, seed=seed) > 0.0
+
+
 def test_a_gap_in_the_samples_is_no_contradiction():
     reckoning = DeadReckoning(VEHICLES)
     for k in range(400):
         if k % 100 < 80:
             for source in (PAYLOAD, *range(VEHICLES)):
                 reckoning.add(Position(k * INTERVAL, source, *path(k * INTERVAL)))
-        assert not reckoning.vehicles_astray
+        assert not reckoning.astray

@@ -10,6 +10,7 @@ from scipy.stats import chi2
 
 from gcs.config import read_system
 from gcs.mission.read import read_mission
+from idc_controller.estimate.dead_reckoning import Group
 from idc_controller.estimate.estimator import Estimator, EstimatorSettings
 from idc_controller.estimate.measurements import PAYLOAD, Attitude, Position
 from idc_controller.model.linear import LinearModel
@@ -196,7 +197,8 @@ def test_a_position_is_used_when_its_velocity_is_unknown():
 @pytest.mark.parametrize(
     ("position", "velocity", "left_out"), [(0.1, 0.0, (True, False)), (0.0, 0.5, (False, True))], ids=["p", "v"]
 )
-def test_of_positions_and_velocities_that_contradict_each_other_those_that_fit_are_used(position, velocity, left_out):
+@pytest.mark.parametrize("of_payload", [False, True])
+def test_of_what_contradicts_itself_that_is_used_which_fits(of_payload, position, velocity, left_out):
     north, begin = np.array([1.0, 0.0, 0.0]), 2.0
     spoilt = [
         [
@@ -205,15 +207,15 @@ def test_of_positions_and_velocities_that_contradict_each_other_those_that_fit_a
                 position=m.position + position * max(m.time - begin, 0.0) * north,
                 velocity=m.velocity + velocity * (m.time > begin) * north,
             )
-            if m.source != PAYLOAD and isinstance(m, Position)
+            if (m.source == PAYLOAD) == of_payload and isinstance(m, Position)
             else m
             for m in moment
         ]
         for moment in samples_of(8.0)
     ]
     estimator, estimate = run(spoilt)
-    assert estimator.left_out == left_out
-    assert estimator.untrusted(Position) == {0, 1, 2, 3}
+    assert estimator.left_out == {Group(of_payload, Position): left_out}
+    assert estimator.untrusted(Position) == (set() if of_payload else {0, 1, 2, 3})
     error = np.abs(estimate.x - REFERENCE.at(np.zeros(1)).x[0])
     assert max(error[:12].max(), error[LAYOUT.s].max()) < 0.02
 

@@ -18,7 +18,7 @@ from idc_controller.control.controller import Decision
 from idc_controller.estimate.adaptation import LEVELS
 from idc_controller.estimate.consistency import RARE, Consistency
 from idc_controller.estimate.estimate import Estimate
-from idc_controller.estimate.measurements import PAYLOAD
+from idc_controller.estimate.measurements import PAYLOAD, Position
 
 Array = NDArray[np.float64]
 
@@ -151,9 +151,10 @@ class Watch:
     def _measurements(self, time: float) -> None:
         for source, channel in self._flight.estimator.frozen.channels():
             self._book.tell(time, self._source(source), "frozen", channel)
-        for left_out, name in zip(self._flight.estimator.left_out, ("positions", "velocities"), strict=True):
-            if left_out:
-                self._book.tell(time, "team", "contradicts", f"{name} of all vehicles are left out")
+        for group, (poses, _) in self._flight.estimator.left_out.items():
+            names = ("positions", "velocities") if group.kind is Position else ("attitudes", "rates")
+            who, of = ("payload", "the payload") if group.of_payload else ("team", "all vehicles")
+            self._book.tell(time, who, "contradicts", f"{names[0 if poses else 1]} of {of} are left out")
         for (source, kind), complaints in self._consistency.complaints(time).items():
             for complaint in complaints:
                 self._book.tell(time, self._source(source), complaint, kind.__name__.lower())

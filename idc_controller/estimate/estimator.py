@@ -17,13 +17,13 @@ from filterpy.kalman import KalmanFilter
 from numpy.typing import NDArray
 
 from idc_controller.estimate.adaptation import Adaptation
-from idc_controller.estimate.dead_reckoning import DeadReckoning
+from idc_controller.estimate.dead_reckoning import DeadReckoning, Group
 from idc_controller.estimate.distrust import Distrust
 from idc_controller.estimate.estimate import Estimate, InnovationRecord
 from idc_controller.estimate.frozen import FrozenSensors
 from idc_controller.estimate.gate import Judgement, OutlierGate
 from idc_controller.estimate.measurement_model import MeasurementModel
-from idc_controller.estimate.measurements import PAYLOAD, Measurement, MeasurementNoise, Position
+from idc_controller.estimate.measurements import PAYLOAD, Measurement, MeasurementNoise, Position, middle
 from idc_controller.estimate.process_model import ProcessModel, ProcessNoise
 from idc_controller.estimate.setpoint_history import Confirmation, SetpointHistory
 from idc_controller.estimate.way import Way
@@ -38,6 +38,8 @@ PATIENCE = 3
 
 OUTLIER = 25.0
 """Square of an innovation with variance 1 that is certainly none."""
+
+_POSES, _MOTIONS = (True, False), (False, True)
 
 DISTRUST = 0.5
 """For how long what was left out counts as wrong (s)."""
@@ -114,9 +116,8 @@ class Estimator:
         self.discarded_late = 0
         self.frozen = FrozenSensors(settings.measurement)
         self._reckoning = DeadReckoning(model.layout.number_of_uavs)
-        self.left_out = (False, False)
-        """Whether the positions, and the velocities, of all vehicles are used no more: they have contradicted each
-        other, and these explain less."""
+        self.left_out: dict[Group, tuple[bool, bool]] = {}
+        """Of what has contradicted itself: whether the poses, or the motions, are used no more, which explain less."""
         self._untrusted: dict[tuple[int, type], float] = {}
         self.adaptation = Adaptation()
         self._distrust = Distrust(model.layout.number_of_uavs)
@@ -166,7 +167,7 @@ class Estimator:
 
         Of positions a refusal of the velocity counts as well: poses between two samples are told by it.
         """
-        if kind is Position and any(self.left_out):
+        if Group(False, kind) in self.left_out:
             return frozenset(range(self.layout.number_of_uavs))
         return frozenset(
             source
@@ -193,8 +194,6 @@ class Estimator:
         if all(frozen):
             return None
         oldest = max(self._snapshots[0].time, self.time - self.settings.history)
-        if isinstance(measurement, Position):
-            self._reckoning.add(measurement)
         if measurement.time <= oldest:
             self.discarded_late += 1
             return None
@@ -215,26 +214,28 @@ class Estimator:
 
     def estimate(self, time: float, reference: Reference) -> Estimate:
         """Apply all that was added and predict to ``time`` (s), the moment at which the next set-points act."""
-        if self._reckoning.vehicles_astray and not any(self.left_out):
-            self._leave_out(time, reference)
+        for group in self._reckoning.astray:
+            if group not in self.left_out:
+                self._leave_out(group, time, reference)
         estimate = self._advance(time, reference)
         self._forget()
         return estimate
 
-    def _leave_out(self, time: float, reference: Reference) -> None:
-        """Positions or velocities of all vehicles, since they contradict each other: what fits the rest less.
+    def _leave_out(self, group: Group, time: float, reference: Reference) -> None:
+        """Poses or motions of a ``group``, since they contradict each other: what fits the rest less.
 
         The filter's memory is gone through without the ones and without the others, all else taken for sound.
         """
         kept, known = self._snapshots[:1], len(self.innovations)
         misfits = []
         self._adapts = False
-        for self.left_out in (True, False), (False, True):
+        for choice in _POSES, _MOTIONS:
+            self.left_out[group] = choice
             self._snapshots = kept.copy()
             self._advance(time, reference)
             misfits.append(np.mean([_misfit(record) for record in self.innovations[known:]] or [0.0]))
             del self.innovations[known:]
-        self.left_out = (True, False) if misfits[0] <= misfits[1] else (False, True)
+        self.left_out[group] = _POSES if misfits[0] <= misfits[1] else _MOTIONS
         self._snapshots, self._adapts = kept, True
 
     def _advance(self, time: float, reference: Reference) -> Estimate:
@@ -288,6 +289,8 @@ class Estimator:
     def _update(self, moment: _Moment, flat: FlatReference, k: int) -> None:
         """Correct the filter's error state, at time ``k`` of ``flat``, by what was measured then."""
         kf, n = self._filter, self.layout.size
+        for copies in moment.measurements.values():
+            self._reckoning.add(middle(copies))
         stack = self.measurement_model.stack(tuple(moment.measurements))
         y = np.concatenate([self._innovation(copies, flat, k) for copies in moment.measurements.values()])
         H = np.zeros((len(y), self.size))
@@ -345,9 +348,10 @@ class Estimator:
 
     def _innovation(self, copies: list[Measurement], flat: FlatReference, k: int) -> Array:
         """Of one source and kind. Relays of one sample agree; where one of them is corrupted the median is not."""
-        if any(self.left_out) and copies[0].source != PAYLOAD and isinstance(copies[0], Position):
-            copies = [copy.without(*self.left_out) for copy in copies]
         first = copies[0]
+        if self.left_out and (choice := self.left_out.get(Group(first.source == PAYLOAD, type(first)))):
+            copies = [copy.without(*choice) for copy in copies]
+            first = copies[0]
         if all(copy.agrees(first) for copy in copies[1:]):
             return self.measurement_model.innovation(first, flat, k)
         told = np.array([self.measurement_model.innovation(copy, flat, k) for copy in copies])

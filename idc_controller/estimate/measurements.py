@@ -6,6 +6,7 @@ Of a pose or of a motion that was not measured all numbers are nan.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -39,6 +40,16 @@ class Attitude:
     def has_motion(self) -> bool:
         """Whether the rates were measured."""
         return not math.isnan(self.rates[0])
+
+    @property
+    def pose(self) -> Array:
+        """:attr:`quaternion`."""
+        return self.quaternion
+
+    @property
+    def motion(self) -> Array:
+        """:attr:`rates`."""
+        return self.rates
 
     def agrees(self, other: object) -> bool:
         """Whether both tell the same."""
@@ -75,6 +86,16 @@ class Position:
         """Whether the velocity was measured."""
         return not math.isnan(self.velocity[0])
 
+    @property
+    def pose(self) -> Array:
+        """:attr:`position`."""
+        return self.position
+
+    @property
+    def motion(self) -> Array:
+        """:attr:`velocity`."""
+        return self.velocity
+
     def agrees(self, other: object) -> bool:
         """Whether both tell the same."""
         if not isinstance(other, Position):
@@ -87,6 +108,15 @@ class Position:
 
 
 Measurement = Attitude | Position
+
+
+def middle(copies: Sequence[Measurement]) -> Measurement:
+    """The median of relays of one measurement: right where few of them are corrupted."""
+    first = copies[0]
+    if all(copy.agrees(first) for copy in copies[1:]):
+        return first
+    pose, motion = (np.median([getattr(copy, name) for copy in copies], axis=0) for name in ("pose", "motion"))
+    return type(first)(first.time, first.source, pose, motion)
 
 
 def _same(a: Array, b: Array) -> bool:
