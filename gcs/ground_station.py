@@ -270,6 +270,7 @@ class GroundStation:
         leaves = time + self._latency + waits
         if self._obstacle_map is not None:
             untrusted = self.flight.estimator.untrusted
+            self._obstacle_map.broken({i for i, link in enumerate(self.links) if not link.sees}, time)
             self._obstacle_map.update(time, self.flight.pose_noise, untrusted(Position), untrusted(Attitude))
             if self._obstacle_map.is_blind and self.flight.phase in IN_THE_AIR and not self.flight.reason:
                 self.break_off(now, "no vehicle tells anything of obstacles that can be")

@@ -75,6 +75,8 @@ class VehicleLink:
     landed_state: int = mavlink.MAV_LANDED_STATE_UNDEFINED
     prearm_ok: bool | None = None
     """The vehicle's own checks, from SYS_STATUS; None: not told yet."""
+    sees: bool = True
+    """Whether its range sensor works, as far as SYS_STATUS tells."""
     parameters: dict[str, float] = field(default_factory=dict)
     texts: deque[str] = field(default_factory=lambda: deque(maxlen=20))
     setpoint_delays: deque[float] = field(default_factory=lambda: deque(maxlen=DELAYS))
@@ -179,9 +181,11 @@ class VehicleLink:
         elif kind == "EXTENDED_SYS_STATE":
             self.landed_state = message.landed_state
         elif kind == "SYS_STATUS":
-            bit = mavlink.MAV_SYS_STATUS_PREARM_CHECK
-            if message.onboard_control_sensors_present & bit:
-                self.prearm_ok = bool(message.onboard_control_sensors_health & bit)
+            present, health = message.onboard_control_sensors_present, message.onboard_control_sensors_health
+            if present & mavlink.MAV_SYS_STATUS_PREARM_CHECK:
+                self.prearm_ok = bool(health & mavlink.MAV_SYS_STATUS_PREARM_CHECK)
+            if present & mavlink.MAV_SYS_STATUS_SENSOR_PROXIMITY:
+                self.sees = bool(health & mavlink.MAV_SYS_STATUS_SENSOR_PROXIMITY)
         elif kind == "STATUSTEXT":
             self.texts.append(str(message.text))
 

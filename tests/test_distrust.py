@@ -65,12 +65,13 @@ def test_what_is_accepted_counts_against_it():
     assert distrust.halves == ()
 
 
-def test_neither_the_payload_unit_nor_half_of_the_vehicles():
+def test_neither_the_payload_unit_nor_most_of_the_vehicles():
     assert refused(Half(PAYLOAD, Position, 1)).halves == ()
-    both = refused(VELOCITY_OF_1, Half(2, Attitude, 0))
-    assert len(both.halves) == 1
+    most = refused(VELOCITY_OF_1, Half(2, Attitude, 0), Half(3, Attitude, 0))
+    assert set(most.halves) == {VELOCITY_OF_1, Half(2, Attitude, 0)}
     same = refused(VELOCITY_OF_1, Half(1, Position, 0))
     assert set(same.halves) == {VELOCITY_OF_1, Half(1, Position, 0)}
+    assert (most.lost, same.lost) == ((), (1,))
 
 
 @pytest.mark.parametrize(("size", "trusted"), [(0.1, True), (0.5, False)])

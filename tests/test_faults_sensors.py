@@ -30,7 +30,8 @@ def test_lost_sensors():
     assert lost.payload_sample(2, at(1.0)) is None and lost.payload_sample(1, at(1.0)) == at(1.0)
     scan = RangeSample(TAKE_OFF + 1.0, 9.0, (Detection(0, (1.0, 1.0, 1.0)),))
     dark = passage(fault("obstacle_sensing_lost", vehicles=(2,)))
-    assert dark.range_sample(2, scan).detections == () and dark.range_sample(1, scan) is scan
+    assert dark.range_sample(2, scan) == scan._replace(detections=(), works=False)
+    assert dark.range_sample(1, scan) is scan
 
 
 def test_a_glitching_and_a_drifting_position():

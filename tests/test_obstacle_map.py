@@ -393,7 +393,9 @@ def blinded(kind):
     for k in range(20, 80):
         t = k / 20
         scene.feed(m, t, HERE, [])
-        if k % 2 == 0:
+        if kind == "broken":
+            m.broken({0, 1, 2, 3}, t)
+        elif k % 2 == 0:
             for uav, messages in enumerate(frozen):
                 for message in messages:
                     message.time_boot_ms = round(t * 1e3)
@@ -404,7 +406,19 @@ def blinded(kind):
         yield m
 
 
-@pytest.mark.parametrize("kind", ["nan", "frozen"])
+def test_one_whose_sensor_works_is_enough():
+    m = map_of()
+    scene, here = Scene(0), [sphere((5.0, 0.0, -6.0))]
+    run(m, lambda t: here, 1.0, scene=scene)
+    for k in range(20, 80):
+        scene.feed(m, k / 20, HERE, [])
+        m.broken({0, 1, 3}, k / 20)
+        m.update(k / 20)
+        assert not m.is_blind
+    assert m.predict(np.array([4.0])) == []
+
+
+@pytest.mark.parametrize("kind", ["nan", "frozen", "broken"])
 def test_blind_vehicles_are_found_out_and_nothing_is_forgotten(kind):
     told = [m.is_blind for m in blinded(kind)]
     assert not told[0] and all(told[20:])

@@ -14,6 +14,7 @@ from vehicle_bench import (
 )
 
 from gcs.wire.codec import DATAGRAM_LIMIT
+from vehicle_sim.range_sensor import RangeSample
 from vehicle_sim.sensors import Measurement
 
 
@@ -123,3 +124,26 @@ def test_lost_samples_stop_the_telemetry_and_the_health_bits(bench: Bench) -> No
     health = bench.got("SYS_STATUS")[-1].onboard_control_sensors_health
     assert not health & (mavlink.MAV_SYS_STATUS_SENSOR_3D_GYRO | mavlink.MAV_SYS_STATUS_PREARM_CHECK)
     assert bench.result(ARM) == REJECTED
+
+
+def test_a_range_sensor_that_breaks_is_told_at_once(bench: Bench) -> None:
+    def works() -> list[bool]:
+        bit = mavlink.MAV_SYS_STATUS_SENSOR_PROXIMITY
+        told = bench.got("SYS_STATUS")
+        bench.inbox.clear()
+        assert all(message.onboard_control_sensors_present & bit for message in told)
+        return [bool(message.onboard_control_sensors_health & bit) for message in told]
+
+    bench.run(0.1)
+    assert not bench.got("SYS_STATUS")[-1].onboard_control_sensors_present & mavlink.MAV_SYS_STATUS_SENSOR_PROXIMITY
+    bench.run(1.0)
+    bench.inbox.clear()
+    bench.vehicle.see(RangeSample(bench.now, 10.0, ()))
+    bench.run(0.2)
+    assert len(found := works()) > 1 and all(found)
+    bench.vehicle.see(RangeSample(bench.now, 10.0, (), works=False))
+    bench.run(0.2)
+    assert len(found := works()) > 1 and not any(found)
+    bench.vehicle.see(RangeSample(bench.now, 10.0, (), works=False))
+    bench.run(0.2)
+    assert len(works()) <= 1

@@ -117,10 +117,10 @@ class Peer:
             self._streams.append(Stream(component, message_id, interval))
         self.next_due = -math.inf
 
-    def hasten_heartbeat(self) -> None:
-        """The state has changed: tell it at once, and again, because a datagram may be lost."""
+    def hasten(self, *message_ids: int) -> None:
+        """What these tell has changed: send them at once, and again, because a datagram may be lost."""
         for stream in self._streams:
-            if stream.message_id in (_HEARTBEAT, mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE):
+            if stream.message_id in message_ids:
                 stream.due, stream.hasty = -math.inf, REPEATS if self.is_streaming else 0
         self.next_due = -math.inf
 

@@ -31,11 +31,12 @@ class Detection(NamedTuple):
 
 
 class RangeSample(NamedTuple):
-    """All points of one scan at ``time`` (s); ``reach`` (m) of the sensor."""
+    """All points of one scan at ``time`` (s); ``reach`` (m) of the sensor; whether it ``works``."""
 
     time: float
     reach: float
     detections: tuple[Detection, ...]
+    works: bool = True
 
 
 class RangeSensor:

@@ -25,6 +25,7 @@ _SENSORS: int = (
     | mavlink.MAV_SYS_STATUS_AHRS
 )
 _ALWAYS: int = mavlink.MAV_SYS_STATUS_SENSOR_BATTERY | mavlink.MAV_SYS_STATUS_SENSOR_MOTOR_OUTPUTS
+_RANGE_SENSOR: int = mavlink.MAV_SYS_STATUS_SENSOR_PROXIMITY
 _PREARM: int = mavlink.MAV_SYS_STATUS_PREARM_CHECK
 
 _CAPABILITIES: int = (
@@ -131,6 +132,10 @@ class Telemetry:
     def _sys_status(self, now: float) -> Any:
         present = _SENSORS | _ALWAYS | _PREARM
         health = _ALWAYS
+        if self.scan is not None:
+            present |= _RANGE_SENSOR
+            if self.scan.works:
+                health |= _RANGE_SENSOR
         if self._autopilot.is_navigating(now):
             health |= _SENSORS
         if self._autopilot.arming_problem(now) is None:

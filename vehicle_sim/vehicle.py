@@ -106,8 +106,12 @@ class Vehicle:
 
     def see(self, scan: RangeSample | None) -> None:
         """A scan of the range sensor, to be passed on with its own stamp."""
-        if scan is not None:
-            self.telemetry.scan = scan
+        if scan is None:
+            return
+        if self.telemetry.scan is None or self.telemetry.scan.works != scan.works:
+            for peer in self._peers.values():
+                peer.hasten(mavlink.MAVLINK_MSG_ID_SYS_STATUS)
+        self.telemetry.scan = scan
 
     # The wire's side
 
@@ -180,7 +184,7 @@ class Vehicle:
     def _tell_changes(self) -> None:
         self._told_changes = self.autopilot.changes
         for peer in self._peers.values():
-            peer.hasten_heartbeat()
+            peer.hasten(mavlink.MAVLINK_MSG_ID_HEARTBEAT, mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE)
         notices, self.autopilot.notices = self.autopilot.notices, []
         for text in notices:
             for peer in self._peers.values():

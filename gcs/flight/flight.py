@@ -16,7 +16,7 @@ from gcs.flight.pad import Pad
 from gcs.flight.payload_watch import PayloadWatch
 from gcs.flight.phase import IN_THE_AIR, Phase
 from gcs.flight.spool import SpoolDown, spooling_up
-from gcs.flight.team import Team
+from gcs.flight.team import DropOut, Team
 from gcs.mission.model import Mission
 from idc_controller.control.controller import Decision, IntegratedDecisionController
 from idc_controller.estimate.estimate import Estimate
@@ -186,13 +186,19 @@ class Flight:
 
         Asked whenever something has come: who stops late, stops elsewhere.
         """
-        if self.phase not in (Phase.SPOOL_UP, *IN_THE_AIR) or (problem := self.team.dropped_out(now)) is None:
+        if self.phase not in (Phase.SPOOL_UP, *IN_THE_AIR) or (problem := self._dropped_out(now)) is None:
             return False
         if self.phase is Phase.SPOOL_UP:
             self.break_off(time, problem.reason)
             return False
         self._leave_alone(time, problem.reason, problem.unheard)
         return True
+
+    def _dropped_out(self, now: float) -> DropOut | None:
+        if len(lost := self.estimator.lost) > 1:
+            names = " and ".join(str(self.team.links[i].system_id) for i in lost)
+            return DropOut(f"nothing is believed of where vehicles {names} are", 0.0)
+        return self.team.dropped_out(now)
 
     def step(
         self, time: float, effective: float, leaves: Array, now: float

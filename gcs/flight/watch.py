@@ -137,6 +137,8 @@ class Watch:
             name, clock = _name(link), link.clock
             if (silent := now - link.whole_telemetry_heard) > self._silence:
                 tell(time, name, "silent", f"no telemetry for {silent:.2f} s")
+            if not link.sees:
+                tell(time, name, "blind", "its range sensor does not work")
             if clock.delay > LATE:
                 tell(time, name, "late", f"{clock.delay * 1e3:.0f} ms one way")
             elif clock.spread > UNSTEADY:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,7 +14,7 @@ from gcs.mission.fence import boundary_walls
 from gcs.mission.model import Mission, Pole, Sphere, Wall
 from gcs.obstacles.association import assigned, for_gating, mean_distances
 from gcs.obstacles.known import centre_of, shape_of
-from gcs.obstacles.scans import Cluster, ScanInbox, SensorModel
+from gcs.obstacles.scans import BLIND_AFTER, Cluster, ScanInbox, SensorModel
 from gcs.obstacles.track import Track
 from idc_controller.barrier.obstacles import PredictedObstacle, Shape
 from idc_controller.estimate.measurements import Measurement
@@ -98,6 +98,10 @@ class ObstacleMap:
         """An OBSTACLE_DISTANCE_3D of UAV ``uav`` (0 .. N-1), true at ``time``. Nonsense is counted and left out."""
         self._inbox.detected(message, uav, time)
 
+    def broken(self, uavs: Set[int], time: float) -> None:
+        """Vehicles (0 .. N-1) whose range sensors do not work, as they say."""
+        self._inbox.broken(uavs, time)
+
     @property
     def refused(self) -> int:
         """Detections that could not be used."""
@@ -122,8 +126,8 @@ class ObstacleMap:
 
     @property
     def is_blind(self) -> bool:
-        """Whether what all vehicles tell of obstacles can not be."""
-        return self._inbox.has_vehicles and not self._inbox.seeing(self._time)
+        """Whether no vehicle sees anything, or tells what can not be, for a moment."""
+        return self._inbox.has_vehicles and not self._inbox.seeing(self._time, BLIND_AFTER)
 
     # For the controller and the records
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from collections.abc import Set
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -20,7 +21,7 @@ Array = NDArray[np.float64]
 POSE_GAP = 0.1  # s between a scan and the pose by which it is placed
 PATIENCE = 0.3  # s for which a scan waits for its pose
 TOGETHER = 0.02  # s within which scans of several vehicles count as one frame
-BLIND_AFTER = 0.5  # s in which a vehicle tells nothing but what can not be, or the same to the digit
+BLIND_AFTER = 0.5  # s in which a vehicle tells nothing, or what can not be, or the same to the digit
 BLIND_FOR = 1.0  # s after the last of it
 _POSES = 30
 _CUT = 4.0  # standard deviations from the sensor's range at which a point may have been cut off by it
@@ -69,6 +70,7 @@ class ScanInbox:
         self._last_points: dict[int, dict[int, list[tuple[float, float, float]]]] = {}
         self._sound: dict[int, float] = {}
         self._nonsense: dict[int, float] = {}
+        self._broken: dict[int, float] = {}
         self.refused = 0
         """Messages that made no sense, and scans that no pose was known for."""
 
@@ -107,6 +109,10 @@ class ScanInbox:
         scan.count += 1
         self._waiting_points[uav] = waiting + 1
 
+    def broken(self, uavs: Set[int], time: float) -> None:
+        """Vehicles whose sensors do not work, as they say."""
+        self._broken = {uav: self._broken.get(uav, time) for uav in uavs}
+
     def position(self, uav: int, time: float, within: float) -> Array | None:
         """Where a vehicle was at ``time`` (3,), if its telemetry told so within that time (s) before."""
         history = self._positions.get(uav)
@@ -119,10 +125,16 @@ class ScanInbox:
         """Whether any has told where it is."""
         return bool(self._positions)
 
-    def seeing(self, now: float) -> tuple[int, ...]:
-        """Vehicles that have told where they are, but those whose words of obstacles make no sense."""
+    def seeing(self, now: float, patience: float = 0.0) -> tuple[int, ...]:
+        """Vehicles that have told where they are, but those whose words of obstacles make no sense.
+
+        And those whose sensors have been broken for longer than ``patience`` (s).
+        """
 
         def is_blind(uav: int) -> bool:
+            broken = self._broken.get(uav, math.inf)
+            if now - broken >= patience:
+                return True
             nonsense = self._nonsense.get(uav, -math.inf)
             return now - nonsense <= BLIND_FOR and nonsense - self._sound.get(uav, -math.inf) > BLIND_AFTER
 

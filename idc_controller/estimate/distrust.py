@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.stats import chi2
 
 from idc_controller.estimate.measurement_model import Stack
-from idc_controller.estimate.measurements import PAYLOAD
+from idc_controller.estimate.measurements import PAYLOAD, Position
 
 Array = NDArray[np.float64]
 
@@ -34,7 +34,7 @@ class Half(NamedTuple):
 
 
 class Distrust:
-    """Of N vehicles' sensors; never of half of the vehicles or more, which are not wrong together."""
+    """Of N vehicles' sensors; never of more than half of the vehicles, which are not wrong together."""
 
     def __init__(self, number_of_uavs: int) -> None:
         self._number_of_uavs = number_of_uavs
@@ -51,6 +51,12 @@ class Distrust:
         """What is distrusted."""
         return tuple(self._agreed)
 
+    @property
+    def lost(self) -> tuple[int, ...]:
+        """UAVs of which neither position nor velocity is believed."""
+        return tuple(sorted(h.source for h in self._agreed if h.kind is Position and not h.which
+                            and h._replace(which=1) in self._agreed))  # fmt: skip
+
     def rows(self, stack: Stack) -> NDArray[np.bool_]:
         """Rows (m,) of a whole ``stack`` that are distrusted."""
         rows = np.zeros(len(stack.variance), dtype=bool)
@@ -66,7 +72,7 @@ class Distrust:
             if not judged[part].all():
                 continue
             count = self._refused.pop(half, 0) + (-1 if kept[part].all() else 1)
-            if count >= REFUSED_FOR and self._is_minority_with(half.source):
+            if count >= REFUSED_FOR and self._is_no_majority_with(half.source):
                 self._agreed[half] = 0
             elif count > 0:
                 self._refused[half] = min(count, REFUSED_FOR)
@@ -82,8 +88,8 @@ class Distrust:
             if self._agreed[half] >= AGREES_FOR:
                 del self._agreed[half]
 
-    def _is_minority_with(self, source: int) -> bool:
-        return 2 * len({half.source for half in self._agreed} | {source}) < self._number_of_uavs
+    def _is_no_majority_with(self, source: int) -> bool:
+        return 2 * len({half.source for half in self._agreed} | {source}) <= self._number_of_uavs
 
 
 def _halves(stack: Stack) -> list[tuple[Half, slice]]:

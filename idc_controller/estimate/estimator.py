@@ -175,6 +175,11 @@ class Estimator:
             if of is kind and source != PAYLOAD and self.time - time < DISTRUST
         )
 
+    @property
+    def lost(self) -> tuple[int, ...]:
+        """UAVs whose positions and velocities have been refused for so long that neither is believed any more."""
+        return self._distrust.lost
+
     def vehicles(self, estimate: Estimate) -> list[Measurement]:
         """Positions and attitudes of the UAVs."""
         return self.measurement_model.vehicles(estimate.time, estimate.x)

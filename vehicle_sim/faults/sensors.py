@@ -126,8 +126,8 @@ class ObstacleSensingLost(SampleStage):
     acts_on = frozenset({SCAN})
 
     def scan(self, vehicle: int, sample: RangeSample, moment: Moment) -> RangeSample:
-        """An empty scan: with none at all, the last one would stay."""
-        return sample._replace(detections=())
+        """An empty scan of a sensor that does not work: with none at all, the last one would stay."""
+        return sample._replace(detections=(), works=False)
 
 
 def sensor_stage(fault: ActiveFault, vehicle: int) -> SampleStage:
