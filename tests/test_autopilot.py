@@ -1,3 +1,5 @@
+"""An autopilot on a body: the attitude loop, arming, modes, failsafes, landing."""
+
 import math
 
 import numpy as np
@@ -8,11 +10,9 @@ from scipy.linalg import expm
 
 from gcs.wire import px4
 from idc_controller.rotations import euler_from_quaternion, quaternion_from_euler
-from vehicle_sim.attitude_control import AttitudeController
 from vehicle_sim.autopilot import Autopilot
-from vehicle_sim.hold_control import HoldPlan, attitude_of_force
 from vehicle_sim.parameter_table import vehicle_parameters
-from vehicle_sim.sensors import Measurement, NavigationSensor, SensorNoise
+from vehicle_sim.sensors import Measurement, SensorNoise
 from vehicle_sim.setpoints import AttitudeSetpoint
 
 LEVEL = (1.0, 0.0, 0.0, 0.0)
@@ -73,28 +73,6 @@ def flying() -> Flight:
 
 
 # The attitude loop
-
-
-def test_small_errors_are_angles_whatever_the_signs() -> None:
-    control = AttitudeController(np.eye(3), 1.0, 1e-9)
-    for angles in np.eye(3) * 0.01:
-        target = tuple(quaternion_from_euler(*angles))
-        for a, b in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
-            torque = control.torque(tuple(a * np.array(LEVEL)), (0.0,) * 3, tuple(b * np.array(target)), (0.0,) * 3)
-            assert torque == pytest.approx(angles, rel=1e-4, abs=1e-9)
-
-
-def test_error_is_in_the_body_frame() -> None:
-    control = AttitudeController(np.eye(3), 1.0, 1e-9)
-    yawed = quaternion_from_euler(0.0, 0.0, math.pi / 2)
-    target = quaternion_from_euler(0.02, 0.0, math.pi / 2)
-    assert control.torque(tuple(yawed), (0.0,) * 3, tuple(target), (0.0,) * 3) == pytest.approx([0.02, 0, 0], abs=1e-4)
-
-
-def test_torque_takes_the_whole_inertia() -> None:
-    J = np.array([[0.02, 0.001, 0.002], [0.001, 0.03, 0.003], [0.002, 0.003, 0.04]])
-    torque = AttitudeController(J, 1.0, 2.0).torque(LEVEL, (0.1, 0.2, 0.3), None, (1.0, 1.0, 1.0))
-    assert torque == pytest.approx(J @ (2.0 * np.array([0.9, 0.8, 0.7])))
 
 
 @pytest.mark.parametrize("axis", [0, 1])
@@ -353,50 +331,3 @@ def test_landing_by_setpoints_is_noticed(flying: Flight) -> None:
 
 
 # Plans and sensors
-
-
-def test_hold_plan_is_consistent_with_its_own_derivatives() -> None:
-    plan = HoldPlan.braking(2.0, (1.0, 2.0, -5.0), (3.0, -4.0, 1.0), 0.3, descent_start=7.0, descent_speed=0.5)
-    h = 1e-4
-    for t in np.linspace(2.1, 12.0, 53):
-        before, here, after = plan.at(t - h), plan.at(t), plan.at(t + h)
-        slope = (np.array(after.position) - before.position) / (2 * h)
-        assert here.velocity == pytest.approx(slope, abs=1e-6)
-        if abs(t - 7.0) > 0.01 and abs(t - 8.0) > 0.01:
-            bend = (np.array(after.velocity) - before.velocity) / (2 * h)
-            assert here.acceleration == pytest.approx(bend, abs=1e-5)
-    start, end = plan.at(2.0), plan.at(7.0)
-    assert start.velocity == pytest.approx((3.0, -4.0, 0.0)) and start.acceleration == pytest.approx((0.0, 0.0, 0.0))
-    assert end.velocity == pytest.approx((0.0, 0.0, 0.0)) and end.position[2] == pytest.approx(-5.0)
-    assert max(np.linalg.norm(plan.at(t).acceleration) for t in np.linspace(2, 7, 99)) <= 2.0 + 1e-9
-
-
-def test_attitude_of_force_points_body_up_along_the_force() -> None:
-    for yaw in (-2.0, 0.0, 1.0):
-        force = np.array([1.0, -2.0, -9.0])
-        w, x, y, z = attitude_of_force(*force, yaw)
-        up = -np.array([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)])
-        assert up == pytest.approx(force / np.linalg.norm(force))
-
-
-def test_sensor_noise_has_its_sigmas_and_repeats_by_seed_and_id() -> None:
-    noise = SensorNoise(position=0.02, attitude=0.003, velocity=0.05, rates=0.008)
-    truth = (tuple(quaternion_from_euler(0.1, 0.2, 2.0)), (0.1, 0.2, 0.3), (1.0, 2.0, -3.0), (0.5, 0.0, -0.5))
-
-    def samples(seed: int, sensor_id: int, count: int = 4000) -> list[Measurement]:
-        sensor = NavigationSensor(noise, seed, sensor_id)
-        return [sensor.measure(0.0, *truth) for _ in range(count)]
-
-    some = samples(1, 2)
-    for field, index, sigma in (("position", 2, 0.02), ("velocity", 3, 0.05), ("rates", 1, 0.008)):
-        error = np.array([getattr(s, field) for s in some]) - truth[index]
-        assert error.std(axis=0) == pytest.approx([sigma] * 3, rel=0.06)
-        assert np.abs(error.mean(axis=0)).max() < 4 * sigma / math.sqrt(4000)
-    attitude = np.array([s.attitude for s in some])
-    assert np.linalg.norm(attitude, axis=1) == pytest.approx(np.ones(4000))
-    angle = 2 * np.arccos(np.clip(attitude @ np.array(truth[0]), -1, 1))
-    assert math.sqrt(np.mean(angle**2) / 3) == pytest.approx(0.003, rel=0.06)
-    assert samples(1, 2, 50) == some[:50]
-    assert samples(2, 2, 1) != some[:1] and samples(1, 3, 1) != some[:1]
-    perfect = NavigationSensor(SensorNoise(), 1, 1).measure(0.5, *truth)
-    assert perfect.position == truth[2] and perfect.attitude == pytest.approx(truth[0], abs=1e-15)

@@ -4,17 +4,14 @@ import csv
 from dataclasses import replace
 
 import numpy as np
-import pymavlink.dialects.v20.ardupilotmega as mavlink
 import pytest
 from flight_in_process import Rehearsal, short_figure
-from obstacle_scene import ATTITUDE_NOISE, MOTIONS, NOISE, POSITION_NOISE, REACH, Scene, messages_of, pole, sphere, wall
+from obstacle_scene import ATTITUDE_NOISE, MOTIONS, NOISE, POSITION_NOISE, REACH, Scene, pole, sphere, wall
 
 from gcs.mission import HarmonicMotion, Pole, Sphere, Wall
 from gcs.mission.read import read_mission
 from gcs.obstacles import ObstacleMap
-from gcs.obstacles.scans import ScanInbox, SensorModel
-from idc_controller.estimate.measurements import Attitude, Position
-from vehicle_sim.range_sensor import Detection, RangeSample
+from gcs.obstacles.scans import SensorModel
 from vehicle_sim.swarm import Swarm
 
 SENSORS = SensorModel(NOISE, POSITION_NOISE, ATTITUDE_NOISE)
@@ -204,77 +201,6 @@ def test_when_all_links_are_silent_nothing_is_dropped_for_being_unseen():
     assert len(m.predict(np.array([3.0]))) == 1
 
 
-def test_what_a_vehicle_sees_that_is_not_where_it_says_is_placed_by_the_estimate():
-    m, scene, truth = map_of(), Scene(0), np.array([5.0, 0.0, -6.0])
-    away, everyone = np.array([0.0, 1.0, 0.0]), frozenset(range(4))
-    for k in range(10):
-        t = 0.1 * k
-        scene.feed(m, t, HERE, [sphere(truth)], off=away)
-        m.update(t, misplaced=everyone)
-    assert len(m.tracks) == 1
-    assert nearest(m, 0.9, truth)[1] < 0.1
-
-
-def test_motion_between_samples_is_the_estimated_one_where_none_is_told():
-    inbox, t, turning = ScanInbox(SENSORS), 0.02, np.array([0.0, 1.0, 0.0])
-    level, unknown, moving = np.array([1.0, 0.0, 0.0, 0.0]), np.full(3, np.nan), np.array([0.0, 2.0, 0.0])
-    inbox.measured(Attitude(0.0, 0, level, unknown))
-    inbox.measured(Position(0.0, 0, HERE, unknown))
-    inbox.estimated(Attitude(0.0, 0, level, turning))
-    inbox.estimated(Position(0.0, 0, HERE + 1.0, moving))
-    for message in messages_of(RangeSample(t, REACH, (Detection(1, (5.0, 0.0, 0.0)),))):
-        inbox.detected(message, 0, t)
-    [[cluster]] = inbox.frames(t)
-    assert cluster.seen.points[0] == pytest.approx(HERE + np.array([5.0, 2.0 * t, -5.0 * t]), abs=2e-3)
-
-
-def test_without_a_pose_and_an_estimate_nothing_is_placed():
-    m, scene = map_of(), Scene(0)
-    for k in range(10):
-        scene.feed(m, 0.1 * k, HERE, [sphere((5.0, 0.0, -6.0))])
-        m.update(0.1 * k, misaligned=frozenset(range(4)))
-    assert m.tracks == []
-
-
-def test_scans_wait_for_their_pose_and_nonsense_is_refused():
-    m = map_of()
-    scene = Scene(0)
-    ((i, position, quaternion, scan),) = scene.look(1.0, HERE, [sphere((5.0, 0.0, -6.0))])[:1]
-    for message in messages_of(scan):
-        m.detected(message, i, 1.0)
-    m.update(1.0)
-    assert m.tracks == []
-    m.measured(Position(1.0, i, position, np.full(3, np.nan)))  # of its motion nothing is known
-    m.measured(Attitude(1.0, i, quaternion, np.full(3, np.nan)))
-    m.update(1.05)
-    assert len(m.tracks) == 1
-    assert m.refused == 0
-
-    def nonsense(**changes):
-        fields = {
-            "time_boot_ms": 1100, "sensor_type": 0, "frame": mavlink.MAV_FRAME_BODY_FRD, "obstacle_id": 1,
-            "x": 1.0, "y": 0.0, "z": 0.0, "min_distance": 0.1, "max_distance": 10.0,
-        } | changes  # fmt: skip
-        return mavlink.MAVLink_obstacle_distance_3d_message(**fields)
-
-    for bad in (
-        {"frame": mavlink.MAV_FRAME_GLOBAL}, {"x": float("nan")}, {"y": float("inf")}, {"x": 0.0}, {"x": 1e6},
-        {"max_distance": 0.0}, {"max_distance": float("nan")},
-    ):  # fmt: skip
-        m.detected(nonsense(**bad), 0, 1.1)
-    assert m.refused == 7
-    m.detected(nonsense(), 3, 1.1)  # of a vehicle whose pose never comes
-    m.update(1.1)
-    m.update(1.5)
-    assert m.refused == 8
-    for k in range(5000):  # a flood
-        m.detected(nonsense(time_boot_ms=2000 + k), 2, 2.0)
-    assert m.refused > 3000
-
-
-# Obstacles of the mission
-
-
 def test_known_standing_obstacles_are_told_from_the_start_and_their_detections_make_no_tracks():
     known = (
         Sphere("ball", (5.0, 0.0, -6.0), 0.5), Pole("mast", (0.0, 6.0), 0.3, 12.0),
@@ -383,46 +309,3 @@ def test_in_flight_the_ground_finds_what_the_vehicles_sense(tmp_path):
     times = sorted({float(row["time_s"]) for row in rows})
     np.testing.assert_allclose(np.diff(times), 0.1, atol=1e-6)
     assert len(times) > 40
-
-
-def blinded(kind):
-    """A map whose vehicles see an obstacle for a second and then tell what can not be."""
-    m, scene, here = map_of(), Scene(0), [sphere((5.0, 0.0, -6.0))]
-    run(m, lambda t: here, 1.0, scene=scene)
-    frozen = [messages_of(scan) for _, _, _, scan in scene.look(1.0, HERE, here)]
-    for k in range(20, 80):
-        t = k / 20
-        scene.feed(m, t, HERE, [])
-        if kind == "broken":
-            m.broken({0, 1, 2, 3}, t)
-        elif k % 2 == 0:
-            for uav, messages in enumerate(frozen):
-                for message in messages:
-                    message.time_boot_ms = round(t * 1e3)
-                    if kind == "nan":
-                        message.x = np.nan
-                    m.detected(message, uav, t)
-        m.update(t)
-        yield m
-
-
-def test_one_whose_sensor_works_is_enough():
-    m = map_of()
-    scene, here = Scene(0), [sphere((5.0, 0.0, -6.0))]
-    run(m, lambda t: here, 1.0, scene=scene)
-    for k in range(20, 80):
-        scene.feed(m, k / 20, HERE, [])
-        m.broken({0, 1, 3}, k / 20)
-        m.update(k / 20)
-        assert not m.is_blind
-    assert m.predict(np.array([4.0])) == []
-
-
-@pytest.mark.parametrize("kind", ["nan", "frozen", "broken"])
-def test_blind_vehicles_are_found_out_and_nothing_is_forgotten(kind):
-    told = [m.is_blind for m in blinded(kind)]
-    assert not told[0] and all(told[20:])
-    *_, last = blinded(kind)
-    (left,) = last.predict(np.array([4.0]))
-    # The first scan that sticks is believed, with the attitude of the second.
-    assert kind == "frozen" or np.linalg.norm(left.positions[0] - [5.0, 0.0, -6.0]) < 0.3
