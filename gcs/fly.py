@@ -34,6 +34,7 @@ from gcs.simulator import Simulator, arguments_for
 from gcs.vehicle_link import VehicleLink
 from gcs.wire.address import Address, ConnectionUrl
 from idc_controller.barrier.printed_filter import PrintedFilter
+from idc_controller.barrier.resting_place import RestingPlace
 from idc_controller.control.safety import NoObstacles, SafetyFilter
 
 DONE, OUTSIDE_LIMITS, UNUSABLE, INTERRUPTED = 0, 1, 2, 130
@@ -193,8 +194,9 @@ def ground_station(
     elif controller == "paper":
         safety = PrintedFilter(model, obstacle_map, config.avoidance.margin)
     flight = Flight(
-        mission, team, stack.estimator(config, model), stack.controller(config, model, safety, stopwatch), stopwatch
-    )
+        mission, team, stack.estimator(config, model), stack.controller(config, model, safety, stopwatch), stopwatch,
+        brake=RestingPlace(model.parameters, obstacle_map),
+    )  # fmt: skip
     return GroundStation(team, flight, 1.0 / config.rates.control, recorder, obstacle_map)
 
 

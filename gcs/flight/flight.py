@@ -24,7 +24,7 @@ from idc_controller.estimate.estimator import Estimator
 from idc_controller.estimate.measurements import Measurement
 from idc_controller.estimate.setpoint_history import Confirmation
 from idc_controller.plan.reference import Reference
-from idc_controller.plan.stop import StopPlan, stop_plan
+from idc_controller.plan.stop import Braking, StopPlan, stop_plan
 from idc_controller.plan.trajectory import RestTrajectory, Trajectory
 
 Array = NDArray[np.float64]
@@ -63,7 +63,10 @@ class Flight:
         estimator: Estimator,
         controller: IntegratedDecisionController,
         stopwatch: Callable[[], float],
+        brake: Callable[[float, Array], Braking] = lambda time, state: Braking(),
     ) -> None:
+        """``brake``: how vehicles that hear no more are to stop, see :func:`~idc_controller.plan.stop.stop_plan`."""
+        self._brake = brake
         self.mission, self.team = mission, team
         self.estimator, self.controller = estimator, controller
         self._stopwatch = stopwatch
@@ -329,7 +332,7 @@ class Flight:
         share = self._thrust_share(time, estimate)
         if self.phase in IN_THE_AIR:
             self.estimator.add_setpoint(effective, decision.u, leaves)
-            self.stop_plan = stop_plan(self._parameters, decision.flat, effective, estimate.x)
+            self.stop_plan = stop_plan(self._parameters, decision.flat, effective, estimate.x, self._brake)
             self._stop_plans.append(self.stop_plan)
         self._advance(time, estimate, share)
         setpoints = Setpoints(decision.directions, decision.thrusts * share)

@@ -28,7 +28,10 @@ class Bodies:
 
     def distance(self, points: Array, centres: Array) -> Array:
         """From ``points`` (n, 3) to the surfaces of all bodies at ``centres`` (B, 3): (B, n) (m), negative inside."""
-        d = points[None, :, :] - centres[:, None, :]
+        return self.of(points[None, :, :] - centres[:, None, :])
+
+    def of(self, d: Array) -> Array:
+        """The same of points given relative to each body's centre (B, n, 3)."""
         x, y, z = d[..., 0], d[..., 1], np.abs(d[..., 2])
         lateral = np.hypot(x, y)
         half = self._half

@@ -10,10 +10,13 @@ that nobody is torn towards a place that the payload was meant to have.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import BPoly
 
 from idc_controller.model.linear import StateLayout
 from idc_controller.parameters import SystemParameters
@@ -36,6 +39,30 @@ _CONTROL_POINTS = np.array(
 )
 
 
+class Braking(NamedTuple):
+    """How to come to rest, if not in the usual way."""
+
+    share: float = 1.0
+    """Of the usual time."""
+    aside: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Where to rest, beside where the motion alone would lead (m). The acceleration then jumps at the start."""
+
+    def duration(self, velocity: Array) -> float:
+        """From a ``velocity`` (3,) (m/s) to rest (s)."""
+        return self.share * max(BRAKING_TIME, 1.5 * float(np.linalg.norm(velocity)) / BRAKING_LIMIT)
+
+    def control_points(self, state: Array, duration: float) -> Array:
+        """Of the way from a ``state`` (..., 3, 3) of position, velocity and acceleration: (..., 5, 3) (m)."""
+        points = _CONTROL_POINTS @ (state * np.array([1.0, duration, duration**2])[:, None])
+        points[..., 2:, :] += np.array(self.aside)
+        return np.asarray(points)
+
+    def way(self, state: Array) -> BPoly:
+        """From ``state`` (3, 3) on, over the time since then (s)."""
+        duration = self.duration(state[1])
+        return BPoly(self.control_points(state, duration)[:, None, :], [0.0, duration])
+
+
 @dataclass(frozen=True, eq=False)
 class StopPlan:
     """Bezier curves that bring all UAVs to rest, over the same ``duration`` (s) from the same ``start`` (s)."""
@@ -46,10 +73,17 @@ class StopPlan:
     """(N, 5, 3) (m, NED)."""
 
 
-def stop_plan(parameters: SystemParameters, flat: FlatReference, time: float, x: Array | None = None) -> StopPlan:
+def stop_plan(
+    parameters: SystemParameters,
+    flat: FlatReference,
+    time: float,
+    x: Array | None = None,
+    choose: Callable[[float, Array], Braking] = lambda time, state: Braking(),
+) -> StopPlan:
     """From the first instant of the reference ``flat``, which is ``time`` (s), to rest.
 
-    ``x`` (12 + 11 N,) is the state then; None: that of the reference.
+    ``x`` (12 + 11 N,) is the state then; None: that of the reference. ``choose`` says how to brake, by the time and the
+    payload's position, velocity and acceleration (3, 3).
     """
     links = flat.links
     position, velocity, acceleration = flat.payload[:3, 0]
@@ -65,9 +99,9 @@ def stop_plan(parameters: SystemParameters, flat: FlatReference, time: float, x:
         ],
         axis=1,
     )  # (N, 3, 3)
-    duration = max(BRAKING_TIME, 1.5 * float(np.linalg.norm(velocity)) / BRAKING_LIMIT)
-    scaled = state * np.array([1.0, duration, duration**2])[:, None]
-    return StopPlan(time, duration, _CONTROL_POINTS @ scaled)
+    braking = choose(time, np.array([position, velocity, acceleration]))
+    duration = braking.duration(velocity)
+    return StopPlan(time, duration, braking.control_points(state, duration))
 
 
 def _beside(parameters: SystemParameters, error: Array) -> Array:
