@@ -217,6 +217,35 @@ def test_of_what_contradicts_itself_that_is_used_which_fits(of_payload, position
     assert max(error[:12].max(), error[LAYOUT.s].max()) < 0.02
 
 
+def test_a_payload_that_stands_stays_where_it_is_though_its_unit_is_silent():
+    def flown(stands):
+        rng, estimator = np.random.default_rng(4), started()
+        for k in range(1, 150):
+            time = k * INTERVAL
+            for m in all_samples(time, rng):
+                if m.source != PAYLOAD:
+                    estimator.add(m)
+            if stands:
+                estimator.payload_stands(time, HOVER, 0.0)
+            estimate = estimator.estimate(time, REFERENCE)
+        sigma = np.sqrt(np.diag(estimate.covariance))
+        return np.abs(estimate.x[:12] - REFERENCE.at(np.zeros(1)).x[0][:12]).max(), sigma[LAYOUT.r_0].max()
+
+    (error, sigma), (_, blind) = flown(stands=True), flown(stands=False)
+    assert error < 0.02
+    assert 3.0 * sigma < blind
+
+
+def test_where_its_unit_speaks_that_is_believed():
+    estimator = started()
+    for moment in samples_of(1.0):
+        for m in moment:
+            estimator.add(m)
+        estimator.payload_stands(moment[0].time, HOVER + np.array([0.0, 3.0, 0.0]), 0.0)
+        estimate = estimator.estimate(moment[0].time, REFERENCE)
+    assert np.linalg.norm(estimate.x[LAYOUT.r_0] - HOVER) < 0.03
+
+
 def test_vehicles_tell_what_is_estimated_of_them():
     rng = np.random.default_rng(3)
     moved = next_to_hover(rng)

@@ -92,6 +92,7 @@ class Flight:
         self._disarming: Disarming | None = None
         self._landing_alone: LandingAlone | None = None
         self._down: Trajectory | None = None
+        self._yaw = 0.0
         self._spool_down: SpoolDown | None = None
         self._stop_plans: deque[StopPlan] = deque(maxlen=STOP_PLANS)
         self.stop_plan: StopPlan | None = None
@@ -316,6 +317,8 @@ class Flight:
         if self.phase in IN_THE_AIR and (blocked := self.controller.safety.blocked(time)):
             self.break_off(time, blocked)
         trajectory = self._trajectory(time)
+        if self._down is not None:
+            self.estimator.payload_stands(time, self._down.position(time), self._yaw)
         begin = self._stopwatch()
         estimate = self.estimator.estimate(effective, self.controller.reference(trajectory))
         if self.phase in IN_THE_AIR and self.payload.is_out_of_control(time, estimate):
@@ -374,6 +377,7 @@ class Flight:
             if self.phase is Phase.LAND and self.payload.has_touched(*self._descent(time), estimate):
                 position = estimate.x[self.controller.layout.r_0]
                 self._down = RestTrajectory(position, time)
+                self._yaw = float(estimate.x[self.controller.layout.Theta][2])
                 self.estimator.add_setpoint(estimate.time, None)
                 self._spool_down = SpoolDown(time)
                 self._enter(Phase.SPOOL_DOWN, time)

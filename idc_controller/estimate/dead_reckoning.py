@@ -53,7 +53,9 @@ class DeadReckoning:
         self._tracks: dict[tuple[int, type], _Track] = {}
 
     def add(self, measurement: Measurement) -> None:
-        """A pose with its motion; what comes late is passed over, and what lacks either."""
+        """A pose with its motion; what comes late is passed over, what lacks either, and vehicles' attitudes."""
+        if isinstance(measurement, Attitude) and measurement.source != PAYLOAD:
+            return
         if measurement.has_pose and measurement.has_motion:
             key = measurement.source, type(measurement)
             track = self._tracks.get(key)

@@ -23,13 +23,14 @@ from idc_controller.estimate.estimate import Estimate, InnovationRecord
 from idc_controller.estimate.frozen import FrozenSensors
 from idc_controller.estimate.gate import Judgement, OutlierGate
 from idc_controller.estimate.measurement_model import MeasurementModel
-from idc_controller.estimate.measurements import PAYLOAD, Measurement, MeasurementNoise, Position, middle
+from idc_controller.estimate.measurements import PAYLOAD, Attitude, Measurement, MeasurementNoise, Position, middle
 from idc_controller.estimate.process_model import ProcessModel, ProcessNoise
 from idc_controller.estimate.setpoint_history import Confirmation, SetpointHistory
 from idc_controller.estimate.way import Way
 from idc_controller.model.linear import LinearModel
 from idc_controller.plan.flatness import FlatReference
 from idc_controller.plan.reference import Reference
+from idc_controller.rotations import quaternion_from_euler
 
 Array = NDArray[np.float64]
 
@@ -38,6 +39,9 @@ PATIENCE = 3
 
 OUTLIER = 25.0
 """Square of an innovation with variance 1 that is certainly none."""
+
+PAYLOAD_SILENT = 0.3
+"""Without the payload's unit for longer, a payload that stands is taken to stay (s)."""
 
 _POSES, _MOTIONS = (True, False), (False, True)
 
@@ -216,6 +220,20 @@ class Estimator:
         if moment.time <= self.time:
             self._back_to(moment.time)
         return measurement
+
+    def payload_stands(self, time: float, position: Array, yaw: float) -> None:
+        """On the ground at ``position`` (3,) (m) with ``yaw`` (rad): taken for measured, where its unit is silent.
+
+        The ground holds it, which no model here knows: unmeasured, it would be believed to go where its links pull.
+        """
+        since = time - PAYLOAD_SILENT
+        if any((PAYLOAD, Position) in m.measurements for m in reversed(self._moments) if m.time > since):
+            return
+        none, upright = np.zeros(3), quaternion_from_euler(0.0, 0.0, yaw)
+        told: list[Measurement] = [Position(time, PAYLOAD, position, none), Attitude(time, PAYLOAD, upright, none)]
+        self._back_to(time)
+        at = bisect.bisect_left(self._moments, time, key=lambda m: m.time)
+        self._moments.insert(at, _Moment(time, {(PAYLOAD, type(m)): [m] for m in told}))
 
     def estimate(self, time: float, reference: Reference) -> Estimate:
         """Apply all that was added and predict to ``time`` (s), the moment at which the next set-points act."""
