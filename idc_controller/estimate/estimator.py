@@ -22,6 +22,7 @@ from idc_controller.estimate.distrust import Distrust
 from idc_controller.estimate.estimate import Estimate, InnovationRecord
 from idc_controller.estimate.frozen import FrozenSensors
 from idc_controller.estimate.gate import Judgement, OutlierGate
+from idc_controller.estimate.measurement_history import MeasurementHistory, Moment
 from idc_controller.estimate.measurement_model import MeasurementModel
 from idc_controller.estimate.measurements import PAYLOAD, Attitude, Measurement, MeasurementNoise, Position, middle
 from idc_controller.estimate.process_model import ProcessModel, ProcessNoise
@@ -87,12 +88,6 @@ class EstimatorSettings:
     surprise: Surprise = field(default_factory=Surprise)
 
 
-@dataclass
-class _Moment:
-    time: float
-    measurements: dict[tuple[int, type], list[Measurement]]
-
-
 @dataclass(frozen=True, eq=False)
 class _Snapshot:
     time: float
@@ -112,7 +107,7 @@ class Estimator:
         self.size = self.process_model.size
         self._filter = KalmanFilter(dim_x=self.size, dim_z=1)
         self._filter.x = np.zeros(self.size)
-        self._moments: list[_Moment] = []
+        self._history = MeasurementHistory(settings.simultaneous)
         self._snapshots: list[_Snapshot] = []
         self._setpoints = SetpointHistory(model.layout.number_of_uavs, settings.process.setpoint_loss)
         self._gate = OutlierGate(settings.gate_probability)
@@ -139,7 +134,7 @@ class Estimator:
         sigma[process.force], sigma[process.uav_force] = s.force_sigma, s.uav_force_sigma
         sigma[process.mass] = s.mass_sigma
         full = np.concatenate([x, np.zeros(self.size - len(x))])
-        self._moments = []
+        self._history.clear()
         self._setpoints.clear()
         self.adaptation = Adaptation()
         self._distrust = Distrust(layout.number_of_uavs)
@@ -206,19 +201,9 @@ class Estimator:
         if measurement.time <= oldest:
             self.discarded_late += 1
             return None
-        key = (measurement.source, type(measurement))
-        at = bisect.bisect_left(self._moments, measurement.time - self.settings.simultaneous, key=lambda m: m.time)
-        if at < len(self._moments) and self._moments[at].time <= measurement.time + self.settings.simultaneous:
-            moment = self._moments[at]
-        else:
-            moment = _Moment(measurement.time, {})
-            self._moments.insert(at, moment)
-        copies = moment.measurements.setdefault(key, [])
-        if copies and key[0] == PAYLOAD and moment.time <= self.time:
-            return measurement  # another vehicle's relay of what was applied already
-        copies.append(measurement)
-        if moment.time <= self.time:
-            self._back_to(moment.time)
+        moment = self._history.add(measurement, self.time)
+        if moment is not None:
+            self._back_to(moment)
         return measurement
 
     def payload_stands(self, time: float, position: Array, yaw: float) -> None:
@@ -226,14 +211,12 @@ class Estimator:
 
         The ground holds it, which no model here knows: unmeasured, it would be believed to go where its links pull.
         """
-        since = time - PAYLOAD_SILENT
-        if any((PAYLOAD, Position) in m.measurements for m in reversed(self._moments) if m.time > since):
+        if self._history.has((PAYLOAD, Position), since=time - PAYLOAD_SILENT):
             return
         none, upright = np.zeros(3), quaternion_from_euler(0.0, 0.0, yaw)
-        told: list[Measurement] = [Position(time, PAYLOAD, position, none), Attitude(time, PAYLOAD, upright, none)]
         self._back_to(time)
-        at = bisect.bisect_left(self._moments, time, key=lambda m: m.time)
-        self._moments.insert(at, _Moment(time, {(PAYLOAD, type(m)): [m] for m in told}))
+        for kind, pose in ((Position, position), (Attitude, upright)):
+            self._history.add(kind(time, PAYLOAD, pose, none), self.time)
 
     def estimate(self, time: float, reference: Reference) -> Estimate:
         """Apply all that was added and predict to ``time`` (s), the moment at which the next set-points act."""
@@ -262,7 +245,7 @@ class Estimator:
         self._snapshots, self._adapts = kept, True
 
     def _advance(self, time: float, reference: Reference) -> Estimate:
-        pending = self._moments[bisect.bisect_right(self._moments, self.time, key=lambda m: m.time) :]
+        pending = self._history.after(self.time)
         time = max(time, self.time, pending[-1].time if pending else time)
         way = Way(self.time, [m.time for m in pending], time, self._setpoints, reference)
         process = self.process_model
@@ -309,7 +292,7 @@ class Estimator:
             Q = Q + self.process_model.doubt_noise(B, change, doubt)
         self._filter.predict(u=delta_u, F=F, B=B, Q=Q)
 
-    def _update(self, moment: _Moment, flat: FlatReference, k: int) -> None:
+    def _update(self, moment: Moment, flat: FlatReference, k: int) -> None:
         """Correct the filter's error state, at time ``k`` of ``flat``, by what was measured then."""
         kf, n = self._filter, self.layout.size
         for copies in moment.measurements.values():
@@ -409,7 +392,7 @@ class Estimator:
         keep = max(bisect.bisect_right(self._snapshots, horizon, key=lambda s: s.time) - 1, 0)
         del self._snapshots[:keep]
         oldest = self._snapshots[0].time
-        del self._moments[: bisect.bisect_right(self._moments, oldest, key=lambda m: m.time)]
+        self._history.forget(oldest)
         self._setpoints.forget(oldest)
 
 

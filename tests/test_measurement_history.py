@@ -1,0 +1,47 @@
+"""Measurements in order, however they came."""
+
+import numpy as np
+
+from idc_controller.estimate.measurement_history import MeasurementHistory
+from idc_controller.estimate.measurements import PAYLOAD, Attitude, Position
+
+
+def position(time, source=0):
+    return Position(time, source, np.zeros(3), np.zeros(3))
+
+
+def test_moments_are_in_order_and_what_is_simultaneous_is_one():
+    history = MeasurementHistory(0.002)
+    for time in (0.3, 0.1, 0.2, 0.1015):
+        history.add(position(time, source=round(1e4 * time)), applied=0.0)
+    assert [moment.time for moment in history.after(0.0)] == [0.1, 0.2, 0.3]
+    assert len(history.after(0.0)[0].measurements) == 2
+    assert [moment.time for moment in history.after(0.1)] == [0.2, 0.3]
+
+
+def test_the_time_from_which_all_counts_anew_is_that_of_the_moment():
+    history = MeasurementHistory(0.002)
+    assert history.add(position(0.1), applied=0.0) == 0.1
+    assert history.add(position(0.1015, source=1), applied=0.2) == 0.1
+    assert history.add(position(0.05), applied=0.2) == 0.05
+
+
+def test_a_relay_of_what_was_applied_adds_nothing():
+    history = MeasurementHistory(0.002)
+    assert history.add(position(0.1, PAYLOAD), applied=0.0) == 0.1
+    assert history.add(position(0.1, PAYLOAD), applied=0.0) == 0.1
+    assert history.add(position(0.1, PAYLOAD), applied=0.1) is None
+    (moment,) = history.after(0.0)
+    assert len(moment.measurements[PAYLOAD, Position]) == 2
+
+
+def test_what_is_forgotten_is_gone():
+    history = MeasurementHistory(0.002)
+    for time in (0.1, 0.2, 0.3):
+        history.add(position(time), applied=0.0)
+    history.forget(0.2)
+    assert [moment.time for moment in history.after(0.0)] == [0.3]
+    assert history.has((0, Position), since=0.2) and not history.has((0, Position), since=0.3)
+    assert not history.has((0, Attitude), since=0.0)
+    history.clear()
+    assert history.after(0.0) == []
