@@ -3,13 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import TypeVar
 
+from vehicle_sim.attitude_control import Quaternion, Three
 from vehicle_sim.sensors import Measurement
-
-Three = tuple[float, float, float]
-Quaternion = tuple[float, float, float, float]
-Channel = TypeVar("Channel", Quaternion, Three)
 
 FROZEN_AFTER = 3  # samples the same to the digit: no sensor's noise repeats itself
 RATES_BANDWIDTH = 30.0  # rad/s, of rates by the attitude: above that of the attitude loop
