@@ -53,6 +53,9 @@ def test_what_is_refused_for_long_is_left_out():
     assert distrust.halves == ()
     refused(VELOCITY_OF_1, times=1, distrust=distrust)
     assert distrust.halves == (VELOCITY_OF_1,)
+    assert [Half(1, kind, which).channel for kind in (Position, Attitude) for which in (0, 1)] == [
+        "position", "velocity", "attitude", "rates",
+    ]  # fmt: skip
     assert (distrust.rows(STACK) == rows_of(VELOCITY_OF_1)).all()
     assert distrust.rows(stack_of((PAYLOAD, 0, 2, 3))).sum() == 0
 

@@ -153,6 +153,8 @@ class Watch:
     def _measurements(self, time: float) -> None:
         for source, channel in self._flight.estimator.frozen.channels():
             self._book.tell(time, self._source(source), "frozen", channel)
+        for half in self._flight.estimator.distrusted:
+            self._book.tell(time, self._source(half.source), "distrusted", half.channel)
         for group, (poses, _) in self._flight.estimator.left_out.items():
             names = ("positions", "velocities") if group.kind is Position else ("attitudes", "rates")
             who, of = ("payload", "the payload") if group.of_payload else ("team", "all vehicles")

@@ -32,6 +32,11 @@ class Half(NamedTuple):
     kind: type
     which: int
 
+    @property
+    def channel(self) -> str:
+        """position, velocity, attitude or rates."""
+        return (("position", "velocity") if self.kind is Position else ("attitude", "rates"))[self.which]
+
 
 class Distrust:
     """Of N vehicles' sensors; never of more than half of the vehicles, which are not wrong together."""

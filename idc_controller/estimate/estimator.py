@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from idc_controller.estimate.adaptation import Adaptation
 from idc_controller.estimate.dead_reckoning import DeadReckoning, Group
-from idc_controller.estimate.distrust import Distrust
+from idc_controller.estimate.distrust import Distrust, Half
 from idc_controller.estimate.estimate import Estimate, InnovationRecord
 from idc_controller.estimate.frozen import FrozenSensors
 from idc_controller.estimate.gate import Judgement, OutlierGate
@@ -173,6 +173,11 @@ class Estimator:
             for (source, of), time in self._untrusted.items()
             if of is kind and source != PAYLOAD and self.time - time < DISTRUST
         )
+
+    @property
+    def distrusted(self) -> tuple[Half, ...]:
+        """What of the vehicles has been refused for so long that it is left out."""
+        return self._distrust.halves
 
     @property
     def lost(self) -> tuple[int, ...]:
