@@ -35,10 +35,10 @@ def rows_of(*halves):
     return rows
 
 
-def refused(*halves, times=REFUSED_FOR, distrust=None):
+def refused(*halves, times=REFUSED_FOR, distrust=None, contradicts=True):
     distrust = distrust or Distrust(4)
     for _ in range(times):
-        distrust.learn(STACK, ALL, ~rows_of(*halves))
+        distrust.learn(STACK, ALL, ~rows_of(*halves), lambda uav: contradicts)
     return distrust
 
 
@@ -58,6 +58,14 @@ def test_what_is_refused_for_long_is_left_out():
     ]  # fmt: skip
     assert (distrust.rows(STACK) == rows_of(VELOCITY_OF_1)).all()
     assert distrust.rows(stack_of((PAYLOAD, 0, 2, 3))).sum() == 0
+
+
+def test_positions_and_velocities_that_agree_are_not_what_is_wrong():
+    same = refused(VELOCITY_OF_1, Half(1, Position, 0), contradicts=False)
+    assert same.halves == ()
+    refused(VELOCITY_OF_1, times=1, distrust=same)
+    assert same.halves == (VELOCITY_OF_1,)
+    assert refused(Half(1, Attitude, 1), contradicts=False).halves == (Half(1, Attitude, 1),)
 
 
 def test_what_is_accepted_counts_against_it():

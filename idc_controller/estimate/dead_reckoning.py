@@ -63,6 +63,11 @@ class DeadReckoning:
                 track = self._tracks[key] = _Track(_Way() if isinstance(measurement, Position) else _Turn(measurement))
             track.add(measurement)
 
+    def contradicts_itself(self, uav: int) -> bool:
+        """Whether the position of a UAV does not go where its velocity takes it."""
+        track = self._tracks.get((uav, Position))
+        return track is not None and track.off > 1.0
+
     @property
     def astray(self) -> tuple[Group, ...]:
         """What contradicts itself: most vehicles' positions, while the payload unit's do not; or the other way round;

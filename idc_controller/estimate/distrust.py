@@ -6,6 +6,7 @@ gate is wide, and a sensor that has been wrong all along would come through it, 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -69,15 +70,22 @@ class Distrust:
             rows[part] = half in self._agreed
         return rows
 
-    def learn(self, stack: Stack, judged: NDArray[np.bool_], kept: NDArray[np.bool_]) -> None:
-        """From one moment: which rows (m,) were ``judged``, and ``kept``."""
+    def learn(
+        self, stack: Stack, judged: NDArray[np.bool_], kept: NDArray[np.bool_], contradicts: Callable[[int], bool]
+    ) -> None:
+        """From one moment: which rows (m,) were ``judged``, and ``kept``.
+
+        ``contradicts``: whether position and velocity of a UAV are against each other. Where they agree, and yet are
+        refused, it is the vehicle that does not fly as it should: it may believe in a wrong attitude.
+        """
         if not self._refused and bool(kept[judged].all()):
             return
         for half, part in _halves(stack):
             if not judged[part].all():
                 continue
             count = self._refused.pop(half, 0) + (-1 if kept[part].all() else 1)
-            if count >= REFUSED_FOR and self._is_no_majority_with(half.source):
+            is_wrong = half.kind is not Position or contradicts(half.source)
+            if count >= REFUSED_FOR and is_wrong and self._is_no_majority_with(half.source):
                 self._agreed[half] = 0
             elif count > 0:
                 self._refused[half] = min(count, REFUSED_FOR)

@@ -346,7 +346,7 @@ class Estimator:
         if self._adapts:
             kept = present.copy()
             kept[present] = keep
-            self._distrust.learn(whole, present, kept)
+            self._distrust.learn(whole, present, kept, self._reckoning.contradicts_itself)
             adaptation.learn(moment.time, keys, found.white, found.mean_squares, keep, stack.of_payload)
         nis = 0.0
         if keep.any():
