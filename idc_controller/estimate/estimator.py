@@ -300,10 +300,11 @@ class Estimator:
     def _update(self, moment: Moment, flat: FlatReference, k: int) -> None:
         """Correct the filter's error state, at time ``k`` of ``flat``, by what was measured then."""
         kf, n = self._filter, self.layout.size
-        for copies in moment.measurements.values():
-            self._reckoning.add(middle(copies))
+        told = [middle(copies) for copies in moment.measurements.values()]
+        for measurement in told:
+            self._reckoning.add(measurement)
         stack = self.measurement_model.stack(tuple(moment.measurements))
-        y = np.concatenate([self._innovation(copies, flat, k) for copies in moment.measurements.values()])
+        y = np.concatenate([self.measurement_model.innovation(self._used(m), flat, k) for m in told])
         H = np.zeros((len(y), self.size))
         self.measurement_model.observe(stack, flat, k, into=H[:, :n])
         whole = stack
@@ -357,17 +358,10 @@ class Estimator:
         white = stack.split(found.white)
         self.innovations.append(InnovationRecord(moment.time, nis, int(keep.sum()), rejected, surprised, keys, white))
 
-    def _innovation(self, copies: list[Measurement], flat: FlatReference, k: int) -> Array:
-        """Of one source and kind. Relays of one sample agree; where one of them is corrupted the median is not."""
-        first = copies[0]
-        if self.left_out and (choice := self.left_out.get(Group(first.source == PAYLOAD, type(first)))):
-            copies = [copy.without(*choice) for copy in copies]
-            first = copies[0]
-        if all(copy.agrees(first) for copy in copies[1:]):
-            return self.measurement_model.innovation(first, flat, k)
-        told = np.array([self.measurement_model.innovation(copy, flat, k) for copy in copies])
-        whole = ~np.isnan(told).any(axis=1)
-        return np.asarray(np.median(told[whole] if whole.any() else told, axis=0))
+    def _used(self, told: Measurement) -> Measurement:
+        """Without what has contradicted itself."""
+        choice = self.left_out.get(Group(told.source == PAYLOAD, type(told)))
+        return told if choice is None else told.without(*choice)
 
     def _refusals(self, keys: tuple[tuple[int, type], ...], accepted: NDArray[np.bool_]) -> tuple[bool, bool]:
         """Whether the payload unit insists on what the prediction excludes, and whether most sources exclude it.

@@ -115,7 +115,8 @@ def middle(copies: Sequence[Measurement]) -> Measurement:
     first = copies[0]
     if all(copy.agrees(first) for copy in copies[1:]):
         return first
-    pose, motion = (np.median([getattr(copy, name) for copy in copies], axis=0) for name in ("pose", "motion"))
+    whole = [copy for copy in copies if copy.has_pose and copy.has_motion] or copies
+    pose, motion = (np.median([getattr(copy, name) for copy in whole], axis=0) for name in ("pose", "motion"))
     return type(first)(first.time, first.source, pose, motion)
 
 
