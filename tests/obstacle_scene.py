@@ -5,6 +5,8 @@ import math
 import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
+from gcs.obstacles import ObstacleMap
+from gcs.obstacles.scans import SensorModel
 from idc_controller.estimate.measurements import Attitude, Position
 from idc_controller.estimate.surface_points import SurfacePoints, joined
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
@@ -15,6 +17,8 @@ REACH, NOISE = 10.0, 0.05
 POSITION_NOISE, ATTITUDE_NOISE = 0.02, math.radians(0.2)
 #: Of four UAVs about the formation's centre, at the height at which they fly above the payload.
 FORMATION = np.array([[0.5, 0.5, 0.0], [0.5, -0.5, 0.0], [-0.5, -0.5, 0.0], [-0.5, 0.5, 0.0]])
+SENSORS = SensorModel(NOISE, POSITION_NOISE, ATTITUDE_NOISE)
+HERE = np.array([0.0, 0.0, -6.0])
 
 
 def sphere(position, radius=0.5, name="sphere"):
@@ -129,3 +133,19 @@ def stop_and_go(t):
     phase, cycle = t % 6.0, 3.0
     going = min(phase, 1.5) if phase < cycle else 1.5 - min(phase - cycle, 1.5)
     return np.array([2.0 * going, 0.0, 0.0])
+
+
+def map_of(*known):
+    return ObstacleMap(known, SENSORS, REACH)
+
+
+def run(obstacle_map, obstacles, until, begin=0.0, scene=None, centre=lambda t: HERE, each=lambda t: None):
+    """Scans at 10 Hz and control steps at 20 Hz; ``obstacles(t)`` are the true ones."""
+    scene = scene or Scene(0)
+    for k in range(round(begin * 20), round(until * 20)):
+        t = k / 20
+        if k % 2 == 0:
+            scene.feed(obstacle_map, t, centre(t), obstacles(t))
+        obstacle_map.update(t)
+        each(t)
+    return obstacle_map

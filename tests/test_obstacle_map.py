@@ -6,32 +6,21 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from flight_in_process import Rehearsal, short_figure
-from obstacle_scene import ATTITUDE_NOISE, MOTIONS, NOISE, POSITION_NOISE, REACH, Scene, pole, sphere, wall
+from obstacle_scene import (
+    HERE,
+    MOTIONS,
+    Scene,
+    map_of,
+    pole,
+    run,
+    sphere,
+    wall,
+)
 
 from gcs.mission import HarmonicMotion, Pole, Sphere, Wall
 from gcs.mission.read import read_mission
 from gcs.obstacles import ObstacleMap
-from gcs.obstacles.scans import SensorModel
 from vehicle_sim.swarm import Swarm
-
-SENSORS = SensorModel(NOISE, POSITION_NOISE, ATTITUDE_NOISE)
-HERE = np.array([0.0, 0.0, -6.0])
-
-
-def map_of(*known):
-    return ObstacleMap(known, SENSORS, REACH)
-
-
-def run(obstacle_map, obstacles, until, begin=0.0, scene=None, centre=lambda t: HERE, each=lambda t: None):
-    """Scans at 10 Hz and control steps at 20 Hz; ``obstacles(t)`` are the true ones."""
-    scene = scene or Scene(0)
-    for k in range(round(begin * 20), round(until * 20)):
-        t = k / 20
-        if k % 2 == 0:
-            scene.feed(obstacle_map, t, centre(t), obstacles(t))
-        obstacle_map.update(t)
-        each(t)
-    return obstacle_map
 
 
 def places(obstacle_map, time):

@@ -3,31 +3,20 @@
 import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 import pytest
-from obstacle_scene import ATTITUDE_NOISE, NOISE, POSITION_NOISE, REACH, Scene, messages_of, sphere
+from obstacle_scene import (
+    HERE,
+    REACH,
+    SENSORS,
+    Scene,
+    map_of,
+    messages_of,
+    run,
+    sphere,
+)
 
-from gcs.obstacles import ObstacleMap
-from gcs.obstacles.scans import ScanInbox, SensorModel
+from gcs.obstacles.scans import ScanInbox
 from idc_controller.estimate.measurements import Attitude, Position
 from vehicle_sim.range_sensor import Detection, RangeSample
-
-SENSORS = SensorModel(NOISE, POSITION_NOISE, ATTITUDE_NOISE)
-HERE = np.array([0.0, 0.0, -6.0])
-
-
-def map_of(*known):
-    return ObstacleMap(known, SENSORS, REACH)
-
-
-def run(obstacle_map, obstacles, until, begin=0.0, scene=None, centre=lambda t: HERE, each=lambda t: None):
-    """Scans at 10 Hz and control steps at 20 Hz; ``obstacles(t)`` are the true ones."""
-    scene = scene or Scene(0)
-    for k in range(round(begin * 20), round(until * 20)):
-        t = k / 20
-        if k % 2 == 0:
-            scene.feed(obstacle_map, t, centre(t), obstacles(t))
-        obstacle_map.update(t)
-        each(t)
-    return obstacle_map
 
 
 def test_what_a_vehicle_sees_that_is_not_where_it_says_is_placed_by_the_estimate():
