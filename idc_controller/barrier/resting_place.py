@@ -19,7 +19,7 @@ from idc_controller.plan.stop import BRAKING_LIMIT, Braking
 Array = NDArray[np.float64]
 
 CLEAR = 0.8
-"""From the formation's upright hull to any obstacle (m): enough for what vehicles on their own miss their plan by."""
+"""From the formation's upright hull to any obstacle (m), by the plan: vehicles on their own stray from it."""
 FORESEEN, SAMPLES = 10.0, 21
 """How far ahead obstacles are looked at (s), and at how many moments: what swings is met wherever it goes."""
 GROWTH = 0.5
@@ -57,7 +57,7 @@ class RestingPlace:
         if not obstacles:
             return Braking()
         near = _Near(obstacles)
-        for known in (Braking(), self._last):
+        for known in dict.fromkeys((Braking(), self._last)):
             if self._clearance(near, state, known) >= CLEAR:
                 self._last = known
                 return known
