@@ -1,7 +1,7 @@
 """The ground station on the wire: bytes in, bytes out, and a flight behind them. No socket, no clock.
 
-The way of the data: datagram -> codec -> vehicle link and telemetry -> estimator -> controller -> set-points ->
-datagram.
+The way of the data: datagram -> codec -> vehicle link, identities, telemetry -> estimator -> controller ->
+set-points -> datagram.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from gcs.flight.flight import Flight, Setpoints, StepRecord
 from gcs.flight.phase import IN_THE_AIR, Phase
 from gcs.flight.team import Team
 from gcs.flight.watch import Watch
+from gcs.identities import Identities
 from gcs.obstacles import ObstacleMap
 from gcs.setpoints import attitude_target, stop_plan_message
 from gcs.telemetry import measurement, setpoint_flown
@@ -75,7 +76,8 @@ class GroundStation:
         self.links = team.links
         self._recorder = recorder
         self._obstacle_map = obstacle_map
-        self.watch = Watch(flight, obstacle_map)
+        self._identities = Identities(len(self.links))
+        self.watch = Watch(flight, obstacle_map, self._identities)
         self._codec = Codec(GROUND_SYSTEM, GROUND_COMPONENT)
         self._by_address: dict[tuple[Address, int], int] = {
             (link.address, link.system_id): i for i, link in enumerate(self.links) if link.address is not None
@@ -241,10 +243,11 @@ class GroundStation:
             if obstacle_map is not None:
                 obstacle_map.detected(message, index, time)
             return time
-        sample = measurement(message, index, time)
+        sample = measurement(message, self._identities.whose(index), time)
         if sample is None or not (sample.has_pose and sample.has_motion):
             link.statistics.unusable(message.get_srcComponent())
         if sample is not None:
+            self._identities.told(sample)
             believed = self.flight.measured(sample)
             if obstacle_map is not None and believed is not None:
                 obstacle_map.measured(believed)
@@ -277,9 +280,12 @@ class GroundStation:
             self._recorder.obstacles(self._obstacle_map, time)
         effective = _whole_ms(time + self._latency + delays.max())
         setpoints, record = self.flight.step(time, effective, leaves, now)
-        if self._obstacle_map is not None and record is not None:
-            for sample in self.flight.estimator.vehicles(record.estimate):
-                self._obstacle_map.estimated(sample)
+        if record is not None:
+            estimated = self.flight.estimator.vehicles(record.estimate)
+            self._identities.compare(estimated)
+            if self._obstacle_map is not None:
+                for sample in estimated:
+                    self._obstacle_map.estimated(sample)
         for alarm in self.watch.step(time, now, record):
             self._recorder.alarm(alarm)
         self._recorder.step(self.flight, time, record)

@@ -136,3 +136,16 @@ def test_a_gap_in_the_samples_is_no_contradiction():
             for source in (PAYLOAD, *range(VEHICLES)):
                 reckoning.add(Position(k * INTERVAL, source, *path(k * INTERVAL)))
         assert not reckoning.astray
+
+
+def test_a_sample_that_comes_twice_counts_once():
+    """Relayed by a vehicle whose clock is off; else the noise would seem to be as small as a repetition's."""
+    rng, reckoning = np.random.default_rng(1), DeadReckoning(VEHICLES)
+    for k in range(1500):
+        t = k * INTERVAL
+        for source in (PAYLOAD, *range(VEHICLES)):
+            p, v = path(t)
+            told = p + rng.normal(0.0, 0.02, 3), v + rng.normal(0.0, 0.008, 3)
+            for late in (0.0, 0.006) if source == PAYLOAD else (0.0,):
+                reckoning.add(Position(t + late, source, *told))
+        assert not reckoning.astray

@@ -5,7 +5,7 @@ from flight_in_process import short_figure
 
 from gcs.faults.link import Jitter, Latency, Reordering
 from gcs.faults.sensors import AttitudeLost, PositionDrift, PositionLost, RatesLost
-from gcs.faults.values import Bias, Drift, NotANumber, Stuck
+from gcs.faults.values import Bias, Drift, NotANumber, Stuck, SwappedVehicles
 from gcs.faults.world import Wind
 from gcs.testing import fault
 
@@ -34,6 +34,7 @@ FAULTS = {
     "velocity unknown": of_one(NotANumber(channel="velocity")),
     "position lost": of_one(PositionLost()),
     "position lost while it climbs, and for the vehicle it does so still": of_one(PositionLost(), start=5.0),
+    "two vehicles' data swapped": of_one(SwappedVehicles(other=1)),
     "attitude lost": of_one(AttitudeLost()),
     "rates lost": of_one(RatesLost()),
     "payload's position stuck": of_all(Stuck(channel="payload_position")),

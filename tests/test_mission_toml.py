@@ -3,9 +3,9 @@
 from pathlib import Path
 
 import pytest
-from mission_files import POINTS, TAKE_OFF, TOML, A, read, refusal, row, shape, wpl
+from mission_files import MISSIONS, POINTS, TAKE_OFF, TOML, A, read, refusal, row, shape, wpl
 
-from gcs.config import default_system_path
+from gcs.config import UnusableFile, default_system_path
 from gcs.mission import Lissajous, Pole, Route, Sphere, read_mission
 
 
@@ -119,3 +119,10 @@ def test_points_that_end_where_they_end(tmp_path: Path) -> None:
     assert shape(read(tmp_path, back, "mission.toml"))[-1] == ("Land", 0.0, 0.0, -0.3)
     file = '[mission]\nname = "p"\n[reference]\nkind = "waypoints"\nfile = "m.txt"\nreturn_home = true\n'
     assert "line 6: reference.return_home: goes with points" in refusal(tmp_path, file, "mission.toml")[0]
+
+
+@pytest.mark.parametrize(("name", "use"), [("many_hops.toml", "gcs faults flies it"), ("system.toml", "--config")])
+def test_another_file_is_told_what_it_is_for(name: str, use: str) -> None:
+    with pytest.raises(UnusableFile) as refused:
+        read_mission(MISSIONS / name)
+    assert len(refused.value.reasons) == 1 and use in refused.value.reasons[0]

@@ -12,6 +12,7 @@ from scipy.stats import chi2
 from gcs.flight.alarms import Alarm, AlarmBook, Events
 from gcs.flight.flight import Flight, StepRecord
 from gcs.flight.phase import IN_THE_AIR
+from gcs.identities import Identities
 from gcs.obstacles import ObstacleMap
 from gcs.vehicle_link import VehicleLink
 from idc_controller.control.controller import Decision
@@ -47,8 +48,9 @@ FORCE = float(chi2.isf(RARE, 3))
 class Watch:
     """Call :meth:`step` once a control step, after the flight's own; times are the team's (s)."""
 
-    def __init__(self, flight: Flight, obstacle_map: ObstacleMap | None) -> None:
+    def __init__(self, flight: Flight, obstacle_map: ObstacleMap | None, identities: Identities) -> None:
         self._flight, self._team, self._obstacle_map = flight, flight.team, obstacle_map
+        self._identities = identities
         self._book = AlarmBook()
         self._silence = MISSED / flight.mission.system.rates.telemetry
         self._counts: dict[tuple[str, str, str], int] = {}
@@ -151,6 +153,8 @@ class Watch:
             tell(time, "payload", "silent", f"not relayed for {silent:.2f} s")
 
     def _measurements(self, time: float) -> None:
+        for teller, whose in self._identities.mixed_up.items():
+            self._book.tell(time, self._source(teller), "mixed up", f"tells the data of {self._source(whose)}")
         for source, channel in self._flight.estimator.frozen.channels():
             self._book.tell(time, self._source(source), "frozen", channel)
         for half in self._flight.estimator.distrusted:

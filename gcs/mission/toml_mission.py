@@ -63,6 +63,10 @@ class MissionFile:
     limits: Limits | None = field(default=None)
 
 
+_OTHER_FILES = {
+    "campaign": "this is a campaign, no mission: gcs faults flies it",
+    "uav": "this is a system file, no mission: it goes with --config",
+}
 _FAULT_KEYS = ("kind", "start", "duration", "every", "times", "vehicles", "direction")
 
 
@@ -82,8 +86,10 @@ def read_mission_file(path: Path) -> tuple[TomlFile, MissionFile]:
     Raises :class:`UnusableFile` with every reason found.
     """
     file = read_toml(path)
-    faults = file.data.get("fault")
-    data = file.data
+    data, faults = file.data, file.data.get("fault")
+    for table, use in _OTHER_FILES.items():
+        if table in data and "mission" not in data:
+            raise UnusableFile([file.problem((table,), use)])
     if isinstance(faults, list):
         data = {**data, "fault": [_known_keys(fault) for fault in faults]}
     mission = file.validated(_adapter(), data)

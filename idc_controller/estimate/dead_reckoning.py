@@ -134,8 +134,8 @@ class _Track:
 
     def add(self, measurement: Measurement) -> None:
         recent = self._recent
-        if recent and measurement.time <= recent[-1].time:
-            return
+        if recent and (measurement.time <= recent[-1].time or measurement.agrees(recent[-1])):
+            return  # a relay of the same sample by a vehicle whose clock is off brings nothing new
         if recent and measurement.time - recent[-1].time > GAP:
             recent.clear()
             self._rest.clear()
