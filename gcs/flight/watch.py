@@ -85,7 +85,7 @@ class Watch:
                     self._events.add(("team", "surprised"), told.time)
             if not calm:
                 self._consistency.forget_attitudes()
-            self._measurements(time)
+            self._measurements(time, calm)
             self._model(time, record.estimate, calm)
         self._judged = len(innovations)
         if airborne:
@@ -152,13 +152,14 @@ class Watch:
         if (silent := now - max(link.payload_heard for link in self._team.links)) > self._silence:
             tell(time, "payload", "silent", f"not relayed for {silent:.2f} s")
 
-    def _measurements(self, time: float) -> None:
+    def _measurements(self, time: float, calm: bool) -> None:
         for teller, whose in self._identities.mixed_up.items():
             self._book.tell(time, self._source(teller), "mixed up", f"tells the data of {self._source(whose)}")
         for source, channel in self._flight.estimator.frozen.channels():
             self._book.tell(time, self._source(source), "frozen", channel)
         for half in self._flight.estimator.distrusted:
-            self._book.tell(time, self._source(half.source), "distrusted", half.channel)
+            if calm or half.kind is Position:
+                self._book.tell(time, self._source(half.source), "distrusted", half.channel)
         for group, (poses, _) in self._flight.estimator.left_out.items():
             names = ("positions", "velocities") if group.kind is Position else ("attitudes", "rates")
             who, of = ("payload", "the payload") if group.of_payload else ("team", "all vehicles")

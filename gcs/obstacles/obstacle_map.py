@@ -70,6 +70,7 @@ class ObstacleMap:
         self._memory: dict[tuple[int, int], tuple[str, float]] = {}
         self._names = {obstacle.name for obstacle in known}
         self._next_number = 1
+        self._scatter = 0.0
         self._time = -math.inf
         self.vanished: list[str] = []
         """Followed obstacles that are no longer seen where a vehicle could not miss them; for the caller to clear."""
@@ -181,6 +182,9 @@ class ObstacleMap:
         for body, members in parts.items():
             if body < len(tracks):
                 tracks[body].update([cluster.seen for cluster in members])
+        # It is of the sensors: what they see next will scatter as well.
+        learnt = [track.filter.scatter for track in tracks if track.known is None and track.filter is not None]
+        self._scatter = max(learnt, default=self._scatter)
         self._merge(clusters, bodies, distances, tracks[:])
         for group in self._grouped(fresh):
             self._begin(group, time)
@@ -203,7 +207,7 @@ class ObstacleMap:
                     trial.update([member.seen for member in members])
                     break
             else:
-                trial = Track("", self.models)
+                trial = Track("", self.models, scatter=self._scatter)
                 trial.update([cluster.seen])
                 groups.append(([cluster], trial))
         return [members for members, _ in groups]
@@ -211,7 +215,7 @@ class ObstacleMap:
     def _begin(self, members: list[Cluster], time: float) -> None:
         while f"track {self._next_number}" in self._names:
             self._next_number += 1
-        track = Track(f"track {self._next_number}", self.models)
+        track = Track(f"track {self._next_number}", self.models, scatter=self._scatter)
         self._next_number += 1
         track.update([member.seen for member in members])
         self.tracks.append(track)

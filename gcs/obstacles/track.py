@@ -28,6 +28,8 @@ class Track:
     models: MotionModels
     filter: ObstacleFilter | None = None
     known: Shape | None = None
+    scatter: float = 0.0
+    """Of its points (m2), before it is seen."""
     place: Array = field(default_factory=lambda: np.zeros(3))
     """Of a known one, before it is seen: its place on the map (3,)."""
     last_seen: float = -math.inf
@@ -41,7 +43,7 @@ class Track:
         """Points of one frame, by all vehicles that see it."""
         seen = joined(parts)
         if self.filter is None:
-            self.filter = ObstacleFilter(self.models, seen, self.known)
+            self.filter = ObstacleFilter(self.models, seen, self.known, scatter=self.scatter)
         else:
             self.filter.update(seen)
         self.last_seen = max(self.last_seen, seen.time)

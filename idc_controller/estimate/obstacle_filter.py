@@ -41,7 +41,8 @@ class FilterSettings:
 class ObstacleFilter:
     """One obstacle. Times in s, places NED in m.
 
-    ``known``: its shape is known and only its motion is to be found.
+    ``known``: its shape is known and only its motion is to be found. ``scatter`` (m2) of points, as far as others have
+    shown it already.
     """
 
     def __init__(
@@ -50,14 +51,15 @@ class ObstacleFilter:
         first: SurfacePoints,
         known: Shape | None = None,
         settings: FilterSettings | None = None,
+        scatter: float = 0.0,
     ) -> None:
         self.settings = settings or FilterSettings()
         self.frames = 0
         self._known = known
         self._scores: dict[str, float] = {}
-        self._scatter = 0.0
+        self._scatter = scatter
         self._surface = _surface(known.kind if known else "sphere", known)
-        if known is None and len(first.points) >= _LEAST_POINTS:
+        if known is None and scatter == 0.0 and len(first.points) >= _LEAST_POINTS:
             # Before the kind is chosen: with much scatter a wall would take in anything.
             self._learn_scatter(min(_fresh_fit(kind, first)[1].unexplained for kind in KINDS), share=1.0)
         first = replace(first, scatter=self._scatter)
@@ -90,6 +92,11 @@ class ObstacleFilter:
         """Position of the centre, velocity and acceleration (3,) at :attr:`time`."""
         position, velocity, acceleration = self._bank.state
         return position + self._surface.offset, velocity, acceleration
+
+    @property
+    def scatter(self) -> float:
+        """Variance of points beyond what their sensors should have (m2)."""
+        return self._scatter
 
     @property
     def weights(self) -> dict[str, float]:

@@ -74,9 +74,8 @@ class RoundSurface:
         points, rays = seen.points[:, :n_axes], seen.rays[:, :n_axes]
         low, high = RADII[self.kind]
         H = np.empty((len(points), n_axes + 1))
-        H[:, -1] = -1.0
         for _ in range(iterations):
-            residual, normal, variance = self._residuals(points, rays, theta, seen)
+            residual, normal, variance = self._residuals(points, rays, theta, seen, of_radius=H[:, -1])
             weight = 1.0 / (variance * (1.0 + residual**2 / (9.0 * np.maximum(variance, 0.0025))))
             if self.kind == "pole":
                 weight[residual < -_INSIDE - 0.2 * theta[-1]] = 0.0
@@ -111,8 +110,13 @@ class RoundSurface:
         fitted = n_axes + (self.known is None)
         return Fit(position, spread, score(residual, variance), unexplained(residual, variance, fitted))
 
-    def _residuals(self, points: Array, rays: Array, theta: Array, seen: SurfacePoints) -> tuple[Array, Array, Array]:
-        """Distance to the surface (n,), its normals (n, axes), variance of the distance (n,)."""
+    def _residuals(
+        self, points: Array, rays: Array, theta: Array, seen: SurfacePoints, of_radius: Array | None = None
+    ) -> tuple[Array, Array, Array]:
+        """Distance to the surface (n,), its normals (n, axes), variance of the distance (n,).
+
+        ``of_radius`` (n,) is filled with what the distances change by as the radius grows.
+        """
         d = points - theta[:-1]
         distance = np.maximum(np.sqrt(np.einsum("ij,ij->i", d, d)), 1e-3)
         normal = d / distance[:, None]
@@ -120,4 +124,30 @@ class RoundSurface:
         variance = (seen.noise * incidence) ** 2 + seen.pose_variance + seen.scatter + 0.015**2
         # Scatter across the surface puts points outside of it on average, the more so the smaller it is.
         outside = 0.5 * (self._axes - 1) * seen.scatter / theta[-1]
-        return distance - theta[-1] - outside, normal, variance
+        residual = distance - theta[-1] - outside
+        if of_radius is not None:
+            of_radius[:] = -1.0
+        if seen.scatter > 0.0:
+            self._behind(d, rays, theta[-1], residual, normal, of_radius)
+        return residual, normal, variance
+
+    @staticmethod
+    def _behind(d: Array, rays: Array, radius: float, residual: Array, normal: Array, of_radius: Array | None) -> None:
+        """Points that seem to be on the side that no sensor sees are as far off as from the rim of the seen one.
+
+        Otherwise they would fit a body as well that is nearer by its width. Changes the last three in place.
+        """
+        rays = rays / np.maximum(np.sqrt(np.einsum("ij,ij->i", rays, rays)), 1e-6)[:, None]
+        along = np.einsum("ij,ij->i", d, rays)
+        behind = along > 0.0
+        if not behind.any():
+            return
+        ray, along = rays[behind], along[behind]
+        across = d[behind] - along[:, None] * ray
+        width = np.maximum(np.sqrt(np.einsum("ij,ij->i", across, across)), 1e-3)
+        out = width - radius
+        distance = np.maximum(np.hypot(along, out), 1e-3)
+        residual[behind] = distance
+        normal[behind] = (along[:, None] * ray + (out / width)[:, None] * across) / distance[:, None]
+        if of_radius is not None:
+            of_radius[behind] = -out / distance
