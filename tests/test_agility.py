@@ -42,7 +42,7 @@ def stopping(t):
 def test_steady_motion_is_not_agile():
     worst = max(agilities(along_north(lambda t: 2.0 * t), until=8.0), key=lambda agility: agility.misjudged)
     assert worst.misjudged < 0.25
-    assert worst.growth_limit < SETTINGS.limit_misjudged - 0.5
+    assert worst.growth_limit(0.0) < SETTINGS.limit_misjudged - 0.5
 
 
 def test_what_stops_dead_moves_unlike_any_model():
@@ -64,7 +64,7 @@ def test_what_stops_and_goes_off_again_is_misjudged_a_second_later():
     after = judged(along_north(stops_and_goes), until=7.0)
     assert before.misjudged < 0.2
     assert after.misjudged > 0.8  # of 2 m that it was expected to go
-    assert after.growth_limit == SETTINGS.limit_misjudged
+    assert after.growth_limit(0.0) == SETTINGS.limit_misjudged
 
 
 def test_it_is_forgotten():
@@ -74,7 +74,7 @@ def test_it_is_forgotten():
     agility.advance(5.0)
     agility.judge(np.array([0.65, 0.0, 0.0]), np.zeros(3))
     assert agility.misjudged == pytest.approx(0.5)
-    assert agility.growth_limit == pytest.approx(SETTINGS.limit + 0.5 * SETTINGS.limit_share)
+    assert agility.growth_limit(0.0) == pytest.approx(SETTINGS.limit + 0.5 * SETTINGS.limit_share)
     agility.advance(5.0 + SETTINGS.memory)
     assert agility.misjudged == pytest.approx(0.5 / np.e)
 

@@ -9,6 +9,7 @@ from obstacle_scene import MOTIONS, NOISE, Scene, pole, random_motion, sphere, s
 from idc_controller.barrier.obstacles import Shape
 from idc_controller.estimate.motion_bank import BankSettings, MotionModels
 from idc_controller.estimate.obstacle_filter import ObstacleFilter
+from idc_controller.estimate.round_surface import RoundSurface
 from idc_controller.estimate.surface_distance import Bodies
 
 MODELS = MotionModels(BankSettings())
@@ -92,6 +93,36 @@ def test_sensors_noisier_than_they_should_be_are_found_out(seed):
             speeds.append(np.linalg.norm(track.state[1]))
     assert max(bare) < 0.25
     assert np.sqrt(np.mean(np.square(speeds))) < 0.1
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_no_point_lies_on_the_side_that_nobody_sees(seed):
+    """However near it was expected: else scattered points would do as well for a body that is nearer by its width."""
+    obstacle, rng = sphere((0.0, 0.0, -6.0)), np.random.default_rng([seed, 17])
+    seen = Scene(seed).frame(0.0, np.array([-7.0, 0.0, -6.0]), obstacle)
+    seen = replace(seen, points=seen.points + rng.normal(0.0, 5 * NOISE, seen.points.shape), scatter=(5 * NOISE) ** 2)
+    surface, place = RoundSurface("sphere", Shape("sphere", 0.5)), np.array([-0.8, 0.0, -6.0])
+    for _ in range(10):
+        place = surface.fit(seen, place).position
+    assert abs(place[0]) < 0.35
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_moving_sphere_stays_one_where_points_are_known_to_scatter(seed):
+    scene, rng, motion, track = Scene(seed), np.random.default_rng([seed, 19]), MOTIONS["harmonic"], None
+    errors = []
+    for k in range(120):
+        time = k * PERIOD
+        centre = motion(time) + np.array([6.0, 0.0, -6.0])
+        seen = scene.frame(time, np.array([-1.0, 0.0, -6.5]), sphere(centre))
+        seen = replace(seen, points=seen.points + rng.normal(0.0, 5 * NOISE, seen.points.shape))
+        if track is None:
+            track = ObstacleFilter(MODELS, seen, scatter=(5 * NOISE) ** 2)
+        else:
+            track.update(seen)
+        errors.append(np.linalg.norm(track.state[0] - centre))
+    assert track.kind == "sphere"
+    assert rms(errors[30:]) < 0.35
 
 
 @pytest.mark.parametrize("seed", range(2))

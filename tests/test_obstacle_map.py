@@ -9,8 +9,10 @@ from flight_in_process import Rehearsal, short_figure
 from obstacle_scene import (
     HERE,
     MOTIONS,
+    NOISE,
     Scene,
     map_of,
+    messages_of,
     pole,
     run,
     sphere,
@@ -20,6 +22,7 @@ from obstacle_scene import (
 from gcs.mission import HarmonicMotion, Pole, Sphere, Wall
 from gcs.mission.read import read_mission
 from gcs.obstacles import ObstacleMap
+from idc_controller.estimate.measurements import Attitude, Position
 from vehicle_sim.swarm import Swarm
 
 
@@ -298,3 +301,22 @@ def test_in_flight_the_ground_finds_what_the_vehicles_sense(tmp_path):
     times = sorted({float(row["time_s"]) for row in rows})
     np.testing.assert_allclose(np.diff(times), 0.1, atol=1e-6)
     assert len(times) > 40
+
+
+def test_what_comes_into_sight_later_is_taken_to_scatter_as_what_was_seen_before():
+    """Scatter is of the sensors: an obstacle that has been seen once says nothing of it yet."""
+    m, scene, rng = map_of(), Scene(3), np.random.default_rng(3)
+    near, late = sphere((5.0, 3.0, -6.0)), sphere((5.0, -4.0, -6.0), 0.5, "late")
+    scatter = []
+    for k in range(40):
+        for i, position, quaternion, scan in scene.look(0.1 * k, HERE, [near, late] if k >= 30 else [near]):
+            m.measured(Attitude(0.1 * k, i, quaternion, np.zeros(3)))
+            m.measured(Position(0.1 * k, i, position, np.zeros(3)))
+            for message in messages_of(scan):
+                x, y, z = rng.normal(0.0, 5 * NOISE, 3)
+                message.x, message.y, message.z = message.x + x, message.y + y, message.z + z
+                m.detected(message, i, 0.1 * k)
+        m.update(0.1 * k)
+        scatter.append([track.filter.scatter**0.5 for track in m.tracks])
+    assert len(scatter[29]) == 1 and scatter[29][0] > 3 * NOISE
+    assert min(next(both for both in scatter if len(both) == 2)) > 3 * NOISE

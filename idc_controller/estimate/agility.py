@@ -98,8 +98,7 @@ class Agility:
         unlike = 0.5 * self._unlike * self._settings.unlike_acceleration
         return (unlike**2 + (self._misjudged / AHEAD**2) ** 2) * elapsed**4
 
-    @property
-    def growth_limit(self) -> float:
-        """How much larger (m) the body may be taken at most."""
+    def growth_limit(self, unsure: float) -> float:
+        """How much larger (m) the body may be taken at most, if its place is ``unsure`` (m) in every frame."""
         s = self._settings
-        return min(s.limit + s.limit_share * self._misjudged, s.limit_misjudged)
+        return min(s.limit + s.limit_share * self._misjudged + unsure, s.limit_misjudged)

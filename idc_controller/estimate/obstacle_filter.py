@@ -155,7 +155,9 @@ class ObstacleFilter:
         # Gershgorin's bound on the largest eigenvalue; exact where one axis, or one diagonal, dominates.
         variance = np.abs(covariance).sum(axis=-1).max(axis=-1) + self._surface.size_sigma**2 + self._scatter
         variance += self._agility.variance(np.maximum(np.asarray(times) - self._bank.time, 0.0))
-        return mean + self._surface.offset, np.minimum(np.sqrt(variance), self._agility.growth_limit)
+        # Where points scatter it is found out late how it moves.
+        limit = self._agility.growth_limit(np.sqrt(self._scatter))
+        return mean + self._surface.offset, np.minimum(np.sqrt(variance), limit)
 
     def _note(self, kind: str, score: float) -> None:
         old = self._scores.get(kind)
@@ -178,6 +180,9 @@ class ObstacleFilter:
         cost = {kind: self._scores[kind] + _COMPLEXITY[kind] for kind in KINDS}
         best = min(KINDS, key=lambda kind: cost[kind])
         hysteresis = _HYSTERESIS if self.frames > 1 else 0.0
+        if _COMPLEXITY[best] < _COMPLEXITY[self.kind]:
+            # Scatter makes all shapes fit alike, and then the simplest will do.
+            hysteresis *= seen.noise**2 / (seen.noise**2 + self._scatter)
         if best != self.kind and cost[best] < cost[self.kind] - hysteresis:
             old = self._bank.state[0]
             self._surface, place = tried[best]
