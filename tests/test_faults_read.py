@@ -127,9 +127,12 @@ def test_faults_from_python_are_read_as_strictly():
     assert dataclasses.asdict(Fault("stall", 1.0))["settings"] == {}
 
 
-def test_every_kind_is_listed_with_its_parameters(capsys):
+def test_every_kind_is_listed_with_its_parameters(capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
     assert main(["faults", "--kinds"]) == 0
     said = capsys.readouterr().out
+    assert max(map(len, said.splitlines())) <= 80
+    assert "\n  Datagrams are lost, each independently of the others. Direction: both, if none" in said
     for kind in KINDS.values():
         assert kind.name in said
         for parameter in parameters(kind):

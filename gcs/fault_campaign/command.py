@@ -13,7 +13,7 @@ from gcs.fault_campaign.campaign import FaultCampaign, FaultCampaignOptions
 from gcs.fault_campaign.campaign_file import CampaignFile, read_campaign
 from gcs.fault_campaign.result import FaultResult
 from gcs.fault_campaign.sweep import plain
-from gcs.faults.listing import kinds_table
+from gcs.faults.listing import kinds_list
 from gcs.progress_of_many import show_progress
 from gcs.side_by_side import KEPT
 
@@ -51,7 +51,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Run the command; returns the exit status."""
     console = Console(highlight=False, soft_wrap=True)
     if arguments.kinds:
-        Console(highlight=False).print(kinds_table())
+        Console(highlight=False).print(kinds_list())
         return DONE
     if arguments.campaign is None:
         raise UnusableInput("gcs faults: name what to do: a campaign file, or --kinds, which lists the kinds of fault")

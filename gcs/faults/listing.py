@@ -1,4 +1,4 @@
-"""The kinds of fault for people: as a table on the terminal, and as the one of the documentation."""
+"""The kinds of fault for people: as a list on the terminal, and as tables of the documentation."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from typing import Any
 
-from rich import box
 from rich.console import Group, RenderableType
+from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
@@ -45,29 +45,25 @@ def parameters(kind: Kind) -> list[Parameter]:
     return found
 
 
-def kinds_table() -> RenderableType:
-    """Every kind with its parameters, for the terminal."""
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for title in ("kind", "parameter", "type", "unit", "range", "default"):
-        table.add_column(title, no_wrap=title in ("kind", "parameter"))
-    table.add_column("what it does", ratio=1)
+def kinds_list() -> RenderableType:
+    """Every kind with its parameters, for the terminal, however narrow it is."""
+    width = max(len(p.name) for kind in KINDS.values() for p in parameters(kind))
+    items: list[RenderableType] = []
     family = ""
     for kind in KINDS.values():
         if kind.family != family:
             family = kind.family
-            table.add_section()
-            table.add_row(Text(family, style="bold underline"))
+            items += [Text(), Text(family, style="bold underline")]
             if family == "values":
-                table.add_row(Text("all that have a channel", style="italic"))
-                _add_rows(table, _shared())
-        table.add_row(Text(kind.name, style="bold cyan"), "", "", "", "", "", Text(_told(kind)))
-        _add_rows(table, _own(kind))
+                items += [Text(), Text("all that have a channel", style="italic"), _indented(_shared(), width)]
+        items += [Text(), Text(kind.name, style="bold cyan"), Padding(Text(_told(kind)), (0, 0, 0, 2))]
+        items += [_indented(own, width)] if (own := _own(kind)) else []
     notes = Text(
         "Every fault has kind and start (s after take-off begins: when the first vehicle lifts off); it may have "
         "duration (s), every (s, from start to start) and times; vehicles where it is of vehicles; direction "
         "(telemetry, command, both) where one is named."
     )
-    return Group(table, notes)
+    return Group(notes, *items)
 
 
 def kinds_markdown() -> str:
@@ -97,16 +93,22 @@ def _own(kind: Kind) -> list[Parameter]:
     return [p for p in found if p.name not in _SHARED] if issubclass(kind.settings, ValueFault) else found
 
 
-def _add_rows(table: Table, found: list[Parameter]) -> None:
+def _indented(found: list[Parameter], width: int) -> RenderableType:
+    table = Table.grid(padding=(0, 2))
+    table.add_column(min_width=width)
+    table.add_column(ratio=1)
     for p in found:
-        cells = (p.name, p.type, p.unit, p.range, p.default or "(needed)")
-        table.add_row("", *map(Text, cells), Text(p.description, style="dim"))
+        table.add_row(Text(p.name, style="cyan"), Text(f"{p.description} ({_about(p)})"))
+    return Padding(table, (0, 0, 0, 4))
+
+
+def _about(p: Parameter) -> str:
+    about = ", ".join(part for part in (p.type, p.unit, p.range) if part)
+    return f"{about}; default {p.default}" if p.default else about
 
 
 def _sentence(p: Parameter) -> str:
-    about = ", ".join(part for part in (p.type, p.unit, p.range) if part)
-    default = f"; default {p.default}" if p.default else ""
-    return f"`{p.name}` ({about}{default}): {p.description}"
+    return f"`{p.name}` ({_about(p)}): {p.description}"
 
 
 def _told(kind: Kind) -> str:
