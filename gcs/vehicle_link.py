@@ -34,6 +34,7 @@ class CommandState(Enum):
 
 
 LOSS_SHARE = 0.05  # of one set-point in the running mean of losses
+FULL = 0.05  # s by which telemetry comes later than it did
 COPY_ABOVE = (0.02, 0.06)  # losses of copies that are sent already, at which one more is sent
 
 
@@ -92,7 +93,9 @@ class VehicleLink:
 
     @property
     def copies(self) -> int:
-        """How often to send what must arrive."""
+        """How often to send what must arrive; once on a way that is full, which copies would make longer."""
+        if self.clock.lag > FULL:
+            return 1
         return 1 + sum(self.setpoint_loss > threshold for threshold in COPY_ABOVE)
 
     @property

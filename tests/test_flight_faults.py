@@ -3,7 +3,7 @@
 import pytest
 from flight_in_process import short_figure
 
-from gcs.faults.link import Jitter, Latency, Reordering
+from gcs.faults.link import BandwidthCap, Jitter, Latency, Reordering
 from gcs.faults.sensors import AttitudeLost, PositionDrift, PositionLost, RatesLost
 from gcs.faults.values import Bias, Drift, NotANumber, Stuck, SwappedVehicles
 from gcs.faults.world import Wind
@@ -59,3 +59,12 @@ def test_wind_is_foreseen_along_the_way(fly_with_faults, tmp_path):
     flight = fly_with_faults(short_figure(tmp_path, duration=25.0), wind, limits=limits, seed=32)
     assert flight.within_limits, flight.failures
     assert flight.summary["contacts"] == 0
+
+
+def test_a_way_that_gets_longer_and_longer_ends_in_a_common_stop(fly_with_faults, tmp_path):
+    """A link that carries less than is sent: what was sent last comes later and later."""
+    cap = [fault(BandwidthCap(rate=5000.0), start=START, vehicles=[2])]
+    summary = fly_with_faults(short_figure(tmp_path, duration=12.0), cap, seed=33).summary
+    assert summary["outcome"] == "aborted" and summary["landing"]["on_ground"] and summary["contacts"] == 0
+    assert summary["uav_separation_min_m"] > 0.9
+    assert max(summary["payload_tilt_max_deg"].values()) < 15.0

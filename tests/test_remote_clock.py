@@ -32,3 +32,23 @@ def test_stamps_of_setpoints_do_not_go_back_with_the_clock():
     assert after[0] > before[-1]
     assert all(b > a for a, b in pairwise(after))
     assert after[-1] == pytest.approx(0.5 + 0.05 * 19 + 9.6)
+
+
+def asked_and_answered(clock, trips, until):
+    """Round trips that take ``trips(asked)`` (s), asked for every 0.1 s; the answers until then, in their order."""
+    answers = sorted((0.1 * k + trips(0.1 * k), clock.ask(0.1 * k)) for k in range(round(until / 0.1)))
+    for arrival, ts1 in answers:
+        if arrival <= until:
+            clock.answered(ts1, arrival)
+    return clock
+
+
+def test_a_way_that_gets_longer_and_longer_is_told_soon():
+    clock = asked_and_answered(RemoteClock(), lambda asked: 2.0 * max(asked - 1.0, 0.0), until=2.0)
+    assert clock.least_delay(0.3, 2.0) > 0.11 > clock.delay
+    assert RemoteClock().least_delay(0.3, 2.0) == 0.0
+
+
+def test_nothing_for_a_moment_and_then_all_at_once_is_no_longer_way():
+    clock = asked_and_answered(RemoteClock(), lambda asked: max(1.45 - asked, 0.0) if asked > 1.0 else 0.0, until=1.47)
+    assert clock.least_delay(0.3, 1.47) == 0.0

@@ -18,7 +18,9 @@ Array = NDArray[np.float64]
 SILENCE = 0.46
 """Telemetry older than this means that a vehicle is lost (s): as soon as it may take the ground for lost itself."""
 LATE = 0.11
-"""Datagrams that usually take longer one way cannot close the loop (s)."""
+"""Datagrams that usually take longer one way cannot close the loop (s),"""
+LATE_FOR = 0.3
+"""nor those that all have for so long (s)."""
 NEEDED_PARAMETERS = (
     px4.PARAM_THRUST_MAX,
     px4.PARAM_ATTITUDE_KP,
@@ -156,8 +158,8 @@ class Team:
             name = f"vehicle {link.system_id}"
             if now - link.telemetry_heard > SILENCE:
                 return DropOut(f"{name} sends no telemetry for {SILENCE:g} s", now - link.telemetry_heard)
-            if (late := link.clock.delay) > LATE:
-                return DropOut(f"the way to {name} takes {late * 1e3:.0f} ms, more than {LATE * 1e3:.0f} ms", 0.0)
+            if (late := max(link.clock.delay, link.clock.least_delay(LATE_FOR, now))) > LATE:
+                return DropOut(f"the way to {name} takes {late * 1e3:.0f} ms, more than {LATE * 1e3:.0f} ms", late)
             if not link.armed:
                 return DropOut(f"{name} has disarmed itself{_told(link)}", 0.0)
             if not link.offboard:

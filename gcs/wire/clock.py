@@ -28,8 +28,11 @@ class RemoteClock:
         self._newest = -math.inf
         self.set_back = 0.0
         """By how much it has been set back in all (s)."""
+        self.lag = 0.0
+        """By how much later (s) the last stamp came than the soonest of the last second."""
         self._asked: deque[int] = deque(maxlen=OPEN_REQUESTS)
         self._round_trips: deque[float] = deque(maxlen=WINDOW)
+        self._arrivals: deque[float] = deque(maxlen=WINDOW)
         self._shortest = 0.0
 
     def stamped(self, boot_time: float, arrival: float, in_order: bool = False) -> None:
@@ -51,6 +54,7 @@ class RemoteClock:
         elif lead > self._leads[-1][1]:
             self._leads[-1][1] = lead
             self._lead = max(self._lead, lead)
+        self.lag = self._lead - lead
 
     def ask(self, now: float) -> int:
         """``ts1`` (ns) of a TIMESYNC request that goes out at ``now`` (s, ground)."""
@@ -65,6 +69,7 @@ class RemoteClock:
         if ts1 in self._asked:
             self._asked.remove(ts1)
             self._round_trips.append(max(arrival - ts1 * 1e-9, 0.0))
+            self._arrivals.append(arrival)
             self._shortest = min(self._round_trips)
 
     @property
@@ -87,6 +92,19 @@ class RemoteClock:
     def longest_trip(self) -> float:
         """The longest of the last few round trips (s): there and back, neither way takes longer."""
         return max(list(self._round_trips)[-RECENT:], default=math.inf)
+
+    def least_delay(self, duration: float, now: float) -> float:
+        """Time one way (s) that no datagram has undercut for ``duration`` (s) until ``now``; 0 before that is known.
+
+        Tells sooner than :attr:`delay` that a way gets longer. After a moment in which nothing passed all answers come
+        together, the last of them soon after it was asked for.
+        """
+        least = math.inf
+        for arrival, trip in zip(reversed(self._arrivals), reversed(self._round_trips), strict=True):
+            least = min(least, trip)
+            if arrival <= now - duration:
+                return least / 2.0
+        return 0.0
 
     @property
     def delay(self) -> float:
