@@ -189,3 +189,17 @@ def test_a_biased_position_is_noticed_of_its_vehicle_at_once(tmp_path):
     assert 0.0 < float(rows["time_s"][0]) - begin < 0.5
     assert set(rows["source"]) == {"vehicle 3"}
     assert len(rows["time_s"]) <= 4
+
+
+@pytest.mark.parametrize("start", [3.0, 3.04, 3.044])
+def test_a_link_that_flaps_is_noticed_whenever_it_does(tmp_path, start):
+    """Down for 0.2 s in every 1.2 s, of which steps and samples are whole shares: always at the same moment between."""
+    fault = Fault("flapping", start, vehicles=(2,), settings={"down": 0.2, "up": 1.0})
+    mission = hop(tmp_path, fault)
+    passage = FaultPassage(mission.faults, 53, mission.system)
+    with Rehearsal(mission, tmp_path / "run", seed=53, passage=passage) as flight:
+        flight.fly()
+    begin = passage.faults[0].schedule.take_off + start
+    rows = read_text_table(tmp_path / "run" / "alarms.csv")
+    silent = [float(t) for t, alarm in zip(rows["time_s"], rows["alarm"], strict=True) if alarm == "silent"]
+    assert silent and 0.0 < silent[0] - begin < 0.4

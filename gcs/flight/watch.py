@@ -53,6 +53,7 @@ class Watch:
         self._identities = identities
         self._book = AlarmBook()
         self._silence = MISSED / flight.mission.system.rates.telemetry
+        self._heard: dict[str, float] = {}
         self._counts: dict[tuple[str, str, str], int] = {}
         self._events = Events(LATELY)
         self._setpoints = Events(SETPOINTS_LATELY)
@@ -137,7 +138,7 @@ class Watch:
         tell = self._book.tell
         for link in self._team.links:
             name, clock = _name(link), link.clock
-            if (silent := now - link.whole_telemetry_heard) > self._silence:
+            if (silent := self._silent(name, link.whole_telemetry_heard, now)) > self._silence:
                 tell(time, name, "silent", f"no telemetry for {silent:.2f} s")
             if not link.sees:
                 tell(time, name, "blind", "its range sensor does not work")
@@ -149,8 +150,14 @@ class Watch:
                 offsets = [offset for _, offset in self._offsets[name]]
                 if (moved := max(offsets) - min(offsets)) > CLOCK_STEP:
                     tell(time, name, "clock", f"{moved * 1e3:.0f} ms off in {CLOCK_MEMORY:g} s")
-        if (silent := now - max(link.payload_heard for link in self._team.links)) > self._silence:
+        relayed = max(link.payload_heard for link in self._team.links)
+        if (silent := self._silent("payload", relayed, now)) > self._silence:
             tell(time, "payload", "silent", f"not relayed for {silent:.2f} s")
+
+    def _silent(self, name: str, heard: float, now: float) -> float:
+        """For how long (s), also if it was over before it could be looked at."""
+        before, self._heard[name] = self._heard.get(name, heard), heard
+        return max(now - heard, heard - before)
 
     def _measurements(self, time: float, calm: bool) -> None:
         for teller, whose in self._identities.mixed_up.items():
