@@ -7,6 +7,7 @@ import pytest
 from flight_in_process import MISSIONS
 
 from gcs.config import read_system
+from gcs.setpoints import attitude_of
 from idc_controller.estimate.dead_reckoning import Group
 from idc_controller.estimate.estimator import Estimator, EstimatorSettings
 from idc_controller.estimate.measurements import PAYLOAD, Attitude, Position
@@ -14,6 +15,7 @@ from idc_controller.model.linear import LinearModel
 from idc_controller.plan.flatness import Load
 from idc_controller.plan.reference import Reference
 from idc_controller.plan.trajectory import RestTrajectory
+from idc_controller.rotations import quaternion_product
 
 MODEL = LinearModel(read_system(MISSIONS / "system.toml").parameters())
 P, LAYOUT = MODEL.parameters, MODEL.layout
@@ -255,6 +257,23 @@ def test_vehicles_tell_what_is_estimated_of_them():
         channel = of_moved.channels[told.source, type(told)]
         expected = channel.rows @ (moved - flat.x[0])
         assert of_moved.innovation(told, flat, 0) == pytest.approx(expected, abs=2e-3)
+
+
+@pytest.mark.parametrize("tilt", [(0.4, 0.3), (-0.3, 0.4), (0.0, -0.5)])
+def test_however_they_are_tilted_they_head_north(tilt):
+    """As they are told to: what they see of obstacles is placed by it."""
+    model, step = Estimator(MODEL, EstimatorSettings()).measurement_model, 1e-5
+    n, n_dot = np.tile(tilt, LAYOUT.number_of_uavs), np.tile([0.7, -0.4], LAYOUT.number_of_uavs)
+    x = REFERENCE.at(np.zeros(1)).x[0]
+    x[LAYOUT.n_dot] = n_dot
+    told = []
+    for time in (0.0, step):
+        x[LAYOUT.n] = n + time * n_dot
+        told.append(next(t for t in model.vehicles(time, x) if isinstance(t, Attitude)))
+    now, then = told
+    assert now.quaternion == pytest.approx(attitude_of([*tilt, -np.sqrt(1.0 - np.square(tilt).sum())]), abs=1e-12)
+    turned = quaternion_product(now.quaternion * [1.0, -1.0, -1.0, -1.0], then.quaternion)
+    assert 2.0 * turned[1:] / step == pytest.approx(now.rates, abs=1e-4)
 
 
 def next_to_hover(rng):

@@ -21,6 +21,8 @@ Array = NDArray[np.float64]
 POSE_GAP = 0.1  # s between a scan and the pose by which it is placed
 PATIENCE = 0.3  # s for which a scan waits for its pose
 TOGETHER = 0.02  # s within which scans of several vehicles count as one frame
+ESTIMATED_ATTITUDE = 0.03
+"""Standard deviation of an attitude that is estimated, not told (rad): in hard manoeuvres models are off by as much."""
 BLIND_AFTER = 0.5  # s in which a vehicle tells nothing, or what can not be, or the same to the digit
 BLIND_FOR = 1.0  # s after the last of it
 _POSES = 30
@@ -155,12 +157,15 @@ class ScanInbox:
         placed: list[tuple[float, list[Cluster]]] = []
         for key, scan in tuple(self._waiting.items()):
             uav = key[0]
-            pose = self._pose(uav, scan.time, uav in misplaced, uav in misaligned)
+            is_misaligned = uav in misaligned
+            pose = self._pose(uav, scan.time, uav in misplaced, is_misaligned)
             if pose is None and now - scan.time <= PATIENCE:
                 continue
             del self._waiting[key]
             self._waiting_points[uav] -= scan.count
-            pose = pose or self._pose(uav, scan.time, misplaced=True, misaligned=True)
+            if pose is None:
+                is_misaligned = True
+                pose = self._pose(uav, scan.time, misplaced=True, misaligned=True)
             frozen = scan.points == self._last_points.get(uav) and self._sensors.range_noise > 0.0
             self._last_points[uav] = scan.points
             if frozen:
@@ -170,7 +175,8 @@ class ScanInbox:
             if pose is None or frozen:
                 self.refused += scan.count
                 continue
-            placed.append((scan.time, self._placed(uav, scan, *pose, pose_noise)))
+            sigma = max(ESTIMATED_ATTITUDE * is_misaligned, pose_noise * self._sensors.attitude)
+            placed.append((scan.time, self._placed(uav, scan, *pose, pose_noise * self._sensors.position, sigma)))
         placed.sort(key=lambda entry: entry[0])
         frames: list[list[Cluster]] = []
         begin = -math.inf
@@ -181,7 +187,9 @@ class ScanInbox:
             frames[-1] += clusters
         return frames
 
-    def _placed(self, uav: int, scan: _Scan, position: Array, quaternion: Array, pose_noise: float) -> list[Cluster]:
+    def _placed(
+        self, uav: int, scan: _Scan, position: Array, quaternion: Array, position_sigma: float, attitude_sigma: float
+    ) -> list[Cluster]:
         rotation = rotation_from_quaternion(quaternion)
         s = self._sensors
         body = np.array([point for points in scan.points.values() for point in points])
@@ -189,7 +197,7 @@ class ScanInbox:
         world = position + body @ rotation.T
         origins = np.broadcast_to(position, body.shape)
         cut = distance > scan.reach - _CUT * s.range_noise
-        variance = pose_noise**2 * (s.position**2 + (s.attitude * distance) ** 2)
+        variance = position_sigma**2 + (attitude_sigma * distance) ** 2
         clusters, end = [], 0
         for number, points in scan.points.items():
             own = slice(end, end + len(points))

@@ -176,14 +176,13 @@ class MeasurementModel:
         sinking = -(s * s_dot).sum(axis=1) / down
         velocity = x[layout.v_0] + np.cross(x[layout.omega], attached) - l * np.column_stack([s_dot, sinking])
         n, n_dot = _pairs(x[layout.n]), _pairs(x[layout.n_dot])
-        # The shortest turn from level that tilts the thrust, along -e3, to (n, -n_z).
-        turn = np.column_stack([1.0 + _third(n), n[:, 1], -n[:, 0], np.zeros(len(n))])
-        turn /= np.linalg.norm(turn, axis=1)[:, None]
-        _, a, b, _ = turn.T
-        # n' = -R (omega x e3), for omega without a part along the thrust.
-        of_n_dot = np.array([[-2.0 * a * b, 1.0 - 2.0 * b**2], [2.0 * a**2 - 1.0, 2.0 * a * b]])
-        rates = np.zeros((len(n), 3))
-        rates[:, :2] = np.einsum("rcn,nc->nr", of_n_dot / (1.0 - 2.0 * (a**2 + b**2)), n_dot)
+        # Roll and pitch, without a turn from north, that tilt the thrust, along -e3, to (n, -n_z).
+        roll, pitch = np.arcsin(n[:, 1]), np.arctan2(-n[:, 0], _third(n))
+        turn = np.array([quaternion_from_euler(*angles, 0.0) for angles in zip(roll, pitch, strict=True)])
+        # n' = -R (omega x e3), and the heading stays.
+        about_x = n_dot[:, 1] / np.cos(roll)
+        about_y = (np.sin(pitch) * np.sin(roll) * about_x - n_dot[:, 0]) / np.cos(pitch)
+        rates = np.column_stack([about_x, about_y, -np.tan(roll) * about_y])
         told: list[Measurement] = [Position(time, i, position[i], velocity[i]) for i in range(len(n))]
         return told + [Attitude(time, i, turn[i], rates[i]) for i in range(len(n))]
 
