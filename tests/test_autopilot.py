@@ -10,6 +10,7 @@ from scipy.linalg import expm
 
 from gcs.wire import px4
 from idc_controller.rotations import euler_from_quaternion, quaternion_from_euler
+from vehicle_sim.attitude_control import Quaternion
 from vehicle_sim.autopilot import Autopilot
 from vehicle_sim.parameter_table import vehicle_parameters
 from vehicle_sim.sensors import Measurement, SensorNoise
@@ -23,8 +24,8 @@ def autopilot() -> Autopilot:
     return Autopilot(AIRFRAME, vehicle_parameters(AIRFRAME, 1, 250))
 
 
-def setpoint(attitude: tuple[float, ...] | None = LEVEL, thrust: float = 0.5, stamp: int = 0) -> AttitudeSetpoint:
-    return AttitudeSetpoint(attitude, (0.0, 0.0, 0.0), thrust, stamp)  # type: ignore[arg-type]
+def setpoint(attitude: Quaternion | None = LEVEL, thrust: float = 0.5, stamp: int = 0) -> AttitudeSetpoint:
+    return AttitudeSetpoint(attitude, (0.0, 0.0, 0.0), thrust, stamp)
 
 
 class Flight:

@@ -36,9 +36,10 @@ class Airframe:
         rotor_speed_max: float,
     ) -> Airframe:
         """UAV ``index`` (from 0) of a system, with what the system does not know: lengths in m, speed in rad/s."""
+        a, b, c = ((float(x), float(y), float(z)) for x, y, z in system.J[index])
         return cls(
             mass=float(system.m[index]),
-            inertia=tuple(tuple(float(x) for x in row) for row in system.J[index]),  # type: ignore[arg-type]
+            inertia=(a, b, c),
             rotors=RotorGeometry(system.thrust_max, rotor_speed_max, arm_length, torque_to_thrust),
             motor_time_constant=system.motor_time_constant,
             attitude_kp=system.attitude_kp,

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
 
-from pydantic import ConfigDict, TypeAdapter, ValidationError
+from pydantic import ConfigDict, TypeAdapter, ValidationError, with_config
 
 from gcs.config.problems import UnusableFile
 from gcs.config.text_file import read_text
@@ -31,8 +31,7 @@ _REASONS = {
 
 def strict(cls: type[T]) -> type[T]:
     """Class decorator for a dataclass that is read from TOML: no unknown keys, no infinite numbers."""
-    cls.__pydantic_config__ = ConfigDict(extra="forbid", allow_inf_nan=False)  # type: ignore[attr-defined]
-    return cls
+    return with_config(ConfigDict(extra="forbid", allow_inf_nan=False))(cls)
 
 
 @dataclass(frozen=True)

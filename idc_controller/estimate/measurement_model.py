@@ -178,7 +178,8 @@ class MeasurementModel:
         n, n_dot = _pairs(x[layout.n]), _pairs(x[layout.n_dot])
         # Roll and pitch, without a turn from north, that tilt the thrust, along -e3, to (n, -n_z).
         roll, pitch = np.arcsin(n[:, 1]), np.arctan2(-n[:, 0], _third(n))
-        turn = np.array([quaternion_from_euler(*angles, 0.0) for angles in zip(roll, pitch, strict=True)])
+        (a, b), (c, d) = (np.cos([roll / 2, pitch / 2]), np.sin([roll / 2, pitch / 2]))
+        turn = np.column_stack([a * b, c * b, a * d, -c * d])
         # n' = -R (omega x e3), and the heading stays.
         about_x = n_dot[:, 1] / np.cos(roll)
         about_y = (np.sin(pitch) * np.sin(roll) * about_x - n_dot[:, 0]) / np.cos(pitch)

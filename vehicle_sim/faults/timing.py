@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.faults import timing as kinds
@@ -53,8 +54,8 @@ class Thinning(Stage):
 class LowRate(Thinning):
     """An even share of each stream; messages of one stamp (the points of a scan) stay together."""
 
-    def __init__(self, *arguments: object) -> None:
-        super().__init__(*arguments)  # type: ignore[arg-type]
+    def __init__(self, fault: ActiveFault, generator: np.random.Generator) -> None:
+        super().__init__(fault, generator)
         self._streams: dict[tuple[int, int], tuple[bytes, float, bool]] = {}
 
     def keeps(self, frame: Frame) -> bool:

@@ -62,14 +62,15 @@ class ValueEffect:
             case kinds.Spikes(probability=probability, amount=a):
                 if generator.random() >= probability:
                     return value
-                up = generator.random(3) < 0.5
-                return tuple(v + (a if u else -a) for v, u in zip(value, up, strict=True))  # type: ignore[return-value]
+                i, j, k = (a if up else -a for up in generator.random(3) < 0.5)
+                return x + i, y + j, z + k
             case kinds.NotANumber(value=name, probability=probability):
                 if generator.random() >= probability:
                     return value
                 return (float(name),) * 3
             case kinds.Quantisation(step=step):
-                return tuple(step * round(v / step) if math.isfinite(v) else v for v in value)  # type: ignore[return-value]
+                x, y, z = (step * round(v / step) if math.isfinite(v) else v for v in value)
+                return x, y, z
             case kinds.FlippedSign():
                 return -x, -y, -z
             case kinds.SwappedFrame():
