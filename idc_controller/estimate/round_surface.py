@@ -75,7 +75,7 @@ class RoundSurface:
         low, high = RADII[self.kind]
         H = np.empty((len(points), n_axes + 1))
         for _ in range(iterations):
-            residual, normal, variance = self._residuals(points, rays, theta, seen, of_radius=H[:, -1])
+            residual, normal, variance = self._residuals(points, rays, theta, seen, H[:, -1])
             weight = 1.0 / (variance * (1.0 + residual**2 / (9.0 * np.maximum(variance, 0.0025))))
             if self.kind == "pole":
                 weight[residual < -_INSIDE - 0.2 * theta[-1]] = 0.0
@@ -96,7 +96,7 @@ class RoundSurface:
         # Where points scatter by as much as the body is wide, their normals are no more than guesses.
         guessed = 1.0 + _SCATTER_LOSS * seen.scatter / theta[-1] ** 2
         spread[:n_axes] = guessed * np.diag(covariance)[:n_axes] + common
-        residual, _, variance = self._residuals(points, rays, theta, seen)
+        residual, _, variance = self._residuals(points, rays, theta, seen, H[:, -1])
         if self.kind == "pole":
             on_side = residual > -_INSIDE - 0.2 * theta[-1]
             # What lies inside the side must be the top: the highest points.
@@ -111,7 +111,7 @@ class RoundSurface:
         return Fit(position, spread, score(residual, variance), unexplained(residual, variance, fitted))
 
     def _residuals(
-        self, points: Array, rays: Array, theta: Array, seen: SurfacePoints, of_radius: Array | None = None
+        self, points: Array, rays: Array, theta: Array, seen: SurfacePoints, of_radius: Array
     ) -> tuple[Array, Array, Array]:
         """Distance to the surface (n,), its normals (n, axes), variance of the distance (n,).
 
@@ -125,14 +125,13 @@ class RoundSurface:
         # Scatter across the surface puts points outside of it on average, the more so the smaller it is.
         outside = 0.5 * (self._axes - 1) * seen.scatter / theta[-1]
         residual = distance - theta[-1] - outside
-        if of_radius is not None:
-            of_radius[:] = -1.0
+        of_radius[:] = -1.0
         if seen.scatter > 0.0:
             self._behind(d, rays, theta[-1], residual, normal, of_radius)
         return residual, normal, variance
 
     @staticmethod
-    def _behind(d: Array, rays: Array, radius: float, residual: Array, normal: Array, of_radius: Array | None) -> None:
+    def _behind(d: Array, rays: Array, radius: float, residual: Array, normal: Array, of_radius: Array) -> None:
         """Points that seem to be on the side that no sensor sees are as far off as from the rim of the seen one.
 
         Otherwise they would fit a body as well that is nearer by its width. Changes the last three in place.
@@ -149,5 +148,4 @@ class RoundSurface:
         distance = np.maximum(np.hypot(along, out), 1e-3)
         residual[behind] = distance
         normal[behind] = (along[:, None] * ray + (out / width)[:, None] * across) / distance[:, None]
-        if of_radius is not None:
-            of_radius[behind] = -out / distance
+        of_radius[behind] = -out / distance
