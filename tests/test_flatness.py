@@ -36,7 +36,10 @@ def systems():
 
 @pytest.mark.parametrize("p", list(systems()))
 @pytest.mark.parametrize("load", [Load(3.1, np.zeros(3)), Load(2.7, np.array([1.0, -2.0, 0.5]))], ids=["plain", "load"])
-def test_the_reference_solves_the_nonlinear_dynamics_exactly(p, load):
+@pytest.mark.parametrize("own", [False, True], ids=["", "own forces"])
+def test_the_reference_solves_the_nonlinear_dynamics_exactly(p, load, own):
+    on_uavs = own * np.linspace([-0.8, 0.5, 0.0], [0.7, 0.2, 0.0], p.number_of_uavs)
+    load = replace(load, uav_force=on_uavs)
     flat = flat_reference(p, Wave(), TIMES, load)
     true = p.with_payload_mass(load.mass)
     N = p.number_of_uavs
@@ -47,7 +50,8 @@ def test_the_reference_solves_the_nonlinear_dynamics_exactly(p, load):
             omega_0=np.zeros(3), q=np.tile(q, (N, 1)), Omega=np.tile(np.cross(q, q_dot), (N, 1)),
             quaternion=np.tile([1.0, 0, 0, 0], (N, 1)), omega=np.zeros((N, 3)),
         )  # fmt: skip
-        second = accelerations(true, state, Inputs(F=flat.links.force[k], tau=np.zeros((N, 3)), F_0=load.force))
+        inputs = Inputs(F=flat.links.force[k] + on_uavs, tau=np.zeros((N, 3)), F_0=load.force)
+        second = accelerations(true, state, inputs)
         assert np.allclose(second.r_0_ddot, flat.payload[2, k], atol=1e-9)
         assert np.allclose(second.omega_0_dot, 0.0, atol=1e-9)  # the payload stays level
         assert np.allclose(second.Omega_dot, np.cross(q, q_ddot), atol=1e-9)

@@ -41,6 +41,7 @@ FAULTS = {
     "all positions drifting": of_all(PositionDrift(velocity=(0.1, 0.0, 0.0))),
     "all velocities biased": of_all(Bias(amount=0.5, channel="velocity")),
     "all attitudes stuck": of_all(Stuck(channel="attitude")),
+    "attitude wrong on board": of_one(Bias(amount=0.05, channel="attitude", at_source=True)),
 }
 
 

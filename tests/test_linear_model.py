@@ -46,14 +46,14 @@ def nonlinear_state(model, x):
     )  # fmt: skip
 
 
-def nonlinear_derivative(model, x, d):
+def nonlinear_derivative(model, x, d, on_uavs=0.0):
     """Second derivatives of payload and links, in the model's coordinates: dv_0, domega, dds."""
     p, layout, N = model.parameters, model.layout, model.layout.number_of_uavs
     state = nonlinear_state(model, x)
     n = x[layout.n].reshape(N, 2)
     f = x[layout.f]
     F = f[:, None] * np.column_stack([n, -np.sqrt(1.0 - np.sum(n**2, axis=1))])
-    second = accelerations(p, state, Inputs(F=F, tau=np.zeros((N, 3)), F_0=d))
+    second = accelerations(p, state, Inputs(F=F + on_uavs, tau=np.zeros((N, 3)), F_0=d))
     R_0, Omega, q = state.R_0, state.Omega, state.q
     # The links against the world: w = R_0 Omega, and R_0 q turns with it.
     w, dw = Omega @ R_0.T, (second.Omega_dot + np.cross(state.omega_0, Omega)) @ R_0.T
@@ -89,6 +89,13 @@ def test_A_and_disturbance_are_the_nonlinear_dynamics_derivatives(model):
         d[axis] = step
         column = (nonlinear_derivative(model, x_e, d) - nonlinear_derivative(model, x_e, -d)) / (2 * step)
         assert np.allclose(model.B_d[rows, axis], column, atol=1e-7)
+    for k, (i, axis) in enumerate(np.ndindex(layout.number_of_uavs, 2)):
+        w = np.zeros((layout.number_of_uavs, 3))
+        w[i, axis] = step
+        column = (
+            nonlinear_derivative(model, x_e, np.zeros(3), w) - nonlinear_derivative(model, x_e, np.zeros(3), -w)
+        ) / (2 * step)
+        assert np.allclose(model.B_d[rows, 3 + k], column, atol=1e-7)
 
 
 def test_rows_of_uav_positions_and_velocities(model):

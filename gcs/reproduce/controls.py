@@ -180,8 +180,9 @@ class ProjectControl:
 
     def decide(self, time: float, measured: PlantState) -> None:
         """See :class:`Control`."""
-        n = self._layout.size + 6
-        estimate = Estimate(time, self._state(measured), np.zeros(3), np.zeros(3), 0.0, np.zeros((n, n)))
+        N = self._layout.number_of_uavs
+        n = self._layout.size + 3 + 2 * N + 1
+        estimate = Estimate(time, self._state(measured), np.zeros(3), np.zeros((N, 3)), 0.0, np.zeros((n, n)))
         decision = self._controller.decide(estimate, self._figure)
         self._directions, self._thrusts = decision.directions, decision.thrusts
         # The plan bends a little long before and after an obstacle: counted is what can be seen.

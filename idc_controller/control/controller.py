@@ -96,7 +96,7 @@ class IntegratedDecisionController:
         self._tracked: PayloadTrajectory | None = None
         self._stopwatch = stopwatch
         self._weight = self.parameters.m_0 * self.parameters.g
-        self.load = Load(self.parameters.m_0, np.zeros(3))
+        self.load = Load(self.parameters.m_0, np.zeros(3), np.zeros((self.parameters.number_of_uavs, 3)))
         self.wind = WindEstimator(self.parameters.payload_size, settings.period, settings.drag_limit * self._weight)
         self._times = settings.period * np.append(np.arange(settings.horizon + 1), 0.5)
 
@@ -169,14 +169,16 @@ class IntegratedDecisionController:
         velocity = estimate.x[self.layout.v_0]
         drag, uav_drag = _drag(self.load.air, velocity)
         force, uav_force = self.load.force + drag, self.load.uav_force + uav_drag
-        self.wind.learn(estimate.force, estimate.uav_force, velocity)
+        # What one of the UAVs has of its own is no wind.
+        self.wind.learn(estimate.force, np.median(estimate.uav_force, axis=0), velocity)
         drag, uav_drag = _drag(self.wind.air, velocity)
         uav_limit = self.settings.force_limit * float(self.parameters.m.min()) * self.parameters.g
         # What is believed of the wind changes what is left over, not the whole.
         force, uav_force = force - drag, uav_force - uav_drag
         limit = self._weight * (self.settings.force_limit if self.wind.air is None else self.settings.drag_limit)
         force = force + share * (_limited(estimate.force, limit) - drag - force)
-        uav_force = uav_force + share * (_limited(estimate.uav_force, uav_limit) - uav_drag - uav_force)
+        on_uavs = np.array([_limited(force_i, uav_limit) for force_i in estimate.uav_force])
+        uav_force = uav_force + share * (on_uavs - uav_drag - uav_force)
         mass = float(np.clip(mass, 0.5 * self.parameters.m_0, 2.0 * self.parameters.m_0))
         self.load = Load(mass, force, uav_force, self.wind.air)
 

@@ -19,11 +19,11 @@ class Estimate:
     force: Array
     """Steady force on the payload (3,) (N, NED)."""
     uav_force: Array
-    """Steady level force on each of the UAVs (3,) (N, NED)."""
+    """Steady level force on each of the UAVs (N, 3) (N, NED)."""
     mass_excess: float
     """Payload mass less nominal (kg)."""
     covariance: Array
-    """Of x, forces (3 + 2) and mass excess (12 + 11 N + 6,) squared."""
+    """Of x, forces (3 + 2 N) and mass excess (12 + 13 N + 4,) squared."""
 
 
 @dataclass(frozen=True, eq=False)

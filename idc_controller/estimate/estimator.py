@@ -2,8 +2,8 @@
 
 A Kalman filter on the linear model, run on the error about the exact flat reference, so that the manoeuvre itself is no
 disturbance to it. Measurements are kept in order of the time they were true; one that comes late takes the filter back
-to before it, and all later ones are applied again. A steady force on the payload and an excess of its mass are
-estimated along with the state, so that neither leaves an offset.
+to before it, and all later ones are applied again. Steady forces on the payload and on each UAV and an excess
+of the payload's mass are estimated along with the state, so that none of them leaves an offset.
 """
 
 from __future__ import annotations
@@ -84,7 +84,9 @@ class EstimatorSettings:
     force_sigma: float = 0.3
     """Standard deviation of the steady force at the start (N)."""
     uav_force_sigma: float = 0.05
-    """The same of the force on each UAV (N)."""
+    """The same of the force that is common to the UAVs (N)."""
+    own_force_sigma: float = 0.05
+    """The same of what each of them has besides (N)."""
     surprise: Surprise = field(default_factory=Surprise)
 
 
@@ -131,14 +133,16 @@ class Estimator:
         sigma[layout.s], sigma[layout.s_dot] = 0.02, 0.02
         sigma[layout.n], sigma[layout.n_dot], sigma[layout.n_acc] = 0.03, 0.1, 0.3
         sigma[layout.f] = 0.5
-        sigma[process.force], sigma[process.uav_force] = s.force_sigma, s.uav_force_sigma
-        sigma[process.mass] = s.mass_sigma
+        sigma[process.force], sigma[process.mass] = s.force_sigma, s.mass_sigma
+        sigma[process.uav_force] = 0.0
+        P = np.diag(sigma**2)
+        P[process.uav_force, process.uav_force] = process.uav_forces(s.uav_force_sigma, s.own_force_sigma)
         full = np.concatenate([x, np.zeros(self.size - len(x))])
         self._history.clear()
         self._setpoints.clear()
         self.adaptation = Adaptation()
         self._distrust = Distrust(layout.number_of_uavs)
-        self._snapshots = [_Snapshot(time, full, np.diag(sigma**2), copy(self.adaptation), copy(self._distrust))]
+        self._snapshots = [_Snapshot(time, full, P, copy(self.adaptation), copy(self._distrust))]
 
     @property
     def time(self) -> float:
@@ -256,8 +260,9 @@ class Estimator:
         process = self.process_model
         # Drag is believed to change with the velocity, so what is estimated of it is what is left over.
         believed = np.empty((len(way.edges), self.size - self.layout.size))
-        believed[:, :3], believed[:, 3:5] = way.flat.links.on_payload, way.flat.links.on_uavs[:, :2]
-        believed[:, 5] = reference.load.mass - self.model.parameters.m_0
+        believed[:, :3] = way.flat.links.on_payload
+        believed[:, 3:-1] = way.flat.links.on_uavs[..., :2].reshape(len(way.edges), -1)
+        believed[:, -1] = reference.load.mass - self.model.parameters.m_0
         n = self.layout.size
 
         def absolute(error: Array, k: int) -> Array:
@@ -283,9 +288,9 @@ class Estimator:
                 self._snapshots.append(_Snapshot(moment.time, *now))
                 moment = next(waiting, None)
         x = absolute(kf.x, len(way.edges) - 1)
-        return Estimate(
-            time, x[:n], x[process.force], np.append(x[process.uav_force], 0.0), float(x[process.mass]), kf.P
-        )
+        on_uavs = np.zeros((self.layout.number_of_uavs, 3))
+        on_uavs[:, :2] = x[process.uav_force].reshape(-1, 2)
+        return Estimate(time, x[:n], x[process.force], on_uavs, float(x[process.mass]), kf.P)
 
     def _predict(self, way: Way, k: int) -> None:
         """From edge ``k`` to the next, under the set-points in force."""
@@ -344,16 +349,16 @@ class Estimator:
         for half in self._distrust.halves:
             if half.kind is Position or not half.which:
                 self._untrusted[half.source, half.kind] = moment.time
+        kept = present.copy()
+        kept[present] = keep
         if self._adapts:
-            kept = present.copy()
-            kept[present] = keep
             self._distrust.learn(whole, present, kept, self._reckoning.contradicts_itself)
             adaptation.learn(moment.time, keys, found.white, found.mean_squares, keep, stack.of_payload)
         nis = 0.0
         if keep.any():
             kf.update(y[keep], R=np.diag(found.variance[keep]), H=H[keep])
             nis = float(kf.y @ kf.SI @ kf.y)
-            kf.P = (kf.P + kf.P.T) / 2
+            kf.P = (kf.P + kf.P.T) / 2 + np.diag(self.process_model.own_noise(whole.uavs[kept[whole.heights - 2]]))
         rejected = tuple((keys[c][0], keys[c][1].__name__) for c in refused)
         white = stack.split(found.white)
         self.innovations.append(InnovationRecord(moment.time, nis, int(keep.sum()), rejected, surprised, keys, white))

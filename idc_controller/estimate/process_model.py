@@ -26,12 +26,17 @@ class ProcessNoise:
     """1/s2"""
     uav_jerk: float = 1.0
     """Of the tilt's acceleration (1/s3)."""
-    thrust: float = 0.010
+    thrust: float = 0.016
     """N/s"""
     force: float = 0.05
     """Drift of the steady force on the payload (N/s)."""
     uav_force: float = 0.01
-    """Drift of the steady force on each UAV (N/s)."""
+    """Drift of the steady force that is common to the UAVs (N/s)."""
+    own_force: float = 0.03
+    """Change of what each of them has besides, from one sample of its position to the next (N).
+
+    One that believes in a wrong attitude pulls aside. Of one that is not seen nothing is learnt.
+    """
     mass: float = 0.005
     """Drift of the payload's mass (kg/s)."""
     setpoint_loss: float = 0.005
@@ -39,14 +44,15 @@ class ProcessNoise:
 
 
 class ProcessModel:
-    """State of the linear model (12 + 11 N), then the forces of :class:`Load`: payload (3), UAVs (2), mass excess."""
+    """State of the linear model (12 + 11 N), then the forces of :class:`Load`: payload (3), UAVs (2 N), mass excess."""
 
     def __init__(self, model: LinearModel, densities: ProcessNoise) -> None:
         self.model, self.layout, self._densities = model, model.layout, densities
-        n = self.layout.size
-        self.size = n + 6
-        self.force, self.uav_force, self.forces = slice(n, n + 3), slice(n + 3, n + 5), slice(n, n + 5)
-        self.mass = n + 5
+        n, N = self.layout.size, self.layout.number_of_uavs
+        self.size = n + 3 + 2 * N + 1
+        self.mass = self.size - 1
+        self.force, self.uav_force = slice(n, n + 3), slice(n + 3, self.mass)
+        self.forces = slice(n, self.mass)
         self._plain = lru_cache(maxsize=256)(self._discretised)
         self._noise = lru_cache(maxsize=256)(self._integrated)
 
@@ -65,6 +71,12 @@ class ProcessModel:
         """Covariance (n, n) that an interval (us) adds; ``restlessness`` multiplies the noise of the forces."""
         return self._noise(interval_us, restlessness)
 
+    def own_noise(self, seen: NDArray[np.int_]) -> Array:
+        """Variances (n,) that samples of the positions of the UAVs ``seen`` (K,) leave room for in their own forces."""
+        added = np.zeros(self.size)
+        added[self.uav_force].reshape(-1, 2)[seen] = self._densities.own_force**2
+        return added
+
     def doubt_noise(self, B: Array, change: Array, doubt: Array) -> Array:
         """Covariance (n, n) that set-points add which may not act yet, or never.
 
@@ -75,6 +87,11 @@ class ProcessModel:
         tilts = error[:, : 2 * N].reshape(-1, N, 2).sum(axis=2)
         lost = np.hstack([tilts, error[:, 2 * N :]])
         return np.asarray(lost @ lost.T)
+
+    def uav_forces(self, common: float, own: float) -> Array:
+        """Covariance (2 N, 2 N) of forces on the UAVs that have a ``common`` and an ``own`` standard deviation (N)."""
+        N = self.layout.number_of_uavs
+        return np.asarray(np.kron(common**2 * np.ones((N, N)) + own**2 * np.eye(N), np.eye(2)))
 
     def _discretised(self, interval_us: int) -> tuple[Array, Array, Array]:
         n = self.layout.size
@@ -93,14 +110,15 @@ class ProcessModel:
         density[layout.n_acc] = p.uav_jerk
         density[layout.f] = p.thrust
         density[self.force], density[self.mass] = restlessness * p.force, p.mass
-        density[self.uav_force] = restlessness * p.uav_force
+        covariance = np.diag(density**2)
+        covariance[self.uav_force, self.uav_force] = self.uav_forces(restlessness * p.uav_force, 0.0)
         A = np.zeros((self.size, self.size))
         A[:n, :n], A[:n, self.forces] = self.model.A, self.model.B_d
         A[:n, self.mass] = self.model.B_d[:, 2] * self.model.parameters.g
         dt = interval_us * 1e-6
         m = self.size
         block = np.zeros((2 * m, 2 * m))
-        block[:m, :m], block[:m, m:], block[m:, m:] = -A, np.diag(density**2), A.T
+        block[:m, :m], block[:m, m:], block[m:, m:] = -A, covariance, A.T
         big = expm(block * dt)
         Q = big[m:, m:].T @ big[:m, m:]
         return (Q + Q.T) / 2

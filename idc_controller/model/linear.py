@@ -17,7 +17,8 @@ thrust set-points) and every state is controllable. Coordinates, all deviations 
 ``f``      (N,)      thrust (N)
 ========== ========= ======================================================================================
 
-Inputs: ``n`` set-points (N, 2), then thrust set-points (N,). Disturbance: a force on the payload (3,) (N).
+Inputs: ``n`` set-points (N, 2), then thrust set-points (N,). Disturbances (N): a force on the payload (3,), and a level
+one on each of the UAVs (N, 2).
 """
 
 from __future__ import annotations
@@ -103,9 +104,9 @@ class StateLayout:
 
 
 class LinearModel:
-    """Continuous matrices ``A`` (n, n), ``B`` (n, 3N), ``B_d`` (n, 5), and their exact discretisation.
+    """Continuous matrices ``A`` (n, n), ``B`` (n, 3N), ``B_d`` (n, 3 + 2 N), and their exact discretisation.
 
-    Columns of ``B_d``: a force on the payload (N, NED), then one (north, east) on each of the UAVs, the same for all.
+    Columns of ``B_d``: a force on the payload (3,), then north and east of one on each of the UAVs (N, 2) (N).
     """
 
     def __init__(self, parameters: SystemParameters) -> None:
@@ -117,7 +118,8 @@ class LinearModel:
     def _discretised(self, interval_us: int) -> tuple[Array, Array, Array]:
         """``A_k, B_k, B_dk`` for inputs held over ``interval_us`` microseconds (whole, so that they are kept)."""
         n, m = self.B.shape
-        block = np.zeros((n + m + 5, n + m + 5))
+        size = n + m + self.B_d.shape[1]
+        block = np.zeros((size, size))
         block[:n, :n], block[:n, n : n + m], block[:n, n + m :] = self.A, self.B, self.B_d
         step = expm(block * (interval_us * 1e-6))
         return step[:n, :n].copy(), step[:n, n : n + m].copy(), step[:n, n + m :].copy()
@@ -149,7 +151,7 @@ def _kinematic_rows(
 def _continuous(parameters: SystemParameters, layout: StateLayout) -> tuple[Array, Array, Array]:
     """Newton-Euler with the link tensions eliminated, to first order.
 
-    UAV i:    m_i a_i = F_i + m_i g e3 + T_i s_i + w,   a_i = dv_0 + domega x p_i - l_i dds_i
+    UAV i:    m_i a_i = F_i + m_i g e3 + T_i s_i + w_i,   a_i = dv_0 + domega x p_i - l_i dds_i
     payload:  m_0 dv_0 = m_0 g e3 - sum T_i s_i + d,   J_0 domega = -sum p_i x R_0^T T_i s_i
     """
     N, n = layout.number_of_uavs, layout.size
@@ -178,7 +180,7 @@ def _continuous(parameters: SystemParameters, layout: StateLayout) -> tuple[Arra
     A[layout.v_0] = acceleration[:3]
     A[layout.Theta, layout.omega] = np.eye(3)
     A[layout.omega] = acceleration[3:]
-    B_d = np.zeros((n, 5))
+    B_d = np.zeros((n, 3 + 2 * N))
     disturbed = np.linalg.solve(mass, np.vstack([np.eye(3), np.zeros((3, 3))]))
     B_d[layout.v_0, :3], B_d[layout.omega, :3] = disturbed[:3], disturbed[3:]
 
@@ -196,7 +198,7 @@ def _continuous(parameters: SystemParameters, layout: StateLayout) -> tuple[Arra
         A[rows] = lateral @ acceleration / l
         B_d[rows, :3] = lateral @ disturbed / l
         for axis in range(2):
-            B_d[rows.start + axis, 3 + axis] = -1.0 / (parameters.m[i] * l)
+            B_d[rows.start + axis, 3 + 2 * i + axis] = -1.0 / (parameters.m[i] * l)
             A[rows.start + axis, s.start + 2 * i + axis] -= tension[i] / (parameters.m[i] * l)
             A[rows.start + axis, layout.n.start + 2 * i + axis] -= hover[i] / (parameters.m[i] * l)
 

@@ -2,11 +2,11 @@
 
 With the payload level, its position up to snap fixes everything else: all links are parallel to
 
-    w = g e3 + d / m_0 - a,   q = w / |w|,   (d: the force on the payload, w: that on each UAV)
+    w = g e3 + d / m_0 - a,   q = w / |w|,   (d: the force on the payload)
 
 they share the tension m_0 |w| so that no moment acts on the payload, and the force of UAV i is
 
-    F_i = m_i (a_i - g e3) - T_i q - w,   a_i = a - l_i q''.
+    F_i = m_i (a_i - g e3) - T_i q - d_i,   a_i = a - l_i q''.   (d_i: the force on the UAV)
 
 No linearisation is made, so a linear controller about this reference only sees errors, not the manoeuvre.
 """
@@ -56,7 +56,7 @@ class FlatForces:
     on_payload: Array
     """What the load's force on the payload is believed to be (K, 3) (N)."""
     on_uavs: Array
-    """The same on each of the UAVs (K, 3) (N)."""
+    """The same on each of the UAVs (K, N, 3) (N)."""
 
 
 @dataclass(frozen=True)
@@ -81,8 +81,8 @@ class FlatReference:
 class Load:
     """What is believed of the payload, its mass (kg) and a steady ``force`` on it (3,), and of the wind.
 
-    ``uav_force``: level force on each of the UAVs, the same for all (3,). Forces in N, NED. ``air``: its drag comes on
-    top of the steady forces and changes with the velocity; None: there is none.
+    ``uav_force``: level force on each of the UAVs (N, 3), or one that is the same for all (3,). Forces in N, NED.
+    ``air``: its drag comes on top of the steady forces and changes with the velocity; None: there is none.
     """
 
     mass: float
@@ -96,12 +96,12 @@ def flat_forces(parameters: SystemParameters, derivatives: Array, load: Load) ->
     acceleration, jerk, snap = derivatives[2], derivatives[3], derivatives[4]
     gravity = parameters.g * E3
     on_payload = np.broadcast_to(load.force, acceleration.shape)
-    on_uavs = np.broadcast_to(load.uav_force, acceleration.shape)
+    on_uavs = np.broadcast_to(load.uav_force, (len(acceleration), parameters.number_of_uavs, 3))
     if load.air is not None:
         drag, drag_dot, drag_ddot = load.air.on_payload_along(derivatives)
         on_payload = on_payload + drag
         # The UAVs' own velocity differs little from the payload's.
-        on_uavs = on_uavs + load.air.on_uav(derivatives[1])
+        on_uavs = on_uavs + load.air.on_uav(derivatives[1])[:, None]
         jerk, snap = jerk - drag_dot / load.mass, snap - drag_ddot / load.mass
     w = gravity - acceleration + on_payload / load.mass
     norm = np.sqrt(_dot(w, w))
@@ -114,7 +114,7 @@ def flat_forces(parameters: SystemParameters, derivatives: Array, load: Load) ->
     tension = _tensions(parameters, q, load.mass * norm[:, 0])
     uav_acceleration = acceleration[:, None, :] - parameters.l[:, None] * q_ddot[:, None, :]
     force = parameters.m[:, None] * (uav_acceleration - gravity) - tension[..., None] * q[:, None, :]
-    force -= on_uavs[:, None, :]
+    force -= on_uavs
     return FlatForces(q, q_dot, q_ddot, tension, force, on_payload, on_uavs)
 
 
