@@ -11,6 +11,7 @@ from gcs.wire.codec import Codec
 from gcs.wire.lockstep import Done, decode_tick
 
 INTERVAL = 0.05
+GROUND = ("127.0.0.1", 1)
 UP = (0.0, 0.0, -1.0)
 
 
@@ -67,7 +68,7 @@ class ScriptedGround:
 
 
 def exchange(swarm, ground, until, stop=lambda: False):
-    """Fly in one process, without sockets: the vehicles' addresses are ("uav", i), the ground's is "ground".
+    """Fly in one process, without sockets: the vehicles' addresses are ("uav", i), the ground's is :data:`GROUND`.
 
     To the simulated time ``until`` (s), or until ``stop()`` says so.
     """
@@ -75,10 +76,10 @@ def exchange(swarm, ground, until, stop=lambda: False):
     while now <= until and not stop():
         swarm.advance_to(now)
         for i, datagram, address in swarm.datagrams_to_send(now):
-            if address == "ground":
+            if address == GROUND:
                 ground.receive(datagram, ("uav", i), now)
         for datagram, (_, i) in ground.datagrams_to_send(now):
-            swarm.receive(i, datagram, "ground", now)
+            swarm.receive(i, datagram, GROUND, now)
         due = [t for t in (swarm.next_timer(), ground.next_timer()) if t is not None]
         now = max(min(due), now)
     return now

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scripted_ground import ScriptedGround, exchange
+from scripted_ground import GROUND, ScriptedGround, exchange
 
 from gcs.config import read_system
 from gcs.mission import HarmonicMotion, Home, LinearMotion, Pole, Sphere, Wall
@@ -175,7 +175,7 @@ def test_contacts_between_two_rows_are_counted_in_the_second(tmp_path):
 
 
 def test_home_is_the_missions():
-    with Swarm(CONFIG, seed=1, home=Home(-33.5, 151.25, 12.0), ground_address="ground") as swarm:
+    with Swarm(CONFIG, seed=1, home=Home(-33.5, 151.25, 12.0), ground_address=GROUND) as swarm:
         ground = ground_of(CONFIG)
         exchange(swarm, ground, 2.5)
         (message,) = ground.of_type("HOME_POSITION", 1)[:1]
@@ -183,9 +183,9 @@ def test_home_is_the_missions():
 
 
 def test_vehicles_offer_themselves_to_a_ground_that_never_spoke():
-    with Swarm(CONFIG, seed=1, ground_address="ground") as swarm:
+    with Swarm(CONFIG, seed=1, ground_address=GROUND) as swarm:
         sent = swarm.datagrams_to_send(0.0)
-        assert [(i, address) for i, _, address in sent] == [(i, "ground") for i in (1, 2, 3, 4)]
+        assert [(i, address) for i, _, address in sent] == [(i, GROUND) for i in (1, 2, 3, 4)]
         messages = [Codec(255, 1).decode(datagram)[0] for _, datagram, _ in sent]
         assert [m.get_type() for m in messages] == ["HEARTBEAT"] * 4
         assert swarm.datagrams_to_send(0.0) == []
@@ -228,7 +228,7 @@ def test_a_passage_stands_between_samples_and_vehicles_and_between_vehicles_and_
         def from_vehicle(self, vehicle, leaving, now):
             return [] if vehicle == 4 else leaving
 
-    with Swarm(CONFIG, seed=1, ground_address="ground", passage=Disturbed()) as swarm:
+    with Swarm(CONFIG, seed=1, ground_address=GROUND, passage=Disturbed()) as swarm:
         ground = ground_of(CONFIG)
         exchange(swarm, ground, 0.25)
         assert swarm.vehicles[1].autopilot.measurement is None

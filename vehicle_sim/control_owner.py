@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
-
+from gcs.wire.address import Address
 from vehicle_sim.autopilot import Answer, Autopilot, rejected_for_now
 from vehicle_sim.setpoints import AttitudeSetpoint
 
 #: An address and the MAVLink system that speaks from it.
-Sender = tuple[Hashable, int]
+Sender = tuple[Address, int]
 
 STREAMS_MAX = 16
 #: A set-point that is older than the last by less than this (ms) was overtaken on the way; by more: a new clock.

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from gcs.wire.address import Address
 from vehicle_sim.range_sensor import RangeSample
 from vehicle_sim.sensors import Measurement, Told
 from vehicle_sim.world_state import Vector
@@ -12,7 +13,7 @@ from vehicle_sim.world_state import Vector
 if TYPE_CHECKING:
     from vehicle_sim.world import World
 
-Datagram = tuple[bytes, Hashable]
+Datagram = tuple[bytes, Address]
 """Bytes, and the address on the other side."""
 
 Forces = tuple[Vector, Sequence[Vector]]

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable
 from typing import Any
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.wire import px4
+from gcs.wire.address import Address
 from gcs.wire.codec import Codec, gather
 from vehicle_sim.telemetry import Telemetry
 
@@ -71,7 +71,7 @@ class Stream:
 class Peer:
     """One address, with its own streams and its own sequence numbers, so that gaps show losses on its link only."""
 
-    def __init__(self, address: Hashable, system_id: int, telemetry_interval: float) -> None:
+    def __init__(self, address: Address, system_id: int, telemetry_interval: float) -> None:
         """``telemetry_interval`` (s) of position and attitude, the vehicle's and the payload's."""
         self.address = address
         self.heard_at = -math.inf

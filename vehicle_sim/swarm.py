@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Sequence
+from collections.abc import Sequence
 from functools import partial
 
 from gcs.config import SystemConfig
 from gcs.mission import Home as MissionHome
 from gcs.mission import Pole, Sphere, Wall
 from gcs.wire import px4
+from gcs.wire.address import Address
 from vehicle_sim.airframe import Airframe
 from vehicle_sim.moving_obstacles import MovingObstacles
 from vehicle_sim.passage import Passage
@@ -46,7 +47,7 @@ class Swarm:
         seed: int,
         home: MissionHome | None = None,
         obstacles: Sequence[Sphere | Pole | Wall] = (),
-        ground_address: Hashable | None = None,
+        ground_address: Address | None = None,
         passage: Passage | None = None,
         gui: bool = False,
     ) -> None:
@@ -147,15 +148,15 @@ class Swarm:
 
     # The wire
 
-    def receive(self, vehicle: int, datagram: bytes, sender: Hashable, now: float) -> None:
+    def receive(self, vehicle: int, datagram: bytes, sender: Address, now: float) -> None:
         """A datagram that came to a vehicle's endpoint; ``vehicle`` is its system id."""
         for arrived, source in self._passage.to_vehicle(vehicle, [(datagram, sender)], now):
             self.vehicles[vehicle - 1].receive(arrived, source, now)
 
-    def datagrams_to_send(self, now: float) -> list[tuple[int, bytes, Hashable]]:
+    def datagrams_to_send(self, now: float) -> list[tuple[int, bytes, Address]]:
         """All that is due at ``now`` (s): the system id of the vehicle that sends, bytes, address."""
         passage = self._passage
-        out: list[tuple[int, bytes, Hashable]] = []
+        out: list[tuple[int, bytes, Address]] = []
         for vehicle in self.vehicles:
             i = vehicle.system_id
             for arrived, source in passage.to_vehicle(i, (), now):

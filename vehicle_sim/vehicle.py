@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Hashable
+from collections.abc import Callable
 from typing import Any
 
 import pymavlink.dialects.v20.common as mavlink
 
 from gcs.wire import px4
+from gcs.wire.address import Address
 from gcs.wire.codec import Codec
 from vehicle_sim.airframe import Airframe
 from vehicle_sim.autopilot import Autopilot
@@ -46,7 +47,7 @@ class Vehicle:
         onboard_rate: float = 250.0,
         telemetry_rate: float = 50.0,
         home: Home | None = None,
-        ground_address: Hashable | None = None,
+        ground_address: Address | None = None,
         boot_time: float = 0.0,
         clock: Callable[[float], float] = float,
     ) -> None:
@@ -65,7 +66,7 @@ class Vehicle:
         self.setpoint_stamp_ms: int | None = None
         self._telemetry_interval = 1.0 / telemetry_rate
         self._decoder = Codec(system_id, px4.AUTOPILOT_COMPONENT)
-        self._peers: dict[Hashable, Peer] = {}
+        self._peers: dict[Address, Peer] = {}
         self._ground_address = ground_address
         if ground_address is not None:
             self._add_peer(ground_address).offer()
@@ -115,7 +116,7 @@ class Vehicle:
 
     # The wire's side
 
-    def receive(self, datagram: bytes, sender: Hashable, now: float) -> None:
+    def receive(self, datagram: bytes, sender: Address, now: float) -> None:
         """Whatever came from an address. Never raises for anything that a datagram can hold."""
         self._latest = max(self._latest, now)
         for message in self._decoder.decode(datagram):
@@ -136,13 +137,13 @@ class Vehicle:
             if handler is not None and self._is_for_us(message):
                 handler(message, (sender, system), peer, now)
 
-    def datagrams_to_send(self, now: float) -> list[tuple[bytes, Hashable]]:
+    def datagrams_to_send(self, now: float) -> list[tuple[bytes, Address]]:
         """All that is due at ``now`` (s), each with its address."""
         self._latest = max(self._latest, now)
         if self.autopilot.changes != self._told_changes or self.autopilot.notices:
             self._tell_changes()
         telemetry = self.telemetry
-        out: list[tuple[bytes, Hashable]] = []
+        out: list[tuple[bytes, Address]] = []
         for peer in tuple(self._peers.values()):
             if now + TIME_TOLERANCE < peer.next_due:
                 continue
@@ -162,7 +163,7 @@ class Vehicle:
 
     # Inside
 
-    def _add_peer(self, address: Hashable) -> Peer:
+    def _add_peer(self, address: Address) -> Peer:
         peer = Peer(address, self.system_id, self._telemetry_interval)
         self._peers[address] = peer
         return peer

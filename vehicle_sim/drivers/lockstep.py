@@ -135,7 +135,7 @@ class LockstepDriver:
         now = self._time_us / 1e6
         self._swarm.advance_to(now)
         for vehicle, datagram, address in self._swarm.datagrams_to_send(now):
-            self._sockets.send(vehicle, datagram, address)  # type: ignore[arg-type]
+            self._sockets.send(vehicle, datagram, address)
 
     def _receive(self) -> None:
         now = self._time_us / 1e6

@@ -95,4 +95,4 @@ class RealTimeDriver:
     def _send(self, now: float) -> None:
         self._swarm.advance_to(now)
         for vehicle, datagram, address in self._swarm.datagrams_to_send(now):
-            self._sockets.send(vehicle, datagram, address)  # type: ignore[arg-type]
+            self._sockets.send(vehicle, datagram, address)
