@@ -14,7 +14,6 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from gcs.errors import UnusableInput
 from gcs.fault_campaign.result import (
     ABORTED,
     COLLIDED,
@@ -27,6 +26,7 @@ from gcs.fault_campaign.result import (
     FaultResult,
 )
 from gcs.fault_campaign.tables import CONFIDENCE, Rates, rates_of
+from gcs.record.pictures import save_picture
 
 MATRIX = "matrix.png"
 COLOURS = {
@@ -152,9 +152,4 @@ def draw_matrix(name: str, results: Sequence[FaultResult], folder: Path) -> Path
         handles=[Patch(facecolor=COLOURS[outcome], label=outcome) for outcome in seen],
         loc="outside lower center", ncols=min(len(seen), 3) or 1, frameon=False, fontsize=8,
     )  # fmt: skip
-    path = folder / MATRIX
-    try:
-        figure.savefig(path, dpi=130)
-    except OSError as error:
-        raise UnusableInput(f"{path}: cannot be written: {error.strerror}") from None
-    return path
+    return save_picture(figure, folder / MATRIX, 130)
