@@ -7,6 +7,7 @@ from gcs.faults.link import BandwidthCap, Jitter, Latency, Reordering
 from gcs.faults.sensors import AttitudeLost, PositionDrift, PositionLost, RatesLost
 from gcs.faults.values import Bias, Drift, NotANumber, Stuck, SwappedVehicles
 from gcs.faults.world import Wind
+from gcs.record.run_data import read_run
 from gcs.testing import fault
 
 pytest_plugins = ["gcs.pytest_plugin"]
@@ -41,7 +42,6 @@ FAULTS = {
     "all positions drifting": of_all(PositionDrift(velocity=(0.1, 0.0, 0.0))),
     "all velocities biased": of_all(Bias(amount=0.5, channel="velocity")),
     "all attitudes stuck": of_all(Stuck(channel="attitude")),
-    "attitude wrong on board": of_one(Bias(amount=0.05, channel="attitude", at_source=True)),
 }
 
 
@@ -51,6 +51,17 @@ def test_the_mission_is_flown_to_its_end(name, fly_with_faults, tmp_path):
     flight = fly_with_faults(mission, FAULTS[name], limits=LIMITS, seed=31)
     assert flight.within_limits, flight.failures
     assert flight.summary["contacts"] == 0
+
+
+def test_that_an_attitude_on_board_is_wrong_is_learnt(fly_with_faults, tmp_path):
+    """The vehicle pulls aside until the force that this is has been learnt, and then no more."""
+    wrong = of_one(Bias(amount=0.05, channel="attitude", at_source=True))
+    flight = fly_with_faults(short_figure(tmp_path, duration=20.0), wrong, limits={"uav_separation": 0.7}, seed=34)
+    assert flight.within_limits, flight.failures
+    assert flight.summary["contacts"] == 0
+    run = read_run(flight.run_dir)
+    # It began 13 s after lift-off, which comes about 3 s after the records begin.
+    assert run.uav_separation()[run.time > START + 10.0].min() > 0.93
 
 
 def test_wind_is_foreseen_along_the_way(fly_with_faults, tmp_path):

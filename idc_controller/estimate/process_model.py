@@ -26,13 +26,13 @@ class ProcessNoise:
     """1/s2"""
     uav_jerk: float = 1.0
     """Of the tilt's acceleration (1/s3)."""
-    thrust: float = 0.016
+    thrust: float = 0.012
     """N/s"""
     force: float = 0.05
     """Drift of the steady force on the payload (N/s)."""
     uav_force: float = 0.01
     """Drift of the steady force that is common to the UAVs (N/s)."""
-    own_force: float = 0.03
+    own_force: float = 0.01
     """Change of what each of them has besides, from one sample of its position to the next (N).
 
     One that believes in a wrong attitude pulls aside. Of one that is not seen nothing is learnt.
