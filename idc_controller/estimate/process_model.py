@@ -33,9 +33,9 @@ class ProcessNoise:
     uav_force: float = 0.01
     """Drift of the steady force that is common to the UAVs (N/s)."""
     own_force: float = 0.01
-    """Change of what each of them has besides, from one sample of its position to the next (N).
+    """Change of what each of them has besides, from one sample of its position and velocity to the next (N).
 
-    One that believes in a wrong attitude pulls aside. Of one that is not seen nothing is learnt.
+    One that believes in a wrong attitude pulls aside. Of one of which less is known nothing is learnt.
     """
     mass: float = 0.005
     """Drift of the payload's mass (kg/s)."""
@@ -72,7 +72,7 @@ class ProcessModel:
         return self._noise(interval_us, restlessness)
 
     def own_noise(self, seen: NDArray[np.int_]) -> Array:
-        """Variances (n,) that samples of the positions of the UAVs ``seen`` (K,) leave room for in their own forces."""
+        """Variances (n,) that samples of the UAVs ``seen`` (K,) leave room for in their own forces."""
         added = np.zeros(self.size)
         added[self.uav_force].reshape(-1, 2)[seen] = self._densities.own_force**2
         return added
