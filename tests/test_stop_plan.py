@@ -8,7 +8,7 @@ from gcs.config import read_system
 from idc_controller.model.linear import StateLayout
 from idc_controller.plan.flatness import Load, flat_reference
 from idc_controller.plan.lissajous import LissajousCurve, LissajousTrajectory
-from idc_controller.plan.stop import BRAKING_LIMIT, stop_plan
+from idc_controller.plan.stop import BRAKING_LIMIT, Braking, stop_plan
 from idc_controller.plan.trajectory import Limits
 
 PARAMETERS = read_system().parameters()
@@ -46,9 +46,29 @@ def test_a_fast_team_takes_longer():
     times = np.linspace(10.0, 50.0, 401)
     time = times[np.argmax(np.linalg.norm(curve.derivatives(times, 1)[1], axis=1))]
     flat = flat_reference(PARAMETERS, curve, np.array([time]), LOAD)
-    speed = np.linalg.norm(flat.payload[1, 0])
+    before, after = uav_positions(curve, [time - 0.01, time + 0.01]).mean(axis=1)
+    speed = np.linalg.norm(after - before) / 0.02
     assert speed > 6.0
-    assert stop_plan(PARAMETERS, flat, time).duration == pytest.approx(1.5 * speed / BRAKING_LIMIT)
+    assert stop_plan(PARAMETERS, flat, time).duration == pytest.approx(1.5 * speed / BRAKING_LIMIT, rel=1e-4)
+
+
+@pytest.mark.parametrize("time", [11.0, 13.7, 18.2])
+def test_where_the_team_rests_is_told_though_its_payload_swings(time):
+    """What is asked how to brake sees where the payload will hang, which is not where its own motion would lead."""
+    curve = LissajousTrajectory(LissajousCurve((6.0, 3.0), -2.5), 0.6, 40.0, LIMITS, start=10.0)
+    flat = flat_reference(PARAMETERS, curve, np.array([time]), LOAD)
+    told = []
+
+    def choose(when, state):
+        told.append(state)
+        return Braking(1.3, (0.8, 0.0, 0.0))
+
+    plan = stop_plan(PARAMETERS, flat, time, choose=choose)
+    foreseen = Braking(1.3, (0.8, 0.0, 0.0)).way(told[0])(plan.duration)
+    hangs = plan.control_points[:, -1] - PARAMETERS.p + PARAMETERS.l[:, None] * [0.0, 0.0, 1.0]
+    assert hangs == pytest.approx(np.tile(foreseen, (PARAMETERS.number_of_uavs, 1)), abs=1e-6)
+    own = Braking(1.3, (0.8, 0.0, 0.0)).way(flat.payload[:3, 0])(plan.duration)
+    assert np.linalg.norm(own - foreseen) > 1.0
 
 
 def test_it_starts_where_the_team_is_and_moves_all_of_it_alike():

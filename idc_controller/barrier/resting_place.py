@@ -48,9 +48,10 @@ class RestingPlace:
         self._last = Braking()
 
     def __call__(self, time: float, state: Array) -> Braking:
-        """How to brake from ``state`` (3, 3), position, velocity and acceleration of the payload at ``time`` (s).
+        """How to brake from ``state`` (3, 3) at ``time`` (s).
 
-        The usual way, if that is clear; else the last one that was chosen, while it is; else the best of many.
+        These are position, velocity and acceleration of a payload that hangs still below the UAVs: it is they that
+        brake. The usual way, if that is clear; else the last one that was chosen, while it is; else the best of many.
         """
         times = time + np.linspace(0.0, FORESEEN, SAMPLES)
         obstacles = self._obstacles.predict(times)

@@ -24,6 +24,8 @@ from idc_controller.plan.flatness import FlatReference
 
 Array = NDArray[np.float64]
 
+E3 = np.array([0.0, 0.0, 1.0])
+
 BRAKING_TIME = 4.0  # s
 BRAKING_LIMIT = 2.0  # m/s2; a faster team takes longer to stop
 
@@ -82,8 +84,8 @@ def stop_plan(
 ) -> StopPlan:
     """From the first instant of the reference ``flat``, which is ``time`` (s), to rest.
 
-    ``x`` (12 + 11 N,) is the state then; None: that of the reference. ``choose`` says how to brake, by the time and the
-    payload's position, velocity and acceleration (3, 3).
+    ``x`` (12 + 11 N,) is the state then; None: that of the reference. ``choose`` says how to brake, by the time and
+    position, velocity and acceleration (3, 3) of a payload that hangs still below the UAVs.
     """
     links = flat.links
     position, velocity, acceleration = flat.payload[:3, 0]
@@ -99,8 +101,11 @@ def stop_plan(
         ],
         axis=1,
     )  # (N, 3, 3)
-    braking = choose(time, np.array([position, velocity, acceleration]))
-    duration = braking.duration(velocity)
+    # The UAVs come to rest by their own motion, and the payload below them, which may swing now.
+    below = state.mean(axis=0)
+    below[0] -= parameters.p.mean(axis=0) - parameters.l.mean() * E3
+    braking = choose(time, below)
+    duration = braking.duration(below[1])
     return StopPlan(time, duration, braking.control_points(state, duration))
 
 
