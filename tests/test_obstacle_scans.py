@@ -131,3 +131,18 @@ def test_blind_vehicles_are_found_out_and_nothing_is_forgotten(kind):
     (left,) = last.predict(np.array([4.0]))
     # The first scan that sticks is believed, with the attitude of the second.
     assert kind == "frozen" or np.linalg.norm(left.positions[0] - [5.0, 0.0, -6.0]) < 0.3
+
+
+def test_what_blind_vehicles_did_not_see_comes_back():
+    """Until they are found out, an obstacle that they no longer see is taken for a ghost."""
+    m, scene = map_of(), Scene(0)
+    run(m, lambda t: [sphere((5.0, 0.0, -6.0))], 1.0, scene=scene)
+    run(m, lambda t: [], 2.5, begin=1.0, scene=scene)
+    assert m.predict(np.array([2.5])) == []
+    for k in range(50, 75):
+        scene.feed(m, k / 20, HERE, [])
+        m.broken({0, 1, 2, 3}, k / 20)
+        m.update(k / 20)
+    assert m.is_blind
+    (back,) = m.predict(np.array([4.0]))
+    assert np.linalg.norm(back.positions[0] - [5.0, 0.0, -6.0]) < 0.3

@@ -31,6 +31,7 @@ MERGE_GATE, MERGE_FRAMES = 0.25, 3
 GHOST_AFTER = 1.0  # s unseen, although in range
 FORGET_AFTER = 2.0  # s unseen and out of range, if it moves
 UNCONFIRMED_AFTER = 0.5  # s
+GHOST_DOUBTED = 3.0  # s for which one that was not seen may still have been there: the sensors may prove to be blind
 SURELY_IN_RANGE = 0.8  # of the sensors' range
 _MEMORY = 3.0  # s for which a vehicle's number stands for an obstacle
 _LINK_ALIVE = 0.3  # s
@@ -69,6 +70,7 @@ class ObstacleMap:
         self._inbox = ScanInbox(sensors)
         self._memory: dict[tuple[int, int], tuple[str, float]] = {}
         self._names = {obstacle.name for obstacle in known}
+        self._ghosts: list[tuple[float, Track]] = []
         self._next_number = 1
         self._scatter = 0.0
         self._time = -math.inf
@@ -251,7 +253,9 @@ class ObstacleMap:
                     break
 
     def _drop_silent(self, now: float) -> None:
+        self._ghosts = [(when, track) for when, track in self._ghosts if now - when <= GHOST_DOUBTED]
         if self.is_blind:
+            self._bring_back()
             return
         for track in tuple(self.tracks):
             silent = now - track.last_seen
@@ -260,17 +264,29 @@ class ObstacleMap:
             if track.known is not None:
                 if not track.is_gone and silent > GHOST_AFTER and self._would_be_seen(track, now):
                     track.is_gone = True
-                    self.vanished.append(track.name)
+                    self._vanishes(track, now)
             elif not track.is_believed:
                 self._remove(track)
             elif silent > GHOST_AFTER and self._would_be_seen(track, now):
                 self._remove(track)
-                self.vanished.append(track.name)
+                self._vanishes(track, now)
             elif silent > FORGET_AFTER and not track.is_static:
                 self._remove(track)
         for key, (_, when) in tuple(self._memory.items()):
             if now - when > _MEMORY:
                 del self._memory[key]
+
+    def _vanishes(self, track: Track, now: float) -> None:
+        self.vanished.append(track.name)
+        self._ghosts.append((now, track))
+
+    def _bring_back(self) -> None:
+        """What sensors that are blind have not seen is no ghost."""
+        for _, track in self._ghosts:
+            track.is_gone = False
+            if track not in self.tracks:
+                self.tracks.append(track)
+        self._ghosts.clear()
 
     def _would_be_seen(self, track: Track, now: float) -> bool:
         """Whether a vehicle whose telemetry comes in is so near that its sensor could not miss the obstacle."""
