@@ -144,5 +144,10 @@ def test_what_blind_vehicles_did_not_see_comes_back():
         m.broken({0, 1, 2, 3}, k / 20)
         m.update(k / 20)
     assert m.is_blind
-    (back,) = m.predict(np.array([4.0]))
+    for k in range(75, 135):  # and is kept, although they tell that they work again
+        scene.feed(m, k / 20, HERE, [])
+        m.broken(set(), k / 20)
+        m.update(k / 20)
+    assert not m.is_blind
+    (back,) = m.predict(np.array([6.75]))
     assert np.linalg.norm(back.positions[0] - [5.0, 0.0, -6.0]) < 0.3

@@ -255,11 +255,11 @@ class ObstacleMap:
     def _drop_silent(self, now: float) -> None:
         self._ghosts = [(when, track) for when, track in self._ghosts if now - when <= GHOST_DOUBTED]
         if self.is_blind:
-            self._bring_back()
+            self._keep()
             return
         for track in tuple(self.tracks):
             silent = now - track.last_seen
-            if silent <= UNCONFIRMED_AFTER:
+            if silent <= UNCONFIRMED_AFTER or track.is_kept:
                 continue
             if track.known is not None:
                 if not track.is_gone and silent > GHOST_AFTER and self._would_be_seen(track, now):
@@ -280,13 +280,15 @@ class ObstacleMap:
         self.vanished.append(track.name)
         self._ghosts.append((now, track))
 
-    def _bring_back(self) -> None:
-        """What sensors that are blind have not seen is no ghost."""
+    def _keep(self) -> None:
+        """What was believed before the sensors proved to be blind; what they did not see since is no ghost."""
         for _, track in self._ghosts:
             track.is_gone = False
             if track not in self.tracks:
                 self.tracks.append(track)
         self._ghosts.clear()
+        for track in self.tracks:
+            track.is_kept = track.is_kept or track.is_believed
 
     def _would_be_seen(self, track: Track, now: float) -> bool:
         """Whether a vehicle whose telemetry comes in is so near that its sensor could not miss the obstacle."""
