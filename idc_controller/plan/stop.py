@@ -18,13 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import BPoly
 
-from idc_controller.model.linear import StateLayout
+from idc_controller.model.linear import E3, StateLayout
 from idc_controller.parameters import SystemParameters
 from idc_controller.plan.flatness import FlatReference
 
 Array = NDArray[np.float64]
-
-E3 = np.array([0.0, 0.0, 1.0])
 
 BRAKING_TIME = 4.0  # s
 BRAKING_LIMIT = 2.0  # m/s2; a faster team takes longer to stop
