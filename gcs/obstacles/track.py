@@ -35,9 +35,9 @@ class Track:
     last_seen: float = -math.inf
     clusters: int = 0
     is_gone: bool = False
+    """It was not where it was expected, although the vehicles could have seen it there."""
     is_kept: bool = False
     """It was believed when all sensors proved to be blind, and is from then on, whatever they do not see."""
-    """It was not where it was expected, although the vehicles could have seen it there."""
     overlaps: dict[str, int] = field(default_factory=dict)
     """How many frames in a row it covered what belongs to another track."""
 

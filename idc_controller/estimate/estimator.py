@@ -359,7 +359,8 @@ class Estimator:
             kf.update(y[keep], R=np.diag(found.variance[keep]), H=H[keep])
             nis = float(kf.y @ kf.SI @ kf.y)
             seen = kept[whole.heights] & kept[whole.heights + 3]
-            kf.P = (kf.P + kf.P.T) / 2 + np.diag(self.process_model.own_noise(whole.uavs[seen]))
+            kf.P = (kf.P + kf.P.T) / 2
+            kf.P.flat[:: self.size + 1] += self.process_model.own_noise(whole.uavs[seen])
         rejected = tuple((keys[c][0], keys[c][1].__name__) for c in refused)
         white = stack.split(found.white)
         self.innovations.append(InnovationRecord(moment.time, nis, int(keep.sum()), rejected, surprised, keys, white))
