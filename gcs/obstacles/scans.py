@@ -69,7 +69,7 @@ class ScanInbox:
         self._estimated: dict[tuple[int, type], deque[Measurement]] = {}
         self._waiting: dict[tuple[int, int], _Scan] = {}
         self._waiting_points: dict[int, int] = {}
-        self._last_points: dict[int, dict[int, list[tuple[float, float, float]]]] = {}
+        self._told: dict[int, set[tuple[float, float, float]]] = {}
         self._sound: dict[int, float] = {}
         self._nonsense: dict[int, float] = {}
         self._broken: dict[int, float] = {}
@@ -166,8 +166,7 @@ class ScanInbox:
             if pose is None:
                 is_misaligned = True
                 pose = self._pose(uav, scan.time, misplaced=True, misaligned=True)
-            frozen = scan.points == self._last_points.get(uav) and self._sensors.range_noise > 0.0
-            self._last_points[uav] = scan.points
+            frozen = self._is_frozen(uav, scan)
             if frozen:
                 self._nonsense[uav] = scan.time
             else:
@@ -186,6 +185,18 @@ class ScanInbox:
                 frames.append([])
             frames[-1] += clusters
         return frames
+
+    def _is_frozen(self, uav: int, scan: _Scan) -> bool:
+        """Whether most points are, to the digit, what the vehicle has told before: what has noise never is.
+
+        Not all of them need be: how many points there are may still follow what is in sight.
+        """
+        told = {point for points in scan.points.values() for point in points}
+        before = self._told.get(uav, set())
+        frozen = self._sensors.range_noise > 0.0 and 2 * len(told & before) > len(told)
+        # While it sticks, points that are out of sight now may be told again later.
+        self._told[uav] = told | before if frozen and len(before) < _POINTS_MAX else told
+        return frozen
 
     def _placed(
         self, uav: int, scan: _Scan, position: Array, quaternion: Array, position_sigma: float, attitude_sigma: float
