@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from idc_controller.estimate.adaptation import Adaptation
 from idc_controller.estimate.dead_reckoning import DeadReckoning, Group
 from idc_controller.estimate.distrust import Distrust, Half
+from idc_controller.estimate.doubt import FirstDoubt, Surprise
 from idc_controller.estimate.estimate import Estimate, InnovationRecord
 from idc_controller.estimate.frozen import FrozenSensors
 from idc_controller.estimate.gate import Judgement, OutlierGate
@@ -51,23 +52,6 @@ DISTRUST = 0.5
 
 
 @dataclass(frozen=True)
-class Surprise:
-    """What is doubted of a prediction that sound measurements contradict: what a blow or a gust changes, no position.
-
-    Standard deviations, added at every moment at which they still contradict it.
-    """
-
-    velocity: float = 0.1
-    """Of the payload (m/s)."""
-    rates: float = 0.1
-    """Of the payload (rad/s)."""
-    link_rate: float = 0.03
-    """1/s"""
-    force: float = 3.0
-    """Of the steady force (N); also the most that it is doubted."""
-
-
-@dataclass(frozen=True)
 class EstimatorSettings:
     """Noise, gates and memory of the filter."""
 
@@ -79,14 +63,7 @@ class EstimatorSettings:
     """How late a measurement may come and still count (s)."""
     simultaneous: float = 0.002
     """Measurements closer than this are taken as of one moment (s)."""
-    mass_sigma: float = 0.2
-    """Standard deviation of the payload mass about its nominal value (kg)."""
-    force_sigma: float = 0.3
-    """Standard deviation of the steady force at the start (N)."""
-    uav_force_sigma: float = 0.05
-    """The same of the force that is common to the UAVs (N)."""
-    own_force_sigma: float = 0.05
-    """The same of what each of them has besides (N)."""
+    first_doubt: FirstDoubt = field(default_factory=FirstDoubt)
     surprise: Surprise = field(default_factory=Surprise)
 
 
@@ -126,22 +103,12 @@ class Estimator:
 
     def start(self, time: float, x: Array) -> None:
         """Begin at ``time`` from the state ``x`` (12 + 11 N,), known to within a start on the ground."""
-        layout, s, process = self.layout, self.settings, self.process_model
-        sigma = np.empty(self.size)
-        sigma[layout.r_0], sigma[layout.v_0] = 0.05, 0.02
-        sigma[layout.Theta], sigma[layout.omega] = 0.02, 0.02
-        sigma[layout.s], sigma[layout.s_dot] = 0.02, 0.02
-        sigma[layout.n], sigma[layout.n_dot], sigma[layout.n_acc] = 0.03, 0.1, 0.3
-        sigma[layout.f] = 0.5
-        sigma[process.force], sigma[process.mass] = s.force_sigma, s.mass_sigma
-        sigma[process.uav_force] = 0.0
-        P = np.diag(sigma**2)
-        P[process.uav_force, process.uav_force] = process.uav_forces(s.uav_force_sigma, s.own_force_sigma)
+        P = self.settings.first_doubt.covariance(self.process_model)
         full = np.concatenate([x, np.zeros(self.size - len(x))])
         self._history.clear()
         self._setpoints.clear()
         self.adaptation = Adaptation()
-        self._distrust = Distrust(layout.number_of_uavs)
+        self._distrust = Distrust(self.layout.number_of_uavs)
         self._snapshots = [_Snapshot(time, full, P, copy(self.adaptation), copy(self._distrust))]
 
     @property
@@ -336,7 +303,7 @@ class Estimator:
             by_payload, by_most = self._refusals(keys, found.accepted)
             surprised = by_payload or (by_most and adaptation.persists(moment.time, keys, found.white))
             if surprised:
-                self._doubt()
+                kf.P = kf.P + self.settings.surprise.covariance(self.process_model, kf.P)
             elif by_most:
                 adaptation.noisier(found.mean_squares)
             if surprised or by_most:
@@ -383,15 +350,6 @@ class Estimator:
         if PAYLOAD in sources:
             adaptation.payload_refused = adaptation.payload_refused + 1 if PAYLOAD in refused else 0
         return adaptation.payload_refused >= PATIENCE, len(sources) >= 3 and 2 * len(refused) > len(sources)
-
-    def _doubt(self) -> None:
-        layout, surprise = self.layout, self.settings.surprise
-        added = np.zeros(self.size)
-        added[layout.v_0], added[layout.omega] = surprise.velocity**2, surprise.rates**2
-        added[layout.s_dot] = surprise.link_rate**2
-        force = self.process_model.force
-        added[force] = np.maximum(surprise.force**2 - np.diag(self._filter.P)[force], 0.0)
-        self._filter.P = self._filter.P + np.diag(added)
 
     def _forget(self) -> None:
         horizon = self.time - self.settings.history
