@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from collections.abc import Sequence, Set
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,6 +17,7 @@ from gcs.obstacles.association import assigned, for_gating, mean_distances
 from gcs.obstacles.known import centre_of, shape_of
 from gcs.obstacles.scans import BLIND_AFTER, Cluster, ScanInbox, SensorModel
 from gcs.obstacles.track import Track
+from gcs.obstacles.unseen import Unseen
 from idc_controller.barrier.obstacles import PredictedObstacle, Shape
 from idc_controller.estimate.measurements import Measurement
 from idc_controller.estimate.motion_bank import BankSettings, MotionModels
@@ -28,10 +30,6 @@ TRACK_GATE = 0.4  # m, and what the track itself is not sure of
 UNSEEN_GATE = 3.0  # m, from a known obstacle that moves and was not seen yet
 SAME_GATE = 0.5  # m, between clusters of several vehicles that begin a track together
 MERGE_GATE, MERGE_FRAMES = 0.25, 3
-GHOST_AFTER = 1.0  # s unseen, although in range
-FORGET_AFTER = 2.0  # s unseen and out of range, if it moves
-UNCONFIRMED_AFTER = 0.5  # s
-GHOST_DOUBTED = 3.0  # s for which one that was not seen may still have been there: the sensors may prove to be blind
 SURELY_IN_RANGE = 0.8  # of the sensors' range
 _MEMORY = 3.0  # s for which a vehicle's number stands for an obstacle
 _LINK_ALIVE = 0.3  # s
@@ -70,7 +68,7 @@ class ObstacleMap:
         self._inbox = ScanInbox(sensors)
         self._memory: dict[tuple[int, int], tuple[str, float]] = {}
         self._names = {obstacle.name for obstacle in known}
-        self._ghosts: list[tuple[float, Track]] = []
+        self._unseen = Unseen()
         self._next_number = 1
         self._scatter = 0.0
         self._time = -math.inf
@@ -125,7 +123,7 @@ class ObstacleMap:
         self._time = now
         for clusters in self._inbox.frames(now, pose_noise, misplaced, misaligned):
             self._learn(clusters)
-        self._drop_silent(now)
+        self._drop_unseen(now)
 
     @property
     def is_blind(self) -> bool:
@@ -252,43 +250,13 @@ class ObstacleMap:
                             self._memory[key] = name, when
                     break
 
-    def _drop_silent(self, now: float) -> None:
-        self._ghosts = [(when, track) for when, track in self._ghosts if now - when <= GHOST_DOUBTED]
-        if self.is_blind:
-            self._keep()
-            return
-        for track in tuple(self.tracks):
-            silent = now - track.last_seen
-            if silent <= UNCONFIRMED_AFTER or track.is_kept:
-                continue
-            if track.known is not None:
-                if not track.is_gone and silent > GHOST_AFTER and self._would_be_seen(track, now):
-                    track.is_gone = True
-                    self._vanishes(track, now)
-            elif not track.is_believed:
-                self._remove(track)
-            elif silent > GHOST_AFTER and self._would_be_seen(track, now):
-                self._remove(track)
-                self._vanishes(track, now)
-            elif silent > FORGET_AFTER and not track.is_static:
-                self._remove(track)
+    def _drop_unseen(self, now: float) -> None:
+        could_see = partial(self._would_be_seen, now=now)
+        self.tracks, vanished = self._unseen.left(self.tracks, now, self.is_blind, could_see)
+        self.vanished += vanished
         for key, (_, when) in tuple(self._memory.items()):
             if now - when > _MEMORY:
                 del self._memory[key]
-
-    def _vanishes(self, track: Track, now: float) -> None:
-        self.vanished.append(track.name)
-        self._ghosts.append((now, track))
-
-    def _keep(self) -> None:
-        """What was believed before the sensors proved to be blind; what they did not see since is no ghost."""
-        for _, track in self._ghosts:
-            track.is_gone = False
-            if track not in self.tracks:
-                self.tracks.append(track)
-        self._ghosts.clear()
-        for track in self.tracks:
-            track.is_kept = track.is_kept or track.is_believed
 
     def _would_be_seen(self, track: Track, now: float) -> bool:
         """Whether a vehicle whose telemetry comes in is so near that its sensor could not miss the obstacle."""
