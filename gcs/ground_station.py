@@ -275,8 +275,11 @@ class GroundStation:
             untrusted = self.flight.estimator.untrusted
             self._obstacle_map.broken({i for i, link in enumerate(self.links) if not link.sees}, time)
             self._obstacle_map.update(time, self.flight.pose_noise, untrusted(Position), untrusted(Attitude))
-            if self._obstacle_map.is_blind and self.flight.phase in IN_THE_AIR and not self.flight.reason:
-                self.break_off(now, "no vehicle sees obstacles, or what all tell of them can not be")
+            if self.flight.phase in IN_THE_AIR and not self.flight.reason:
+                if self._obstacle_map.is_blind:
+                    self.break_off(now, "no vehicle sees obstacles, or what all tell of them can not be")
+                elif self._obstacle_map.is_astray:
+                    self.break_off(now, "no vehicle sees obstacles where they are on the map any more")
             self._recorder.obstacles(self._obstacle_map, time)
         effective = _whole_ms(time + self._latency + delays.max())
         setpoints, record = self.flight.step(time, effective, leaves, now)

@@ -114,3 +114,18 @@ def test_closed_way_is_given_up_safely(tmp_path):
     assert truth["payload_z_m"][-1] == pytest.approx(-0.25, abs=0.02)
     assert truth["payload_x_m"].max() < 8.0 - 0.15 - 0.8 - 0.4
     assert np.abs(truth["payload_vz_mps"][-5:]).max() < 0.02
+
+
+@pytest.mark.parametrize(
+    ("fault", "reason"),
+    [('kind = "drift"\nrate = 0.1', "no vehicle sees obstacles where they are"), ('kind = "stuck"', "what all tell")],
+)
+def test_range_sensors_that_all_go_wrong_alike_end_the_flight_safely(tmp_path, fault, reason):
+    shape = 'shape = "pole"\nposition = [7.0, 0.0]\nradius = 0.3\nheight = 12.0'
+    mission = STRAIGHT.format(name="pole", obstacle="mast", shape=shape)
+    wrong = f'\n[[fault]]\nchannel = "obstacles"\nstart = 6.0\n{fault}\n'
+    code, summary, said = flown(tmp_path, mission + wrong)
+    check_safe(summary)
+    assert code == 1 and summary["outcome"] == "aborted"
+    assert reason in said
+    assert summary["landing"]["on_ground"]

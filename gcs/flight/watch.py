@@ -191,6 +191,9 @@ class Watch:
         for name in self._obstacle_map.vanished:
             self._book.tell(time, name, "unseen", "although a vehicle is near")
         self._obstacle_map.vanished.clear()
+        for uav, offset in self._obstacle_map.astray.items():
+            off = float(np.linalg.norm(offset))
+            self._book.tell(time, self._source(uav), "off the map", f"what it sees of obstacles, by {off:.2f} m")
 
     def _source(self, source: int) -> str:
         return "payload" if source == PAYLOAD else _name(self._team.links[source])

@@ -15,6 +15,7 @@ from gcs.mission.fence import boundary_walls
 from gcs.mission.model import Mission, Pole, Sphere, Wall
 from gcs.obstacles.association import assigned, for_gating, mean_distances
 from gcs.obstacles.known import centre_of, shape_of
+from gcs.obstacles.map_check import MapCheck, moved
 from gcs.obstacles.scans import BLIND_AFTER, Cluster, ScanInbox, SensorModel
 from gcs.obstacles.track import Track
 from gcs.obstacles.unseen import Unseen
@@ -66,6 +67,7 @@ class ObstacleMap:
         self._standing = [(obstacle.name, shape_of(obstacle), centre_of(obstacle)) for obstacle in standing]
         self._reach = reach
         self._inbox = ScanInbox(sensors)
+        self._check = MapCheck(self._standing, SURELY_IN_RANGE * reach)
         self._memory: dict[tuple[int, int], tuple[str, float]] = {}
         self._names = {obstacle.name for obstacle in known}
         self._unseen = Unseen()
@@ -130,6 +132,16 @@ class ObstacleMap:
         """Whether no vehicle sees anything, or tells what can not be, for a moment."""
         return self._inbox.has_vehicles and not self._inbox.seeing(self._time, BLIND_AFTER)
 
+    @property
+    def astray(self) -> dict[int, Array]:
+        """Vehicles (0 .. N-1) that see the obstacles of the map elsewhere than they did, and by how much (3,) (m)."""
+        return self._check.astray
+
+    @property
+    def is_astray(self) -> bool:
+        """Whether all that see anything do so elsewhere."""
+        return self._check.is_astray(self._inbox.seeing(self._time))
+
     # For the controller and the records
 
     def predict(self, times: Array) -> list[PredictedObstacle]:
@@ -152,9 +164,13 @@ class ObstacleMap:
 
     # Inside
 
-    def _learn(self, clusters: list[Cluster]) -> None:
+    def _learn(self, told: list[Cluster]) -> None:
         """One frame: clusters of all vehicles at one time."""
-        time = max(cluster.seen.time for cluster in clusters)
+        time = max(cluster.seen.time for cluster in told)
+        astray = self._check.astray
+        clusters = [moved(c, -astray[c.uav]) if c.uav in astray else c for c in told]
+        # Corrected, they are believed only if there are no others.
+        left_out = frozenset() if self.is_astray else frozenset(astray)
         tracks = self.tracks
         centres, gates = [], []
         for track in tracks:
@@ -170,15 +186,18 @@ class ObstacleMap:
         index = {name: i for i, name in enumerate(names)}
         remembered = [index.get(self._recall(cluster, time)) for cluster in clusters]
         bodies = assigned(clusters, distances, np.array(gates), remembered)
+        standing = [None if body is None or body < len(tracks) else body - len(tracks) for body in bodies]
+        self._check.compare(told, standing, distances[:, len(tracks) :])
 
+        bodies = [None if c.uav in left_out else body for c, body in zip(clusters, bodies, strict=True)]
         parts: dict[int, list[Cluster]] = defaultdict(list)
         fresh: list[Cluster] = []
         for cluster, body in zip(clusters, bodies, strict=True):
-            if body is None:
-                fresh.append(cluster)
-            else:
+            if body is not None:
                 parts[body].append(cluster)
                 self._memory[cluster.uav, cluster.number] = names[body], time
+            elif cluster.uav not in left_out:
+                fresh.append(cluster)
         for body, members in parts.items():
             if body < len(tracks):
                 tracks[body].update([cluster.seen for cluster in members])

@@ -58,7 +58,7 @@ class ObstacleFilter:
         self._known = known
         self._scores: dict[str, float] = {}
         self._scatter = scatter
-        self._surface = _surface(known.kind if known else "sphere", known)
+        self._surface = surface_of(known.kind if known else "sphere", known)
         if known is None and scatter == 0.0 and len(first.points) >= _LEAST_POINTS:
             # Before the kind is chosen: with much scatter a wall would take in anything.
             self._learn_scatter(min(_fresh_fit(kind, first)[1].unexplained for kind in KINDS), share=1.0)
@@ -193,11 +193,12 @@ class ObstacleFilter:
         self._scatter = min(max(self._scatter + share * unexplained, 0.0), _SCATTER_MAX)
 
 
-def _surface(kind: str, known: Shape | None) -> Surface:
+def surface_of(kind: str, known: Shape | None) -> Surface:
+    """To be fitted to points; ``known``: the shape is given and only its place is to be found."""
     return FlatSurface(known) if kind == "wall" else RoundSurface(kind, known)
 
 
 def _fresh_fit(kind: str, seen: SurfacePoints) -> tuple[Surface, Fit]:
     """Of one frame alone."""
-    surface = _surface(kind, None)
+    surface = surface_of(kind, None)
     return surface, surface.fit(seen, surface.guess(seen), iterations=8)

@@ -1,0 +1,84 @@
+"""Vehicles that see the standing obstacles of the map elsewhere than they did: found out, corrected or left out."""
+
+import numpy as np
+import pytest
+from obstacle_scene import HERE, NOISE, Scene, map_of, messages_of, pole, sphere, wall
+
+from gcs.mission.model import Pole, Sphere, Wall
+from idc_controller.estimate.measurements import Attitude, Position
+
+EVERYONE = frozenset(range(4))
+UNKNOWN = np.array([0.0, 6.0, -6.0])
+ON_THE_MAP = {
+    "sphere": (Sphere("a", (5.0, 0.0, -6.0), 0.5, True), sphere((5.0, 0.0, -6.0))),
+    "pole": (Pole("a", (5.0, 0.0), 0.2, 15.0, True), pole((5.0, 0.0))),
+    "wall": (Wall("a", (5.0, 0.0, -6.0), (0.3, 5.0, 6.0), np.degrees(0.3), True), wall((5.0, 0.0, -6.0))),
+}
+
+
+def look(known, true, off, until=6.0, seed=0, noise=1.0):
+    """``off(t, uav)`` is added to every point; yields time and map, every control step."""
+    m, scene, rng = map_of(known), Scene(seed), np.random.default_rng([seed, 17])
+    for k in range(round(until * 20)):
+        t = k / 20
+        for uav, position, quaternion, scan in (
+            scene.look(t, HERE, [true, sphere(UNKNOWN, name="other")]) if k % 2 == 0 else ()
+        ):
+            m.measured(Attitude(t, uav, quaternion, np.zeros(3)))
+            m.measured(Position(t, uav, position, np.zeros(3)))
+            for message in messages_of(scan):
+                wrong = np.asarray(off(t, uav)) + rng.normal(0.0, np.sqrt(noise**2 - 1.0) * NOISE, 3)
+                message.x, message.y, message.z = np.array([message.x, message.y, message.z]) + wrong
+                m.detected(message, uav, t)
+        m.update(t)
+        yield t, m
+
+
+def drift(vehicles, begin=2.0, rate=0.1):
+    return lambda t, uav: np.full(3, rate * max(t - begin, 0.0) * (uav in vehicles))
+
+
+@pytest.mark.parametrize("shape", ON_THE_MAP)
+def test_a_drift_of_all_is_found_out_and_corrected(shape):
+    known, true = ON_THE_MAP[shape]
+    found = None
+    for t, m in look(known, true, drift(EVERYONE)):
+        found = t if found is None and m.is_astray else found
+        if found is None:
+            assert not m.is_blind
+    assert 2.5 < found < 6.0
+    normal = np.array([np.cos(0.3), np.sin(0.3), 0.0]) if shape == "wall" else np.array([1.0, 0.0, 0.0])
+    for offset in m.astray.values():  # where it can be seen: across a wall
+        assert normal @ offset == pytest.approx(0.4 * normal.sum(), abs=0.1)
+    if shape == "sphere":
+        (other,) = m.beliefs(t)
+        assert np.linalg.norm(other.position - UNKNOWN) < 0.25
+
+
+def test_one_that_drifts_is_left_out():
+    known, true = ON_THE_MAP["sphere"]
+    for t, m in look(known, true, drift({2}), until=10.0):
+        assert not m.is_astray, t
+    assert set(m.astray) == {2}
+    (other,) = m.beliefs(t)
+    assert np.linalg.norm(other.position - UNKNOWN) < 0.1
+
+
+def test_one_that_jumps_under_another_number_is_found_out_and_believed_again():
+    """A vehicle numbers anew what comes into sight again."""
+    known, true = ON_THE_MAP["sphere"]
+    told = [set(m.astray) for _, m in look(known, true, lambda t, uav: np.full(3, 0.5 * (uav == 1 and 2.0 <= t < 4.0)))]
+    assert told[39] == set() and told[55] == {1} and told[-1] == set()
+
+
+@pytest.mark.parametrize("noise", [1.0, 5.0])
+@pytest.mark.parametrize("seed", range(3))
+def test_no_noise_is_taken_for_it(noise, seed):
+    known, true = ON_THE_MAP["sphere"]
+    assert not any(m.astray for _, m in look(known, true, lambda t, uav: np.zeros(3), 20.0, seed, noise))
+
+
+def test_an_obstacle_that_never_stood_where_the_map_has_it_says_nothing():
+    known, _ = ON_THE_MAP["sphere"]
+    beside = sphere((5.0, 0.7, -6.0))
+    assert not any(m.astray for _, m in look(known, beside, lambda t, uav: np.zeros(3)))
