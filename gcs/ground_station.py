@@ -35,6 +35,7 @@ HEARTBEAT_INTERVAL = 1.0  # s
 TIMESYNC_INTERVAL = 0.1  # s
 SILENCE_GIVES_UP = 3.0  # s without a word of any vehicle
 CLOCK_STEP = 0.5  # s by which the team's time is corrected at most in flight
+CLOCK_SETTLED = 0.2  # s after which stamps of one message and of another are of one clock again
 LEAD_RATE, LEAD_MAX = 0.02, 0.01  # s/s, and s at once, by which it follows a clock ahead of where that has ever been
 LATENCIES = 20  # control steps whose latency is remembered
 TOGETHER = 0.004  # s; vehicles that act within it act at once
@@ -240,7 +241,8 @@ class GroundStation:
                     link.confirmed(confirmation)
             return time
         if is_detection:
-            if obstacle_map is not None:
+            # What was seen before its clock was set has the stamp of another pose.
+            if obstacle_map is not None and now - link.clock.jumped > CLOCK_SETTLED:
                 obstacle_map.detected(message, index, time)
             return time
         sample = measurement(message, self._identities.whose(index), time)

@@ -17,7 +17,10 @@ ON_THE_MAP = {
 
 
 def look(known, true, off, until=6.0, seed=0, noise=1.0):
-    """``off(t, uav)`` is added to every point; yields time and map, every control step."""
+    """Yields time and map, every control step.
+
+    ``off(t, uav)`` is added to every point; from 2 s on there is ``noise`` times the sensors' own.
+    """
     m, scene, rng = map_of(known), Scene(seed), np.random.default_rng([seed, 17])
     for k in range(round(until * 20)):
         t = k / 20
@@ -27,7 +30,7 @@ def look(known, true, off, until=6.0, seed=0, noise=1.0):
             m.measured(Attitude(t, uav, quaternion, np.zeros(3)))
             m.measured(Position(t, uav, position, np.zeros(3)))
             for message in messages_of(scan):
-                wrong = np.asarray(off(t, uav)) + rng.normal(0.0, np.sqrt(noise**2 - 1.0) * NOISE, 3)
+                wrong = np.asarray(off(t, uav)) + rng.normal(0.0, np.sqrt(noise**2 - 1.0) * NOISE * (t >= 2.0), 3)
                 message.x, message.y, message.z = np.array([message.x, message.y, message.z]) + wrong
                 m.detected(message, uav, t)
         m.update(t)

@@ -20,6 +20,17 @@ def test_a_clock_that_is_set_back_is_followed_at_once_and_late_datagrams_are_not
         assert clock.offset == pytest.approx(9.8) and clock.set_back == pytest.approx(0.2)
 
 
+@pytest.mark.parametrize("step", [0.1, -0.1])
+def test_a_clock_that_is_set_is_told_from_one_whose_datagrams_are_late(step):
+    clock = RemoteClock()
+    for k in range(100):
+        clock.stamped(10.0 + 0.04 * k, 0.04 * k + (0.05 if k % 7 == 0 else 0.0), in_order=True)
+    assert clock.jumped < 0.1  # when it was heard first
+    for k in range(100, 150):
+        clock.stamped(10.0 + step + 0.04 * k, 0.04 * k, in_order=True)
+    assert clock.jumped == pytest.approx(4.0)
+
+
 def test_stamps_of_setpoints_do_not_go_back_with_the_clock():
     link = VehicleLink(1, None)
     before = []

@@ -25,6 +25,7 @@ AGREES = 1.25  # standard deviations: the mean distance of points that lie on a 
 AGREED = 5  # scans
 _WALK = 0.05  # m/sqrt(s): as which the offset goes on
 _START = 0.5  # m, standard deviation
+_SMOOTHING = 0.3
 
 
 @dataclass(eq=False)
@@ -34,6 +35,8 @@ class _Offset:
     time: float
     mean: Array = field(default_factory=lambda: np.zeros(3))
     variance: Array = field(default_factory=lambda: np.full(3, _START**2))
+    scatter: float = 0.0
+    """Variance of the points beyond what their sensor should have (m2)."""
     astray_since: float = math.inf
 
     @property
@@ -44,6 +47,7 @@ class _Offset:
     def update(self, seen: SurfacePoints, shape: Shape, centre: Array) -> None:
         """One scan of the obstacle, which the map has at ``centre`` (3,)."""
         surface = surface_of(shape.kind, shape)
+        seen = replace(seen, scatter=self.scatter)
         # What jumped far would be fitted to the side of a round shape that no sensor sees.
         predicted = centre + self.mean if shape.kind == "wall" else surface.guess(seen)
         fit = surface.fit(seen, predicted, iterations=8)
@@ -52,9 +56,10 @@ class _Offset:
         gain = self.variance / (self.variance + noise)
         self.mean = self.mean + gain * (told - self.mean)
         self.variance = (1.0 - gain) * self.variance
+        self.scatter = max(self.scatter + _SMOOTHING * fit.unexplained, 0.0)
         self.time = seen.time
         deviation = math.sqrt(float(np.sum(self.mean**2 / self.variance)))
-        is_off = deviation > SURELY and float(np.linalg.norm(self.mean)) > ASTRAY
+        is_off = deviation > SURELY and float(np.linalg.norm(self.mean)) > ASTRAY + math.sqrt(self.scatter)
         self.astray_since = min(self.astray_since, self.time) if is_off else math.inf
 
 

@@ -12,6 +12,7 @@ SLICES = 4  # few, because a simulated world that has stalled does not catch up
 RECENT = 4  # round trips
 OPEN_REQUESTS = 100  # TIMESYNC requests whose answers are waited for
 SET_BACK = 0.005  # s; a later stamp that is earlier by more: the clock has been set back
+JUMP = 0.02  # s; an offset that changes by more at once does not creep
 REBOOT = 1.0  # s; a boot time that falls behind by more belongs to another boot
 
 
@@ -28,6 +29,8 @@ class RemoteClock:
         self._newest = -math.inf
         self.set_back = 0.0
         """By how much it has been set back in all (s)."""
+        self.jumped = -math.inf
+        """When its offset last changed at once (s, ground): it was set, or datagrams come otherwise than before."""
         self.lag = 0.0
         """By how much later (s) the last stamp came than the soonest of the last second."""
         self._asked: deque[int] = deque(maxlen=OPEN_REQUESTS)
@@ -40,7 +43,7 @@ class RemoteClock:
 
         ``in_order``: it was sent after all that came before.
         """
-        lead = boot_time - arrival
+        lead, before = boot_time - arrival, self._lead
         if in_order and boot_time < self._newest - SET_BACK:
             self.set_back += self._lead - lead
             self._leads.clear()
@@ -55,6 +58,8 @@ class RemoteClock:
             self._leads[-1][1] = lead
             self._lead = max(self._lead, lead)
         self.lag = self._lead - lead
+        if abs(self._lead - before) > JUMP:
+            self.jumped = arrival
 
     def ask(self, now: float) -> int:
         """``ts1`` (ns) of a TIMESYNC request that goes out at ``now`` (s, ground)."""
