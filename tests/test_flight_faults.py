@@ -3,7 +3,7 @@
 import pytest
 from flight_in_process import short_figure
 
-from gcs.faults.link import BandwidthCap, Jitter, Latency, Reordering
+from gcs.faults.link import BandwidthCap, Jitter, Latency, Partition, Reordering
 from gcs.faults.sensors import AttitudeLost, PositionDrift, PositionLost, RatesLost
 from gcs.faults.values import Bias, Drift, NotANumber, Stuck, SwappedVehicles
 from gcs.faults.world import Wind
@@ -80,3 +80,16 @@ def test_a_way_that_gets_longer_and_longer_ends_in_a_common_stop(fly_with_faults
     assert summary["outcome"] == "aborted" and summary["landing"]["on_ground"] and summary["contacts"] == 0
     assert summary["uav_separation_min_m"] > 0.9
     assert max(summary["payload_tilt_max_deg"].values()) < 15.0
+
+
+@pytest.mark.parametrize("start", [1.3, 1.45, 1.6])
+def test_the_ground_is_lost_as_the_payload_leaves_the_pad_in_wind(start, fly_with_faults, tmp_path):
+    """Links lean before vehicles have risen: they fly all the same, and do not take themselves to stand."""
+    faults = [
+        fault(Wind(velocity=(2.8, -2.8, 0.0), gust=0.5), start=0.0),
+        fault(Partition(), start=start, direction="both"),
+    ]
+    summary = fly_with_faults(short_figure(tmp_path), faults, seed=35).summary
+    assert summary["landing"]["on_ground"] and summary["contacts"] == 0
+    assert summary["landing"]["speed_mps"] < 1.0
+    assert summary["uav_separation_min_m"] > 0.6

@@ -334,8 +334,9 @@ class Autopilot:
         plan = self._plan_of_all(measured, now, descent_start, speed) or HoldPlan.braking(
             now, measured.position, measured.velocity, yaw_of(measured.attitude), descent_start, speed
         )
-        hover = self._land.hover_thrust if self._land.in_air else None
-        hover = hover or max(self._thrust, self._weight)
+        if not self._land.in_air:
+            self._land.lift(self._thrust)
+        hover = self._land.hover_thrust or max(self._thrust, self._weight)
         self._hold = HoldController(plan, hover, self._weight, self._g)
 
     def _plan_of_all(

@@ -43,6 +43,11 @@ class LandDetector:
         self.in_air = self.touching = self.touched_down = False
         self._light_since = self._touching_since = math.inf
 
+    def lift(self, thrust: float) -> None:
+        """It stands upright on its link only by its ``thrust`` (N): that is flying, also before it rises."""
+        self.in_air = True
+        self.hover_thrust = min(max(thrust, self._weight), self._thrust_max)
+
     def update(self, measured: Measurement, thrust: float, now: float, learn: bool) -> None:
         """One step of the onboard loop. ``thrust`` commanded (N); ``learn`` the hover thrust from it.
 
