@@ -263,8 +263,10 @@ def test_loss_while_it_balances_on_its_link_holds_before_it_disarms() -> None:
     flight.run(1.0)
     assert flight.pilot.armed and flight.pilot.failsafe
     assert flight.pilot.attitude_target[2] == pytest.approx(0.8 * flight.hover, rel=0.1)
-    flight.run(5.0)
-    assert not flight.pilot.armed
+    flight.run(4.0)
+    assert flight.pilot.armed
+    flight.run(2.0)  # it would sink, and cannot: found out as after any descent
+    assert not flight.pilot.armed and not flight.pilot.in_air
 
 
 def test_a_hold_that_is_asked_for_as_it_lifts_the_load_keeps_the_thrust() -> None:
