@@ -67,8 +67,7 @@ def test_one_that_drifts_is_left_out():
     assert np.linalg.norm(other.position - UNKNOWN) < 0.1
 
 
-def test_one_that_jumps_under_another_number_is_found_out_and_believed_again():
-    """A vehicle numbers anew what comes into sight again."""
+def test_one_that_jumps_is_found_out_and_believed_again():
     known, true = ON_THE_MAP["sphere"]
     told = [set(m.astray) for _, m in look(known, true, lambda t, uav: np.full(3, 0.5 * (uav == 1 and 2.0 <= t < 4.0)))]
     assert told[39] == set() and told[55] == {1} and told[-1] == set()
