@@ -4,11 +4,13 @@ MISSION ?= missions/figure_eight_spheres.toml
 VENV := .venv
 INSTALLED := $(VENV)/installed
 
-.PHONY: help install fly test benchmark clean
+.PHONY: help install fly test golden golden-renew benchmark clean
 
 help:
 	@echo "make fly          fly $(MISSION) with a simulated swarm (MISSION=... for another one)"
 	@echo "make test         ruff, mypy and the tests"
+	@echo "make golden       compare short flights, to the byte, with tests/golden/checksums.json"
+	@echo "make golden-renew write these checksums anew"
 	@echo "make benchmark    the measurements of speed"
 	@echo "make install      only install, into $(VENV)"
 	@echo "make clean        remove $(VENV) and the caches"
@@ -21,6 +23,12 @@ test: $(INSTALLED)
 	$(VENV)/bin/ruff format --check
 	$(VENV)/bin/mypy
 	$(VENV)/bin/python -m pytest --numprocesses auto --dist loadfile
+
+golden: $(INSTALLED)
+	$(VENV)/bin/python tests/golden/golden.py
+
+golden-renew: $(INSTALLED)
+	$(VENV)/bin/python tests/golden/golden.py --renew
 
 benchmark: $(INSTALLED)
 	$(VENV)/bin/python -m pytest -o addopts= -s tests/benchmarks
