@@ -25,7 +25,6 @@ from gcs.ground_station import GroundStation, Recorder
 from gcs.mission.faults import check_faults_of
 from gcs.mission.model import Mission
 from gcs.mission.read import read_mission
-from gcs.obstacles import ObstacleMap
 from gcs.record.landing import is_set_down
 from gcs.record.recorder import FlightRecorder
 from gcs.record.run_folder import open_run_folder, write_manifest
@@ -187,7 +186,7 @@ def ground_station(
     links = [VehicleLink(i, address) for i, address in enumerate(addresses, start=1)]
     team = Team(links, model.parameters)
     stopwatch = time.perf_counter
-    obstacle_map = ObstacleMap.of_mission(mission)
+    obstacle_map = stack.obstacle_map(mission)
     safety: SafetyFilter = NoObstacles()
     if controller == "idc":
         safety = stack.avoidance(config, model, obstacle_map)

@@ -20,9 +20,9 @@ from gcs.flight.phase import IN_THE_AIR, Phase
 from gcs.flight.team import Team
 from gcs.flight.watch import Watch
 from gcs.identities import Identities
-from gcs.obstacles import ObstacleMap
+from gcs.obstacles.obstacle_map import ObstacleMap
 from gcs.setpoints import attitude_target, stop_plan_message
-from gcs.telemetry import measurement, setpoint_flown
+from gcs.telemetry import detection, measurement, setpoint_flown
 from gcs.vehicle_link import VehicleLink
 from gcs.wire import px4
 from gcs.wire.address import Address
@@ -243,7 +243,7 @@ class GroundStation:
         if is_detection:
             # What was seen before its clock was set has the stamp of another pose.
             if obstacle_map is not None and now - link.clock.jumped > CLOCK_SETTLED:
-                obstacle_map.detected(message, index, time)
+                obstacle_map.detected(detection(message), index, time)
             return time
         sample = measurement(message, self._identities.whose(index), time)
         if sample is None or not (sample.has_pose and sample.has_motion):

@@ -9,6 +9,7 @@ import numpy as np
 import pymavlink.dialects.v20.common as mavlink
 from numpy.typing import NDArray
 
+from gcs.obstacles.scans import Detection
 from gcs.wire import px4
 from idc_controller.estimate.measurements import PAYLOAD, Attitude, Measurement, Position
 
@@ -53,6 +54,13 @@ def measurement(message: Any, uav: int, time: float) -> Measurement | None:
         told = Position(time, source, np.array(position), np.array(velocity))
         return _sound(told, math.isfinite(sum(position)), math.isfinite(sum(velocity)))
     return None
+
+
+def detection(message: Any) -> Detection:
+    """The detection in an OBSTACLE_DISTANCE_3D; one in a frame other than the body's has no point (nan)."""
+    is_body = message.frame == mavlink.MAV_FRAME_BODY_FRD
+    point = (message.x, message.y, message.z) if is_body else (math.nan, math.nan, math.nan)
+    return Detection(message.time_boot_ms, message.obstacle_id, point, message.max_distance)
 
 
 def _sound(told: Measurement, pose: bool, motion: bool) -> Measurement | None:

@@ -5,8 +5,10 @@ import math
 import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
-from gcs.obstacles import ObstacleMap
+from gcs.obstacles.known import known_obstacles
+from gcs.obstacles.obstacle_map import ObstacleMap
 from gcs.obstacles.scans import SensorModel
+from gcs.telemetry import detection
 from idc_controller.estimate.measurements import Attitude, Position
 from idc_controller.estimate.surface_points import SurfacePoints, joined
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
@@ -92,7 +94,7 @@ class Scene:
             if off is not None:
                 obstacle_map.estimated(Position(time, i, position, np.zeros(3)))
             for message in messages_of(scan):
-                obstacle_map.detected(message, i, time)
+                obstacle_map.detected(detection(message), i, time)
 
     def frame(self, time, centre, obstacle):
         """All points on one obstacle; None if nobody sees it."""
@@ -136,7 +138,7 @@ def stop_and_go(t):
 
 
 def map_of(*known):
-    return ObstacleMap(known, SENSORS, REACH)
+    return ObstacleMap(known_obstacles(known), SENSORS, REACH)
 
 
 def run(obstacle_map, obstacles, until, begin=0.0, scene=None, centre=lambda t: HERE, each=lambda t: None):

@@ -5,6 +5,7 @@ import pytest
 from obstacle_scene import HERE, NOISE, Scene, map_of, messages_of, pole, sphere, wall
 
 from gcs.mission.model import Pole, Sphere, Wall
+from gcs.telemetry import detection
 from idc_controller.estimate.measurements import Attitude, Position
 
 EVERYONE = frozenset(range(4))
@@ -32,7 +33,7 @@ def look(known, true, off, until=6.0, seed=0, noise=1.0):
             for message in messages_of(scan):
                 wrong = np.asarray(off(t, uav)) + rng.normal(0.0, np.sqrt(noise**2 - 1.0) * NOISE * (t >= 2.0), 3)
                 message.x, message.y, message.z = np.array([message.x, message.y, message.z]) + wrong
-                m.detected(message, uav, t)
+                m.detected(detection(message), uav, t)
         m.update(t)
         yield t, m
 

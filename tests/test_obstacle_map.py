@@ -19,9 +19,10 @@ from obstacle_scene import (
     wall,
 )
 
+from gcs.flight import stack
 from gcs.mission import HarmonicMotion, Pole, Sphere, Wall
 from gcs.mission.read import read_mission
-from gcs.obstacles import ObstacleMap
+from gcs.telemetry import detection
 from idc_controller.estimate.measurements import Attitude, Position
 from vehicle_sim.swarm import Swarm
 
@@ -284,7 +285,7 @@ def test_in_flight_the_ground_finds_what_the_vehicles_sense(tmp_path):
     )  # fmt: skip
     mission = replace(mission, obstacles=obstacles)
     with Rehearsal(mission, tmp_path / "run") as flight:
-        obstacle_map = ObstacleMap.of_mission(mission)
+        obstacle_map = stack.obstacle_map(mission)
         flight.station._obstacle_map = obstacle_map
         flight.swarm.close()
         flight.swarm = Swarm(mission.system, seed=1, home=mission.home, obstacles=obstacles)
@@ -315,7 +316,7 @@ def test_what_comes_into_sight_later_is_taken_to_scatter_as_what_was_seen_before
             for message in messages_of(scan):
                 x, y, z = rng.normal(0.0, 5 * NOISE, 3)
                 message.x, message.y, message.z = message.x + x, message.y + y, message.z + z
-                m.detected(message, i, 0.1 * k)
+                m.detected(detection(message), i, 0.1 * k)
         m.update(0.1 * k)
         scatter.append([track.filter.scatter**0.5 for track in m.tracks])
     assert len(scatter[29]) == 1 and scatter[29][0] > 3 * NOISE

@@ -15,6 +15,7 @@ from obstacle_scene import (
 )
 
 from gcs.obstacles.scans import ScanInbox
+from gcs.telemetry import detection
 from idc_controller.estimate.measurements import Attitude, Position
 from vehicle_sim.range_sensor import Detection, RangeSample
 
@@ -38,7 +39,7 @@ def test_motion_between_samples_is_the_estimated_one_where_none_is_told():
     inbox.estimated(Attitude(0.0, 0, level, turning))
     inbox.estimated(Position(0.0, 0, HERE + 1.0, moving))
     for message in messages_of(RangeSample(t, REACH, (Detection(1, (5.0, 0.0, 0.0)),))):
-        inbox.detected(message, 0, t)
+        inbox.detected(detection(message), 0, t)
     [[cluster]] = inbox.frames(t)
     assert cluster.seen.points[0] == pytest.approx(HERE + np.array([5.0, 2.0 * t, -5.0 * t]), abs=2e-3)
 
@@ -56,7 +57,7 @@ def test_scans_wait_for_their_pose_and_nonsense_is_refused():
     scene = Scene(0)
     ((i, position, quaternion, scan),) = scene.look(1.0, HERE, [sphere((5.0, 0.0, -6.0))])[:1]
     for message in messages_of(scan):
-        m.detected(message, i, 1.0)
+        m.detected(detection(message), i, 1.0)
     m.update(1.0)
     assert m.tracks == []
     m.measured(Position(1.0, i, position, np.full(3, np.nan)))  # of its motion nothing is known
@@ -76,14 +77,14 @@ def test_scans_wait_for_their_pose_and_nonsense_is_refused():
         {"frame": mavlink.MAV_FRAME_GLOBAL}, {"x": float("nan")}, {"y": float("inf")}, {"x": 0.0}, {"x": 1e6},
         {"max_distance": 0.0}, {"max_distance": float("nan")},
     ):  # fmt: skip
-        m.detected(nonsense(**bad), 0, 1.1)
+        m.detected(detection(nonsense(**bad)), 0, 1.1)
     assert m.refused == 7
-    m.detected(nonsense(), 3, 1.1)  # of a vehicle whose pose never comes
+    m.detected(detection(nonsense()), 3, 1.1)  # of a vehicle whose pose never comes
     m.update(1.1)
     m.update(1.5)
     assert m.refused == 8
     for k in range(5000):  # a flood
-        m.detected(nonsense(time_boot_ms=2000 + k), 2, 2.0)
+        m.detected(detection(nonsense(time_boot_ms=2000 + k)), 2, 2.0)
     assert m.refused > 3000
 
 
@@ -108,7 +109,7 @@ def blinded(kind):
                     message.time_boot_ms = round(t * 1e3)
                     if kind == "nan":
                         message.x = np.nan
-                    m.detected(message, uav, t)
+                    m.detected(detection(message), uav, t)
         m.update(t)
         yield m
 

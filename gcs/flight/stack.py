@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import asdict
 
 import numpy as np
 
 from gcs.config import SystemConfig
+from gcs.mission.model import Mission
+from gcs.obstacles.known import map_of
+from gcs.obstacles.obstacle_map import ObstacleMap
+from gcs.obstacles.scans import SensorModel
 from idc_controller.barrier.navigator import NavigatorSettings
 from idc_controller.barrier.obstacles import ObstacleSource
 from idc_controller.barrier.planner import PlannerSettings
@@ -38,6 +43,13 @@ def estimator(config: SystemConfig, model: LinearModel) -> Estimator:
         payload_rates=sensors.payload_rates,
     )
     return Estimator(model, EstimatorSettings(measurement=noise))
+
+
+def obstacle_map(mission: Mission) -> ObstacleMap:
+    """The obstacle map of a mission, for the sensors of its system file."""
+    config = mission.system
+    sensors = SensorModel(config.range_sensor.noise, config.sensors.position, math.radians(config.sensors.attitude_deg))
+    return ObstacleMap(map_of(mission), sensors, config.range_sensor.range)
 
 
 def avoidance(config: SystemConfig, model: LinearModel, obstacles: ObstacleSource) -> AvoidanceFilter:

@@ -13,7 +13,7 @@ from gcs.flight.alarms import Alarm, AlarmBook, Events
 from gcs.flight.flight import Flight, StepRecord
 from gcs.flight.phase import IN_THE_AIR
 from gcs.identities import Identities
-from gcs.obstacles import ObstacleMap
+from gcs.obstacles.obstacle_map import ObstacleMap
 from gcs.vehicle_link import VehicleLink
 from idc_controller.control.controller import Decision
 from idc_controller.estimate.adaptation import LEVELS

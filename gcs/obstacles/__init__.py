@@ -1,5 +1,1 @@
 """What the ground knows of obstacles: those on the map, and those that the vehicles' range sensors find."""
-
-from gcs.obstacles.obstacle_map import ObstacleMap
-
-__all__ = ["ObstacleMap"]

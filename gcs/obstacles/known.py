@@ -3,27 +3,37 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gcs.mission.model import Pole, Sphere, Wall
+from gcs.mission.fence import boundary_walls
+from gcs.mission.model import Mission, Pole, Sphere, Wall
+from gcs.mission.motion import rest_position
+from gcs.obstacles.obstacle_map import MapObstacle
 from idc_controller.barrier.obstacles import Shape
 
-Array = NDArray[np.float64]
+
+def map_of(mission: Mission) -> list[MapObstacle]:
+    """Return the obstacles that a mission marks as known, and the walls of its fence."""
+    fence = boundary_walls(mission.boundary) if mission.boundary is not None else ()
+    return known_obstacles((*mission.obstacles, *fence))
 
 
-def shape_of(obstacle: Sphere | Pole | Wall) -> Shape:
-    """Its shape about its centre."""
+def known_obstacles(obstacles: Iterable[Sphere | Pole | Wall]) -> list[MapObstacle]:
+    """Return those of ``obstacles`` that are marked as known."""
+    return [
+        MapObstacle(
+            obstacle.name, _shape(obstacle), np.array(rest_position(obstacle), dtype=float), obstacle.motion is not None
+        )
+        for obstacle in obstacles
+        if obstacle.known
+    ]
+
+
+def _shape(obstacle: Sphere | Pole | Wall) -> Shape:
     if isinstance(obstacle, Sphere):
         return Shape("sphere", obstacle.radius)
     if isinstance(obstacle, Pole):
         return Shape("pole", obstacle.radius, (0.0, 0.0, obstacle.height))
     return Shape("wall", 0.0, obstacle.size, math.radians(obstacle.yaw_deg))
-
-
-def centre_of(obstacle: Sphere | Pole | Wall) -> Array:
-    """Where the mission file puts its centre (3,) (NED, m)."""
-    if isinstance(obstacle, Pole):
-        return np.array([*obstacle.position, -obstacle.height / 2.0])
-    return np.array(obstacle.position, dtype=float)

@@ -6,17 +6,14 @@ import math
 from collections import defaultdict
 from collections.abc import Sequence, Set
 from functools import partial
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gcs.mission.fence import boundary_walls
-from gcs.mission.model import Mission, Pole, Sphere, Wall
 from gcs.obstacles.association import assigned, for_gating, mean_distances
-from gcs.obstacles.known import centre_of, shape_of
 from gcs.obstacles.map_check import MapCheck, moved
-from gcs.obstacles.scans import BLIND_AFTER, Cluster, ScanInbox, SensorModel
+from gcs.obstacles.scans import BLIND_AFTER, Cluster, Detection, ScanInbox, SensorModel
 from gcs.obstacles.track import Track
 from gcs.obstacles.unseen import Unseen
 from idc_controller.barrier.obstacles import PredictedObstacle, Shape
@@ -47,24 +44,33 @@ class Belief(NamedTuple):
     growth: float
 
 
+class MapObstacle(NamedTuple):
+    """An obstacle that is known before the flight."""
+
+    name: str
+    shape: Shape
+    centre: Array
+    """In the world (3,) (NED, m); of a moving obstacle, where its motion has its mean."""
+    moves: bool = False
+
+
 class ObstacleMap:
     """An :class:`~idc_controller.barrier.obstacles.ObstacleSource`. Times are the team's (s).
 
     Hand over telemetry with :meth:`measured` and :meth:`detected`, call :meth:`update` once a control step, then
-    :meth:`predict`. Obstacles that the mission does not mark as known are not looked at.
+    :meth:`predict`.
     """
 
-    def __init__(self, obstacles: Sequence[Sphere | Pole | Wall], sensors: SensorModel, reach: float) -> None:
-        """``obstacles`` of the mission; ``reach`` (m) of the range sensors."""
-        known = [obstacle for obstacle in obstacles if obstacle.known]
-        standing = [obstacle for obstacle in known if obstacle.motion is None]
+    def __init__(self, known: Sequence[MapObstacle], sensors: SensorModel, reach: float) -> None:
+        """``known``: obstacles known before the flight; ``reach`` (m) of the range sensors."""
+        standing = [obstacle for obstacle in known if not obstacle.moves]
         self.models = MotionModels(BankSettings())
         self.tracks: list[Track] = [
-            Track(obstacle.name, self.models, known=shape_of(obstacle), place=centre_of(obstacle))
+            Track(obstacle.name, self.models, known=obstacle.shape, place=obstacle.centre)
             for obstacle in known
-            if obstacle.motion is not None
+            if obstacle.moves
         ]
-        self._standing = [(obstacle.name, shape_of(obstacle), centre_of(obstacle)) for obstacle in standing]
+        self._standing = [(obstacle.name, obstacle.shape, obstacle.centre) for obstacle in standing]
         self._reach = reach
         self._inbox = ScanInbox(sensors)
         self._check = MapCheck(self._standing, SURELY_IN_RANGE * reach)
@@ -77,16 +83,6 @@ class ObstacleMap:
         self.vanished: list[str] = []
         """Followed obstacles that are no longer seen where a vehicle could not miss them; for the caller to clear."""
 
-    @classmethod
-    def of_mission(cls, mission: Mission) -> ObstacleMap:
-        """The map of a mission, for the sensors of its system file."""
-        config = mission.system
-        sensors = SensorModel(
-            config.range_sensor.noise, config.sensors.position, math.radians(config.sensors.attitude_deg)
-        )
-        fence = boundary_walls(mission.boundary) if mission.boundary is not None else ()
-        return cls((*mission.obstacles, *fence), sensors, config.range_sensor.range)
-
     # From telemetry
 
     def measured(self, sample: Measurement) -> None:
@@ -97,9 +93,9 @@ class ObstacleMap:
         """What the ground thinks of a vehicle's position or attitude: for one that does not know them itself."""
         self._inbox.estimated(sample)
 
-    def detected(self, message: Any, uav: int, time: float) -> None:
-        """An OBSTACLE_DISTANCE_3D of UAV ``uav`` (0 .. N-1), true at ``time``. Nonsense is counted and left out."""
-        self._inbox.detected(message, uav, time)
+    def detected(self, detection: Detection, uav: int, time: float) -> None:
+        """Add a detection of UAV ``uav`` (0 .. N-1), made at ``time``; impossible ones are counted and ignored."""
+        self._inbox.detected(detection, uav, time)
 
     def broken(self, uavs: Set[int], time: float) -> None:
         """Vehicles (0 .. N-1) whose range sensors do not work, as they say."""

@@ -1,4 +1,4 @@
-"""OBSTACLE_DISTANCE_3D messages become points in the world, by the telemetered poses of the vehicles that sent them."""
+"""Detections of the range sensors become points in the world, by the poses of the vehicles that made them."""
 
 from __future__ import annotations
 
@@ -6,10 +6,9 @@ import math
 from collections import deque
 from collections.abc import Set
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TypeVar
 
 import numpy as np
-import pymavlink.dialects.v20.ardupilotmega as mavlink
 from numpy.typing import NDArray
 
 from idc_controller.estimate.measurements import Attitude, Measurement, Position
@@ -17,6 +16,7 @@ from idc_controller.estimate.surface_points import SurfacePoints
 from idc_controller.rotations import quaternion_product, rotation_from_quaternion
 
 Array = NDArray[np.float64]
+_Pose = TypeVar("_Pose", Attitude, Position)
 
 POSE_GAP = 0.1  # s between a scan and the pose by which it is placed
 PATIENCE = 0.3  # s for which a scan waits for its pose
@@ -40,6 +40,20 @@ class SensorModel:
     """m, of a vehicle's position, every axis"""
     attitude: float
     """rad, of its attitude, every axis"""
+
+
+@dataclass(frozen=True)
+class Detection:
+    """One point that a vehicle's range sensor detected, as its telemetry reports it."""
+
+    scan: int
+    """The same for all points of one scan of a vehicle."""
+    obstacle: int
+    """The vehicle's own number for the obstacle that the point belongs to."""
+    point: tuple[float, float, float]
+    """In the vehicle's body frame, forward-right-down (m)."""
+    max_range: float
+    """Of the sensor (m)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +80,8 @@ class ScanInbox:
         self._sensors = sensors
         self._attitudes: dict[int, deque[Attitude]] = {}
         self._positions: dict[int, deque[Position]] = {}
-        self._estimated: dict[tuple[int, type], deque[Measurement]] = {}
+        self._estimated_attitudes: dict[int, deque[Attitude]] = {}
+        self._estimated_positions: dict[int, deque[Position]] = {}
         self._waiting: dict[tuple[int, int], _Scan] = {}
         self._waiting_points: dict[int, int] = {}
         self._told: dict[int, set[tuple[float, float, float]]] = {}
@@ -87,27 +102,28 @@ class ScanInbox:
 
     def estimated(self, sample: Measurement) -> None:
         """What the ground thinks of a vehicle's position or attitude: for one that does not know them itself."""
-        self._estimated.setdefault((sample.source, type(sample)), deque(maxlen=_POSES)).append(sample)
+        if isinstance(sample, Attitude):
+            self._estimated_attitudes.setdefault(sample.source, deque(maxlen=_POSES)).append(sample)
+        else:
+            self._estimated_positions.setdefault(sample.source, deque(maxlen=_POSES)).append(sample)
 
-    def detected(self, message: Any, uav: int, time: float) -> None:
-        """An OBSTACLE_DISTANCE_3D of UAV ``uav`` (0 .. N-1), true at ``time``."""
-        point = (message.x, message.y, message.z)
-        reach = message.max_distance
+    def detected(self, detection: Detection, uav: int, time: float) -> None:
+        """Add a detection of UAV ``uav`` (0 .. N-1), made at ``time``."""
+        point, reach = detection.point, detection.max_range
         waiting = self._waiting_points.get(uav, 0)
         if (
-            message.frame != mavlink.MAV_FRAME_BODY_FRD
-            or not math.isfinite(sum(point) + reach)
+            not math.isfinite(sum(point) + reach)
             or not 0.0 < math.hypot(*point) < 2.0 * reach
             or waiting >= _POINTS_MAX
         ):
             self.refused += 1
             self._nonsense[uav] = time
             return
-        key = uav, message.time_boot_ms
+        key = uav, detection.scan
         scan = self._waiting.get(key)
         if scan is None:
             scan = self._waiting[key] = _Scan(time, reach)
-        scan.points.setdefault(message.obstacle_id, []).append(point)
+        scan.points.setdefault(detection.obstacle, []).append(point)
         scan.count += 1
         self._waiting_points[uav] = waiting + 1
 
@@ -219,7 +235,7 @@ class ScanInbox:
 
     def _pose(self, uav: int, time: float, misplaced: bool, misaligned: bool) -> tuple[Array, Array] | None:
         """Position (3,) and attitude (4,) at ``time``, from the samples next to it, motion told or estimated."""
-        attitudes, positions = self._estimated.get((uav, Attitude)), self._estimated.get((uav, Position))
+        attitudes, positions = self._estimated_attitudes.get(uav), self._estimated_positions.get(uav)
         attitude = _nearest(attitudes if misaligned else self._attitudes.get(uav), time)
         position = _nearest(positions if misplaced else self._positions.get(uav), time)
         if attitude is None or position is None:
@@ -235,7 +251,7 @@ class ScanInbox:
         return place, quaternion
 
 
-def _nearest(history: deque[Any] | None, time: float) -> Any:
+def _nearest(history: deque[_Pose] | None, time: float) -> _Pose | None:
     if not history:
         return None
     found = history[-1]

@@ -26,7 +26,7 @@ from idc_controller.rotations import quaternion_from_euler
 if TYPE_CHECKING:
     from gcs.flight.alarms import Alarm
     from gcs.flight.flight import Flight, StepRecord
-    from gcs.obstacles import ObstacleMap
+    from gcs.obstacles.obstacle_map import ObstacleMap
     from idc_controller.control.controller import Decision
 
 REFERENCE_INTERVAL = 0.02  # s, the grid of truth.csv
