@@ -2,6 +2,6 @@
 
 import sys
 
-from gcs.cli import main
+from gcs.app.cli import main
 
 sys.exit(main())

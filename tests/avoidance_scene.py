@@ -7,15 +7,15 @@ import numpy as np
 from paper_system import system
 from scipy.spatial import ConvexHull
 
-from idc_controller.barrier.navigator import NavigatorSettings
-from idc_controller.barrier.obstacles import PredictedObstacle, Shape
-from idc_controller.barrier.planner import PlannerSettings
-from idc_controller.barrier.safety_filter import AvoidanceFilter
-from idc_controller.estimate.estimate import Estimate
-from idc_controller.plan.flatness import Load, flat_forces
-from idc_controller.plan.paths import Leg
-from idc_controller.plan.trajectory import Limits
-from idc_controller.plan.waypoints import WaypointTrajectory
+from idc_controller.estimation.estimate import Estimate
+from idc_controller.geometry.shapes import PredictedObstacle, Shape
+from idc_controller.guidance.navigator import NavigatorSettings
+from idc_controller.safety.planner import PlannerSettings
+from idc_controller.safety.safety_filter import AvoidanceFilter
+from idc_controller.trajectory.flatness import Load, flat_forces
+from idc_controller.trajectory.paths import Leg
+from idc_controller.trajectory.trajectory import Limits
+from idc_controller.trajectory.waypoints import WaypointTrajectory
 
 STEP = 0.05  # s
 

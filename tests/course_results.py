@@ -1,6 +1,6 @@
 """Results of courses that nobody has flown."""
 
-from gcs.courses.flights import COLUMNS, Result
+from gcs.campaign.courses.flights import COLUMNS, Result
 
 
 def result_of(course, **figures):

@@ -4,10 +4,10 @@ import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.config import read_system
+from gcs.mavlink.codec import Codec
 from gcs.mission import Fault
-from gcs.wire.codec import Codec
 from vehicle_sim.faults import FaultPassage
-from vehicle_sim.sensors import Measurement
+from vehicle_sim.world.sensors import Measurement
 
 SYSTEM = read_system()
 TAKE_OFF = 3.0

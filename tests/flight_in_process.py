@@ -10,13 +10,13 @@ from pathlib import Path
 
 import numpy as np
 
-from gcs.fly import ground_station
+from gcs.app.fly import ground_station
 from gcs.mission.read import read_mission
 from gcs.record.recorder import FlightRecorder
 from gcs.record.summary import summarise, within_limits
 from vehicle_sim.faults import FaultPassage
 from vehicle_sim.swarm import Swarm
-from vehicle_sim.truth_log import TruthLog
+from vehicle_sim.world.truth_log import TruthLog
 
 MISSIONS = Path(__file__).parents[1] / "missions"
 GROUND = ("127.0.0.1", 1)

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from vehicle_sim.airframe import Airframe
-from vehicle_sim.rotors import IDLE, RotorGeometry, Rotors
-from vehicle_sim.sensors import Measurement, NavigationSensor, SensorNoise
+from vehicle_sim.autopilot.airframe import Airframe
+from vehicle_sim.world.rotors import IDLE, RotorGeometry, Rotors
+from vehicle_sim.world.sensors import Measurement, NavigationSensor, SensorNoise
 
 AIRFRAME = Airframe(
     mass=0.7,

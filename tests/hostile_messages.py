@@ -4,8 +4,8 @@ import math
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
-from gcs.setpoints import attitude_target, stop_plan_message
-from gcs.wire import px4
+from gcs.mavlink import px4
+from gcs.mavlink.setpoints import attitude_target, stop_plan_message
 
 NAN, HUGE = math.nan, 3e38
 

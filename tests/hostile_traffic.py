@@ -6,9 +6,9 @@ from collections import deque
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
+from gcs.mavlink.codec import Codec
 from gcs.record.tlog import frames_in
-from gcs.wire.codec import Codec
-from vehicle_sim.passage import Passage
+from vehicle_sim.faults.interface import Passage
 
 REMEMBERED = 64  # genuine datagrams that may be imitated
 

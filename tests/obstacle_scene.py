@@ -5,15 +5,15 @@ import math
 import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
-from gcs.obstacles.known import known_obstacles
-from gcs.obstacles.obstacle_map import ObstacleMap
-from gcs.obstacles.scans import SensorModel
-from gcs.telemetry import detection
-from idc_controller.estimate.measurements import Attitude, Position
-from idc_controller.estimate.surface_points import SurfacePoints, joined
+from gcs.mavlink.telemetry import detection
+from gcs.mission.known_obstacles import known_obstacles
+from idc_controller.estimation.measurements import Attitude, Position
+from idc_controller.perception.obstacle_map import ObstacleMap
+from idc_controller.perception.scan_assembly import SensorModel
+from idc_controller.perception.surfaces.points import SurfacePoints, joined
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
-from vehicle_sim.obstacle_bodies import Obstacle
-from vehicle_sim.range_sensor import RangeSensor
+from vehicle_sim.world.obstacle_bodies import Obstacle
+from vehicle_sim.world.range_sensor import RangeSensor
 
 REACH, NOISE = 10.0, 0.05
 POSITION_NOISE, ATTITUDE_NOISE = 0.02, math.radians(0.2)

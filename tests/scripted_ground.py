@@ -5,10 +5,10 @@ import socket
 
 import pymavlink.dialects.v20.common as mavlink
 
-from gcs.setpoints import attitude_target
-from gcs.wire import px4
-from gcs.wire.codec import Codec
-from gcs.wire.lockstep import Done, decode_tick
+from gcs.mavlink import px4
+from gcs.mavlink.codec import Codec
+from gcs.mavlink.lockstep import Done, decode_tick
+from gcs.mavlink.setpoints import attitude_target
 
 INTERVAL = 0.05
 GROUND = ("127.0.0.1", 1)

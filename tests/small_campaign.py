@@ -2,8 +2,8 @@
 
 from flight_in_process import short_figure
 
-from gcs.fault_campaign.campaign_file import read_campaign
-from gcs.fault_campaign.sweep import flights_of
+from gcs.campaign.faults.campaign_file import read_campaign
+from gcs.campaign.faults.sweep import flights_of
 
 CAMPAIGN = """
 [campaign]

@@ -5,7 +5,7 @@ import pytest
 from flight_in_process import Rehearsal, check_within_limits, short_figure
 
 from gcs.mission.read import read_mission
-from idc_controller.estimate.adaptation import LEVELS, Adaptation
+from idc_controller.estimation.health.noise_adaptation import LEVELS, Adaptation
 
 KEYS = tuple(range(10))
 SIZES = np.full(10, 5)

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from idc_controller.estimate.agility import AHEAD, Agility, AgilitySettings
-from idc_controller.estimate.motion_bank import BankSettings, MotionBank, MotionModels
+from idc_controller.perception.manoeuvre import AHEAD, Agility, AgilitySettings
+from idc_controller.perception.motion_imm import BankSettings, MotionBank, MotionModels
 
 SETTINGS = AgilitySettings()
 SIGMA = 0.03

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from flight_in_process import HOP, Rehearsal, system_file
 
-from gcs.fault_campaign.detection import detection, first_start
+from gcs.campaign.faults.detection import detection, first_start
 from gcs.flight.alarms import QUIET, AlarmBook, Events
+from gcs.mavlink.link_statistics import PATIENCE, LinkStatistics
 from gcs.mission.model import Fault
 from gcs.mission.read import read_mission
 from gcs.record.tables import ALARM_COLUMNS, read_text_table
-from gcs.wire.link_statistics import PATIENCE, LinkStatistics
-from idc_controller.estimate.consistency import REFUSALS, Consistency
-from idc_controller.estimate.measurements import PAYLOAD, Attitude, Position
+from idc_controller.estimation.health.consistency import REFUSALS, Consistency
+from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
 from vehicle_sim.faults import FaultPassage
 
 KEYS = ((PAYLOAD, Position), (0, Position), (1, Position), (1, Attitude))

@@ -1,6 +1,7 @@
-"""Imports run one way only: idc_controller <- gcs <- vehicle_sim, and PyBullet stays in the simulator."""
+"""Imports run one way only: idc_controller <- gcs <- vehicle_sim, along the edges of a table, without a cycle."""
 
 import ast
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -16,6 +17,63 @@ FORBIDDEN = {
     "gcs": {"vehicle_sim", "pybullet"},
     "vehicle_sim": set(),
 }  # fmt: skip
+
+ALLOWED = {
+    # Which sub-package may import which others. Another edge is a decision about the structure: make it here.
+    "gcs.app": (
+        "gcs.campaign gcs.config gcs.drivers gcs.faults gcs.flight gcs.mavlink gcs.mission gcs.record "
+        "gcs.reproduce idc_controller.guidance idc_controller.paper idc_controller.safety"
+    ),
+    "gcs.campaign": (
+        "gcs.config gcs.faults gcs.flight gcs.mission gcs.record idc_controller.geometry idc_controller.guidance"
+    ),
+    "gcs.config": "",
+    "gcs.drivers": "gcs.flight gcs.mavlink",
+    "gcs.faults": "gcs.config",
+    "gcs.flight": (
+        "gcs.config gcs.mavlink gcs.mission idc_controller.control idc_controller.estimation "
+        "idc_controller.geometry idc_controller.guidance idc_controller.model idc_controller.perception "
+        "idc_controller.safety idc_controller.trajectory"
+    ),
+    "gcs.mavlink": "idc_controller.estimation idc_controller.perception",
+    "gcs.mission": "gcs.config gcs.faults idc_controller.geometry idc_controller.perception",
+    "gcs.record": "gcs.flight idc_controller.control idc_controller.perception",
+    "gcs.reproduce": (
+        "gcs.campaign gcs.config gcs.flight gcs.record idc_controller.estimation idc_controller.geometry "
+        "idc_controller.model idc_controller.paper idc_controller.safety idc_controller.trajectory"
+    ),
+    "idc_controller.control": (
+        "idc_controller.estimation idc_controller.model idc_controller.safety idc_controller.trajectory"
+    ),
+    "idc_controller.estimation": "idc_controller.model idc_controller.trajectory",
+    "idc_controller.geometry": "",
+    "idc_controller.guidance": "idc_controller.geometry idc_controller.trajectory",
+    "idc_controller.model": "",
+    "idc_controller.paper": (
+        "idc_controller.control idc_controller.estimation idc_controller.geometry idc_controller.model "
+        "idc_controller.safety"
+    ),
+    "idc_controller.perception": "idc_controller.estimation idc_controller.geometry",
+    "idc_controller.safety": (
+        "idc_controller.estimation idc_controller.geometry idc_controller.guidance idc_controller.model "
+        "idc_controller.trajectory"
+    ),
+    "idc_controller.trajectory": "idc_controller.model",
+    "vehicle_sim.app": (
+        "gcs.app gcs.config gcs.faults gcs.mavlink gcs.mission gcs.record vehicle_sim.faults vehicle_sim.swarm "
+        "vehicle_sim.world"
+    ),
+    "vehicle_sim.autopilot": "gcs.mavlink idc_controller.trajectory vehicle_sim.world",
+    "vehicle_sim.faults": "gcs.config gcs.faults gcs.mavlink gcs.mission gcs.record vehicle_sim.world",
+    "vehicle_sim.mavlink": "gcs.mavlink vehicle_sim.autopilot vehicle_sim.world",
+    "vehicle_sim.swarm": (
+        "gcs.config gcs.mavlink gcs.mission vehicle_sim.autopilot vehicle_sim.faults vehicle_sim.mavlink "
+        "vehicle_sim.world"
+    ),
+    "vehicle_sim.world": "gcs.mission gcs.record idc_controller.model",
+}
+COMMON = {"idc_controller.errors", "idc_controller.parameters", "idc_controller.rotations", "gcs.errors"}
+"""Modules beside the sub-packages that everything above them may import."""
 
 
 def imported(source):
@@ -62,10 +120,55 @@ def test_pybullet_is_imported_by_the_simulator_only():
     [
         "import pybullet",
         "import pybullet_data as d, pybullet as p",
-        "from vehicle_sim.world import World",
-        "def f():\n    import vehicle_sim.world",
-        "import importlib\nimportlib.import_module('vehicle_sim.world')",
+        "from vehicle_sim.world.world import World",
+        "def f():\n    import vehicle_sim.world.world",
+        "import importlib\nimportlib.import_module('vehicle_sim.world.world')",
     ],
 )
 def test_the_check_can_fail(source):
     assert violations("gcs", "x.py", source)
+
+
+def sub_packages_imported(path):
+    """Sub-packages of the project that the module at ``path`` imports, each with the line."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
+            names = [f"{node.module}.{alias.name}" for alias in node.names]
+        elif isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        else:
+            continue
+        for name in names:
+            top, _, rest = name.partition(".")
+            if top in FORBIDDEN and rest:
+                yield f"{top}.{rest.partition('.')[0]}", node.lineno
+
+
+@pytest.mark.parametrize("package", ALLOWED)
+def test_sub_package_imports_only_what_the_table_allows(package):
+    top, _, name = package.partition(".")
+    place = ROOT / top / name
+    files = [place.with_suffix(".py")] if place.with_suffix(".py").exists() else sorted(place.rglob("*.py"))
+    assert files
+    allowed = {*ALLOWED[package].split(), package} | COMMON
+    found = [
+        f"{path.relative_to(ROOT)}:{line} imports {name}"
+        for path in files
+        for name, line in sub_packages_imported(path)
+        if name not in allowed
+    ]
+    assert not found, "\n".join(found)
+
+
+def test_every_sub_package_is_in_the_table():
+    folders = {
+        f"{top}.{place.name}"
+        for top in FORBIDDEN
+        for place in (ROOT / top).iterdir()
+        if (place / "__init__.py").exists()
+    }
+    assert folders == {package for package in ALLOWED if package != "vehicle_sim.swarm"}
+
+
+def test_sub_packages_have_no_cycle():
+    [*TopologicalSorter({package: allowed.split() for package, allowed in ALLOWED.items()}).static_order()]

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from idc_controller.rotations import quaternion_from_euler
-from vehicle_sim.attitude_control import AttitudeController
-from vehicle_sim.hold_control import HoldPlan, attitude_of_force
-from vehicle_sim.sensors import Measurement, NavigationSensor, SensorNoise
+from vehicle_sim.autopilot.attitude_control import AttitudeController
+from vehicle_sim.autopilot.hold_control import HoldPlan, attitude_of_force
+from vehicle_sim.world.sensors import Measurement, NavigationSensor, SensorNoise
 
 LEVEL = (1.0, 0.0, 0.0, 0.0)
 

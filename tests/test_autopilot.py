@@ -8,13 +8,13 @@ import pytest
 from flying import AIRFRAME, ONBOARD_EVERY, Body
 from scipy.linalg import expm
 
-from gcs.wire import px4
+from gcs.mavlink import px4
 from idc_controller.rotations import euler_from_quaternion, quaternion_from_euler
-from vehicle_sim.attitude_control import Quaternion
-from vehicle_sim.autopilot import Autopilot
-from vehicle_sim.parameter_table import vehicle_parameters
-from vehicle_sim.sensors import Measurement, SensorNoise
-from vehicle_sim.setpoints import AttitudeSetpoint
+from vehicle_sim.autopilot.attitude_control import Quaternion
+from vehicle_sim.autopilot.autopilot import Autopilot
+from vehicle_sim.autopilot.parameter_table import vehicle_parameters
+from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
+from vehicle_sim.world.sensors import Measurement, SensorNoise
 
 LEVEL = (1.0, 0.0, 0.0, 0.0)
 STANDING = Measurement(0.0, LEVEL, (0.0,) * 3, (0.0,) * 3, (0.0,) * 3)

@@ -8,11 +8,11 @@ import pytest
 from flight_in_process import short_figure
 from small_campaign import CAMPAIGN, campaign_file, flights
 
-from gcs.cli import main
+from gcs.app.cli import main
+from gcs.campaign.faults.base_mission import read_base
+from gcs.campaign.faults.campaign import FaultCampaign, FaultCampaignOptions
+from gcs.campaign.faults.campaign_file import read_campaign
 from gcs.config import UnusableFile
-from gcs.fault_campaign.base_mission import read_base
-from gcs.fault_campaign.campaign import FaultCampaign, FaultCampaignOptions
-from gcs.fault_campaign.campaign_file import read_campaign
 from gcs.mission import Fault, read_mission
 from gcs.mission.model import Limits
 

@@ -8,10 +8,10 @@ import pytest
 from scipy.stats import binomtest
 from small_campaign import OUTSIDE, SUMMARY, flights
 
-from gcs.fault_campaign.outcome import draw_matrix, outcome_table
-from gcs.fault_campaign.result import COLUMNS, NOT_FLOWN, VERDICTS, evaluate, stop_time, team_stop
-from gcs.fault_campaign.tables import interval, rates_of, write_tables
-from gcs.side_by_side import Ended
+from gcs.campaign.faults.outcome import draw_matrix, outcome_table
+from gcs.campaign.faults.result import COLUMNS, NOT_FLOWN, VERDICTS, evaluate, stop_time, team_stop
+from gcs.campaign.faults.tables import interval, rates_of, write_tables
+from gcs.campaign.process_pool import Ended
 
 
 def results(tmp_path, within, outside=0, **figures):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from idc_controller.plan.chain import Chain
+from idc_controller.trajectory.integrator_chain import Chain
 
 CHAINS = [Chain(), Chain(0.05, (1, 2, 3)), Chain(0.2, (1,)), Chain(0.1, (4, 1, 4))]
 

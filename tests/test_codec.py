@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gcs.wire import px4
-from gcs.wire.codec import BAD_FRAMES_MAX, DATAGRAM_LIMIT, Codec, gather
+from gcs.mavlink import px4
+from gcs.mavlink.codec import BAD_FRAMES_MAX, DATAGRAM_LIMIT, Codec, gather
 
 
 def attitude(stamp: int = 7) -> mavlink.MAVLink_attitude_quaternion_message:

@@ -9,22 +9,22 @@ import numpy as np
 import pytest
 from course_results import result_of
 
-from gcs.cli import main
-from gcs.courses import campaign as campaigns
-from gcs.courses.campaign import Campaign, CampaignOptions
-from gcs.courses.flights import COLUMNS, FlightPlan, evaluate, fly_course
-from gcs.courses.generator import KINDS, RandomCourse, generate
-from gcs.courses.moving import MOTIONS, displacement, motion_for, top_speed
-from gcs.courses.outcome import draw_distribution, from_bad_end, outcome_table
-from gcs.courses.schedule import Schedule, arrival
+from gcs.app.cli import main
+from gcs.campaign.courses import campaign as campaigns
+from gcs.campaign.courses.campaign import Campaign, CampaignOptions
+from gcs.campaign.courses.flights import COLUMNS, FlightPlan, evaluate, fly_course
+from gcs.campaign.courses.generator import KINDS, RandomCourse, generate
+from gcs.campaign.courses.moving import MOTIONS, displacement, motion_for, top_speed
+from gcs.campaign.courses.outcome import draw_distribution, from_bad_end, outcome_table
+from gcs.campaign.courses.schedule import Schedule, arrival
+from gcs.campaign.process_pool import Ended
 from gcs.errors import UnusableInput
 from gcs.flight.spool import SPOOL_UP
 from gcs.mission import Lissajous, Sphere, mover, read_mission, rest_position
 from gcs.record.run_folder import open_run_folder
 from gcs.record.tables import truth_columns
-from gcs.side_by_side import Ended
-from idc_controller.barrier.obstacles import PredictedObstacle, Shape
-from idc_controller.plan.detour import Formation, first_conflict
+from idc_controller.geometry.shapes import PredictedObstacle, Shape
+from idc_controller.guidance.detour import Formation, first_conflict
 
 FORMATION = Formation(1.0, 3.45, 0.25)
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from idc_controller.estimate.dead_reckoning import WINDOW, DeadReckoning, Group
-from idc_controller.estimate.measurements import PAYLOAD, Attitude, Position
+from idc_controller.estimation.health.dead_reckoning import WINDOW, DeadReckoning, Group
+from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
 from idc_controller.rotations import quaternion_from_euler, quaternion_product
 
 VEHICLES = 4

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 import shapely
 
-from idc_controller.barrier.obstacles import PredictedObstacle, Shape
 from idc_controller.errors import TrajectoryError
-from idc_controller.plan.detour import Formation, Room, find_detour, first_conflict
+from idc_controller.geometry.shapes import PredictedObstacle, Shape
+from idc_controller.guidance.detour import Formation, Room, find_detour, first_conflict
 
 FORMATION = Formation(radius=1.1, above=3.75, below=0.25)
 MARGIN = 0.5

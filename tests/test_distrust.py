@@ -5,9 +5,9 @@ from copy import copy
 import numpy as np
 import pytest
 
-from idc_controller.estimate.distrust import AGREES_FOR, REFUSED_FOR, Distrust, Half
-from idc_controller.estimate.measurement_model import Stack, _blocks
-from idc_controller.estimate.measurements import PAYLOAD, Attitude, Position
+from idc_controller.estimation.health.channel_isolation import AGREES_FOR, REFUSED_FOR, Distrust, Half
+from idc_controller.estimation.measurement_model import Stack, _blocks
+from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
 
 SOURCES = (PAYLOAD, 0, 1, 2, 3)
 

@@ -7,15 +7,15 @@ import pytest
 from flight_in_process import MISSIONS
 
 from gcs.config import read_system
-from gcs.setpoints import attitude_of
-from idc_controller.estimate.dead_reckoning import Group
-from idc_controller.estimate.estimator import Estimator, EstimatorSettings
-from idc_controller.estimate.measurements import PAYLOAD, Attitude, Position
+from gcs.mavlink.setpoints import attitude_of
+from idc_controller.estimation.estimator import Estimator, EstimatorSettings
+from idc_controller.estimation.health.dead_reckoning import Group
+from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
 from idc_controller.model.linear import LinearModel
-from idc_controller.plan.flatness import Load
-from idc_controller.plan.reference import Reference
-from idc_controller.plan.trajectory import RestTrajectory
 from idc_controller.rotations import quaternion_product
+from idc_controller.trajectory.flatness import Load
+from idc_controller.trajectory.reference import Reference
+from idc_controller.trajectory.trajectory import RestTrajectory
 
 MODEL = LinearModel(read_system(MISSIONS / "system.toml").parameters())
 P, LAYOUT = MODEL.parameters, MODEL.layout

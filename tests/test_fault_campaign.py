@@ -12,12 +12,12 @@ import pytest
 from flight_in_process import HOP
 from small_campaign import CAMPAIGN, OUTSIDE, SUMMARY, campaign_file
 
-from gcs.cli import main
+from gcs.app.cli import main
+from gcs.campaign.faults import campaign as campaigns
+from gcs.campaign.faults.campaign import FaultCampaign, FaultCampaignOptions
+from gcs.campaign.faults.campaign_file import read_campaign
+from gcs.campaign.process_pool import Ended, sole_flyer
 from gcs.errors import UnusableInput
-from gcs.fault_campaign import campaign as campaigns
-from gcs.fault_campaign.campaign import FaultCampaign, FaultCampaignOptions
-from gcs.fault_campaign.campaign_file import read_campaign
-from gcs.side_by_side import Ended, sole_flyer
 
 
 @pytest.fixture
@@ -134,7 +134,7 @@ def test_an_interrupt_keeps_the_results(tmp_path, flown, monkeypatch, capsys):
         campaign._fly(campaign.flights[0], None)
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("gcs.fault_campaign.command.show_progress", interrupted)
+    monkeypatch.setattr("gcs.app.commands.faults.show_progress", interrupted)
     assert main(["faults", str(campaign_file(tmp_path)), "--out", str(tmp_path / "out")]) == 130
     assert "interrupted with 6 flights to go" in capsys.readouterr().err
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from fault_passages import codec_frames, fault, passage, position, sent
 
-from gcs.wire.codec import Codec
+from gcs.mavlink.codec import Codec
 
 
 def test_loss_is_as_frequent_as_asked_for_and_independent():

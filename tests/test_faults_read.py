@@ -6,12 +6,12 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from gcs.cli import main
+from gcs.app.cli import main
+from gcs.app.fly import FlyOptions, prepare
 from gcs.errors import UnusableInput
 from gcs.faults import KINDS, read_settings
 from gcs.faults.listing import kinds_markdown, parameters
 from gcs.faults.record import notes_of
-from gcs.fly import FlyOptions, prepare
 from gcs.mission import Fault, describe, read_mission
 
 ROOT = Path(__file__).parents[1]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from fault_passages import STILL, TAKE_OFF, at, fault, passage
 
-from vehicle_sim.range_sensor import Detection, RangeSample
+from vehicle_sim.world.range_sensor import Detection, RangeSample
 
 
 def test_lost_sensors():

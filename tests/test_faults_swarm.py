@@ -14,11 +14,11 @@ from scripted_ground import ScriptedGround, exchange
 from gcs.faults.record import fault_notes
 from vehicle_sim.faults import FaultPassage, record_faults
 from vehicle_sim.faults.active import ActiveFault
+from vehicle_sim.faults.interface import Passage
 from vehicle_sim.faults.world import Wind, WorldFaults
-from vehicle_sim.passage import Passage
 from vehicle_sim.swarm import Swarm
-from vehicle_sim.truth_log import TruthLog
-from vehicle_sim.world import World
+from vehicle_sim.world.truth_log import TruthLog
+from vehicle_sim.world.world import World
 
 
 def lifted(*faults, seed=1, until=4.0, folder=None):

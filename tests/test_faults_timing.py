@@ -7,8 +7,8 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 import pytest
 from fault_passages import TAKE_OFF, at, codec_frames, fault, passage, position, sent
 
-from gcs.wire.codec import Codec
-from vehicle_sim.range_sensor import RangeSample
+from gcs.mavlink.codec import Codec
+from vehicle_sim.world.range_sensor import RangeSample
 
 
 @pytest.mark.parametrize(("share", "kept"), [(0.5, 50), (0.25, 25), (0.3, 30), (1.0, 100)])

@@ -7,7 +7,7 @@ import pytest
 from fault_passages import STILL, SYSTEM, TAKE_OFF, at, fault, passage, positions, told
 
 from gcs.faults import KINDS
-from vehicle_sim.range_sensor import Detection, RangeSample
+from vehicle_sim.world.range_sensor import Detection, RangeSample
 
 
 def test_bias_drift_scale_sign_frame_and_quantisation():

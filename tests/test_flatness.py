@@ -10,7 +10,7 @@ from test_linear_model import UNSYMMETRIC
 from gcs.config import read_system
 from idc_controller.model.linear import StateLayout
 from idc_controller.model.nonlinear import Inputs, SystemState, accelerations, hat, uav_positions
-from idc_controller.plan.flatness import Load, flat_reference
+from idc_controller.trajectory.flatness import Load, flat_reference
 
 CONFIG = read_system(MISSIONS / "system.toml")
 TIMES = np.linspace(0.3, 12.0, 14)

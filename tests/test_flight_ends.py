@@ -12,11 +12,11 @@ from programs import PATIENCE, GcsProcess, addresses_of, free_port, swarm_proces
 from pymavlink import mavutil
 
 from gcs.flight.phase import Phase
+from gcs.mavlink import px4
 from gcs.record.landing import is_set_down
 from gcs.record.modes import stops_after
-from gcs.wire import px4
-from idc_controller.plan.trajectory import RestTrajectory
-from vehicle_sim.passage import Passage
+from idc_controller.trajectory.trajectory import RestTrajectory
+from vehicle_sim.faults.interface import Passage
 
 
 def check_records_closed(folder):

@@ -3,14 +3,14 @@
 import pytest
 from flight_in_process import short_figure
 
+from gcs.campaign.testing import fault
 from gcs.faults.link import BandwidthCap, Jitter, Latency, Partition, Reordering
 from gcs.faults.sensors import AttitudeLost, PositionDrift, PositionLost, RatesLost
 from gcs.faults.values import Bias, Drift, NotANumber, Stuck, SwappedVehicles
 from gcs.faults.world import Wind
 from gcs.record.run_data import read_run
-from gcs.testing import fault
 
-pytest_plugins = ["gcs.pytest_plugin"]
+pytest_plugins = ["gcs.campaign.pytest_plugin"]
 
 START = 13.0  # s after take-off: on the way
 LIMITS = {"position_rmse": 0.15, "settle": 0.0, "payload_tilt_deg": 4.0, "uav_separation": 0.75}

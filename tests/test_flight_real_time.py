@@ -7,17 +7,17 @@ import pytest
 from flight_in_process import position_rmse, short_figure, truth_of
 from virtual_time import VirtualTime
 
+from gcs.app.fly import ground_station
 from gcs.drivers.connection import Connection
 from gcs.drivers.interrupt import Interrupt
 from gcs.drivers.realtime import run_in_real_time
-from gcs.fly import ground_station
 from gcs.mission.read import read_mission
 from gcs.record.recorder import FlightRecorder
-from vehicle_sim.drivers.ending import Ending
-from vehicle_sim.drivers.realtime import RealTimeDriver
-from vehicle_sim.drivers.sockets import SwarmSockets
+from vehicle_sim.app.ending import Ending
+from vehicle_sim.app.realtime import RealTimeDriver
+from vehicle_sim.app.sockets import SwarmSockets
 from vehicle_sim.swarm import Swarm
-from vehicle_sim.truth_log import TruthLog
+from vehicle_sim.world.truth_log import TruthLog
 
 GROUND, WORLD = "ground", "world"
 

@@ -6,10 +6,10 @@ from avoidance_scene import hull_of
 from paper_system import system
 from proxsuite import proxqp
 
-from idc_controller.barrier.formation import Formation
-from idc_controller.barrier.obstacles import PredictedObstacle, Shape
-from idc_controller.barrier.separation import separations
-from idc_controller.plan.flatness import Load, flat_forces
+from idc_controller.geometry.formation import Formation
+from idc_controller.geometry.shapes import PredictedObstacle, Shape
+from idc_controller.safety.separation import separations
+from idc_controller.trajectory.flatness import Load, flat_forces
 
 TEAMS = [3, 4, 6, 8]
 SHAPES = [Shape("sphere", 0.5), Shape("pole", 0.3, (0.0, 0.0, 12.0)), Shape("wall", size=(0.3, 4.0, 5.0), yaw=0.4)]

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from idc_controller.estimate.frozen import FrozenSensors
-from idc_controller.estimate.measurements import PAYLOAD, Attitude, MeasurementNoise, Position
+from idc_controller.estimation.health.stuck_sensor import FrozenSensors
+from idc_controller.estimation.measurements import PAYLOAD, Attitude, MeasurementNoise, Position
 
 NOISE = MeasurementNoise()
 UNIT = np.array([1.0, 0.0, 0.0, 0.0])

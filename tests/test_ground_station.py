@@ -4,12 +4,12 @@ import pymavlink.dialects.v20.common as mavlink
 import pytest
 from flight_in_process import MISSIONS, address_of
 
-from gcs.fly import ground_station
-from gcs.ground_station import GROUND_COMPONENT, GROUND_SYSTEM
+from gcs.app.fly import ground_station
+from gcs.flight.ground_station import GROUND_COMPONENT, GROUND_SYSTEM
+from gcs.mavlink.codec import Codec
+from gcs.mavlink.vehicle_link import CommandState
 from gcs.mission.read import read_mission
 from gcs.record.recorder import FlightRecorder
-from gcs.vehicle_link import CommandState
-from gcs.wire.codec import Codec
 
 ARM = mavlink.MAV_CMD_COMPONENT_ARM_DISARM
 

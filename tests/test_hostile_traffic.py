@@ -7,9 +7,9 @@ from flight_in_process import GROUND, Rehearsal, address_of, check_within_limits
 from hostile_messages import hostile_to_ground, hostile_to_vehicle
 from hostile_traffic import HostileTraffic, Traffic, with_random_contents
 
+from gcs.flight.ground_station import GROUND_SYSTEM
 from gcs.flight.phase import IN_THE_AIR
-from gcs.ground_station import GROUND_SYSTEM
-from gcs.wire import px4
+from gcs.mavlink import px4
 
 DATAGRAMS = 200_000  # to the vehicle, and as many to the ground
 EXCHANGES = 1500  # in which they come; the flight has some more

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from gcs.identities import STEPS, Identities
-from idc_controller.estimate.measurements import PAYLOAD, Attitude, Position
+from gcs.mavlink.id_check import STEPS, Identities
+from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
 
 PLACES = np.array([[0.7, 0.7, -5.0], [-0.7, 0.7, -5.0], [-0.7, -0.7, -5.0], [0.7, -0.7, -5.0]])
 NONE = np.zeros(3)

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from obstacle_scene import HERE, NOISE, Scene, map_of, messages_of, pole, sphere, wall
 
+from gcs.mavlink.telemetry import detection
 from gcs.mission.model import Pole, Sphere, Wall
-from gcs.telemetry import detection
-from idc_controller.estimate.measurements import Attitude, Position
+from idc_controller.estimation.measurements import Attitude, Position
 
 EVERYONE = frozenset(range(4))
 UNKNOWN = np.array([0.0, 6.0, -6.0])

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from idc_controller.estimate.measurement_history import MeasurementHistory
-from idc_controller.estimate.measurements import PAYLOAD, Attitude, Position
+from idc_controller.estimation.measurement_history import MeasurementHistory
+from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
 
 
 def position(time, source=0):

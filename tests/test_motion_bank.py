@@ -5,7 +5,7 @@ import pytest
 from filterpy.kalman import KalmanFilter
 from scipy.linalg import expm
 
-from idc_controller.estimate.motion_bank import BankSettings, MotionBank, MotionModels
+from idc_controller.perception.motion_imm import BankSettings, MotionBank, MotionModels
 
 MODELS = MotionModels(BankSettings())
 SIGMA = 0.03

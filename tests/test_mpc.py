@@ -16,12 +16,12 @@ from idc_controller.control.force_components import (
     state_in_force_components,
 )
 from idc_controller.control.mpc import ModelPredictiveController, MpcSettings
-from idc_controller.control.quadratic_program import ParametricQp
+from idc_controller.control.qp import ParametricQp
 from idc_controller.errors import ParameterError, SolverError
 from idc_controller.model.linear import LinearModel
-from idc_controller.plan.flatness import Load
-from idc_controller.plan.reference import Reference
-from idc_controller.plan.trajectory import RestTrajectory
+from idc_controller.trajectory.flatness import Load
+from idc_controller.trajectory.reference import Reference
+from idc_controller.trajectory.trajectory import RestTrajectory
 
 CONFIG = read_system(MISSIONS / "system.toml")
 MODEL = LinearModel(CONFIG.parameters())

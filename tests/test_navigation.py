@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from idc_controller.rotations import quaternion_product
-from vehicle_sim.navigation import FROZEN_AFTER, Navigation
-from vehicle_sim.sensors import Measurement
+from vehicle_sim.autopilot.navigation import FROZEN_AFTER, Navigation
+from vehicle_sim.world.sensors import Measurement
 
 STEP, LAG, NOISE = 0.004, 0.05, math.radians(0.2)
 NAN = (math.nan,) * 3

@@ -5,8 +5,8 @@ import pytest
 from avoidance_scene import Scene, pole, straight, wall
 from paper_system import system
 
-from idc_controller.barrier.navigator import Navigator, NavigatorSettings
-from idc_controller.plan.room import Formation, first_conflict
+from idc_controller.geometry.free_space import Formation, first_conflict
+from idc_controller.guidance.navigator import Navigator, NavigatorSettings
 
 ACROSS = wall("barrier", 10.0, 0.0, (0.3, 6.0, 12.0))
 CLOSED = wall("the long wall", 10.0, 0.0, (0.3, 400.0, 60.0))

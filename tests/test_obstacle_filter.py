@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from obstacle_scene import MOTIONS, NOISE, Scene, pole, random_motion, sphere, stop_and_go, wall
 
-from idc_controller.barrier.obstacles import Shape
-from idc_controller.estimate.motion_bank import BankSettings, MotionModels
-from idc_controller.estimate.obstacle_filter import ObstacleFilter
-from idc_controller.estimate.round_surface import RoundSurface
-from idc_controller.estimate.surface_distance import Bodies
+from idc_controller.geometry.distance import Bodies
+from idc_controller.geometry.shapes import Shape
+from idc_controller.perception.motion_imm import BankSettings, MotionModels
+from idc_controller.perception.obstacle_filter import ObstacleFilter
+from idc_controller.perception.surfaces.round import RoundSurface
 
 MODELS = MotionModels(BankSettings())
 PERIOD = 0.1

@@ -20,10 +20,10 @@ from obstacle_scene import (
 )
 
 from gcs.flight import stack
+from gcs.mavlink.telemetry import detection
 from gcs.mission import HarmonicMotion, Pole, Sphere, Wall
 from gcs.mission.read import read_mission
-from gcs.telemetry import detection
-from idc_controller.estimate.measurements import Attitude, Position
+from idc_controller.estimation.measurements import Attitude, Position
 from vehicle_sim.swarm import Swarm
 
 

@@ -16,7 +16,7 @@ from gcs.mission import (
     mover,
     read_mission,
 )
-from vehicle_sim.moving_obstacles import MovingObstacles
+from vehicle_sim.world.moving_obstacles import MovingObstacles
 
 SQUARE = ((0.0, 0.0, 0.0), (2.0, 0.0, 0.0), (2.0, 1.0, 0.0))
 

@@ -14,10 +14,10 @@ from obstacle_scene import (
     sphere,
 )
 
-from gcs.obstacles.scans import ScanInbox
-from gcs.telemetry import detection
-from idc_controller.estimate.measurements import Attitude, Position
-from vehicle_sim.range_sensor import Detection, RangeSample
+from gcs.mavlink.telemetry import detection
+from idc_controller.estimation.measurements import Attitude, Position
+from idc_controller.perception.scan_assembly import ScanInbox
+from vehicle_sim.world.range_sensor import Detection, RangeSample
 
 
 def test_what_a_vehicle_sees_that_is_not_where_it_says_is_placed_by_the_estimate():

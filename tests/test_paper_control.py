@@ -7,7 +7,7 @@ from scipy.linalg import solve_discrete_are
 
 from gcs.reproduce.controls import PaperControl, PaperVariant, formation_points, minimal_state
 from gcs.reproduce.scene import Sphere, printed_reference, shaped_figure, two_spheres
-from idc_controller.barrier.formation import Formation
+from idc_controller.geometry.formation import Formation
 from idc_controller.paper.avoidance import (
     Encounter,
     corrected_input,

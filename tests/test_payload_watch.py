@@ -7,8 +7,8 @@ import pytest
 from flight_in_process import MISSIONS
 
 from gcs.config import read_system
-from gcs.flight.payload_watch import PayloadWatch
-from idc_controller.plan.trajectory import RestTrajectory
+from gcs.flight.payload_monitor import PayloadWatch
+from idc_controller.trajectory.trajectory import RestTrajectory
 
 PARAMETERS = read_system(MISSIONS / "system.toml").parameters()
 HALF = float(PARAMETERS.payload_size[2]) / 2.0

@@ -10,13 +10,13 @@ from hypothesis import strategies as st
 from paper_system import system
 from proxsuite import proxqp
 
-import idc_controller.barrier.planner as planner_module
-from idc_controller.barrier.formation import Formation
-from idc_controller.barrier.obstacles import PredictedObstacle, Shape
-from idc_controller.barrier.planner import Planner, PlannerSettings
-from idc_controller.barrier.separation import separations
+import idc_controller.safety.planner as planner_module
 from idc_controller.errors import ParameterError
-from idc_controller.plan.chain import Chain
+from idc_controller.geometry.formation import Formation
+from idc_controller.geometry.shapes import PredictedObstacle, Shape
+from idc_controller.safety.planner import Planner, PlannerSettings
+from idc_controller.safety.separation import separations
+from idc_controller.trajectory.integrator_chain import Chain
 
 SETTINGS = PlannerSettings()
 K = SETTINGS.chain.stages

@@ -6,8 +6,8 @@ import pytest
 from avoidance_scene import Scene, estimate_at, pole, sphere, swinging, wall
 from paper_system import system
 
-from idc_controller.barrier.printed_filter import PrintedFilter
 from idc_controller.model.linear import LinearModel
+from idc_controller.paper.printed_filter import PrintedFilter
 
 
 @pytest.fixture(scope="module")

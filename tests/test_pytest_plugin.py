@@ -9,15 +9,15 @@ from pathlib import Path
 import pytest
 from flight_in_process import HOP, system_file
 
-from gcs import testing
+from gcs.campaign import testing
+from gcs.campaign.process_pool import Ended
+from gcs.campaign.testing import fault
 from gcs.errors import GcsError, UnusableInput
 from gcs.faults.link import PacketLoss
 from gcs.faults.values import Bias
 from gcs.mission import Fault, read_mission
-from gcs.side_by_side import Ended
-from gcs.testing import fault
 
-pytest_plugins = ["pytester", "gcs.pytest_plugin"]
+pytest_plugins = ["pytester", "gcs.campaign.pytest_plugin"]
 
 ROOT = Path(__file__).parents[1]
 SUMMARY = {"outcome": "completed", "contacts": 0, "limits": {"position_rmse": [0.02, 0.03, True]}}
@@ -53,7 +53,7 @@ def test_a_failed_test_keeps_its_flight(pytester, hop):
             flight = fly_with_faults({str(hop)!r}, faults, limits=dict(position_rmse=1e-6, settle=0.0), seed=2)
             assert flight.within_limits
     """)
-    result = pytester.runpytest_inprocess("-p", "gcs.pytest_plugin", "--fault-runs", "kept")
+    result = pytester.runpytest_inprocess("-p", "gcs.campaign.pytest_plugin", "--fault-runs", "kept")
     result.assert_outcomes(failed=1)
     result.stdout.fnmatch_lines(
         ["*flights with faults*", "*seed 2: outside limits (position_rmse*", "  run folder kept/*"]
@@ -139,20 +139,23 @@ def test_what_passed_is_removed(pytester, hop, flown):
     """)
     for path in hop.parent.glob("*.toml"):  # beside the test
         (pytester.path / path.name).write_text(path.read_text())
-    pytester.runpytest_inprocess("-p", "gcs.pytest_plugin", "-k", "True").assert_outcomes(passed=1)
+    pytester.runpytest_inprocess("-p", "gcs.campaign.pytest_plugin", "-k", "True").assert_outcomes(passed=1)
     assert not (pytester.path / "fault-test-failures").exists()
-    pytester.runpytest_inprocess("-p", "gcs.pytest_plugin").assert_outcomes(passed=1, failed=1)
+    pytester.runpytest_inprocess("-p", "gcs.campaign.pytest_plugin").assert_outcomes(passed=1, failed=1)
     [kept] = (pytester.path / "fault-test-failures").iterdir()
     assert "False" in kept.name
 
 
 def test_the_plugin_is_installed_with_the_package():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    assert project["entry-points"]["pytest11"] == {"gcs.pytest_plugin": "gcs.pytest_plugin"}
+    assert project["entry-points"]["pytest11"] == {"gcs.campaign.pytest_plugin": "gcs.campaign.pytest_plugin"}
 
 
 def test_the_plugin_takes_no_time_to_start():
     """Whoever has the package installed has the plugin in every run of pytest."""
-    code = "import sys, pytest; before = set(sys.modules); import gcs.pytest_plugin; print(*set(sys.modules) - before)"
+    code = (
+        "import sys, pytest; before = set(sys.modules); import gcs.campaign.pytest_plugin; "
+        "print(*set(sys.modules) - before)"
+    )
     run = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
-    assert set(run.stdout.split()) == {"gcs", "gcs.pytest_plugin"}
+    assert set(run.stdout.split()) == {"gcs", "gcs.campaign", "gcs.campaign.pytest_plugin"}

@@ -11,15 +11,15 @@ from obstacle_scene import pole, sphere, wall
 from scripted_ground import ScriptedGround, exchange
 
 from gcs.config import UnusableFile, default_system_path, read_system
+from gcs.mavlink.codec import Codec
 from gcs.mission import HarmonicMotion, Pole, Sphere, Wall
-from gcs.wire.codec import Codec
-from idc_controller.barrier.obstacles import Shape
-from idc_controller.estimate.surface_distance import Bodies
+from idc_controller.geometry.distance import Bodies
+from idc_controller.geometry.shapes import Shape
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
-from vehicle_sim.passage import Passage
-from vehicle_sim.range_sensor import RangeSensor
+from vehicle_sim.faults.interface import Passage
 from vehicle_sim.swarm import Swarm
-from vehicle_sim.visible_surface import visible_points
+from vehicle_sim.world.range_sensor import RangeSensor
+from vehicle_sim.world.visible_surface import visible_points
 
 CONFIG = read_system()
 REACH = 10.0

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from flight_in_process import HOP, system_file
 
-from gcs.fly import _result
+from gcs.app.fly import _result
 from gcs.mission.read import read_mission
 from gcs.record import landing as landings
 from gcs.record.landing import is_set_down, landing_figures
@@ -16,9 +16,9 @@ from gcs.record.modes import stops_after
 from gcs.record.run_data import read_run
 from gcs.record.run_folder import open_run_folder
 from idc_controller.rotations import quaternion_from_euler
-from vehicle_sim import world
-from vehicle_sim.truth_log import TruthLog
-from vehicle_sim.world_state import UavState, WorldState
+from vehicle_sim.world import world
+from vehicle_sim.world.truth_log import TruthLog
+from vehicle_sim.world.world_state import UavState, WorldState
 
 LEVEL, REST = (1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
 GROUND, PAD = -0.25, -0.30  # m, the centre of a payload that stands there

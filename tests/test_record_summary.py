@@ -17,9 +17,9 @@ from gcs.record.summary import summarise, within_limits, write_summary
 from gcs.record.summary_table import summary_table
 from gcs.record.tables import ESTIMATE_COLUMNS, REFERENCE_COLUMNS, STEP_COLUMNS, TableWriter
 from idc_controller.rotations import quaternion_from_euler
-from vehicle_sim.obstacle_bodies import Obstacle
-from vehicle_sim.truth_log import TruthLog
-from vehicle_sim.world_state import UavState, WorldState
+from vehicle_sim.world.obstacle_bodies import Obstacle
+from vehicle_sim.world.truth_log import TruthLog
+from vehicle_sim.world.world_state import UavState, WorldState
 
 LEVEL = (1.0, 0.0, 0.0, 0.0)
 REST = (0.0, 0.0, 0.0)

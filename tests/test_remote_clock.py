@@ -4,8 +4,8 @@ from itertools import pairwise
 
 import pytest
 
-from gcs.vehicle_link import VehicleLink
-from gcs.wire.clock import RemoteClock
+from gcs.mavlink.clock import RemoteClock
+from gcs.mavlink.vehicle_link import VehicleLink
 
 
 def test_a_clock_that_is_set_back_is_followed_at_once_and_late_datagrams_are_not_taken_for_it():

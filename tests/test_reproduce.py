@@ -10,10 +10,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from gcs.cli import main
+from gcs.app.cli import main
+from gcs.app.commands import reproduce as command
 from gcs.record.clearance import ObstacleTrack
 from gcs.record.run_data import RunData
-from gcs.reproduce import command, figures
+from gcs.reproduce import figures
 from gcs.reproduce.numbers import flight_numbers, model_numbers
 from gcs.reproduce.page import ABSENT, paper_text, rounded
 from gcs.reproduce.plan import plan

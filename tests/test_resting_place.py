@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from gcs.config import read_system
-from idc_controller.barrier.obstacles import PredictedObstacle, Shape, StandingObstacles
-from idc_controller.barrier.resting_place import CLEAR, RestingPlace
-from idc_controller.plan.stop import Braking
+from idc_controller.geometry.shapes import PredictedObstacle, Shape, StandingObstacles
+from idc_controller.guidance.resting_place import CLEAR, RestingPlace
+from idc_controller.trajectory.stop_plan import Braking
 
 PARAMETERS = read_system().parameters()
 #: Position, velocity, acceleration: 2 m/s north at 5 m.

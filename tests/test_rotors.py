@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from vehicle_sim.errors import SimulationError
-from vehicle_sim.rotors import Mixer, RotorGeometry, Rotors
+from vehicle_sim.world.errors import SimulationError
+from vehicle_sim.world.rotors import Mixer, RotorGeometry, Rotors
 
 GEOMETRY = RotorGeometry(thrust_max=30.0, rotor_speed_max=1000.0, arm_length=0.17, torque_to_thrust=0.016)
 MIXER = Mixer(GEOMETRY)

@@ -18,9 +18,9 @@ from avoidance_scene import (
 )  # fmt: skip
 from paper_system import system
 
-from idc_controller.barrier.planner import PlannerSettings
-from idc_controller.barrier.safety_filter import NEGLIGIBLE
-from idc_controller.plan.trajectory import RestTrajectory
+from idc_controller.safety.planner import PlannerSettings
+from idc_controller.safety.safety_filter import NEGLIGIBLE
+from idc_controller.trajectory.trajectory import RestTrajectory
 
 MARGIN = 0.5
 TOLERANCE = 0.02

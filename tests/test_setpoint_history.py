@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from idc_controller.estimate.setpoint_history import SetpointHistory
+from idc_controller.estimation.setpoint_history import SetpointHistory
 
 N = 2
 SECOND = [2, 3, 5]  # the second vehicle's tilt (north, east) and thrust

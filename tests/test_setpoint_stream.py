@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from idc_controller.rotations import quaternion_from_euler
-from vehicle_sim.setpoint_stream import HELD_FOR, MEAN_OVER, SetpointStream
-from vehicle_sim.setpoints import AttitudeSetpoint
+from vehicle_sim.autopilot.setpoint_stream import HELD_FOR, MEAN_OVER, SetpointStream
+from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
 
 PERIOD = 0.05
 

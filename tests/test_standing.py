@@ -5,7 +5,7 @@ import pytest
 from scipy.linalg import expm
 
 from gcs.config import read_system
-from idc_controller.control.standing import StandingTracker, standing_dynamics
+from idc_controller.control.ground_controller import StandingTracker, standing_dynamics
 from idc_controller.model.linear import LinearModel
 
 PERIOD = 0.05

@@ -7,14 +7,14 @@ from pathlib import Path
 import pytest
 from course_results import result_of
 
-from gcs.cli import main
+from gcs.app.cli import main
+from gcs.campaign.courses import campaign as campaigns
+from gcs.campaign.courses.flights import REQUIRED
+from gcs.campaign.courses.moving import top_speed
+from gcs.campaign.courses.text import system_text
+from gcs.campaign.studies.figures import draw_study, worst
+from gcs.campaign.studies.study import MOVING, STUDIES, STUDY_COLUMNS, StudyFlights, StudyOptions
 from gcs.config import default_system_path, read_system
-from gcs.courses import campaign as campaigns
-from gcs.courses.flights import REQUIRED
-from gcs.courses.moving import top_speed
-from gcs.courses.study import MOVING, STUDIES, STUDY_COLUMNS, StudyFlights, StudyOptions
-from gcs.courses.study_figures import draw_study, worst
-from gcs.courses.text import system_text
 from gcs.errors import UnusableInput
 from gcs.mission import read_mission
 
@@ -175,7 +175,7 @@ def test_the_command(tmp_path, flown, capsys):
 
 
 def test_an_interrupted_study_tells_what_there_is(tmp_path, flown, monkeypatch, capsys):
-    from gcs.courses import study_command
+    from gcs.app.commands import study as study_command
 
     def interrupted(flights, console, what):
         def ended(result):

@@ -10,13 +10,13 @@ import pytest
 from scripted_ground import GROUND, ScriptedGround, exchange
 
 from gcs.config import read_system
+from gcs.mavlink import px4
+from gcs.mavlink.codec import Codec
 from gcs.mission import HarmonicMotion, Home, LinearMotion, Pole, Sphere, Wall
-from gcs.wire import px4
-from gcs.wire.codec import Codec
-from vehicle_sim.errors import SimulationError, UnsupportedWorld
-from vehicle_sim.passage import Passage
+from vehicle_sim.faults.interface import Passage
 from vehicle_sim.swarm import Swarm
-from vehicle_sim.truth_log import TruthLog
+from vehicle_sim.world.errors import SimulationError, UnsupportedWorld
+from vehicle_sim.world.truth_log import TruthLog
 
 CONFIG = read_system()
 OBSTACLES = (

@@ -10,14 +10,14 @@ from programs import PATIENCE, process
 from scripted_ground import LockstepClient, ScriptedGround
 from test_swarm import CONFIG, rows
 
-from gcs.wire.codec import Codec
-from gcs.wire.lockstep import Done, decode_tick
-from vehicle_sim.drivers.ending import Ending
-from vehicle_sim.drivers.lockstep import LockstepDriver
-from vehicle_sim.drivers.realtime import LAG_MAX, RealTimeClock, RealTimeDriver
-from vehicle_sim.drivers.sockets import SwarmSockets
-from vehicle_sim.errors import SimulationError
+from gcs.mavlink.codec import Codec
+from gcs.mavlink.lockstep import Done, decode_tick
+from vehicle_sim.app.ending import Ending
+from vehicle_sim.app.lockstep import LockstepDriver
+from vehicle_sim.app.realtime import LAG_MAX, RealTimeClock, RealTimeDriver
+from vehicle_sim.app.sockets import SwarmSockets
 from vehicle_sim.swarm import Swarm
+from vehicle_sim.world.errors import SimulationError
 
 SYSTEM = CONFIG.parameters()
 

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from idc_controller.errors import TrajectoryError
-from idc_controller.plan.lissajous import LissajousCurve, LissajousTrajectory
-from idc_controller.plan.trajectory import Limits
+from idc_controller.trajectory.lissajous import LissajousCurve, LissajousTrajectory
+from idc_controller.trajectory.trajectory import Limits
 
 LIMITS = Limits(speed=4.5, acceleration=3.6, jerk=5.0, snap=6.0)
 CURVE = LissajousCurve((6.0, 3.0), -5.0)

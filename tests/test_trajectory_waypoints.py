@@ -8,11 +8,11 @@ from hypothesis import strategies as st
 from scipy.interpolate import BSpline
 
 from idc_controller.errors import TrajectoryError
-from idc_controller.plan.paths import Circle, Leg
-from idc_controller.plan.smoothing import smoothing_for
-from idc_controller.plan.spline import SplineTrajectory
-from idc_controller.plan.trajectory import Limits, RestTrajectory
-from idc_controller.plan.waypoints import WaypointTrajectory, fly_on
+from idc_controller.trajectory.paths import Circle, Leg
+from idc_controller.trajectory.smoothing import smoothing_for
+from idc_controller.trajectory.spline import SplineTrajectory
+from idc_controller.trajectory.trajectory import Limits, RestTrajectory
+from idc_controller.trajectory.waypoints import WaypointTrajectory, fly_on
 
 LIMITS = Limits(speed=1.5, acceleration=2.0, jerk=4.0, snap=6.0)
 ORIGIN = np.zeros(3)

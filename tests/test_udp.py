@@ -2,7 +2,7 @@ import socket
 from itertools import count
 from types import SimpleNamespace
 
-from gcs.wire.udp import DATAGRAMS_AT_ONCE, arrived
+from gcs.mavlink.udp import DATAGRAMS_AT_ONCE, arrived
 
 
 def test_what_has_arrived_comes_in_order() -> None:

@@ -21,7 +21,7 @@ from vehicle_bench import (
     command,
 )
 
-from gcs.wire import px4
+from gcs.mavlink import px4
 
 
 def test_arm_and_offboard_sequence(bench: Bench) -> None:

@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 
 from gcs.config import read_system
-from gcs.wire import px4
+from gcs.mavlink import px4
 from idc_controller.model.nonlinear import SystemState
 from idc_controller.rotations import euler_from_quaternion
-from vehicle_sim.airframe import Airframe
-from vehicle_sim.autopilot import Autopilot
-from vehicle_sim.parameter_table import vehicle_parameters
-from vehicle_sim.rotors import IDLE, Rotors
-from vehicle_sim.sensors import NavigationSensor, SensorNoise
-from vehicle_sim.setpoints import AttitudeSetpoint
-from vehicle_sim.world import World
+from vehicle_sim.autopilot.airframe import Airframe
+from vehicle_sim.autopilot.autopilot import Autopilot
+from vehicle_sim.autopilot.parameter_table import vehicle_parameters
+from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
+from vehicle_sim.world.rotors import IDLE, Rotors
+from vehicle_sim.world.sensors import NavigationSensor, SensorNoise
+from vehicle_sim.world.world import World
 
 NOISE = SensorNoise(position=0.02, attitude=math.radians(0.2), velocity=0.02, rates=0.005)
 

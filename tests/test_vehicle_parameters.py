@@ -11,8 +11,8 @@ from vehicle_bench import (
     Bench,
 )
 
-from gcs.wire import px4
-from vehicle_sim.parameter_table import SETPOINT_LOSS
+from gcs.mavlink import px4
+from vehicle_sim.autopilot.parameter_table import SETPOINT_LOSS
 
 
 def value_of(messages: list[Any]) -> dict[str, Any]:

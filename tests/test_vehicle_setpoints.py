@@ -16,8 +16,8 @@ from vehicle_bench import (
     attitude_target,
 )
 
-from gcs.setpoints import stop_plan_message
-from gcs.wire import px4
+from gcs.mavlink import px4
+from gcs.mavlink.setpoints import stop_plan_message
 
 
 @pytest.mark.parametrize(

@@ -10,8 +10,8 @@ from programs import PATIENCE, process
 from test_swarm import rows
 
 from gcs.config import default_system_path
-from gcs.wire.codec import Codec
-from vehicle_sim.cli import main
+from gcs.mavlink.codec import Codec
+from vehicle_sim.app.cli import main
 
 OPTIONS = ["vehicles", "mission", "config", "base-port", "realtime", "speed", "lockstep", "gui", "seed", "run-dir"]
 

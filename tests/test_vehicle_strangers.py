@@ -19,10 +19,10 @@ from vehicle_bench import (
     command,
 )
 
-from gcs.wire import px4
-from gcs.wire.codec import Codec
-from vehicle_sim.parameter_table import SETPOINT_LOSS
-from vehicle_sim.peers import REPLIES_MAX
+from gcs.mavlink import px4
+from gcs.mavlink.codec import Codec
+from vehicle_sim.autopilot.parameter_table import SETPOINT_LOSS
+from vehicle_sim.mavlink.peers import REPLIES_MAX
 
 
 def test_no_stranger_commands_a_controlled_vehicle(flying: Bench) -> None:

@@ -13,9 +13,9 @@ from vehicle_bench import (
     Bench,
 )
 
-from gcs.wire.codec import DATAGRAM_LIMIT
-from vehicle_sim.range_sensor import RangeSample
-from vehicle_sim.sensors import Measurement
+from gcs.mavlink.codec import DATAGRAM_LIMIT
+from vehicle_sim.world.range_sensor import RangeSample
+from vehicle_sim.world.sensors import Measurement
 
 
 def test_it_says_nothing_to_nobody_and_offers_itself_to_the_ground_address_with_heartbeats() -> None:

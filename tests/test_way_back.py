@@ -6,9 +6,9 @@ import pytest
 from gcs.record.run_data import read_run
 from gcs.record.tables import REFERENCE_COLUMNS, TableWriter
 from gcs.record.way_back import ways_back
-from vehicle_sim.obstacle_bodies import Obstacle
-from vehicle_sim.truth_log import TruthLog
-from vehicle_sim.world_state import UavState, WorldState
+from vehicle_sim.world.obstacle_bodies import Obstacle
+from vehicle_sim.world.truth_log import TruthLog
+from vehicle_sim.world.world_state import UavState, WorldState
 
 LEVEL, REST = (1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
 CORNERS = np.array([[x, y, -3.0] for x in (-0.5, 0.5) for y in (-0.5, 0.5)])

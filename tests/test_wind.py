@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from idc_controller.estimate.wind import WindEstimator
-from idc_controller.model.air import Air, box_coefficients
+from idc_controller.estimation.wind import WindEstimator
+from idc_controller.model.drag import Air, box_coefficients
 
 SIZE = np.array([1.0, 1.0, 0.5])
 PERIOD = 0.05

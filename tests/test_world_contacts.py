@@ -12,8 +12,8 @@ from idc_controller.model.nonlinear import (
     hover_state,
     uav_positions,
 )
-from vehicle_sim.errors import SimulationError
-from vehicle_sim.world import World
+from vehicle_sim.world.errors import SimulationError
+from vehicle_sim.world.world import World
 
 
 def test_uav_driven_into_a_sphere_counts_as_contact():

@@ -19,9 +19,9 @@ from idc_controller.model.nonlinear import (
     uav_velocities,
 )
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
-from vehicle_sim.errors import UnsupportedWorld
-from vehicle_sim.multibody import MAX_VEHICLES
-from vehicle_sim.world import World
+from vehicle_sim.world.errors import UnsupportedWorld
+from vehicle_sim.world.multibody import MAX_VEHICLES
+from vehicle_sim.world.world import World
 
 
 def displaced(parameters, y, altitude=20.0):

@@ -11,7 +11,7 @@ from idc_controller.model.nonlinear import (
     hover_state,
     uav_positions,
 )
-from vehicle_sim.world import World
+from vehicle_sim.world.world import World
 
 
 @pytest.mark.parametrize("parameters", [system(3), system(4), system(8), unequal()], ids=["3", "4", "8", "unequal"])

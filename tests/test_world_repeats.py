@@ -6,7 +6,7 @@ import pytest
 from paper_system import system
 from world_runs import run
 
-from vehicle_sim.world import World
+from vehicle_sim.world.world import World
 
 
 def scenario(world, look):

@@ -7,10 +7,10 @@ from typing import Any
 import pymavlink.dialects.v20.common as mavlink
 from flying import AIRFRAME, Body
 
-from gcs.wire import px4
-from gcs.wire.codec import Codec
-from vehicle_sim.sensors import Measurement
-from vehicle_sim.vehicle import Vehicle
+from gcs.mavlink import px4
+from gcs.mavlink.codec import Codec
+from vehicle_sim.mavlink.vehicle import Vehicle
+from vehicle_sim.world.sensors import Measurement
 
 GROUND, STRANGER = ("127.0.0.1", 40001), ("10.0.0.66", 40002)
 ACCEPTED, DENIED = mavlink.MAV_RESULT_ACCEPTED, mavlink.MAV_RESULT_DENIED

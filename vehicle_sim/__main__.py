@@ -2,7 +2,7 @@
 
 import sys
 
-from vehicle_sim.cli import main
+from vehicle_sim.app.cli import main
 
 if __name__ == "__main__":
     sys.exit(main())

@@ -7,21 +7,21 @@ from collections.abc import Sequence
 from functools import partial
 
 from gcs.config import SystemConfig
+from gcs.mavlink import px4
+from gcs.mavlink.address import Address
 from gcs.mission import Home as MissionHome
 from gcs.mission import Pole, Sphere, Wall
-from gcs.wire import px4
-from gcs.wire.address import Address
-from vehicle_sim.airframe import Airframe
-from vehicle_sim.moving_obstacles import MovingObstacles
-from vehicle_sim.passage import Passage
-from vehicle_sim.range_sensor import RangeSensor
-from vehicle_sim.rotors import IDLE, Four, Rotors
-from vehicle_sim.sensors import PAYLOAD_UNIT, NavigationSensor, SensorNoise
-from vehicle_sim.telemetry import Home
-from vehicle_sim.truth_log import TruthLog
-from vehicle_sim.vehicle import Vehicle
-from vehicle_sim.world import World
-from vehicle_sim.world_state import WorldState
+from vehicle_sim.autopilot.airframe import Airframe
+from vehicle_sim.faults.interface import Passage
+from vehicle_sim.mavlink.telemetry import Home
+from vehicle_sim.mavlink.vehicle import Vehicle
+from vehicle_sim.world.moving_obstacles import MovingObstacles
+from vehicle_sim.world.range_sensor import RangeSensor
+from vehicle_sim.world.rotors import IDLE, Four, Rotors
+from vehicle_sim.world.sensors import PAYLOAD_UNIT, NavigationSensor, SensorNoise
+from vehicle_sim.world.truth_log import TruthLog
+from vehicle_sim.world.world import World
+from vehicle_sim.world.world_state import WorldState
 
 TRUTH_RATE = 50  # Hz, at least
 REST_SPEED = 0.1  # m/s

@@ -7,8 +7,8 @@ import socket
 from collections.abc import Iterator
 
 from gcs.errors import UnusableInput
-from gcs.wire.address import Address
-from gcs.wire.udp import RECEIVE_BUFFER, arrived
+from gcs.mavlink.address import Address
+from gcs.mavlink.udp import RECEIVE_BUFFER, arrived
 
 
 class Connection:

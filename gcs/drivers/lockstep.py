@@ -1,4 +1,4 @@
-"""Lockstep: the world's clock is the ground's clock (see :mod:`gcs.wire.lockstep`)."""
+"""Lockstep: the world's clock is the ground's clock (see :mod:`gcs.mavlink.lockstep`)."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from collections.abc import Callable
 
 from gcs.drivers.connection import Connection
 from gcs.drivers.interrupt import Interrupt
-from gcs.ground_station import GroundStation
-from gcs.wire.address import Address
-from gcs.wire.lockstep import Done, Tick, decode_tick
+from gcs.flight.ground_station import GroundStation
+from gcs.mavlink.address import Address
+from gcs.mavlink.lockstep import Done, Tick, decode_tick
 
 ASK_AGAIN = 0.5  # s of wall time after which an unanswered join is repeated
 PATIENCE = 20.0  # s of wall time without a tick after which the world is taken for lost

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from gcs.drivers.connection import Connection
 from gcs.drivers.interrupt import Interrupt
-from gcs.ground_station import GroundStation
+from gcs.flight.ground_station import GroundStation
 
 LONGEST_WAIT = 0.1  # s of wall time, so that an interrupt is seen
 

@@ -10,22 +10,22 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gcs.flight.course import Course
+from gcs.flight.mission_trajectory import Course
 from gcs.flight.orders import Arming, Disarming, LandingAlone
 from gcs.flight.pad import Pad
-from gcs.flight.payload_watch import PayloadWatch
+from gcs.flight.payload_monitor import PayloadWatch
 from gcs.flight.phase import IN_THE_AIR, Phase
 from gcs.flight.spool import SpoolDown, spooling_up
 from gcs.flight.team import DropOut, Team
 from gcs.mission.model import Mission
 from idc_controller.control.controller import Decision, IntegratedDecisionController
-from idc_controller.estimate.estimate import Estimate
-from idc_controller.estimate.estimator import Estimator
-from idc_controller.estimate.measurements import Measurement
-from idc_controller.estimate.setpoint_history import Confirmation
-from idc_controller.plan.reference import Reference
-from idc_controller.plan.stop import Braking, StopPlan, stop_plan
-from idc_controller.plan.trajectory import RestTrajectory, Trajectory
+from idc_controller.estimation.estimate import Estimate
+from idc_controller.estimation.estimator import Estimator
+from idc_controller.estimation.measurements import Measurement
+from idc_controller.estimation.setpoint_history import Confirmation
+from idc_controller.trajectory.reference import Reference
+from idc_controller.trajectory.stop_plan import Braking, StopPlan, stop_plan
+from idc_controller.trajectory.trajectory import RestTrajectory, Trajectory
 
 Array = NDArray[np.float64]
 
@@ -65,7 +65,7 @@ class Flight:
         stopwatch: Callable[[], float],
         brake: Callable[[float, Array], Braking] = lambda time, state: Braking(),
     ) -> None:
-        """``brake``: how vehicles that hear no more are to stop, see :func:`~idc_controller.plan.stop.stop_plan`."""
+        """``brake``: the stop of a vehicle without set-points, see :mod:`idc_controller.trajectory.stop_plan`."""
         self._brake = brake
         self.mission, self.team = mission, team
         self.estimator, self.controller = estimator, controller

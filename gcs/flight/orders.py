@@ -7,7 +7,7 @@ from typing import NamedTuple
 import pymavlink.dialects.v20.common as mavlink
 
 from gcs.flight.team import Team
-from gcs.wire import px4
+from gcs.mavlink import px4
 
 ARM_TIMEOUT = 12.0  # s
 DISARM_TIMEOUT = 10.0  # s: the heartbeat that tells it comes once a second, and may be lost

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from idc_controller.estimate.measurements import PAYLOAD, Measurement, Position
+from idc_controller.estimation.measurements import PAYLOAD, Measurement, Position
 
 Array = NDArray[np.float64]
 

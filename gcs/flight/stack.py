@@ -9,21 +9,21 @@ from dataclasses import asdict
 import numpy as np
 
 from gcs.config import SystemConfig
+from gcs.mission.known_obstacles import map_of
 from gcs.mission.model import Mission
-from gcs.obstacles.known import map_of
-from gcs.obstacles.obstacle_map import ObstacleMap
-from gcs.obstacles.scans import SensorModel
-from idc_controller.barrier.navigator import NavigatorSettings
-from idc_controller.barrier.obstacles import ObstacleSource
-from idc_controller.barrier.planner import PlannerSettings
-from idc_controller.barrier.safety_filter import AvoidanceFilter
 from idc_controller.control.controller import ControllerSettings, IntegratedDecisionController
 from idc_controller.control.mpc import ModelPredictiveController, MpcSettings, MpcWeights
-from idc_controller.control.safety import SafetyFilter
-from idc_controller.estimate.estimator import Estimator, EstimatorSettings
-from idc_controller.estimate.measurements import MeasurementNoise
+from idc_controller.estimation.estimator import Estimator, EstimatorSettings
+from idc_controller.estimation.measurements import MeasurementNoise
+from idc_controller.geometry.shapes import ObstacleSource
+from idc_controller.guidance.navigator import NavigatorSettings
 from idc_controller.model.linear import LinearModel
-from idc_controller.plan.trajectory import Limits
+from idc_controller.perception.obstacle_map import ObstacleMap
+from idc_controller.perception.scan_assembly import SensorModel
+from idc_controller.safety.filter_protocol import SafetyFilter
+from idc_controller.safety.planner import PlannerSettings
+from idc_controller.safety.safety_filter import AvoidanceFilter
+from idc_controller.trajectory.trajectory import Limits
 
 
 def linear_model(config: SystemConfig) -> LinearModel:

@@ -9,8 +9,8 @@ import numpy as np
 import pymavlink.dialects.v20.common as mavlink
 from numpy.typing import NDArray
 
-from gcs.vehicle_link import Command, CommandState, VehicleLink
-from gcs.wire import px4
+from gcs.mavlink import px4
+from gcs.mavlink.vehicle_link import Command, CommandState, VehicleLink
 from idc_controller.parameters import SystemParameters
 
 Array = NDArray[np.float64]

@@ -26,8 +26,8 @@ from idc_controller.rotations import quaternion_from_euler
 if TYPE_CHECKING:
     from gcs.flight.alarms import Alarm
     from gcs.flight.flight import Flight, StepRecord
-    from gcs.obstacles.obstacle_map import ObstacleMap
     from idc_controller.control.controller import Decision
+    from idc_controller.perception.obstacle_map import ObstacleMap
 
 REFERENCE_INTERVAL = 0.02  # s, the grid of truth.csv
 OBSTACLE_INTERVAL = 0.1  # s

@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 
 from gcs.flight import stack
 from gcs.reproduce.scene import MARGIN, RADIUS, KnownSpheres, Sphere, configuration, printed_reference
-from idc_controller.barrier.formation import Formation
-from idc_controller.control.safety import NoObstacles, SafetyFilter
-from idc_controller.estimate.estimate import Estimate
+from idc_controller.estimation.estimate import Estimate
+from idc_controller.geometry.formation import Formation
 from idc_controller.model.linear import LinearModel, StateLayout
 from idc_controller.paper.avoidance import (
     Encounter,
@@ -27,9 +26,10 @@ from idc_controller.paper.plant import Plant, PlantState
 from idc_controller.paper.state_space import Layout
 from idc_controller.paper.tracking import Settings, ThrustTorqueMpc, Weights
 from idc_controller.parameters import SystemParameters
-from idc_controller.plan.flatness import Load, flat_reference
-from idc_controller.plan.trajectory import Trajectory
 from idc_controller.rotations import euler_from_quaternion, rotation_from_quaternion
+from idc_controller.safety.filter_protocol import NoObstacles, SafetyFilter
+from idc_controller.trajectory.flatness import Load, flat_reference
+from idc_controller.trajectory.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from gcs.config import SystemConfig, read_system
 from gcs.config.system import default_system_path
-from idc_controller.barrier.obstacles import PredictedObstacle, Shape
-from idc_controller.plan.lissajous import LissajousCurve, LissajousTrajectory
-from idc_controller.plan.paths import Leg
-from idc_controller.plan.trajectory import Limits, Trajectory
-from idc_controller.plan.waypoints import WaypointTrajectory
+from idc_controller.geometry.shapes import PredictedObstacle, Shape
+from idc_controller.trajectory.lissajous import LissajousCurve, LissajousTrajectory
+from idc_controller.trajectory.paths import Leg
+from idc_controller.trajectory.trajectory import Limits, Trajectory
+from idc_controller.trajectory.waypoints import WaypointTrajectory
 
 Array = NDArray[np.float64]
 

@@ -19,10 +19,10 @@ from typing import Any
 
 from threadpoolctl import threadpool_limits
 
+from gcs.campaign.process_pool import all_cores
 from gcs.errors import GcsError
 from gcs.reproduce.plan import Plan
 from gcs.reproduce.simulation import Case, Flown, simulate
-from gcs.side_by_side import all_cores
 
 LONGEST_FLIGHT = 900.0
 """s of wall time after which a flight is given up."""

@@ -1,8 +1,8 @@
 """The Integrated Decision Controller: reference and estimate in, set-points out (fig:schCont).
 
 Two seams keep it open. Any :class:`~idc_controller.control.tracker.Tracker` can stand in the MPC's place. A
-:class:`~idc_controller.control.safety.SafetyFilter` stands between the mission's trajectory and the tracker and may
-bend it to keep obstacles out of the hull.
+:class:`~idc_controller.safety.filter_protocol.SafetyFilter` stands between the mission's trajectory and the tracker,
+and deflects it to keep obstacles out of the hull.
 """
 
 from __future__ import annotations
@@ -14,17 +14,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from idc_controller.control.force_components import setpoints_from_force_components, state_in_force_components
-from idc_controller.control.safety import SafetyFilter, SafetyReport
-from idc_controller.control.standing import StandingTracker
+from idc_controller.control.ground_controller import StandingTracker
 from idc_controller.control.tracker import Tracker
-from idc_controller.estimate.estimate import Estimate
-from idc_controller.estimate.wind import WindEstimator
-from idc_controller.model.air import Air
+from idc_controller.estimation.estimate import Estimate
+from idc_controller.estimation.wind import WindEstimator
+from idc_controller.model.drag import Air
 from idc_controller.model.linear import LinearModel
 from idc_controller.parameters import SystemParameters
-from idc_controller.plan.flatness import FlatReference, Load, PayloadTrajectory
-from idc_controller.plan.reference import Reference
-from idc_controller.plan.trajectory import Trajectory
+from idc_controller.safety.filter_protocol import SafetyFilter, SafetyReport
+from idc_controller.trajectory.flatness import FlatReference, Load, PayloadTrajectory
+from idc_controller.trajectory.reference import Reference
+from idc_controller.trajectory.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 

@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 from scipy.linalg import block_diag, solve_discrete_are
 
 from idc_controller.control.force_components import inputs_in_force_components
-from idc_controller.control.quadratic_program import ParametricQp
+from idc_controller.control.qp import ParametricQp
 from idc_controller.control.tracker import TrackingOutput
 from idc_controller.errors import ParameterError, SolverError
 from idc_controller.model.linear import LinearModel, StateLayout
-from idc_controller.plan.flatness import FlatReference
+from idc_controller.trajectory.flatness import FlatReference
 
 Array = NDArray[np.float64]
 

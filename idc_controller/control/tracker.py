@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from idc_controller.plan.flatness import FlatReference
+from idc_controller.trajectory.flatness import FlatReference
 
 Array = NDArray[np.float64]
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag, solve_discrete_are
 
-from idc_controller.control.quadratic_program import ParametricQp
+from idc_controller.control.qp import ParametricQp
 from idc_controller.errors import SolverError
 from idc_controller.paper.state_space import Layout, discretised, minimal
 from idc_controller.parameters import SystemParameters

@@ -24,10 +24,10 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from avoidance_scene import STEP, avoidance, estimate_at, pole, sphere, straight
 from paper_system import system
 
-import idc_controller.barrier.planner as planner_module
+import idc_controller.safety.planner as planner_module
 from idc_controller.control.controller import ControllerSettings, IntegratedDecisionController
 from idc_controller.control.mpc import ModelPredictiveController, MpcSettings
-from idc_controller.control.quadratic_program import ParametricQp
+from idc_controller.control.qp import ParametricQp
 from idc_controller.model.linear import LinearModel
 
 OBSTACLES = (2, 10, 50, 200)

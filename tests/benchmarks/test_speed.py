@@ -26,12 +26,12 @@ from flying import AIRFRAME, Body  # noqa: E402
 from test_mpc import DEFAULT, STAGES, error_of  # noqa: E402
 
 from gcs.config import read_system  # noqa: E402
-from gcs.setpoints import attitude_target  # noqa: E402
-from gcs.wire.codec import Codec, gather  # noqa: E402
-from vehicle_sim.autopilot import Autopilot  # noqa: E402
-from vehicle_sim.parameter_table import vehicle_parameters  # noqa: E402
-from vehicle_sim.setpoints import AttitudeSetpoint  # noqa: E402
-from vehicle_sim.world import World  # noqa: E402
+from gcs.mavlink.codec import Codec, gather  # noqa: E402
+from gcs.mavlink.setpoints import attitude_target  # noqa: E402
+from vehicle_sim.autopilot.autopilot import Autopilot  # noqa: E402
+from vehicle_sim.autopilot.parameter_table import vehicle_parameters  # noqa: E402
+from vehicle_sim.autopilot.setpoints import AttitudeSetpoint  # noqa: E402
+from vehicle_sim.world.world import World  # noqa: E402
 
 RESULTS: dict[str, object] = {}
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from gcs.faults import link as kinds
 from vehicle_sim.faults.frames import frames
+from vehicle_sim.faults.impairment import OnOff, OrderedStage, Stage
+from vehicle_sim.faults.interface import Datagram
 from vehicle_sim.faults.schedule import TOLERANCE, Moment
-from vehicle_sim.faults.stage import OnOff, OrderedStage, Stage
-from vehicle_sim.passage import Datagram
 
 
 class PacketLoss(Stage):

@@ -7,7 +7,7 @@ from typing import Any
 
 from gcs.faults.record import FAULTS_FILE
 from gcs.record.run_folder import write_json
-from vehicle_sim.faults.passage import FaultPassage
+from vehicle_sim.faults.fault_injector import FaultPassage
 
 _TOLD = 1000  # occurrences that are listed
 

@@ -8,8 +8,8 @@ from vehicle_sim.faults.active import WORLD, ActiveFault
 from vehicle_sim.faults.schedule import Moment
 from vehicle_sim.faults.timing import stamp_age
 from vehicle_sim.faults.values import ValueEffect, change, noise_of
-from vehicle_sim.range_sensor import RangeSample
-from vehicle_sim.sensors import Measurement, Told
+from vehicle_sim.world.range_sensor import RangeSample
+from vehicle_sim.world.sensors import Measurement, Told
 
 OWN, TOLD, PAYLOAD, SCAN = "own", "told", "payload", "scan"
 

@@ -8,8 +8,8 @@ from gcs.faults import sensors as kinds
 from vehicle_sim.faults.active import ActiveFault
 from vehicle_sim.faults.samples import OWN, PAYLOAD, SCAN, TOLD, SampleStage
 from vehicle_sim.faults.schedule import Moment
-from vehicle_sim.range_sensor import RangeSample
-from vehicle_sim.sensors import Measurement, Told
+from vehicle_sim.world.range_sensor import RangeSample
+from vehicle_sim.world.sensors import Measurement, Told
 
 
 class _Lost(SampleStage):

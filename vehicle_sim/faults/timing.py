@@ -8,9 +8,9 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 from gcs.faults import timing as kinds
 from vehicle_sim.faults.active import ActiveFault
 from vehicle_sim.faults.frames import Frame, frames
+from vehicle_sim.faults.impairment import Stage
+from vehicle_sim.faults.interface import Datagram
 from vehicle_sim.faults.schedule import Moment
-from vehicle_sim.faults.stage import Stage
-from vehicle_sim.passage import Datagram
 
 #: Streams of measurements and of set-points: each message begins with its stamp.
 _STREAMED = frozenset(

@@ -9,10 +9,10 @@ import numpy as np
 
 from gcs.config import SystemConfig
 from gcs.faults import values as kinds
+from vehicle_sim.faults.impairment import OnOff
 from vehicle_sim.faults.schedule import Moment
-from vehicle_sim.faults.stage import OnOff
-from vehicle_sim.sensors import Measurement
-from vehicle_sim.world_state import Quaternion, Vector
+from vehicle_sim.world.sensors import Measurement
+from vehicle_sim.world.world_state import Quaternion, Vector
 
 LARGEST = 1e30  # finite values are kept below, so that they can be told in 32 bits whatever faults are combined
 _AXES = {"x": 0, "y": 1, "z": 2}

@@ -1,0 +1,1 @@
+"""The commands that fly many flights or none."""

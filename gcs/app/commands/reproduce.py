@@ -1,0 +1,169 @@
+"""``gcs reproduce``: its arguments, and the folder that it fills."""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+from gcs.app.arguments import number_of_jobs
+from gcs.errors import UnusableInput
+from gcs.mission.read import read_mission
+from gcs.record.run_data import read_run
+from gcs.record.run_folder import make_folder
+from gcs.reproduce import figures
+from gcs.reproduce.animation import animate
+from gcs.reproduce.numbers import matrices, numbers
+from gcs.reproduce.page import paper_text, rounded, write_numbers, write_page
+from gcs.reproduce.plan import Plan, plan
+from gcs.reproduce.work import Results, run
+
+DONE, INTERRUPTED = 0, 130
+
+DESCRIPTION = """\
+Regenerates the figures and numbers of the paper into one folder: as printed, as corrected, and with this project's
+controller on the same plant. Read DIR/index.html first.
+
+  gcs reproduce --quick                     within a minute: shorter simulations, no flights in PyBullet
+  gcs reproduce --out reproduction          everything, within 15 minutes on two cores
+
+numbers.json has every number that docs/paper.md quotes, matrices/ the matrices A and B as CSV. That a claim of the
+paper does not reproduce is a result, not a failure. Exit status: 0 done; 2 unusable input; 130 interrupted.
+"""
+COMPARED = ("printed", "corrected", "project")
+SHOWN = ("printed", "project")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The arguments of the command."""
+    parser.add_argument("--quick", action="store_true", help="within a minute: shorter, without the flights")
+    parser.add_argument(
+        "--out", type=Path, default=Path("reproduction"), metavar="DIR",
+        help="made if absent, refused if not empty (default: reproduction)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--jobs", type=number_of_jobs, default=None, metavar="J", help="at a time (default: auto, the cores)"
+    )
+    parser.add_argument(
+        "--missions", type=Path, default=Path("missions"), metavar="DIR",
+        help="folder of the mission files that are flown (default: missions)",
+    )  # fmt: skip
+    parser.set_defaults(run=run_command)
+
+
+def run_command(arguments: argparse.Namespace) -> int:
+    """Run the command; returns the exit status."""
+    chosen, out = plan(arguments.quick), arguments.out
+    # All that can be wrong is looked for before anything is written.
+    for mission, _ in chosen.flights.values():
+        read_mission(arguments.missions / mission)
+    make_folder(out)
+    if any(out.iterdir()):
+        raise UnusableInput(f"{out}: the folder is not empty")
+    console = Console(highlight=False, soft_wrap=True)
+    begin = time.monotonic()
+    try:
+        with _Progress(console, chosen) as progress:
+            results = run(chosen, arguments.missions, out, arguments.jobs, progress.done)
+            found = rounded(numbers(chosen, results))
+            write_numbers(out / "numbers.json", found)
+            (out / "paper.md").write_text(paper_text(found), encoding="utf-8")
+            _write_matrices(out / "matrices")
+            progress.done("numbers and matrices")
+            pictures = _draw(chosen, results, found, out, progress.done)
+    except KeyboardInterrupt:
+        Console(stderr=True, highlight=False).print(f"interrupted: {out} is not complete")
+        return INTERRUPTED
+    except OSError as error:
+        raise UnusableInput(f"{error.filename or out}: cannot be written: {error.strerror}") from None
+    page = write_page(out, found, pictures, time.monotonic() - begin)
+    console.print(_told(found), markup=False)
+    console.print(f"Results   {page}", markup=False)
+    return DONE
+
+
+def _write_matrices(folder: Path) -> None:
+    folder.mkdir()
+    for name, (matrix, rows, columns) in matrices().items():
+        with (folder / f"{name}.csv").open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            writer.writerow(["", *columns])
+            writer.writerows(
+                [row, *(repr(float(value)) for value in line)] for row, line in zip(rows, matrix, strict=True)
+            )
+
+
+def _draw(chosen: Plan, results: Results, found: dict[str, Any], out: Path, done: Callable[[str], None]) -> list[str]:
+    def simulations(section: str, names: tuple[str, ...]) -> dict[str, Any]:
+        return {name: results.simulations[section, name] for name in names}
+
+    without, spheres = "Without obstacles", "Two spheres, one of them moving"
+    drawings: dict[str, Callable[[Path], None]] = {
+        "trackxyz.png": lambda p: figures.draw_position(simulations("tracking", COMPARED), without, p),
+        "attrpy.png": lambda p: figures.draw_attitude(simulations("tracking", COMPARED), without, p),
+        "anim3d.png": lambda p: figures.draw_snapshot(simulations("tracking", SHOWN), without, p),
+        "trackObsxyz.png": lambda p: figures.draw_position(simulations("avoidance", COMPARED), spheres, p),
+        "attObsrpy.png": lambda p: figures.draw_attitude(simulations("avoidance", COMPARED), spheres, p),
+        "animObs3d.png": lambda p: figures.draw_snapshot(simulations("avoidance", SHOWN), spheres, p),
+        "sigmavsdev.png": lambda p: figures.draw_noise(found["noise_worst"], p),
+        "mass.png": lambda p: figures.draw_mass(found["mass"], p),
+        "margin.png": lambda p: figures.draw_margin(found["margin"], p),
+        "anim3d.gif": lambda p: animate(simulations("tracking", SHOWN), without, p, chosen.frames),
+        "animObs3d.gif": lambda p: animate(simulations("avoidance", SHOWN), spheres, p, chosen.frames),
+    }
+    course = {name: folder for name, folder in results.folders.items() if name.startswith("pole_course")}
+    if course:
+        runs = {name.removeprefix("pole_course_"): read_run(folder) for name, folder in course.items()}
+        drawings["gazObs.png"] = lambda p: figures.draw_course(runs, p)
+        drawings["payloadObsGaz.png"] = lambda p: figures.draw_course_position(runs, p)
+    for name, draw in drawings.items():
+        draw(out / name)
+        done(name)
+    return list(drawings)
+
+
+def _told(found: dict[str, Any]) -> str:
+    lines = []
+    for section in ("tracking", "avoidance"):
+        for name, n in found.get(section, {}).items():
+            rmse = n["rmse_m"]["total"]
+            told = f"RMSE {'-' if rmse is None else f'{rmse:.3f}'} m, roll {n['roll_max_deg']:.1f}, "
+            told += f"pitch {n['pitch_max_deg']:.1f} deg"
+            if "clearance_min_m" in n:
+                told += f", clearance {n['clearance_min_m']:.2f} m"
+            if n["lost_at_s"] is not None:
+                told += f", lost at {n['lost_at_s']:.2f} s"
+            lines.append(f"{section:<10} {name:<12} {told}")
+    return "\n".join(lines)
+
+
+class _Progress:
+    """A bar at a terminal; elsewhere one line for each thing done."""
+
+    def __init__(self, console: Console, chosen: Plan) -> None:
+        self._console = console
+        self._bar = Progress(
+            TextColumn("reproduce"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[last]}"),
+            TimeElapsedColumn(), console=console, transient=True, disable=not console.is_terminal,
+        )  # fmt: skip
+        drawings = 11 + (2 if chosen.flights else 0)
+        self._task = self._bar.add_task("", total=len(chosen.cases) + len(chosen.flights) + 1 + drawings, last="")
+
+    def done(self, name: str) -> None:
+        """One more."""
+        self._bar.update(self._task, advance=1, last=name)
+        if not self._console.is_terminal:
+            self._console.print(name, markup=False)
+
+    def __enter__(self) -> _Progress:
+        self._bar.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._bar.stop()

@@ -1,0 +1,239 @@
+"""``gcs fly``: a mission file, a swarm, a driver and a run folder become one flight with a summary."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import sys
+import time
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack, closing
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from gcs.drivers.connection import Connection
+from gcs.drivers.interrupt import Interrupt
+from gcs.drivers.lockstep import run_in_lockstep
+from gcs.drivers.realtime import run_in_real_time
+from gcs.drivers.simulator import Simulator, arguments_for
+from gcs.errors import GcsError, UnusableInput
+from gcs.flight import stack
+from gcs.flight.flight import Flight
+from gcs.flight.ground_station import GroundStation, Recorder
+from gcs.flight.team import Team
+from gcs.mavlink.address import Address, ConnectionUrl
+from gcs.mavlink.vehicle_link import VehicleLink
+from gcs.mission.faults import check_faults_of
+from gcs.mission.model import Mission
+from gcs.mission.read import read_mission
+from gcs.record.landing import is_set_down
+from gcs.record.recorder import FlightRecorder
+from gcs.record.run_folder import open_run_folder, write_manifest
+from gcs.record.summary import summarise, within_limits, write_summary
+from idc_controller.guidance.resting_place import RestingPlace
+from idc_controller.paper.printed_filter import PrintedFilter
+from idc_controller.safety.filter_protocol import NoObstacles, SafetyFilter
+
+DONE, OUTSIDE_LIMITS, UNUSABLE, INTERRUPTED = 0, 1, 2, 130
+
+
+@dataclass(frozen=True)
+class FlyOptions:
+    """What the command line of ``gcs fly`` asks for."""
+
+    mission: Path
+    config: Path | None = None
+    vehicles: int | None = None
+    seed: int | None = None
+    run_dir: Path | None = None
+    realtime: bool = False
+    speed: float = 1.0
+    controller: str = "idc"
+    connect: tuple[ConnectionUrl, ...] = ()
+
+
+@dataclass(frozen=True)
+class FlightResult:
+    """How a flight ended."""
+
+    run_dir: Path
+    mission: Mission
+    summary: dict[str, Any]
+    reason: str
+    interrupted: bool
+    flown: bool
+    """Whether take-off had begun."""
+
+    @property
+    def exit_code(self) -> int:
+        """The exit status of the command."""
+        if self.interrupted:
+            return INTERRUPTED
+        return DONE if self.summary["completed"] and within_limits(self.summary) else OUTSIDE_LIMITS
+
+
+def prepare(options: FlyOptions) -> Mission:
+    """Read the mission as it will be flown. Raises :class:`UnusableInput`."""
+    _check_urls(options)
+    mission = read_mission(options.mission, options.config)
+    vehicles = options.vehicles
+    if options.connect and not _listens(options):
+        if vehicles is not None and vehicles != len(options.connect):
+            raise UnusableInput(f"--vehicles {vehicles} does not agree with {len(options.connect)} URLs")
+        vehicles = len(options.connect)
+    if vehicles is not None:
+        mission = dataclasses.replace(mission, system=mission.system.with_vehicles(vehicles))
+    if options.seed is not None:
+        mission = dataclasses.replace(mission, seed=options.seed)
+    check_faults_of(mission)  # the number of vehicles may be another than the file's
+    return mission
+
+
+def _check_urls(options: FlyOptions) -> None:
+    urls = options.connect
+    if _listens(options):
+        if len(urls) > 1:
+            raise UnusableInput(f"--connect {urls[0]}: all vehicles offer themselves at one URL; name no other")
+        if not options.realtime:
+            raise UnusableInput(f"--connect {urls[0]}: vehicles offer themselves in real time only; add --realtime")
+    for i, url in enumerate(urls):
+        if url in urls[:i]:
+            raise UnusableInput(f"--connect {url}: named twice; every vehicle has an address of its own")
+
+
+def _listens(options: FlyOptions) -> bool:
+    """Whether the vehicles offer themselves to the ground, in place of the ground knowing where they are."""
+    return any(url.listens for url in options.connect)
+
+
+def fly(options: FlyOptions, mission: Mission, progress: Callable[[Flight], None]) -> FlightResult:
+    """Fly ``mission``; every record is closed however it ends.
+
+    Raises :class:`UnusableInput` before anything is started, and :class:`GcsError` when no world could be started.
+    """
+    run_dir = open_run_folder(mission.name, options.run_dir)
+    started = datetime.now(UTC)
+    write_manifest(run_dir, command=sys.argv, seed=mission.seed, mission=mission, system=mission.system, start=started)
+    with ExitStack() as resources:
+        connection = resources.enter_context(closing(Connection(_local_address(options.connect))))
+        simulator, addresses = _swarm(options, mission, run_dir, resources)
+        recorder = resources.enter_context(FlightRecorder(run_dir, started.timestamp()))
+        station = ground_station(mission, addresses, recorder, options.controller)
+        interrupt = resources.enter_context(Interrupt())
+        gone = simulator.gone if simulator is not None else lambda: None
+
+        wall = time.monotonic()
+
+        def tell() -> None:
+            nonlocal wall
+            if math.isnan(station.flight.takeoff_time):
+                wall = time.monotonic()
+            progress(station.flight)
+
+        try:
+            if options.realtime:
+                run_in_real_time(station, connection, interrupt, speed=options.speed, progress=tell, gone=gone)
+            else:
+                run_in_lockstep(
+                    station, connection, _clock_address(options, simulator), interrupt, progress=tell, gone=gone
+                )
+        except KeyboardInterrupt:
+            station.flight.give_up("interrupted twice: the vehicles were left to land on their own")
+            station.flight.interrupted = True
+    return _result(run_dir, mission, station, recorder.last_time, time.monotonic() - wall)
+
+
+def _result(run_dir: Path, mission: Mission, station: GroundStation, last_time: float, wall: float) -> FlightResult:
+    flight = station.flight
+    limits = dataclasses.asdict(mission.limits) if mission.limits is not None else None
+    begun = not math.isnan(flight.takeoff_time)
+    duration = last_time - flight.takeoff_time if begun else 0.0
+    summary = summarise(
+        run_dir,
+        completed=flight.completed,
+        outcome="completed" if flight.completed else "aborted" if flight.landed or not begun else "failed",
+        duration_s=duration,
+        real_time_factor=duration / wall if wall > 0.0 else None,
+        limits=limits,
+        obstacles=bool(mission.obstacles),
+    )
+    # By the clock of the records, as it may be before take-off.
+    summary["broken_off_s"] = None if math.isnan(flight.broken_off_time) else round(flight.broken_off_time, 6)
+    summary["alarms"] = len(station.watch.alarms)
+    # The ground may have lost sight of what the vehicles did, or be wrong about it: the truth decides.
+    if begun and (landing := summary["landing"]) is not None:
+        down = is_set_down(landing)
+        outcome = "failed" if not down else "completed" if flight.completed else "aborted"
+        summary |= {"outcome": outcome, "completed": outcome == "completed"}
+    if summary["contacts"]:
+        summary |= {"outcome": "collided", "completed": False}
+    write_summary(run_dir, summary)
+    return FlightResult(run_dir, mission, summary, flight.reason, flight.interrupted, begun)
+
+
+def ground_station(
+    mission: Mission, addresses: Sequence[Address | None], recorder: Recorder, controller: str = "idc"
+) -> GroundStation:
+    """The ground station that flies ``mission`` with the vehicles of the system ids 1 .. N at ``addresses``.
+
+    A vehicle whose address is None is flown from where it offers itself. ``controller``: ``idc`` avoids obstacles,
+    ``mpc`` only tracks, ``paper`` corrects the thrusts by the paper's own filter.
+    """
+    config = mission.system
+    model = stack.linear_model(config)
+    links = [VehicleLink(i, address) for i, address in enumerate(addresses, start=1)]
+    team = Team(links, model.parameters)
+    stopwatch = time.perf_counter
+    obstacle_map = stack.obstacle_map(mission)
+    safety: SafetyFilter = NoObstacles()
+    if controller == "idc":
+        safety = stack.avoidance(config, model, obstacle_map)
+    elif controller == "paper":
+        safety = PrintedFilter(model, obstacle_map, config.avoidance.margin)
+    flight = Flight(
+        mission, team, stack.estimator(config, model), stack.controller(config, model, safety, stopwatch), stopwatch,
+        brake=RestingPlace(model.parameters, obstacle_map),
+    )  # fmt: skip
+    return GroundStation(team, flight, 1.0 / config.rates.control, recorder, obstacle_map)
+
+
+def _swarm(
+    options: FlyOptions, mission: Mission, run_dir: Path, resources: ExitStack
+) -> tuple[Simulator | None, Sequence[Address | None]]:
+    """The vehicles' addresses, of a swarm that runs or of one that is started; None: where it offers itself."""
+    if _listens(options):
+        return None, [None] * mission.system.team.vehicles
+    if options.connect:
+        return None, [url.address for url in options.connect]
+    simulator = Simulator(
+        arguments_for(
+            mission=options.mission,
+            config=options.config,
+            vehicles=mission.system.team.vehicles,
+            seed=mission.seed,
+            run_dir=run_dir,
+            realtime=options.realtime,
+            speed=options.speed,
+        )
+    )
+    resources.enter_context(simulator)
+    return simulator, simulator.vehicles
+
+
+def _clock_address(options: FlyOptions, simulator: Simulator | None) -> Address:
+    if simulator is not None:
+        if simulator.clock_address is None:
+            raise GcsError("vehicle-sim does not tell its clock's address")
+        return simulator.clock_address
+    first = min(options.connect, key=lambda url: url.port)
+    return first.host, first.port - 1
+
+
+def _local_address(urls: Sequence[ConnectionUrl]) -> Address:
+    listening = [url for url in urls if url.listens]
+    if listening:
+        return listening[0].address
+    remote = [url for url in urls if not url.host.startswith("127.")]
+    return ("0.0.0.0" if remote else "127.0.0.1", 0)

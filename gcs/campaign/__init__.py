@@ -1,0 +1,1 @@
+"""Many flights: a process pool that survives a kill, plans of flights, tables of results."""

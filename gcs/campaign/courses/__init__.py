@@ -1,0 +1,1 @@
+"""Random obstacle courses."""

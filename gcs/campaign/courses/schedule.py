@@ -1,0 +1,80 @@
+"""When the payload is where if nothing is in the way, by the clock of the obstacles.
+
+That clock starts with take-off: when the first cradle lets go, which is while the rotors spool up and so before the
+course begins.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcs.flight.mission_trajectory import Course
+from gcs.flight.spool import SPOOL_UP
+from gcs.mission.model import RESTING_ALTITUDE, Mission
+from idc_controller.parameters import SystemParameters
+
+Array = NDArray[np.float64]
+
+PAD_OFFSET = 0.003
+"""m: what navigation noise leaves between the pad and home. A figure eight begins by flying that way, at rest at both
+ends, which takes seconds however short it is."""
+LAG = 0.138
+"""s from a set-point of the ground to the thrust in the world: a control step, the hold of a step, the motors' lag."""
+SAMPLE = 0.02
+LONGEST = 3600.0
+
+
+def course_start(parameters: SystemParameters) -> float:
+    """Time of the obstacles' clock at which the course begins (s)."""
+    own_weight = parameters.m * parameters.g / parameters.hover_thrust
+    release = SPOOL_UP * float(own_weight.min()) + LAG
+    return SPOOL_UP - release
+
+
+class Schedule:
+    """The undisturbed flight of ``mission``; times are the obstacles' (s)."""
+
+    def __init__(self, mission: Mission) -> None:
+        """Raises :class:`ValueError` for a mission that lasts longer than an hour."""
+        pad = np.array([PAD_OFFSET, -PAD_OFFSET, -RESTING_ALTITUDE])
+        self._course = Course(mission, pad, 0.0)
+        self.start = course_start(mission.system.parameters())
+        """When the climb begins."""
+        count = 4096
+        while True:  # a lazy course tells its end only when asked beyond it
+            elapsed: Array = SAMPLE * np.arange(count, dtype=np.float64)
+            positions = self._course.trajectory.derivatives(elapsed, 0)[0]
+            if elapsed[-1] > self._course.landing_from:
+                break
+            if elapsed[-1] > LONGEST:
+                raise ValueError(f"the mission lasts longer than {LONGEST:g} s")
+            count *= 2
+        self.landing = self.start + self._course.landing_from
+        """When the final descent begins."""
+        until = elapsed <= self._course.landing_from
+        self.times: Array = self.start + elapsed[until]
+        self.positions: Array = positions[until]
+        """Where the payload is at ``times`` (K, 3), from the pad to the place above the landing."""
+        self.goal: Array = np.array(self._course.trajectory.position(self._course.landing_from))
+
+    def position(self, times: Array) -> Array:
+        """Where the payload is (K, 3), NED (m)."""
+        return np.asarray(self._course.trajectory.derivatives(np.maximum(times - self.start, 0.0), 0)[0])
+
+    def velocity(self, times: Array) -> Array:
+        """How fast it is (K, 3) (m/s)."""
+        return np.asarray(self._course.trajectory.derivatives(np.maximum(times - self.start, 0.0), 1)[1])
+
+
+def arrival(times: Array, positions: Array, goal: Array, within: float) -> float | None:
+    """When the payload comes within ``within`` (m, horizontally) of the goal for good; None: it does not.
+
+    ``times`` (K,) (s), ``positions`` (K, 3).
+    """
+    if len(times) == 0:
+        return None
+    away = np.flatnonzero(np.linalg.norm(positions[:, :2] - goal[:2], axis=1) > within)
+    if len(away) == 0:
+        return float(times[0])
+    return float(times[away[-1] + 1]) if away[-1] + 1 < len(times) else None

@@ -1,0 +1,105 @@
+"""Missions made of a mission: with another seed, with faults, with other limits, as files that ``gcs fly`` repeats."""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from gcs.campaign.courses.text import tables_text
+from gcs.config import default_system_path
+from gcs.config.system import SystemConfig
+from gcs.config.text_file import read_text
+from gcs.config.toml_file import read_toml
+from gcs.errors import UnusableInput
+from gcs.mission.model import Fault, Limits
+from gcs.mission.read import mission_format, read_mission, system_path
+from gcs.record.run_folder import make_folder
+
+_NAME = 200  # characters, the longest that a mission may have
+
+
+@dataclass(frozen=True)
+class BaseMission:
+    """A mission as read, and the text of the files that it needs by their names in the folder of what is made of it."""
+
+    name: str
+    seed: int
+    system: SystemConfig
+    tables: Mapping[str, Any]
+    files: Mapping[str, str]
+
+    def text(
+        self,
+        name: str,
+        seed: int | None = None,
+        faults: Sequence[Fault | Mapping[str, Any]] = (),
+        limits: Limits | Mapping[str, Any] | None = None,
+    ) -> str:
+        """The mission with ``faults`` after its own; another ``seed`` or ``limits`` in place of its own.
+
+        Mappings are taken for the tables of a mission file as they are.
+        """
+        header = {**self.tables["mission"], "name": name[:_NAME], "seed": self.seed if seed is None else seed}
+        tables = {**self.tables, "mission": header}
+        if faults:
+            tables["fault"] = [*self.tables.get("fault", ()), *map(fault_table, faults)]
+        if limits is not None:
+            keys = limits if isinstance(limits, Mapping) else dataclasses.asdict(limits)
+            tables["limits"] = {key: value for key, value in keys.items() if value is not None}
+        return tables_text(tables)
+
+    def write_files(self, folder: Path) -> None:
+        """Write the files that the mission needs beside it. Raises :class:`UnusableInput` where it cannot."""
+        make_folder(folder)
+        for name, text in self.files.items():
+            write_text(folder / name, text)
+
+
+def read_base(path: Path, config: Path | None = None) -> BaseMission:
+    """Read a mission of any format. Raises :class:`gcs.config.UnusableFile` like :func:`read_mission`."""
+    mission = read_mission(path, config)
+    if mission_format(path, read_text(path)) == "toml":
+        tables = read_toml(path).data
+    else:
+        tables = {"mission": {"name": mission.name}, "reference": {"kind": "waypoints", "file": path.name}}
+    files = {}
+
+    def copied(source: Path) -> str:
+        """Named after its content: flights with other files are other flights."""
+        text = read_text(source)
+        name = f"{source.stem}-{digest(text)}{source.suffix}"
+        files[name] = text
+        return name
+
+    system = system_path(path, tables["mission"].get("system"), config) or default_system_path()
+    tables = {**tables, "mission": {**tables["mission"], "system": copied(system)}}
+    if "file" in tables["reference"]:
+        file = copied(path.parent / tables["reference"]["file"])
+        tables["reference"] = {**tables["reference"], "file": file}
+    return BaseMission(mission.name, mission.seed, mission.system, tables, files)
+
+
+def fault_table(fault: Fault | Mapping[str, Any]) -> dict[str, Any]:
+    """A fault as the keys of a ``[[fault]]`` table; a mapping is one already."""
+    if isinstance(fault, Mapping):
+        return dict(fault)
+    own = {key: value for key, value in dataclasses.asdict(fault).items() if key not in ("settings", "line")}
+    return {key: value for key, value in own.items() if value is not None} | dict(fault.settings)
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a file unless it has that content. Raises :class:`UnusableInput` where it cannot."""
+    try:
+        if not path.exists() or path.read_text(encoding="utf-8") != text:
+            path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise UnusableInput(f"{path}: cannot be written: {error.strerror}") from None
+
+
+def digest(*texts: str) -> str:
+    """Short and different for different texts, as part of a file name."""
+    return hashlib.sha256("\0".join(texts).encode()).hexdigest()[:8]

@@ -1,0 +1,218 @@
+"""The campaign file: which faults, how severe, in which missions, with which seeds. Read strictly."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cache
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, TypeAdapter
+
+from gcs.campaign.faults.base_mission import BaseMission, read_base
+from gcs.campaign.faults.sweep import CLEAN, Case, SweptFault, label
+from gcs.config import UnusableFile
+from gcs.config.system import NotNegative
+from gcs.config.toml_file import Key, TomlFile, read_toml, strict
+from gcs.mission.faults import fault_problems
+from gcs.mission.model import Limits, Name
+from gcs.mission.toml_mission import read_fault
+
+Seed = Annotated[int, Field(ge=0, lt=2**63)]
+Severity = Annotated[dict[str, Annotated[tuple[Any, ...], Field(min_length=1, max_length=1000)]], Field(min_length=1)]
+_OWN_KEYS = ("name", "severity", "start_between")
+
+
+@strict
+@dataclass(frozen=True)
+class CampaignTable:
+    """``[campaign]``. Missions are beside the file; seeds are listed, or counted from ``first_seed``."""
+
+    name: Name
+    missions: Annotated[tuple[Annotated[str, Field(min_length=1)], ...], Field(min_length=1, max_length=1000)]
+    seeds: Annotated[tuple[Seed, ...], Field(min_length=1, max_length=10_000)] | None = None
+    first_seed: Annotated[int, Field(ge=0, lt=2**62)] | None = None
+    seed_count: Annotated[int, Field(ge=1, le=10_000)] | None = None
+    clean: bool = False
+    controller: Literal["idc", "mpc", "paper"] = "idc"
+    require: Literal["within limits", "safe"] = "within limits"
+
+
+@strict
+@dataclass(frozen=True)
+class SweptTable:
+    """What a ``[[fault]]`` of a campaign has beside what one of a mission has."""
+
+    name: Name
+    severity: Severity | None = None
+    start_between: tuple[NotNegative, NotNegative] | None = None
+
+
+@strict
+@dataclass(frozen=True)
+class CampaignTables:
+    """The whole file."""
+
+    campaign: CampaignTable
+    fault: Annotated[tuple[SweptTable, ...], Field(max_length=1000)] = ()
+    limits: Limits | None = field(default=None)
+
+
+@dataclass(frozen=True)
+class CampaignFile:
+    """A campaign as read: its missions by the names they go by, and the cases that each is flown with."""
+
+    name: str
+    missions: Mapping[str, BaseMission]
+    seeds: tuple[int, ...]
+    cases: tuple[Case, ...]
+    limits: Limits | None
+    controller: str
+    require: str
+
+
+@cache
+def _adapter() -> TypeAdapter[CampaignTables]:
+    return TypeAdapter(CampaignTables)
+
+
+def read_campaign(path: Path) -> CampaignFile:
+    """Read a campaign with its missions. Raises :class:`UnusableFile` with every reason found."""
+    file = read_toml(path)
+    raw = file.data.get("fault")
+    data = {key: value for key, value in file.data.items() if key != "fault"}
+    if isinstance(raw, list):
+        data["fault"] = [
+            {key: value for key, value in table.items() if key in _OWN_KEYS} if isinstance(table, dict) else table
+            for table in raw
+        ]
+    elif raw is not None:
+        data["fault"] = raw
+    tables = file.validated(_adapter(), data)
+    problems = [*_disagreements(file, tables)]
+    cases, bad = _cases(file, tables)
+    problems += bad
+    missions, bad = _missions(file, tables.campaign.missions)
+    problems += bad
+    for base in missions.values():
+        problems += _fault_problems(file, cases, base)
+    if problems:
+        raise UnusableFile(list(dict.fromkeys(problems)))
+    if tables.campaign.clean:
+        cases = (Case(CLEAN, 1, "", ()), *cases)
+    table = tables.campaign
+    return CampaignFile(table.name, missions, _seeds(table), cases, tables.limits, table.controller, table.require)
+
+
+def _seeds(table: CampaignTable) -> tuple[int, ...]:
+    if table.seeds is not None:
+        return table.seeds
+    first = 1 if table.first_seed is None else table.first_seed
+    return tuple(range(first, first + (table.seed_count or 1)))
+
+
+def _disagreements(file: TomlFile, tables: CampaignTables) -> Iterator[str]:
+    table = tables.campaign
+    if table.seeds is not None:
+        for key in ("first_seed", "seed_count"):
+            if getattr(table, key) is not None:
+                yield file.problem(("campaign", key), "seeds are listed already, by `seeds`")
+    elif table.seed_count is None:
+        yield file.problem(("campaign",), "needs either seeds or seed_count")
+    for key in ("seeds", "missions"):
+        for value, number in Counter(getattr(table, key) or ()).items():
+            if number > 1:
+                yield file.problem(("campaign", key), f"{value} stands {number} times")
+    if not tables.fault and not table.clean:
+        yield file.problem(("campaign",), "has no fault: needs [[fault]], or clean = true")
+    if table.clean and any(fault.name == CLEAN for fault in tables.fault):
+        yield file.problem(("campaign", "clean"), f"a fault is named '{CLEAN}', as the flights without are")
+
+
+def _missions(file: TomlFile, entries: tuple[str, ...]) -> tuple[dict[str, BaseMission], list[str]]:
+    """Missions go by the stem of their file; by all of it where two have the same."""
+    problems: list[str] = []
+    missions = {}
+    stems = Counter(Path(entry).stem for entry in entries)
+    for i, entry in enumerate(entries):
+        path = file.path.parent / entry
+        if not path.is_file():
+            problems.append(file.problem(("campaign", "missions", i), f"there is no file {entry}"))
+            continue
+        try:
+            missions[Path(entry).stem if stems[Path(entry).stem] == 1 else entry] = read_base(path)
+        except UnusableFile as error:
+            problems += error.reasons
+    return missions, problems
+
+
+def _fault_problems(file: TomlFile, cases: tuple[Case, ...], base: BaseMission) -> Iterator[str]:
+    """Faults that do not agree with themselves or with the team of a mission."""
+    for case in cases:
+        for swept in case.faults:
+            for key, reason in fault_problems(swept.fault, base.system):
+                yield file.problem(("fault", swept.table, key), reason)
+
+
+def _cases(file: TomlFile, tables: CampaignTables) -> tuple[tuple[Case, ...], list[str]]:
+    """Tables of one name are flown together, each at the severity of the same number."""
+    problems: list[str] = []
+    together: dict[str, list[int]] = {}
+    for i, table in enumerate(tables.fault):
+        together.setdefault(table.name, []).append(i)
+    cases: list[Case] = []
+    for name, members in together.items():
+        numbers = {}
+        for i in members:
+            lengths = {len(values) for values in (tables.fault[i].severity or {}).values()}
+            if len(lengths) > 1:
+                problems.append(file.problem(("fault", i, "severity"), "lists of different lengths"))
+            elif lengths:
+                numbers[i] = lengths.pop()
+        if len(set(numbers.values())) > 1:
+            reason = f"'{name}' has another number of severities in another table"
+            problems.append(file.problem(("fault", max(numbers), "severity"), reason))
+            continue
+        for level in range(max(numbers.values(), default=1)):
+            swept = []
+            for i in members:
+                try:
+                    swept.append(_swept_fault(file, i, tables.fault[i], level))
+                except UnusableFile as error:
+                    problems += error.reasons
+            told = ", ".join(label(values) for i in members if (values := _at(tables.fault[i], level)))
+            if any((case.name, case.faults) == (name, tuple(swept)) for case in cases):
+                problems.append(file.problem(("fault", members[0], "severity"), f"'{name}': {told} stands twice"))
+            cases.append(Case(name, level + 1, told, tuple(swept)))
+    return tuple(cases), problems
+
+
+def _swept_fault(file: TomlFile, index: int, table: SweptTable, level: int) -> SweptFault:
+    """The fault of one table at one severity. Raises :class:`UnusableFile`."""
+    raw = {key: value for key, value in file.data["fault"][index].items() if key not in _OWN_KEYS}
+    values = _at(table, level)
+    problems = []
+    for key in values:
+        if key in raw or key in ("kind", *_OWN_KEYS):
+            reason = "stands in the table, too" if key in raw and key != "kind" else "cannot be swept"
+            problems.append(file.problem(("fault", index, "severity", key), f"{key} {reason}"))
+    if table.start_between is not None:
+        low, high = table.start_between
+        if "start" in raw or "start" in values:
+            problems.append(file.problem(("fault", index, "start_between"), "goes without start"))
+        if low >= high:
+            problems.append(file.problem(("fault", index, "start_between"), f"{low:g} s is not before {high:g} s"))
+        values = {**values, "start": low}
+    if problems:
+        raise UnusableFile(problems)
+    # What is wrong with a swept value is told at the line of the list that it stands in.
+    severity = ("fault", index, "severity")
+    lines: dict[Key, int] = {("fault", index, key): file.line((*severity, key)) for key in values}
+    fault = read_fault(replace(file, lines={**file.lines, **lines}), index, {**raw, **values})
+    return SweptFault(fault, index, table.start_between)
+
+
+def _at(table: SweptTable, level: int) -> dict[str, Any]:
+    return {key: values[level] for key, values in (table.severity or {}).items() if level < len(values)}

@@ -1,0 +1,1 @@
+"""One mission, flown with one parameter changed."""

@@ -1,1 +1,0 @@
-"""Random courses, and the command that flies many of them."""

@@ -1,0 +1,87 @@
+"""Starts ``vehicle-sim`` as a process of its own, for flights that bring their own world."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from types import TracebackType
+
+from gcs.errors import GcsError
+from gcs.mavlink.address import Address
+
+_LINE = re.compile(r"^(?P<who>clock|vehicle \d+): udp://(?P<host>[^:]+):(?P<port>\d+)$")
+LANDING_TIMEOUT = 60.0  # s of wall time for vehicles that are still in the air
+END_TIMEOUT = 10.0  # s of wall time to close its records
+
+
+class Simulator:
+    """A running ``vehicle-sim``; a context manager that ends it."""
+
+    def __init__(self, arguments: Sequence[str]) -> None:
+        """Start it and read where it listens. Raises :class:`GcsError` with what it said when it does not start."""
+        # A session of its own: Ctrl-C at the terminal is for the ground, which lands the vehicles first.
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", "vehicle_sim", "--with-parent", *arguments],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            start_new_session=True,
+        )
+        self.clock_address: Address | None = None
+        self.vehicles: list[Address] = []
+        assert self._process.stdout is not None
+        for line in self._process.stdout:
+            if line.strip() == "ready":
+                return
+            if match := _LINE.match(line.strip()):
+                address = (match["host"], int(match["port"]))
+                if match["who"] == "clock":
+                    self.clock_address = address
+                else:
+                    self.vehicles.append(address)
+        assert self._process.stderr is not None
+        said = self._process.stderr.read().strip()
+        self._process.wait()
+        raise GcsError(f"vehicle-sim did not start: {said.splitlines()[-1] if said else 'it said nothing'}")
+
+    def gone(self) -> str | None:
+        """How it ended, if it has ended."""
+        code = self._process.poll()
+        if code is None:
+            return None
+        how = f"was killed by signal {-code}" if code < 0 else f"ended with exit code {code}"
+        return f"the simulated world is gone: vehicle-sim {how}"
+
+    def close(self) -> None:
+        """Let it end, and wait until its records are closed: without its parent's pipe it lands what still flies."""
+        for timeout, insist in ((LANDING_TIMEOUT, self._process.terminate), (END_TIMEOUT, self._process.kill)):
+            try:
+                self._process.communicate(timeout=timeout)
+                return
+            except subprocess.TimeoutExpired:
+                insist()
+        self._process.communicate()
+
+    def __enter__(self) -> Simulator:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+
+def arguments_for(
+    *, mission: Path, config: Path | None, vehicles: int, seed: int, run_dir: Path, realtime: bool, speed: float
+) -> list[str]:
+    """The command line of a world for one flight."""
+    arguments = ["--mission", str(mission), "--vehicles", str(vehicles), "--seed", str(seed)]
+    arguments += ["--run-dir", str(run_dir), "--base-port", "0"]
+    if config is not None:
+        arguments += ["--config", str(config)]
+    arguments += ["--realtime", "--speed", str(speed)] if realtime else ["--lockstep", "--ground-port", "0"]
+    return arguments

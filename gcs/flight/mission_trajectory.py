@@ -1,0 +1,163 @@
+"""The course of a flight: one trajectory of the payload from pad to ground, made of take-off, mission and landing."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcs.config import MotionConfig
+from gcs.mission.model import Lissajous, Mission
+from gcs.mission.route import Circle, FlyTo, HoldForever, Land, Leg, Speed, TakeOff
+from idc_controller.trajectory import paths
+from idc_controller.trajectory.cached import RememberedTrajectory
+from idc_controller.trajectory.lissajous import LissajousCurve, LissajousTrajectory
+from idc_controller.trajectory.trajectory import Limits, Trajectory
+from idc_controller.trajectory.waypoints import WaypointTrajectory
+
+Array = NDArray[np.float64]
+
+BELOW_GROUND = 0.15
+"""How far below the expected ground a landing aims (m): it ends by touching, not by a height."""
+ON_PAD = 0.2
+"""A landing this close to where it began is on the pad again (m)."""
+SLOW_BELOW = 1.0
+"""Height above the ground from which on a landing is slow (m)."""
+
+
+class Course:
+    """What the payload is to do from take-off to touch-down, and how to break it off.
+
+    Times are the team's (s), positions NED (m). ``mission`` is what is flown between; an endless one has no end.
+    """
+
+    def __init__(self, mission: Mission, position: Array, start: float) -> None:
+        self._motion = mission.system.motion
+        self._ground = -mission.system.payload.size[2] / 2.0
+        self._pad = position
+        self.start = start
+        self._landing_from = math.inf
+        climb, legs = self._split(mission, position)
+        up = WaypointTrajectory(position, climb, self._vertical_limits(), start=start)
+        self._climb: Trajectory | None = up
+        along = up.then(lambda time, here: self._flown(mission, legs, time, here))
+        self._trajectory: Trajectory = RememberedTrajectory(along.then(self._land))
+        self._broken_off = False
+
+    @property
+    def trajectory(self) -> Trajectory:
+        """The whole course."""
+        return self._trajectory
+
+    def asked(self, times: Array) -> tuple[Array, Array]:
+        """Position and velocity (K, 3) that the mission asks for: a landing ends on the ground, not below it."""
+        position, velocity = self._trajectory.derivatives(times, 1)
+        on_pad = np.linalg.norm(position[:, :2] - self._pad[:2], axis=1) < ON_PAD
+        lowest = np.where(on_pad, self._pad[2], self._ground)
+        below = position[:, 2] > lowest
+        position[below, 2] = lowest[below]
+        velocity[below, 2] = 0.0
+        return position, velocity
+
+    @property
+    def landing_from(self) -> float:
+        """When the final descent begins (s); inf while that is not known."""
+        return self._landing_from
+
+    def phase(self, time: float) -> str:
+        """What is done at ``time``: climb, fly, hold, land."""
+        if time >= self._landing_from:
+            return "land"
+        # Asked at each call: a trajectory learns of its end while it is flown.
+        if self._climb is not None and time < self._climb.end:
+            return "climb"
+        speed = np.linalg.norm(self._trajectory.derivatives(np.array([time]), 1)[1, 0])
+        return "fly" if speed > 0.05 else "hold"
+
+    def break_off(self, followed: Trajectory, time: float) -> None:
+        """Come to rest as soon as the limits allow, then land there; harmless when it does already.
+
+        ``followed`` is what is flown at ``time`` of its own clock, the course or a way round something; the course goes
+        on by that clock.
+        """
+        if self._broken_off or (followed is self._trajectory and time >= self._landing_from):
+            return
+        self._broken_off = True
+        self._climb = None
+        self._trajectory = RememberedTrajectory(followed.stop(time).then(self._land))
+
+    def _split(self, mission: Mission, position: Array) -> tuple[list[paths.Leg], Iterator[Leg]]:
+        """The climb, and the legs that follow it."""
+        if isinstance(mission.reference, Lissajous):
+            altitude, delay = mission.reference.altitude, 0.0
+            legs: Iterator[Leg] = iter(())
+        else:
+            legs = mission.reference.legs()
+            first = next(legs)
+            if not isinstance(first, TakeOff):
+                raise TypeError(f"a route begins with a take-off, not with {first}")
+            altitude, delay = -first.position[2], first.delay
+        top = np.array([position[0], position[1], -altitude])
+        speed = self._motion.climb_speed
+        climb = [paths.Leg(position, speed, delay), paths.Leg(top, speed)] if delay else [paths.Leg(top, speed)]
+        return climb, legs
+
+    def _flown(self, mission: Mission, legs: Iterator[Leg], time: float, here: Array) -> Trajectory:
+        if isinstance(mission.reference, Lissajous):
+            return self._figure(mission.reference, time, here)
+        asked = [step.speed for step in mission.reference.steps if isinstance(step, Speed) and step.speed]
+        limits = self._limits(max([mission.reference.speed, *asked]))
+        return WaypointTrajectory(here, self._legs(legs), limits, start=time)
+
+    def _figure(self, figure: Lissajous, time: float, here: Array) -> Trajectory:
+        """To the curve's beginning, along it, and back to where it began."""
+        curve = LissajousCurve(figure.amplitude, down=-figure.altitude)
+        begin = curve.by_phase(np.zeros(1), 0)[0][0]
+        limits = self._limits(self._motion.speed)
+        there = WaypointTrajectory(here, [paths.Leg(begin, self._motion.speed)], limits, start=time)
+        along = there.then(
+            lambda t, _: LissajousTrajectory(
+                curve, figure.angular_frequency, figure.duration, self._curve_limits(), start=t
+            )
+        )
+        return along.then(
+            lambda t, end: WaypointTrajectory(end, [paths.Leg(here, self._motion.speed)], limits, start=t)
+        )
+
+    def _legs(self, legs: Iterator[Leg]) -> Iterator[paths.Leg | paths.Circle]:
+        for leg in legs:
+            if isinstance(leg, FlyTo):
+                yield paths.Leg(leg.position, leg.speed, leg.hold)
+            elif isinstance(leg, Circle):
+                yield paths.Circle(leg.centre, leg.radius, leg.turns, leg.speed, leg.clockwise)
+            elif isinstance(leg, HoldForever):
+                yield paths.Leg(leg.position, self._motion.speed, math.inf)
+            elif isinstance(leg, TakeOff):
+                yield paths.Leg(leg.position, self._motion.climb_speed, leg.delay)
+            elif isinstance(leg, Land):
+                return
+
+    def _land(self, time: float, here: Array) -> Trajectory:
+        self._landing_from = time
+        slow = np.array([here[0], here[1], self._ground - SLOW_BELOW])
+        touch = np.array([here[0], here[1], self._ground + BELOW_GROUND])
+        limits = self._vertical_limits()
+        last = paths.Leg(touch, self._motion.landing_speed)
+        if here[2] >= slow[2] - 0.5:
+            return WaypointTrajectory(here, [last], limits, start=time)
+        down = WaypointTrajectory(here, [paths.Leg(slow, self._motion.climb_speed)], limits, start=time)
+        return down.then(lambda t, low: WaypointTrajectory(low, [last], limits, start=t))
+
+    def _limits(self, speed: float) -> Limits:
+        m: MotionConfig = self._motion
+        return Limits(max(speed, m.speed), m.acceleration, m.jerk, m.snap)
+
+    def _vertical_limits(self) -> Limits:
+        m = self._motion
+        return Limits(m.climb_speed, m.acceleration, m.jerk, m.snap)
+
+    def _curve_limits(self) -> Limits:
+        m = self._motion
+        return Limits(m.curve_speed, m.curve_acceleration, m.curve_jerk, m.curve_snap)

@@ -1,0 +1,63 @@
+"""What the sequence numbers of a link's messages tell: lost, out of order, twice."""
+
+from __future__ import annotations
+
+from collections import deque
+
+from gcs.mavlink import px4
+
+NUMBERS = 256
+REMEMBERED = 96
+"""Numbers that are told from new ones; less than half of all, so that behind and ahead are not mixed up."""
+PATIENCE = 0.2
+"""So long a message may be overtaken by later ones before it counts as lost (s)."""
+
+
+class LinkStatistics:
+    """Counts of one link, each since the beginning.
+
+    A gap in the numbers counts once, however many are missing: what was lost together is one loss.
+    """
+
+    def __init__(self) -> None:
+        self.lost = 0
+        self.overtaken = 0
+        self.twice = 0
+        self.damaged = 0
+        """Datagrams with frames that could not be read: checksum, length, contents."""
+        self.not_finite = 0
+        """The vehicle's measurements that hold no number."""
+        self.payload_not_finite = 0
+        """Those of the payload that it relays."""
+        self._newest: int | None = None
+        self._seen: deque[int] = deque(maxlen=REMEMBERED)
+        self._gaps: deque[tuple[float, set[int]]] = deque()
+
+    def unusable(self, component: int) -> None:
+        """A measurement of this component could not be used."""
+        self.not_finite += component == px4.AUTOPILOT_COMPONENT
+        self.payload_not_finite += component == px4.PAYLOAD_UNIT_COMPONENT
+
+    def message(self, number: int, now: float) -> bool:
+        """A message with this sequence number (0 .. 255) came; whether it was sent after all that came before."""
+        self.settle(now)
+        ahead = 1 if self._newest is None else (number - self._newest) % NUMBERS
+        if 0 < ahead < NUMBERS - REMEMBERED:
+            if self._newest is not None and ahead > 1:
+                missing = {(self._newest + k) % NUMBERS for k in range(1, ahead)}
+                self._gaps.append((now, missing))
+            self._newest = number
+            self._seen.append(number)
+            return True
+        if any(number in missing for _, missing in self._gaps):
+            self.overtaken += 1
+            for _, missing in self._gaps:
+                missing.discard(number)
+        elif number in self._seen:
+            self.twice += 1
+        return False
+
+    def settle(self, now: float) -> None:
+        """Gaps that are not filled by ``now`` (s) are losses."""
+        while self._gaps and now - self._gaps[0][0] > PATIENCE:
+            self.lost += bool(self._gaps.popleft()[1])

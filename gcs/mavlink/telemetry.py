@@ -1,0 +1,70 @@
+"""Telemetry: MAVLink messages of the vehicles become measurements for the estimator."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pymavlink.dialects.v20.common as mavlink
+from numpy.typing import NDArray
+
+from gcs.mavlink import px4
+from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, Position
+from idc_controller.perception.scan_assembly import Detection
+
+Array = NDArray[np.float64]
+
+
+def setpoint_flown(message: Any, thrust_max: float) -> Array | None:
+    """Tilt of the thrust (north, east) and thrust (N), (3,), in an ATTITUDE_TARGET; None: it tells neither.
+
+    ``thrust_max`` (N) is what the vehicle means by thrust 1.
+    """
+    if message.type_mask & mavlink.ATTITUDE_TARGET_TYPEMASK_ATTITUDE_IGNORE:
+        return None
+    w, x, y, z = message.q
+    told = (-2.0 * (x * z + w * y), -2.0 * (y * z - w * x), message.thrust * thrust_max)
+    return np.array(told) if math.isfinite(sum(told)) else None
+
+
+def measurement(message: Any, uav: int, time: float) -> Measurement | None:
+    """The measurement in ``message`` of UAV ``uav`` (0 .. N-1), true at ``time`` (s, team time).
+
+    None for messages that measure nothing and for values that cannot be measurements (not finite, no rotation). Where
+    only the pose or only the motion cannot be one, that part is nan: an unknown rate is told so in MAVLink.
+    The payload's navigation unit is a component of its own, relayed by every vehicle.
+    """
+    component = message.get_srcComponent()
+    if component == px4.PAYLOAD_UNIT_COMPONENT:
+        source = PAYLOAD
+    elif component == px4.AUTOPILOT_COMPONENT:
+        source = uav
+    else:
+        return None
+    kind = message.get_type()
+    if kind == "ATTITUDE_QUATERNION":
+        quaternion = (message.q1, message.q2, message.q3, message.q4)
+        rates = (message.rollspeed, message.pitchspeed, message.yawspeed)
+        norm = math.sqrt(sum(c * c for c in quaternion))
+        attitude = Attitude(time, source, np.array(quaternion) / (norm or 1.0), np.array(rates))
+        return _sound(attitude, 0.9 < norm < 1.1, math.isfinite(sum(rates)))
+    if kind == "LOCAL_POSITION_NED":
+        position, velocity = (message.x, message.y, message.z), (message.vx, message.vy, message.vz)
+        told = Position(time, source, np.array(position), np.array(velocity))
+        return _sound(told, math.isfinite(sum(position)), math.isfinite(sum(velocity)))
+    return None
+
+
+def detection(message: Any) -> Detection:
+    """The detection in an OBSTACLE_DISTANCE_3D; one in a frame other than the body's has no point (nan)."""
+    is_body = message.frame == mavlink.MAV_FRAME_BODY_FRD
+    point = (message.x, message.y, message.z) if is_body else (math.nan, math.nan, math.nan)
+    return Detection(message.time_boot_ms, message.obstacle_id, point, message.max_distance)
+
+
+def _sound(told: Measurement, pose: bool, motion: bool) -> Measurement | None:
+    """As far as its ``pose`` and its ``motion`` can be measurements."""
+    if pose and motion:
+        return told
+    return told.without(not pose, not motion) if pose or motion else None

@@ -1,0 +1,26 @@
+"""What both ends of the wire need of UDP sockets."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Iterator
+
+from gcs.mavlink.address import Address
+
+RECEIVE_BUFFER = 4 << 20  # bytes asked for: a whole team's telemetry while the ground thinks; the system may give less
+DATAGRAM_MAX = 65535
+DATAGRAMS_AT_ONCE = 4096
+
+
+def arrived(endpoint: socket.socket) -> Iterator[tuple[bytes, Address]]:
+    """What a non-blocking socket holds, in order; no more than DATAGRAMS_AT_ONCE.
+
+    Whoever sends faster than they are read must not keep the reader from everything else.
+    """
+    for _ in range(DATAGRAMS_AT_ONCE):
+        try:
+            yield endpoint.recvfrom(DATAGRAM_MAX)
+        except BlockingIOError:
+            return
+        except OSError:  # the echo of a datagram to a closed port: no datagram of anybody
+            continue

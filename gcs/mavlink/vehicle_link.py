@@ -1,0 +1,251 @@
+"""One vehicle as the ground knows it: what it last told, what it was asked, and whether it answered."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from dataclasses import dataclass, field
+from enum import Enum
+from statistics import median
+from typing import Any
+
+import pymavlink.dialects.v20.common as mavlink
+
+from gcs.mavlink import px4
+from gcs.mavlink.address import Address
+from gcs.mavlink.clock import RemoteClock
+from gcs.mavlink.link_statistics import LinkStatistics
+from idc_controller.estimation.setpoint_history import Confirmation
+
+DELAYS = 3  # set-points whose median is the delay: a way that gets longer must be followed at once
+CLOCK_ERROR = 0.01  # s by which a vehicle's stamps may be wrong without a fault
+STEP_BACK = 1.0  # s by which a clock may be set back so that no stamp goes back; more: the clock has begun anew
+RETRY_AFTER = 0.5  # s
+TRIES = 10  # with a third of all datagrams lost, one command in a thousand stays unanswered
+
+
+class CommandState(Enum):
+    """How far a command has come."""
+
+    PENDING = "pending"
+    ACCEPTED = "accepted"
+    REFUSED = "refused"
+    UNANSWERED = "unanswered"
+
+
+LOSS_SHARE = 0.05  # of one set-point in the running mean of losses
+FULL = 0.05  # s by which telemetry comes later than it did
+COPY_ABOVE = (0.02, 0.06)  # losses of copies that are sent already, at which one more is sent
+
+
+@dataclass
+class Command:
+    """A COMMAND_LONG on its way; repeated until it is answered."""
+
+    number: int
+    parameters: tuple[float, ...]
+    state: CommandState = CommandState.PENDING
+    result: int | None = None
+    tries: int = 0
+    next_try: float = -math.inf
+
+    @property
+    def name(self) -> str:
+        """The command's MAVLink name."""
+        entry = mavlink.enums["MAV_CMD"].get(self.number)
+        return entry.name if entry else str(self.number)
+
+
+@dataclass(eq=False)
+class VehicleLink:
+    """State of the link to one vehicle. Times are the ground's (s)."""
+
+    system_id: int
+    address: Address | None
+    """None while it is not known: the vehicle has yet to offer itself."""
+    clock: RemoteClock = field(default_factory=RemoteClock)
+    heard: float = -math.inf
+    """When any message came last."""
+    found_instead: int | None = None
+    """The system id that speaks at its address in its place."""
+    attitude_heard: float = -math.inf
+    position_heard: float = -math.inf
+    payload_heard: float = -math.inf
+    base_mode: int = 0
+    custom_mode: int = 0
+    landed_state: int = mavlink.MAV_LANDED_STATE_UNDEFINED
+    prearm_ok: bool | None = None
+    """The vehicle's own checks, from SYS_STATUS; None: not told yet."""
+    sees: bool = True
+    """Whether its range sensor works, as far as SYS_STATUS tells."""
+    parameters: dict[str, float] = field(default_factory=dict)
+    texts: deque[str] = field(default_factory=lambda: deque(maxlen=20))
+    setpoint_delays: deque[float] = field(default_factory=lambda: deque(maxlen=DELAYS))
+    """How long the last set-points took, that it told of."""
+    setpoint_loss: float = 0.0
+    """Share of the set-points that do not arrive, as far as the vehicle's words tell."""
+    lost_setpoints: int = 0
+    """How often set-points were found to be lost."""
+    statistics: LinkStatistics = field(default_factory=LinkStatistics)
+    _last_stamp: float = -math.inf
+    _commands: dict[int, Command] = field(default_factory=dict)
+    _wanted: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def copies(self) -> int:
+        """How often to send what must arrive; once on a way that is full, which copies would make longer."""
+        if self.clock.lag > FULL:
+            return 1
+        return 1 + sum(self.setpoint_loss > threshold for threshold in COPY_ABOVE)
+
+    @property
+    def setpoint_delay(self) -> float:
+        """From when a set-point is sent until the vehicle flies it (s): as it says, else by round trips."""
+        if len(self.setpoint_delays) == DELAYS:
+            # Round trips tell less: on a way that loses or reorders, those that arrive are not late.
+            return median(self.setpoint_delays)
+        return self.clock.delay + self._onboard_period
+
+    def stamp(self, now: float) -> float:
+        """For a set-point that is sent at ``now`` (s), by the vehicle's clock (s).
+
+        Where that is set back, stamps are not: the vehicle would take the set-points for overtaken ones.
+        """
+        stamp = now + self.clock.offset
+        if 0.0 < self._last_stamp - stamp < STEP_BACK:
+            stamp = self._last_stamp + 0.001
+        self._last_stamp = stamp
+        return stamp
+
+    @property
+    def longest_way(self) -> float:
+        """The longest that a set-point can take (s), by round trips."""
+        return self.clock.longest_trip + 2.0 * self._onboard_period + CLOCK_ERROR
+
+    @property
+    def _onboard_period(self) -> float:
+        rate = self.parameters.get(px4.PARAM_ONBOARD_RATE, 0.0)
+        return 1.0 / rate if rate > 0.0 else 0.0
+
+    def confirmed(self, confirmation: Confirmation) -> None:
+        """The vehicle has told of a set-point that it flew."""
+        if confirmation.delay is not None:
+            self.setpoint_delays.append(confirmation.delay)
+        if (flown := confirmation.as_sent) is not None:
+            self.setpoint_loss += LOSS_SHARE * (float(not flown) - self.setpoint_loss)
+            self.lost_setpoints += not flown
+
+    @property
+    def armed(self) -> bool:
+        """As its last heartbeat says."""
+        return bool(self.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
+
+    @property
+    def offboard(self) -> bool:
+        """Whether it flies the ground's set-points, as its last heartbeat says."""
+        return self.custom_mode == px4.MODE_OFFBOARD
+
+    @property
+    def telemetry_heard(self) -> float:
+        """When its own attitude or position came last."""
+        return max(self.attitude_heard, self.position_heard)
+
+    @property
+    def whole_telemetry_heard(self) -> float:
+        """When the staler of its own attitude and position came last."""
+        return min(self.attitude_heard, self.position_heard)
+
+    def handle(self, message: Any, now: float) -> None:
+        """Learn from one message of this vehicle."""
+        kind = message.get_type()
+        self.heard = now
+        in_order = False
+        if message.get_srcComponent() == px4.AUTOPILOT_COMPONENT:
+            in_order = self.statistics.message(message.get_seq(), now)
+        if kind == "ATTITUDE_QUATERNION" or kind == "LOCAL_POSITION_NED":
+            if message.get_srcComponent() == px4.PAYLOAD_UNIT_COMPONENT:
+                self.payload_heard = now
+            elif message.get_srcComponent() == px4.AUTOPILOT_COMPONENT:
+                self.clock.stamped(message.time_boot_ms * 1e-3, now, in_order)
+                if kind == "ATTITUDE_QUATERNION":
+                    self.attitude_heard = now
+                else:
+                    self.position_heard = now
+        elif kind == "HEARTBEAT":
+            if message.get_srcComponent() == px4.AUTOPILOT_COMPONENT:
+                self.base_mode, self.custom_mode = message.base_mode, message.custom_mode
+        elif kind == "COMMAND_ACK":
+            self._acknowledged(message)
+        elif kind == "PARAM_VALUE":
+            self._parameter(message)
+        elif kind == "TIMESYNC":
+            if message.tc1:
+                self.clock.answered(message.ts1, now)
+        elif kind == "EXTENDED_SYS_STATE":
+            self.landed_state = message.landed_state
+        elif kind == "SYS_STATUS":
+            present, health = message.onboard_control_sensors_present, message.onboard_control_sensors_health
+            if present & mavlink.MAV_SYS_STATUS_PREARM_CHECK:
+                self.prearm_ok = bool(health & mavlink.MAV_SYS_STATUS_PREARM_CHECK)
+            if present & mavlink.MAV_SYS_STATUS_SENSOR_PROXIMITY:
+                self.sees = bool(health & mavlink.MAV_SYS_STATUS_SENSOR_PROXIMITY)
+        elif kind == "STATUSTEXT":
+            self.texts.append(str(message.text))
+
+    def want_parameters(self, names: tuple[str, ...]) -> None:
+        """Ask for parameters until they are known."""
+        for name in names:
+            if name not in self.parameters:
+                self._wanted.setdefault(name, -math.inf)
+
+    def command(self, number: int, *parameters: float) -> Command:
+        """Send a command until it is answered; a new one takes the place of an older one of its number."""
+        command = Command(number, (*parameters, *([0.0] * (7 - len(parameters)))))
+        self._commands[number] = command
+        return command
+
+    def requests_to_send(self, now: float) -> list[Any]:
+        """Parameter requests and commands that are due."""
+        messages = []
+        for name, due in self._wanted.items():
+            if now >= due:
+                self._wanted[name] = now + RETRY_AFTER
+                messages.append(
+                    mavlink.MAVLink_param_request_read_message(
+                        self.system_id, px4.AUTOPILOT_COMPONENT, name.encode(), -1
+                    )
+                )
+        for command in self._commands.values():
+            if command.state is not CommandState.PENDING or now < command.next_try:
+                continue
+            if command.tries >= TRIES:
+                command.state = CommandState.UNANSWERED
+                continue
+            messages.append(
+                mavlink.MAVLink_command_long_message(
+                    self.system_id, px4.AUTOPILOT_COMPONENT, command.number, command.tries, *command.parameters
+                )
+            )
+            command.tries += 1
+            command.next_try = now + RETRY_AFTER
+        return messages
+
+    def _acknowledged(self, message: Any) -> None:
+        command = self._commands.get(message.command)
+        if command is None or command.state is not CommandState.PENDING:
+            return
+        if message.result == mavlink.MAV_RESULT_IN_PROGRESS:
+            return
+        command.result = message.result
+        accepted = message.result == mavlink.MAV_RESULT_ACCEPTED
+        command.state = CommandState.ACCEPTED if accepted else CommandState.REFUSED
+
+    def _parameter(self, message: Any) -> None:
+        name = message.param_id if isinstance(message.param_id, str) else message.param_id.decode(errors="replace")
+        try:
+            value = px4.parameter_from_wire(message.param_value, message.param_type)
+        except ValueError:
+            return
+        if math.isfinite(value):
+            self.parameters[name] = float(value)
+            self._wanted.pop(name, None)

@@ -1,1 +1,0 @@
-"""MAVLink bytes and the links that carry them."""

@@ -1,0 +1,70 @@
+"""Keeps the UAVs upright over a payload that stands on the ground, while the thrust grows or fades.
+
+The ground holds the payload, so the model of flight does not apply: each UAV is a pendulum above its attachment point,
+
+    m l s'' = -(f - m g) s - f n,
+
+with the link in tension as soon as the thrust f exceeds the UAV's weight. One linear-quadratic regulator serves the
+whole range of thrust; the payload's own error is left to the ground.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import expm, solve_discrete_are
+
+from idc_controller.control.tracker import TrackingOutput
+from idc_controller.model.linear import LinearModel
+from idc_controller.trajectory.flatness import FlatReference
+
+Array = NDArray[np.float64]
+
+DESIGN_SHARE = 0.8
+"""Share of the hover thrust for which the gain is designed."""
+# Weights on link tilt, its rate, UAV tilt, its rate, its acceleration; and on the tilt set-point.
+_Q = np.diag([100.0, 80.0, 1.0, 0.1, 0.0])
+# Cheap tilts would wait for no telemetry: this gain bears a loop that is 0.2 s late.
+_R = np.array([[200.0]])
+
+
+class StandingTracker:
+    """A tracker for the time on the ground; see :class:`~idc_controller.control.tracker.Tracker`."""
+
+    def __init__(self, model: LinearModel, period: float) -> None:
+        """``period`` is the control period (s)."""
+        self.layout = model.layout
+        self.gains = np.array(
+            [standing_gain(model, i, DESIGN_SHARE, period) for i in range(model.layout.number_of_uavs)]
+        )
+
+    def track(self, error: Array, reference: FlatReference) -> TrackingOutput:
+        """Tilt set-points from the UAVs' own errors; thrusts as the reference has them."""
+        layout = self.layout
+        parts = (layout.s, layout.s_dot, layout.n, layout.n_dot, layout.n_acc)
+        states = np.stack([error[part].reshape(-1, 2) for part in parts], axis=1)  # (N, 5, 2)
+        tilt = -np.einsum("ik,ikc->ic", self.gains, states)
+        return TrackingOutput(np.concatenate([tilt.ravel(), np.zeros(layout.number_of_uavs)]))
+
+
+def standing_dynamics(model: LinearModel, uav: int, share: float) -> tuple[Array, Array]:
+    """Continuous ``A`` (5, 5), ``B`` (5, 1) of (s, s', n, n', n'') of one axis at ``share`` of the hover thrust."""
+    p = model.parameters
+    f, weight, ml = share * p.hover_thrust[uav], p.m[uav] * p.g, p.m[uav] * p.l[uav]
+    T_m, kp, kd = p.motor_time_constant, p.attitude_kp, p.attitude_kd
+    A = np.zeros((5, 5))
+    A[0, 1] = A[2, 3] = A[3, 4] = 1.0
+    A[1, 0], A[1, 2] = -(f - weight) / ml, -f / ml
+    A[4, 2:] = -kp / T_m, -kd / T_m, -1.0 / T_m
+    return A, np.array([[0.0], [0.0], [0.0], [0.0], [kp / T_m]])
+
+
+def standing_gain(model: LinearModel, uav: int, share: float, period: float) -> Array:
+    """Regulator gain (5,) for one axis of one UAV."""
+    A, B = standing_dynamics(model, uav, share)
+    block = np.zeros((6, 6))
+    block[:5, :5], block[:5, 5:] = A, B
+    step = expm(block * period)
+    A_k, B_k = step[:5, :5], step[:5, 5:]
+    P = solve_discrete_are(A_k, B_k, _Q, _R)
+    return np.asarray(np.linalg.solve(_R + B_k.T @ P @ B_k, B_k.T @ P @ A_k)[0])

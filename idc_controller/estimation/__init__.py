@@ -1,0 +1,1 @@
+"""The state of payload and UAVs from noisy, late and faulty telemetry."""

@@ -1,0 +1,1 @@
+"""Which measurements may be used: innovation tests, stuck sensors, isolated channels, noise adaptation."""

@@ -1,0 +1,197 @@
+"""What each measurement says of the state: innovation, rows and noise, about an exact reference."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, MeasurementNoise, Position
+from idc_controller.model.linear import LinearModel
+from idc_controller.rotations import euler_from_quaternion, quaternion_from_euler, rotation_from_quaternion
+from idc_controller.trajectory.flatness import FlatReference
+
+Array = NDArray[np.float64]
+
+# Even a perfect sensor is believed only to about the model's own error; it also keeps the update well conditioned.
+FLOOR = {"position": 2e-3, "velocity": 4e-3, "attitude": 2e-4, "rates": 1e-3}
+
+
+@dataclass(frozen=True)
+class Channel:
+    """Rows of one kind of measurement of one source."""
+
+    rows: Array
+    """(k, n)"""
+    variance: Array
+    """(k,)"""
+
+
+@dataclass(frozen=True)
+class Stack:
+    """Channels one below the other, as the measurements of one moment are taken."""
+
+    keys: tuple[tuple[int, type], ...]
+    """Source and kind of each (K,)."""
+    rows: Array
+    """(m, n), links upright."""
+    variance: Array
+    """(m,)"""
+    sizes: NDArray[np.int_]
+    """Of the channels (K,); they add up to m."""
+    starts: NDArray[np.int_]
+    """Their first rows (K,)."""
+    rows_by_size: tuple[NDArray[np.int_], ...]
+    """Rows of the channels of one size, (channels, size) for each size that there is."""
+    of_payload: NDArray[np.bool_]
+    """Which rows are the payload's (m,)."""
+    uavs: NDArray[np.int_]
+    """UAVs whose position is among the channels (K,)."""
+    heights: NDArray[np.int_]
+    """Rows of their heights (K,); those of the vertical velocities are three below."""
+
+    def split(self, rows: Array) -> tuple[Array, ...]:
+        """``rows`` (m,) by channel."""
+        ends = self.starts + self.sizes
+        return tuple(rows[a:b] for a, b in zip(self.starts.tolist(), ends.tolist(), strict=True))
+
+    def only(self, present: NDArray[np.bool_]) -> Stack:
+        """What is left when of its rows only those ``present`` (m,) are there. It cannot be observed any more."""
+        sizes = np.add.reduceat(present, self.starts, dtype=int)
+        left = sizes > 0
+        keys = tuple(key for key, some in zip(self.keys, left.tolist(), strict=True) if some)
+        none = np.zeros(0, dtype=int)
+        return Stack(
+            keys, self.rows[present], self.variance[present],
+            *_blocks(sizes[left]), self.of_payload[present], uavs=none, heights=none,
+        )  # fmt: skip
+
+
+def _blocks(sizes: NDArray[np.int_]) -> tuple[NDArray[np.int_], NDArray[np.int_], tuple[NDArray[np.int_], ...]]:
+    """Sizes, first rows, and rows by size, of channels one below the other."""
+    starts = np.cumsum(sizes) - sizes
+    return sizes, starts, tuple(starts[sizes == size][:, None] + np.arange(size) for size in np.unique(sizes))
+
+
+class MeasurementModel:
+    """Channels for every source, and measured less reference in the filter's coordinates."""
+
+    def __init__(self, model: LinearModel, noise: MeasurementNoise) -> None:
+        layout, N = model.layout, model.layout.number_of_uavs
+        self.layout = layout
+        self.parameters = model.parameters
+        identity = np.eye(layout.size)
+
+        def variance(first: float, floor_first: str, second: float, floor_second: str, axes: int) -> Array:
+            sigma = np.repeat([max(first, FLOOR[floor_first]), max(second, FLOOR[floor_second])], axes)
+            return sigma**2
+
+        self.channels: dict[tuple[int, type], Channel] = {
+            (PAYLOAD, Attitude): Channel(
+                np.vstack([identity[layout.Theta], identity[layout.omega]]),
+                variance(noise.attitude, "attitude", noise.payload_rates, "rates", 3),
+            )
+        }
+        self.channels[PAYLOAD, Position] = Channel(
+            np.vstack([identity[layout.r_0], identity[layout.v_0]]),
+            variance(noise.position, "position", noise.payload_velocity, "velocity", 3),
+        )
+        for i in range(N):
+            three, two = slice(3 * i, 3 * i + 3), slice(2 * i, 2 * i + 2)
+            self.channels[i, Position] = Channel(
+                np.vstack([model.uav_position_rows[three], model.uav_velocity_rows[three]]),
+                variance(noise.position, "position", noise.uav_velocity, "velocity", 3),
+            )
+            self.channels[i, Attitude] = Channel(
+                np.vstack([identity[layout.n][two], identity[layout.n_dot][two]]),
+                variance(noise.attitude, "attitude", noise.uav_rates, "rates", 2),
+            )
+
+        self._stacks: dict[tuple[tuple[int, type], ...], Stack] = {}
+
+    def stack(self, keys: tuple[tuple[int, type], ...]) -> Stack:
+        """The channels of these sources and kinds."""
+        if (found := self._stacks.get(keys)) is None:
+            channels = [self.channels[key] for key in keys]
+            sizes = np.array([len(channel.variance) for channel in channels])
+            _, starts, _ = _blocks(sizes)
+            tilted = [(i, start + 2) for (i, kind), start in zip(keys, starts.tolist(), strict=True)
+                      if kind is Position and i != PAYLOAD]  # fmt: skip
+            found = self._stacks[keys] = Stack(
+                keys,
+                np.vstack([channel.rows for channel in channels]),
+                np.concatenate([channel.variance for channel in channels]),
+                *_blocks(sizes),
+                np.repeat([i == PAYLOAD for i, _ in keys], sizes),
+                np.array([i for i, _ in tilted], dtype=int),
+                np.array([row for _, row in tilted], dtype=int),
+            )
+        return found
+
+    def observe(self, stack: Stack, reference: FlatReference, k: int, into: Array) -> None:
+        """Fill ``into`` (m, n) with the rows that observe the error about the reference's time ``k``."""
+        into[:] = stack.rows
+        if len(stack.uavs):
+            # The unit length of a tilted link: a change of its lateral part changes its height too.
+            q = reference.links.q[k]
+            slope = np.outer(self.parameters.l[stack.uavs], q[:2] / q[2])
+            columns = 2 * stack.uavs[:, None] + np.arange(2)
+            into[stack.heights[:, None], self.layout.s.start + columns] = slope
+            into[stack.heights[:, None] + 3, self.layout.s_dot.start + columns] = slope
+
+    def innovation(self, measurement: Measurement, reference: FlatReference, k: int) -> Array:
+        """Measured less what the reference's time ``k`` predicts, (m,); nan where nothing was measured."""
+        i = measurement.source
+        if isinstance(measurement, Attitude):
+            if i == PAYLOAD:
+                return np.concatenate([euler_from_quaternion(measurement.quaternion), measurement.rates])
+            # Of a UAV's attitude only the direction of the thrust moves anything: n = -R e3, n' = -R (omega x e3).
+            w, x, y, z = measurement.quaternion.tolist()
+            p, q, _ = measurement.rates.tolist()
+            reference_x, first = reference.x[k], 2 * i
+            n, n_dot = self.layout.n.start + first, self.layout.n_dot.start + first
+            told = (
+                -2.0 * (x * z + w * y),
+                -2.0 * (y * z - w * x),
+                2.0 * (x * y - w * z) * p - (1.0 - 2.0 * (y * y + z * z)) * q,
+                (1.0 - 2.0 * (x * x + z * z)) * p - 2.0 * (x * y + w * z) * q,
+            )
+            expected = (reference_x[n], reference_x[n + 1], reference_x[n_dot], reference_x[n_dot + 1])
+            return np.subtract(told, expected)
+        position, velocity = reference.payload[0, k], reference.payload[1, k]
+        if i != PAYLOAD:
+            l = self.parameters.l[i]
+            position = position + self.parameters.p[i] - l * reference.links.q[k]
+            velocity = velocity - l * reference.links.q_dot[k]
+        return np.concatenate([measurement.position - position, measurement.velocity - velocity])
+
+    def vehicles(self, time: float, x: Array) -> list[Measurement]:
+        """What sensors without noise would tell of the UAVs in the state ``x`` (n,), at ``time`` (s); heading north."""
+        layout, p, l = self.layout, self.parameters.p, self.parameters.l[:, None]
+        attached = p @ rotation_from_quaternion(quaternion_from_euler(*x[layout.Theta])).T
+        s, s_dot = _pairs(x[layout.s]), _pairs(x[layout.s_dot])
+        down = _third(s)
+        position = x[layout.r_0] + attached - l * np.column_stack([s, down])
+        sinking = -(s * s_dot).sum(axis=1) / down
+        velocity = x[layout.v_0] + np.cross(x[layout.omega], attached) - l * np.column_stack([s_dot, sinking])
+        n, n_dot = _pairs(x[layout.n]), _pairs(x[layout.n_dot])
+        # Roll and pitch, without a turn from north, that tilt the thrust, along -e3, to (n, -n_z).
+        roll, pitch = np.arcsin(n[:, 1]), np.arctan2(-n[:, 0], _third(n))
+        (a, b), (c, d) = (np.cos([roll / 2, pitch / 2]), np.sin([roll / 2, pitch / 2]))
+        turn = np.column_stack([a * b, c * b, a * d, -c * d])
+        # n' = -R (omega x e3), and the heading stays.
+        about_x = n_dot[:, 1] / np.cos(roll)
+        about_y = (np.sin(pitch) * np.sin(roll) * about_x - n_dot[:, 0]) / np.cos(pitch)
+        rates = np.column_stack([about_x, about_y, -np.tan(roll) * about_y])
+        told: list[Measurement] = [Position(time, i, position[i], velocity[i]) for i in range(len(n))]
+        return told + [Attitude(time, i, turn[i], rates[i]) for i in range(len(n))]
+
+
+def _pairs(values: Array) -> Array:
+    return values.reshape(-1, 2)
+
+
+def _third(lateral: Array) -> Array:
+    """Of unit vectors with these lateral parts (N, 2)."""
+    return np.sqrt(np.maximum(1.0 - (lateral**2).sum(axis=1), 0.01))

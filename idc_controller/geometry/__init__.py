@@ -1,0 +1,1 @@
+"""Shapes, the formation, and the distances between them."""

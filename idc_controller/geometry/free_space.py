@@ -1,0 +1,265 @@
+"""Where the whole formation has room: its bounding cylinder against obstacles, altitudes and a boundary.
+
+The cylinder is upright and moves with the payload's centre. The obstacles (balls, upright cylinders, boxes turned
+about the vertical) have exact closed forms of distance to it: a horizontal and a vertical gap, joined by
+Pythagoras. Every distance is a convex function along a straight line, so its least value on a segment is found
+exactly by golden section.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from numpy.typing import ArrayLike, NDArray
+
+from idc_controller.errors import TrajectoryError
+from idc_controller.geometry.shapes import PredictedObstacle, Shape
+from idc_controller.parameters import SystemParameters
+
+Array = NDArray[np.float64]
+
+TOUCHING = 1e-6
+"""m; a place that keeps the margin to within this keeps it."""
+_GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
+_SEARCH_STEPS = 20  # golden section to 1e-4 of a way
+
+
+@dataclass(frozen=True)
+class Formation:
+    """The upright cylinder that bounds payload, links and discs, about the payload's centre (m)."""
+
+    radius: float
+    above: float
+    """From the payload's centre up to the highest disc."""
+    below: float
+    """From the payload's centre down to the payload's lowest point."""
+
+    def __post_init__(self) -> None:
+        for name in ("radius", "above", "below"):
+            if not (math.isfinite(getattr(self, name)) and getattr(self, name) >= 0.0):
+                raise TrajectoryError(f"the formation's {name} must be zero or more, not {getattr(self, name)}")
+
+    @classmethod
+    def of(cls, parameters: SystemParameters, link_tilt: float = 0.0) -> Formation:
+        """The formation at rest; with the common ``link_tilt`` (rad), or any smaller one, in any direction."""
+        reach = np.linalg.norm(parameters.p[:, :2], axis=1) + parameters.l * math.sin(link_tilt)
+        box = float(np.hypot(*parameters.payload_size[:2])) / 2.0
+        top = parameters.l - parameters.p[:, 2] + parameters.disc_radius * math.sin(link_tilt)
+        radius = max(box, float(reach.max()) + parameters.disc_radius)
+        return cls(radius, float(top.max()), float(parameters.payload_size[2]) / 2.0)
+
+
+class Room:
+    """Places of the payload's centre, (P, 3) NED (m), and how far the formation there is from what is around it.
+
+    Args:
+        obstacles: (shape, centre (3,)) of each.
+        formation: what must not come near.
+        margin: m, the least distance to keep between formation and obstacles.
+        lowest, highest: altitudes between which the payload's centre may be (m, up).
+        boundary: corners (north, east) of the area that the formation must not leave; None: no boundary.
+        growth: m, by how much each obstacle is to be taken larger; None: not at all.
+
+    Raises:
+        TrajectoryError: what is given has no meaning.
+    """
+
+    def __init__(
+        self,
+        obstacles: Sequence[tuple[Shape, ArrayLike]],
+        formation: Formation,
+        margin: float,
+        lowest: float,
+        highest: float,
+        boundary: Sequence[tuple[float, float]] | None = None,
+        growth: ArrayLike | None = None,
+    ) -> None:
+        if not (math.isfinite(margin) and margin >= 0.0):
+            raise TrajectoryError(f"the margin must be zero or more metres, not {margin}")
+        if not lowest < highest:
+            raise TrajectoryError(f"the highest altitude, {highest:g} m, is not above the lowest, {lowest:g} m")
+        self.formation, self.margin, self.lowest, self.highest = formation, margin, lowest, highest
+        self.centres = np.array([centre for _, centre in obstacles], dtype=float).reshape(len(obstacles), 3)
+        self.growth = np.zeros(len(obstacles)) if growth is None else np.array(growth, dtype=float)
+        if self.growth.shape != (len(obstacles),) or not np.isfinite(self.centres).all():
+            raise TrajectoryError("every obstacle needs a finite centre and one growth")
+        self._bodies = _Bodies([shape for shape, _ in obstacles])
+        self.lateral_reach = np.array([_lateral(shape) for shape, _ in obstacles]) + self.growth
+        """Of each obstacle from its centre outwards (M,) (m)."""
+        self.vertical_reach = self._bodies.half_height + self.growth
+        """Of each obstacle from its centre up and down (M,) (m)."""
+        self.inside: shapely.Polygon | None = None
+        """Where the payload's centre may be, seen from above."""
+        if boundary is not None:
+            self.inside = shapely.Polygon(boundary).buffer(-(formation.radius + margin))
+            shapely.prepare(self.inside)
+
+    def clearance(self, places: Array) -> Array:
+        """Distance of the formation at each place to each obstacle (P, M); negative inside (m)."""
+        return self._bodies.distance(places[:, None] - self.centres, self.formation) - self.growth
+
+    def is_free(self, places: Array, extra: float = 0.0) -> NDArray[np.bool_]:
+        """Where the formation keeps the margin, and ``extra`` (m) more, and all the bounds (P,)."""
+        free = self.within_bounds(places)
+        if len(self.centres):
+            free &= (self.clearance(places) >= self.margin + extra - TOUCHING).all(axis=1)
+        return free
+
+    def free_lattice(self, north: Array, east: Array, down: Array, extra: float) -> NDArray[np.bool_]:
+        """:meth:`is_free` at every combination of coordinates (X,), (Y,), (Z,) -> (X, Y, Z)."""
+        altitude = (-down >= self.lowest - TOUCHING) & (-down <= self.highest + TOUCHING)
+        free = np.broadcast_to(altitude, (len(north), len(east), len(down))).copy()
+        if self.inside is not None:
+            x, y = (grid.ravel() for grid in np.meshgrid(north, east, indexing="ij"))
+            free &= shapely.intersects_xy(self.inside, x, y).reshape(len(north), len(east), 1)
+        keep = self.margin + extra + self.growth - TOUCHING
+        around = self.lateral_reach - self.growth + self.formation.radius + keep
+        for index, (centre, distance, reach) in enumerate(zip(self.centres, keep, around, strict=True)):
+            rows = slice(*np.searchsorted(north, [centre[0] - reach, centre[0] + reach]))
+            columns = slice(*np.searchsorted(east, [centre[1] - reach, centre[1] + reach]))
+            body = self._bodies.chosen(np.array([index]))
+            if not (len(north[rows]) and len(east[columns])):
+                continue
+            offsets = np.zeros((len(north[rows]), len(east[columns]), 1, 3))
+            offsets[..., 0, 0] = north[rows, None] - centre[0]
+            offsets[..., 0, 1] = east[None, columns] - centre[1]
+            across = np.maximum(body.gaps(offsets, self.formation)[0][..., 0], 0.0)
+            upright = np.zeros((len(down), 1, 3))
+            upright[:, 0, 2] = down - centre[2]
+            over = np.maximum(body.gaps(upright, self.formation)[1][:, 0], 0.0)
+            free[rows, columns] &= across[..., None] ** 2 + over**2 >= (distance + body.ball) ** 2
+        return free
+
+    def within_bounds(self, places: Array) -> NDArray[np.bool_]:
+        """Whether altitude and boundary hold at each place (P,)."""
+        held = (-places[:, 2] >= self.lowest - TOUCHING) & (-places[:, 2] <= self.highest + TOUCHING)
+        if self.inside is not None:
+            held &= shapely.intersects_xy(self.inside, places[:, 0], places[:, 1])
+        return np.asarray(held)
+
+    def are_free_ways(self, starts: Array, ends: Array) -> NDArray[np.bool_]:
+        """Whether the margin and the bounds are kept all the way from ``starts`` to ``ends`` (E, 3) -> (E,)."""
+        free = self.within_bounds(starts) & self.within_bounds(ends)
+        if self.inside is not None:
+            ways = shapely.linestrings(np.stack([starts[:, :2], ends[:, :2]], axis=1))
+            free &= shapely.covers(self.inside, ways)
+        free[free] = self.keep_away(starts[free], ends[free], np.full(len(self.centres), self.margin - TOUCHING))
+        return np.asarray(free)
+
+    def keep_away(self, starts: Array, ends: Array, least: Array) -> NDArray[np.bool_]:
+        """Whether the clearance is ``least`` (M,) or more all the way from ``starts`` to ``ends`` (E, 3) -> (E,)."""
+        if not (len(self.centres) and len(starts)):
+            return np.ones(len(starts), dtype=bool)
+        half = np.linalg.norm(ends - starts, axis=1)[:, None] / 2.0
+        middle = self.clearance((starts + ends) / 2.0) - least
+        outer = np.minimum(self.clearance(starts), self.clearance(ends)) - least
+        kept: NDArray[np.bool_] = np.all((middle >= 0.0) & (outer >= 0.0), axis=1)
+        # Nowhere does the distance change faster than the place.
+        unsure = (outer + middle < half) & kept[:, None]
+        way, body = np.nonzero(unsure)
+        if len(way):
+            lowest = self._least(starts[way], ends[way], body)
+            kept[way[lowest < least[body]]] = False
+        return kept
+
+    def _least(self, starts: Array, ends: Array, index: NDArray[np.intp]) -> Array:
+        """The least clearance on each way (E, 3) to the one obstacle of that ``index`` (E,) -> (E,)."""
+        bodies, offsets, ways = self._bodies.chosen(index), starts - self.centres[index], ends - starts
+
+        def at(fraction: Array) -> Array:
+            return bodies.distance(offsets + fraction[:, None] * ways, self.formation)
+
+        low, high = np.zeros(len(starts)), np.ones(len(starts))
+        left, right = np.full(len(starts), 1.0 - _GOLDEN), np.full(len(starts), _GOLDEN)
+        at_left, at_right = at(left), at(right)
+        for _ in range(_SEARCH_STEPS):
+            falls = at_left > at_right  # the least value lies to the right of `left`
+            low, high = np.where(falls, left, low), np.where(falls, high, right)
+            new = np.where(falls, low + _GOLDEN * (high - low), high - _GOLDEN * (high - low))
+            at_new = at(new)
+            left, right = np.where(falls, right, new), np.where(falls, new, left)
+            at_left, at_right = np.where(falls, at_right, at_new), np.where(falls, at_new, at_left)
+        return np.asarray(np.minimum(at_left, at_right) - self.growth[index])
+
+
+def first_conflict(
+    positions: Array, obstacles: Sequence[PredictedObstacle], formation: Formation, margin: float
+) -> int | None:
+    """Index of the first of ``positions`` (K, 3) at which the formation is nearer than ``margin`` to an obstacle.
+
+    Each obstacle is where it is predicted at the same K moments, or at one moment (1, 3) for all of them, and
+    grown by its ``growth`` of that moment. None: there is no conflict.
+    """
+    if not obstacles:
+        return None
+    count = len(positions)
+    centres = np.stack([np.broadcast_to(o.positions, (count, 3)) for o in obstacles], axis=1)
+    growth = np.stack([np.broadcast_to(o.growth, (count,)) for o in obstacles], axis=1)
+    distance = _Bodies([o.shape for o in obstacles]).distance(positions[:, None] - centres, formation)
+    near = (distance - growth < margin - TOUCHING).any(axis=1)
+    return int(np.argmax(near)) if near.any() else None
+
+
+class _Bodies:
+    """The obstacles' sizes side by side: a box with half edges, rounded horizontally or in all directions."""
+
+    def __init__(self, shapes: Sequence[Shape]) -> None:
+        self._take(np.array([_sizes(shape) for shape in shapes]).reshape(len(shapes), 7))
+
+    def _take(self, sizes: Array) -> None:
+        self._sizes = sizes
+        self._half_x, self._half_y, self._half_z, self._upright, self.ball, self._cosine, self._sine = sizes.T
+        self._turned = bool(np.any(self._sine))
+
+    def chosen(self, index: NDArray[np.intp]) -> _Bodies:
+        """The bodies of these indices, as often as they stand there."""
+        bodies = _Bodies(())
+        bodies._take(self._sizes[index])
+        return bodies
+
+    @property
+    def half_height(self) -> Array:
+        """(M,) (m)."""
+        return np.asarray(self._half_z + self.ball)
+
+    def distance(self, offsets: Array, formation: Formation) -> Array:
+        """Distance between bodies (M) and the formation ``offsets`` (..., M, 3) away from them; < 0 inside (m)."""
+        horizontal, vertical = self.gaps(offsets, formation)
+        return np.asarray(_joined(horizontal, vertical) - self.ball)
+
+    def gaps(self, offsets: Array, formation: Formation) -> tuple[Array, Array]:
+        """Horizontal and vertical part (..., M) of the distance to the bodies less their ``ball`` (m)."""
+        x, y = offsets[..., 0], offsets[..., 1]
+        if self._turned:
+            x, y = self._cosine * x + self._sine * y, self._cosine * y - self._sine * x
+        x, y = np.abs(x) - self._half_x, np.abs(y) - self._half_y
+        horizontal = _joined(x, y) - self._upright - formation.radius
+        # The cylinder reaches from `below` under the payload's centre (down is positive) to `above` over it.
+        z = offsets[..., 2] + (formation.below - formation.above) / 2.0
+        vertical = np.abs(z) - self._half_z - (formation.below + formation.above) / 2.0
+        return np.asarray(horizontal), np.asarray(vertical)
+
+
+def _joined(a: Array, b: Array) -> Array:
+    """Distance to the region where both gaps, at right angles, are below zero; negative inside."""
+    outside = np.sqrt(np.maximum(a, 0.0) ** 2 + np.maximum(b, 0.0) ** 2)
+    return np.asarray(outside + np.minimum(np.maximum(a, b), 0.0))
+
+
+def _sizes(shape: Shape) -> tuple[float, ...]:
+    x, y, z = (edge / 2.0 for edge in shape.size)
+    if shape.kind == "sphere":
+        return 0.0, 0.0, 0.0, 0.0, shape.radius, 1.0, 0.0
+    if shape.kind == "pole":
+        return 0.0, 0.0, z, shape.radius, 0.0, 1.0, 0.0
+    if shape.kind == "wall":
+        return x, y, z, 0.0, 0.0, math.cos(shape.yaw), math.sin(shape.yaw)
+    raise TrajectoryError(f"an obstacle is a sphere, a pole or a wall, not {shape.kind!r}")
+
+
+def _lateral(shape: Shape) -> float:
+    return math.hypot(shape.size[0], shape.size[1]) / 2.0 if shape.kind == "wall" else shape.radius

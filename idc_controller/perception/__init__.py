@@ -1,0 +1,1 @@
+"""Obstacles from the points that range sensors detect: scans, tracks, the obstacle map."""

@@ -1,0 +1,151 @@
+"""Spheres and poles from surface points: Gauss-Newton on distance to the surface, centre and radius together."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from idc_controller.geometry.shapes import Shape
+from idc_controller.perception.surfaces.fit import EndOfSurface, Fit, score, unexplained
+from idc_controller.perception.surfaces.points import SurfacePoints
+
+Array = NDArray[np.float64]
+
+FIRST_RADIUS, FIRST_RADIUS_SIGMA = 0.6, 0.35  # m, before anything is known: rather too large
+RADIUS_WALK = 0.003  # m a frame
+RADIUS_SIGMA_LEAST = 0.015  # m
+RADII = {"sphere": (0.1, 1.6), "pole": (0.04, 1.6)}  # m
+_CENTRE_SIGMA = 2.0  # m: how little the guess of the centre counts
+_CLOSE_ENOUGH = 0.004  # m: a smaller last step of the search changes nothing that matters
+_SCATTER_LOSS = 18.0  # by trial: by how much more the centre is off than the linear fit believes (variance)
+_INSIDE = 0.1  # m: a point so far within a pole's side lies on its end
+
+
+class RoundSurface:
+    """A sphere, or a pole that stands on the ground. Its reference point is the centre, a pole's on the ground.
+
+    ``known``: the shape is given and stays as it is.
+    """
+
+    def __init__(self, kind: str, known: Shape | None = None) -> None:
+        self.kind = kind
+        self.known = known
+        self._axes = 3 if kind == "sphere" else 2
+        self._radius = known.radius if known else FIRST_RADIUS
+        self._variance = 1e-6 if known else FIRST_RADIUS_SIGMA**2
+        self._top = EndOfSurface(margin=3.0)
+
+    @property
+    def shape(self) -> Shape:
+        """As it is believed to be."""
+        if self.known is not None:
+            return self.known
+        if self.kind == "sphere":
+            return Shape("sphere", self._radius)
+        return Shape("pole", self._radius, (0.0, 0.0, max(self._top.outermost, 0.1)))
+
+    @property
+    def offset(self) -> Array:
+        """From the reference point to the shape's centre (3,)."""
+        return np.array([0.0, 0.0, 0.0 if self.kind == "sphere" else -self.shape.size[2] / 2.0])
+
+    @property
+    def size_sigma(self) -> float:
+        """Standard deviation of the radius (m)."""
+        return 0.0 if self.known else float(np.sqrt(self._variance))
+
+    def guess(self, seen: SurfacePoints) -> Array:
+        """A first place for the reference point: behind the nearest point, as seen by its sensor (3,)."""
+        ray = seen.points - seen.origins
+        nearest = int(np.argmin(np.einsum("ij,ij->i", ray, ray)))
+        direction = seen.rays[nearest].copy()
+        if self.kind == "pole":
+            direction[2] = 0.0
+            direction /= max(np.hypot(direction[0], direction[1]), 1e-3)
+        return seen.points[nearest] + self._radius * direction
+
+    def fit(self, seen: SurfacePoints, predicted: Array, iterations: int = 3) -> Fit:
+        """Where the obstacle is in this frame; learns the shape from it. ``predicted`` (3,): where it is expected."""
+        n_axes = self._axes
+        prior = np.full(n_axes + 1, 1.0 / _CENTRE_SIGMA**2)
+        prior[-1] = 1.0 / (self._variance + RADIUS_WALK**2)
+        mean = np.append(predicted[:n_axes], self._radius)
+        theta = mean.copy()
+        points, rays = seen.points[:, :n_axes], seen.rays[:, :n_axes]
+        low, high = RADII[self.kind]
+        H = np.empty((len(points), n_axes + 1))
+        for _ in range(iterations):
+            residual, normal, variance = self._residuals(points, rays, theta, seen, H[:, -1])
+            weight = 1.0 / (variance * (1.0 + residual**2 / (9.0 * np.maximum(variance, 0.0025))))
+            if self.kind == "pole":
+                weight[residual < -_INSIDE - 0.2 * theta[-1]] = 0.0
+            H[:, :n_axes] = -normal
+            HW = H.T * weight
+            information = HW @ H
+            information[np.arange(n_axes + 1), np.arange(n_axes + 1)] += prior
+            step = np.linalg.solve(information, prior * (mean - theta) - HW @ residual)
+            theta = theta + step
+            theta[-1] = min(max(theta[-1], low), high)
+            if abs(step).max() < _CLOSE_ENOUGH:
+                break
+        covariance = np.linalg.inv(information)
+        common = float(np.mean(seen.pose_variance)) / seen.sensors
+        position = np.zeros(3)
+        position[:n_axes] = theta[:n_axes]
+        spread = np.full(3, 0.02**2)
+        # Where points scatter by as much as the body is wide, their normals are no more than guesses.
+        guessed = 1.0 + _SCATTER_LOSS * seen.scatter / theta[-1] ** 2
+        spread[:n_axes] = guessed * np.diag(covariance)[:n_axes] + common
+        residual, _, variance = self._residuals(points, rays, theta, seen, H[:, -1])
+        if self.kind == "pole":
+            on_side = residual > -_INSIDE - 0.2 * theta[-1]
+            # What lies inside the side must be the top: the highest points.
+            height = seen.points[:, 2] - seen.points[:, 2].min()
+            residual = np.where(on_side, residual, np.minimum(-residual, height))
+        if self.known is None:
+            self._radius = float(theta[-1])
+            self._variance = max(float(covariance[-1, -1]), RADIUS_SIGMA_LEAST**2)
+            if self.kind == "pole":
+                self._top.seen(-seen.points[:, 2], seen.cut)
+        fitted = n_axes + (self.known is None)
+        return Fit(position, spread, score(residual, variance), unexplained(residual, variance, fitted))
+
+    def _residuals(
+        self, points: Array, rays: Array, theta: Array, seen: SurfacePoints, of_radius: Array
+    ) -> tuple[Array, Array, Array]:
+        """Distance to the surface (n,), its normals (n, axes), variance of the distance (n,).
+
+        ``of_radius`` (n,) is filled with what the distances change by as the radius grows.
+        """
+        d = points - theta[:-1]
+        distance = np.maximum(np.sqrt(np.einsum("ij,ij->i", d, d)), 1e-3)
+        normal = d / distance[:, None]
+        incidence = np.einsum("ij,ij->i", normal, rays)
+        variance = (seen.noise * incidence) ** 2 + seen.pose_variance + seen.scatter + 0.015**2
+        # Scatter across the surface puts points outside of it on average, the more so the smaller it is.
+        outside = 0.5 * (self._axes - 1) * seen.scatter / theta[-1]
+        residual = distance - theta[-1] - outside
+        of_radius[:] = -1.0
+        if seen.scatter > 0.0:
+            self._behind(d, rays, theta[-1], residual, normal, of_radius)
+        return residual, normal, variance
+
+    @staticmethod
+    def _behind(d: Array, rays: Array, radius: float, residual: Array, normal: Array, of_radius: Array) -> None:
+        """Points that seem to be on the side that no sensor sees are as far off as from the rim of the seen one.
+
+        Otherwise they would fit a body as well that is nearer by its width. Changes the last three in place.
+        """
+        rays = rays / np.maximum(np.sqrt(np.einsum("ij,ij->i", rays, rays)), 1e-6)[:, None]
+        along = np.einsum("ij,ij->i", d, rays)
+        behind = along > 0.0
+        if not behind.any():
+            return
+        ray, along = rays[behind], along[behind]
+        across = d[behind] - along[:, None] * ray
+        width = np.maximum(np.sqrt(np.einsum("ij,ij->i", across, across)), 1e-3)
+        out = width - radius
+        distance = np.maximum(np.hypot(along, out), 1e-3)
+        residual[behind] = distance
+        normal[behind] = (along[:, None] * ray + (out / width)[:, None] * across) / distance[:, None]
+        of_radius[behind] = -out / distance

@@ -1,1 +1,0 @@
-"""From what the mission asks to a reference that can be flown."""

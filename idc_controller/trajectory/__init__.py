@@ -1,0 +1,1 @@
+"""Trajectories of the payload, and the flat reference that follows from them."""

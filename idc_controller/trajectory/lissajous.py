@@ -1,0 +1,261 @@
+"""The paper's figure eight (eq:Lissajous), entered from rest and left to rest along the curve itself.
+
+The curve is a fixed function of its phase, the phase a piecewise polynomial of time, and the derivatives
+follow exactly by the chain rule: the trajectory never leaves the curve.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import Polynomial
+from numpy.typing import ArrayLike
+from scipy.interpolate import BPoly, PPoly
+
+from idc_controller.errors import TrajectoryError
+from idc_controller.trajectory.trajectory import Array, Limits, Trajectory, checked_times, finite, positive
+
+SHORTEST_RAMP, LONGEST_RAMP = 0.25, 60.0
+"""s, between rest and the full rate."""
+RAMP_LONGER = 1.08
+"""Factor from one ramp tried to the next."""
+
+
+@dataclass(frozen=True)
+class LissajousCurve:
+    """x = a_x sin(phase), y = -a_y sin(2 phase), z = down; with a_y = a_x / 2 the paper's figure eight.
+
+    ``amplitude`` (2,) m; ``down`` m (NED, so minus the altitude); ``centre`` (2,) m, north and east.
+
+    Raises:
+        TrajectoryError: not finite, or an amplitude is negative, or both are zero.
+    """
+
+    amplitude: tuple[float, float]
+    down: float
+    centre: tuple[float, float] = (0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        if len(self.amplitude) != 2 or not np.isfinite(self.amplitude).all() or min(self.amplitude) < 0.0:
+            raise TrajectoryError(f"amplitude must be two numbers, none negative, not {self.amplitude}")
+        if max(self.amplitude) == 0.0:
+            raise TrajectoryError("one amplitude at least must be positive")
+        finite(self.down, "down")
+        if len(self.centre) != 2 or not np.isfinite(self.centre).all():
+            raise TrajectoryError(f"centre must be two finite numbers, not {self.centre}")
+
+    def by_phase(self, phase: Array, order: int) -> list[Array]:
+        """The curve and its derivatives by phase (rad) up to ``order``, each (K, 3), m / rad^d."""
+        result = []
+        for d in range(order + 1):
+            x = self.amplitude[0] * np.sin(phase + d * np.pi / 2.0)
+            y = -self.amplitude[1] * 2.0**d * np.sin(2.0 * phase + d * np.pi / 2.0)
+            result.append(np.column_stack([x, y, np.zeros_like(x)]))
+        result[0] += [*self.centre, self.down]
+        return result
+
+
+class LissajousTrajectory(Trajectory):
+    """The curve from phase 0 at rest, ``duration`` s at the full phase rate, then to rest.
+
+    Args:
+        curve: the curve.
+        angular_frequency: full phase rate, rad/s.
+        duration: s at the full rate; the ramps before and after come on top.
+        limits: hold at every time; the ramps are as short as they allow.
+        start: s, when the motion begins.
+
+    Raises:
+        TrajectoryError: a value has no meaning, or the curve at the full rate exceeds the limits.
+    """
+
+    def __init__(
+        self,
+        curve: LissajousCurve,
+        angular_frequency: float,
+        duration: float,
+        limits: Limits,
+        start: float = 0.0,
+    ) -> None:
+        self.curve = curve
+        self.limits = limits
+        rate = positive(angular_frequency, "angular frequency")
+        duration = positive(duration, "duration")
+        start = finite(start, "start")
+        _check_full_rate(curve, rate, limits)
+        still = np.zeros(4)
+        cruise = np.array([rate, 0.0, 0.0, 0.0])
+        # A little gentler at first, so that there is always a way to stop while it gathers speed.
+        up, phase = _shortest_ramp(curve, _gentler(curve, rate, limits), 0.0, still, cruise)
+        down, _ = _shortest_ramp(curve, limits, phase + rate * duration, cruise, still)
+        self.full_rate = (start + up, start + up + duration)
+        """Times, s, between which the phase runs at the full rate."""
+        knots = np.array([start, *self.full_rate, self.full_rate[1] + down])
+        self._set_phase(_phase(knots, [still, cruise, cruise, still], 0.0))
+
+    def _set_phase(self, phase: PPoly) -> None:
+        # Phase and four derivatives as one polynomial with values (5,): asked at once.
+        coefficients = np.zeros((*phase.c.shape, 5))
+        for d in range(5):
+            derivative = phase.derivative(d) if d else phase
+            coefficients[-len(derivative.c) :, :, d] = derivative.c
+        self._phase = PPoly(coefficients, phase.x)
+        self._rate = phase.derivative()
+        self._start, self._end = float(phase.x[0]), float(phase.x[-1])
+
+    @property
+    def start(self) -> float:
+        """Time at which the motion begins, s."""
+        return self._start
+
+    @property
+    def end(self) -> float:
+        """Time from which on it rests, s."""
+        return self._end
+
+    def phase(self, times: ArrayLike, order: int = 0) -> Array:
+        """Phase and its derivatives at times (K,), s: (order + 1, K), rad / s^d."""
+        times = checked_times(times, order)
+        inside = np.clip(times, self._start, self._end)
+        result = self._phase(inside).T[: order + 1]
+        result[1:, (times <= self._start) | (times >= self._end)] = 0.0
+        return result
+
+    def derivatives(self, times: ArrayLike, order: int = 4) -> Array:
+        """See ``Trajectory.derivatives``; analytic, by the chain rule."""
+        return _chain_rule(self.curve, self.phase(times, order))
+
+    def stop(self, time: float) -> Trajectory:
+        """See ``Trajectory.stop``; stays on the curve."""
+        time = max(finite(time, "time"), self._start)
+        # While it gathers speed the limits may be used up: then a little later is sooner.
+        later = np.arange(time + 0.5, self.full_rate[0], 0.5)
+        end, best = self._end, None
+        for begin in [time, *later]:
+            longest, shorter, duration = end - begin, 0.0, SHORTEST_RAMP
+            while duration < longest and not self._brakes(begin, duration):
+                shorter, duration = duration, duration * 1.15
+            if duration >= longest:
+                continue
+            for _ in range(4):
+                middle = 0.5 * (shorter + duration)
+                shorter, duration = (shorter, middle) if self._brakes(begin, middle) else (middle, duration)
+            end, best = begin + duration, (begin, duration)
+        return self if best is None else _Stopped(self, self._braked(*best))
+
+    def _brakes(self, time: float, duration: float) -> bool:
+        phase = self._braked(time, duration)
+        return _holds_limits(self.curve, self.limits, phase, np.linspace(time, phase.x[-1], 250))
+
+    def _braked(self, time: float, duration: float) -> PPoly:
+        """The phase if from ``time`` (s) its rate is multiplied by a factor that falls to 0 in ``duration``."""
+        rate = self._rate
+        knots = np.unique([*rate.x[rate.x < time + duration], time, time + duration])
+        knots = knots[np.append(True, np.diff(knots) > 1e-9)]
+        factor = PPoly.from_bernstein_basis(
+            BPoly.from_derivatives([time, time + duration], [[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0]])
+        )
+        coefficients = np.zeros((rate.c.shape[0] + factor.c.shape[0] - 1, len(knots) - 1))
+        for i, begin in enumerate(knots[:-1]):
+            segment = min(int(np.searchsorted(rate.x, begin, side="right")) - 1, rate.c.shape[1] - 1)
+            product = Polynomial(rate.c[::-1, segment])(Polynomial([begin - rate.x[segment], 1.0]))
+            if begin >= time - 1e-9:
+                product = product * Polynomial(factor.c[::-1, 0])(Polynomial([begin - time, 1.0]))
+            coefficients[-len(product.coef) :, i] = product.coef[::-1]
+        return PPoly(coefficients, knots).antiderivative()
+
+
+class _Stopped(LissajousTrajectory):
+    """On its way to rest."""
+
+    def __init__(self, stopped: LissajousTrajectory, phase: PPoly) -> None:
+        self.curve, self.limits, self.full_rate = stopped.curve, stopped.limits, stopped.full_rate
+        self._set_phase(phase)
+
+    def stop(self, time: float) -> Trajectory:
+        """Comes to rest already."""
+        finite(time, "time")
+        return self
+
+
+def _chain_rule(curve: LissajousCurve, phase: Array) -> Array:
+    """Derivatives by time (order + 1, K, 3) from those of the phase (order + 1, K) (Faa di Bruno)."""
+    order = len(phase) - 1
+    r = curve.by_phase(phase[0], order)
+    p = phase[:, :, None]
+    result = [r[0]]
+    if order >= 1:
+        result.append(r[1] * p[1])
+    if order >= 2:
+        result.append(r[2] * p[1] ** 2 + r[1] * p[2])
+    if order >= 3:
+        result.append(r[3] * p[1] ** 3 + 3.0 * r[2] * p[1] * p[2] + r[1] * p[3])
+    if order >= 4:
+        result.append(
+            r[4] * p[1] ** 4
+            + 6.0 * r[3] * p[1] ** 2 * p[2]
+            + r[2] * (3.0 * p[2] ** 2 + 4.0 * p[1] * p[3])
+            + r[1] * p[4]
+        )
+    return np.array(result)
+
+
+def _phase(knots: Array, rates: list[Array], first: float) -> PPoly:
+    """Phase from ``first`` on, whose rate and three derivatives (4,) at the knots (s) are given."""
+    rate = PPoly.from_bernstein_basis(BPoly.from_derivatives(knots, rates))
+    phase = rate.antiderivative()
+    phase.c[-1] += first
+    return phase
+
+
+def _largest(curve: LissajousCurve, rate: float) -> Array:
+    """Largest norms (4,) of speed to snap at the full rate."""
+    r = np.array(curve.by_phase(np.linspace(0.0, 2.0 * np.pi, 721), 4)[1:])
+    return np.asarray(np.linalg.norm(r, axis=2).max(axis=1) * rate ** np.arange(1, 5))
+
+
+def _gentler(curve: LissajousCurve, rate: float, limits: Limits) -> Limits:
+    """Limits halfway between what the curve needs anyway and what is allowed, but not below 85 %."""
+    allowed = limits.as_array()
+    gentler = np.maximum(0.5 * (allowed + _largest(curve, rate)), 0.85 * allowed)
+    return Limits(*map(float, gentler))
+
+
+def _check_full_rate(curve: LissajousCurve, rate: float, limits: Limits) -> None:
+    for (name, limit), largest in zip(vars(limits).items(), _largest(curve, rate), strict=True):
+        if largest > limit * (1.0 - 1e-3):
+            raise TrajectoryError(
+                f"the curve at {rate:g} rad/s reaches a {name} of {largest:.3g}, the limit is {limit:g}"
+            )
+
+
+def _shortest_ramp(
+    curve: LissajousCurve, limits: Limits, phase: float, before: Array, after: Array
+) -> tuple[float, float]:
+    """Shortest ramp between two states of the rate (4,) within limits: (duration s, phase at its end rad)."""
+
+    def ramp(duration: float) -> PPoly:
+        return _phase(np.array([0.0, duration]), [before, after], phase)
+
+    def feasible(duration: float) -> bool:
+        times = np.linspace(0.0, duration, max(400, int(duration * 100)))
+        return _holds_limits(curve, limits, ramp(duration), times)
+
+    duration = SHORTEST_RAMP
+    while not feasible(duration):
+        duration *= RAMP_LONGER
+        if duration > LONGEST_RAMP:
+            raise TrajectoryError("no ramp between rest and the full rate holds the limits")
+    shorter = duration / RAMP_LONGER
+    for _ in range(6):
+        middle = 0.5 * (shorter + duration)
+        shorter, duration = (shorter, middle) if feasible(middle) else (middle, duration)
+    return duration, float(ramp(duration)(duration))
+
+
+def _holds_limits(curve: LissajousCurve, limits: Limits, phase: PPoly, times: Array) -> bool:
+    phases = np.array([phase(times, d) for d in range(5)])
+    norms = np.linalg.norm(_chain_rule(curve, phases)[1:], axis=2).max(axis=1)
+    # Never backwards; samples may miss a peak by a little.
+    return bool(phases[1].min() >= -1e-9 and np.all(norms <= limits.as_array() * (1.0 - 1e-3)))

@@ -1,0 +1,26 @@
+"""The reference that estimator and controller share: a trajectory, and what is believed of the load on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from idc_controller.parameters import SystemParameters
+from idc_controller.trajectory.flatness import FlatReference, Load, PayloadTrajectory, flat_reference
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Reference:
+    """Exact states and set-points along ``trajectory`` under ``load``."""
+
+    parameters: SystemParameters
+    trajectory: PayloadTrajectory
+    load: Load
+
+    def at(self, times: Array) -> FlatReference:
+        """Reference at ``times`` (K,) (s)."""
+        return flat_reference(self.parameters, self.trajectory, np.asarray(times, dtype=float), self.load)

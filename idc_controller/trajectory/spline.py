@@ -1,0 +1,171 @@
+"""Uniform B-splines of degree 5 as trajectories.
+
+The d-th derivative of such a spline is a spline of lower degree whose control points are the d-th differences
+of the control points over interval^d. A spline lies in the convex hull of its control points, so limits that
+hold for these differences hold for the derivatives at every time.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.interpolate import BSpline, PPoly, make_interp_spline
+
+from idc_controller.errors import TrajectoryError
+from idc_controller.trajectory.trajectory import Array, Limits, Trajectory, checked_times, finite, positive
+
+DEGREE = 5
+SUPPORT = DEGREE + 1
+"""Intervals over which one control point acts."""
+LONGEST_STOP = 100
+"""Intervals within which ``stop`` looks for a way to slow down."""
+DELAYS = (0, 1, 2, 4, 6, 9, 12, 16)
+"""Intervals for which ``stop`` may wait: in a corner the limits may be used up already."""
+
+
+@lru_cache(maxsize=32)
+def _basis(interval: float, order: int) -> Array:
+    """Polynomials of the basis function and its derivatives, per power of the fraction of an interval.
+
+    Shape (6 powers, (order + 1) * 6): column d * 6 + k belongs to the d-th derivative and the k-th control
+    point of those that act (oldest first).
+    """
+    # Rows of PPoly.c: highest power first; columns: interval 0..5 of the basis function.
+    powers = PPoly.from_spline(BSpline.basis_element(np.arange(SUPPORT + 1.0), extrapolate=False))
+    inside = np.flatnonzero((powers.x[:-1] >= 0.0) & (np.diff(powers.x) > 0.0))[:SUPPORT]
+    columns = []
+    for d in range(order + 1):
+        c = powers.derivative(d).c[::-1, inside] if d else powers.c[::-1, inside]
+        padded = np.zeros((SUPPORT, SUPPORT))
+        padded[: len(c)] = c / interval**d
+        columns.append(padded[:, ::-1])  # the oldest control point is in its last interval
+    return np.hstack(columns)
+
+
+def evaluate(control_points: Array, interval: float, arguments: Array, order: int) -> Array:
+    """Position and derivatives of a uniform spline that rests at its first and last control point outside.
+
+    Args:
+        control_points: (M, 3), m; point j acts on arguments j to j + 6.
+        interval: between control points, s.
+        arguments: (K,), time in intervals.
+        order: highest derivative, 0 to 4.
+
+    Returns:
+        (order + 1, K, 3).
+    """
+    clipped = np.clip(arguments, 0.0, len(control_points) + SUPPORT)
+    cell = np.floor(clipped).astype(int)
+    fraction = clipped - cell
+    chosen = control_points[np.clip(cell[:, None] + np.arange(-DEGREE, 1), 0, len(control_points) - 1)]
+    base = chosen[:, -1]
+    weights = (fraction[:, None] ** np.arange(SUPPORT)) @ _basis(interval, order)
+    # Relative to one of the points: rest is then exactly rest.
+    result = weights.reshape(len(cell), order + 1, SUPPORT) @ (chosen - base[:, None])
+    result[:, 0] += base
+    return result.transpose(1, 0, 2)
+
+
+def within_limits(control_points: Array, interval: float, limits: Limits, slack: float = 1e-7) -> bool:
+    """Whether the differences of control points (M, 3) hold all four limits, hence the spline does."""
+    differences = control_points
+    for d, limit in enumerate(limits.as_array(), start=1):
+        differences = differences[1:] - differences[:-1]
+        bound = limit * interval**d * (1.0 + slack)
+        if len(differences) and np.einsum("ij,ij->i", differences, differences).max() > bound * bound:
+            return False
+    return True
+
+
+class SplineTrajectory(Trajectory):
+    """A uniform B-spline of degree 5 from rest to rest.
+
+    Args:
+        control_points: (M, 3), m, NED; it rests at the first and the last one.
+        interval: between control points, s.
+        origin: time at which the first control point begins to act, s.
+        limits: what ``stop`` has to keep; the control points themselves are not checked.
+
+    Raises:
+        TrajectoryError: no control point, not (M, 3), not finite, or the interval is not positive.
+    """
+
+    def __init__(self, control_points: ArrayLike, interval: float, origin: float, limits: Limits) -> None:
+        self.control_points = np.array(control_points, dtype=float)
+        shape = self.control_points.shape
+        if len(shape) != 2 or shape[0] == 0 or shape[1] != 3:
+            raise TrajectoryError("control points must have shape (M, 3) with M of at least 1")
+        if not np.isfinite(self.control_points).all():
+            raise TrajectoryError("control points must be finite")
+        self.interval = positive(interval, "interval")
+        self.origin = finite(origin, "origin")
+        self.limits = limits
+        moving = np.flatnonzero((self.control_points[1:] != self.control_points[:-1]).any(axis=1))
+        self._start, self._end = self.origin, self.origin
+        if len(moving):
+            self._start += (moving[0] + 1) * self.interval
+            self._end += (moving[-1] + SUPPORT) * self.interval
+
+    @property
+    def start(self) -> float:
+        """Time at which the motion begins, s."""
+        return self._start
+
+    @property
+    def end(self) -> float:
+        """Time from which on it rests, s."""
+        return self._end
+
+    def derivatives(self, times: ArrayLike, order: int = 4) -> Array:
+        """See ``Trajectory.derivatives``."""
+        arguments = (checked_times(times, order) - self.origin) / self.interval
+        return evaluate(self.control_points, self.interval, arguments, order)
+
+    def stop(self, time: float) -> SplineTrajectory:
+        """See ``Trajectory.stop``."""
+        last = max(0, math.floor((finite(time, "time") - self.origin) / self.interval))
+        points = _slowed_to_rest(self.control_points, last, self.interval, self.limits)
+        return SplineTrajectory(points, self.interval, self.origin, self.limits)
+
+
+def _slowed_to_rest(points: Array, last: int, interval: float, limits: Limits) -> Array:
+    """Control points that agree up to index ``last``, then run on along the same curve ever more slowly.
+
+    The ways to slow down (begin later, take longer) are tried by the number of points they need; what there
+    is already, which comes to rest as well, is the last resort.
+    """
+    if last >= len(points) - 1:
+        return points
+    moving = np.flatnonzero((points[1:] != points[:-1]).any(axis=1))
+    final = int(moving[-1]) + 1 if len(moving) else 0
+    first = max(0, last - 8)
+    ahead = points[first : final + 1 + DEGREE]
+    if len(ahead) < SUPPORT + 1:
+        return points
+    # A smooth curve through the control points: between them a straight line would break the snap limit.
+    longest = min(final - last, LONGEST_STOP)
+    ahead = ahead[: last - first + longest + SUPPORT]
+    curve = make_interp_spline(np.arange(len(ahead), dtype=float), ahead, k=DEGREE)
+    for total in range(1, longest):
+        for delay in (d for d in DELAYS if d < total):
+            steps = total - delay
+            rates = np.concatenate([np.ones(delay), _braking_rates(steps)])
+            arguments = (last - first) + np.cumsum(rates)
+            braked = np.vstack([ahead[: last - first + 1 + delay], curve(arguments[delay:])])
+            braked = np.vstack([braked, np.repeat(braked[-1:], 4, axis=0)])
+            if within_limits(braked[max(0, last - first - 4) :], interval, limits):
+                return np.vstack([points[:first], braked])
+    return points
+
+
+@lru_cache(maxsize=LONGEST_STOP)
+def _braking_rates(steps: int) -> Array:
+    """Rates along the curve from 1 to 0 in ``steps`` steps, in the proportions that limited snap favours."""
+    a = max(1, round(steps / 2))
+    b = max(1, round((steps + 2 - a) / 2)) if steps > 1 else 1
+    c = max(1, steps + 2 - a - b)
+    kernel = np.convolve(np.convolve(np.full(a, 1.0 / a), np.full(b, 1.0 / b)), np.full(c, 1.0 / c))
+    return 1.0 - np.cumsum(kernel)

@@ -1,0 +1,99 @@
+"""The command line of ``vehicle-sim``: its options and what they may be."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from functools import partial
+from importlib import metadata
+from pathlib import Path
+from typing import NoReturn
+
+from rich_argparse import RawDescriptionRichHelpFormatter
+
+from gcs.app.arguments import number, whole_number
+from gcs.errors import UnusableInput
+
+BASE_PORT = 14540
+GROUND_PORT = 14550
+
+_DESCRIPTION = """\
+Launches the swarm: a world with one payload on rigid links, and quadrotors that carry it, each of which
+speaks MAVLink like a PX4 autopilot on a UDP port of its own.
+
+Vehicle i has the system id i, listens on port BASE + i - 1 and, in real time, also offers itself to a ground
+station on port 14550 of this machine. Every vehicle relays the payload's navigation unit as component 25.
+Vehicles whose set-points stop brake and hold, then land."""
+
+_EPILOG = """\
+On standard output, line by line: the clock's address (lockstep only), every vehicle's, and "ready".
+
+Examples:
+  vehicle-sim                                    four vehicles on ports 14540 .. 14543, in real time
+  vehicle-sim --vehicles 6 --speed 2             six, twice as fast
+  vehicle-sim --mission missions/figure_eight.toml --run-dir runs/by-hand
+                                                 the mission's home, obstacles, seed and system; truth.csv
+  gcs fly missions/figure_eight.toml --realtime --connect udp://127.0.0.1:14540 udp://127.0.0.1:14541 \
+          udp://127.0.0.1:14542 udp://127.0.0.1:14543
+                                                 in another terminal: fly it
+
+Exit status: 0 ended by SIGTERM or with the process that started it, 2 unusable input, with the reason on standard
+error and nothing started, 130 interrupted.
+"""
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message: str) -> NoReturn:
+        """One line, and no usage: ``--help`` tells the whole story."""
+        raise UnusableInput(message)
+
+
+def parse(argv: list[str] | None) -> argparse.Namespace:
+    """The options; raises :class:`UnusableInput` for what cannot be. ``--help`` and ``--version`` exit."""
+    parser = _Parser(
+        prog="vehicle-sim", description=_DESCRIPTION, epilog=_EPILOG, allow_abbrev=False,
+        formatter_class=RawDescriptionRichHelpFormatter,
+    )  # fmt: skip
+    add = parser.add_argument
+    add("--vehicles", type=_whole(3, 254), metavar="N", help="number of vehicles (default: the system file's)")
+    add("--mission", type=Path, metavar="M",
+        help="mission file (.toml, .plan, .waypoints) that gives home, obstacles, seed and system")  # fmt: skip
+    add("--config", type=Path, metavar="C", help="system file (default: the mission's, else the packaged one)")
+    add("--seed", type=_whole(0, 2**63 - 1), metavar="S",
+        help="seed of all sensor noise (default: the mission's, else 1)")  # fmt: skip
+    add("--run-dir", type=Path, metavar="D",
+        help="folder for truth.csv, obstacles.csv, manifest.json; made if absent, refused if not empty")  # fmt: skip
+    add("--host", default="127.0.0.1", metavar="H", help="address to listen on (default: %(default)s)")
+    add("--base-port", type=_whole(0, 65535), default=BASE_PORT, metavar="P",
+        help="port of vehicle 1; 0: any that are free (default: %(default)s)")  # fmt: skip
+    add("--ground-port", type=_whole(0, 65535), default=None, metavar="P",
+        help=f"where vehicles offer themselves in real time; 0: nowhere (default: {GROUND_PORT})")  # fmt: skip
+    pace = parser.add_mutually_exclusive_group()
+    pace.add_argument("--realtime", action="store_true", help="on this machine's clock (the default)")
+    pace.add_argument(
+        "--lockstep", action="store_true",
+        help="on a virtual clock shared with one ground station, at port BASE - 1: as fast as both can, "
+        "and the same every time",
+    )  # fmt: skip
+    add("--speed", type=partial(number, least=0.001, most=1000.0), default=None, metavar="X",
+        help="real time times X (default: 1)")  # fmt: skip
+    add("--gui", action="store_true", help="show the world in a window")
+    add("--with-parent", action="store_true", help=argparse.SUPPRESS)
+    add("--version", action="version", version=f"vehicle-sim {_version()}")
+    options = parser.parse_args(argv)
+    if options.lockstep and options.speed is not None:
+        parser.error("--speed: lockstep has no speed of its own, it is as fast as it can be")
+    if options.lockstep and options.ground_port:
+        parser.error("--ground-port: in lockstep the vehicles do not offer themselves")
+    return options
+
+
+def _whole(least: int, most: int) -> Callable[[str], int]:
+    return partial(whole_number, least=least, most=most)
+
+
+def _version() -> str:
+    try:
+        return metadata.version("cooplift")
+    except metadata.PackageNotFoundError:
+        return "(not installed)"

@@ -1,0 +1,29 @@
+"""The command ``vehicle-sim``."""
+
+from __future__ import annotations
+
+import sys
+
+from gcs.errors import GcsError
+from idc_controller.errors import IdcError
+from vehicle_sim.app.arguments import parse
+from vehicle_sim.world.engine_messages import greeting_of_engine_dropped
+from vehicle_sim.world.errors import SimulationError
+
+UNUSABLE_INPUT = 2
+INTERRUPTED = 130
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run the command; ``argv`` without the program's name. Returns the exit status."""
+    arguments = sys.argv[1:] if argv is None else argv
+    try:
+        options = parse(arguments)
+        with greeting_of_engine_dropped():
+            from vehicle_sim.app.launch import launch
+        return launch(options, arguments)
+    except (GcsError, SimulationError, IdcError) as error:
+        print(f"vehicle-sim: {error}", file=sys.stderr)
+        return UNUSABLE_INPUT
+    except KeyboardInterrupt:  # while starting; later it is a request to end
+        return INTERRUPTED

@@ -1,0 +1,142 @@
+"""From options to a running simulator: reads what is to be simulated, opens everything or nothing, runs a driver."""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import os
+import sys
+from argparse import Namespace
+from datetime import UTC, datetime
+from pathlib import Path
+
+from threadpoolctl import threadpool_limits
+
+from gcs.config import SystemConfig, read_system
+from gcs.faults.record import notes_of
+from gcs.mavlink.address import Address
+from gcs.mission import Mission, read_mission
+from gcs.mission.faults import check_faults_of
+from gcs.record.run_folder import open_run_folder, write_manifest
+from vehicle_sim.app.arguments import GROUND_PORT
+from vehicle_sim.app.ending import Ending
+from vehicle_sim.app.lockstep import LockstepDriver
+from vehicle_sim.app.realtime import RealTimeDriver
+from vehicle_sim.app.sockets import SwarmSockets, url
+from vehicle_sim.faults import FaultPassage, record_faults
+from vehicle_sim.faults.record import faults_record
+from vehicle_sim.swarm import Swarm
+from vehicle_sim.world.display import check_display
+from vehicle_sim.world.engine_messages import messages_of_engine_aside
+from vehicle_sim.world.truth_log import TruthLog
+
+DEFAULT_SEED = 1
+
+
+def launch(options: Namespace, arguments: list[str]) -> int:
+    """Run the simulator that the options describe until it ends; returns the exit status.
+
+    Raises :class:`~gcs.errors.GcsError` or :class:`SimulationError` for what cannot be done; nothing is left open.
+    """
+    with contextlib.ExitStack() as started:
+        return _run(options, arguments, started)
+
+
+def _run(options: Namespace, arguments: list[str], started: contextlib.ExitStack) -> int:
+    mission, config = _read(options)
+    seed = options.seed if options.seed is not None else DEFAULT_SEED if mission is None else mission.seed
+    if options.gui:
+        check_display()
+    # Small matrices: more threads cost time, and sums in another order are other sums.
+    started.enter_context(threadpool_limits(1))
+    ending = started.enter_context(contextlib.closing(Ending(sys.stdin.fileno() if options.with_parent else None)))
+    started.enter_context(ending.on_signals())
+    passage = None
+    if mission is not None and mission.faults:
+        passage = FaultPassage(mission.faults, seed, config)
+    with messages_of_engine_aside() if options.gui else contextlib.nullcontext():
+        swarm = started.enter_context(
+            Swarm(
+                config,
+                seed=seed,
+                home=None if mission is None else mission.home,
+                obstacles=() if mission is None else mission.obstacles,
+                ground_address=_ground_address(options),
+                passage=passage,
+                gui=options.gui,
+            )
+        )
+    sockets = started.enter_context(
+        SwarmSockets(options.host, options.base_port, len(swarm.vehicles), options.lockstep)
+    )
+    if options.run_dir is not None:
+        swarm.record(_truth_log(options, arguments, seed, mission, config))
+    if passage is not None:
+        started.callback(_tell_faults, options, passage, swarm)
+    driver: LockstepDriver | RealTimeDriver
+    if options.lockstep:
+        driver = LockstepDriver(swarm, sockets, ending)
+    else:
+        driver = RealTimeDriver(swarm, sockets, ending, options.speed or 1.0)
+    try:
+        _announce(sockets, options)
+    except BrokenPipeError:  # whoever started this is gone already
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    driver.run()
+    return ending.status
+
+
+def _read(options: Namespace) -> tuple[Mission | None, SystemConfig]:
+    mission = None if options.mission is None else read_mission(options.mission, options.config)
+    config = read_system(options.config) if mission is None else mission.system
+    if options.vehicles is not None:
+        config = config.with_vehicles(options.vehicles)
+    if mission is not None:
+        mission = dataclasses.replace(mission, system=config)
+        check_faults_of(mission)
+    return mission, config
+
+
+def _ground_address(options: Namespace) -> Address | None:
+    """Where the vehicles offer themselves."""
+    port = GROUND_PORT if options.ground_port is None else options.ground_port
+    return None if options.lockstep or port == 0 else ("127.0.0.1", port)
+
+
+def _truth_log(
+    options: Namespace, arguments: list[str], seed: int, mission: Mission | None, config: SystemConfig
+) -> TruthLog:
+    if options.with_parent:  # the folder is the parent's, and so is the manifest
+        return TruthLog(options.run_dir, config.team.vehicles)
+    folder: Path = open_run_folder("", options.run_dir)
+    write_manifest(
+        folder, command=["vehicle-sim", *arguments], seed=seed, mission=mission, system=config,
+        start=datetime.now(UTC),
+    )  # fmt: skip
+    return TruthLog(folder, config.team.vehicles)
+
+
+def _tell_faults(options: Namespace, passage: FaultPassage, swarm: Swarm) -> None:
+    """What the faults did: on record, and for people what did not happen."""
+    if options.run_dir is not None:
+        record_faults(options.run_dir, passage, swarm.time)
+    if not options.with_parent:
+        for note in notes_of(faults_record(passage, swarm.time)):
+            print(note, file=sys.stderr, flush=True)
+
+
+def _announce(sockets: SwarmSockets, options: Namespace) -> None:
+    """Tell where everybody listens: programs read these lines, too."""
+    lines = []
+    if sockets.clock is not None:
+        lines.append(f"clock: {url(sockets.clock)}")
+    lines += [f"vehicle {i}: {url(endpoint)}" for i, endpoint in enumerate(sockets.vehicles, start=1)]
+    lines.append("ready")
+    for line in lines:
+        print(line, flush=True)
+    if not options.with_parent:
+        hint = f"gcs fly MISSION --realtime --connect {' '.join(url(endpoint) for endpoint in sockets.vehicles)}"
+        if options.lockstep:
+            hint = "lockstep: waiting for a ground station at the clock"
+        print(f"({hint}; Ctrl-C ends)", flush=True)

@@ -1,0 +1,143 @@
+"""Lockstep: the swarm and one ground station share a virtual clock; see :mod:`gcs.mavlink.lockstep`."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from collections.abc import Iterator
+
+from gcs.mavlink.address import Address
+from gcs.mavlink.lockstep import Done, Tick, decode_done
+from gcs.mavlink.udp import arrived
+from vehicle_sim.app.ending import Ending
+from vehicle_sim.app.landing import LANDING_TIME
+from vehicle_sim.app.sockets import SwarmSockets
+from vehicle_sim.swarm import Swarm
+
+ANSWER_TIME = 5.0  # s of wall time for the ground to answer a tick
+STRIDE_US = 100_000  # of free time between looks at the world
+# Ticks at one moment after which time goes on: two who always have an answer for each other must not stop it.
+TICKS_AT_ONE_TIME = 1000
+
+
+class LockstepDriver:
+    """Runs a swarm for one ground after the other; time stands still while there is none.
+
+    A ground that leaves, or does not answer, leaves vehicles in the air: time then runs on without it, as fast as it
+    can, until they have landed.
+    """
+
+    def __init__(self, swarm: Swarm, sockets: SwarmSockets, ending: Ending, answer_time: float = ANSWER_TIME) -> None:
+        """``sockets`` with a clock socket; ``answer_time`` in s of wall time."""
+        if sockets.clock is None:
+            raise ValueError("lockstep needs a clock socket")
+        self._swarm = swarm
+        self._sockets = sockets
+        self._clock = sockets.clock
+        self._ending = ending
+        self._answer_time = answer_time
+        self._time_us = round(swarm.time * 1e6)
+        self._serial = 0
+        self._joining: Address | None = None
+
+    def run(self) -> None:
+        """Returns when the end is requested, or when the parent is gone and the vehicles have landed.
+
+        With a parent there is no second ground: it ends after the first.
+        """
+        ending = self._ending
+        while not ending.requested:
+            ground = self._wait_for_ground()
+            if ground is None:
+                return
+            self._serve(ground)
+            self._let_land()
+            if ending.has_parent:
+                return
+
+    def _wait_for_ground(self) -> Address | None:
+        """The ground that asked to join last; None when the end came first."""
+        ending = self._ending
+        while not ending.requested and not ending.parent_gone:
+            for _ in self._from_ground(None):
+                pass
+            if self._joining is not None:
+                ground, self._joining = self._joining, None
+                return ground
+            ending.wait([self._clock], None)
+        return None
+
+    def _from_ground(self, ground: Address | None) -> Iterator[Done]:
+        """What ``ground`` has to say about the clock; who else would like to join is kept for later."""
+        for datagram, sender in arrived(self._clock):
+            done = decode_done(datagram)
+            if done is None:
+                continue
+            if sender == ground:
+                yield done
+            elif done.leaving:
+                self._joining = None if sender == self._joining else self._joining
+            elif done.serial == 0:
+                self._joining = sender
+
+    def _serve(self, ground: Address) -> None:
+        """Tick until the ground leaves, is silent for too long, or the end comes."""
+        ticks_at_this_time = 0
+        while True:
+            self._send()
+            # Serial 0 is the ground's: it asks to join.
+            self._serial = self._serial % 0xFFFFFFFF + 1
+            with contextlib.suppress(OSError):
+                self._clock.sendto(Tick(self._serial, self._time_us).encode(), ground)
+            done = self._answer(ground)
+            self._receive()
+            if done is None or done.leaving:
+                return
+            ticks_at_this_time += 1
+            due = [us for us in (self._next_due_us(), done.next_us) if us is not None]
+            next_us = max(min(due, default=self._time_us + STRIDE_US), self._time_us)
+            if next_us == self._time_us and ticks_at_this_time >= TICKS_AT_ONE_TIME:
+                next_us += 1000
+            if next_us > self._time_us:
+                ticks_at_this_time = 0
+                self._time_us = next_us
+
+    def _answer(self, ground: Address) -> Done | None:
+        """The ground's answer to the last tick; None when there is none in time, or the end comes."""
+        ending = self._ending
+        deadline = time.monotonic() + self._answer_time
+        while not ending.requested and not ending.parent_gone:
+            for done in self._from_ground(ground):
+                if done.serial == self._serial or done.leaving:
+                    return done
+            left = deadline - time.monotonic()
+            if left <= 0.0:
+                return None
+            ending.wait([self._clock], left)
+        return None
+
+    def _let_land(self) -> None:
+        """Time runs freely until the vehicles have landed and disarmed."""
+        give_up = self._time_us + round(LANDING_TIME * 1e6)
+        while not self._swarm.at_rest and self._time_us < give_up and not self._ending.requested:
+            due = self._next_due_us()
+            stride = self._time_us + STRIDE_US
+            self._time_us = stride if due is None else min(max(due, self._time_us + 1), stride)
+            self._send()
+            self._receive()
+        self._ending.look()
+
+    def _next_due_us(self) -> int | None:
+        timer = self._swarm.next_timer()
+        return None if timer is None else round(timer * 1e6)
+
+    def _send(self) -> None:
+        now = self._time_us / 1e6
+        self._swarm.advance_to(now)
+        for vehicle, datagram, address in self._swarm.datagrams_to_send(now):
+            self._sockets.send(vehicle, datagram, address)
+
+    def _receive(self) -> None:
+        now = self._time_us / 1e6
+        for vehicle, datagram, sender in self._sockets.received():
+            self._swarm.receive(vehicle, datagram, sender, now)

@@ -1,0 +1,98 @@
+"""Real time: the swarm on the machine's monotonic clock, its vehicles on UDP sockets."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+from vehicle_sim.app.ending import Ending
+from vehicle_sim.app.landing import LANDING_TIME
+from vehicle_sim.app.sockets import SwarmSockets
+from vehicle_sim.swarm import Swarm
+
+STRIDE = 0.005  # s of simulated time between looks at the clock when nothing else is due
+STRIDE_MAX = 0.02  # s of simulated time at most between looks at the sockets
+LAG_MAX = 0.4  # s; less than vehicles wait for set-points. What the world is behind more, its clock is set back by
+
+
+class RealTimeClock:
+    """Simulated time that follows a wall clock at a ratio, and stands back when it cannot be followed."""
+
+    def __init__(self, start: float, speed: float, wall: Callable[[], float] = time.monotonic) -> None:
+        """``start`` in simulated s; ``speed`` simulated over wall time."""
+        self._wall = wall
+        self._speed = speed
+        self._origin = start
+        self._wall_origin = wall()
+
+    def now(self) -> float:
+        """Simulated time (s)."""
+        return self._origin + (self._wall() - self._wall_origin) * self._speed
+
+    def follow(self, reached: float) -> float:
+        """Simulated time (s), which is set back if the world, at ``reached``, is too far behind to catch up.
+
+        After a stall (a busy machine, a laptop asleep) time goes on from where it was, not with a rush.
+        """
+        lag_max = LAG_MAX * max(1.0, self._speed)
+        now = self.now()
+        if now - reached > lag_max:
+            self._origin -= now - reached - lag_max
+            now = reached + lag_max
+        return now
+
+    def wall_until(self, then: float) -> float:
+        """Seconds of wall time until ``then``, not less than 0."""
+        return max(0.0, (then - self.now()) / self._speed)
+
+
+class RealTimeDriver:
+    """Runs a swarm until it is told to end."""
+
+    def __init__(
+        self,
+        swarm: Swarm,
+        sockets: SwarmSockets,
+        ending: Ending,
+        speed: float = 1.0,
+        wall: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """``speed``: simulated over wall time, positive; ``wall``: a clock (s) that never goes back."""
+        self._swarm = swarm
+        self._sockets = sockets
+        self._ending = ending
+        self._speed = speed
+        self._wall = wall
+
+    def run(self) -> None:
+        """Returns when the end is requested, or when the parent is gone and the vehicles have landed."""
+        swarm, sockets, ending = self._swarm, self._sockets, self._ending
+        reached = swarm.time
+        clock = RealTimeClock(reached, self._speed, self._wall)
+        give_up: float | None = None
+        while not ending.requested:
+            goal = min(clock.follow(reached), reached + STRIDE_MAX)
+            # What is due on the way is sent when it is due, so that it carries what is measured then.
+            while (due := self._next_due(reached)) <= goal and not ending.requested:
+                reached = due
+                self._send(reached)
+            reached = max(reached, goal)
+            swarm.advance_to(reached)
+            for vehicle, datagram, sender in sockets.received():
+                swarm.receive(vehicle, datagram, sender, reached)
+            self._send(reached)
+            if ending.parent_gone:
+                give_up = reached + LANDING_TIME if give_up is None else give_up
+                if swarm.at_rest or reached >= give_up:
+                    return
+            wake = min(reached + STRIDE, self._next_due(reached))
+            ending.wait(sockets.vehicles, clock.wall_until(wake))
+
+    def _next_due(self, now: float) -> float:
+        timer = self._swarm.next_timer()
+        return float("inf") if timer is None else max(timer, now)
+
+    def _send(self, now: float) -> None:
+        self._swarm.advance_to(now)
+        for vehicle, datagram, address in self._swarm.datagrams_to_send(now):
+            self._sockets.send(vehicle, datagram, address)

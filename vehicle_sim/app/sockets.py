@@ -1,0 +1,69 @@
+"""The UDP sockets of a swarm: one for each vehicle, and in lockstep one for the clock."""
+
+from __future__ import annotations
+
+import contextlib
+import socket
+from collections.abc import Iterator
+
+from gcs.mavlink.address import Address
+from gcs.mavlink.udp import RECEIVE_BUFFER, arrived
+from vehicle_sim.world.errors import SimulationError
+
+
+class SwarmSockets:
+    """Opens all sockets or, with a :class:`SimulationError`, none.
+
+    Vehicle i listens on ``base_port + i - 1``, the clock on ``base_port - 1``; with ``base_port`` 0 each takes
+    whatever port is free.
+    """
+
+    def __init__(self, host: str, base_port: int, vehicles: int, with_clock: bool) -> None:
+        """``host`` is a name or an IPv4 address of this machine."""
+        first = base_port - 1 if with_clock else base_port
+        if base_port and not (first > 0 and base_port + vehicles - 1 <= 65535):
+            raise SimulationError(f"--base-port {base_port}: ports {first} .. {base_port + vehicles - 1} do not exist")
+        with contextlib.ExitStack() as opened:
+            self.clock = opened.enter_context(_bound(host, base_port and base_port - 1)) if with_clock else None
+            self.vehicles = [opened.enter_context(_bound(host, base_port and base_port + i)) for i in range(vehicles)]
+            self._opened = opened.pop_all()
+
+    def send(self, vehicle: int, datagram: bytes, address: Address) -> None:
+        """From the endpoint of a vehicle (its system id). What cannot be sent is lost, as anything may be over UDP."""
+        with contextlib.suppress(OSError):
+            self.vehicles[vehicle - 1].sendto(datagram, address)
+
+    def received(self) -> Iterator[tuple[int, bytes, Address]]:
+        """All that has arrived: the vehicle's system id, bytes, sender; vehicle by vehicle, each in order."""
+        for vehicle, endpoint in enumerate(self.vehicles, start=1):
+            for datagram, sender in arrived(endpoint):
+                yield vehicle, datagram, sender
+
+    def close(self) -> None:
+        """Close all; harmless when they are closed."""
+        self._opened.close()
+
+    def __enter__(self) -> SwarmSockets:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+def url(endpoint: socket.socket) -> str:
+    """Where the socket listens."""
+    host, port = endpoint.getsockname()
+    return f"udp://{host}:{port}"
+
+
+def _bound(host: str, port: int) -> socket.socket:
+    endpoint = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    try:
+        endpoint.setblocking(False)
+        endpoint.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, RECEIVE_BUFFER)
+        # No address is shared: two swarms on one port would each get a part of what is sent.
+        endpoint.bind((host, port))
+    except OSError as error:
+        endpoint.close()
+        raise SimulationError(f"cannot listen on udp://{host}:{port}: {error.strerror or error}") from None
+    return endpoint

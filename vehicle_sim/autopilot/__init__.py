@@ -1,0 +1,1 @@
+"""The onboard autopilot: modes, failsafes, attitude and position control."""

@@ -1,0 +1,48 @@
+"""The physical parameters of one vehicle, as its autopilot knows them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from idc_controller.parameters import SystemParameters
+from vehicle_sim.world.rotors import RotorGeometry
+
+Matrix = tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]
+
+
+@dataclass(frozen=True)
+class Airframe:
+    """One UAV: mass (kg), inertia about its centre (kg m2), rotors, motor lag (s), attitude gains, gravity.
+
+    ``attitude_kp`` (1/s2) and ``attitude_kd`` (1/s): torque = J (kp e - kd omega).
+    """
+
+    mass: float
+    inertia: Matrix
+    rotors: RotorGeometry
+    motor_time_constant: float
+    attitude_kp: float
+    attitude_kd: float
+    g: float = 9.81
+
+    @classmethod
+    def of_system(
+        cls,
+        system: SystemParameters,
+        index: int,
+        *,
+        arm_length: float,
+        torque_to_thrust: float,
+        rotor_speed_max: float,
+    ) -> Airframe:
+        """UAV ``index`` (from 0) of a system, with what the system does not know: lengths in m, speed in rad/s."""
+        a, b, c = ((float(x), float(y), float(z)) for x, y, z in system.J[index])
+        return cls(
+            mass=float(system.m[index]),
+            inertia=(a, b, c),
+            rotors=RotorGeometry(system.thrust_max, rotor_speed_max, arm_length, torque_to_thrust),
+            motor_time_constant=system.motor_time_constant,
+            attitude_kp=system.attitude_kp,
+            attitude_kd=system.attitude_kd,
+            g=system.g,
+        )

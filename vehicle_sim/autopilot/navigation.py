@@ -1,0 +1,127 @@
+"""What a vehicle knows of itself while a sensor on board fails."""
+
+from __future__ import annotations
+
+import math
+
+from vehicle_sim.autopilot.attitude_control import Quaternion, Three
+from vehicle_sim.world.sensors import Measurement
+
+FROZEN_AFTER = 3  # samples the same to the digit: no sensor's noise repeats itself
+RATES_BANDWIDTH = 30.0  # rad/s, of rates by the attitude: above that of the attitude loop
+_STEP_MAX = 0.05  # s between samples; after longer ones the rates begin anew
+
+
+class Navigation:
+    """Goes by the sensors, and for one that gives no numbers, or always the same, by the others.
+
+    The attitude then goes on with the rates; the rates are those that explain the attitude and the torque, by an
+    observer of second order; position and velocity stay what they were. A vehicle needs its rates hundreds of times a
+    second: with old ones it turns over.
+    """
+
+    def __init__(self, motor_lag: float) -> None:
+        """``motor_lag`` (s): time constant with which torques follow what is asked for."""
+        self._motor_lag = motor_lag
+        self._known: Measurement | None = None
+        self._raw: Measurement | None = None
+        self._repeated = {"attitude": 0, "rates": 0}
+        self._observed: tuple[Quaternion, Three, Three] | None = None  # attitude, rates, their derivative
+        self._has_rates = True
+
+    @property
+    def told(self) -> Measurement | None:
+        """What to tell others: rates that were not measured are NaN, which is MAVLink's way to say so."""
+        if self._known is None or self._has_rates:
+            return self._known
+        return self._known._replace(rates=(math.nan, math.nan, math.nan))
+
+    def update(self, sample: Measurement, asked: Three) -> Measurement | None:
+        """What to fly by after a ``sample``; None before the first whose numbers all are.
+
+        ``asked``: the angular acceleration for which the torque was last set (rad/s2).
+        """
+        known = self._known
+        if known is None:
+            if not sample.is_usable():
+                return None
+            self._known = self._raw = sample
+            return sample
+        time = sample.time if math.isfinite(sample.time) else known.time
+        step = time - known.time
+        has_attitude = self._is_alive("attitude", sample.attitude)
+        has_rates = self._has_rates = self._is_alive("rates", sample.rates)
+        self._raw = sample
+        if has_rates and has_attitude and sample.is_usable():
+            self._known, self._observed = sample, None
+            return sample
+        if has_rates:
+            rates = sample.rates
+        elif has_attitude:
+            rates = self._rates_of(sample.attitude, step, asked)
+        else:
+            rates = (0.0, 0.0, 0.0)
+        if has_rates or not has_attitude:
+            self._observed = None
+        self._known = Measurement(
+            time,
+            sample.attitude if has_attitude else turned(known.attitude, rates, step),
+            rates,
+            sample.position if _are_numbers(sample.position) else known.position,
+            sample.velocity if _are_numbers(sample.velocity) else known.velocity,
+        )
+        return self._known
+
+    def _is_alive(self, channel: str, value: Quaternion | Three) -> bool:
+        # A vehicle at rest in a world without noise has rates of exactly zero.
+        repeats = self._raw is not None and getattr(self._raw, channel) == value and any(value)
+        self._repeated[channel] = self._repeated[channel] + 1 if repeats else 0
+        return _are_numbers(value) and self._repeated[channel] < FROZEN_AFTER
+
+    def _rates_of(self, attitude: Quaternion, step: float, asked: Three) -> Three:
+        """Body rates (rad/s) by an observer that follows the ``attitude``, ``step`` (s) after the last one."""
+        assert self._known is not None
+        if self._observed is None or not 0.0 < step < _STEP_MAX:
+            self._observed = self._known.attitude, self._known.rates, asked
+        guess, rates, turning = self._observed
+        guess = turned(guess, rates, step)
+        off = _rotation_between(guess, attitude)
+        share = 1.0 - math.exp(-step / self._motor_lag)
+        a, b, c = (now + share * (then - now) for now, then in zip(turning, asked, strict=True))
+        p, q, r = (
+            rate + step * (acceleration + RATES_BANDWIDTH**2 * x)
+            for rate, acceleration, x in zip(rates, (a, b, c), off, strict=True)
+        )
+        i, j, k = (2.0 * RATES_BANDWIDTH * x for x in off)
+        self._observed = turned(guess, (i, j, k), step), (p, q, r), (a, b, c)
+        return p, q, r
+
+
+def turned(attitude: Quaternion, rates: Three, duration: float) -> Quaternion:
+    """A unit quaternion, body to world, turned by body ``rates`` (rad/s) for a short ``duration`` (s)."""
+    w, x, y, z = attitude
+    p, q, r = (0.5 * duration * rate for rate in rates)
+    w, x, y, z = (
+        w - x * p - y * q - z * r,
+        x + w * p + y * r - z * q,
+        y + w * q + z * p - x * r,
+        z + w * r + x * q - y * p,
+    )
+    length = math.hypot(w, x, y, z)
+    return w / length, x / length, y / length, z / length
+
+
+def _rotation_between(a: Quaternion, b: Quaternion) -> Three:
+    """From attitude ``a`` to ``b``, in the body frame of ``a`` (rad), for small angles."""
+    aw, ax, ay, az = a
+    bw, bx, by, bz = b
+    twice = 2.0 if aw * bw + ax * bx + ay * by + az * bz >= 0.0 else -2.0
+    return (
+        twice * (aw * bx - ax * bw - ay * bz + az * by),
+        twice * (aw * by + ax * bz - ay * bw - az * bx),
+        twice * (aw * bz - ax * by + ay * bx - az * bw),
+    )
+
+
+def _are_numbers(values: Quaternion | Three) -> bool:
+    return -1e6 < sum(values) < 1e6

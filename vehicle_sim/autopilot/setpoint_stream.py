@@ -1,0 +1,78 @@
+"""What a vehicle flies of the set-points that come, and while none come."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+
+from vehicle_sim.autopilot.attitude_control import Quaternion
+from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
+
+HELD_FOR = 0.1  # s: longer than set-points are usually apart
+MEAN_OVER = 0.2  # s
+
+
+class SetpointStream:
+    """The set-points of the ground in control. Times in s.
+
+    A ground that corrects what it sees with every set-point means each for a moment only: held through a gap, the
+    last of them alone would go on correcting what is over. So the mean of the last ones is flown in a gap.
+    """
+
+    def __init__(self) -> None:
+        self._recent: deque[tuple[float, AttitudeSetpoint]] = deque()
+        self._mean: AttitudeSetpoint | None = None
+
+    @property
+    def last_time(self) -> float:
+        """When the last one came; -inf: there is none."""
+        return self._recent[-1][0] if self._recent else -math.inf
+
+    def add(self, setpoint: AttitudeSetpoint, now: float) -> None:
+        """One has come."""
+        recent = self._recent
+        recent.append((now, setpoint))
+        while now - recent[0][0] > MEAN_OVER:
+            recent.popleft()
+        self._mean = None
+
+    def at(self, now: float) -> AttitudeSetpoint | None:
+        """What to fly; None: nothing has come."""
+        if not self._recent:
+            return None
+        time, last = self._recent[-1]
+        if now - time <= HELD_FOR:
+            return last
+        if self._mean is None:
+            self._mean = _mean([setpoint for _, setpoint in self._recent])
+        return self._mean
+
+    def clear(self) -> None:
+        """Forget all."""
+        self._recent.clear()
+        self._mean = None
+
+
+def _mean(setpoints: list[AttitudeSetpoint]) -> AttitudeSetpoint:
+    """Of set-points of one kind; else the last one."""
+    last = setpoints[-1]
+    attitudes = [s.attitude for s in setpoints if s.attitude is not None]
+    thrusts = [s.thrust for s in setpoints if s.thrust is not None]
+    if last.attitude is None or len(attitudes) < len(setpoints) or len(thrusts) < len(setpoints):
+        return last
+    n = len(setpoints)
+    rates = [sum(s.rates[axis] for s in setpoints) / n for axis in range(3)]
+    attitude = _mean_attitude(attitudes)
+    return AttitudeSetpoint(attitude, (rates[0], rates[1], rates[2]), sum(thrusts) / n, last.time_boot_ms)
+
+
+def _mean_attitude(attitudes: list[Quaternion]) -> Quaternion:
+    """Of unit quaternions not far from each other, of either sign."""
+    last = attitudes[-1]
+    total = [0.0, 0.0, 0.0, 0.0]
+    for q in attitudes:
+        sign = 1.0 if sum(a * b for a, b in zip(q, last, strict=True)) >= 0.0 else -1.0
+        total = [t + sign * v for t, v in zip(total, q, strict=True)]
+    norm = math.sqrt(sum(t * t for t in total))
+    w, x, y, z = (t / norm for t in total)
+    return w, x, y, z

@@ -1,0 +1,110 @@
+"""What the ground asks for, read from messages: set-points and stop plans, or the reason why they cannot be flown."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import pymavlink.dialects.v20.common as mavlink
+
+from vehicle_sim.autopilot.attitude_control import Quaternion, Three
+from vehicle_sim.world.errors import SimulationError
+
+_IGNORE_RATE = (
+    mavlink.ATTITUDE_TARGET_TYPEMASK_BODY_ROLL_RATE_IGNORE,
+    mavlink.ATTITUDE_TARGET_TYPEMASK_BODY_PITCH_RATE_IGNORE,
+    mavlink.ATTITUDE_TARGET_TYPEMASK_BODY_YAW_RATE_IGNORE,
+)
+_IGNORE_THRUST = mavlink.ATTITUDE_TARGET_TYPEMASK_THROTTLE_IGNORE
+_IGNORE_ATTITUDE = mavlink.ATTITUDE_TARGET_TYPEMASK_ATTITUDE_IGNORE
+# Bit 32, THRUST_BODY_SET, is not among them: rotors of this kind cannot push sideways.
+_KNOWN_BITS = sum(_IGNORE_RATE) | _IGNORE_THRUST | _IGNORE_ATTITUDE
+
+RATE_LIMIT = 20.0  # rad/s; no set-point of a sane ground asks for more
+NORM_TOLERANCE = 0.1  # of a quaternion's norm; float32 alone stays within 1e-6
+THRUST_TOLERANCE = 1e-4
+
+
+STOP_DURATION_MAX = 60.0  # s
+STOP_POINTS = 5  # control points of a quartic
+
+
+class SetpointError(SimulationError):
+    """A set-point that makes no sense; ``str`` says which field."""
+
+
+class AttitudeSetpoint(NamedTuple):
+    """What the attitude loop is to follow.
+
+    ``attitude``: unit quaternion body to world, or None to control the rates alone; ``rates`` in the body frame
+    (rad/s, those not given are zero); ``thrust`` 0 .. 1 of the largest, or None to keep the last one;
+    ``time_boot_ms``: the sender's stamp.
+    """
+
+    attitude: Quaternion | None
+    rates: Three
+    thrust: float | None
+    time_boot_ms: int
+
+
+def read_setpoint(message: Any) -> AttitudeSetpoint:
+    """The set-point in a SET_ATTITUDE_TARGET message. Raises :class:`SetpointError`.
+
+    The type mask's bits as MAVLink defines them. Without an attitude all three rates must be given.
+    """
+    mask = message.type_mask
+    if mask & ~_KNOWN_BITS:
+        raise SetpointError(f"type_mask {mask} has bits that cannot be flown")
+    rates = (
+        0.0 if mask & _IGNORE_RATE[0] else message.body_roll_rate,
+        0.0 if mask & _IGNORE_RATE[1] else message.body_pitch_rate,
+        0.0 if mask & _IGNORE_RATE[2] else message.body_yaw_rate,
+    )
+    # Comparisons are written so that NaN fails them.
+    if not (abs(rates[0]) <= RATE_LIMIT and abs(rates[1]) <= RATE_LIMIT and abs(rates[2]) <= RATE_LIMIT):
+        raise SetpointError(f"body rates {rates} are outside +-{RATE_LIMIT} rad/s")
+
+    attitude: Quaternion | None = None
+    if not mask & _IGNORE_ATTITUDE:
+        w, x, y, z = message.q
+        norm = math.sqrt(w * w + x * x + y * y + z * z)
+        if not abs(norm - 1.0) <= NORM_TOLERANCE:
+            raise SetpointError(f"quaternion {message.q} has the norm {norm}")
+        attitude = (w / norm, x / norm, y / norm, z / norm)
+    elif mask & sum(_IGNORE_RATE):
+        raise SetpointError(f"type_mask {mask} gives neither an attitude nor all three rates")
+
+    thrust: float | None = None
+    if not mask & _IGNORE_THRUST:
+        thrust = message.thrust
+        if not -THRUST_TOLERANCE <= thrust <= 1.0 + THRUST_TOLERANCE:
+            raise SetpointError(f"thrust {thrust} is outside 0 .. 1")
+        thrust = min(max(thrust, 0.0), 1.0)
+    return AttitudeSetpoint(attitude, rates, thrust, message.time_boot_ms)
+
+
+class StopPlan(NamedTuple):
+    """How to come to rest if no set-point follows; see :class:`~vehicle_sim.autopilot.hold_control.HoldPlan`.
+
+    ``start`` in the vehicle's boot time (s), ``duration`` in s, five ``control_points`` in NED (m), ``yaw`` in rad.
+    """
+
+    start: float
+    duration: float
+    control_points: tuple[Three, ...]
+    yaw: float
+
+
+def read_stop_plan(message: Any) -> StopPlan:
+    """The plan in a TRAJECTORY_REPRESENTATION_BEZIER of one segment. Raises :class:`SetpointError`."""
+    if message.valid_points != STOP_POINTS:
+        raise SetpointError(f"a stop plan has {STOP_POINTS} control points, not {message.valid_points}")
+    points = tuple(zip(message.pos_x, message.pos_y, message.pos_z, strict=True))
+    if not all(math.isfinite(value) for point in points for value in point):
+        raise SetpointError("a control point is not finite")
+    duration, yaw = message.delta[0], message.pos_yaw[0]
+    if not 0.0 < duration <= STOP_DURATION_MAX:
+        raise SetpointError(f"delta {duration} is outside 0 .. {STOP_DURATION_MAX} s")
+    if not math.isfinite(yaw):
+        raise SetpointError("pos_yaw is not finite")
+    return StopPlan(message.time_usec * 1e-6, duration, points, yaw)

@@ -1,0 +1,1 @@
+"""A vehicle on the wire: commands, parameters, telemetry, peers."""

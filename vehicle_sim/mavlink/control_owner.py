@@ -1,0 +1,95 @@
+"""Who may command a vehicle: the ground whose set-points fly it, and while they come nobody else."""
+
+from __future__ import annotations
+
+from gcs.mavlink.address import Address
+from vehicle_sim.autopilot.autopilot import Answer, Autopilot, rejected_for_now
+from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
+
+#: An address and the MAVLink system that speaks from it.
+Sender = tuple[Address, int]
+
+STREAMS_MAX = 16
+#: A set-point that is older than the last by less than this (ms) was overtaken on the way; by more: a new clock.
+REORDERING_MS = 1000
+
+
+class _Stream:
+    """The set-points of one sender: the last two."""
+
+    __slots__ = ("last", "previous_time", "time")
+
+    def __init__(self, setpoint: AttitudeSetpoint, now: float) -> None:
+        self.last = setpoint
+        self.time = now
+        self.previous_time = float("-inf")
+
+
+class ControlOwner:
+    """Keeps each sender's stream of set-points apart, and passes on only those of the ground in control.
+
+    A ground gets control by asking for OFFBOARD while its own set-points come, and keeps it until they have been
+    silent for the loss time or the vehicle is disarmed and no longer in OFFBOARD.
+    """
+
+    def __init__(self, autopilot: Autopilot) -> None:
+        self._autopilot = autopilot
+        self._streams: dict[Sender, _Stream] = {}
+        self._owner: Sender | None = None
+
+    def in_control(self, now: float) -> Sender | None:
+        """The ground whose set-points fly the vehicle, None if there is none."""
+        owner = self._owner
+        if owner is None or not (self._autopilot.wants_setpoints or self._autopilot.armed):
+            return None
+        stream = self._streams.get(owner)
+        return owner if stream is not None and self._is_fresh(stream.time, now) else None
+
+    def is_stranger(self, sender: Sender, now: float) -> bool:
+        """Whether another ground is in control."""
+        owner = self._owner
+        return owner is not None and owner != sender and self.in_control(now) is not None
+
+    def is_stranger_at_its_address(self, sender: Sender, now: float) -> bool:
+        """Whether another ground is in control, and is reached at the same address."""
+        owner = self._owner
+        return owner is not None and owner[0] == sender[0] and self.is_stranger(sender, now)
+
+    def take(self, setpoint: AttitudeSetpoint, sender: Sender, now: float) -> None:
+        """A sane set-point of a sender that is no stranger. One that was overtaken by a later one is dropped."""
+        stream = self._streams.get(sender)
+        if stream is None:
+            self._forget_silent(now)
+            if len(self._streams) >= STREAMS_MAX:
+                return
+            self._streams[sender] = _Stream(setpoint, now)
+        else:
+            late = (stream.last.time_boot_ms - setpoint.time_boot_ms) & 0xFFFFFFFF
+            if 0 < late < REORDERING_MS and self._is_fresh(stream.time, now):
+                return
+            stream.last = setpoint
+            stream.previous_time = stream.time
+            stream.time = now
+        if sender == self._owner and self._autopilot.wants_setpoints:
+            self._autopilot.follow(setpoint, now)
+
+    def enter_offboard(self, sender: Sender, now: float) -> Answer:
+        """OFFBOARD on the sender's own set-points, of which two must have come in time."""
+        stream = self._streams.get(sender)
+        if (
+            stream is None
+            or not self._is_fresh(stream.time, now)
+            or not self._is_fresh(stream.previous_time, stream.time)
+        ):
+            return rejected_for_now("OFFBOARD denied: no set-points from you")
+        answer = self._autopilot.enter_offboard(stream.last, stream.time, now)
+        self._owner = sender
+        return answer
+
+    def _is_fresh(self, time: float, now: float) -> bool:
+        return now - time < self._autopilot.setpoint_loss_time
+
+    def _forget_silent(self, now: float) -> None:
+        for sender, stream in tuple(self._streams.items()):
+            if not self._is_fresh(stream.time, now):
+                del self._streams[sender]

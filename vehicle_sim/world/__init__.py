@@ -1,0 +1,1 @@
+"""The simulated world: physics engine, sensors, obstacles, true motion."""

@@ -1,0 +1,158 @@
+"""Payload, links and UAVs as one PyBullet multibody: payload -> spherical -> link -> spherical -> UAV.
+
+The body frames in the engine are forward-left-up, with their origin at the centre of mass; a link's frame has its
+origin at the attachment point and its z axis along the link, towards the UAV.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pybullet
+from numpy.typing import NDArray
+
+from idc_controller.parameters import SystemParameters
+from vehicle_sim.world.errors import UnsupportedWorld
+
+# PyBullet exchanges at most 128 coordinates a body (MAX_DEGREE_OF_FREEDOM) and is silently wrong beyond:
+# 7 for the payload's pose, a quaternion for each of the two joints of every UAV.
+MAX_COORDINATES = 128
+MAX_VEHICLES = (MAX_COORDINATES - 7) // 8
+
+LINK_RADIUS = 0.01  # m, of the links' collision shape
+DISC_THICKNESS = 0.04  # m, of the UAVs' collision shape
+
+# A link without mass needs some inertia, or the engine diverges; 1e-6 kg m2 across it is below any measurable effect.
+# Along its axis, where no joint or force turns it, more costs nothing: it keeps contacts from spinning the link up
+# without bound. Together with links that have no friction, this is what lets a toppled system come to rest; with
+# either missing it flies apart. The engine's reader rejects such a pair as no rigid body's: set after loading.
+_LINK_INERTIA = 1e-6
+_LINK_AXIAL_INERTIA = 1e-3
+_FRICTION = 0.8  # of payload and discs
+# The engine clips joint rates at 100 rad/s unless told otherwise.
+_MAX_JOINT_VELOCITY = 1e3
+
+
+class Multibody(NamedTuple):
+    """Handles of the loaded system: the body and the engine's indices of links and UAVs, in the UAVs' order."""
+
+    body: int
+    links: tuple[int, ...]
+    uavs: tuple[int, ...]
+
+
+def check_supported(parameters: SystemParameters) -> None:
+    """Raise :class:`UnsupportedWorld` where the engine would compute something else than what is asked for."""
+    n = parameters.number_of_uavs
+    if n > MAX_VEHICLES:
+        raise UnsupportedWorld(
+            f"{n} vehicles: the physics engine is wrong beyond {MAX_VEHICLES} ({MAX_COORDINATES} coordinates)"
+        )
+    for name, inertia in [("J_0", parameters.J_0), *((f"J[{i}]", J) for i, J in enumerate(parameters.J))]:
+        diagonal = np.diag(inertia)
+        if np.any(inertia != np.diag(diagonal)):
+            raise UnsupportedWorld(f"{name}: the world takes no products of inertia")
+        # A rigid body's moments of inertia obey the triangle inequality; the engine corrects others in silence.
+        if 2 * diagonal.max() > diagonal.sum() * (1 + 1e-9):
+            raise UnsupportedWorld(f"{name}: no rigid body has the moments of inertia {diagonal.tolist()}")
+
+
+def urdf_text(parameters: SystemParameters) -> str:
+    """The system as URDF. Attachment points outside the payload's box stand on outriggers without mass or shape."""
+    size = " ".join(repr(float(edge)) for edge in parameters.payload_size)
+    parts = [
+        '<?xml version="1.0"?>',
+        '<robot name="cooplift">',
+        _link("payload", parameters.m_0, np.diag(parameters.J_0), f'<box size="{size}"/>'),
+    ]
+    for i, (p_i, l_i, m_i, J_i) in enumerate(
+        zip(parameters.p, parameters.l, parameters.m, parameters.J, strict=True), start=1
+    ):
+        rod = f'<cylinder radius="{LINK_RADIUS}" length="{float(l_i)!r}"/>'
+        disc = f'<cylinder radius="{parameters.disc_radius!r}" length="{DISC_THICKNESS}"/>'
+        attachment = (p_i[0], -p_i[1], -p_i[2])
+        parts += [
+            _joint(f"payload_link{i}", "payload", f"link{i}", attachment),
+            _link(f"link{i}", 0.0, np.full(3, _LINK_INERTIA), rod, shape_z=l_i / 2),
+            _joint(f"link{i}_uav{i}", f"link{i}", f"uav{i}", (0.0, 0.0, l_i)),
+            _link(f"uav{i}", m_i, np.diag(J_i), disc),
+        ]
+    # The engine's reader cuts off long lines, hence one element a line.
+    return "\n".join([*parts, "</robot>", ""])
+
+
+def load_multibody(client: int, parameters: SystemParameters, position: tuple[float, float, float]) -> Multibody:
+    """Put the system into the world of physics client ``client``: level, links upright, ``position`` z-up (m).
+
+    Nothing brakes it: joint motors off, no damping. Raises :class:`UnsupportedWorld`.
+    """
+    check_supported(parameters)
+    flags = (
+        pybullet.URDF_USE_INERTIA_FROM_FILE
+        | pybullet.URDF_USE_IMPLICIT_CYLINDER  # round, not a prism of 32 sides
+        | pybullet.URDF_USE_SELF_COLLISION
+        | pybullet.URDF_USE_SELF_COLLISION_EXCLUDE_PARENT
+    )
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "system.urdf"
+        path.write_text(urdf_text(parameters))
+        body = pybullet.loadURDF(str(path), basePosition=position, flags=flags, physicsClientId=client)
+    index = {}
+    for joint in range(pybullet.getNumJoints(body, physicsClientId=client)):
+        index[pybullet.getJointInfo(body, joint, physicsClientId=client)[12].decode()] = joint
+        # Spherical joints start with a motor that holds them at zero.
+        pybullet.setJointMotorControlMultiDof(
+            body, joint, pybullet.POSITION_CONTROL, targetPosition=[0.0, 0.0, 0.0, 1.0], targetVelocity=[0.0] * 3,
+            positionGain=0.0, velocityGain=0.0, force=[0.0] * 3, physicsClientId=client,
+        )  # fmt: skip
+    numbers = range(1, parameters.number_of_uavs + 1)
+    links = tuple(index[f"link{i}"] for i in numbers)
+    # Settings of the whole body. Given together with a link's own settings, they would send those to the base.
+    pybullet.changeDynamics(
+        body, -1, linearDamping=0.0, angularDamping=0.0, maxJointVelocity=_MAX_JOINT_VELOCITY, physicsClientId=client
+    )
+    for part in range(-1, len(index)):
+        pybullet.changeDynamics(
+            body, part, jointDamping=0.0, restitution=0.0, lateralFriction=0.0 if part in links else _FRICTION,
+            physicsClientId=client,
+        )  # fmt: skip
+        if part in links:
+            pybullet.changeDynamics(
+                body, part, localInertiaDiagonal=(_LINK_INERTIA, _LINK_INERTIA, _LINK_AXIAL_INERTIA),
+                physicsClientId=client,
+            )  # fmt: skip
+    return Multibody(body, links, tuple(index[f"uav{i}"] for i in numbers))
+
+
+def _link(name: str, mass: float, inertia: NDArray[np.float64], shape: str, shape_z: float = 0.0) -> str:
+    ixx, iyy, izz = (float(value) for value in inertia)
+    geometry = f'<origin xyz="0 0 {float(shape_z)!r}"/>\n<geometry>\n{shape}\n</geometry>'
+    return "\n".join(
+        [
+            f'<link name="{name}">',
+            "<inertial>",
+            f'<mass value="{float(mass)!r}"/>',
+            f'<inertia ixx="{ixx!r}" ixy="0" ixz="0" iyy="{iyy!r}" iyz="0" izz="{izz!r}"/>',
+            "</inertial>",
+            f"<visual>\n{geometry}\n</visual>",
+            f"<collision>\n{geometry}\n</collision>",
+            "</link>",
+        ]
+    )
+
+
+def _joint(name: str, parent: str, child: str, origin: tuple[float, float, float]) -> str:
+    x, y, z = (float(value) for value in origin)
+    return "\n".join(
+        [
+            f'<joint name="{name}" type="spherical">',
+            f'<parent link="{parent}"/>',
+            f'<child link="{child}"/>',
+            f'<origin xyz="{x!r} {y!r} {z!r}"/>',
+            '<axis xyz="1 0 0"/>',  # no meaning here, but the reader complains without it
+            "</joint>",
+        ]
+    )

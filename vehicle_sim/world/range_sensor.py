@@ -1,0 +1,79 @@
+"""The range sensor of a vehicle: points on the surfaces around it, gathered by obstacle, each with its own noise.
+
+It tells where points are and which of them belong together, under numbers of the vehicle's own. It does not tell
+what an obstacle is, how large, how fast, or what it is called.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from vehicle_sim.world.obstacle_bodies import Obstacle
+from vehicle_sim.world.visible_surface import is_beyond, visible_points
+from vehicle_sim.world.world_state import Quaternion, Vector, into_body
+
+#: Nothing nearer is measured (m).
+MIN_DISTANCE = 0.05
+#: Generators are told apart from the navigation sensors' by this.
+_STREAM = 1_000_003
+_IDS = 0xFFFE  # 0xFFFF says that an id is not known
+
+
+class Detection(NamedTuple):
+    """One point: the vehicle's number for the obstacle, and the place in the body frame, forward-right-down (m)."""
+
+    obstacle_id: int
+    position_in_body: Vector
+
+
+class RangeSample(NamedTuple):
+    """All points of one scan at ``time`` (s); ``reach`` (m) of the sensor; whether it ``works``."""
+
+    time: float
+    reach: float
+    detections: tuple[Detection, ...]
+    works: bool = True
+
+
+class RangeSensor:
+    """The same seed and id give the same noise, different ids independent noise."""
+
+    def __init__(self, reach: float, noise: float, seed: int, system_id: int) -> None:
+        """``reach`` (m); ``noise``: standard deviation along the line of sight (m)."""
+        self._reach, self._noise = reach, noise
+        self._generator = np.random.default_rng([seed, _STREAM, system_id])
+        self._ids: dict[str, int] = {}
+        self._next_id = 0
+
+    def scan(
+        self, now: float, position: Sequence[float], attitude: Quaternion, obstacles: Iterable[Obstacle]
+    ) -> RangeSample:
+        """What is seen at ``now`` (s) from ``position`` (3,) (NED, m) with ``attitude`` (body to world)."""
+        s = (float(position[0]), float(position[1]), float(position[2]))
+        detections: list[Detection] = []
+        seen: dict[str, int] = {}
+        for obstacle in obstacles:
+            if is_beyond(obstacle, s, self._reach):
+                continue
+            points = visible_points(obstacle, s, self._reach, float(self._generator.uniform(0.0, math.pi / 3.0)))
+            if not points:
+                continue
+            number = self._ids.get(obstacle.name)
+            if number is None:
+                number, self._next_id = self._next_id, (self._next_id + 1) % _IDS
+            seen[obstacle.name] = number
+            noise = (self._noise * self._generator.standard_normal(len(points))).tolist()
+            for (x, y, z), error in zip(points, noise, strict=True):
+                ray = (x - s[0], y - s[1], z - s[2])
+                distance = math.hypot(*ray)
+                if distance < MIN_DISTANCE:
+                    continue
+                a, b, c = into_body(attitude, ray)
+                scale = max(1.0 + error / distance, 0.0)
+                detections.append(Detection(number, (scale * a, scale * b, scale * c)))
+        self._ids = seen  # one that leaves and comes back is a new one to the vehicle
+        return RangeSample(now, self._reach, tuple(detections))

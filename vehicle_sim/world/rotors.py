@@ -1,0 +1,162 @@
+"""Four rotors: the linear map between thrust, torques and squared rotor speeds, and the motors' lag.
+
+Rotors stand in PX4's X layout, seen in the FRD body frame: 1 front right, 2 rear left (both turn counter-clockwise
+seen from above), 3 front left, 4 rear right (clockwise).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from vehicle_sim.world.errors import SimulationError
+
+Four = tuple[float, float, float, float]
+
+IDLE: Four = (0.0, 0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class RotorGeometry:
+    """What the mixer and the rotors share.
+
+    - ``thrust_max`` of all four rotors together at ``rotor_speed_max`` (N, rad/s)
+    - ``arm_length`` from the centre to a rotor (m)
+    - ``torque_to_thrust`` ratio of a rotor's drag torque to its thrust (m)
+
+    Raises :class:`SimulationError` for values that are not positive.
+    """
+
+    thrust_max: float
+    rotor_speed_max: float
+    arm_length: float
+    torque_to_thrust: float
+
+    def __post_init__(self) -> None:
+        for name in ("thrust_max", "rotor_speed_max", "arm_length", "torque_to_thrust"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value > 0.0):
+                raise SimulationError(f"{name} must be positive, got {value}")
+
+    @property
+    def k_f(self) -> float:
+        """Thrust of one rotor per squared speed (N s2)."""
+        return self.thrust_max / (4.0 * self.rotor_speed_max**2)
+
+    @property
+    def lever(self) -> float:
+        """Distance of a rotor from the roll and from the pitch axis (m)."""
+        return self.arm_length / math.sqrt(2.0)
+
+    def wrench(self, f_1: float, f_2: float, f_3: float, f_4: float) -> Four:
+        """Thrust (N) and body torques (N m, FRD) of four rotor forces (N)."""
+        a, c = self.lever, self.torque_to_thrust
+        return (
+            f_1 + f_2 + f_3 + f_4,
+            a * (-f_1 + f_2 + f_3 - f_4),
+            a * (f_1 - f_2 + f_3 - f_4),
+            c * (f_1 + f_2 - f_3 - f_4),
+        )
+
+
+class Mixer:
+    """Thrust and torques to rotor speeds, within what four rotors can do.
+
+    What cannot be done is given up in this order: yaw torque, then roll and pitch torque together (scaled, so that
+    their direction stays); the thrust is kept.
+    """
+
+    def __init__(self, geometry: RotorGeometry) -> None:
+        self._force_max = geometry.thrust_max / 4.0
+        self._per_roll_pitch = 1.0 / (4.0 * geometry.lever)
+        self._per_yaw = 1.0 / (4.0 * geometry.torque_to_thrust)
+        self._per_k_f = 1.0 / geometry.k_f
+
+    def forces(self, thrust: float, tau_x: float, tau_y: float, tau_z: float) -> Four:
+        """Rotor forces (N), each within 0 .. thrust_max / 4, of a thrust (N) and body torques (N m, FRD)."""
+        top = self._force_max
+        level = thrust * 0.25
+        if level < 0.0:
+            level = 0.0
+        elif level > top:
+            level = top
+        roll, pitch, yaw = tau_x * self._per_roll_pitch, tau_y * self._per_roll_pitch, tau_z * self._per_yaw
+        # Pairs on a diagonal get opposite shares of roll and pitch and the same share of yaw.
+        first, third = pitch - roll, pitch + roll
+        room = level if level < top - level else top - level
+        first_size, third_size = abs(first), abs(third)
+        largest = first_size if first_size > third_size else third_size
+        if largest > room:
+            scale = room / largest
+            first *= scale
+            third *= scale
+            first_size *= scale
+            third_size *= scale
+        # +yaw on rotors 1 and 2 (level -+ first), -yaw on rotors 3 and 4 (level -+ third).
+        yaw_room = room - (first_size if first_size > third_size else third_size)
+        if yaw > yaw_room:
+            upper, lower = top - level - first_size, level - third_size
+            limit = upper if upper < lower else lower
+            yaw = yaw if yaw < limit else limit
+        elif yaw < -yaw_room:
+            upper, lower = top - level - third_size, level - first_size
+            limit = upper if upper < lower else lower
+            yaw = yaw if -yaw < limit else -limit
+        return level + first + yaw, level - first + yaw, level + third - yaw, level - third - yaw
+
+    def rotor_speeds(self, thrust: float, tau_x: float, tau_y: float, tau_z: float) -> Four:
+        """Rotor speeds (rad/s) for a thrust (N) and body torques (N m, FRD)."""
+        f_1, f_2, f_3, f_4 = self.forces(thrust, tau_x, tau_y, tau_z)
+        per_k_f = self._per_k_f
+        return (
+            math.sqrt(f_1 * per_k_f) if f_1 > 0.0 else 0.0,
+            math.sqrt(f_2 * per_k_f) if f_2 > 0.0 else 0.0,
+            math.sqrt(f_3 * per_k_f) if f_3 > 0.0 else 0.0,
+            math.sqrt(f_4 * per_k_f) if f_4 > 0.0 else 0.0,
+        )
+
+
+class Rotors:
+    """Rotor speeds that follow their commands with a first-order lag, advanced by the physics step.
+
+    ``advance`` is exact for a command that stays constant over the step, and returns the mean force and torques over
+    the step, so that neither the lag nor the force depends on the step's length.
+    """
+
+    def __init__(self, geometry: RotorGeometry, motor_time_constant: float, physics_step: float) -> None:
+        """Rotors at rest; time constant and physics step in s, both positive (else :class:`SimulationError`)."""
+        if not (motor_time_constant > 0.0 and physics_step > 0.0):
+            raise SimulationError("motor_time_constant and physics_step must be positive")
+        self._k_f = geometry.k_f
+        self._lever = geometry.lever
+        self._torque_to_thrust = geometry.torque_to_thrust
+        self._speed_max = geometry.rotor_speed_max
+        ratio = physics_step / motor_time_constant
+        self._decay = math.exp(-ratio)
+        # Omega = c + d exp(-t / T): its square's mean over the step is c^2 + 2 c d mean_1 + d^2 mean_2.
+        self._mean_1 = -math.expm1(-ratio) / ratio
+        self._mean_2 = -math.expm1(-2.0 * ratio) / (2.0 * ratio)
+        self.speeds: Four = IDLE
+
+    def advance(self, command: Four) -> Four:
+        """One physics step under the commanded speeds (rad/s): mean thrust (N), mean body torques (N m, FRD)."""
+        c_1, c_2, c_3, c_4 = command
+        s_1, s_2, s_3, s_4 = self.speeds
+        decay, mean_1, mean_2, k_f, top = self._decay, 2.0 * self._mean_1, self._mean_2, self._k_f, self._speed_max
+        c_1 = c_1 if c_1 < top else top
+        c_2 = c_2 if c_2 < top else top
+        c_3 = c_3 if c_3 < top else top
+        c_4 = c_4 if c_4 < top else top
+        d_1, d_2, d_3, d_4 = s_1 - c_1, s_2 - c_2, s_3 - c_3, s_4 - c_4
+        self.speeds = (c_1 + d_1 * decay, c_2 + d_2 * decay, c_3 + d_3 * decay, c_4 + d_4 * decay)
+        f_1 = k_f * (c_1 * (c_1 + mean_1 * d_1) + mean_2 * d_1 * d_1)
+        f_2 = k_f * (c_2 * (c_2 + mean_1 * d_2) + mean_2 * d_2 * d_2)
+        f_3 = k_f * (c_3 * (c_3 + mean_1 * d_3) + mean_2 * d_3 * d_3)
+        f_4 = k_f * (c_4 * (c_4 + mean_1 * d_4) + mean_2 * d_4 * d_4)
+        lever = self._lever
+        return (
+            f_1 + f_2 + f_3 + f_4,
+            lever * (f_2 + f_3 - f_1 - f_4),
+            lever * (f_1 + f_3 - f_2 - f_4),
+            self._torque_to_thrust * (f_1 + f_2 - f_3 - f_4),
+        )

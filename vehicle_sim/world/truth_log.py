@@ -1,0 +1,84 @@
+"""``truth.csv``, ``obstacles.csv`` and ``modes.csv``: what really happened, written by the world and by nobody else."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from gcs.record.run_folder import make_folder
+from gcs.record.tables import MODE_COLUMNS, OBSTACLE_COLUMNS, TableWriter, truth_columns
+
+if TYPE_CHECKING:  # the physics engine is not needed to write down what it found
+    from vehicle_sim.world.obstacle_bodies import Obstacle
+    from vehicle_sim.world.world_state import WorldState
+
+
+class TruthLog:
+    """Writes ``truth.csv``; ``obstacles.csv`` and ``modes.csv`` from their first row on.
+
+    Rows are equal to the byte for equal states. Raises ``gcs.errors.UnusableInput`` if the folder cannot be
+    written or holds a truth already; it is made if it is absent. A full disk stops the writing, not the
+    world: see ``error``.
+    """
+
+    def __init__(self, run_dir: Path | str, number_of_uavs: int) -> None:
+        self._run_dir = make_folder(run_dir)
+        self._truth = TableWriter(self._run_dir / "truth.csv", truth_columns(number_of_uavs))
+        self._obstacles: TableWriter | None = None
+        self._modes: TableWriter | None = None
+        self._closed = False
+
+    @property
+    def error(self) -> OSError | None:
+        """Why writing stopped before ``close()``, if it did."""
+        return next((table.error for table in self._tables if table.error is not None), None)
+
+    @property
+    def _tables(self) -> list[TableWriter]:
+        return [table for table in (self._truth, self._obstacles, self._modes) if table is not None]
+
+    def write(self, state: WorldState, contacts: int, obstacles: Sequence[Obstacle] = ()) -> None:
+        """Append a state, and the obstacles as they stand then.
+
+        ``contacts`` is the number of touching pairs, pad and cradles excluded. Raises ``ValueError`` for a state of
+        another number of UAVs.
+        """
+        row = [
+            state.time,
+            *state.payload_position_in_world,
+            *state.payload_quaternion,
+            *state.payload_velocity_in_world,
+            *state.payload_rates_in_payload,
+        ]
+        for uav in state.uavs:
+            row += (*uav.position_in_world, *uav.quaternion, uav.thrust)
+        # Always as doubles, so that 0 and 0.0 are the same to the byte.
+        self._truth.write([*map(float, row), int(contacts)])
+        if not obstacles or self._closed:
+            return
+        if self._obstacles is None:
+            self._obstacles = TableWriter(self._run_dir / "obstacles.csv", OBSTACLE_COLUMNS)
+        for obstacle in obstacles:
+            numbers = (*obstacle.position_in_world, obstacle.radius, *obstacle.size, obstacle.yaw)
+            self._obstacles.write([float(state.time), obstacle.name, obstacle.shape, *map(float, numbers)])
+
+    def write_mode(self, time: float, vehicle: int, mode: str, armed: bool, failsafe: bool) -> None:
+        """Append what a vehicle (its system id) flies from ``time`` (s) on."""
+        if self._closed:
+            return
+        if self._modes is None:
+            self._modes = TableWriter(self._run_dir / "modes.csv", MODE_COLUMNS)
+        self._modes.write([float(time), vehicle, mode, armed, failsafe])
+
+    def close(self) -> None:
+        """Close all files; harmless when they are closed already."""
+        self._closed = True
+        for table in self._tables:
+            table.close()
+
+    def __enter__(self) -> TruthLog:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
