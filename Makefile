@@ -4,11 +4,12 @@ MISSION ?= missions/figure_eight_spheres.toml
 VENV := .venv
 INSTALLED := $(VENV)/installed
 
-.PHONY: help install fly test golden golden-renew benchmark clean
+.PHONY: help install fly test test-fast golden golden-renew benchmark clean
 
 help:
 	@echo "make fly          fly $(MISSION) with a simulated swarm (MISSION=... for another one)"
 	@echo "make test         ruff, mypy and the tests"
+	@echo "make test-fast    ruff, mypy and the tests that need no flight"
 	@echo "make golden       compare short flights, to the byte, with tests/golden/checksums.json"
 	@echo "make golden-renew write these checksums anew"
 	@echo "make benchmark    the measurements of speed"
@@ -22,7 +23,13 @@ test: $(INSTALLED)
 	$(VENV)/bin/ruff check
 	$(VENV)/bin/ruff format --check
 	$(VENV)/bin/mypy
-	$(VENV)/bin/python -m pytest --numprocesses auto --dist loadfile
+	$(VENV)/bin/python -m pytest --numprocesses auto --dist loadfile --durations 25
+
+test-fast: $(INSTALLED)
+	$(VENV)/bin/ruff check
+	$(VENV)/bin/ruff format --check
+	$(VENV)/bin/mypy
+	$(VENV)/bin/python -m pytest --numprocesses auto --dist loadfile -m "not slow"
 
 golden: $(INSTALLED)
 	$(VENV)/bin/python tests/golden/golden.py

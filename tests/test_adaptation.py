@@ -7,6 +7,8 @@ from flight_in_process import Rehearsal, check_within_limits, short_figure
 from gcs.mission.read import read_mission
 from idc_controller.estimation.health.noise_adaptation import LEVELS, Adaptation
 
+pytestmark = pytest.mark.slow
+
 KEYS = tuple(range(10))
 SIZES = np.full(10, 5)
 PAYLOAD_ROWS = np.arange(50) < 10

@@ -17,6 +17,8 @@ from idc_controller.estimation.health.consistency import REFUSALS, Consistency
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
 from vehicle_sim.faults import FaultPassage
 
+pytestmark = pytest.mark.slow
+
 KEYS = ((PAYLOAD, Position), (0, Position), (1, Position), (1, Attitude))
 SIZES = (6, 6, 6, 4)
 GATE = 1.0 - 1e-6

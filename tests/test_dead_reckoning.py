@@ -70,6 +70,7 @@ def spikes(p, v, rng):
     return p + 2.0 * (rng.random(3) < 0.2) * rng.choice([-1.0, 1.0], 3), v
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize(
     "spoil",

@@ -195,6 +195,7 @@ def test_a_position_is_used_when_its_velocity_is_unknown():
     assert np.all(sigma < 0.7 * blind)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("position", "velocity", "left_out"), [(0.1, 0.0, (True, False)), (0.0, 0.5, (False, True))], ids=["p", "v"]
 )

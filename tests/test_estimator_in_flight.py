@@ -12,6 +12,8 @@ from gcs.config import read_system
 from gcs.mission.read import read_mission
 from idc_controller.model.linear import LinearModel
 
+pytestmark = pytest.mark.slow
+
 MODEL = LinearModel(read_system(MISSIONS / "system.toml").parameters())
 P, LAYOUT = MODEL.parameters, MODEL.layout
 

@@ -19,6 +19,8 @@ from gcs.campaign.faults.campaign_file import read_campaign
 from gcs.campaign.process_pool import Ended, sole_flyer
 from gcs.errors import UnusableInput
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture
 def flown(monkeypatch):

@@ -20,6 +20,8 @@ from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.truth_log import TruthLog
 from vehicle_sim.world.world import World
 
+pytestmark = pytest.mark.slow
+
 
 def lifted(*faults, seed=1, until=4.0, folder=None):
     """A swarm that a scripted ground lifts: (ground, passage, swarm)."""

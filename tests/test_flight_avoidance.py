@@ -9,6 +9,8 @@ import pytest
 from flight_in_process import system_file, truth_of
 from programs import ENVIRONMENT
 
+pytestmark = pytest.mark.slow
+
 FIGURE = """
 [mission]
 name = "short figure with two spheres"

@@ -17,6 +17,8 @@ from programs import addresses_of, free_port, gcs_fly, swarm_process
 from gcs.mission.read import read_mission
 from gcs.mission.route import FlyTo
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def figure(tmp_path_factory):

@@ -18,6 +18,8 @@ from gcs.record.modes import stops_after
 from idc_controller.trajectory.trajectory import RestTrajectory
 from vehicle_sim.faults.interface import Passage
 
+pytestmark = pytest.mark.slow
+
 
 def check_records_closed(folder):
     summary = json.loads((folder / "summary.json").read_text())

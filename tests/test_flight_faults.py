@@ -10,6 +10,8 @@ from gcs.faults.values import Bias, Drift, NotANumber, Stuck, SwappedVehicles
 from gcs.faults.world import Wind
 from gcs.record.run_data import read_run
 
+pytestmark = pytest.mark.slow
+
 pytest_plugins = ["gcs.campaign.pytest_plugin"]
 
 START = 13.0  # s after take-off: on the way

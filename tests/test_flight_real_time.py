@@ -19,6 +19,8 @@ from vehicle_sim.app.sockets import SwarmSockets
 from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.truth_log import TruthLog
 
+pytestmark = pytest.mark.slow
+
 GROUND, WORLD = "ground", "world"
 
 

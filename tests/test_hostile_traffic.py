@@ -3,6 +3,7 @@
 from random import Random
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
+import pytest
 from flight_in_process import GROUND, Rehearsal, address_of, check_within_limits, short_figure
 from hostile_messages import hostile_to_ground, hostile_to_vehicle
 from hostile_traffic import HostileTraffic, Traffic, with_random_contents
@@ -10,6 +11,8 @@ from hostile_traffic import HostileTraffic, Traffic, with_random_contents
 from gcs.flight.ground_station import GROUND_SYSTEM
 from gcs.flight.phase import IN_THE_AIR
 from gcs.mavlink import px4
+
+pytestmark = pytest.mark.slow
 
 DATAGRAMS = 200_000  # to the vehicle, and as many to the ground
 EXCHANGES = 1500  # in which they come; the flight has some more

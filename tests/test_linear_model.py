@@ -112,6 +112,7 @@ def test_rows_of_uav_positions_and_velocities(model):
     assert np.allclose(euler_from_quaternion(plus.quaternion_0), step * change[layout.Theta], atol=1e-10)
 
 
+@pytest.mark.slow
 def test_every_state_is_controllable(model):
     A, B, _ = model.discretised(50_000)
     eigenvalues = np.linalg.eigvals(A)

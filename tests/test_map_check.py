@@ -74,6 +74,7 @@ def test_one_that_jumps_is_found_out_and_believed_again():
     assert told[39] == set() and told[55] == {1} and told[-1] == set()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("noise", [1.0, 5.0])
 @pytest.mark.parametrize("seed", range(3))
 def test_no_noise_is_taken_for_it(noise, seed):

@@ -45,6 +45,7 @@ def error_of(**parts):
     return error
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("vehicles", [3, 4, 6])
 def test_without_active_constraints_it_is_the_linear_quadratic_regulator(vehicles):
     model = LinearModel(CONFIG.with_vehicles(vehicles).parameters())

@@ -136,6 +136,7 @@ def test_hover_thrust_along_the_rotor_axis_points_up():
     assert np.all(F[:, 2] < 0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n", [3, 4, 6])
 def test_energy_is_conserved_without_thrust(n):
     rng = np.random.default_rng(10 + n)

@@ -276,6 +276,7 @@ def test_equal_seeds_give_equal_maps():
 # Over the wire
 
 
+@pytest.mark.slow
 def test_in_flight_the_ground_finds_what_the_vehicles_sense(tmp_path):
     """The whole way: sensors, MAVLink, the ground's codec and clocks, the map, the records."""
     mission = read_mission(short_figure(tmp_path))

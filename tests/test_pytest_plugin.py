@@ -17,6 +17,8 @@ from gcs.faults.link import PacketLoss
 from gcs.faults.values import Bias
 from gcs.mission import Fault, read_mission
 
+pytestmark = pytest.mark.slow
+
 pytest_plugins = ["pytester", "gcs.campaign.pytest_plugin"]
 
 ROOT = Path(__file__).parents[1]

@@ -290,6 +290,7 @@ def test_state_of_another_number_of_uavs_is_an_error(tmp_path) -> None:
 # --- pictures -----------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_report_draws_every_picture_again_and_again(run) -> None:
     write_summary(run, summarise(run, **FLOWN, limits={"payload_tilt_deg": 5.0, "uav_separation": 0.7}))
     for _ in range(2):

@@ -21,6 +21,8 @@ from gcs.reproduce.plan import plan
 from gcs.reproduce.simulation import Case, Flown, simulate
 from idc_controller.rotations import quaternion_from_euler
 
+pytestmark = pytest.mark.slow
+
 DOCS = Path(__file__).parents[1] / "docs"
 
 

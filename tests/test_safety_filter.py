@@ -79,6 +79,7 @@ ROUND = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ROUND)
 def test_what_stops_it_is_flown_round(name):
     """No deadlock: the clock slows, a way round is found, and the clock runs at its own rate again."""
@@ -309,6 +310,7 @@ def random_scene(rng):
     return obstacles
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(20))
 def test_random_scene_is_never_entered(seed):
     rng = np.random.default_rng([seed, 5])

@@ -107,6 +107,7 @@ def test_what_each_study_changes(tmp_path):
     assert len(set(controllers)) == 9 and ("pole_course", "paper") in controllers
 
 
+@pytest.mark.slow
 def test_moving_obstacles_are_not_on_the_map(tmp_path):
     flights = flights_of("speed", tmp_path, quick=True).flights
     assert len(flights) == 8

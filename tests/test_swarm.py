@@ -60,6 +60,7 @@ def flown(tmp_path_factory):
     return folder, *flight(folder, obstacles=OBSTACLES)
 
 
+@pytest.mark.slow
 def test_vehicles_left_alone_hold_then_land(flown):
     _, vehicles, ground, truth, _ = flown
     assert not any(vehicle.autopilot.armed for vehicle in vehicles)
@@ -143,6 +144,7 @@ def test_noise_has_the_size_that_the_system_file_says(flown):
     assert abs(np.mean(uav)) < 0.002
 
 
+@pytest.mark.slow
 def test_the_same_seed_repeats_to_the_byte_and_another_does_not(flown, tmp_path):
     folder = flown[0]
     flight(tmp_path / "again", obstacles=OBSTACLES)
@@ -152,6 +154,7 @@ def test_the_same_seed_repeats_to_the_byte_and_another_does_not(flown, tmp_path)
     assert (tmp_path / "other" / "truth.csv").read_bytes() != (folder / "truth.csv").read_bytes()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("vehicles", [3, 6])
 def test_other_teams_fly_and_land(tmp_path, vehicles):
     _, _, truth, _ = flight(tmp_path, CONFIG.with_vehicles(vehicles))

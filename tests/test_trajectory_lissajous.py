@@ -52,6 +52,7 @@ def test_derivatives_are_those_of_the_position(eight):
     assert np.allclose(difference[:4], eight.derivatives(times)[1:], atol=2e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("after", [-1.0, 0.0, 0.7, 2.0, 3.5, 4.6, 9.0, 23.0, 44.0, 46.0, 48.0, 60.0])
 def test_stop_leaves_continuously_on_the_curve_within_limits(eight, after):
     time = eight.start + after

@@ -106,6 +106,7 @@ def test_help_tells_the_whole_story(capfd):
     assert "Examples:" in told
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 0)])
 @pytest.mark.parametrize("pace", ["--lockstep", "--realtime"])
 def test_signals_end_it_with_its_records_closed(tmp_path, number, status, pace):

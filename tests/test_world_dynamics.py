@@ -65,6 +65,7 @@ def hover_modes(parameters):
     return np.sqrt(values.real[moving]), shapes.real.T[moving], left.real[moving]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n", [3, 4, 6])
 def test_hover_modes(n):
     parameters = system(n)
@@ -137,6 +138,7 @@ def world_force_law(parameters, seed=0):
     return law
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("parameters", [system(3), system(4), system(6), unequal()], ids=["3", "4", "6", "unequal"])
 def test_forced_motion_agrees_with_an_independent_integration(parameters):
     pairs = list(forced(parameters, 1000, 5.0, world_force_law(parameters)))
