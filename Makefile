@@ -4,6 +4,9 @@ MISSION ?= missions/figure_eight_spheres.toml
 VENV := .venv
 INSTALLED := $(VENV)/installed
 
+# One BLAS thread: small matrices are no faster with more, and sums repeat.
+export OPENBLAS_NUM_THREADS := 1
+
 .PHONY: help install fly test test-fast golden golden-renew benchmark clean
 
 help:

@@ -26,6 +26,8 @@ from gcs.record.tables import truth_columns
 from idc_controller.geometry.shapes import PredictedObstacle, Shape
 from idc_controller.guidance.detour import Formation, first_conflict
 
+pytestmark = pytest.mark.slow
+
 FORMATION = Formation(1.0, 3.45, 0.25)
 
 
