@@ -72,7 +72,7 @@ ALLOWED = {
     ),
     "vehicle_sim.world": "gcs.mission gcs.record idc_controller.model",
 }
-COMMON = {"idc_controller.errors", "idc_controller.parameters", "idc_controller.rotations", "gcs.errors"}
+COMMON = {f"idc_controller.{name}" for name in ("errors", "parameters", "rotations", "settings")} | {"gcs.errors"}
 """Modules beside the sub-packages that everything above them may import."""
 
 

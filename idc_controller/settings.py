@@ -1,0 +1,46 @@
+"""How a setting is declared: a field of a frozen dataclass with its default, unit, meaning and range.
+
+Every sub-package whose behaviour depends on numbers has a ``settings.py`` with such dataclasses. Each is a table of the
+system file; ``docs/settings.md`` lists them all.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+METADATA_KEY = "setting"
+
+
+@dataclass(frozen=True)
+class Setting:
+    """What is known of one setting beside its value; a bound that is None does not exist."""
+
+    unit: str
+    """SI, as it stands in the system file; empty for a pure number."""
+    meaning: str
+    gt: float | None = None
+    ge: float | None = None
+    lt: float | None = None
+    le: float | None = None
+
+
+def setting(
+    default: Any,
+    unit: str,
+    meaning: str,
+    *,
+    gt: float | None = None,
+    ge: float | None = None,
+    lt: float | None = None,
+    le: float | None = None,
+) -> Any:
+    """Declare a field of a settings dataclass.
+
+    Args:
+        default: the value of the default system.
+        unit: its unit, empty for a pure number.
+        meaning: what it decides, and where the default comes from, in one sentence.
+        gt, ge, lt, le: the bounds that a system file is held to.
+    """
+    return field(default=default, metadata={METADATA_KEY: Setting(unit, meaning, gt, ge, lt, le)})
