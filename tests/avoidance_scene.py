@@ -10,8 +10,8 @@ from scipy.spatial import ConvexHull
 from idc_controller.estimation.estimate import Estimate
 from idc_controller.geometry.shapes import PredictedObstacle, Shape
 from idc_controller.guidance.navigator import NavigatorSettings
-from idc_controller.safety.planner import PlannerSettings
 from idc_controller.safety.safety_filter import AvoidanceFilter
+from idc_controller.safety.settings import PlannerSettings
 from idc_controller.trajectory.flatness import Load, flat_forces
 from idc_controller.trajectory.paths import Leg
 from idc_controller.trajectory.trajectory import Limits

@@ -43,7 +43,8 @@ ALLOWED = {
         "idc_controller.model idc_controller.paper idc_controller.safety idc_controller.trajectory"
     ),
     "idc_controller.control": (
-        "idc_controller.estimation idc_controller.model idc_controller.safety idc_controller.trajectory"
+        "idc_controller.estimation idc_controller.model idc_controller.qp idc_controller.safety "
+        "idc_controller.trajectory"
     ),
     "idc_controller.estimation": "idc_controller.model idc_controller.trajectory",
     "idc_controller.geometry": "",
@@ -51,12 +52,13 @@ ALLOWED = {
     "idc_controller.model": "",
     "idc_controller.paper": (
         "idc_controller.control idc_controller.estimation idc_controller.geometry idc_controller.model "
-        "idc_controller.safety"
+        "idc_controller.qp idc_controller.safety"
     ),
     "idc_controller.perception": "idc_controller.estimation idc_controller.geometry",
+    "idc_controller.qp": "",
     "idc_controller.safety": (
         "idc_controller.estimation idc_controller.geometry idc_controller.guidance idc_controller.model "
-        "idc_controller.trajectory"
+        "idc_controller.qp idc_controller.trajectory"
     ),
     "idc_controller.trajectory": "idc_controller.model",
     "vehicle_sim.app": (

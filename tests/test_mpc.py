@@ -15,10 +15,11 @@ from idc_controller.control.force_components import (
     setpoints_from_force_components,
     state_in_force_components,
 )
-from idc_controller.control.mpc import ModelPredictiveController, MpcSettings
-from idc_controller.control.qp import ParametricQp
+from idc_controller.control.mpc import ModelPredictiveController
+from idc_controller.control.settings import MpcSettings
 from idc_controller.errors import ParameterError, SolverError
 from idc_controller.model.linear import LinearModel
+from idc_controller.qp.parametric import ParametricQp
 from idc_controller.trajectory.flatness import Load
 from idc_controller.trajectory.reference import Reference
 from idc_controller.trajectory.trajectory import RestTrajectory
@@ -71,16 +72,16 @@ def test_blocked_moves_cost_little_and_bring_the_system_to_rest():
 
 
 def reference_solution(mpc, error, stages):
-    """The same programme, slacks and all, as a least-distance problem (Lawson and Hanson, chapter 23)."""
-    qp, s = mpc._qp, mpc.settings
+    """The same QP, slacks and all, as a least-distance problem (Lawson and Hanson, chapter 23)."""
+    qp, s = mpc.qp, mpc.settings
     m, slacks = len(qp.G), int(qp.slack_of_row.max()) + 1
-    P = block_diag(np.linalg.inv(qp._inverse), s.slack_quadratic * np.eye(slacks))
+    P = block_diag(qp.P, s.slack_quadratic * np.eye(slacks))
     g = np.append(mpc._gradient @ error, np.full(slacks, s.slack_linear))
     columns = np.zeros((m, slacks))
     soft = np.flatnonzero(qp.slack_of_row >= 0)
     columns[soft, qp.slack_of_row[soft]] = -1.0
     G = np.block([[qp.G, columns], [np.zeros((slacks, qp.G.shape[1])), -np.eye(slacks)]])
-    h = np.append(mpc._bounds(error, stages), np.zeros(slacks))
+    h = np.append(mpc.bounds(error, stages), np.zeros(slacks))
     L = np.linalg.cholesky((P + P.T) / 2)
     shift = np.linalg.solve(L, g)  # y = L'x + shift: the nearest point to zero in A y >= b
     A = -np.linalg.solve(L, G.T).T
@@ -141,13 +142,13 @@ def test_the_payloads_tilt_limit_binds_before_it_is_reached():
 def test_the_ground_is_a_soft_limit():
     stages = stages_at(0.3)
     error = error_of(v_0=(0.0, 0.0, 0.8))  # sinking fast, 5 cm above the ground
-    free = DEFAULT._qp.unconstrained(DEFAULT._gradient @ error)
+    free = DEFAULT.qp.unconstrained(DEFAULT._gradient @ error)
     output = DEFAULT.track(error, stages)
     assert output.iterations > 0
     assert np.sum(output.delta_u[LAYOUT.f_setpoint]) > np.sum(free[: LAYOUT.inputs][LAYOUT.f_setpoint])
 
 
-def test_a_programme_that_cannot_be_solved_is_said_and_cut_to_the_limits(monkeypatch):
+def test_mpc_marks_step_and_clips_move_when_qp_has_no_solution(monkeypatch):
     mpc = ModelPredictiveController(MODEL, DEFAULT.settings)
     far = error_of(r_0=(3.0, 0.0, 0.0))
 
@@ -155,7 +156,7 @@ def test_a_programme_that_cannot_be_solved_is_said_and_cut_to_the_limits(monkeyp
         raise SolverError("no")
 
     with monkeypatch.context() as patched:
-        patched.setattr(mpc._qp, "solve", fail)
+        patched.setattr(mpc.qp, "solve", fail)
         output = mpc.track(far, STAGES)
     assert output.infeasible
     u = inputs_in_force_components(STAGES.u[0], LAYOUT, MODEL.parameters.hover_thrust) + output.delta_u
@@ -164,7 +165,7 @@ def test_a_programme_that_cannot_be_solved_is_said_and_cut_to_the_limits(monkeyp
 
 
 @pytest.mark.parametrize("where", ["gradient", "bound"])
-def test_what_is_not_a_number_is_no_programme(where):
+def test_qp_refuses_values_that_are_not_finite(where):
     qp = ParametricQp(np.eye(2), np.eye(2), np.array([-1, -1]), slack_linear=1.0, slack_quadratic=1.0)
     bad, good = np.array([np.nan, 1.0]), np.ones(2)
     with pytest.raises(SolverError, match="not finite"):

@@ -1,8 +1,5 @@
-"""The safety programme: its barrier, its optimum against another solver, its slacks and its limits."""
+"""The safety QP: its barrier, its optimum against another solver, its slacks and its limits."""
 
-from types import SimpleNamespace
-
-import daqp
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -10,12 +7,14 @@ from hypothesis import strategies as st
 from paper_system import system
 from proxsuite import proxqp
 
-import idc_controller.safety.planner as planner_module
 from idc_controller.errors import ParameterError
 from idc_controller.geometry.formation import Formation
 from idc_controller.geometry.shapes import PredictedObstacle, Shape
-from idc_controller.safety.planner import Planner, PlannerSettings
+from idc_controller.qp.daqp_solver import DaqpSolver
+from idc_controller.safety.constraints.exponential_barrier import barrier_operator
+from idc_controller.safety.planner import Planner, terminal_weight
 from idc_controller.safety.separation import separations
+from idc_controller.safety.settings import PlannerSettings
 from idc_controller.trajectory.integrator_chain import Chain
 
 SETTINGS = PlannerSettings()
@@ -60,14 +59,14 @@ def test_operator_is_the_product_of_its_factors(rates):
     s = PlannerSettings(barrier_rates=rates)
     rng = np.random.default_rng(len(rates))
     h = rng.normal(size=K + 1)
-    told = s.barrier @ h
+    rows = barrier_operator(rates, s.chain) @ h
     for k in range(1, K + 1):
         # (E - p_1) .. (E - p_m) h, with as many factors as there is past for.
         row = h
         for rate in rates[: min(len(rates), k)]:
             row = row[1:] - np.exp(-rate * s.chain.period) * row[:-1]
         degree = min(len(rates), k)
-        assert told[k - 1] == pytest.approx(row[k - degree])
+        assert rows[k - 1] == pytest.approx(row[k - degree])
 
 
 @pytest.mark.parametrize("rates", [(0.0,), (-1.0,), (3.0, float("nan")), (3.0, -0.5)])
@@ -84,7 +83,7 @@ def test_poles_must_be_real_and_stable(rates):
 @settings(max_examples=60, deadline=None)
 def test_safe_sets_are_nested(rates, rows, first):
     """Whenever h_0 >= 0 and all rows hold, h stays at zero or more: the rows' first stages put it in every set."""
-    operator = PlannerSettings(barrier_rates=tuple(rates)).barrier
+    operator = barrier_operator(rates, SETTINGS.chain)
     h = np.concatenate([[first], np.linalg.solve(operator[:, 1:], np.array(rows) - operator[:, 0] * first)])
     assert h.min() >= -1e-9
     # Every partial product is in its set, too.
@@ -106,19 +105,22 @@ def test_barrier_limits_how_fast_an_obstacle_is_approached(rates):
     position = mission[0] + plan.deviation[:, 0]
     n, lever = near[0].normals, planner.formation.levers(about)[:, 0]
     change = plan.deviation[:, 2] + mission[2] - about
-    rooms = planner.room(near[0], position, about)
+    rooms = planner.barrier.values(near[0], position, about)
     rooms[1] -= lever * np.sum(n[:, :2] * change[:, :2], axis=1)
     for h in rooms:
-        assert (s.barrier @ h).min() > -1e-6
+        assert (planner.barrier.operator @ h).min() > -1e-6
         assert h.min() > -1e-6
     # The mission itself would break them.
-    assert min((s.barrier @ h).min() for h in planner.room(near[0], mission[0], mission[2])) < -0.05
+    assert (
+        min((planner.barrier.operator @ h).min() for h in planner.barrier.values(near[0], mission[0], mission[2]))
+        < -0.05
+    )
 
 
 # The optimum
 
 
-def random_programme(rng):
+def random_problem(rng):
     mission = cruising(rng.uniform(0.5, 2.0))
     start = rng.normal(size=(5, 3)) * np.array([0.3, 0.3, 0.2, 0.2, 0.5])[:, None]
     shapes = [Shape("sphere", 0.5), Shape("pole", 0.3, (0.0, 0.0, 15.0)), Shape("wall", size=(0.3, 3.0, 4.0), yaw=0.5)]
@@ -129,37 +131,40 @@ def random_programme(rng):
     return start, mission, obstacles
 
 
+class RecordingSolver(DaqpSolver):
+    """Keeps the last problem and its solution."""
+
+    def solve(self, problem):
+        self.problem, self.solution = problem, super().solve(problem)
+        return self.solution
+
+
 @pytest.mark.parametrize("seed", range(6))
-def test_optimum_is_that_of_another_solver(planner, monkeypatch, seed):
-    start, mission, obstacles = random_programme(np.random.default_rng(seed))
-    asked = []
-
-    def watched(*arguments):
-        answer = daqp.solve(*arguments)
-        asked.append((arguments, answer))
-        return answer
-
-    monkeypatch.setattr(planner_module, "daqp", SimpleNamespace(solve=watched))
+def test_optimum_is_that_of_another_solver(seed):
+    start, mission, obstacles = random_problem(np.random.default_rng(seed))
+    solver = RecordingSolver()
+    planner = Planner(Formation(system()), SETTINGS, solver)
     plan, _, _ = solved(planner, start, mission, obstacles, passes=1)
-    (H, f, A, upper, lower, sense), (x, value, _, info) = asked[-1]
-    n = len(f)
-    assert not sense.any()
-    assert plan.cost == pytest.approx(value + planner._cost(start, np.zeros((SETTINGS.chain.knots, 3))), abs=1e-6)
-    rows = np.vstack([np.eye(n), A])
+    p, x = solver.problem, solver.solution.x
+    n = len(p.g)
+    value = 0.5 * x @ p.H @ x + p.g @ x
+    assert plan.cost == pytest.approx(value + planner.cost(start, np.zeros((SETTINGS.chain.knots, 3))), abs=1e-6)
+    rows = np.vstack([np.eye(n), p.G])
+    upper, lower = np.concatenate([p.upper, p.h]), np.concatenate([p.lower, np.full(len(p.h), -np.inf)])
     assert np.all(rows @ x <= upper + 1e-6)
     assert np.all(rows @ x >= lower - 1e-6)
-    # Stationarity: the multipliers of upper bounds are positive, of lower ones negative.
-    multipliers = info["lam"]
-    np.testing.assert_allclose(H @ x + f + rows.T @ multipliers, 0.0, atol=1e-4)
-    assert np.all(multipliers[upper - rows @ x > 1e-5] <= 1e-6)
-    assert np.all(multipliers[rows @ x - lower > 1e-5] >= -1e-6)
     qp = proxqp.dense.QP(n, 0, len(rows))
     qp.settings.eps_abs, qp.settings.max_iter = 1e-7, 20000
     qp.settings.eps_primal_inf = 1e-12  # slacks make it feasible, but some of them have to be large
-    qp.init(H, f, None, None, rows, np.maximum(lower, -1e20), np.minimum(upper, 1e20))
+    qp.init(p.H, p.g, None, None, rows, np.maximum(lower, -1e20), np.minimum(upper, 1e20))
     qp.solve()
     other = qp.results.x
-    assert 0.5 * other @ H @ other + f @ other == pytest.approx(value, rel=1e-4, abs=1e-4)
+    assert 0.5 * other @ p.H @ other + p.g @ other == pytest.approx(value, rel=1e-4, abs=1e-4)
+    # Stationarity: the multipliers of upper bounds are positive, of lower ones negative.
+    multipliers = qp.results.z
+    np.testing.assert_allclose(p.H @ x + p.g + rows.T @ multipliers, 0.0, atol=1e-2)
+    assert np.all(multipliers[upper - rows @ x > 1e-5] <= 1e-4)
+    assert np.all(multipliers[rows @ x - lower > 1e-5] >= -1e-4)
 
 
 def test_free_plan_is_the_linear_quadratic_optimum(planner):
@@ -178,13 +183,13 @@ def test_free_plan_is_the_linear_quadratic_optimum(planner):
             total += s.crackle * (np.diff(y[:, 4, axis]) ** 2).sum() / chain.period**2
             W = np.diag(weights)
             last = y[-1, :4, axis]
-            total += last @ planner_module._terminal(chain.period, W) @ last
+            total += last @ terminal_weight(chain.period, W) @ last
         return 0.5 * total
 
     assert free.cost == pytest.approx(cost(free.knots))
     for _ in range(20):
         assert cost(free.knots + 0.05 * rng.normal(size=free.knots.shape)) > free.cost
-    # With nothing near and no limit touched the programme finds the same.
+    # With nothing near and no limit touched the QP finds the same.
     plan = planner.solve(start, cruising(), [], np.zeros((K + 1, 3)))
     np.testing.assert_allclose(plan.knots, free.knots, atol=1e-5)
     assert plan.cost == pytest.approx(free.cost, rel=1e-6)
@@ -237,7 +242,7 @@ def test_one_obstacle_that_cannot_be_kept_off_does_not_excuse_another(planner):
     both = planner.solve(np.zeros((5, 3)), cruising(-1.5), planes, about)
     other = next(s for s in planes if s.obstacle.name == "other")
     position = cruising(-1.5)[0] + both.deviation[:, 0]
-    assert planner.room(other, position, both.deviation[:, 2])[0].min() > -1e-6
+    assert planner.barrier.values(other, position, both.deviation[:, 2])[0].min() > -1e-6
 
 
 def test_growth_of_what_is_not_known_is_kept_off_as_well(planner):

@@ -18,8 +18,8 @@ from avoidance_scene import (
 )  # fmt: skip
 from paper_system import system
 
-from idc_controller.safety.planner import PlannerSettings
 from idc_controller.safety.safety_filter import NEGLIGIBLE
+from idc_controller.safety.settings import PlannerSettings
 from idc_controller.trajectory.trajectory import RestTrajectory
 
 MARGIN = 0.5

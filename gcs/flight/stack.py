@@ -12,7 +12,8 @@ from gcs.config import SystemConfig
 from gcs.mission.known_obstacles import map_of
 from gcs.mission.model import Mission
 from idc_controller.control.controller import ControllerSettings, IntegratedDecisionController
-from idc_controller.control.mpc import ModelPredictiveController, MpcSettings, MpcWeights
+from idc_controller.control.mpc import ModelPredictiveController
+from idc_controller.control.settings import MpcSettings, MpcWeights
 from idc_controller.estimation.estimator import Estimator, EstimatorSettings
 from idc_controller.estimation.measurements import MeasurementNoise
 from idc_controller.geometry.shapes import ObstacleSource
@@ -21,8 +22,8 @@ from idc_controller.model.linear import LinearModel
 from idc_controller.perception.obstacle_map import ObstacleMap
 from idc_controller.perception.scan_assembly import SensorModel
 from idc_controller.safety.filter_protocol import SafetyFilter
-from idc_controller.safety.planner import PlannerSettings
 from idc_controller.safety.safety_filter import AvoidanceFilter
+from idc_controller.safety.settings import PlannerSettings
 from idc_controller.trajectory.trajectory import Limits
 
 

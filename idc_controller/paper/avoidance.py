@@ -17,13 +17,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import daqp
 import numpy as np
 from numpy.typing import NDArray
 
+from idc_controller.errors import SolverError
 from idc_controller.paper.plant import Plant, PlantState
 from idc_controller.paper.state_space import minimal
 from idc_controller.parameters import SystemParameters
+from idc_controller.qp.daqp_solver import DaqpSolver
+from idc_controller.qp.problem import QuadraticProgram
 
 Array = NDArray[np.float64]
 
@@ -86,15 +88,15 @@ class Correction:
 def corrected_input(delta_u: Array, rows: Array, bounds: Array, lower: Array, upper: Array) -> Correction:
     """The input nearest to the tracker's ``delta_u`` (4 N,) with ``rows`` (k, 4 N) du <= ``bounds`` and within bounds.
 
-    Q_obs is the identity. Where the paper's programme has no solution its rows are kept as well as can be.
+    Q_obs is the identity. Where the paper's QP has no solution its rows are kept as well as can be.
     """
     n, k = len(delta_u), len(rows)
     if k == 0 or np.all(rows @ delta_u <= bounds):
         return Correction(delta_u, False, False)
-    below, above = np.concatenate([lower, np.full(k, -1e30)]), np.concatenate([upper, bounds])
-    for soft in (0, 8):
-        sense = np.array([0] * n + [soft] * k, dtype=np.int32)
-        x, _, flag, _ = daqp.solve(np.eye(n), -delta_u, np.ascontiguousarray(rows), above, below, sense)
-        if flag >= 1 and np.all(np.isfinite(x)):
-            return Correction(np.clip(x, lower, upper), True, soft > 0)
+    for soft in (None, np.ones(k, dtype=bool)):
+        try:
+            x = DaqpSolver().solve(QuadraticProgram(np.eye(n), -delta_u, rows, bounds, lower, upper, soft)).x
+        except SolverError:
+            continue
+        return Correction(np.clip(x, lower, upper), True, soft is not None)
     return Correction(delta_u, False, True)

@@ -9,14 +9,16 @@ is kept to show what that means; the default is :class:`~idc_controller.safety.s
 from __future__ import annotations
 
 import coal
-import daqp
 import numpy as np
 from numpy.typing import NDArray
 
+from idc_controller.errors import SolverError
 from idc_controller.estimation.estimate import Estimate
 from idc_controller.geometry.formation import Formation
 from idc_controller.geometry.shapes import ObstacleSource, PredictedObstacle
 from idc_controller.model.linear import LinearModel
+from idc_controller.qp.daqp_solver import DaqpSolver
+from idc_controller.qp.problem import QuadraticProgram
 from idc_controller.safety.filter_protocol import NoObstacles
 
 Array = NDArray[np.float64]
@@ -57,16 +59,16 @@ class PrintedFilter(NoObstacles):
         rows, bounds = zip(*(self._row(o, estimate, drift, A[:, layout.f]) for o in obstacles), strict=True)
         N = parameters.number_of_uavs
         f = u[layout.f_setpoint]
-        lower = np.concatenate([np.full(N, self._thrust_min), np.full(len(rows), -1e30)])
-        upper = np.concatenate([np.full(N, 0.95 * parameters.thrust_max), np.array(bounds)])
-        # Rows that cannot be kept are soft: sense 8.
-        sense = np.array([0] * N + [8] * len(rows), dtype=np.int32)
-        x, _, flag, _ = daqp.solve(np.eye(N), -f, np.ascontiguousarray(np.array(rows)), upper, lower, sense)
-        if flag < 1 or not np.all(np.isfinite(x)):
+        lower, upper = np.full(N, self._thrust_min), np.full(N, 0.95 * parameters.thrust_max)
+        soft = np.ones(len(rows), dtype=bool)
+        problem = QuadraticProgram(np.eye(N), -f, np.array(rows), np.array(bounds), lower, upper, soft)
+        try:
+            x = DaqpSolver().solve(problem).x
+        except SolverError:
             self.infeasible += 1
             return u
         corrected = u.copy()
-        corrected[layout.f_setpoint] = np.clip(x, lower[:N], upper[:N])
+        corrected[layout.f_setpoint] = np.clip(x, lower, upper)
         return corrected
 
     def _row(self, obstacle: PredictedObstacle, estimate: Estimate, drift: Array, B: Array) -> tuple[Array, float]:

@@ -16,8 +16,9 @@ from idc_controller.guidance.navigator import Navigator, NavigatorSettings
 from idc_controller.model.drag import Air
 from idc_controller.parameters import SystemParameters
 from idc_controller.safety.filter_protocol import SafetyReport
-from idc_controller.safety.planner import Plan, Planner, PlannerSettings
+from idc_controller.safety.planner import Plan, Planner
 from idc_controller.safety.separation import Separation, separations
+from idc_controller.safety.settings import PlannerSettings
 from idc_controller.trajectory.flatness import PayloadTrajectory
 from idc_controller.trajectory.integrator_chain import Chain
 from idc_controller.trajectory.trajectory import RestTrajectory, Trajectory
@@ -240,7 +241,7 @@ class AvoidanceFilter:
     ) -> tuple[Plan | None, str, bool, int]:
         planner = self.planner
         free = planner.free(start) if start.any() else None
-        if free is not None and not planner.within_limits(free, ahead):
+        if free is not None and not planner.is_within_limits(free, ahead):
             # Far from the mission the way back must be no wilder than the way off it.
             free = planner.solve(start, ahead, [], ahead[2]) or free
         position, acceleration = _absolute(ahead, free)
@@ -248,7 +249,7 @@ class AvoidanceFilter:
         if not near:
             return free, "", False, 0
         nearest = min(near, key=lambda s: s.room)
-        if self._is_clear(near, position, acceleration):
+        if planner.barrier.is_kept(near, position, acceleration):
             return free, nearest.obstacle.name, False, 0
         # The plan in force, shifted to now; then one other way round.
         programmes = 0
@@ -295,17 +296,11 @@ class AvoidanceFilter:
     def _near(self, position: Array, acceleration: Array, obstacles: list[PredictedObstacle]) -> list[Separation]:
         return separations(self.formation, position, acceleration, obstacles, WATCH)
 
-    def _is_clear(self, near: list[Separation], position: Array, acceleration: Array) -> bool:
-        barrier = self.settings.barrier
-        return all(
-            float((barrier @ h).min()) >= 0.0 for s in near for h in self.planner.room(s, position, acceleration)
-        )
-
     def _ways(
         self, near: list[Separation], position: Array, acceleration: Array, ahead: Array
     ) -> list[list[Separation]]:
         """Sets of planes that lead above, left, right of the first obstacle in the way, or to a stop before it."""
-        rooms = [self.planner.room(s, position, acceleration).min(axis=0) for s in near]
+        rooms = [self.planner.barrier.values(s, position, acceleration).min(axis=0) for s in near]
         first = min(range(len(near)), key=lambda i: int(np.argmax(rooms[i] < 0.0)) if (rooms[i] < 0.0).any() else 999)
         conflict = np.flatnonzero(rooms[first] < 0.0)
         if len(conflict) == 0:

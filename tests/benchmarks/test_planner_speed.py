@@ -1,4 +1,4 @@
-"""What the safety filter costs a control step, and which solver suits which programme.
+"""What the safety filter costs a control step, and which solver suits which QP.
 
     python tests/benchmarks/test_planner_speed.py            both tables
     python tests/benchmarks/test_planner_speed.py --quick    fewer steps
@@ -11,7 +11,6 @@ import importlib.util
 import sys
 import time
 from pathlib import Path
-from types import SimpleNamespace
 
 import daqp
 import numpy as np
@@ -24,10 +23,9 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from avoidance_scene import STEP, avoidance, estimate_at, pole, sphere, straight
 from paper_system import system
 
-import idc_controller.safety.planner as planner_module
 from idc_controller.control.controller import ControllerSettings, IntegratedDecisionController
-from idc_controller.control.mpc import ModelPredictiveController, MpcSettings
-from idc_controller.control.qp import ParametricQp
+from idc_controller.control.mpc import ModelPredictiveController
+from idc_controller.control.settings import MpcSettings
 from idc_controller.model.linear import LinearModel
 
 OBSTACLES = (2, 10, 50, 200)
@@ -49,7 +47,7 @@ def field(count):
 
 
 class Recorded:
-    """A flight whose control steps are timed and whose programmes are kept."""
+    """A flight whose control steps are timed and whose QPs are kept."""
 
     def __init__(self, count, n, steps):
         parameters = system(n)
@@ -59,14 +57,14 @@ class Recorded:
         controller = IntegratedDecisionController(model, mpc, safety, ControllerSettings())
         mission, rng = straight(24.0), np.random.default_rng(n)
         self.planner, self.mpc, self.filter_ms, self.step_ms = [], [], [], []
-        solve, track, real_filter = daqp.solve, mpc._qp.solve, safety.filter
+        solve, track, real_filter = safety.planner.solver.solve, mpc.qp.solve, safety.filter
 
-        def kept(*programme):
-            self.planner.append(programme)
-            return solve(*programme)
+        def kept(problem):
+            self.planner.append(problem)
+            return solve(problem)
 
         def kept_mpc(g, h):
-            if not np.all(mpc._qp.G @ mpc._qp.unconstrained(g) <= h):
+            if not np.all(mpc.qp.G @ mpc.qp.unconstrained(g) <= h):
                 self.mpc.append((g.copy(), h.copy()))
             return track(g, h)
 
@@ -76,28 +74,25 @@ class Recorded:
             self.filter_ms.append(1e3 * (time.process_time() - begin))
             return trajectory
 
-        safety.filter, mpc._qp.solve = timed, kept_mpc
-        planner_module.daqp = SimpleNamespace(solve=kept)
-        try:
-            for k in range(steps):
-                now = k * STEP
-                reference = controller.reference(mission)
-                x = reference.at(np.array([now])).x[0]
-                # Errors as in a flight with noise, large enough now and then to wake the MPC's constraints.
-                x[model.layout.r_0] += 0.03 * rng.normal(size=3)
-                x[model.layout.Theta] += (0.08 if k % 4 == 0 else 0.008) * rng.normal(size=3)
-                x[model.layout.omega] += 0.03 * rng.normal(size=3)
-                estimate = estimate_at(now, x[:3], model.layout.size)
-                estimate.x[:] = x
-                begin = time.process_time()
-                controller.decide(estimate, mission, learn_load=False)
-                self.step_ms.append(1e3 * (time.process_time() - begin))
-        finally:
-            planner_module.daqp = daqp
-        self.weights = mpc._qp
+        safety.filter, mpc.qp.solve = timed, kept_mpc
+        safety.planner.solver.solve = kept
+        for k in range(steps):
+            now = k * STEP
+            reference = controller.reference(mission)
+            x = reference.at(np.array([now])).x[0]
+            # Errors as in a flight with noise, large enough now and then to wake the MPC's constraints.
+            x[model.layout.r_0] += 0.03 * rng.normal(size=3)
+            x[model.layout.Theta] += (0.08 if k % 4 == 0 else 0.008) * rng.normal(size=3)
+            x[model.layout.omega] += 0.03 * rng.normal(size=3)
+            estimate = estimate_at(now, x[:3], model.layout.size)
+            estimate.x[:] = x
+            begin = time.process_time()
+            controller.decide(estimate, mission, learn_load=False)
+            self.step_ms.append(1e3 * (time.process_time() - begin))
+        self.qp = mpc.qp
 
 
-def told(values):
+def percentiles(values):
     return f"{np.percentile(values, 50):8.2f} {np.percentile(values, 99):8.2f} {np.max(values):8.2f}"
 
 
@@ -109,51 +104,64 @@ def steps_table(steps):
     cases = [(4, count) for count in OBSTACLES] + [(n, 2) for n in TEAMS if n != 4]
     for n, count in cases:
         run = Recorded(count, n, steps)
-        print(f"{n:>4} {count:>9} | {told(run.filter_ms)} | {told(run.step_ms)}")
+        print(f"{n:>4} {count:>9} | {percentiles(run.filter_ms)} | {percentiles(run.step_ms)}")
 
 
-# Solvers, on the same recorded programmes: each says (seconds, x)
+# Solvers, on the same recorded QPs: each returns (seconds, x)
 
 
-def by_daqp(H, f, A, upper, lower, sense):
+def stacked(problem):
+    """Bounds of the variables and rows together: upper and lower (n + m,), with FAR for none."""
+    n, m = len(problem.g), len(problem.h)
+    lower = np.full(n, -np.inf) if problem.lower is None else problem.lower
+    upper = np.full(n, np.inf) if problem.upper is None else problem.upper
+    upper, lower = np.concatenate([upper, problem.h]), np.concatenate([lower, np.full(m, -np.inf)])
+    return np.minimum(upper, FAR), np.maximum(lower, -FAR)
+
+
+def by_daqp(p):
+    upper, lower = stacked(p)
     begin = time.process_time()
-    x, _, flag, _ = daqp.solve(H, f, A, upper, lower, sense)
+    x, _, flag, _ = daqp.solve(p.H, p.g, p.G, upper, lower, np.zeros(len(upper), dtype=np.int32))
     return time.process_time() - begin, (x if flag > 0 else None)
 
 
-def by_proxqp(H, f, A, upper, lower, sense):
-    n, m = len(f), len(A)
+def by_proxqp(p):
+    upper, lower = stacked(p)
+    n, m = len(p.g), len(p.h)
     begin = time.process_time()
     qp = proxqp.dense.QP(n, 0, m, True)
     qp.settings.eps_abs, qp.settings.max_iter = 1e-6, 2000
-    cut = (np.maximum(lower, -FAR), np.minimum(upper, FAR))
-    qp.init(H, f, None, None, A, cut[0][n:], cut[1][n:], cut[0][:n], cut[1][:n])
+    qp.init(p.H, p.g, None, None, p.G, lower[n:], upper[n:], lower[:n], upper[:n])
     qp.solve()
     solved = qp.results.info.status == proxqp.QPSolverOutput.PROXQP_SOLVED
     return time.process_time() - begin, (qp.results.x if solved else None)
 
 
-def by_osqp(H, f, A, upper, lower, sense):
+def by_osqp(p):
     import osqp
     from scipy.sparse import csc_matrix, triu, vstack
 
+    upper, lower = stacked(p)
     begin = time.process_time()
-    rows = vstack([csc_matrix(np.eye(len(f))), csc_matrix(A)], format="csc")
+    rows = vstack([csc_matrix(np.eye(len(p.g))), csc_matrix(p.G)], format="csc")
     solver = osqp.OSQP()
-    solver.setup(triu(csc_matrix(H), format="csc"), f, rows, lower, upper, verbose=False, eps_abs=1e-5, eps_rel=1e-5)
+    solver.setup(
+        triu(csc_matrix(p.H), format="csc"), p.g, rows, lower, upper, verbose=False, eps_abs=1e-5, eps_rel=1e-5
+    )
     result = solver.solve()
     return time.process_time() - begin, (result.x if result.info.status == "solved" else None)
 
 
-def by_piqp(H, f, A, upper, lower, sense):
+def by_piqp(p):
     import piqp
 
-    n = len(f)
+    upper, lower = stacked(p)
+    n = len(p.g)
     begin = time.process_time()
     solver = piqp.DenseSolver()
-    rows = np.vstack([A, -A[np.isfinite(lower[n:]) & (lower[n:] > -FAR)]])
-    h = np.concatenate([upper[n:], -lower[n:][lower[n:] > -FAR]])
-    solver.setup(H, f, np.zeros((0, n)), np.zeros(0), rows, h, np.maximum(lower[:n], -1e6), np.minimum(upper[:n], 1e6))
+    low, high = np.maximum(lower[:n], -1e6), np.minimum(upper[:n], 1e6)
+    solver.setup(p.H, p.g, np.zeros((0, n)), np.zeros(0), p.G, p.h, low, high)
     status = solver.solve()
     return time.process_time() - begin, (solver.result.x if status == piqp.PIQP_SOLVED else None)
 
@@ -161,51 +169,38 @@ def by_piqp(H, f, A, upper, lower, sense):
 SOLVERS = {"daqp": by_daqp, "proxsuite": by_proxqp, "osqp": by_osqp, "piqp": by_piqp}
 
 
-def mpc_programmes(run):
-    """The MPC's as one dense programme with its slacks, in the planner's form."""
-    qp: ParametricQp = run.weights
-    P = np.linalg.inv(qp._inverse)
-    m, slacks = len(qp.G), len(qp._slack_bound)
-    rows = np.array(qp._qp.model.C)[:m]
-    n = len(P) + slacks
-    H = np.zeros((n, n))
-    H[: len(P), : len(P)], H[len(P) :, len(P) :] = (P + P.T) / 2, 1e4 * np.eye(slacks)
-    for g, h in run.mpc:
-        upper = np.concatenate([np.full(n, 1e30), h])
-        lower = np.concatenate([np.full(len(P), -1e30), np.zeros(slacks), np.full(m, -1e30)])
-        yield H, np.concatenate([g, qp._slack_gradient]), rows.copy(), upper, lower, np.zeros(n + m, dtype=np.int32)
-
-
 def solvers_table(steps, most=150):
-    """Every installed solver on the same programmes; ratios to the first."""
+    """Every installed solver on the same QPs; ratios to the first."""
     run = Recorded(10, 4, steps)
-    for name, programmes in (("planner", run.planner), ("MPC, constrained, cold", list(mpc_programmes(run)))):
-        chosen = programmes[:: max(1, len(programmes) // most)]
+    for name, problems in (
+        ("planner", run.planner),
+        ("MPC, constrained, cold", [run.qp.problem(g, h) for g, h in run.mpc]),
+    ):
+        chosen = problems[:: max(1, len(problems) // most)]
         if not chosen:
             continue
-        H, _, A, *_ = chosen[0]
-        print(f"\n{name}: {len(chosen)} programmes, e.g. {len(H)} variables, {len(A)} rows")
+        print(f"\n{name}: {len(chosen)} QPs, e.g. {len(chosen[0].g)} variables, {len(chosen[0].h)} rows")
         print(f"{'solver':>10} {'p50':>8} {'p99':>8} {'max':>8} {'ratio':>7} {'failed':>7} {'cost above':>11}")
         spent = {s: [] for s in SOLVERS if importlib.util.find_spec(s)}
         costs = {s: [] for s in spent}
-        for programme in chosen:  # side by side: what disturbs one disturbs all
+        for problem in chosen:  # in turn: what disturbs one disturbs all
             for solver in spent:
-                seconds, x = SOLVERS[solver](*programme)
+                seconds, x = SOLVERS[solver](problem)
                 spent[solver].append(1e3 * seconds)
-                costs[solver].append(np.nan if x is None else 0.5 * x @ programme[0] @ x + programme[1] @ x)
+                costs[solver].append(np.nan if x is None else 0.5 * x @ problem.H @ x + problem.g @ x)
         best = np.nanmin(np.array(list(costs.values())), axis=0)
         first = np.median(next(iter(spent.values())))
         for solver, times in spent.items():
             above = np.nanmax((np.array(costs[solver]) - best) / np.maximum(np.abs(best), 1.0), initial=0.0)
             failed = int(np.isnan(costs[solver]).sum())
-            print(f"{solver:>10} {told(times)} {np.median(times) / first:7.1f} {failed:>7} {above:>11.1e}")
+            print(f"{solver:>10} {percentiles(times)} {np.median(times) / first:7.1f} {failed:>7} {above:>11.1e}")
     times = []
     for g, h in run.mpc:
         begin = time.process_time()
-        run.weights.solve(g, h)
+        run.qp.solve(g, h)
         times.append(1e3 * (time.process_time() - begin))
     if times:
-        print(f"{'as flown':>10} {told(times)}   (ProxQP, set up once, warm)")
+        print(f"{'as flown':>10} {percentiles(times)}   (ProxQP, set up once, warm)")
 
 
 def test_planner_benchmark():

@@ -1,0 +1,26 @@
+"""What a constraint on the state is to the MPC: rows G e <= h on the error about the reference (eq:stateCon)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from idc_controller.trajectory.flatness import FlatReference
+
+Array = NDArray[np.float64]
+
+
+class StateConstraint(Protocol):
+    """Soft rows, the same at every constrained stage, with bounds that may move with the reference."""
+
+    G: Array
+    """On the error (c, 12 + 11 N), in force components."""
+    slack: NDArray[np.int_]
+    """Which of the constraint's own slacks, from 0, each row may be exceeded by (c,)."""
+
+    def h(self, reference: FlatReference, stages: Sequence[int]) -> Array:
+        """Return the bounds at ``stages`` of the reference (S, c)."""
+        ...

@@ -1,0 +1,28 @@
+"""Lowest position of the payload's centre: it is on the ground there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from idc_controller.control.settings import MpcSettings
+from idc_controller.model.linear import LinearModel
+from idc_controller.trajectory.flatness import FlatReference
+
+Array = NDArray[np.float64]
+
+
+class LowestPayload:
+    """See :class:`~idc_controller.control.constraints.constraint.StateConstraint`."""
+
+    def __init__(self, model: LinearModel, settings: MpcSettings) -> None:
+        self._lowest = settings.lowest_payload
+        self.slack = np.zeros(1, dtype=int)
+        self.G = np.zeros((1, model.layout.size))
+        self.G[0, model.layout.r_0.start + 2] = 1.0
+
+    def h(self, reference: FlatReference, stages: Sequence[int]) -> Array:
+        """Return how far the reference is above it (S, 1) (m)."""
+        return np.asarray(self._lowest - reference.payload[0, stages, 2])[:, None]

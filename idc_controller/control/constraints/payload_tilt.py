@@ -1,0 +1,28 @@
+"""Limit of the payload's roll, pitch and yaw about the level reference (eq:consOsc), a slack each."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from idc_controller.control.settings import MpcSettings
+from idc_controller.model.linear import LinearModel
+from idc_controller.trajectory.flatness import FlatReference
+
+Array = NDArray[np.float64]
+
+
+class PayloadTilt:
+    """See :class:`~idc_controller.control.constraints.constraint.StateConstraint`."""
+
+    def __init__(self, model: LinearModel, settings: MpcSettings) -> None:
+        self._limit = settings.payload_tilt_limit
+        self.slack = np.repeat(np.arange(3), 2)
+        self.G = np.zeros((6, model.layout.size))
+        self.G[np.arange(6), model.layout.Theta.start + self.slack] = np.tile([1.0, -1.0], 3)
+
+    def h(self, reference: FlatReference, stages: Sequence[int]) -> Array:
+        """Return the limit (S, 6) (rad): the reference is level."""
+        return np.full((len(stages), 6), self._limit)

@@ -1,0 +1,40 @@
+"""Least distance between neighbouring UAVs, along the line between their places in hover; one slack for all."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from idc_controller.control.settings import MpcSettings
+from idc_controller.model.linear import LinearModel
+from idc_controller.trajectory.flatness import FlatReference
+
+Array = NDArray[np.float64]
+
+NEIGHBOURS = 1.3
+"""Pairs up to this many times the least distance apart in hover are neighbours: not those across the payload."""
+
+
+class UavSeparation:
+    """See :class:`~idc_controller.control.constraints.constraint.StateConstraint`."""
+
+    def __init__(self, model: LinearModel, settings: MpcSettings) -> None:
+        p = model.parameters
+        hover = p.p - np.outer(p.l, [0.0, 0.0, 1.0])
+        C = model.uav_position_rows
+        apart = {(i, j): hover[i] - hover[j] for i in range(len(hover)) for j in range(i)}
+        nearest = min(float(np.linalg.norm(d)) for d in apart.values())
+        rows, bounds = [], []
+        for (i, j), d in apart.items():
+            distance = float(np.linalg.norm(d))
+            if distance < NEIGHBOURS * nearest:
+                rows.append(-(d / distance) @ (C[3 * i : 3 * i + 3] - C[3 * j : 3 * j + 3]))
+                bounds.append(max(distance - settings.uav_separation, 0.0))
+        self.G, self._h = np.array(rows), np.array(bounds)
+        self.slack = np.zeros(len(rows), dtype=int)
+
+    def h(self, reference: FlatReference, stages: Sequence[int]) -> Array:
+        """Return by how much the UAVs may come closer (S, pairs) (m): on the reference the links are parallel."""
+        return np.tile(self._h, (len(stages), 1))

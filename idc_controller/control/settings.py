@@ -1,0 +1,66 @@
+"""Settings of the tracking controllers: the MPC's horizon, limits and weights, and how the load is learnt."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from idc_controller.errors import ParameterError
+from idc_controller.settings import setting
+
+Triple = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class MpcWeights:
+    """Diagonal of the MPC's cost, a unit of squared error each; lists are x, y, z or roll, pitch, yaw."""
+
+    position: Triple = setting((60.0, 60.0, 80.0), "1/m2", "weight of the payload's position", ge=0.0)
+    velocity: Triple = setting((20.0, 20.0, 20.0), "s2/m2", "weight of the payload's velocity", ge=0.0)
+    attitude: Triple = setting((300.0, 300.0, 800.0), "1/rad2", "weight of the payload's attitude", ge=0.0)
+    rates: Triple = setting((40.0, 40.0, 120.0), "s2/rad2", "weight of the payload's body rates", ge=0.0)
+    link_tilt: float = setting(100.0, "1/rad2", "weight of each link's tilt", ge=0.0)
+    link_rate: float = setting(30.0, "s2/rad2", "weight of each link's rate", ge=0.0)
+    differential_link_tilt: float = setting(
+        200.0, "1/rad2", "weight of each link's tilt less the mean of all: keeps the UAVs apart", ge=0.0
+    )
+    differential_link_rate: float = setting(50.0, "s2/rad2", "weight of each link's rate less the mean of all", ge=0.0)
+    uav_tilt: float = setting(1.0, "1/rad2", "weight of a UAV's tilt", ge=0.0)
+    uav_tilt_rate: float = setting(0.02, "s2/rad2", "weight of a UAV's tilt rate", ge=0.0)
+    thrust: float = setting(0.002, "1/N2", "weight of a UAV's thrust", ge=0.0)
+    tilt_setpoint: float = setting(8.0, "1/rad2", "weight of a tilt set-point", gt=0.0)
+    thrust_setpoint: float = setting(0.02, "1/N2", "weight of a thrust set-point", gt=0.0)
+
+
+@dataclass(frozen=True)
+class MpcSettings:
+    """Horizon, limits and weights of the MPC. Angles in rad."""
+
+    period: float = setting(0.05, "s", "control period", gt=0.0)
+    horizon: int = setting(20, "", "stages N_p of the horizon", ge=1)
+    moves: tuple[int, ...] = setting(
+        (1, 1, 1, 2, 2, 3, 4, 6), "", "stages over which each move is held; they sum to the horizon", ge=1
+    )
+    constraint_stages: tuple[int, ...] = setting(
+        (1, 4, 7, 10, 13, 16, 19), "", "stages at which states are constrained", ge=1
+    )
+    payload_tilt_limit: float = setting(
+        float(np.radians(5.0)), "rad", "largest roll, pitch and yaw of the payload (eq:consOsc)", gt=0.0
+    )
+    uav_tilt_limit: float = setting(float(np.radians(35.0)), "rad", "largest tilt set-point", gt=0.0)
+    thrust_min: float = setting(1.0, "N", "least thrust set-point of a UAV", ge=0.0)
+    thrust_share_max: float = setting(
+        0.95, "", "largest thrust set-point, as a share of the largest thrust", gt=0, le=1
+    )
+    lowest_payload: float = setting(-0.25, "m", "greatest z (NED) of the payload's centre: it is on the ground")
+    uav_separation: float = setting(0.77, "m", "least distance between neighbouring UAVs", gt=0.0)
+    slack_linear: float = setting(1e3, "", "linear cost of exceeding a limit of the state", gt=0.0)
+    slack_quadratic: float = setting(1e4, "", "quadratic cost of exceeding a limit of the state", gt=0.0)
+    weights: MpcWeights = field(default_factory=MpcWeights)
+
+    def __post_init__(self) -> None:
+        if sum(self.moves) != self.horizon or min(self.moves) < 1:
+            raise ParameterError(f"moves {self.moves} do not sum to the horizon of {self.horizon} stages")
+        if not all(1 <= k <= self.horizon for k in self.constraint_stages):
+            raise ParameterError(f"constraint stages {self.constraint_stages} leave 1 .. {self.horizon}")

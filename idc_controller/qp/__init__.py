@@ -1,0 +1,1 @@
+"""Quadratic programs: one statement of the problem, one file for each solver."""

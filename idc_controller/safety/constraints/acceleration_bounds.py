@@ -1,0 +1,46 @@
+"""Bounds on the acceleration of a plan, along the axes and between north and east, both ways."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from idc_controller.safety.constraints.constraint import Penalty, PlanningStep
+from idc_controller.safety.settings import PlannerSettings
+from idc_controller.trajectory.integrator_chain import Chain
+
+Array = NDArray[np.float64]
+
+_DIAGONAL = np.sqrt(0.5)
+DIRECTIONS = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [_DIAGONAL, _DIAGONAL, 0], [_DIAGONAL, -_DIAGONAL, 0]])
+"""Unit vectors along which the acceleration is bounded (5, 3)."""
+EVERY = 3
+"""The plan's limits are kept at every third stage: between them it cannot change much."""
+
+
+def limited_stages(chain: Chain) -> NDArray[np.int_]:
+    """Return the stages at which the limits of acceleration and height are kept."""
+    return np.arange(EVERY, chain.stages + 1, EVERY)
+
+
+class AccelerationBounds:
+    """Rows for every direction; the reference's own acceleration is always allowed."""
+
+    def __init__(self, settings: PlannerSettings, penalty: Penalty) -> None:
+        self.penalty = penalty
+        self._stages = limited_stages(settings.chain)
+        limits = settings.acceleration_limit
+        self._limits = np.array([*limits, min(limits[:2]), min(limits[:2])])
+        along = np.einsum("da,kz->dkaz", DIRECTIONS, settings.chain.response[1][self._stages, 2])
+        self._G = np.stack([along, -along], axis=1).reshape(-1, 3 * settings.chain.knots)
+
+    def rows(self, step: PlanningStep) -> tuple[Array, Array]:
+        """Return G (m, 3 knots) and h (m,) (m/s2)."""
+        own = DIRECTIONS @ step.reference[2, self._stages].T
+        value = own + DIRECTIONS @ step.free[self._stages, 2].T
+        limit = np.maximum(self._limits[:, None], np.abs(own) + 0.1)
+        return self._G, np.stack([limit - value, limit + value], axis=1).ravel()
+
+    def slack_shares(self, step: PlanningStep) -> Array:
+        """Return S (m, 1): one slack for all."""
+        return np.ones((len(self._G), 1))

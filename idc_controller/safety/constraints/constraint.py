@@ -1,0 +1,49 @@
+"""What a constraint of the safety QP is given and what it returns."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from idc_controller.safety.separation import Separation
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class PlanningStep:
+    """One safety QP: the reference over the stages 0 .. K and what is known about them. NED, SI."""
+
+    reference: Array
+    """Position to snap (5, K + 1, 3)."""
+    free: Array
+    """The deviation's states if all knots are zero (K + 1, 5, 3)."""
+    acceleration: Array
+    """Of the plan before, about which the hull's shear is linear (K + 1, 3)."""
+    separations: Sequence[Separation]
+
+
+@dataclass(frozen=True, eq=False)
+class Penalty:
+    """Cost of the slacks by which constraints may be exceeded; constraints with the same object share the slacks."""
+
+    linear: float
+    quadratic: float
+
+
+class Constraint(Protocol):
+    """Rows G z <= h + S slack of the safety QP; z (3 knots,) is the deviation's snap at the knots, axis by axis."""
+
+    penalty: Penalty
+
+    def rows(self, step: PlanningStep) -> tuple[Array, Array]:
+        """Return G (m, 3 knots) and h (m,)."""
+        ...
+
+    def slack_shares(self, step: PlanningStep) -> Array:
+        """Return S (m, s): by what share of each slack a row may be exceeded."""
+        ...

@@ -1,0 +1,33 @@
+"""The lowest altitude of a plan: the payload is not led into the ground."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from idc_controller.safety.constraints.acceleration_bounds import limited_stages
+from idc_controller.safety.constraints.constraint import Penalty, PlanningStep
+from idc_controller.safety.settings import PlannerSettings
+
+Array = NDArray[np.float64]
+
+
+class LowestAltitude:
+    """Rows on the height of the payload's centre; the reference's own height is always allowed."""
+
+    def __init__(self, settings: PlannerSettings, penalty: Penalty) -> None:
+        self.penalty = penalty
+        self._lowest = settings.lowest
+        self._stages = limited_stages(settings.chain)
+        knots = settings.chain.knots
+        self._G = np.zeros((len(self._stages), 3 * knots))
+        self._G[:, 2 * knots :] = settings.chain.response[1][self._stages, 0]
+
+    def rows(self, step: PlanningStep) -> tuple[Array, Array]:
+        """Return G (m, 3 knots) and h (m,) (m)."""
+        z = step.reference[0, self._stages, 2]
+        return self._G, np.maximum(self._lowest, z) - z - step.free[self._stages, 0, 2]
+
+    def slack_shares(self, step: PlanningStep) -> Array:
+        """Return S (m, 1): one slack for all."""
+        return np.ones((len(self._G), 1))

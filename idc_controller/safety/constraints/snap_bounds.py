@@ -1,0 +1,25 @@
+"""Bounds on the snap of a plan at its knots: bounds of the QP's variables themselves, so not rows, and hard."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from idc_controller.safety.constraints.constraint import PlanningStep
+from idc_controller.safety.settings import PlannerSettings
+
+Array = NDArray[np.float64]
+
+
+class SnapBounds:
+    """What the reference leaves of the snap limit; its own snap is always allowed."""
+
+    def __init__(self, settings: PlannerSettings) -> None:
+        self._limit = settings.snap_limit
+        self._knots = np.cumsum(settings.chain.blocks)
+
+    def bounds(self, step: PlanningStep) -> tuple[Array, Array]:
+        """Return the lower and the upper bound of z (3 knots,) (m/s4)."""
+        snap = step.reference[4, self._knots]
+        limit = np.maximum(self._limit, np.abs(snap).max(axis=0) + 1.0)
+        return (-limit - snap).T.ravel(), (limit - snap).T.ravel()

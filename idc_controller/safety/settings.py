@@ -1,0 +1,52 @@
+"""Settings of the safety filter: weights of its planner, limits of its plans, margins and barrier."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from idc_controller.errors import ParameterError
+from idc_controller.settings import setting
+from idc_controller.trajectory.integrator_chain import Chain
+
+Triple = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class PlannerSettings:
+    """The safety QP: weights of the deviation per axis (x, y, z), limits of the plan, and the barrier."""
+
+    chain: Chain = Chain()
+    position: Triple = setting((0.7, 0.7, 1.0), "", "weight of the deviation's position, x, y, z", ge=0.0)
+    velocity: Triple = setting((0.6, 0.6, 0.05), "", "weight of the deviation's velocity, x, y, z", ge=0.0)
+    acceleration: float = setting(0.005, "", "weight of the deviation's acceleration", ge=0.0)
+    jerk: float = setting(0.002, "", "weight of the deviation's jerk", ge=0.0)
+    snap: Triple = setting((0.001, 0.001, 0.0002), "", "weight of the deviation's snap, x, y, z", gt=0.0)
+    crackle: float = setting(
+        0.0002, "", "weight of the change of snap from stage to stage: the UAVs' tilt rates follow it", ge=0.0
+    )
+    acceleration_limit: Triple = setting((3.0, 3.0, 2.7), "m/s2", "largest acceleration of a plan, x, y, z", gt=0.0)
+    snap_limit: Triple = setting((6.0, 6.0, 10.0), "m/s4", "largest snap of a plan, x, y, z", gt=0.0)
+    lowest: float = setting(-0.30, "m", "greatest z (NED) of the payload's centre in a plan", lt=0.0)
+    barrier_rates: tuple[float, ...] = setting(
+        (5.0,), "1/s", "rates of the exponential barrier, real and positive, one for each degree", gt=0.0
+    )
+    margin: float = setting(0.5, "m", "clearance to keep between hull and obstacles", ge=0.0)
+    tracking: float = setting(0.10, "m", "bound on the payload's deviation from the plan, added to the margin", ge=0.0)
+    uav_tracking: float = setting(0.02, "m", "what the rotor discs may deviate beyond that", ge=0.0)
+    slack_linear: float = setting(1000.0, "", "linear cost of a barrier's slack", gt=0.0)
+    slack_quadratic: float = setting(100.0, "", "quadratic cost of a barrier's slack", gt=0.0)
+    slack_time_constant: float = setting(
+        0.8,
+        "s",
+        "with which one slack of an obstacle fades over the horizon and the other sets in: clearance that has to be "
+        "given up now is won back, and what cannot be kept later excuses nothing now",
+        gt=0.0,
+    )
+    limit_slack_linear: float = setting(
+        3000.0, "", "linear cost of exceeding the plan's limits: beyond them it cannot be tracked", gt=0.0
+    )
+    limit_slack_quadratic: float = setting(1000.0, "", "quadratic cost of exceeding the plan's limits", gt=0.0)
+
+    def __post_init__(self) -> None:
+        if any(not rate > 0.0 for rate in self.barrier_rates):
+            raise ParameterError(f"barrier rates {self.barrier_rates} must be real and positive")
