@@ -7,7 +7,7 @@ INSTALLED := $(VENV)/installed
 # One BLAS thread: small matrices are no faster with more, and sums repeat.
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: help install fly test test-fast golden golden-renew benchmark clean
+.PHONY: help install fly test test-fast golden golden-renew benchmark docs clean
 
 help:
 	@echo "make fly          fly $(MISSION) with a simulated swarm (MISSION=... for another one)"
@@ -16,6 +16,7 @@ help:
 	@echo "make golden       compare short flights, to the byte, with tests/golden/checksums.json"
 	@echo "make golden-renew write these checksums anew"
 	@echo "make benchmark    the measurements of speed"
+	@echo "make docs         write docs/settings.md from the declared settings"
 	@echo "make install      only install, into $(VENV)"
 	@echo "make clean        remove $(VENV) and the caches"
 
@@ -42,6 +43,9 @@ golden-renew: $(INSTALLED)
 
 benchmark: $(INSTALLED)
 	$(VENV)/bin/python -m pytest -o addopts= -s tests/benchmarks
+
+docs: $(INSTALLED)
+	$(VENV)/bin/python -m gcs.config.settings_page > docs/settings.md
 
 install: $(INSTALLED)
 

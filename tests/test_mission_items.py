@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 from mission_files import (
     HOME,
+    MISSIONS,
     RETURN,
     TAKE_OFF,
     A,
@@ -20,7 +21,6 @@ from mission_files import (
     wpl,
 )
 
-from gcs.config import default_system_path
 from gcs.mission.route import Circle, FlyTo, HoldForever
 
 
@@ -71,7 +71,7 @@ def test_formats_agree(tmp_path: Path) -> None:
     assert shape(from_wpl) == shape(from_plan)
     assert len(shape(from_wpl)) == 9
     (tmp_path / "route.plan").write_text(json.dumps(plan(*rows)))
-    (tmp_path / "system.toml").write_text(default_system_path().read_text())
+    (tmp_path / "system.toml").write_text((MISSIONS / "system.toml").read_text())
     toml = '[mission]\nname = "x"\nsystem = "system.toml"\n[reference]\nkind = "waypoints"\nfile = "route.plan"\n'
     assert shape(read(tmp_path, toml, "mission.toml")) == shape(from_plan)
 

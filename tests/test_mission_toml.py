@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from mission_files import MISSIONS, POINTS, TAKE_OFF, TOML, A, read, refusal, row, shape, wpl
 
-from gcs.config import UnusableFile, default_system_path
+from gcs.config import UnusableFile
 from gcs.mission import Lissajous, Pole, Route, Sphere, read_mission
 
 
@@ -97,7 +97,7 @@ def test_speed_of_toml_is_capped(tmp_path: Path) -> None:
 
 
 def test_which_system_file(tmp_path: Path) -> None:
-    text = default_system_path().read_text()
+    text = (MISSIONS / "system.toml").read_text()
     assert read(tmp_path, wpl(A)).system.payload.mass == 3.1  # packaged
     (tmp_path / "system.toml").write_text(text.replace("mass = 3.1", "mass = 3.2"))
     assert read(tmp_path, wpl(A)).system.payload.mass == 3.2  # beside

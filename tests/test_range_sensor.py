@@ -7,10 +7,11 @@ from itertools import pairwise
 import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 import pytest
+from mission_files import MISSIONS
 from obstacle_scene import pole, sphere, wall
 from scripted_ground import ScriptedGround, exchange
 
-from gcs.config import UnusableFile, default_system_path, read_system
+from gcs.config import UnusableFile, read_system
 from gcs.mavlink.codec import Codec
 from gcs.mission import HarmonicMotion, Pole, Sphere, Wall
 from idc_controller.geometry.distance import Bodies
@@ -133,7 +134,7 @@ def test_numbers_are_the_vehicles_own_and_new_after_an_absence():
     ],
 )
 def test_the_system_file_is_read_strictly(tmp_path, old, new, reason):
-    text = default_system_path().read_text()
+    text = (MISSIONS / "system.toml").read_text()
     assert text.count(old) == 1
     path = tmp_path / "system.toml"
     path.write_text(text.replace(old, new))

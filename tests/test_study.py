@@ -14,7 +14,7 @@ from gcs.campaign.courses.moving import top_speed
 from gcs.campaign.courses.text import system_text
 from gcs.campaign.studies.figures import draw_study, worst
 from gcs.campaign.studies.study import MOVING, STUDIES, STUDY_COLUMNS, StudyFlights, StudyOptions
-from gcs.config import default_system_path, read_system
+from gcs.config import read_system
 from gcs.errors import UnusableInput
 from gcs.mission import read_mission
 
@@ -58,7 +58,7 @@ def flown(monkeypatch):
 def test_a_system_file_with_other_values_is_the_same_otherwise(tmp_path):
     changes = {"avoidance.margin": 0.25, "sensors.payload_rates": 0.1, "avoidance.barrier_rates": [6.0, 6.0]}
     path = tmp_path / "system.toml"
-    path.write_text(system_text(default_system_path(), changes))
+    path.write_text(system_text(changes))
     config, default = read_system(path), read_system()
     assert (config.avoidance.margin, config.avoidance.barrier_rates) == (0.25, (6.0, 6.0))
     assert config.sensors == dataclasses.replace(default.sensors, payload_rates=0.1)
@@ -67,7 +67,7 @@ def test_a_system_file_with_other_values_is_the_same_otherwise(tmp_path):
 
 def test_a_key_that_the_system_file_does_not_have_is_refused():
     with pytest.raises(KeyError):
-        system_text(default_system_path(), {"avoidance.margins": 0.25})
+        system_text({"avoidance.margins": 0.25})
 
 
 # What is flown

@@ -6,10 +6,10 @@ import socket
 
 import pymavlink.dialects.v20.common as mavlink
 import pytest
+from mission_files import MISSIONS
 from programs import PATIENCE, process
 from test_swarm import rows
 
-from gcs.config import default_system_path
 from gcs.mavlink.codec import Codec
 from vehicle_sim.app.cli import main
 
@@ -43,7 +43,7 @@ def somewhere_else(tmp_path, monkeypatch):
     (tmp_path / "mission.toml").write_text(MISSION)
     (tmp_path / "full").mkdir()
     (tmp_path / "full" / "something").touch()
-    (tmp_path / "bad.toml").write_text(default_system_path().read_text().replace("mass = 3.1", "mass = -3.1"))
+    (tmp_path / "bad.toml").write_text((MISSIONS / "system.toml").read_text().replace("mass = 3.1", "mass = -3.1"))
     (tmp_path / "odd.toml").write_text(MISSION.replace("radius = 0.3", "radius = 0.3\ncolour = 'red'"))
 
 

@@ -1,20 +1,18 @@
 """Configuration: the system's parameters, read strictly from TOML into frozen dataclasses."""
 
 from gcs.config.problems import UnusableFile
-from gcs.config.system import (
+from gcs.config.system import SystemConfig, read_system
+from gcs.config.tables import (
     ControllerConfig,
     MotionConfig,
     PayloadConfig,
     RangeSensorConfig,
     RatesConfig,
     SensorsConfig,
-    SystemConfig,
     TeamConfig,
     UavConfig,
     WeightsConfig,
     WorldConfig,
-    default_system_path,
-    read_system,
 )
 
 __all__ = [
@@ -30,6 +28,5 @@ __all__ = [
     "UnusableFile",
     "WeightsConfig",
     "WorldConfig",
-    "default_system_path",
     "read_system",
 ]

@@ -1,192 +1,59 @@
-"""The system file: payload, UAVs, team, sensors, rates, motion limits, world and controller.
+"""The system file: every setting by table, read strictly from TOML into frozen dataclasses.
 
-Every key is required and every unknown key refused, so that the file tells the whole configuration. To add a key, add
-a field here and a line to ``missions/system.toml``; the default is that file itself, packaged (``system.toml`` beside
-this module is a link to it).
+A file may be partial: a table or key that it omits has its default. The default system is ``SystemConfig()``;
+``missions/system.toml`` shows the main tables of it, ``docs/settings.md`` lists all. A sub-package declares its
+settings in its ``settings.py``; they are one field of :class:`SystemConfig`.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import cache
 from pathlib import Path
-from typing import Annotated
+from typing import Any
 
 import numpy as np
-from pydantic import Field, TypeAdapter
+from pydantic import TypeAdapter
 
 from gcs.config.problems import UnusableFile
-from gcs.config.toml_file import TomlFile, read_toml, strict
+from gcs.config.schema import table_type
+from gcs.config.tables import (
+    AvoidanceConfig,
+    ControllerConfig,
+    MotionConfig,
+    PayloadConfig,
+    RangeSensorConfig,
+    RatesConfig,
+    SensorsConfig,
+    TeamConfig,
+    UavConfig,
+    WorldConfig,
+)
+from gcs.config.toml_file import TomlFile, read_toml
 from gcs.errors import UnusableInput
 from idc_controller.errors import ParameterError
 from idc_controller.parameters import SystemParameters, polygon_attachments
 
-Positive = Annotated[float, Field(gt=0.0)]
-NotNegative = Annotated[float, Field(ge=0.0)]
-Count = Annotated[int, Field(gt=0, le=1_000_000)]
-Vector = tuple[float, float, float]
-PositiveVector = tuple[Positive, Positive, Positive]
-Weights = tuple[NotNegative, NotNegative, NotNegative]
-Angle = Annotated[float, Field(gt=0.0, lt=90.0)]
 
-
-@strict
-@dataclass(frozen=True)
-class PayloadConfig:
-    """Mass (kg), principal inertias (kg m2) and edge lengths (m) of the payload, in its frame."""
-
-    mass: Positive
-    inertia: PositiveVector
-    size: PositiveVector
-
-
-@strict
-@dataclass(frozen=True)
-class UavConfig:
-    """One UAV; all are alike. Lengths in m, thrust in N for the four rotors together."""
-
-    mass: Positive
-    inertia: PositiveVector
-    disc_radius: Positive
-    arm_length: Positive
-    thrust_max: Positive
-    motor_time_constant: Positive
-    torque_to_thrust: Positive
-    rotor_speed_max: Positive
-    attitude_kp: Positive
-    attitude_kd: Positive
-
-
-@strict
-@dataclass(frozen=True)
-class TeamConfig:
-    """How many UAVs, and where their links are attached to the payload (m)."""
-
-    vehicles: Annotated[int, Field(ge=3, le=254)]
-    spacing: Positive
-    link_length: Positive
-    attachments: tuple[Vector, ...] | None = None
-
-
-@strict
-@dataclass(frozen=True)
-class SensorsConfig:
-    """Standard deviations of the white noise on every axis; 0 switches a channel's noise off."""
-
-    position: NotNegative
-    attitude_deg: NotNegative
-    uav_velocity: NotNegative
-    uav_rates: NotNegative
-    payload_velocity: NotNegative
-    payload_rates: NotNegative
-
-
-@strict
-@dataclass(frozen=True)
-class RangeSensorConfig:
-    """The obstacle sensor of every vehicle: how far it sees (m), how often (Hz), noise along the line of sight (m)."""
-
-    range: Positive
-    rate: Count
-    noise: NotNegative
-
-
-@strict
-@dataclass(frozen=True)
-class RatesConfig:
-    """How often things happen (Hz)."""
-
-    physics: Annotated[int, Field(ge=500, le=100_000)]
-    onboard: Count
-    telemetry: Count
-    control: Count
-
-
-@strict
-@dataclass(frozen=True)
-class MotionConfig:
-    """What the payload's trajectories keep to (m and s)."""
-
-    speed: Positive
-    speed_max: Positive
-    acceleration: Positive
-    jerk: Positive
-    snap: Positive
-    climb_speed: Positive
-    landing_speed: Positive
-    curve_speed: Positive
-    curve_acceleration: Positive
-    curve_jerk: Positive
-    curve_snap: Positive
-
-
-@strict
-@dataclass(frozen=True)
-class WorldConfig:
-    """How the simulated world differs from what the ground believes."""
-
-    payload_mass_factor: Positive
-
-
-@strict
-@dataclass(frozen=True)
-class WeightsConfig:
-    """Diagonals of the controller's cost: per axis where three are given. See ``MpcWeights``."""
-
-    position: Weights
-    velocity: Weights
-    attitude: Weights
-    rates: Weights
-    link_tilt: NotNegative
-    link_rate: NotNegative
-    differential_link_tilt: NotNegative
-    differential_link_rate: NotNegative
-    uav_tilt: NotNegative
-    uav_tilt_rate: NotNegative
-    thrust: NotNegative
-    tilt_setpoint: Positive
-    thrust_setpoint: Positive
-
-
-@dataclass(frozen=True)
-class ControllerConfig:
-    """The model predictive controller."""
-
-    horizon: Annotated[int, Field(ge=2, le=200)]
-    payload_tilt_limit_deg: Angle
-    uav_tilt_limit_deg: Angle
-    weights: WeightsConfig
-
-
-@strict
-@dataclass(frozen=True)
-class AvoidanceConfig:
-    """The safety filter: room to keep between hull and obstacles (m), rates of the exponential barrier (1/s)."""
-
-    margin: Positive
-    barrier_rates: tuple[Positive, ...]
-
-
-@strict
 @dataclass(frozen=True)
 class SystemConfig:
-    """A whole system file. SI units; see ``missions/system.toml`` for each key's meaning."""
+    """A whole system file, SI units. Each field is a table."""
 
-    payload: PayloadConfig
-    uav: UavConfig
-    team: TeamConfig
-    sensors: SensorsConfig
-    range_sensor: RangeSensorConfig
-    rates: RatesConfig
-    motion: MotionConfig
-    world: WorldConfig
-    controller: ControllerConfig
-    avoidance: AvoidanceConfig
+    payload: PayloadConfig = field(default_factory=PayloadConfig)
+    uav: UavConfig = field(default_factory=UavConfig)
+    team: TeamConfig = field(default_factory=TeamConfig)
+    sensors: SensorsConfig = field(default_factory=SensorsConfig)
+    range_sensor: RangeSensorConfig = field(default_factory=RangeSensorConfig)
+    rates: RatesConfig = field(default_factory=RatesConfig)
+    motion: MotionConfig = field(default_factory=MotionConfig)
+    world: WorldConfig = field(default_factory=WorldConfig)
+    controller: ControllerConfig = field(default_factory=ControllerConfig)
+    avoidance: AvoidanceConfig = field(default_factory=AvoidanceConfig)
 
     def parameters(self) -> SystemParameters:
-        """The system as the controller believes it to be.
+        """Return the system as the controller models it.
 
-        Raises :class:`idc_controller.errors.ParameterError` when it could not fly; :func:`read_system` has seen to it.
+        Raises :class:`idc_controller.errors.ParameterError` when it could not fly; :func:`read_system` has checked it.
         """
         n = self.team.vehicles
         if self.team.attachments is not None:
@@ -209,11 +76,11 @@ class SystemConfig:
         )
 
     def true_parameters(self) -> SystemParameters:
-        """The system as the simulated world makes it: the payload's mass by ``world.payload_mass_factor``."""
+        """Return the system of the simulated world: ``world.payload_mass_factor`` scales the payload's mass."""
         return self.parameters().with_payload_mass(self.payload.mass * self.world.payload_mass_factor)
 
     def with_vehicles(self, vehicles: int) -> SystemConfig:
-        """The same system with another number of vehicles, on a polygon of the same spacing.
+        """Return the same system with another number of vehicles, on a polygon of the same spacing.
 
         Raises :class:`UnusableInput` when the attachments are given one by one, or when it could not fly.
         """
@@ -230,24 +97,32 @@ class SystemConfig:
             raise UnusableInput(f"{vehicles} vehicles: {error}") from error
         return changed
 
+    def tables(self) -> dict[str, Any]:
+        """Return the values as a system file holds them: tables of keys, arrays as lists, absent what is None."""
+        tables: dict[str, Any] = _plain(asdict(self))
+        return tables
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items() if item is not None}
+    return [_plain(item) for item in value] if isinstance(value, tuple) else value
+
 
 @cache
 def _adapter() -> TypeAdapter[SystemConfig]:
-    return TypeAdapter(SystemConfig)
-
-
-def default_system_path() -> Path:
-    """The packaged system file, for missions that name none and have none beside them."""
-    return Path(__file__).with_name("system.toml")
+    return TypeAdapter(table_type(SystemConfig))
 
 
 def read_system(path: Path | None = None) -> SystemConfig:
-    """Read a system file; the packaged default when none is named.
+    """Read a system file; without one, return the default system.
 
-    Raises :class:`UnusableFile` with file, line, table.key and reason: syntax, unknown or missing keys, values
-    without a meaning, values that do not agree, a team that could not hover.
+    Raises :class:`UnusableFile` with file, line, table.key and reason: syntax, unknown keys, values
+    out of range, values that do not agree, a team that could not hover.
     """
-    file = read_toml(default_system_path() if path is None else path)
+    if path is None:
+        return SystemConfig()
+    file = read_toml(path)
     config = file.validated(_adapter())
     if problems := _disagreements(config, file):
         raise UnusableFile(problems)
@@ -260,27 +135,21 @@ def read_system(path: Path | None = None) -> SystemConfig:
 
 
 def _disagreements(config: SystemConfig, file: TomlFile) -> list[str]:
-    problems = []
+    """Return what is wrong between keys, one line each."""
     rates, team, motion = config.rates, config.team, config.motion
-    for name in ("onboard", "telemetry", "control"):
-        if rates.physics % getattr(rates, name):
-            problems.append(
-                file.problem(("rates", name), f"{getattr(rates, name)} Hz does not divide physics, {rates.physics} Hz")
-            )
-    if rates.physics % config.range_sensor.rate:
-        reason = f"{config.range_sensor.rate} Hz does not divide physics, {rates.physics} Hz"
-        problems.append(file.problem(("range_sensor", "rate"), reason))
-    if config.range_sensor.rate > rates.telemetry:
-        reason = f"{config.range_sensor.rate} Hz is faster than telemetry, {rates.telemetry} Hz"
-        problems.append(file.problem(("range_sensor", "rate"), reason))
-    if rates.control > rates.telemetry:
-        problems.append(
-            file.problem(("rates", "control"), f"{rates.control} Hz is faster than telemetry, {rates.telemetry} Hz")
-        )
+    found: list[tuple[tuple[str, str], str]] = []
+    for key, rate in {
+        ("rates", "onboard"): rates.onboard,
+        ("rates", "telemetry"): rates.telemetry,
+        ("rates", "control"): rates.control,
+        ("range_sensor", "rate"): config.range_sensor.rate,
+    }.items():
+        if rates.physics % rate:
+            found.append((key, f"{rate} Hz does not divide physics, {rates.physics} Hz"))
+        if rate > rates.telemetry and key != ("rates", "onboard"):
+            found.append((key, f"{rate} Hz is faster than telemetry, {rates.telemetry} Hz"))
     if team.attachments is not None and len(team.attachments) != team.vehicles:
-        problems.append(
-            file.problem(("team", "attachments"), f"{len(team.attachments)} points for {team.vehicles} vehicles")
-        )
+        found.append((("team", "attachments"), f"{len(team.attachments)} points for {team.vehicles} vehicles"))
     if motion.speed > motion.speed_max:
-        problems.append(file.problem(("motion", "speed"), f"{motion.speed} is more than speed_max, {motion.speed_max}"))
-    return problems
+        found.append((("motion", "speed"), f"{motion.speed} is more than speed_max, {motion.speed_max}"))
+    return [file.problem(key, reason) for key, reason in found]

@@ -8,15 +8,17 @@ import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Annotated, Any, TypeVar
 
-from pydantic import ConfigDict, TypeAdapter, ValidationError, with_config
+from pydantic import ConfigDict, Field, TypeAdapter, ValidationError, with_config
 
 from gcs.config.problems import UnusableFile
 from gcs.config.text_file import read_text
 
 T = TypeVar("T")
 Key = tuple[str | int, ...]
+Positive = Annotated[float, Field(gt=0.0)]
+NotNegative = Annotated[float, Field(ge=0.0)]
 
 _HEADER = re.compile(r"^\s*(\[\[?)\s*([^\[\]]+?)\s*\]\]?\s*(#.*)?$")
 _ENTRY = re.compile(r"""^\s*([A-Za-z0-9_."'-]+(?:\s*\.\s*[A-Za-z0-9_"'-]+)*)\s*=""")
@@ -26,6 +28,7 @@ _REASONS = {
     "unexpected_keyword_argument": "unknown key",
     "extra_forbidden": "unknown key",
     "dataclass_type": "must be a table",
+    "model_type": "must be a table",
 }
 
 

@@ -9,8 +9,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from gcs.config.system import NotNegative, Positive, SystemConfig, Vector
-from gcs.config.toml_file import strict
+from gcs.config.system import SystemConfig
+from gcs.config.tables import Vector
+from gcs.config.toml_file import NotNegative, Positive, strict
 from gcs.mission.route import Route
 
 RESTING_ALTITUDE = 0.30

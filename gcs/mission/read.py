@@ -21,7 +21,7 @@ def read_mission(path: Path | str, config_path: Path | str | None = None) -> Mis
     """Read a mission: ``.toml``, ``QGC WPL 110`` or QGroundControl ``.plan``, told apart by their content.
 
     The system comes from ``config_path``, else from the file that the mission names, else from ``system.toml`` beside
-    the mission, else from the packaged default.
+    the mission, else the default system.
 
     Raises :class:`UnusableFile` (a :class:`gcs.errors.UnusableInput`) with every reason found.
     """
@@ -99,7 +99,7 @@ def _system(mission: Path, named: str | None, config: Path | None) -> SystemConf
 
 
 def system_path(mission: Path, named: str | None = None, config: Path | None = None) -> Path | None:
-    """The system file by which ``mission``, which may have ``named`` one, is flown; None: the packaged default."""
+    """The system file by which ``mission``, which may have ``named`` one, is flown; None: the default system."""
     if config is not None:
         return config
     beside = mission.parent / (named or "system.toml")

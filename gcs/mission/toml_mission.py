@@ -14,8 +14,9 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, TypeAdapter
 
 from gcs.config import UnusableFile
-from gcs.config.system import NotNegative, Positive, SystemConfig, Vector
-from gcs.config.toml_file import TomlFile, read_toml, strict
+from gcs.config.system import SystemConfig
+from gcs.config.tables import Vector
+from gcs.config.toml_file import NotNegative, Positive, TomlFile, read_toml, strict
 from gcs.faults import KINDS, settings_adapter
 from gcs.mission.faults import fault_problems
 from gcs.mission.model import RESTING_ALTITUDE, Fault, Limits, Lissajous, Name, Obstacle, Pole, WaypointsMotion

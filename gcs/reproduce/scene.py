@@ -9,8 +9,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from gcs.config import SystemConfig, read_system
-from gcs.config.system import default_system_path
+from gcs.config import SystemConfig
 from idc_controller.geometry.shapes import PredictedObstacle, Shape
 from idc_controller.trajectory.lissajous import LissajousCurve, LissajousTrajectory
 from idc_controller.trajectory.paths import Leg
@@ -30,8 +29,8 @@ SWING, SWING_RATE = 1.5, 1.0
 
 @cache
 def configuration() -> SystemConfig:
-    """The system file that comes with the program: Table I."""
-    return read_system(default_system_path())
+    """Return the default system: Table I."""
+    return SystemConfig()
 
 
 def printed_reference(times: Array) -> Array:

@@ -5,11 +5,9 @@ from __future__ import annotations
 import dataclasses
 import json
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
-from gcs.config.text_file import read_text
-from gcs.config.toml_file import read_toml
+from gcs.config import SystemConfig
 from gcs.mission.model import Limits, Lissajous, Pole, Sphere, Wall
 
 
@@ -33,15 +31,20 @@ def mission_text(
     return "\n\n".join(table for table in tables if table) + "\n"
 
 
-def system_text(base: Path, changes: Mapping[str, Any]) -> str:
-    """The system file ``base`` with other values, ``changes``, by key: ``{"avoidance.margin": 0.25}``.
+def system_text(changes: Mapping[str, Any]) -> str:
+    """Return the default system, whole, as a file with ``changes`` by key: ``{"avoidance.margin": 0.25}``.
 
-    Raises :class:`KeyError` for a key that the file does not have, :class:`gcs.config.UnusableFile` like ``read_toml``.
+    Raises :class:`KeyError` for a key that the system does not have.
     """
-    file, lines = read_toml(base), read_text(base).splitlines()
+    tables = SystemConfig().tables()
     for key, value in changes.items():
-        lines[file.lines[tuple(key.split("."))] - 1] = f"{key.rpartition('.')[2]} = {toml_value(value)}"
-    return "\n".join(lines) + "\n"
+        *path, name = key.split(".")
+        table = tables
+        for part in path:
+            table = table[part]
+        table[name]  # a key that it has
+        table[name] = value
+    return tables_text(tables)
 
 
 def tables_text(data: Mapping[str, Any]) -> str:

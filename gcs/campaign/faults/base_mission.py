@@ -10,13 +10,12 @@ from pathlib import Path
 from typing import Any
 
 from gcs.campaign.courses.text import tables_text
-from gcs.config import default_system_path
 from gcs.config.system import SystemConfig
 from gcs.config.text_file import read_text
 from gcs.config.toml_file import read_toml
 from gcs.errors import UnusableInput
 from gcs.mission.model import Fault, Limits
-from gcs.mission.read import mission_format, read_mission, system_path
+from gcs.mission.read import mission_format, read_mission
 from gcs.record.run_folder import make_folder
 
 _NAME = 200  # characters, the longest that a mission may have
@@ -68,17 +67,17 @@ def read_base(path: Path, config: Path | None = None) -> BaseMission:
         tables = {"mission": {"name": mission.name}, "reference": {"kind": "waypoints", "file": path.name}}
     files = {}
 
-    def copied(source: Path) -> str:
+    def copied(source: Path, text: str) -> str:
         """Named after its content: flights with other files are other flights."""
-        text = read_text(source)
         name = f"{source.stem}-{digest(text)}{source.suffix}"
         files[name] = text
         return name
 
-    system = system_path(path, tables["mission"].get("system"), config) or default_system_path()
-    tables = {**tables, "mission": {**tables["mission"], "system": copied(system)}}
+    system = copied(Path("system.toml"), tables_text(mission.system.tables()))
+    tables = {**tables, "mission": {**tables["mission"], "system": system}}
     if "file" in tables["reference"]:
-        file = copied(path.parent / tables["reference"]["file"])
+        source = path.parent / tables["reference"]["file"]
+        file = copied(source, read_text(source))
         tables["reference"] = {**tables["reference"], "file": file}
     return BaseMission(mission.name, mission.seed, mission.system, tables, files)
 

@@ -14,8 +14,7 @@ from pydantic import Field, TypeAdapter
 from gcs.campaign.faults.base_mission import BaseMission, read_base
 from gcs.campaign.faults.sweep import CLEAN, Case, SweptFault, label
 from gcs.config import UnusableFile
-from gcs.config.system import NotNegative
-from gcs.config.toml_file import Key, TomlFile, read_toml, strict
+from gcs.config.toml_file import Key, NotNegative, TomlFile, read_toml, strict
 from gcs.mission.faults import fault_problems
 from gcs.mission.model import Limits, Name
 from gcs.mission.toml_mission import read_fault

@@ -21,7 +21,7 @@ from gcs.campaign.courses.generator import HELD_TO, RandomCourse, generate
 from gcs.campaign.courses.moving import top_speed
 from gcs.campaign.courses.text import system_text
 from gcs.campaign.process_pool import all_cores, sole_flyer, write_table
-from gcs.config import default_system_path
+from gcs.config import SystemConfig
 from gcs.config.text_file import read_text
 from gcs.errors import UnusableInput
 from gcs.mission.model import AnyMotion, Motion
@@ -211,7 +211,7 @@ class StudyFlights:
         if changes:
             # Compared by their text: a flight of another study of the folder is the same where its values are.
             system = self.options.out / "systems" / f"{_plain(_told(changes))}.toml"
-            self._write(system, system_text(default_system_path(), changes))
+            self._write(system, system_text(changes))
             flags += ["--config", str(system)]
         if mission == MOVING:
             path, told, text = self._moving_course(variant.fastest, seed)
@@ -225,7 +225,7 @@ class StudyFlights:
             asked = variant.changes.get(MARGIN, limits.clearance) if limits.clearance is not None else None
             held_to = dataclasses.replace(limits, clearance=asked)
         told = " ".join([told, variant.controller, _told(changes), f"seed{seed}"])
-        name = _plain(f"{told} {_digest(text, system_text(default_system_path(), changes), repr(held_to))}")
+        name = _plain(f"{told} {_digest(text, system_text(changes), repr(held_to))}")
         plan = FlightPlan(
             RandomCourse(number, variant.label, name, text),
             path,
@@ -270,7 +270,7 @@ def fast_courses(fastest: float) -> Iterator[str]:
 
 def _real_changes(changes: Mapping[str, Any]) -> dict[str, Any]:
     """Without those that ask for what the system file has anyway."""
-    tables = tomllib.loads(read_text(default_system_path()))
+    tables = SystemConfig().tables()
     return {key: value for key, value in changes.items() if _lookup(tables, key) != value}
 
 

@@ -1,0 +1,53 @@
+"""``docs/settings.md``, written from the declarations: ``python -m gcs.config.settings_page`` prints it."""
+
+from __future__ import annotations
+
+from itertools import groupby
+from typing import Any
+
+from gcs.config.schema import listed_settings
+from gcs.config.system import SystemConfig
+from idc_controller.settings import Setting
+
+_INTRODUCTION = """\
+# Settings
+
+Every key of a system file, by table. A file names what differs from these defaults, nothing else is needed; an unknown
+key, a wrong type and a value out of range are refused with file, line and reason (exit status 2).
+[`missions/system.toml`](../missions/system.toml) shows the main tables with their default values.
+
+This page is written from the declarations by `make docs`.
+"""
+
+
+def settings_page() -> str:
+    """Return the page: a table of key, default, unit, range and meaning for each table of the system file."""
+    parts = [_INTRODUCTION]
+    for table, listed in groupby(listed_settings(SystemConfig), lambda listed: listed.table):
+        rows = [
+            f"| `{entry.key}` | {_value(entry.default)} | {entry.setting.unit} | {_range(entry.setting)} "
+            f"| {entry.setting.meaning} |"
+            for entry in listed
+        ]
+        header = ["| key | default | unit | range | meaning |", "|---|---|---|---|---|"]
+        parts.append("\n".join([f"## `[{table}]`", "", *header, *rows]) + "\n")
+    return "\n".join(parts)
+
+
+def _value(value: Any) -> str:
+    if value is None:
+        return "none"
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, tuple):
+        return "[" + ", ".join(map(_value, value)) + "]"
+    return str(value)
+
+
+def _range(setting: Setting) -> str:
+    bounds = ((">", setting.gt), ("≥", setting.ge), ("<", setting.lt), ("≤", setting.le))
+    return ", ".join(f"{sign} {bound:g}" for sign, bound in bounds if bound is not None)
+
+
+if __name__ == "__main__":
+    print(settings_page(), end="")

@@ -1,0 +1,152 @@
+"""The tables of the system file that describe what flies: payload, UAVs, team, sensors, rates, motion limits, world.
+
+SI units; frames are north-east-down (world) and forward-right-down (payload, UAV). Masses and lengths are those of
+Table I of the paper.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from idc_controller.settings import setting
+
+Vector = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class PayloadConfig:
+    """The payload: a box."""
+
+    mass: float = setting(3.1, "kg", "mass in the controller's model", gt=0.0)
+    inertia: Vector = setting(
+        (0.29, 0.29, 0.55), "kg m2", "principal moments of inertia about the payload's axes", gt=0.0
+    )
+    size: Vector = setting((1.0, 1.0, 0.5), "m", "edges of the box", gt=0.0)
+
+
+@dataclass(frozen=True)
+class UavConfig:
+    """One UAV; all are alike."""
+
+    mass: float = setting(0.7, "kg", "mass", gt=0.0)
+    inertia: Vector = setting((0.01, 0.01, 0.01), "kg m2", "principal moments of inertia about the body's axes", gt=0.0)
+    disc_radius: float = setting(0.3, "m", "radius of the disc that covers the rotors", gt=0.0)
+    arm_length: float = setting(0.17, "m", "distance from the centre to a rotor", gt=0.0)
+    thrust_max: float = setting(30.0, "N", "largest thrust of the four rotors together", gt=0.0)
+    motor_time_constant: float = setting(0.05, "s", "first-order lag of the rotor speed", gt=0.0)
+    torque_to_thrust: float = setting(0.016, "m", "drag torque of a rotor over its thrust", gt=0.0)
+    rotor_speed_max: float = setting(1000.0, "rad/s", "largest rotor speed", gt=0.0)
+    attitude_kp: float = setting(100.0, "1/s2", "proportional gain of the onboard attitude loop", gt=0.0)
+    attitude_kd: float = setting(16.0, "1/s", "derivative gain of the onboard attitude loop", gt=0.0)
+
+
+@dataclass(frozen=True)
+class TeamConfig:
+    """The number of UAVs, and the attachment of their links to the payload."""
+
+    vehicles: int = setting(4, "", "number of UAVs", ge=3, le=254)
+    spacing: float = setting(
+        1.0, "m", "distance between neighbouring attachment points: the side of their regular polygon", gt=0.0
+    )
+    link_length: float = setting(3.2, "m", "length of a link", gt=0.0)
+    attachments: tuple[Vector, ...] | None = setting(
+        None, "m", "attachment points in the payload frame, one for each UAV, in place of the polygon"
+    )
+
+
+@dataclass(frozen=True)
+class SensorsConfig:
+    """Navigation sensors: standard deviations of the white noise on every axis; 0 switches a noise off."""
+
+    position: float = setting(0.02, "m", "position of payload and UAVs", ge=0.0)
+    attitude_deg: float = setting(0.2, "deg", "attitude of payload and UAVs", ge=0.0)
+    uav_velocity: float = setting(0.02, "m/s", "velocity of a UAV", ge=0.0)
+    uav_rates: float = setting(0.005, "rad/s", "body rates of a UAV", ge=0.0)
+    payload_velocity: float = setting(0.008, "m/s", "velocity of the payload", ge=0.0)
+    payload_rates: float = setting(0.008, "rad/s", "body rates of the payload", ge=0.0)
+
+
+@dataclass(frozen=True)
+class RangeSensorConfig:
+    """The obstacle sensor of every vehicle."""
+
+    range: float = setting(10.0, "m", "largest distance at which an obstacle is detected", gt=0.0)
+    rate: int = setting(10, "Hz", "scans; divides rates.physics", gt=0, le=1_000_000)
+    noise: float = setting(0.05, "m", "standard deviation along the line of sight", ge=0.0)
+
+
+@dataclass(frozen=True)
+class RatesConfig:
+    """Rates; each divides that of the physics."""
+
+    physics: int = setting(500, "Hz", "steps of the simulated world", ge=500, le=100_000)
+    onboard: int = setting(250, "Hz", "attitude and rate loops on the vehicles", gt=0, le=1_000_000)
+    telemetry: int = setting(
+        25, "Hz", "telemetry of each vehicle, and of the payload unit that it relays", gt=0, le=1_000_000
+    )
+    control: int = setting(20, "Hz", "set-points from the ground", gt=0, le=1_000_000)
+
+
+@dataclass(frozen=True)
+class MotionConfig:
+    """Limits of the payload's trajectories."""
+
+    speed: float = setting(1.5, "m/s", "speed where a mission names none", gt=0.0)
+    speed_max: float = setting(3.0, "m/s", "speed to which a mission's is capped", gt=0.0)
+    acceleration: float = setting(1.5, "m/s2", "acceleration between waypoints", gt=0.0)
+    jerk: float = setting(2.0, "m/s3", "jerk between waypoints", gt=0.0)
+    snap: float = setting(6.0, "m/s4", "snap between waypoints", gt=0.0)
+    climb_speed: float = setting(1.0, "m/s", "vertical speed of take-off and descent", gt=0.0)
+    landing_speed: float = setting(0.3, "m/s", "vertical speed at touch-down", gt=0.0)
+    curve_speed: float = setting(5.0, "m/s", "speed on figure eights, which turn all the time", gt=0.0)
+    curve_acceleration: float = setting(3.5, "m/s2", "acceleration on figure eights", gt=0.0)
+    curve_jerk: float = setting(5.0, "m/s3", "jerk on figure eights", gt=0.0)
+    curve_snap: float = setting(8.0, "m/s4", "snap on figure eights", gt=0.0)
+
+
+@dataclass(frozen=True)
+class WorldConfig:
+    """Differences of the simulated world from the controller's model."""
+
+    payload_mass_factor: float = setting(1.0, "", "true payload mass over payload.mass", gt=0.0)
+
+
+@dataclass(frozen=True)
+class WeightsConfig:
+    """Diagonals of the controller's cost, for a unit of squared error each; x, y, z or roll, pitch, yaw."""
+
+    position: Vector = setting((60.0, 60.0, 80.0), "1/m2", "payload position", ge=0.0)
+    velocity: Vector = setting((20.0, 20.0, 20.0), "s2/m2", "payload velocity", ge=0.0)
+    attitude: Vector = setting((300.0, 300.0, 800.0), "1/rad2", "payload attitude", ge=0.0)
+    rates: Vector = setting((40.0, 40.0, 120.0), "s2/rad2", "payload body rates", ge=0.0)
+    link_tilt: float = setting(100.0, "1/rad2", "tilt of a link", ge=0.0)
+    link_rate: float = setting(30.0, "s2/rad2", "rate of a link's tilt", ge=0.0)
+    differential_link_tilt: float = setting(
+        200.0, "1/rad2", "tilt of a link less the mean of all: keeps the UAVs apart", ge=0.0
+    )
+    differential_link_rate: float = setting(50.0, "s2/rad2", "its rate", ge=0.0)
+    uav_tilt: float = setting(1.0, "1/rad2", "tilt of a UAV", ge=0.0)
+    uav_tilt_rate: float = setting(0.02, "s2/rad2", "rate of a UAV's tilt", ge=0.0)
+    thrust: float = setting(0.002, "1/N2", "thrust of a UAV", ge=0.0)
+    tilt_setpoint: float = setting(8.0, "1/rad2", "change of a UAV's tilt set-point", gt=0.0)
+    thrust_setpoint: float = setting(0.02, "1/N2", "change of a UAV's thrust set-point", gt=0.0)
+
+
+@dataclass(frozen=True)
+class ControllerConfig:
+    """The model predictive controller."""
+
+    horizon: int = setting(20, "", "control steps of the prediction", ge=2, le=200)
+    payload_tilt_limit_deg: float = setting(5.0, "deg", "soft limit of the payload's tilt", gt=0.0, lt=90.0)
+    uav_tilt_limit_deg: float = setting(35.0, "deg", "soft limit of a UAV's tilt", gt=0.0, lt=90.0)
+    weights: WeightsConfig = field(default_factory=WeightsConfig)
+
+
+@dataclass(frozen=True)
+class AvoidanceConfig:
+    """The safety filter."""
+
+    margin: float = setting(0.5, "m", "clearance to keep between hull and obstacles", gt=0.0)
+    barrier_rates: tuple[float, ...] = setting(
+        (5.0,), "1/s", "rates of the exponential barrier, one for each degree", gt=0.0
+    )
