@@ -8,8 +8,14 @@ class GcsError(Exception):
 class UnusableInput(GcsError):
     """A mission, configuration or argument that cannot be used: exit code 2.
 
-    ``str(error)`` is one line: file, line or item, field, reason.
+    ``str(error)`` is one line: file, line or item, field, reason; ``reasons`` are all that were found, a line each.
     """
+
+    reasons: tuple[str, ...]
+
+    def __init__(self, *reasons: str) -> None:
+        super().__init__(*reasons[:1])
+        self.reasons = reasons
 
 
 class FlightAborted(GcsError):

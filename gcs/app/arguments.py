@@ -1,9 +1,11 @@
-"""Arguments that several commands have."""
+"""Types of command-line arguments that several commands of both programs have."""
 
 from __future__ import annotations
 
 import argparse
 import math
+
+CONTROLLERS = ("idc", "mpc", "paper")
 
 
 def number_of_jobs(text: str) -> int | None:

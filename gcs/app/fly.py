@@ -13,6 +13,8 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
+from gcs.app.exit_status import ExitStatus
+from gcs.app.flight_log import FlightLog
 from gcs.drivers.connection import Connection
 from gcs.drivers.interrupt import Interrupt
 from gcs.drivers.lockstep import run_in_lockstep
@@ -35,8 +37,6 @@ from gcs.record.summary import summarise, within_limits, write_summary
 from idc_controller.guidance.resting_place import RestingPlace
 from idc_controller.paper.printed_filter import PrintedFilter
 from idc_controller.safety.filter_protocol import NoObstacles, SafetyFilter
-
-DONE, OUTSIDE_LIMITS, UNUSABLE, INTERRUPTED = 0, 1, 2, 130
 
 
 @dataclass(frozen=True)
@@ -67,11 +67,12 @@ class FlightResult:
     """Whether take-off had begun."""
 
     @property
-    def exit_code(self) -> int:
+    def exit_code(self) -> ExitStatus:
         """The exit status of the command."""
         if self.interrupted:
-            return INTERRUPTED
-        return DONE if self.summary["completed"] and within_limits(self.summary) else OUTSIDE_LIMITS
+            return ExitStatus.INTERRUPTED
+        held = self.summary["completed"] and within_limits(self.summary)
+        return ExitStatus.DONE if held else ExitStatus.OUTSIDE_LIMITS
 
 
 def prepare(options: FlyOptions) -> Mission:
@@ -121,6 +122,7 @@ def fly(options: FlyOptions, mission: Mission, progress: Callable[[Flight], None
         simulator, addresses = _swarm(options, mission, run_dir, resources)
         recorder = resources.enter_context(FlightRecorder(run_dir, started.timestamp()))
         station = ground_station(mission, addresses, recorder, options.controller)
+        log = FlightLog(station)
         interrupt = resources.enter_context(Interrupt())
         gone = simulator.gone if simulator is not None else lambda: None
 
@@ -130,6 +132,7 @@ def fly(options: FlyOptions, mission: Mission, progress: Callable[[Flight], None
             nonlocal wall
             if math.isnan(station.flight.takeoff_time):
                 wall = time.monotonic()
+            log.update()
             progress(station.flight)
 
         try:

@@ -15,9 +15,10 @@ class UnusableFile(UnusableInput):
     """
 
     def __init__(self, reasons: Sequence[str]) -> None:
-        self.reasons = tuple(_one_line(reason) for reason in reasons)
-        more = len(self.reasons) - 1
-        super().__init__(self.reasons[0] + (f" (and {more} more)" if more else ""))
+        lines = tuple(_one_line(reason) for reason in reasons)
+        more = len(lines) - 1
+        super().__init__(lines[0] + (f" (and {more} more)" if more else ""))
+        self.reasons = lines
 
 
 def _one_line(text: str) -> str:

@@ -1,1 +1,1 @@
-"""The commands that fly many flights or none."""
+"""The commands of ``gcs``, a module each: ``DESCRIPTION``, ``add_arguments(parser)``, ``run(arguments)``."""

@@ -17,12 +17,12 @@ from gcs.errors import UnusableInput
 from gcs.mission.read import read_mission
 from gcs.record.run_data import read_run
 from gcs.record.run_folder import make_folder
-from gcs.reproduce import figures
+from gcs.reproduce import figures, work
 from gcs.reproduce.animation import animate
 from gcs.reproduce.numbers import matrices, numbers
 from gcs.reproduce.page import paper_text, rounded, write_numbers, write_page
 from gcs.reproduce.plan import Plan, plan
-from gcs.reproduce.work import Results, run
+from gcs.reproduce.work import Results
 
 DONE, INTERRUPTED = 0, 130
 
@@ -54,10 +54,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--missions", type=Path, default=Path("missions"), metavar="DIR",
         help="folder of the mission files that are flown (default: missions)",
     )  # fmt: skip
-    parser.set_defaults(run=run_command)
 
 
-def run_command(arguments: argparse.Namespace) -> int:
+def run(arguments: argparse.Namespace) -> int:
     """Run the command; returns the exit status."""
     chosen, out = plan(arguments.quick), arguments.out
     # All that can be wrong is looked for before anything is written.
@@ -70,7 +69,7 @@ def run_command(arguments: argparse.Namespace) -> int:
     begin = time.monotonic()
     try:
         with _Progress(console, chosen) as progress:
-            results = run(chosen, arguments.missions, out, arguments.jobs, progress.done)
+            results = work.run(chosen, arguments.missions, out, arguments.jobs, progress.done)
             found = rounded(numbers(chosen, results))
             write_numbers(out / "numbers.json", found)
             (out / "paper.md").write_text(paper_text(found), encoding="utf-8")

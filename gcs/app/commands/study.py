@@ -46,7 +46,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--missions", type=Path, default=Path("missions"), metavar="DIR", help="folder of the mission files"
     )
     parser.add_argument("--keep", choices=KEPT, default="failures", help="whose run folders are kept")
-    parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -1,0 +1,93 @@
+"""``gcs fly``: its arguments, and what it prints."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from functools import partial
+from pathlib import Path
+
+from rich.console import Console
+
+from gcs.app.arguments import CONTROLLERS, number
+from gcs.app.fly import FlyOptions, fly, prepare
+from gcs.app.logs import LOG
+from gcs.app.progress import FlightProgress
+from gcs.campaign.process_pool import BROKEN_OFF, end_with_parent
+from gcs.faults.record import fault_notes
+from gcs.mavlink.address import parse_url
+from gcs.record.figures import report
+from gcs.record.summary_table import summary_table
+
+DESCRIPTION = """\
+Flies a mission: a QGroundControl .plan, a QGC WPL 110 file, or the project's .toml.
+
+Without --connect it starts a simulated swarm (vehicle-sim) for itself, in lockstep unless --realtime is given.
+With --connect it flies a swarm that runs already:
+
+  vehicle-sim --mission missions/figure_eight.toml
+  gcs fly missions/figure_eight.toml --realtime --connect \\
+      udp://127.0.0.1:14540 udp://127.0.0.1:14541 udp://127.0.0.1:14542 udp://127.0.0.1:14543
+
+Ctrl-C lands the vehicles and closes the records; a second one ends the ground station, and the
+vehicles land by their own failsafe.
+Exit status: 0 done and within limits; 1 flown but outside limits, or aborted safely; 2 unusable input;
+130 interrupted, vehicles landed.
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    add = parser.add_argument
+    add("mission", type=Path, metavar="MISSION", help="mission file")
+    add("--realtime", action="store_true", help="run on the wall clock instead of in lockstep")
+    add("--speed", type=partial(number, least=0.001, most=1000.0), default=1.0, metavar="X",
+        help="simulated seconds per second of wall time, with --realtime (default: 1)")  # fmt: skip
+    add("--controller", choices=CONTROLLERS, default="idc",
+        help="idc: tracking with obstacle avoidance (default); mpc: tracking only; paper: the paper's own filter",
+    )  # fmt: skip
+    add("--config", type=Path, metavar="C", help="system file in place of the mission's")
+    add("--vehicles", type=int, metavar="N", help="number of vehicles in place of the system file's")
+    add("--seed", type=int, metavar="S", help="seed of the noise in place of the mission's")
+    add("--run-dir", type=Path, metavar="D", help="run folder (default: runs/<mission>-<number>)")
+    add("--connect", action="extend", nargs="+", default=[], metavar="URL",
+        help="a running swarm: udp://HOST:PORT of every vehicle, in the order of their system ids, "
+        "or udpin://HOST:PORT to which the vehicles send (vehicle-sim: udpin://127.0.0.1:14550)",
+    )  # fmt: skip
+    add("--json", action="store_true", help="print the summary as JSON instead of a table")
+    add("--no-pictures", action="store_true", help="draw none; gcs report does it later")
+    add("--with-parent", action="store_true", help=argparse.SUPPRESS)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the command, and return its exit status."""
+    options = FlyOptions(
+        mission=arguments.mission,
+        config=arguments.config,
+        vehicles=arguments.vehicles,
+        seed=arguments.seed,
+        run_dir=arguments.run_dir,
+        realtime=arguments.realtime,
+        speed=arguments.speed,
+        controller=arguments.controller,
+        connect=tuple(parse_url(url) for url in arguments.connect),
+    )
+    if arguments.with_parent:
+        end_with_parent()
+    mission = prepare(options)
+    # With --json standard output is the summary and nothing else.
+    console = Console(stderr=arguments.json, highlight=False)
+    with FlightProgress(console) as progress:
+        result = fly(options, mission, progress.update)
+    pictures = report(result.run_dir) if result.flown and not arguments.no_pictures else []
+    if arguments.json:
+        print(json.dumps(result.summary, indent=2))
+    else:
+        console.print(summary_table(result.summary, result.run_dir, pictures))
+    for note in fault_notes(result.run_dir):
+        LOG.warning("note: %s", note)
+    if mission.faults and options.connect:
+        LOG.warning("note: faults come from the simulator: start it with vehicle-sim --mission %s", options.mission)
+    if result.reason:
+        LOG.error("%s%s", BROKEN_OFF, result.reason)
+    return result.exit_code

@@ -1,0 +1,18 @@
+"""Exit statuses of the commands."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+
+class ExitStatus(IntEnum):
+    """What a command returns to the shell."""
+
+    DONE = 0
+    """Done, and within limits."""
+    OUTSIDE_LIMITS = 1
+    """Flown, but outside limits, not arrived, or aborted safely."""
+    UNUSABLE_INPUT = 2
+    """Nothing was started; the reason is on standard error."""
+    INTERRUPTED = 130
+    """Interrupted by Ctrl-C; vehicles landed, records closed."""
