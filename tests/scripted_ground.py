@@ -32,7 +32,7 @@ class ScriptedGround:
         self.stamps = {}
 
     def receive(self, datagram, sender, now):
-        for message in self.decoders[sender].decode(datagram):
+        for message, *_ in self.decoders[sender].decode(datagram):
             self.messages.append(message)
             if message.get_type() != "LOCAL_POSITION_NED":
                 continue

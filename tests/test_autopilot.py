@@ -42,7 +42,7 @@ class Flight:
             now = self.body.now
             if self.ground_is_there and self.body.tick % 25 == 0:
                 self.pilot.follow(self.target, now)
-                self.pilot.heard_from_ground(now)
+                self.pilot.ground_message_received(now)
             if self.body.tick % ONBOARD_EVERY == 0:
                 self.body.command = self.pilot.step(self.body.measure(), now)
             self.body.advance()

@@ -20,7 +20,10 @@ def command() -> mavlink.MAVLink_command_long_message:
 
 def test_round_trip_keeps_every_field_and_the_sender() -> None:
     sender, receiver = Codec(3, 25), Codec(255, 190)
-    [message] = receiver.decode(sender.encode(attitude()))
+    [received] = receiver.decode(sender.encode(attitude()))
+    message = received.message
+    assert (received.system, received.component, received.sequence) == (3, 25, 0)
+    assert received.is_for(system=200, component=7)
     assert message.get_type() == "ATTITUDE_QUATERNION"
     assert (message.get_srcSystem(), message.get_srcComponent()) == (3, 25)
     assert [message.time_boot_ms, message.q1, message.q2, message.q3, message.q4] == [7, 1.0, 0.25, -0.5, 0.125]
@@ -29,22 +32,23 @@ def test_round_trip_keeps_every_field_and_the_sender() -> None:
 
 def test_sequence_number_rises_and_wraps() -> None:
     codec = Codec(1, 1)
-    sequence = [codec.decode(codec.encode(attitude()))[0].get_seq() for _ in range(258)]
+    sequence = [codec.decode(codec.encode(attitude()))[0].sequence for _ in range(258)]
     assert sequence == [*range(256), 0, 1]
 
 
 def test_many_frames_in_one_datagram_keep_their_order() -> None:
     codec = Codec(1, 1)
     data = b"".join(codec.encode(attitude(stamp)) for stamp in range(20))
-    assert [message.time_boot_ms for message in Codec(2, 1).decode(data)] == list(range(20))
+    assert [message.time_boot_ms for message, *_ in Codec(2, 1).decode(data)] == list(range(20))
 
 
 def test_mavlink_1_frames_are_read() -> None:
     one = mavlink.MAVLink(None, 9, 1)
     frame = attitude().pack(one, force_mavlink1=True)
     assert frame[0] == 0xFE
-    [message] = Codec(2, 1).decode(frame + Codec(4, 1).encode(command()) + frame)[:1]
-    assert message.get_srcSystem() == 9 and message.q3 == -0.5
+    received, request, _ = Codec(2, 1).decode(frame + Codec(4, 1).encode(command()) + frame)
+    assert received.system == 9 and received.message.q3 == -0.5
+    assert request.is_for(1, 1) and not request.is_for(1, 2) and not request.is_for(2)
 
 
 def test_signed_frames_are_read() -> None:
@@ -53,7 +57,7 @@ def test_signed_frames_are_read() -> None:
     signer.signing.sign_outgoing = True
     frame = attitude().pack(signer)
     messages = Codec(2, 1).decode(frame + Codec(4, 1).encode(command()))
-    assert [message.get_type() for message in messages] == ["ATTITUDE_QUATERNION", "COMMAND_LONG"]
+    assert [message.get_type() for message, *_ in messages] == ["ATTITUDE_QUATERNION", "COMMAND_LONG"]
     assert Codec(2, 1).decode(frame[:-3]) == []
 
 
@@ -63,7 +67,7 @@ def test_garbage_bad_checksums_and_cut_frames_do_not_hide_what_follows() -> None
     bad[-1] ^= 0x40
     codec = Codec(2, 1)
     messages = codec.decode(b"\xfd\xfe garbage \xfd" + bytes(bad) + good + good[:-4] + good + b"\xfd\x00")
-    assert len(messages) == 2 and all(message.get_type() == "COMMAND_LONG" for message in messages)
+    assert len(messages) == 2 and all(message.get_type() == "COMMAND_LONG" for message, *_ in messages)
     assert codec.bad_frames >= 1 and codec.skipped_bytes > 0 and codec.decoded == 2
 
 
@@ -95,7 +99,7 @@ def test_unknown_messages_are_counted_and_skipped_whole() -> None:
     payload = hidden.ljust(60, b"\x01")
     unknown = struct.pack("<BBBBBBBHB", 0xFD, len(payload), 0, 0, 0, 1, 1, 0xFFF0, 0x7F) + payload + b"\x12\x34"
     codec = Codec(2, 1)
-    assert [m.get_type() for m in codec.decode(unknown + Codec(1, 1).encode(attitude()))] == ["ATTITUDE_QUATERNION"]
+    assert [m.get_type() for m, *_ in codec.decode(unknown + Codec(1, 1).encode(attitude()))] == ["ATTITUDE_QUATERNION"]
     assert codec.unknown_messages == 1
 
 
@@ -149,7 +153,7 @@ def test_integer_parameters_travel_byte_wise(value: int) -> None:
     kind = mavlink.MAV_PARAM_TYPE_INT32
     codec = Codec(1, 1)
     sent = mavlink.MAVLink_param_value_message(b"X", px4.parameter_to_wire(value, kind), kind, 1, 0)
-    [message] = codec.decode(codec.encode(sent))
+    [(message, *_)] = codec.decode(codec.encode(sent))
     assert px4.parameter_from_wire(message.param_value, message.param_type) == value
 
 

@@ -53,7 +53,7 @@ def test_an_answer_of_one_who_is_not_the_vehicle_does_not_count(station):
 def test_only_our_own_timesync_requests_tell_of_the_way_and_each_once(station):
     clock = station.links[0].clock
     sent = [m for m, address in station.datagrams_to_send(1.0) if address == address_of(1)]
-    [request] = [m for data in sent for m in Codec(2, 1).decode(data) if m.get_type() == "TIMESYNC"]
+    [request] = [m for data in sent for m, *_ in Codec(2, 1).decode(data) if m.get_type() == "TIMESYNC"]
     for ts1 in (0, 1, 900_000_000, -(2**63)):
         tell(station, mavlink.MAVLink_timesync_message(5, ts1), now=1.02)
     assert clock.delay == 0.0

@@ -232,7 +232,7 @@ def test_bytes_are_the_dialects():
     assert frame[7:10] == (11037).to_bytes(3, "little")
     expected = "d20400000000c03f000000c00000803e0000803d000020410700000c"
     assert frame[10:-2].hex() == expected
-    (decoded,) = Codec(255, 190).decode(frame)
+    ((decoded, *_),) = Codec(255, 190).decode(frame)
     assert decoded.to_dict() == message.to_dict()
     broken = bytearray(frame)
     broken[15] ^= 1

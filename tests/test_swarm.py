@@ -189,7 +189,7 @@ def test_vehicles_offer_themselves_to_a_ground_that_never_spoke():
     with Swarm(CONFIG, seed=1, ground_address=GROUND) as swarm:
         sent = swarm.datagrams_to_send(0.0)
         assert [(i, address) for i, _, address in sent] == [(i, GROUND) for i in (1, 2, 3, 4)]
-        messages = [Codec(255, 1).decode(datagram)[0] for _, datagram, _ in sent]
+        messages = [Codec(255, 1).decode(datagram)[0].message for _, datagram, _ in sent]
         assert [m.get_type() for m in messages] == ["HEARTBEAT"] * 4
         assert swarm.datagrams_to_send(0.0) == []
         assert swarm.next_timer() == pytest.approx(1.0)

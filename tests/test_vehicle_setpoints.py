@@ -78,13 +78,6 @@ def test_setpoints_overtaken_on_the_way_are_dropped_but_not_those_of_a_new_clock
     assert thrust_after(10, 0.35) == pytest.approx(0.35)
 
 
-def test_the_stamp_of_the_last_setpoint_is_told_to_the_driver(flying: Bench) -> None:
-    flying.send(attitude_target(stamp=4242))
-    assert flying.vehicle.setpoint_stamp_ms == 4242
-    flying.send(attitude_target(stamp=1), STRANGER)
-    assert flying.vehicle.setpoint_stamp_ms == 4242
-
-
 # Stop plans
 
 

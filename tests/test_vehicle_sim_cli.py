@@ -137,7 +137,7 @@ def test_vehicles_offer_themselves_at_the_ground_port():
             heard = {}
             while len(heard) < 3:
                 datagram, sender = ground.recvfrom(65535)
-                heard[sender] = codec.decode(datagram)[0].get_srcSystem()
+                heard[sender] = codec.decode(datagram)[0].system
             assert heard == {address: i for i, address in enumerate(vehicles, start=1)}
             running.send_signal(signal.SIGTERM)
             assert running.wait(PATIENCE) == 0

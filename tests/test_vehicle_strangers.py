@@ -22,7 +22,7 @@ from vehicle_bench import (
 from gcs.mavlink import px4
 from gcs.mavlink.codec import Codec
 from vehicle_sim.autopilot.parameter_table import SETPOINT_LOSS
-from vehicle_sim.mavlink.peers import REPLIES_MAX
+from vehicle_sim.mavlink.settings import VehicleLinkSettings
 
 
 def test_no_stranger_commands_a_controlled_vehicle(flying: Bench) -> None:
@@ -58,7 +58,7 @@ def test_who_asks_for_too_much_at_once_does_not_get_it(flying: Bench) -> None:
     for _ in range(1000):
         flying.send(mavlink.MAVLink_param_request_list_message(1, 1), STRANGER)
     flying.collect()
-    assert len(flying.got("PARAM_VALUE", STRANGER)) == REPLIES_MAX
+    assert len(flying.got("PARAM_VALUE", STRANGER)) == VehicleLinkSettings().replies_max
     assert flying.result(command(512, mavlink.MAVLINK_MSG_ID_HOME_POSITION), STRANGER) == ACCEPTED
 
 

@@ -138,12 +138,12 @@ def test_a_range_sensor_that_breaks_is_told_at_once(bench: Bench) -> None:
     assert not bench.got("SYS_STATUS")[-1].onboard_control_sensors_present & mavlink.MAV_SYS_STATUS_SENSOR_PROXIMITY
     bench.run(1.0)
     bench.inbox.clear()
-    bench.vehicle.see(RangeSample(bench.now, 10.0, ()))
+    bench.vehicle.take_scan(RangeSample(bench.now, 10.0, ()))
     bench.run(0.2)
     assert len(found := works()) > 1 and all(found)
-    bench.vehicle.see(RangeSample(bench.now, 10.0, (), works=False))
+    bench.vehicle.take_scan(RangeSample(bench.now, 10.0, (), works=False))
     bench.run(0.2)
     assert len(found := works()) > 1 and not any(found)
-    bench.vehicle.see(RangeSample(bench.now, 10.0, (), works=False))
+    bench.vehicle.take_scan(RangeSample(bench.now, 10.0, (), works=False))
     bench.run(0.2)
     assert len(works()) <= 1

@@ -13,7 +13,7 @@ from gcs.mission import Home as MissionHome
 from gcs.mission import Pole, Sphere, Wall
 from vehicle_sim.autopilot.airframe import Airframe
 from vehicle_sim.faults.interface import Passage
-from vehicle_sim.mavlink.telemetry import Home
+from vehicle_sim.mavlink.geodesy import Home
 from vehicle_sim.mavlink.vehicle import Vehicle
 from vehicle_sim.world.moving_obstacles import MovingObstacles
 from vehicle_sim.world.range_sensor import RangeSensor
@@ -221,7 +221,7 @@ class Swarm:
             )
             vehicle.relay(passage.payload_sample(vehicle.system_id, payload_sample))
             self._commands[i] = vehicle.step(passage.own_sample(vehicle.system_id, sample), now)
-            vehicle.tell(passage.told(vehicle.system_id, vehicle.autopilot.told_measurement))
+            vehicle.report(passage.told(vehicle.system_id, vehicle.autopilot.told_measurement))
             if self._truth is not None and vehicle.autopilot.changes != self._changes[i]:
                 self._record_mode(i, now)
 
@@ -241,4 +241,4 @@ class Swarm:
         obstacles = self.world.obstacles()
         for sensor, vehicle, uav in zip(self._range_sensors, self.vehicles, state.uavs, strict=True):
             scan = sensor.scan(state.time, uav.position_in_world, uav.quaternion, obstacles)
-            vehicle.see(self._passage.range_sample(vehicle.system_id, scan))
+            vehicle.take_scan(self._passage.range_sample(vehicle.system_id, scan))

@@ -9,10 +9,10 @@ from __future__ import annotations
 import math
 from collections import deque
 from statistics import median
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
-import pymavlink.dialects.v20.common as mavlink
+import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.flight.alarms import Alarm
 from gcs.flight.flight import Flight, Setpoints, StepRecord
@@ -23,6 +23,7 @@ from gcs.mavlink import px4
 from gcs.mavlink.address import Address
 from gcs.mavlink.codec import Codec, gather
 from gcs.mavlink.id_check import Identities
+from gcs.mavlink.messages import Message, Received
 from gcs.mavlink.setpoints import attitude_target, stop_plan_message
 from gcs.mavlink.telemetry import detection, measurement, setpoint_flown
 from gcs.mavlink.vehicle_link import VehicleLink
@@ -40,6 +41,14 @@ LEAD_RATE, LEAD_MAX = 0.02, 0.01  # s/s, and s at once, by which it follows a cl
 LATENCIES = 20  # control steps whose latency is remembered
 TOGETHER = 0.004  # s; vehicles that act within it act at once
 TOLERANCE = 1e-6  # s, for timers that are sums of periods
+
+_SAMPLES = (
+    mavlink.MAVLink_attitude_quaternion_message,
+    mavlink.MAVLink_local_position_ned_message,
+    mavlink.MAVLink_attitude_target_message,
+    mavlink.MAVLink_obstacle_distance_3d_message,
+)
+"""Messages of one moment, which their stamp names."""
 
 
 class Recorder(Protocol):
@@ -92,7 +101,7 @@ class GroundStation:
         self._led_at = -math.inf
         self._last_step = -math.inf
         self._stepped = False
-        self._held: list[tuple[float, int, list[Any]]] = []
+        self._held: list[tuple[float, int, list[Message]]] = []
         """Set-points that wait for those on longer ways: when they are due, the vehicle's index, the messages."""
         self._thinking: deque[float] = deque(maxlen=LATENCIES)
         self._latency = 0.0
@@ -120,19 +129,19 @@ class GroundStation:
             link.statistics.damaged += 1
         known = False
         latest = -math.inf
-        for message in messages:
-            index = self._by_address.get((sender, message.get_srcSystem()))
+        for received in messages:
+            index = self._by_address.get((sender, received.system))
             if index is None:
-                index = self._unexpected(message, sender)
+                index = self._unexpected(received, sender)
             if index is None:
                 continue
             known = True
-            if getattr(message, "target_system", 0) not in (0, GROUND_SYSTEM):
+            if not received.is_for(GROUND_SYSTEM):
                 continue  # an answer to another system behind this address
             link = self.links[index]
-            link.handle(message, now)
+            link.handle(received, now)
             if link.clock.known:
-                latest = max(latest, self._learn(message, index, latest, now))
+                latest = max(latest, self._learn(received, index, latest, now))
         if known:
             self._recorder.datagram(now, datagram)
         else:
@@ -142,7 +151,7 @@ class GroundStation:
         """All that is due at ``now`` (s), each with its address."""
         if math.isnan(self._began):
             self._began = now
-        messages: list[list[Any]] = [[] for _ in self.links]
+        messages: list[list[Message]] = [[] for _ in self.links]
         if now >= self._next_heartbeat - TOLERANCE:
             self._next_heartbeat = now + HEARTBEAT_INTERVAL
             for queue in messages:
@@ -193,11 +202,12 @@ class GroundStation:
     def _link_at(self, address: Address) -> VehicleLink | None:
         return next((link for link in self.links if link.address == address), None)
 
-    def _unexpected(self, message: Any, sender: Address) -> int | None:
+    def _unexpected(self, received: Received, sender: Address) -> int | None:
         """The index of a vehicle that offers itself for the first time with this message; None: nothing is learnt."""
-        if message.get_type() != "HEARTBEAT" or message.get_srcComponent() != px4.AUTOPILOT_COMPONENT:
+        is_heartbeat = isinstance(received.message, mavlink.MAVLink_heartbeat_message)
+        if not is_heartbeat or received.component != px4.AUTOPILOT_COMPONENT:
             return None
-        system_id = message.get_srcSystem()
+        system_id = received.system
         for i, link in enumerate(self.links):
             if link.address is None and link.system_id == system_id:
                 link.address = sender
@@ -221,17 +231,16 @@ class GroundStation:
         if self._team_offset >= self._lead:
             self._lead, self._led_at = self._team_offset, now
 
-    def _learn(self, message: Any, index: int, latest: float, now: float) -> float:
+    def _learn(self, received: Received, index: int, latest: float, now: float) -> float:
         """From a message that tells of one moment: which. ``latest`` is that of those before it in its datagram."""
-        kind = message.get_type()
-        is_detection = kind == "OBSTACLE_DISTANCE_3D"
-        if not is_detection and kind not in ("ATTITUDE_QUATERNION", "LOCAL_POSITION_NED", "ATTITUDE_TARGET"):
+        message = received.message
+        if not isinstance(message, _SAMPLES):
             return -math.inf
         link, obstacle_map = self.links[index], self._obstacle_map
         if index == 0:
             self._follow_clock(link.clock.offset + link.clock.set_back, now)
         time = _whole_ms(message.time_boot_ms * 1e-3 - link.clock.offset + self._team_offset)
-        if kind == "ATTITUDE_TARGET":
+        if isinstance(message, mavlink.MAVLink_attitude_target_message):
             told = setpoint_flown(message, link.parameters.get(px4.PARAM_THRUST_MAX, math.nan))
             if told is not None:
                 # Its stamp is that of the moment at which it began to act.
@@ -240,14 +249,14 @@ class GroundStation:
                 if confirmation is not None:
                     link.confirmed(confirmation)
             return time
-        if is_detection:
+        if isinstance(message, mavlink.MAVLink_obstacle_distance_3d_message):
             # What was seen before its clock was set has the stamp of another pose.
             if obstacle_map is not None and now - link.clock.jumped > CLOCK_SETTLED:
                 obstacle_map.detected(detection(message), index, time)
             return time
-        sample = measurement(message, self._identities.whose(index), time)
+        sample = measurement(received, self._identities.whose(index), time)
         if sample is None or not (sample.has_pose and sample.has_motion):
-            link.statistics.unusable(message.get_srcComponent())
+            link.statistics.unusable(received.component)
         if sample is not None:
             self._identities.told(sample)
             believed = self.flight.measured(sample)
@@ -255,7 +264,7 @@ class GroundStation:
                 obstacle_map.measured(believed)
         return time
 
-    def _control(self, now: float, messages: list[list[Any]]) -> None:
+    def _control(self, now: float, messages: list[list[Message]]) -> None:
         time = self.team_time(now)
         # Steps fall on whole periods of the team's time.
         self._next_control = (math.floor(time / self._period + 0.5) + 1) * self._period - self._team_offset
@@ -303,9 +312,10 @@ class GroundStation:
             else:
                 queue.extend(closing)
 
-    def _closing_the_loop(self, i: int, now: float, setpoints: Setpoints | None) -> list[Any]:
+    def _closing_the_loop(self, i: int, now: float, setpoints: Setpoints | None) -> list[Message]:
         """Stop plan and set-point of one vehicle, as far as there are any."""
-        link, messages = self.links[i], []
+        link = self.links[i]
+        messages: list[Message] = []
         # The plan before the set-point: a vehicle that gets one of the two can still stop with the others.
         if (plan := self.flight.stop_plan) is not None:
             start = plan.start - self._team_offset + link.clock.offset
@@ -322,7 +332,7 @@ def _whole_ms(time: float) -> float:
     return round(time, 3)
 
 
-def _heartbeat() -> Any:
+def _heartbeat() -> Message:
     return mavlink.MAVLink_heartbeat_message(
         mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, mavlink.MAV_STATE_ACTIVE, 3
     )

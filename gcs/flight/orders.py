@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import pymavlink.dialects.v20.common as mavlink
+import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.flight.team import Team
 from gcs.mavlink import px4

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
-import pymavlink.dialects.v20.common as mavlink
+import pymavlink.dialects.v20.ardupilotmega as mavlink
 from numpy.typing import NDArray
 
 from gcs.mavlink import px4
@@ -118,7 +118,7 @@ class Team:
     def refusal(self) -> str | None:
         """Which vehicle refused the last command, or did not answer it."""
         for link, command in self._commands:
-            if command.state is CommandState.REFUSED:
+            if command.state is CommandState.REFUSED and command.result is not None:
                 result = mavlink.enums["MAV_RESULT"].get(command.result)
                 name = result.name.removeprefix("MAV_RESULT_").lower() if result else str(command.result)
                 return f"vehicle {link.system_id} answers {command.name} with {name}{_told(link)}"

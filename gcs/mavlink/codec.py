@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Iterable
-from typing import Any
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
+
+from gcs.mavlink.messages import Message, Received, classify
 
 MESSAGE_ID_OF_NAME: dict[str, int] = {kind.msgname: number for number, kind in mavlink.mavlink_map.items()}
 
@@ -54,7 +55,7 @@ class Codec:
         """The sender's component id in every encoded frame."""
         return self._mavlink.srcComponent
 
-    def encode(self, message: Any) -> bytes:
+    def encode(self, message: Message) -> bytes:
         """One MAVLink 2 frame. The sequence number rises by one with every call.
 
         Raises ``struct.error`` or ``OverflowError`` when a field does not fit its type on the wire.
@@ -63,9 +64,9 @@ class Codec:
         self._mavlink.seq = (self._mavlink.seq + 1) & 0xFF
         return frame
 
-    def decode(self, datagram: bytes) -> list[Any]:
+    def decode(self, datagram: bytes) -> list[Received]:
         """All messages of one datagram, in order. Frames never reach across datagrams."""
-        messages: list[Any] = []
+        messages: list[Received] = []
         end = len(datagram)
         position = 0
         give_up = self.bad_frames + BAD_FRAMES_MAX
@@ -102,12 +103,12 @@ class Codec:
                     break
                 position += 1  # its length may be what is wrong
                 continue
-            messages.append(message)
+            messages.append(classify(message))
             self.decoded += 1
             position = following
         return messages
 
-    def _decode_frame(self, frame: bytes) -> Any:
+    def _decode_frame(self, frame: bytes) -> Message | None:
         try:
             return self._mavlink.decode(bytearray(frame))
         except (mavlink.MAVError, struct.error, ValueError, TypeError, IndexError):

@@ -8,7 +8,7 @@ from __future__ import annotations
 import struct
 from enum import IntEnum
 
-import pymavlink.dialects.v20.common as mavlink
+import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 AUTOPILOT_COMPONENT: int = mavlink.MAV_COMP_ID_AUTOPILOT1
 #: The payload's navigation unit. Every vehicle relays it as a component of its own.
@@ -113,7 +113,7 @@ def parameter_to_wire(value: float, parameter_type: int) -> float:
         data = struct.pack(form, int(value))
     except struct.error as error:
         raise ValueError(f"{value} does not fit parameter type {parameter_type}: {error}") from None
-    wire = struct.unpack("<f", data)[0]
+    wire: float = struct.unpack("<f", data)[0]
     if struct.pack("<f", wire) != data:
         raise ValueError(f"{value} does not survive the way through a float")
     return wire
@@ -126,4 +126,5 @@ def parameter_from_wire(wire: float, parameter_type: int) -> float | int:
     form = _INTEGER_FORMATS.get(parameter_type)
     if form is None:
         raise ValueError(f"parameter type {parameter_type} is not used over this protocol")
-    return struct.unpack(form, struct.pack("<f", wire))[0]
+    value: int = struct.unpack(form, struct.pack("<f", wire))[0]
+    return value

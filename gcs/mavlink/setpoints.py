@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
-import pymavlink.dialects.v20.common as mavlink
+import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink import px4
 
@@ -32,7 +31,7 @@ def attitude_of(direction: Sequence[float]) -> tuple[float, float, float, float]
 
 def attitude_target(
     system_id: int, boot_time: float, direction: Sequence[float], thrust: float, thrust_max: float
-) -> Any:
+) -> mavlink.MAVLink_set_attitude_target_message:
     """SET_ATTITUDE_TARGET for vehicle ``system_id`` at its ``boot_time`` (s): thrust (N) along ``direction``."""
     return mavlink.MAVLink_set_attitude_target_message(
         time_boot_ms=max(round(boot_time * 1000.0), 0) & 0xFFFFFFFF,
@@ -47,7 +46,9 @@ def attitude_target(
     )
 
 
-def stop_plan_message(boot_time: float, duration: float, control_points: Sequence[Sequence[float]]) -> Any:
+def stop_plan_message(
+    boot_time: float, duration: float, control_points: Sequence[Sequence[float]]
+) -> mavlink.MAVLink_trajectory_representation_bezier_message:
     """TRAJECTORY_REPRESENTATION_BEZIER from a vehicle's ``boot_time`` (s) on, to rest in ``duration`` (s).
 
     ``control_points``: (5, 3) of its way (m, NED); heading north.

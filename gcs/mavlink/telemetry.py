@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
-import pymavlink.dialects.v20.common as mavlink
+import pymavlink.dialects.v20.ardupilotmega as mavlink
 from numpy.typing import NDArray
 
 from gcs.mavlink import px4
+from gcs.mavlink.messages import Received
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, Position
 from idc_controller.perception.scan_assembly import Detection
 
 Array = NDArray[np.float64]
 
 
-def setpoint_flown(message: Any, thrust_max: float) -> Array | None:
+def setpoint_flown(message: mavlink.MAVLink_attitude_target_message, thrust_max: float) -> Array | None:
     """Tilt of the thrust (north, east) and thrust (N), (3,), in an ATTITUDE_TARGET; None: it tells neither.
 
     ``thrust_max`` (N) is what the vehicle means by thrust 1.
@@ -28,35 +28,34 @@ def setpoint_flown(message: Any, thrust_max: float) -> Array | None:
     return np.array(told) if math.isfinite(sum(told)) else None
 
 
-def measurement(message: Any, uav: int, time: float) -> Measurement | None:
-    """The measurement in ``message`` of UAV ``uav`` (0 .. N-1), true at ``time`` (s, team time).
+def measurement(received: Received, uav: int, time: float) -> Measurement | None:
+    """The measurement in a message of UAV ``uav`` (0 .. N-1), true at ``time`` (s, team time).
 
     None for messages that measure nothing and for values that cannot be measurements (not finite, no rotation). Where
     only the pose or only the motion cannot be one, that part is nan: an unknown rate is told so in MAVLink.
     The payload's navigation unit is a component of its own, relayed by every vehicle.
     """
-    component = message.get_srcComponent()
+    message, component = received.message, received.component
     if component == px4.PAYLOAD_UNIT_COMPONENT:
         source = PAYLOAD
     elif component == px4.AUTOPILOT_COMPONENT:
         source = uav
     else:
         return None
-    kind = message.get_type()
-    if kind == "ATTITUDE_QUATERNION":
+    if isinstance(message, mavlink.MAVLink_attitude_quaternion_message):
         quaternion = (message.q1, message.q2, message.q3, message.q4)
         rates = (message.rollspeed, message.pitchspeed, message.yawspeed)
         norm = math.sqrt(sum(c * c for c in quaternion))
         attitude = Attitude(time, source, np.array(quaternion) / (norm or 1.0), np.array(rates))
         return _sound(attitude, 0.9 < norm < 1.1, math.isfinite(sum(rates)))
-    if kind == "LOCAL_POSITION_NED":
+    if isinstance(message, mavlink.MAVLink_local_position_ned_message):
         position, velocity = (message.x, message.y, message.z), (message.vx, message.vy, message.vz)
         told = Position(time, source, np.array(position), np.array(velocity))
         return _sound(told, math.isfinite(sum(position)), math.isfinite(sum(velocity)))
     return None
 
 
-def detection(message: Any) -> Detection:
+def detection(message: mavlink.MAVLink_obstacle_distance_3d_message) -> Detection:
     """The detection in an OBSTACLE_DISTANCE_3D; one in a frame other than the body's has no point (nan)."""
     is_body = message.frame == mavlink.MAV_FRAME_BODY_FRD
     point = (message.x, message.y, message.z) if is_body else (math.nan, math.nan, math.nan)

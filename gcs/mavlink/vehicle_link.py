@@ -7,20 +7,21 @@ from collections import deque
 from dataclasses import dataclass, field
 from enum import Enum
 from statistics import median
-from typing import Any
 
-import pymavlink.dialects.v20.common as mavlink
+import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink import px4
 from gcs.mavlink.address import Address
 from gcs.mavlink.clock import RemoteClock
 from gcs.mavlink.link_statistics import LinkStatistics
+from gcs.mavlink.messages import Message, Received
 from idc_controller.estimation.setpoint_history import Confirmation
 
 DELAYS = 3  # set-points whose median is the delay: a way that gets longer must be followed at once
 CLOCK_ERROR = 0.01  # s by which a vehicle's stamps may be wrong without a fault
 STEP_BACK = 1.0  # s by which a clock may be set back so that no stamp goes back; more: the clock has begun anew
 RETRY_AFTER = 0.5  # s
+_NAVIGATION = (mavlink.MAVLink_attitude_quaternion_message, mavlink.MAVLink_local_position_ned_message)
 TRIES = 10  # with a third of all datagrams lost, one command in a thousand stays unanswered
 
 
@@ -155,42 +156,41 @@ class VehicleLink:
         """When the staler of its own attitude and position came last."""
         return min(self.attitude_heard, self.position_heard)
 
-    def handle(self, message: Any, now: float) -> None:
+    def handle(self, received: Received, now: float) -> None:
         """Learn from one message of this vehicle."""
-        kind = message.get_type()
         self.heard = now
-        in_order = False
-        if message.get_srcComponent() == px4.AUTOPILOT_COMPONENT:
-            in_order = self.statistics.message(message.get_seq(), now)
-        if kind == "ATTITUDE_QUATERNION" or kind == "LOCAL_POSITION_NED":
-            if message.get_srcComponent() == px4.PAYLOAD_UNIT_COMPONENT:
-                self.payload_heard = now
-            elif message.get_srcComponent() == px4.AUTOPILOT_COMPONENT:
-                self.clock.stamped(message.time_boot_ms * 1e-3, now, in_order)
-                if kind == "ATTITUDE_QUATERNION":
-                    self.attitude_heard = now
-                else:
-                    self.position_heard = now
-        elif kind == "HEARTBEAT":
-            if message.get_srcComponent() == px4.AUTOPILOT_COMPONENT:
-                self.base_mode, self.custom_mode = message.base_mode, message.custom_mode
-        elif kind == "COMMAND_ACK":
+        message = received.message
+        if received.component == px4.AUTOPILOT_COMPONENT:
+            self._handle_autopilot(message, self.statistics.message(received.sequence, now), now)
+        elif received.component == px4.PAYLOAD_UNIT_COMPONENT and isinstance(message, _NAVIGATION):
+            self.payload_heard = now
+        if isinstance(message, mavlink.MAVLink_command_ack_message):
             self._acknowledged(message)
-        elif kind == "PARAM_VALUE":
+        elif isinstance(message, mavlink.MAVLink_param_value_message):
             self._parameter(message)
-        elif kind == "TIMESYNC":
+        elif isinstance(message, mavlink.MAVLink_timesync_message):
             if message.tc1:
                 self.clock.answered(message.ts1, now)
-        elif kind == "EXTENDED_SYS_STATE":
+        elif isinstance(message, mavlink.MAVLink_extended_sys_state_message):
             self.landed_state = message.landed_state
-        elif kind == "SYS_STATUS":
+        elif isinstance(message, mavlink.MAVLink_sys_status_message):
             present, health = message.onboard_control_sensors_present, message.onboard_control_sensors_health
             if present & mavlink.MAV_SYS_STATUS_PREARM_CHECK:
                 self.prearm_ok = bool(health & mavlink.MAV_SYS_STATUS_PREARM_CHECK)
             if present & mavlink.MAV_SYS_STATUS_SENSOR_PROXIMITY:
                 self.sees = bool(health & mavlink.MAV_SYS_STATUS_SENSOR_PROXIMITY)
-        elif kind == "STATUSTEXT":
-            self.texts.append(str(message.text))
+        elif isinstance(message, mavlink.MAVLink_statustext_message):
+            self.texts.append(message.text)
+
+    def _handle_autopilot(self, message: Message, in_order: bool, now: float) -> None:
+        if isinstance(message, mavlink.MAVLink_attitude_quaternion_message):
+            self.clock.stamped(message.time_boot_ms * 1e-3, now, in_order)
+            self.attitude_heard = now
+        elif isinstance(message, mavlink.MAVLink_local_position_ned_message):
+            self.clock.stamped(message.time_boot_ms * 1e-3, now, in_order)
+            self.position_heard = now
+        elif isinstance(message, mavlink.MAVLink_heartbeat_message):
+            self.base_mode, self.custom_mode = message.base_mode, message.custom_mode
 
     def want_parameters(self, names: tuple[str, ...]) -> None:
         """Ask for parameters until they are known."""
@@ -204,9 +204,9 @@ class VehicleLink:
         self._commands[number] = command
         return command
 
-    def requests_to_send(self, now: float) -> list[Any]:
+    def requests_to_send(self, now: float) -> list[Message]:
         """Parameter requests and commands that are due."""
-        messages = []
+        messages: list[Message] = []
         for name, due in self._wanted.items():
             if now >= due:
                 self._wanted[name] = now + RETRY_AFTER
@@ -230,7 +230,7 @@ class VehicleLink:
             command.next_try = now + RETRY_AFTER
         return messages
 
-    def _acknowledged(self, message: Any) -> None:
+    def _acknowledged(self, message: mavlink.MAVLink_command_ack_message) -> None:
         command = self._commands.get(message.command)
         if command is None or command.state is not CommandState.PENDING:
             return
@@ -240,8 +240,8 @@ class VehicleLink:
         accepted = message.result == mavlink.MAV_RESULT_ACCEPTED
         command.state = CommandState.ACCEPTED if accepted else CommandState.REFUSED
 
-    def _parameter(self, message: Any) -> None:
-        name = message.param_id if isinstance(message.param_id, str) else message.param_id.decode(errors="replace")
+    def _parameter(self, message: mavlink.MAVLink_param_value_message) -> None:
+        name = message.param_id
         try:
             value = px4.parameter_from_wire(message.param_value, message.param_type)
         except ValueError:

@@ -9,7 +9,7 @@ import math
 from dataclasses import replace
 from typing import NamedTuple
 
-import pymavlink.dialects.v20.common as mavlink
+import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink import px4
 from vehicle_sim.autopilot.airframe import Airframe
@@ -160,8 +160,8 @@ class Autopilot:
 
     # What the ground commands
 
-    def heard_from_ground(self, now: float) -> None:
-        """Any ground is there."""
+    def ground_message_received(self, now: float) -> None:
+        """A message of any ground has come: the data link is up."""
         self._link_time = now
 
     def arm(self, now: float, force: bool = False) -> Answer:

@@ -6,7 +6,7 @@ import math
 import struct
 from dataclasses import dataclass
 
-import pymavlink.dialects.v20.common as mavlink
+import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink import px4
 from vehicle_sim.autopilot.airframe import Airframe

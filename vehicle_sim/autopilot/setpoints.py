@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-import pymavlink.dialects.v20.common as mavlink
+import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from vehicle_sim.autopilot.attitude_control import Quaternion, Three
 from vehicle_sim.world.errors import SimulationError
@@ -47,7 +47,7 @@ class AttitudeSetpoint(NamedTuple):
     time_boot_ms: int
 
 
-def read_setpoint(message: Any) -> AttitudeSetpoint:
+def read_setpoint(message: mavlink.MAVLink_set_attitude_target_message) -> AttitudeSetpoint:
     """The set-point in a SET_ATTITUDE_TARGET message. Raises :class:`SetpointError`.
 
     The type mask's bits as MAVLink defines them. Without an attitude all three rates must be given.
@@ -95,7 +95,7 @@ class StopPlan(NamedTuple):
     yaw: float
 
 
-def read_stop_plan(message: Any) -> StopPlan:
+def read_stop_plan(message: mavlink.MAVLink_trajectory_representation_bezier_message) -> StopPlan:
     """The plan in a TRAJECTORY_REPRESENTATION_BEZIER of one segment. Raises :class:`SetpointError`."""
     if message.valid_points != STOP_POINTS:
         raise SetpointError(f"a stop plan has {STOP_POINTS} control points, not {message.valid_points}")

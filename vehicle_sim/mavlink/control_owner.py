@@ -5,13 +5,10 @@ from __future__ import annotations
 from gcs.mavlink.address import Address
 from vehicle_sim.autopilot.autopilot import Answer, Autopilot, rejected_for_now
 from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
+from vehicle_sim.mavlink.settings import VehicleLinkSettings
 
 #: An address and the MAVLink system that speaks from it.
 Sender = tuple[Address, int]
-
-STREAMS_MAX = 16
-#: A set-point that is older than the last by less than this (ms) was overtaken on the way; by more: a new clock.
-REORDERING_MS = 1000
 
 
 class _Stream:
@@ -32,7 +29,8 @@ class ControlOwner:
     silent for the loss time or the vehicle is disarmed and no longer in OFFBOARD.
     """
 
-    def __init__(self, autopilot: Autopilot) -> None:
+    def __init__(self, autopilot: Autopilot, settings: VehicleLinkSettings) -> None:
+        self._settings = settings
         self._autopilot = autopilot
         self._streams: dict[Sender, _Stream] = {}
         self._owner: Sender | None = None
@@ -60,12 +58,12 @@ class ControlOwner:
         stream = self._streams.get(sender)
         if stream is None:
             self._forget_silent(now)
-            if len(self._streams) >= STREAMS_MAX:
+            if len(self._streams) >= self._settings.setpoint_streams_max:
                 return
             self._streams[sender] = _Stream(setpoint, now)
         else:
             late = (stream.last.time_boot_ms - setpoint.time_boot_ms) & 0xFFFFFFFF
-            if 0 < late < REORDERING_MS and self._is_fresh(stream.time, now):
+            if 0 < late < 1e3 * self._settings.reordering_max and self._is_fresh(stream.time, now):
                 return
             stream.last = setpoint
             stream.previous_time = stream.time

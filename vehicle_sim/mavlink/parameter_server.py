@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
-
-import pymavlink.dialects.v20.common as mavlink
+import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink import px4
 from vehicle_sim.autopilot.parameter_table import Parameter, ParameterRefusalError, ParameterTable
-from vehicle_sim.mavlink.control_owner import ControlOwner, Sender
-from vehicle_sim.mavlink.peers import Peer
+from vehicle_sim.mavlink.control_owner import ControlOwner
+from vehicle_sim.mavlink.dispatcher import Dispatcher, Request
 
 
 class ParameterServer:
@@ -19,40 +16,41 @@ class ParameterServer:
     def __init__(self, table: ParameterTable, owner: ControlOwner) -> None:
         self._table = table
         self._owner = owner
-        self.handlers: dict[int, Callable[[Any, Sender, Peer, float], None]] = {
-            mavlink.MAVLINK_MSG_ID_PARAM_REQUEST_READ: self._on_read,
-            mavlink.MAVLINK_MSG_ID_PARAM_REQUEST_LIST: self._on_list,
-            mavlink.MAVLINK_MSG_ID_PARAM_SET: self._on_set,
-        }
 
-    def _on_read(self, message: Any, sender: Sender, peer: Peer, now: float) -> None:
+    def register(self, dispatcher: Dispatcher) -> None:
+        """Take the messages of this service."""
+        dispatcher.register(mavlink.MAVLink_param_request_read_message, self._on_read)
+        dispatcher.register(mavlink.MAVLink_param_request_list_message, self._on_list)
+        dispatcher.register(mavlink.MAVLink_param_set_message, self._on_set)
+
+    def _on_read(self, message: mavlink.MAVLink_param_request_read_message, request: Request) -> None:
         if message.param_index >= 0:
             parameter = self._table.by_index(message.param_index)
         else:
             parameter = self._table.by_name(message.param_id)
         if parameter is not None:
-            peer.reply(self._value(parameter))
+            request.peer.reply(self._value(parameter))
 
-    def _on_list(self, message: Any, sender: Sender, peer: Peer, now: float) -> None:
+    def _on_list(self, message: mavlink.MAVLink_param_request_list_message, request: Request) -> None:
         for index in range(len(self._table)):
             parameter = self._table.by_index(index)
             if parameter is not None:
-                peer.reply(self._value(parameter))
+                request.peer.reply(self._value(parameter))
 
-    def _on_set(self, message: Any, sender: Sender, peer: Peer, now: float) -> None:
+    def _on_set(self, message: mavlink.MAVLink_param_set_message, request: Request) -> None:
         name = message.param_id
-        if self._owner.is_stranger(sender, now):
-            peer.tell(f"{name} denied: another ground is in control")
+        if self._owner.is_stranger(request.sender, request.now):
+            request.peer.send_statustext(f"{name} denied: another ground is in control")
         else:
             try:
                 self._table.set_from_wire(name, message.param_value, message.param_type)
             except ParameterRefusalError as error:
-                peer.tell(str(error))
+                request.peer.send_statustext(str(error))
         parameter = self._table.by_name(name)
         if parameter is not None:
-            peer.reply(self._value(parameter))
+            request.peer.reply(self._value(parameter))
 
-    def _value(self, parameter: Parameter) -> Any:
+    def _value(self, parameter: Parameter) -> mavlink.MAVLink_param_value_message:
         return mavlink.MAVLink_param_value_message(
             parameter.name.encode(),
             px4.parameter_to_wire(parameter.value, parameter.type),

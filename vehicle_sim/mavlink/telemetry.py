@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Callable, Iterator
 
-import pymap3d
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink import px4
+from gcs.mavlink.messages import Message
 from vehicle_sim.autopilot.attitude_control import LEVEL
 from vehicle_sim.autopilot.autopilot import Autopilot
+from vehicle_sim.mavlink.geodesy import Home, clamp, euler, in_body, is_finite
 from vehicle_sim.world.range_sensor import MIN_DISTANCE, RangeSample
 from vehicle_sim.world.sensors import Measurement, Told
 
@@ -37,14 +36,8 @@ _VERSION = 0x00010000  # 0.1.0, a development version
 _CELLS = [4000, 4000, 4000, 4000, 65535, 65535, 65535, 65535, 65535, 65535]
 _NAN = math.nan
 
-
-@dataclass(frozen=True)
-class Home:
-    """The origin of the common north-east-down frame, on the ground: degrees (WGS 84), metres above the ellipsoid."""
-
-    latitude_deg: float = 47.397742
-    longitude_deg: float = 8.545594
-    altitude: float = 488.0
+Built = tuple[Message, ...]
+_OWN = px4.AUTOPILOT_COMPONENT
 
 
 class Telemetry:
@@ -59,48 +52,41 @@ class Telemetry:
         self._home = home
         self._boot_time = boot_time
         self._clock = clock
-        self.told: Told | None = None
+        self.reported: Told | None = None
+        """What is sent of the vehicle's own state instead of its estimate; None: the estimate."""
         self.payload: Measurement | None = None
         self.scan: RangeSample | None = None
-        self._told_scan: tuple[RangeSample | None, tuple[Any, ...] | None] = (None, None)
-        self._latitude_e7 = round(home.latitude_deg * 1e7)
-        self._longitude_e7 = round(home.longitude_deg * 1e7)
-        self._altitude_mm = round(home.altitude * 1e3)
-        self._builders: dict[int, Callable[[float], Any]] = {
-            mavlink.MAVLINK_MSG_ID_HEARTBEAT: self._heartbeat,
-            mavlink.MAVLINK_MSG_ID_SYS_STATUS: self._sys_status,
-            mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE: self._extended_sys_state,
-            mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION: self._attitude_quaternion,
-            mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED: self._local_position,
-            mavlink.MAVLINK_MSG_ID_ATTITUDE: self._attitude,
-            mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT: self._global_position,
-            mavlink.MAVLINK_MSG_ID_GPS_RAW_INT: self._gps_raw,
-            mavlink.MAVLINK_MSG_ID_HOME_POSITION: self._home_position,
-            mavlink.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN: self._global_origin,
-            mavlink.MAVLINK_MSG_ID_BATTERY_STATUS: self._battery,
-            mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET: self._attitude_target,
-            mavlink.MAVLINK_MSG_ID_VFR_HUD: self._vfr_hud,
-            mavlink.MAVLINK_MSG_ID_ODOMETRY: self._odometry,
-            mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION: self._autopilot_version,
-            mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D: self._obstacles,
-        }
-        self._payload_builders: dict[int, Callable[[float], Any]] = {
-            mavlink.MAVLINK_MSG_ID_HEARTBEAT: self._payload_heartbeat,
-            mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION: self._payload_attitude,
-            mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED: self._payload_position,
+        self._scan_messages: tuple[RangeSample | None, Built] = (None, ())
+        unit = px4.PAYLOAD_UNIT_COMPONENT
+        self._builders: dict[tuple[int, int], Callable[[float], Built]] = {
+            (_OWN, mavlink.MAVLINK_MSG_ID_HEARTBEAT): self._heartbeat,
+            (_OWN, mavlink.MAVLINK_MSG_ID_SYS_STATUS): self._sys_status,
+            (_OWN, mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE): self._extended_sys_state,
+            (_OWN, mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION): self._attitude_quaternion,
+            (_OWN, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED): self._local_position,
+            (_OWN, mavlink.MAVLINK_MSG_ID_ATTITUDE): self._attitude,
+            (_OWN, mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT): self._global_position,
+            (_OWN, mavlink.MAVLINK_MSG_ID_GPS_RAW_INT): self._gps_raw,
+            (_OWN, mavlink.MAVLINK_MSG_ID_HOME_POSITION): self._home_position,
+            (_OWN, mavlink.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN): self._global_origin,
+            (_OWN, mavlink.MAVLINK_MSG_ID_BATTERY_STATUS): self._battery,
+            (_OWN, mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET): self._attitude_target,
+            (_OWN, mavlink.MAVLINK_MSG_ID_VFR_HUD): self._vfr_hud,
+            (_OWN, mavlink.MAVLINK_MSG_ID_ODOMETRY): self._odometry,
+            (_OWN, mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION): self._autopilot_version,
+            (_OWN, mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D): self._obstacles,
+            (unit, mavlink.MAVLINK_MSG_ID_HEARTBEAT): self._payload_heartbeat,
+            (unit, mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION): self._payload_attitude,
+            (unit, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED): self._payload_position,
         }
 
     def knows(self, component: int, message_id: int) -> bool:
         """Whether a component of this vehicle has such a message."""
-        return message_id in (self._builders if component == px4.AUTOPILOT_COMPONENT else self._payload_builders)
+        return (component, message_id) in self._builders
 
-    def build(self, component: int, message_id: int, now: float) -> Any:
-        """A message that :meth:`knows` has said yes to; None while there is nothing to tell.
-
-        A tuple of messages for what one message cannot hold: the points of a scan.
-        """
-        builders = self._builders if component == px4.AUTOPILOT_COMPONENT else self._payload_builders
-        return builders[message_id](now)
+    def build(self, component: int, message_id: int, now: float) -> Built:
+        """Return the messages of a kind that :meth:`knows`: none while there is no data, several for a scan."""
+        return self._builders[component, message_id](now)
 
     def time_boot_ms(self, time: float) -> int:
         """The stamp of a time (s)."""
@@ -108,7 +94,7 @@ class Telemetry:
 
     # The autopilot
 
-    def _heartbeat(self, now: float) -> Any:
+    def _heartbeat(self, now: float) -> Built:
         autopilot = self._autopilot
         base_mode = mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED | mavlink.MAV_MODE_FLAG_STABILIZE_ENABLED
         main, _ = px4.decode_custom_mode(autopilot.mode)
@@ -125,11 +111,13 @@ class Telemetry:
             state = mavlink.MAV_STATE_BOOT
         if autopilot.armed:
             base_mode |= mavlink.MAV_MODE_FLAG_SAFETY_ARMED
-        return mavlink.MAVLink_heartbeat_message(
-            mavlink.MAV_TYPE_QUADROTOR, mavlink.MAV_AUTOPILOT_PX4, base_mode, autopilot.mode, state, 3
+        return (
+            mavlink.MAVLink_heartbeat_message(
+                mavlink.MAV_TYPE_QUADROTOR, mavlink.MAV_AUTOPILOT_PX4, base_mode, autopilot.mode, state, 3
+            ),
         )
 
-    def _sys_status(self, now: float) -> Any:
+    def _sys_status(self, now: float) -> Built:
         present = _SENSORS | _ALWAYS | _PREARM
         health = _ALWAYS
         if self.scan is not None:
@@ -140,206 +128,182 @@ class Telemetry:
             health |= _SENSORS
         if self._autopilot.arming_problem(now) is None:
             health |= _PREARM
-        return mavlink.MAVLink_sys_status_message(present, present, health, 100, 16000, -1, 100, 0, 0, 0, 0, 0, 0)
+        return (mavlink.MAVLink_sys_status_message(present, present, health, 100, 16000, -1, 100, 0, 0, 0, 0, 0, 0),)
 
-    def _extended_sys_state(self, now: float) -> Any:
-        return mavlink.MAVLink_extended_sys_state_message(
-            mavlink.MAV_VTOL_STATE_UNDEFINED, self._autopilot.landed_state
+    def _extended_sys_state(self, now: float) -> Built:
+        return (
+            mavlink.MAVLink_extended_sys_state_message(mavlink.MAV_VTOL_STATE_UNDEFINED, self._autopilot.landed_state),
         )
 
-    def _attitude_quaternion(self, now: float) -> Any:
+    def _attitude_quaternion(self, now: float) -> Built:
         return self._attitude_of(self._own_attitude)
 
-    def _local_position(self, now: float) -> Any:
+    def _local_position(self, now: float) -> Built:
         return self._position_of(self._own_position)
 
-    def _attitude(self, now: float) -> Any:
+    def _attitude(self, now: float) -> Built:
         measured = self._own_attitude
-        if measured is None or not _is_finite(measured):
-            return None
-        roll, pitch, yaw = _euler(measured)
-        return mavlink.MAVLink_attitude_message(self.time_boot_ms(measured.time), roll, pitch, yaw, *measured.rates)
+        if measured is None or not is_finite(measured):
+            return ()
+        roll, pitch, yaw = euler(measured)
+        return (mavlink.MAVLink_attitude_message(self.time_boot_ms(measured.time), roll, pitch, yaw, *measured.rates),)
 
-    def _global_position(self, now: float) -> Any:
-        measured = self._own_whole
+    def _global_position(self, now: float) -> Built:
+        measured = self._own_state
         if measured is None:
-            return None
-        latitude, longitude, altitude = self._geodetic(measured)
-        v_x, v_y, v_z = (_clamp(100.0 * v, 16) for v in measured.velocity)
-        heading = round(math.degrees(_euler(measured)[2]) * 100.0) % 36000
-        return mavlink.MAVLink_global_position_int_message(
-            self.time_boot_ms(measured.time), latitude, longitude, altitude,
-            _clamp(-1e3 * measured.position[2], 32), v_x, v_y, v_z, heading,
+            return ()
+        latitude, longitude, altitude = self._home.geodetic(measured)
+        v_x, v_y, v_z = (clamp(100.0 * v, 16) for v in measured.velocity)
+        heading = round(math.degrees(euler(measured)[2]) * 100.0) % 36000
+        return (
+            mavlink.MAVLink_global_position_int_message(
+                self.time_boot_ms(measured.time), latitude, longitude, altitude,
+                clamp(-1e3 * measured.position[2], 32), v_x, v_y, v_z, heading,
+            ),
         )  # fmt: skip
 
-    def _gps_raw(self, now: float) -> Any:
-        measured = self._own_whole
+    def _gps_raw(self, now: float) -> Built:
+        measured = self._own_state
         if measured is None:
-            return None
-        latitude, longitude, altitude = self._geodetic(measured)
+            return ()
+        latitude, longitude, altitude = self._home.geodetic(measured)
         v_n, v_e, _ = measured.velocity
         speed = min(round(100.0 * math.hypot(v_n, v_e)), 65534)
         course = round(math.degrees(math.atan2(v_e, v_n)) * 100.0) % 36000
-        return mavlink.MAVLink_gps_raw_int_message(
-            self.time_boot_ms(measured.time) * 1000, mavlink.GPS_FIX_TYPE_RTK_FIXED,
-            latitude, longitude, altitude, 50, 50, speed, course, 20,
+        return (
+            mavlink.MAVLink_gps_raw_int_message(
+                self.time_boot_ms(measured.time) * 1000, mavlink.GPS_FIX_TYPE_RTK_FIXED,
+                latitude, longitude, altitude, 50, 50, speed, course, 20,
+            ),
         )  # fmt: skip
 
-    def _home_position(self, now: float) -> Any:
-        return mavlink.MAVLink_home_position_message(
-            self._latitude_e7, self._longitude_e7, self._altitude_mm, 0.0, 0.0, 0.0,
-            list(LEVEL), _NAN, _NAN, _NAN, self.time_boot_ms(now) * 1000,
+    def _home_position(self, now: float) -> Built:
+        return (
+            mavlink.MAVLink_home_position_message(
+                *self._home.on_the_wire, 0.0, 0.0, 0.0,
+                list(LEVEL), _NAN, _NAN, _NAN, self.time_boot_ms(now) * 1000,
+            ),
         )  # fmt: skip
 
-    def _global_origin(self, now: float) -> Any:
-        return mavlink.MAVLink_gps_global_origin_message(
-            self._latitude_e7, self._longitude_e7, self._altitude_mm, self.time_boot_ms(now) * 1000
+    def _global_origin(self, now: float) -> Built:
+        return (mavlink.MAVLink_gps_global_origin_message(*self._home.on_the_wire, self.time_boot_ms(now) * 1000),)
+
+    def _battery(self, now: float) -> Built:
+        return (
+            mavlink.MAVLink_battery_status_message(
+                0, mavlink.MAV_BATTERY_FUNCTION_ALL, mavlink.MAV_BATTERY_TYPE_LIPO, 32767, _CELLS, -1, -1, -1, 100
+            ),
         )
 
-    def _battery(self, now: float) -> Any:
-        return mavlink.MAVLink_battery_status_message(
-            0, mavlink.MAV_BATTERY_FUNCTION_ALL, mavlink.MAV_BATTERY_TYPE_LIPO, 32767, _CELLS, -1, -1, -1, 100
-        )
-
-    def _attitude_target(self, now: float) -> Any:
+    def _attitude_target(self, now: float) -> Built:
         """Stamped with the moment at which it began to act, as PX4 does it."""
         attitude, rates, thrust = self._autopilot.attitude_target
         since = max(self._autopilot.target_since, self._boot_time)
         mask = 0 if attitude is not None else mavlink.ATTITUDE_TARGET_TYPEMASK_ATTITUDE_IGNORE
-        return mavlink.MAVLink_attitude_target_message(
-            self.time_boot_ms(since), mask, list(attitude or LEVEL), *rates, thrust
+        return (
+            mavlink.MAVLink_attitude_target_message(
+                self.time_boot_ms(since), mask, list(attitude or LEVEL), *rates, thrust
+            ),
         )
 
-    def _vfr_hud(self, now: float) -> Any:
-        measured = self._own_whole
+    def _vfr_hud(self, now: float) -> Built:
+        measured = self._own_state
         if measured is None:
-            return None
+            return ()
         v_n, v_e, v_d = measured.velocity
         speed = math.hypot(v_n, v_e)
-        heading = round(math.degrees(_euler(measured)[2])) % 360
+        heading = round(math.degrees(euler(measured)[2])) % 360
         throttle = round(100.0 * self._autopilot.attitude_target[2])
         altitude = self._home.altitude - measured.position[2]
-        return mavlink.MAVLink_vfr_hud_message(speed, speed, heading, throttle, altitude, -v_d)
+        return (mavlink.MAVLink_vfr_hud_message(speed, speed, heading, throttle, altitude, -v_d),)
 
-    def _odometry(self, now: float) -> Any:
-        measured = self._own_whole
+    def _odometry(self, now: float) -> Built:
+        measured = self._own_state
         if measured is None:
-            return None
+            return ()
         unknown = [_NAN] + [0.0] * 20
-        return mavlink.MAVLink_odometry_message(
-            self.time_boot_ms(measured.time) * 1000, mavlink.MAV_FRAME_LOCAL_NED, mavlink.MAV_FRAME_BODY_FRD,
-            *measured.position, list(measured.attitude), *_in_body(measured), *measured.rates, unknown, unknown,
+        return (
+            mavlink.MAVLink_odometry_message(
+                self.time_boot_ms(measured.time) * 1000, mavlink.MAV_FRAME_LOCAL_NED, mavlink.MAV_FRAME_BODY_FRD,
+                *measured.position, list(measured.attitude), *in_body(measured), *measured.rates, unknown, unknown,
+            ),
         )  # fmt: skip
 
-    def _autopilot_version(self, now: float) -> Any:
-        return mavlink.MAVLink_autopilot_version_message(
-            _CAPABILITIES, _VERSION, 0, 0, 0, [0] * 8, [0] * 8, [0] * 8, 0, 0, self._system_id
+    def _autopilot_version(self, now: float) -> Built:
+        return (
+            mavlink.MAVLink_autopilot_version_message(
+                _CAPABILITIES, _VERSION, 0, 0, 0, [0] * 8, [0] * 8, [0] * 8, 0, 0, self._system_id
+            ),
         )
 
-    def _obstacles(self, now: float) -> tuple[Any, ...] | None:
-        """The points of the last scan, built once for all who are told."""
-        scan, messages = self._told_scan
-        if self.scan is not scan:
-            scan = self.scan
-            messages = None
-            if scan is not None and scan.detections:
-                stamp = self.time_boot_ms(scan.time)
-                messages = tuple(
-                    mavlink.MAVLink_obstacle_distance_3d_message(
-                        stamp, mavlink.MAV_DISTANCE_SENSOR_LASER, mavlink.MAV_FRAME_BODY_FRD, detection.obstacle_id,
-                        *detection.position_in_body, MIN_DISTANCE, scan.reach,
-                    )
-                    for detection in scan.detections
-                )  # fmt: skip
-            self._told_scan = scan, messages
-        return messages
+    def _obstacles(self, now: float) -> Built:
+        """The points of the last scan, built once for all peers."""
+        scan = self.scan
+        if scan is not self._scan_messages[0]:
+            self._scan_messages = scan, () if scan is None else tuple(self._detections(scan))
+        return self._scan_messages[1]
+
+    def _detections(self, scan: RangeSample) -> Iterator[Message]:
+        stamp = self.time_boot_ms(scan.time)
+        for detection in scan.detections:
+            yield mavlink.MAVLink_obstacle_distance_3d_message(
+                stamp, mavlink.MAV_DISTANCE_SENSOR_LASER, mavlink.MAV_FRAME_BODY_FRD, detection.obstacle_id,
+                *detection.position_in_body, MIN_DISTANCE, scan.reach,
+            )  # fmt: skip
 
     @property
     def _own_attitude(self) -> Measurement | None:
-        """Whose attitude and rates are told."""
-        return self._autopilot.told_measurement if self.told is None else self.told.attitude
+        """The sample whose attitude and rates are sent."""
+        return self._autopilot.told_measurement if self.reported is None else self.reported.attitude
 
     @property
     def _own_position(self) -> Measurement | None:
-        """Whose position and velocity are told."""
-        return self._autopilot.told_measurement if self.told is None else self.told.position
+        """The sample whose position and velocity are sent."""
+        return self._autopilot.told_measurement if self.reported is None else self.reported.position
 
     @property
-    def _own_whole(self) -> Measurement | None:
-        """Both in one, for messages that need both; None without either, and for what whole numbers cannot tell."""
+    def _own_state(self) -> Measurement | None:
+        """Both in one, for messages that need both; None without either, and for what integers cannot hold."""
         attitude, position = self._own_attitude, self._own_position
         if attitude is None or position is None:
             return None
         if attitude is not position:
             position = position._replace(attitude=attitude.attitude, rates=attitude.rates)
-        return position if _is_finite(position) else None
+        return position if is_finite(position) else None
 
     # The payload's navigation unit
 
-    def _payload_heartbeat(self, now: float) -> Any:
+    def _payload_heartbeat(self, now: float) -> Built:
         if self.payload is None:
-            return None
-        return mavlink.MAVLink_heartbeat_message(
-            mavlink.MAV_TYPE_ONBOARD_CONTROLLER, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, mavlink.MAV_STATE_ACTIVE, 3
+            return ()
+        return (
+            mavlink.MAVLink_heartbeat_message(
+                mavlink.MAV_TYPE_ONBOARD_CONTROLLER, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, mavlink.MAV_STATE_ACTIVE, 3
+            ),
         )
 
-    def _payload_attitude(self, now: float) -> Any:
+    def _payload_attitude(self, now: float) -> Built:
         return self._attitude_of(self.payload)
 
-    def _payload_position(self, now: float) -> Any:
+    def _payload_position(self, now: float) -> Built:
         return self._position_of(self.payload)
 
     # Shared
 
-    def _attitude_of(self, measured: Measurement | None) -> Any:
+    def _attitude_of(self, measured: Measurement | None) -> Built:
         if measured is None:
-            return None
-        return mavlink.MAVLink_attitude_quaternion_message(
-            self.time_boot_ms(measured.time), *measured.attitude, *measured.rates
+            return ()
+        return (
+            mavlink.MAVLink_attitude_quaternion_message(
+                self.time_boot_ms(measured.time), *measured.attitude, *measured.rates
+            ),
         )
 
-    def _position_of(self, measured: Measurement | None) -> Any:
+    def _position_of(self, measured: Measurement | None) -> Built:
         if measured is None:
-            return None
-        return mavlink.MAVLink_local_position_ned_message(
-            self.time_boot_ms(measured.time), *measured.position, *measured.velocity
+            return ()
+        return (
+            mavlink.MAVLink_local_position_ned_message(
+                self.time_boot_ms(measured.time), *measured.position, *measured.velocity
+            ),
         )
-
-    def _geodetic(self, measured: Measurement) -> tuple[int, int, int]:
-        """Degrees in 1e-7 and millimetres, as GLOBAL_POSITION_INT has them."""
-        home = self._home
-        latitude, longitude, altitude = pymap3d.ned2geodetic(
-            *measured.position, home.latitude_deg, home.longitude_deg, home.altitude
-        )
-        return _clamp(latitude * 1e7, 32), _clamp(longitude * 1e7, 32), _clamp(altitude * 1e3, 32)
-
-
-def _is_finite(measured: Measurement) -> bool:
-    return math.isfinite(sum(measured.attitude) + sum(measured.rates) + sum(measured.position) + sum(measured.velocity))
-
-
-def _clamp(value: float, bits: int) -> int:
-    """To the nearest integer of so many bits: a vehicle that is far astray must not stop its own telemetry."""
-    limit = (1 << (bits - 1)) - 1
-    return round(min(max(value, -limit), limit))
-
-
-def _euler(measured: Measurement) -> tuple[float, float, float]:
-    w, x, y, z = measured.attitude
-    return (
-        math.atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y)),
-        math.asin(min(max(2.0 * (w * y - z * x), -1.0), 1.0)),
-        math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)),
-    )
-
-
-def _in_body(measured: Measurement) -> tuple[float, float, float]:
-    """The velocity in the body frame (m/s)."""
-    w, x, y, z = measured.attitude
-    v_x, v_y, v_z = measured.velocity
-    t_x, t_y, t_z = 2.0 * (v_y * z - v_z * y), 2.0 * (v_z * x - v_x * z), 2.0 * (v_x * y - v_y * x)
-    return (
-        v_x + w * t_x + t_y * z - t_z * y,
-        v_y + w * t_y + t_z * x - t_x * z,
-        v_z + w * t_z + t_x * y - t_y * x,
-    )

@@ -1,0 +1,47 @@
+"""MAVLink messages as types: the classes that pymavlink generates, each with who sent it and to whom.
+
+A message is told by its class (``isinstance``), so that its fields have types. The classes are those of ArduPilot's
+dialect, which holds the common one; a class of another dialect is another class.
+"""
+
+from __future__ import annotations
+
+from operator import attrgetter
+from typing import NamedTuple
+
+import pymavlink.dialects.v20.ardupilotmega as mavlink
+
+Message = mavlink.MAVLink_message
+
+BROADCAST = 0
+"""System or component id that addresses everybody."""
+
+_target_system, _target_component = attrgetter("target_system"), attrgetter("target_component")
+_TO_SYSTEMS = frozenset(kind for kind in mavlink.mavlink_map.values() if "target_system" in kind.fieldnames)
+_TO_COMPONENTS = frozenset(kind for kind in _TO_SYSTEMS if "target_component" in kind.fieldnames)
+
+
+class Received(NamedTuple):
+    """A message that has come in, with its sender and its addressee (:data:`BROADCAST` where it names none)."""
+
+    message: Message
+    system: int
+    component: int
+    sequence: int
+    target_system: int = BROADCAST
+    target_component: int = BROADCAST
+
+    def is_for(self, system: int, component: int | None = None) -> bool:
+        """Whether it is addressed to a component (None: to any) of a system, or to everybody."""
+        return self.target_system in (BROADCAST, system) and (
+            component is None or self.target_component in (BROADCAST, component)
+        )
+
+
+def classify(message: Message) -> Received:
+    """Return a decoded message with sender, sequence number and addressee."""
+    header, kind = message.get_header(), type(message)
+    if kind not in _TO_SYSTEMS:
+        return Received(message, header.srcSystem, header.srcComponent, header.seq)
+    component = _target_component(message) if kind in _TO_COMPONENTS else BROADCAST
+    return Received(message, header.srcSystem, header.srcComponent, header.seq, _target_system(message), component)

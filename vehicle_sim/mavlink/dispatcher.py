@@ -1,0 +1,42 @@
+"""Which service of a vehicle handles which message."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple, TypeVar
+
+from gcs.mavlink.messages import Message
+from vehicle_sim.mavlink.control_owner import Sender
+from vehicle_sim.mavlink.peer import Peer
+
+M = TypeVar("M", bound=Message)
+
+
+class Request(NamedTuple):
+    """Where and when (s) a message came from; answers go to ``peer``, addressed to sender and ``component``."""
+
+    sender: Sender
+    component: int
+    peer: Peer
+    now: float
+
+    @property
+    def system(self) -> int:
+        """The sender's system id."""
+        return self.sender[1]
+
+
+class Dispatcher:
+    """The services of a vehicle by the class of the messages they handle."""
+
+    def __init__(self) -> None:
+        self._handlers: dict[type[Message], Callable[..., None]] = {}
+
+    def register(self, kind: type[M], handler: Callable[[M, Request], None]) -> None:
+        """Hand every message of a class to ``handler``."""
+        self._handlers[kind] = handler
+
+    def dispatch(self, message: Message, request: Request) -> None:
+        """Hand a message to its service; one without a service is ignored."""
+        if (handler := self._handlers.get(type(message))) is not None:
+            handler(message, request)

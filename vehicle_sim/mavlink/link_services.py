@@ -1,0 +1,32 @@
+"""TIMESYNC and PING: what a vehicle answers so that others can measure its clock and the link to it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pymavlink.dialects.v20.ardupilotmega as mavlink
+
+from vehicle_sim.mavlink.dispatcher import Dispatcher, Request
+
+
+class LinkServices:
+    """Answers requests of both protocols; answers of others are ignored."""
+
+    def __init__(self, clock: Callable[[float], float]) -> None:
+        """``clock`` is what the vehicle's clock shows at a time."""
+        self._clock = clock
+
+    def register(self, dispatcher: Dispatcher) -> None:
+        """Take the messages of these services."""
+        dispatcher.register(mavlink.MAVLink_timesync_message, self._on_timesync)
+        dispatcher.register(mavlink.MAVLink_ping_message, self._on_ping)
+
+    def _on_timesync(self, message: mavlink.MAVLink_timesync_message, request: Request) -> None:
+        if message.tc1 == 0:  # a request
+            request.peer.reply(mavlink.MAVLink_timesync_message(round(self._clock(request.now) * 1e9), message.ts1))
+
+    def _on_ping(self, message: mavlink.MAVLink_ping_message, request: Request) -> None:
+        if message.target_system == 0:  # a request
+            request.peer.reply(
+                mavlink.MAVLink_ping_message(message.time_usec, message.seq, request.system, request.component)
+            )

@@ -1,0 +1,163 @@
+"""One peer of a vehicle: what it is sent, and when."""
+
+from __future__ import annotations
+
+import math
+
+import pymavlink.dialects.v20.ardupilotmega as mavlink
+
+from gcs.mavlink import px4
+from gcs.mavlink.address import Address
+from gcs.mavlink.codec import Codec, gather
+from gcs.mavlink.messages import Message
+from vehicle_sim.mavlink.settings import StreamIntervals, VehicleLinkSettings
+from vehicle_sim.mavlink.telemetry import Telemetry
+
+TIME_TOLERANCE = 1e-6  # s: sums of steps are not exact
+
+_TEXT_LIMIT = 50
+_AUTOPILOT, _PAYLOAD = px4.AUTOPILOT_COMPONENT, px4.PAYLOAD_UNIT_COMPONENT
+_HEARTBEAT = mavlink.MAVLINK_MSG_ID_HEARTBEAT
+
+#: Messages of one sample: never sent twice for the same one.
+_OF_ONE_SAMPLE = (
+    mavlink.MAVLink_attitude_quaternion_message,
+    mavlink.MAVLink_local_position_ned_message,
+    mavlink.MAVLink_obstacle_distance_3d_message,
+)
+
+
+def default_intervals(intervals: StreamIntervals, telemetry_interval: float) -> dict[tuple[int, int], float]:
+    """Return the intervals (s) of all streams by component and message, in the order in which they are sent.
+
+    ``telemetry_interval`` of position and attitude, the vehicle's and the payload's. With every sample goes the
+    set-point that was being flown, because set-points may be lost. A scan is sent as soon as there is one, behind the
+    attitude and position at which it was made.
+    """
+    return {
+        (_AUTOPILOT, _HEARTBEAT): intervals.heartbeat,
+        (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_SYS_STATUS): intervals.sys_status,
+        (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE): intervals.extended_sys_state,
+        (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_ATTITUDE): intervals.attitude,
+        (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT): intervals.global_position_int,
+        (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_GPS_RAW_INT): intervals.gps_raw_int,
+        (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_HOME_POSITION): intervals.home_position,
+        (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_BATTERY_STATUS): intervals.battery_status,
+        (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_VFR_HUD): intervals.vfr_hud,
+        (_PAYLOAD, _HEARTBEAT): intervals.heartbeat,
+        (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION): telemetry_interval,
+        (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED): telemetry_interval,
+        (_PAYLOAD, mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION): telemetry_interval,
+        (_PAYLOAD, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED): telemetry_interval,
+        (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET): telemetry_interval,
+        (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D): telemetry_interval,
+    }
+
+
+class Stream:
+    """One message that is sent again and again, at whole multiples of its interval, so that streams coincide."""
+
+    __slots__ = ("component", "due", "interval", "last_stamp", "message_id", "repeats")
+
+    def __init__(self, component: int, message_id: int, interval: float) -> None:
+        """``interval`` in s; due at once."""
+        self.component = component
+        self.message_id = message_id
+        self.interval = interval
+        self.due = -math.inf
+        self.repeats = 0
+        self.last_stamp: int | None = None
+
+    def advance(self, now: float, repeat_interval: float) -> None:
+        """To the next multiple of the interval; sooner while repetitions are due, ``repeat_interval`` (s) apart."""
+        self.due = (math.floor((now + TIME_TOLERANCE) / self.interval) + 1) * self.interval
+        if self.repeats:
+            self.repeats -= 1
+            self.due = min(self.due, now + repeat_interval)
+
+    def is_new(self, message: Message) -> bool:
+        """Whether a message is not of the sample that was sent last."""
+        if not isinstance(message, _OF_ONE_SAMPLE):
+            return True
+        stamp, self.last_stamp = self.last_stamp, message.time_boot_ms
+        return stamp != message.time_boot_ms
+
+
+class Peer:
+    """One address, with its own streams and its own sequence numbers, so that gaps show losses on its link only."""
+
+    def __init__(
+        self, address: Address, system_id: int, intervals: dict[tuple[int, int], float], settings: VehicleLinkSettings
+    ) -> None:
+        """``intervals`` as :func:`default_intervals` gives them."""
+        self.address = address
+        self.heard_at = -math.inf
+        self.next_due = -math.inf
+        self._settings = settings
+        self._codecs = {component: Codec(system_id, component) for component in (_AUTOPILOT, _PAYLOAD)}
+        self._replies: list[bytes] = []
+        self._defaults = intervals
+        self._streams: list[Stream] = []
+
+    @property
+    def is_streaming(self) -> bool:
+        """Whether it gets everything; one that never answered gets heartbeats only."""
+        return len(self._streams) > 1
+
+    def start_streams(self) -> None:
+        """All streams at their default rates."""
+        self._streams = [Stream(*key, interval) for key, interval in self._defaults.items()]
+        self.next_due = -math.inf
+
+    def offer(self) -> None:
+        """Heartbeats only, for an address that has not answered."""
+        self._streams = [Stream(_AUTOPILOT, _HEARTBEAT, self._defaults[_AUTOPILOT, _HEARTBEAT])]
+        self.next_due = -math.inf
+
+    def set_interval(self, message_id: int, interval: float) -> None:
+        """Interval (s) of an autopilot message on this link; 0 restores the default, infinity stops it."""
+        key = _AUTOPILOT, message_id
+        if interval == 0.0:
+            interval = self._defaults.get(key, math.inf)
+        self._streams = [stream for stream in self._streams if (stream.component, stream.message_id) != key]
+        if math.isfinite(interval):
+            self._streams.append(Stream(*key, interval))
+        self.next_due = -math.inf
+
+    def repeat(self, *message_ids: int) -> None:
+        """Send these messages at once, and repeatedly, because a datagram may be lost: their content has changed."""
+        for stream in self._streams:
+            if stream.message_id in message_ids:
+                stream.due, stream.repeats = -math.inf, self._settings.repeats if self.is_streaming else 0
+        self.next_due = -math.inf
+
+    def reply(self, *messages: Message) -> None:
+        """Send messages of the autopilot with the next datagrams."""
+        if len(self._replies) < self._settings.replies_max:
+            self._replies += [self._codecs[_AUTOPILOT].encode(message) for message in messages]
+            self.next_due = -math.inf
+
+    def send_statustext(self, text: str, severity: int = mavlink.MAV_SEVERITY_WARNING) -> None:
+        """Send a text for people, in pieces of a STATUSTEXT's length."""
+        data = text.encode("ascii", "replace")
+        for start in range(0, len(data), _TEXT_LIMIT):
+            self.reply(mavlink.MAVLink_statustext_message(severity, data[start : start + _TEXT_LIMIT]))
+
+    def datagrams(self, telemetry: Telemetry, now: float) -> list[bytes]:
+        """Replies and what is due, in as few datagrams as possible."""
+        if now + TIME_TOLERANCE < self.next_due:
+            return []
+        frames = self._replies
+        self._replies = []
+        next_due = math.inf
+        for stream in self._streams:
+            if stream.due <= now + TIME_TOLERANCE:
+                messages = telemetry.build(stream.component, stream.message_id, now)
+                if messages and stream.is_new(messages[0]):
+                    codec = self._codecs[stream.component]
+                    frames += [codec.encode(message) for message in messages]
+                stream.advance(now, self._settings.repeat_interval)
+            if stream.due < next_due:
+                next_due = stream.due
+        self.next_due = next_due
+        return gather(frames)
