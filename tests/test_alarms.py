@@ -3,7 +3,6 @@
 import json
 from dataclasses import replace
 
-import numpy as np
 import pytest
 from flight_in_process import HOP, Rehearsal, system_file
 
@@ -13,15 +12,9 @@ from gcs.mavlink.link_statistics import PATIENCE, LinkStatistics
 from gcs.mission.model import Fault
 from gcs.mission.read import read_mission
 from gcs.record.tables import ALARM_COLUMNS, read_text_table
-from idc_controller.estimation.health.consistency import REFUSALS, Consistency
-from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
 from vehicle_sim.faults import FaultPassage
 
 pytestmark = pytest.mark.slow
-
-KEYS = ((PAYLOAD, Position), (0, Position), (1, Position), (1, Attitude))
-SIZES = (6, 6, 6, 4)
-GATE = 1.0 - 1e-6
 
 
 def test_one_trouble_is_one_alarm_until_it_is_over():
@@ -67,78 +60,6 @@ def told(numbers, interval=0.01):
 )
 def test_sequence_numbers_tell_what_became_of_messages(numbers, counts):
     assert told(numbers) == counts
-
-
-def learnt(samples, *, changed=lambda k, i, white: white, refused=lambda k: ()):
-    """A judge that has seen so many moments of normal innovations, changed as told; all its complaints on the way."""
-    random, judge, found = np.random.default_rng(5), Consistency(GATE), {}
-    for k in range(samples):
-        time = 0.04 * k
-        white = [changed(k, i, random.standard_normal(size)) for i, size in enumerate(SIZES)]
-        judge.learn(time, KEYS, white, refused(k))
-        for key, complaints in judge.complaints(time).items():
-            for complaint in complaints:
-                found.setdefault((key, complaint), time)
-    return found
-
-
-def test_sound_innovations_and_single_refusals_are_no_alarm():
-    single = [((0, "Position"),) if k % 15 == 0 else () for k in range(5000)]
-    assert learnt(5000, refused=lambda k: single[k]) == {}
-
-
-def test_single_wild_samples_are_no_alarm():
-    assert learnt(2000, changed=lambda k, i, white: white + 1e6 * (i == 1 and k % 100 == 50)) == {}
-
-
-def test_refusals_one_after_the_other_are_one():
-    found = learnt(200, refused=lambda k: [(1, "Position")] if k >= 100 else ())
-    assert found == {((1, Position), "refused"): pytest.approx(0.04 * (100 + REFUSALS - 1))}
-
-
-@pytest.mark.parametrize("which", [0, 1])
-def test_a_bias_far_below_the_gate_is_found_without_a_refusal(which):
-    push = np.array([0.0, 0.0, 1.5, 0.0, 0.0, 0.0])
-    found = learnt(300, changed=lambda k, i, white: white + push if i == which and k >= 100 else white)
-    assert {key for key, _ in found} == {KEYS[which]}
-    assert 4.0 < found[KEYS[which], "disagrees"] < 6.5
-
-
-def test_noise_on_one_channel_is_found():
-    found = learnt(300, changed=lambda k, i, white: white * (2.0 if i == 2 and k >= 100 else 1.0))
-    assert {key for key, _ in found} == {KEYS[2]}
-    assert 4.0 < found[KEYS[2], "noisy"] < 6.0
-
-
-def test_attitudes_may_be_off_in_manoeuvres():
-    assert learnt(300, changed=lambda k, i, white: white * (1.5 if i == 3 else 1.0)) == {}
-    assert (KEYS[3], "noisy") in learnt(300, changed=lambda k, i, white: white * (3.0 if i == 3 else 1.0))
-
-
-def test_attitudes_that_are_left_out_are_forgotten_and_nothing_else():
-    judge = Consistency(GATE)
-    for k in range(50):
-        judge.learn(0.04 * k, KEYS, [np.full(size, 5.0) for size in SIZES], ())
-    judge.forget_attitudes()
-    assert set(judge.complaints(2.0)) == set(KEYS[:3])
-
-
-def test_half_of_a_measurement_is_judged_by_itself():
-    rng, judge, key = np.random.default_rng(4), Consistency(GATE), (1, Position)
-    for k in range(200):
-        white = rng.standard_normal(6) if k < 50 else rng.standard_normal(3) + (2.0 if k >= 100 else 0.0)
-        judge.learn(0.04 * k, [key], [white], [])
-        complaints = judge.complaints(0.04 * k)
-        if k < 100:
-            assert complaints == {}
-    assert "disagrees" in complaints[key]
-
-
-def test_what_is_judged_again_counts_once():
-    judge = Consistency(GATE)
-    for k in range(2 * REFUSALS):
-        judge.learn(0.1, KEYS[:1], [np.zeros(6)], [(PAYLOAD, "Position")])
-        assert judge.complaints(0.1 + 0.01 * k) == {}
 
 
 def write_records(folder, rows, starts):

@@ -1,16 +1,19 @@
-"""Positions that do not go where their own velocities take them."""
+"""Dead reckoning: positions that contradict their own velocities, attitudes their rates."""
 
 import numpy as np
 import pytest
 
-from idc_controller.estimation.health.dead_reckoning import WINDOW, DeadReckoning, Group
+from idc_controller.estimation.health.channel import SensorGroup
+from idc_controller.estimation.health.dead_reckoning import DeadReckoning
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
+from idc_controller.estimation.settings import DeadReckoningSettings
 from idc_controller.rotations import quaternion_from_euler, quaternion_product
 
 VEHICLES = 4
+WINDOW = DeadReckoningSettings().window
 INTERVAL = 0.04  # s
 NOISE = 0.02  # m and m/s
-POSITIONS = Group(of_payload=False, kind=Position)
+POSITIONS = SensorGroup(of_payload=False, kind=Position)
 
 
 def path(t):
@@ -21,10 +24,10 @@ def path(t):
     )
 
 
-def astray_after(duration, spoil, seed=1, begin=5.0, group=POSITIONS):
-    """How long after ``begin`` a ``group`` alone is first said to be astray (s); None: not within ``duration``.
+def inconsistent_after(duration, spoil, seed=1, begin=5.0, group=POSITIONS):
+    """Return after which time since ``begin`` (s) a ``group`` alone is inconsistent; None: not within ``duration``.
 
-    ``spoil(source, elapsed, position, velocity, rng)`` gives what is told from ``begin`` on.
+    ``spoil(source, elapsed, position, velocity, rng)`` gives position and velocity from ``begin`` on.
     """
     rng, reckoning = np.random.default_rng(seed), DeadReckoning(VEHICLES)
     for k in range(round((begin + duration) / INTERVAL)):
@@ -36,8 +39,8 @@ def astray_after(duration, spoil, seed=1, begin=5.0, group=POSITIONS):
             if t >= begin:
                 position, velocity = spoil(source, t - begin, position, velocity, rng)
             reckoning.add(Position(t, source, position, velocity))
-        if reckoning.astray:
-            assert reckoning.astray == (group,)
+        if reckoning.inconsistent_groups:
+            assert reckoning.inconsistent_groups == (group,)
             return t - begin
     return None
 
@@ -61,8 +64,8 @@ def of_vehicles(change):
     ],
     ids=["drift", "slow drift", "bias", "velocity biased", "scale"],
 )
-def test_what_contradicts_itself_is_noticed_within_the_window(change, seed):
-    found = astray_after(WINDOW, of_vehicles(change), seed)
+def test_vehicles_positions_are_inconsistent_within_the_window(change, seed):
+    found = inconsistent_after(WINDOW, of_vehicles(change), seed)
     assert found is not None and found > 0.0
 
 
@@ -84,8 +87,8 @@ def spikes(p, v, rng):
     ],
     ids=["sound", "noise times 5", "spikes", "two of four", "the payload unit, too", "unknown"],
 )
-def test_nothing_else_is(spoil, seed):
-    assert astray_after(30.0, spoil, seed) is None
+def test_sound_or_noisy_positions_are_consistent(spoil, seed):
+    assert inconsistent_after(30.0, spoil, seed) is None
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -98,15 +101,15 @@ def test_nothing_else_is(spoil, seed):
     ],
     ids=["velocity biased", "velocity drifts", "bias"],
 )
-def test_of_the_payload_unit_alone_too(change, seed):
+def test_payload_position_is_inconsistent_when_its_unit_alone_is_wrong(change, seed):
     def spoil(source, elapsed, p, v, rng):
         return change(elapsed, p, v) if source == PAYLOAD else (p, v)
 
-    found = astray_after(2.0 * WINDOW, spoil, seed, group=Group(True, Position))
+    found = inconsistent_after(2.0 * WINDOW, spoil, seed, group=SensorGroup(True, Position))
     assert found is not None and found > 0.0
 
 
-def attitude_astray_after(duration, bias, jump=0.0, begin=5.0, seed=1):
+def attitude_inconsistent_after(duration, bias, jump=0.0, begin=5.0, seed=1):
     """As above, of the payload's attitude; ``bias`` of its rates (rad/s), ``jump`` of its roll (rad)."""
     rng, reckoning, q = np.random.default_rng(seed), DeadReckoning(VEHICLES), np.array([1.0, 0.0, 0.0, 0.0])
     for k in range(round((begin + duration) / INTERVAL)):
@@ -117,36 +120,36 @@ def attitude_astray_after(duration, bias, jump=0.0, begin=5.0, seed=1):
         reckoning.add(Attitude(t, PAYLOAD, noisy, rates + rng.normal(0.0, 0.008, 3) + is_off * bias))
         for _ in range(10):
             q = quaternion_product(q, np.append(1.0, 0.05 * INTERVAL * rates))
-        if reckoning.astray:
-            assert reckoning.astray == (Group(True, Attitude),)
+        if reckoning.inconsistent_groups:
+            assert reckoning.inconsistent_groups == (SensorGroup(True, Attitude),)
             return t - begin
     return None
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_attitudes_that_do_not_go_where_the_rates_take_them(seed):
-    assert attitude_astray_after(60.0, 0.0, seed=seed) is None
-    assert attitude_astray_after(2.0 * WINDOW, 0.1, seed=seed) > 0.0
-    assert attitude_astray_after(2.0 * WINDOW, 0.0, jump=0.1, seed=seed) > 0.0
+def test_payload_attitude_is_inconsistent_with_biased_rates(seed):
+    assert attitude_inconsistent_after(60.0, 0.0, seed=seed) is None
+    assert attitude_inconsistent_after(2.0 * WINDOW, 0.1, seed=seed) > 0.0
+    assert attitude_inconsistent_after(2.0 * WINDOW, 0.0, jump=0.1, seed=seed) > 0.0
 
 
-def test_a_gap_in_the_samples_is_no_contradiction():
+def test_positions_are_consistent_across_a_gap():
     reckoning = DeadReckoning(VEHICLES)
     for k in range(400):
         if k % 100 < 80:
             for source in (PAYLOAD, *range(VEHICLES)):
                 reckoning.add(Position(k * INTERVAL, source, *path(k * INTERVAL)))
-        assert not reckoning.astray
+        assert not reckoning.inconsistent_groups
 
 
-def test_a_sample_that_comes_twice_counts_once():
+def test_repeated_sample_counts_once():
     """Relayed by a vehicle whose clock is off; else the noise would seem to be as small as a repetition's."""
     rng, reckoning = np.random.default_rng(1), DeadReckoning(VEHICLES)
     for k in range(1500):
         t = k * INTERVAL
         for source in (PAYLOAD, *range(VEHICLES)):
             p, v = path(t)
-            told = p + rng.normal(0.0, 0.02, 3), v + rng.normal(0.0, 0.008, 3)
+            sample = p + rng.normal(0.0, 0.02, 3), v + rng.normal(0.0, 0.008, 3)
             for late in (0.0, 0.006) if source == PAYLOAD else (0.0,):
-                reckoning.add(Position(t + late, source, *told))
-        assert not reckoning.astray
+                reckoning.add(Position(t + late, source, *sample))
+        assert not reckoning.inconsistent_groups

@@ -128,7 +128,7 @@ class Flight:
     @property
     def pose_noise(self) -> float:
         """Factor of the noise of telemetry over that of the system file, as the filter sees it, 1 or more."""
-        return math.sqrt(self.estimator.adaptation.noise)
+        return math.sqrt(self.estimator.health.adaptation.measurement_scale)
 
     def asked(self, times: Array) -> tuple[Array, Array]:
         """Position and velocity (K, 3) that the mission asks of the payload at ``times`` since take-off began."""
@@ -199,7 +199,7 @@ class Flight:
         return True
 
     def _dropped_out(self, now: float) -> DropOut | None:
-        if len(lost := self.estimator.lost) > 1:
+        if len(lost := self.estimator.health.isolation.uavs_without_position) > 1:
             names = " and ".join(str(self.team.links[i].system_id) for i in lost)
             return DropOut(f"nothing is believed of where vehicles {names} are", 0.0)
         return self.team.dropped_out(now)
@@ -318,7 +318,7 @@ class Flight:
             self.break_off(time, blocked)
         trajectory = self._trajectory(time)
         if self._down is not None:
-            self.estimator.payload_stands(time, self._down.position(time), self._yaw)
+            self.estimator.hold_payload(time, self._down.position(time), self._yaw)
         begin = self._stopwatch()
         estimate = self.estimator.estimate(effective, self.controller.reference(trajectory))
         if self.phase in IN_THE_AIR and self.payload.is_out_of_control(time, estimate):

@@ -283,9 +283,9 @@ class GroundStation:
         waits[waits < TOGETHER] = 0.0
         leaves = time + self._latency + waits
         if self._obstacle_map is not None:
-            untrusted = self.flight.estimator.untrusted
+            unusable = self.flight.estimator.unusable_poses
             self._obstacle_map.broken({i for i, link in enumerate(self.links) if not link.sees}, time)
-            self._obstacle_map.update(time, self.flight.pose_noise, untrusted(Position), untrusted(Attitude))
+            self._obstacle_map.update(time, self.flight.pose_noise, unusable(Position), unusable(Attitude))
             if self.flight.phase in IN_THE_AIR and not self.flight.reason:
                 if self._obstacle_map.is_blind:
                     self.break_off(now, "no vehicle sees obstacles, or what all tell of them can not be")

@@ -16,9 +16,9 @@ from gcs.mavlink.id_check import Identities
 from gcs.mavlink.vehicle_link import VehicleLink
 from idc_controller.control.controller import Decision
 from idc_controller.estimation.estimate import Estimate
-from idc_controller.estimation.health.consistency import RARE, Consistency
-from idc_controller.estimation.health.noise_adaptation import LEVELS
+from idc_controller.estimation.health.innovation_monitor import InnovationMonitor
 from idc_controller.estimation.measurements import PAYLOAD, Position
+from idc_controller.estimation.settings import InnovationMonitorSettings
 from idc_controller.perception.obstacle_map import ObstacleMap
 
 Array = NDArray[np.float64]
@@ -41,7 +41,7 @@ model does not tell. UAVs' attitudes, and what is judged of all sensors together
 (s) after: avoiding an obstacle that is found late changes set-points by up to 0.8 rad."""
 NOISY = 4.0
 """Factor of all sensors' variances; clean flights reach 2."""
-FORCE = float(chi2.isf(RARE, 3))
+FORCE = float(chi2.isf(InnovationMonitorSettings().false_alarm, 3))
 """Of the force on the payload, squared by its own covariance."""
 
 
@@ -58,8 +58,7 @@ class Watch:
         self._events = Events(LATELY)
         self._setpoints = Events(SETPOINTS_LATELY)
         self._offsets: dict[str, deque[tuple[float, float]]] = {_name(link): deque() for link in self._team.links}
-        self._consistency = Consistency(flight.estimator.settings.gate_probability)
-        self._judged = 0
+        self._innovations = InnovationMonitor(flight.estimator.settings.gate_probability)
         self._tilts: Array | None = None
         self._calm_from = -math.inf
         self._stopped = False
@@ -77,18 +76,16 @@ class Watch:
             self._count(link, time, now)
         if airborne:
             self._links(time, now)
-        innovations = self._flight.estimator.innovations
         if airborne and record is not None and self._flight.payload.is_clear(record.estimate):
             calm = self._is_calm(time, record.decision)
-            for told in innovations[self._judged :]:
-                self._consistency.learn(told.time, told.keys, told.white, told.rejected)
-                if told.surprised and calm:
-                    self._events.add(("team", "surprised"), told.time)
+            for innovation in record.estimate.innovations:
+                self._innovations.learn(innovation.time, innovation.keys, innovation.normalised, innovation.rejected)
+                if innovation.covariance_reset and calm:
+                    self._events.add(("team", "surprised"), innovation.time)
             if not calm:
-                self._consistency.forget_attitudes()
+                self._innovations.forget_attitudes()
             self._measurements(time, calm)
             self._model(time, record.estimate, calm)
-        self._judged = len(innovations)
         if airborne:
             for events in (self._events, self._setpoints):
                 for (source, what), count in events.recent(time).items():
@@ -162,24 +159,25 @@ class Watch:
     def _measurements(self, time: float, calm: bool) -> None:
         for teller, whose in self._identities.mixed_up.items():
             self._book.tell(time, self._source(teller), "mixed up", f"tells the data of {self._source(whose)}")
-        for source, channel in self._flight.estimator.frozen.channels():
-            self._book.tell(time, self._source(source), "frozen", channel)
-        for half in self._flight.estimator.distrusted:
-            if calm or half.kind is Position:
-                self._book.tell(time, self._source(half.source), "distrusted", half.channel)
-        for group, (poses, _) in self._flight.estimator.left_out.items():
+        health = self._flight.estimator.health
+        for channel in health.stuck_channels:
+            self._book.tell(time, self._source(channel.source), "frozen", channel.name)
+        for channel in health.isolation.isolated:
+            if calm or channel.kind is Position:
+                self._book.tell(time, self._source(channel.source), "distrusted", channel.name)
+        for group, (poses, _) in health.isolated_groups.items():
             names = ("positions", "velocities") if group.kind is Position else ("attitudes", "rates")
             who, of = ("payload", "the payload") if group.of_payload else ("team", "all vehicles")
             self._book.tell(time, who, "contradicts", f"{names[0 if poses else 1]} of {of} are left out")
-        for (source, kind), complaints in self._consistency.complaints(time).items():
-            for complaint in complaints:
-                self._book.tell(time, self._source(source), complaint, kind.__name__.lower())
+        for (source, kind), findings in self._innovations.findings(time).items():
+            for finding in findings:
+                self._book.tell(time, self._source(source), finding, kind.__name__.lower())
 
     def _model(self, time: float, estimate: Estimate, calm: bool) -> None:
-        adaptation, force, n = self._flight.estimator.adaptation, estimate.force, len(estimate.x)
-        if calm and adaptation.noise > NOISY:
+        adaptation, force, n = self._flight.estimator.health.adaptation, estimate.force, len(estimate.x)
+        if calm and adaptation.measurement_scale > NOISY:
             self._book.tell(time, "team", "noisy", "all sensors")
-        if calm and adaptation.level >= LEVELS:
+        if calm and adaptation.is_at_limit:
             self._book.tell(time, "payload", "restless", "forces change quickly")
         covariance = estimate.covariance[n : n + 3, n : n + 3]
         if float(force @ np.linalg.solve(covariance, force)) > FORCE:

@@ -14,7 +14,7 @@ from gcs.mission.model import Mission
 from idc_controller.control.controller import ControllerSettings, IntegratedDecisionController
 from idc_controller.control.mpc import ModelPredictiveController
 from idc_controller.control.settings import MpcSettings, MpcWeights
-from idc_controller.estimation.estimator import Estimator, EstimatorSettings
+from idc_controller.estimation.estimator import Estimator
 from idc_controller.estimation.measurements import MeasurementNoise
 from idc_controller.geometry.shapes import ObstacleSource
 from idc_controller.guidance.navigator import NavigatorSettings
@@ -43,7 +43,7 @@ def estimator(config: SystemConfig, model: LinearModel) -> Estimator:
         payload_velocity=sensors.payload_velocity,
         payload_rates=sensors.payload_rates,
     )
-    return Estimator(model, EstimatorSettings(measurement=noise))
+    return Estimator(model, noise)
 
 
 def obstacle_map(mission: Mission) -> ObstacleMap:

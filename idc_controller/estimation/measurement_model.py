@@ -1,4 +1,4 @@
-"""What each measurement says of the state: innovation, rows and noise, about an exact reference."""
+"""Measurement model: innovation, rows and noise of each measurement, about an exact reference."""
 
 from __future__ import annotations
 
@@ -7,19 +7,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, MeasurementNoise, Position
+from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, MeasurementNoise, Position, SensorKey
+from idc_controller.estimation.settings import MeasurementModelSettings
 from idc_controller.model.linear import LinearModel
 from idc_controller.rotations import euler_from_quaternion, quaternion_from_euler, rotation_from_quaternion
 from idc_controller.trajectory.flatness import FlatReference
 
 Array = NDArray[np.float64]
 
-# Even a perfect sensor is believed only to about the model's own error; it also keeps the update well conditioned.
-FLOOR = {"position": 2e-3, "velocity": 4e-3, "attitude": 2e-4, "rates": 1e-3}
-
 
 @dataclass(frozen=True)
-class Channel:
+class Observation:
     """Rows of one kind of measurement of one source."""
 
     rows: Array
@@ -29,99 +27,106 @@ class Channel:
 
 
 @dataclass(frozen=True)
-class Stack:
-    """Channels one below the other, as the measurements of one moment are taken."""
+class ObservationStack:
+    """Observations of one moment, one below the other."""
 
-    keys: tuple[tuple[int, type], ...]
+    keys: tuple[SensorKey, ...]
     """Source and kind of each (K,)."""
     rows: Array
     """(m, n), links upright."""
     variance: Array
     """(m,)"""
     sizes: NDArray[np.int_]
-    """Of the channels (K,); they add up to m."""
+    """Rows of each (K,); they add up to m."""
     starts: NDArray[np.int_]
     """Their first rows (K,)."""
     rows_by_size: tuple[NDArray[np.int_], ...]
-    """Rows of the channels of one size, (channels, size) for each size that there is."""
+    """Rows of the observations of one size, (count, size) for each size that there is."""
     of_payload: NDArray[np.bool_]
-    """Which rows are the payload's (m,)."""
+    """Which rows (m,) are the payload's."""
     uavs: NDArray[np.int_]
-    """UAVs whose position is among the channels (K,)."""
+    """UAVs whose position is observed (K,)."""
     heights: NDArray[np.int_]
     """Rows of their heights (K,); those of the vertical velocities are three below."""
 
     def split(self, rows: Array) -> tuple[Array, ...]:
-        """``rows`` (m,) by channel."""
+        """Return ``rows`` (m,) by observation."""
         ends = self.starts + self.sizes
         return tuple(rows[a:b] for a, b in zip(self.starts.tolist(), ends.tolist(), strict=True))
 
-    def only(self, present: NDArray[np.bool_]) -> Stack:
-        """What is left when of its rows only those ``present`` (m,) are there. It cannot be observed any more."""
+    def subset(self, present: NDArray[np.bool_]) -> ObservationStack:
+        """Return the stack of the rows ``present`` (m,) alone; :meth:`MeasurementModel.observe` takes whole ones."""
         sizes = np.add.reduceat(present, self.starts, dtype=int)
         left = sizes > 0
         keys = tuple(key for key, some in zip(self.keys, left.tolist(), strict=True) if some)
         none = np.zeros(0, dtype=int)
-        return Stack(
+        return ObservationStack(
             keys, self.rows[present], self.variance[present],
             *_blocks(sizes[left]), self.of_payload[present], uavs=none, heights=none,
         )  # fmt: skip
 
 
 def _blocks(sizes: NDArray[np.int_]) -> tuple[NDArray[np.int_], NDArray[np.int_], tuple[NDArray[np.int_], ...]]:
-    """Sizes, first rows, and rows by size, of channels one below the other."""
+    """Return sizes, first rows, and rows by size, of observations one below the other."""
     starts = np.cumsum(sizes) - sizes
     return sizes, starts, tuple(starts[sizes == size][:, None] + np.arange(size) for size in np.unique(sizes))
 
 
 class MeasurementModel:
-    """Channels for every source, and measured less reference in the filter's coordinates."""
+    """Observations of every source, and measured less reference in the filter's coordinates."""
 
-    def __init__(self, model: LinearModel, noise: MeasurementNoise) -> None:
+    def __init__(
+        self, model: LinearModel, noise: MeasurementNoise, settings: MeasurementModelSettings | None = None
+    ) -> None:
+        floor = settings or MeasurementModelSettings()
         layout, N = model.layout, model.layout.number_of_uavs
         self.layout = layout
         self.parameters = model.parameters
         identity = np.eye(layout.size)
 
-        def variance(first: float, floor_first: str, second: float, floor_second: str, axes: int) -> Array:
-            sigma = np.repeat([max(first, FLOOR[floor_first]), max(second, FLOOR[floor_second])], axes)
-            return sigma**2
+        def position_variance(velocity: float) -> Array:
+            position = max(noise.position, floor.position_noise_min)
+            return np.repeat([position, max(velocity, floor.velocity_noise_min)], 3) ** 2
 
-        self.channels: dict[tuple[int, type], Channel] = {
-            (PAYLOAD, Attitude): Channel(
+        def attitude_variance(rates: float, axes: int) -> Array:
+            attitude = max(noise.attitude, floor.attitude_noise_min)
+            return np.repeat([attitude, max(rates, floor.rates_noise_min)], axes) ** 2
+
+        self.observations: dict[SensorKey, Observation] = {
+            (PAYLOAD, Attitude): Observation(
                 np.vstack([identity[layout.Theta], identity[layout.omega]]),
-                variance(noise.attitude, "attitude", noise.payload_rates, "rates", 3),
+                attitude_variance(noise.payload_rates, 3),
             )
         }
-        self.channels[PAYLOAD, Position] = Channel(
+        self.observations[PAYLOAD, Position] = Observation(
             np.vstack([identity[layout.r_0], identity[layout.v_0]]),
-            variance(noise.position, "position", noise.payload_velocity, "velocity", 3),
+            position_variance(noise.payload_velocity),
         )
         for i in range(N):
             three, two = slice(3 * i, 3 * i + 3), slice(2 * i, 2 * i + 2)
-            self.channels[i, Position] = Channel(
+            self.observations[i, Position] = Observation(
                 np.vstack([model.uav_position_rows[three], model.uav_velocity_rows[three]]),
-                variance(noise.position, "position", noise.uav_velocity, "velocity", 3),
+                position_variance(noise.uav_velocity),
             )
-            self.channels[i, Attitude] = Channel(
+            self.observations[i, Attitude] = Observation(
                 np.vstack([identity[layout.n][two], identity[layout.n_dot][two]]),
-                variance(noise.attitude, "attitude", noise.uav_rates, "rates", 2),
+                attitude_variance(noise.uav_rates, 2),
             )
 
-        self._stacks: dict[tuple[tuple[int, type], ...], Stack] = {}
+        self._stacks: dict[tuple[SensorKey, ...], ObservationStack] = {}
 
-    def stack(self, keys: tuple[tuple[int, type], ...]) -> Stack:
-        """The channels of these sources and kinds."""
+    def stack(self, keys: tuple[SensorKey, ...]) -> ObservationStack:
+        """Return the observations of these sensors."""
         if (found := self._stacks.get(keys)) is None:
-            channels = [self.channels[key] for key in keys]
-            sizes = np.array([len(channel.variance) for channel in channels])
+            observations = [self.observations[key] for key in keys]
+            sizes = np.array([len(observation.variance) for observation in observations])
             _, starts, _ = _blocks(sizes)
             tilted = [(i, start + 2) for (i, kind), start in zip(keys, starts.tolist(), strict=True)
                       if kind is Position and i != PAYLOAD]  # fmt: skip
-            found = self._stacks[keys] = Stack(
+            found = self._stacks[keys] = ObservationStack(
                 keys,
-                np.vstack([channel.rows for channel in channels]),
-                np.concatenate([channel.variance for channel in channels]),
+                np.vstack([observation.rows for observation in observations]),
+                np.concatenate([observation.variance for observation in observations]),
                 *_blocks(sizes),
                 np.repeat([i == PAYLOAD for i, _ in keys], sizes),
                 np.array([i for i, _ in tilted], dtype=int),
@@ -129,7 +134,7 @@ class MeasurementModel:
             )
         return found
 
-    def observe(self, stack: Stack, reference: FlatReference, k: int, into: Array) -> None:
+    def observe(self, stack: ObservationStack, reference: FlatReference, k: int, into: Array) -> None:
         """Fill ``into`` (m, n) with the rows that observe the error about the reference's time ``k``."""
         into[:] = stack.rows
         if len(stack.uavs):
@@ -141,7 +146,7 @@ class MeasurementModel:
             into[stack.heights[:, None] + 3, self.layout.s_dot.start + columns] = slope
 
     def innovation(self, measurement: Measurement, reference: FlatReference, k: int) -> Array:
-        """Measured less what the reference's time ``k`` predicts, (m,); nan where nothing was measured."""
+        """Return measured less reference (m,) at the reference's time ``k``; nan where nothing was measured."""
         i = measurement.source
         if isinstance(measurement, Attitude):
             if i == PAYLOAD:
@@ -151,14 +156,14 @@ class MeasurementModel:
             p, q, _ = measurement.rates.tolist()
             reference_x, first = reference.x[k], 2 * i
             n, n_dot = self.layout.n.start + first, self.layout.n_dot.start + first
-            told = (
+            measured = (
                 -2.0 * (x * z + w * y),
                 -2.0 * (y * z - w * x),
                 2.0 * (x * y - w * z) * p - (1.0 - 2.0 * (y * y + z * z)) * q,
                 (1.0 - 2.0 * (x * x + z * z)) * p - 2.0 * (x * y + w * z) * q,
             )
             expected = (reference_x[n], reference_x[n + 1], reference_x[n_dot], reference_x[n_dot + 1])
-            return np.subtract(told, expected)
+            return np.subtract(measured, expected)
         position, velocity = reference.payload[0, k], reference.payload[1, k]
         if i != PAYLOAD:
             l = self.parameters.l[i]
@@ -167,7 +172,7 @@ class MeasurementModel:
         return np.concatenate([measurement.position - position, measurement.velocity - velocity])
 
     def vehicles(self, time: float, x: Array) -> list[Measurement]:
-        """What sensors without noise would tell of the UAVs in the state ``x`` (n,), at ``time`` (s); heading north."""
+        """Return positions and attitudes of the UAVs in the state ``x`` (n,) at ``time`` (s), heading north."""
         layout, p, l = self.layout, self.parameters.p, self.parameters.l[:, None]
         attached = p @ rotation_from_quaternion(quaternion_from_euler(*x[layout.Theta])).T
         s, s_dot = _pairs(x[layout.s]), _pairs(x[layout.s_dot])
@@ -184,8 +189,8 @@ class MeasurementModel:
         about_x = n_dot[:, 1] / np.cos(roll)
         about_y = (np.sin(pitch) * np.sin(roll) * about_x - n_dot[:, 0]) / np.cos(pitch)
         rates = np.column_stack([about_x, about_y, -np.tan(roll) * about_y])
-        told: list[Measurement] = [Position(time, i, position[i], velocity[i]) for i in range(len(n))]
-        return told + [Attitude(time, i, turn[i], rates[i]) for i in range(len(n))]
+        positions: list[Measurement] = [Position(time, i, position[i], velocity[i]) for i in range(len(n))]
+        return positions + [Attitude(time, i, turn[i], rates[i]) for i in range(len(n))]
 
 
 def _pairs(values: Array) -> Array:
@@ -193,5 +198,5 @@ def _pairs(values: Array) -> Array:
 
 
 def _third(lateral: Array) -> Array:
-    """Of unit vectors with these lateral parts (N, 2)."""
-    return np.sqrt(np.maximum(1.0 - (lateral**2).sum(axis=1), 0.01))
+    """Return the third parts of unit vectors with these lateral parts (N, 2)."""
+    return np.asarray(np.sqrt(np.maximum(1.0 - (lateral**2).sum(axis=1), 0.01)))

@@ -1,6 +1,6 @@
-"""What is measured: of each UAV and of the payload, pose and motion, each with the time it was true.
+"""Measurements of each UAV and of the payload: a pose and its motion, with their time of validity.
 
-Of a pose or of a motion that was not measured all numbers are nan.
+A pose or a motion that was not measured, or may not be used, is all nan.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ class Attitude:
     """Attitude and body rates of a UAV or of the payload."""
 
     time: float
-    """When it was true (s)."""
+    """Time of validity (s)."""
     source: int
     """UAV index or :data:`PAYLOAD`."""
     quaternion: Array
@@ -51,15 +51,15 @@ class Attitude:
         """:attr:`rates`."""
         return self.rates
 
-    def agrees(self, other: object) -> bool:
-        """Whether both tell the same."""
+    def same_values(self, other: object) -> bool:
+        """Return whether ``other`` is of the same kind and has the same values to the digit."""
         if not isinstance(other, Attitude):
             return False
         return _same(self.quaternion, other.quaternion) and _same(self.rates, other.rates)
 
     def without(self, pose: bool, motion: bool) -> Attitude:
-        """As if the attitude (``pose``) or the rates (``motion``) had not been measured."""
-        quaternion, rates = _unless(pose, self.quaternion), _unless(motion, self.rates)
+        """Return a copy with the attitude (``pose``) or the rates (``motion``) marked as not measured."""
+        quaternion, rates = _masked(pose, self.quaternion), _masked(motion, self.rates)
         return Attitude(self.time, self.source, quaternion, rates)
 
 
@@ -68,7 +68,7 @@ class Position:
     """Position and velocity of a UAV or of the payload's centre."""
 
     time: float
-    """When it was true (s)."""
+    """Time of validity (s)."""
     source: int
     """UAV index or :data:`PAYLOAD`."""
     position: Array
@@ -96,24 +96,26 @@ class Position:
         """:attr:`velocity`."""
         return self.velocity
 
-    def agrees(self, other: object) -> bool:
-        """Whether both tell the same."""
+    def same_values(self, other: object) -> bool:
+        """Return whether ``other`` is of the same kind and has the same values to the digit."""
         if not isinstance(other, Position):
             return False
         return _same(self.position, other.position) and _same(self.velocity, other.velocity)
 
     def without(self, pose: bool, motion: bool) -> Position:
-        """As if the position (``pose``) or the velocity (``motion``) had not been measured."""
-        return Position(self.time, self.source, _unless(pose, self.position), _unless(motion, self.velocity))
+        """Return a copy with the position (``pose``) or the velocity (``motion``) marked as not measured."""
+        return Position(self.time, self.source, _masked(pose, self.position), _masked(motion, self.velocity))
 
 
 Measurement = Attitude | Position
+SensorKey = tuple[int, type[Measurement]]
+"""Source and kind of a measurement."""
 
 
-def middle(copies: Sequence[Measurement]) -> Measurement:
-    """The median of relays of one measurement: right where few of them are corrupted."""
+def median_of(copies: Sequence[Measurement]) -> Measurement:
+    """Return the median of relayed copies of one measurement: right where few of them are corrupted."""
     first = copies[0]
-    if all(copy.agrees(first) for copy in copies[1:]):
+    if all(copy.same_values(first) for copy in copies[1:]):
         return first
     whole = [copy for copy in copies if copy.has_pose and copy.has_motion] or copies
     pose, motion = (np.median([getattr(copy, name) for copy in whole], axis=0) for name in ("pose", "motion"))
@@ -124,8 +126,8 @@ def _same(a: Array, b: Array) -> bool:
     return bool((a == b).all()) or bool(np.array_equal(a, b, equal_nan=True))
 
 
-def _unless(lost: bool, values: Array) -> Array:
-    return np.full(len(values), np.nan) if lost else values
+def _masked(masked: bool, values: Array) -> Array:
+    return np.full(len(values), np.nan) if masked else values
 
 
 @dataclass(frozen=True)

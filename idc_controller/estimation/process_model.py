@@ -1,52 +1,23 @@
-"""How the filter's state moves on: the linear model, with what disturbs it as part of the state."""
+"""Process model of the filter: the linear model, with its disturbances as part of the state."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
+from idc_controller.estimation.settings import ProcessNoiseSettings
 from idc_controller.model.linear import LinearModel
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class ProcessNoise:
-    """Densities of the white noise that drives what the model leaves out, each per square root of a second."""
-
-    payload_acceleration: float = 0.003
-    """m/s2"""
-    payload_angular_acceleration: float = 0.003
-    """rad/s2"""
-    link_acceleration: float = 0.0015
-    """1/s2"""
-    uav_jerk: float = 1.0
-    """Of the tilt's acceleration (1/s3)."""
-    thrust: float = 0.012
-    """N/s"""
-    force: float = 0.05
-    """Drift of the steady force on the payload (N/s)."""
-    uav_force: float = 0.01
-    """Drift of the steady force that is common to the UAVs (N/s)."""
-    own_force: float = 0.01
-    """Change of what each of them has besides, from one sample of its position and velocity to the next (N).
-
-    One that believes in a wrong attitude pulls aside. Of one of which less is known nothing is learnt.
-    """
-    mass: float = 0.005
-    """Drift of the payload's mass (kg/s)."""
-    setpoint_loss: float = 0.005
-    """Probability with which a set-point is reckoned to be lost on its way, at least; more where more are."""
-
-
 class ProcessModel:
     """State of the linear model (12 + 11 N), then the forces of :class:`Load`: payload (3), UAVs (2 N), mass excess."""
 
-    def __init__(self, model: LinearModel, densities: ProcessNoise) -> None:
+    def __init__(self, model: LinearModel, densities: ProcessNoiseSettings) -> None:
         self.model, self.layout, self._densities = model, model.layout, densities
         n, N = self.layout.size, self.layout.number_of_uavs
         self.size = n + 3 + 2 * N + 1
@@ -57,9 +28,9 @@ class ProcessModel:
         self._noise = lru_cache(maxsize=256)(self._integrated)
 
     def transition(self, interval_us: int, acceleration: Array) -> tuple[Array, Array]:
-        """F (n, n) and B (n, 3 N) over an interval (us), where the payload accelerates by ``acceleration`` (3,) (m/s2).
+        """Return F (n, n) and B (n, 3 N) over an interval (us).
 
-        An excess of mass acts along g e3 - a, which turns with the manoeuvre.
+        ``acceleration`` of the payload (3,) (m/s2): an excess of mass acts along g e3 - a, which follows the manoeuvre.
         """
         F, B, B_d = self._plain(interval_us)
         direction = np.array([0.0, 0.0, self.model.parameters.g]) - acceleration
@@ -67,29 +38,38 @@ class ProcessModel:
         F[: self.layout.size, self.mass] = B_d[:, :3] @ direction
         return F, B
 
-    def noise(self, interval_us: int, restlessness: float) -> Array:
-        """Covariance (n, n) that an interval (us) adds; ``restlessness`` multiplies the noise of the forces."""
-        return self._noise(interval_us, restlessness)
+    def noise(self, interval_us: int, force_scale: float) -> Array:
+        """Return the covariance (n, n) that an interval (us) adds; ``force_scale``: of the noise of the forces."""
+        return self._noise(interval_us, force_scale)
 
-    def own_noise(self, seen: NDArray[np.int_]) -> Array:
-        """Variances (n,) that samples of the UAVs ``seen`` (K,) leave room for in their own forces."""
+    def per_vehicle_noise(self, measured: NDArray[np.int_]) -> Array:
+        """Return the variances (n,) added to the own forces of the UAVs ``measured`` (K,) from sample to sample.
+
+        A UAV with a wrong attitude estimate pulls aside. Of one that is measured less nothing is learnt.
+        """
         added = np.zeros(self.size)
-        added[self.uav_force].reshape(-1, 2)[seen] = self._densities.own_force**2
+        added[self.uav_force].reshape(-1, 2)[measured] = self._densities.per_vehicle_force**2
         return added
 
-    def doubt_noise(self, B: Array, change: Array, doubt: Array) -> Array:
-        """Covariance (n, n) that set-points add which may not act yet, or never.
+    def setpoint_noise(self, B: Array, change: Array, probability: Array) -> Array:
+        """Return the covariance (n, n) of set-points that may not act yet, or never.
 
-        Each vehicle flies the one before, that differs by ``change`` (3 N,), with probability ``doubt`` (N,).
+        Args:
+            B: input matrix over the interval (n, 3 N).
+            change: difference from the set-points before (3 N,).
+            probability: with which each vehicle still flies those before (N,).
         """
         N = self.layout.number_of_uavs
-        error = B * (change * np.sqrt(np.concatenate([np.repeat(doubt, 2), doubt])))
+        error = B * (change * np.sqrt(np.concatenate([np.repeat(probability, 2), probability])))
         tilts = error[:, : 2 * N].reshape(-1, N, 2).sum(axis=2)
         lost = np.hstack([tilts, error[:, 2 * N :]])
         return np.asarray(lost @ lost.T)
 
     def uav_forces(self, common: float, own: float) -> Array:
-        """Covariance (2 N, 2 N) of forces on the UAVs that have a ``common`` and an ``own`` standard deviation (N)."""
+        """Return the covariance (2 N, 2 N) of level forces on the UAVs.
+
+        ``common`` and ``own``: standard deviations (N) of the part common to all, and of each UAV's own.
+        """
         N = self.layout.number_of_uavs
         return np.asarray(np.kron(common**2 * np.ones((N, N)) + own**2 * np.eye(N), np.eye(2)))
 
@@ -100,7 +80,7 @@ class ProcessModel:
         F[:n, :n], F[:n, self.forces] = A_k, B_dk
         return F, np.vstack([B_k, np.zeros((self.size - n, self.layout.inputs))]), B_dk
 
-    def _integrated(self, interval_us: int, restlessness: float) -> Array:
+    def _integrated(self, interval_us: int, force_scale: float) -> Array:
         """Van Loan's integral of the process noise."""
         p, layout, n = self._densities, self.layout, self.layout.size
         density = np.zeros(self.size)
@@ -109,9 +89,9 @@ class ProcessModel:
         density[layout.s_dot] = p.link_acceleration
         density[layout.n_acc] = p.uav_jerk
         density[layout.f] = p.thrust
-        density[self.force], density[self.mass] = restlessness * p.force, p.mass
+        density[self.force], density[self.mass] = force_scale * p.force, p.mass
         covariance = np.diag(density**2)
-        covariance[self.uav_force, self.uav_force] = self.uav_forces(restlessness * p.uav_force, 0.0)
+        covariance[self.uav_force, self.uav_force] = self.uav_forces(force_scale * p.uav_force, 0.0)
         A = np.zeros((self.size, self.size))
         A[:n, :n], A[:n, self.forces] = self.model.A, self.model.B_d
         A[:n, self.mass] = self.model.B_d[:, 2] * self.model.parameters.g
@@ -121,4 +101,4 @@ class ProcessModel:
         block[:m, :m], block[:m, m:], block[m:, m:] = -A, covariance, A.T
         big = expm(block * dt)
         Q = big[m:, m:].T @ big[:m, m:]
-        return (Q + Q.T) / 2
+        return np.asarray((Q + Q.T) / 2)

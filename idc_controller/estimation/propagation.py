@@ -1,45 +1,113 @@
-"""The way of the filter from its last update to the moment asked for: edges, the exact reference, the set-points."""
+"""Propagation of the filter's state from its last update to the time of the next set-points."""
 
 from __future__ import annotations
 
 from itertools import pairwise
 
 import numpy as np
+from filterpy.kalman import KalmanFilter
 from numpy.typing import NDArray
 
+from idc_controller.estimation.process_model import ProcessModel
 from idc_controller.estimation.setpoint_history import SetpointHistory
 from idc_controller.trajectory.reference import Reference
 
 Array = NDArray[np.float64]
 
 
-class Way:
-    """The times between the last update and the moment asked for, with the exact reference at all of them."""
+class PropagationInterval:
+    """Times from the last update to the time of the estimate, with reference and set-points at all of them."""
 
     def __init__(
         self,
+        process: ProcessModel,
         start: float,
         moments: list[float],
         end: float,
         setpoints: SetpointHistory,
         reference: Reference,
     ) -> None:
+        """``start``, ``moments`` of the measurements in between, and ``end`` (s)."""
         times = sorted([start, *moments, end])
         switches = setpoints.switches(start + 1e-6, end - 1e-6)
         times += [t for t in switches if min(abs(t - other) for other in times) > 1e-6]
-        self.edges = sorted(set(times))
-        self.flat = reference.at(np.array(self.edges))
-        self.setpoints = [setpoints.in_force(a, b) for a, b in pairwise(self.edges)]
-        """From each edge to the next."""
+        self.times = sorted(set(times))
+        self.flat = reference.at(np.array(self.times))
+        self.setpoints = [setpoints.in_force(a, b) for a, b in pairwise(self.times)]
+        """From each time to the next."""
+        # The drag that is predicted changes with the velocity, so what is estimated of it is the rest.
+        self.nominal = np.empty((len(self.times), process.size))
+        """State of the exact reference at each time (K, n)."""
+        self.nominal[:, : process.layout.size] = self.flat.x
+        self.nominal[:, process.force] = self.flat.links.on_payload
+        self.nominal[:, process.uav_force] = self.flat.links.on_uavs[..., :2].reshape(len(self.times), -1)
+        self.nominal[:, process.mass] = reference.load.mass - process.model.parameters.m_0
 
     def u(self, k: int) -> Array:
-        """The reference's set-points between edge ``k`` and the next (3 N,)."""
-        return (self.flat.u[k] + self.flat.u[k + 1]) / 2
+        """Return the reference's set-points between time ``k`` and the next (3 N,)."""
+        return np.asarray((self.flat.u[k] + self.flat.u[k + 1]) / 2)
 
     def acceleration(self, k: int) -> Array:
-        """The reference's acceleration between edge ``k`` and the next (3,) (m/s2)."""
-        return (self.flat.payload[2, k] + self.flat.payload[2, k + 1]) / 2
+        """Return the reference's acceleration between time ``k`` and the next (3,) (m/s2)."""
+        return np.asarray((self.flat.payload[2, k] + self.flat.payload[2, k + 1]) / 2)
 
-    def interval_us(self, k: int) -> int:
-        """Time from edge ``k`` to the next (us)."""
-        return max(round((self.edges[k + 1] - self.edges[k]) * 1e6), 1)
+    def duration_us(self, k: int) -> int:
+        """Return the duration from time ``k`` to the next (us)."""
+        return max(round((self.times[k + 1] - self.times[k]) * 1e6), 1)
+
+
+class ErrorStateFilter:
+    """Kalman filter on the error about the exact reference of one propagation interval after the other."""
+
+    def __init__(self, process: ProcessModel) -> None:
+        self.process = process
+        self._kf = KalmanFilter(dim_x=process.size, dim_z=1)
+        self._nominal = np.zeros((1, process.size))
+
+    @property
+    def x(self) -> Array:
+        """Error state (n,)."""
+        return np.asarray(self._kf.x)
+
+    @property
+    def P(self) -> Array:
+        """Covariance (n, n)."""
+        return np.asarray(self._kf.P)
+
+    def start(self, x: Array, P: Array, interval: PropagationInterval) -> None:
+        """Begin an ``interval`` from the absolute state ``x`` (n,) with covariance ``P`` (n, n)."""
+        self._nominal = interval.nominal
+        self._kf.x, self._kf.P = x - interval.nominal[0], P
+
+    def state(self, k: int) -> Array:
+        """Return the absolute state (n,) at time ``k`` of the interval."""
+        return np.asarray(self._kf.x + self._nominal[k])
+
+    def predict(self, interval: PropagationInterval, k: int, force_scale: float) -> None:
+        """Propagate from time ``k`` to the next under the set-points in force; ``force_scale``: of process noise."""
+        u, change, probability = interval.setpoints[k]
+        delta_u = np.zeros(self.process.layout.inputs) if u is None else u - interval.u(k)
+        F, B = self.process.transition(interval.duration_us(k), interval.acceleration(k))
+        Q = self.process.noise(interval.duration_us(k), force_scale)
+        if change is not None:
+            Q = Q + self.process.setpoint_noise(B, change, probability)
+        self._kf.predict(u=delta_u, F=F, B=B, Q=Q)
+
+    def inflate(self, added: Array) -> None:
+        """Add ``added`` (n, n) to the covariance."""
+        self._kf.P = self._kf.P + added
+
+    def update(self, y: Array, variance: Array, H: Array, measured: NDArray[np.int_]) -> float:
+        """Correct by measurements and return their normalised innovation squared.
+
+        Args:
+            y: measured less reference (m,).
+            variance: of the measurements (m,).
+            H: rows (m, n).
+            measured: UAVs whose position and velocity are among them.
+        """
+        kf = self._kf
+        kf.update(y, R=np.diag(variance), H=H)
+        kf.P = (kf.P + kf.P.T) / 2
+        kf.P.flat[:: self.process.size + 1] += self.process.per_vehicle_noise(measured)
+        return float(kf.y @ kf.SI @ kf.y)

@@ -1,4 +1,4 @@
-"""The set-points that act on the vehicles, from when on, and how many of them are lost on their way."""
+"""Set-points in force on the vehicles over time, and the share of them that their links lose."""
 
 from __future__ import annotations
 
@@ -10,58 +10,45 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from idc_controller.estimation.settings import SetpointHistorySettings
 
-UNCLEAR = 0.012
-"""So near to the moment at which a set-point should act it is not known which one does (s)."""
-LEAST_PERIOD = 0.012
-"""Set-points that follow each other sooner are taken to come after this time (s)."""
-SAME = np.array([2e-4, 2e-4, 2e-3])
-"""Set-points that differ by less are the same: tilts, thrust (N)."""
-LOSS_SHARE = 0.05
-"""Of one set-point in the running mean of those that are lost."""
-LOST_MAX = 20
-"""Set-points in a row whose loss is noticed."""
-PUNCTUAL = 0.005
-"""What begins to act so near to its time acts at its time (s): vehicles look for set-points once a step of theirs."""
-NEIGHBOURS = 3
-"""Set-points before and after one that may act in its place, because they come late or early."""
+Array = NDArray[np.float64]
 
 
 @dataclass
 class _Entry:
-    """Set-points of all vehicles; None: they are held. What is believed of them, vehicle by vehicle."""
+    """Set-points of all vehicles, as sent and as estimated to be flown; None: the vehicles are held."""
 
     effective: float
-    leaves: Array
-    """When they leave the ground, vehicle by vehicle (N,) (s)."""
+    sent_at: Array
+    """When they are sent to each vehicle (N,) (s)."""
     sent: Array | None
     flown: Array | None
     starts: Array
-    """When each vehicle (N,) began to fly it (s)."""
-    known: NDArray[np.bool_]
-    """Which vehicles (N,) have told so, or that they never did."""
+    """When they take effect on each vehicle (N,) (s)."""
+    confirmed: NDArray[np.bool_]
+    """Which vehicles (N,) have reported that, or that they never flew them."""
     exact: bool = True
-    """Whether all began when they should."""
+    """Whether all take effect at ``effective``."""
 
 
 class InForce(NamedTuple):
     """Set-points ``u`` (3 N,) that act for a while; None: the vehicles are held.
 
-    ``change``: against those before (3 N,), None where there is nothing to compare. ``doubt``: with what probability
-    each vehicle (N,) still flies those before.
+    ``change``: from those before (3 N,), None where there are none. ``previous``: probability with which each vehicle
+    (N,) still flies those before.
     """
 
     u: Array | None
     change: Array | None
-    doubt: Array
+    previous: Array
 
 
 class Confirmation(NamedTuple):
-    """``as_sent``: whether a vehicle flew what it was sent; None: that cannot be told yet.
+    """Result of a vehicle's report of the set-point that it flew.
 
-    ``corrected_from``: when the history has changed (s). ``delay``: from when the one flown left the ground until it
-    began to act (s); None: that was known.
+    ``as_sent``: whether the vehicle flew what it was sent; None: not decided yet. ``corrected_from``: from when on the
+    history has changed (s). ``delay``: from sending the set-point to its effect (s); None: known before.
     """
 
     as_sent: bool | None = None
@@ -70,149 +57,163 @@ class Confirmation(NamedTuple):
 
 
 class SetpointHistory:
-    """Set-points of all N vehicles in order of the time at which they act (s)."""
+    """Set-points of all N vehicles in order of the time at which they take effect (s)."""
 
-    def __init__(self, number_of_uavs: int, least_loss: float) -> None:
-        self._N, self._least_loss = number_of_uavs, least_loss
+    def __init__(self, number_of_uavs: int, settings: SetpointHistorySettings | None = None) -> None:
+        self._N = number_of_uavs
+        self._settings = s = settings or SetpointHistorySettings()
+        self._tolerance = np.array([s.tilt_tolerance, s.tilt_tolerance, s.thrust_tolerance])
         self._entries: list[_Entry] = []
-        self._spread = np.zeros(number_of_uavs)
-        self.loss = np.full(number_of_uavs, least_loss)
-        """Share of the set-points to each vehicle (N,) that is lost, ``least_loss`` at least."""
+        self._jitter = np.zeros(number_of_uavs)
+        self.loss = np.full(number_of_uavs, s.loss_min)
+        """Share of the set-points to each vehicle (N,) that is lost, ``loss_min`` or more."""
 
     def clear(self) -> None:
-        """Forget the set-points, not what is known of the links."""
+        """Discard the set-points, not the statistics of the links."""
         self._entries = []
 
-    def add(self, effective: float, u: Array | None, leaves: Array | None = None) -> None:
-        """Set-points (3 N,) that act from ``effective`` on; None: the vehicles are held.
+    def add(self, effective: float, u: Array | None, sent_at: Array | None = None) -> None:
+        """Add set-points.
 
-        ``leaves`` (N,): when they leave the ground (s); None: when they act.
+        Args:
+            effective: when they should take effect (s).
+            u: tilts and thrusts (3 N,); None: the vehicles are held.
+            sent_at: when they are sent to each vehicle (N,) (s); None: when they take effect.
         """
-        starts, known = np.full(self._N, effective), np.zeros(self._N, dtype=bool)
-        entry = _Entry(effective, starts.copy() if leaves is None else leaves, u, u, starts, known)
+        starts, confirmed = np.full(self._N, effective), np.zeros(self._N, dtype=bool)
+        entry = _Entry(effective, starts.copy() if sent_at is None else sent_at, u, u, starts, confirmed)
         bisect.insort(self._entries, entry, key=_effective)
 
     def switches(self, start: float, end: float) -> list[float]:
-        """Times between ``start`` and ``end`` at which other set-points should begin to act."""
+        """Return the times between ``start`` and ``end`` (s) at which other set-points should take effect."""
         return [entry.effective for entry in self._entries if start < entry.effective < end]
 
     def in_force(self, start: float, end: float) -> InForce:
-        """What acts between two such times, on average."""
+        """Return the mean set-points in force between two such times (s)."""
         at = self._at((start + end) / 2)
         now = self._entries[at].flown if at >= 0 else None
         before = self._entries[at - 1].flown if at >= 1 else None
         if now is None or before is None:
             return InForce(now, None, self.loss)
-        entry = self._entries[at]
-        # One that comes sooner or later than it should leaves as much variance as one that is lost that often.
-        period = max(entry.effective - self._entries[at - 1].effective, LEAST_PERIOD)
-        unknown = np.minimum(self.loss + (self._spread / period) ** 2, 1.0)
-        doubt = np.where(entry.known, (PUNCTUAL / period) ** 2 / 3.0, unknown)
-        return InForce(self._mean(at, start, end), now - before, doubt)
+        entry, s = self._entries[at], self._settings
+        # Jitter of the time of effect leaves as much variance as a loss with that probability.
+        period = max(entry.effective - self._entries[at - 1].effective, s.period_min)
+        unconfirmed = np.minimum(self.loss + (self._jitter / period) ** 2, 1.0)
+        previous = np.where(entry.confirmed, (s.punctuality / period) ** 2 / 3.0, unconfirmed)
+        return InForce(self._mean(at, start, end), now - before, previous)
 
     def _mean(self, at: int, start: float, end: float) -> Array | None:
-        near = self._entries[max(at - NEIGHBOURS, 0) : at + NEIGHBOURS + 1]
+        n = self._settings.neighbours
+        near = self._entries[max(at - n, 0) : at + n + 1]
         if all(entry.exact for entry in near) or any(entry.flown is None for entry in near):
             return self._entries[at].flown
         flown = np.array([entry.flown for entry in near])
-        # What is not known of begins after what is known to have begun before it, and before what is known after it.
-        starts, known = np.array([entry.starts for entry in near]), np.array([entry.known for entry in near])
-        after = np.minimum.accumulate(np.where(known, starts, np.inf)[::-1], axis=0)[::-1]
-        starts = np.maximum.accumulate(np.where(known, starts, np.minimum(starts, after)), axis=0)
+        # An unconfirmed one takes effect after the confirmed ones before it, and before the confirmed ones after it.
+        starts, confirmed = np.array([entry.starts for entry in near]), np.array([entry.confirmed for entry in near])
+        after = np.minimum.accumulate(np.where(confirmed, starts, np.inf)[::-1], axis=0)[::-1]
+        starts = np.maximum.accumulate(np.where(confirmed, starts, np.minimum(starts, after)), axis=0)
         starts[0] = -np.inf
         edges = np.clip(np.vstack([starts, np.full(self._N, np.inf)]), start, end)
         shares = np.diff(edges, axis=0) / (end - start)  # (entries, N)
         return np.asarray(np.einsum("ki,ki->i", np.hstack([np.repeat(shares, 2, axis=1), shares]), flown))
 
     def confirm(
-        self, uav: int, since: float, until: float, told: Array, spread: float, longest: float = math.inf
+        self, uav: int, since: float, until: float, reported: Array, jitter: float, latency_max: float = math.inf
     ) -> Confirmation | None:
-        """A vehicle says that it flew ``told``, tilt (north, east) and thrust (3,), from ``since`` to ``until`` (s).
+        """Correct the history by a vehicle's report of the set-point that it flew.
 
-        ``spread`` (s): by how much the time varies that set-points take on their way. From now on the history has it
-        when the vehicle began to fly this one, and, where others should have come since, that they were lost. Words
-        that tell of none that was sent are not believed: None. Nor is a beginning that is earlier than the set-point
-        left, or later by more than ``longest`` (s): then a clock is wrong.
+        Set-points that should have followed since were lost. A time of effect before the set-point was sent, or later
+        by more than ``latency_max``, comes from a wrong clock and is not used.
+
+        Args:
+            uav: the vehicle (0 .. N-1).
+            since, until: in which it flew the set-point (s).
+            reported: its tilt (north, east) and thrust (N) (3,).
+            jitter: by how much the latency of set-points to it varies (s).
+            latency_max: largest latency of set-points to it (s).
+
+        Returns:
+            What follows; None for a set-point that was never sent.
         """
-        self._spread[uav] = spread
-        entries, unclear = self._entries, UNCLEAR + spread
+        self._jitter[uav] = jitter
+        s, entries, tolerance = self._settings, self._entries, self._settings.time_tolerance + jitter
         which = [2 * uav, 2 * uav + 1, 2 * self._N + uav]
 
-        def is_told(u: Array | None) -> bool:
-            return u is not None and bool((np.abs(u[which] - told) < SAME).all())
+        def is_reported(u: Array | None) -> bool:
+            return u is not None and bool((np.abs(u[which] - reported) < self._tolerance).all())
 
-        newest = self._at(until + unclear)
-        # Those that should act already; then those that would come earlier than they should.
-        candidates = (*range(newest, max(newest - LOST_MAX, -1), -1), *range(newest + 1, len(entries)))
-        flown = next((k for k in candidates if is_told(entries[k].sent)), None)
+        newest = self._at(until + tolerance)
+        # Those that should be in force already; then those that would come earlier than they should.
+        candidates = (*range(newest, max(newest - s.losses_max, -1), -1), *range(newest + 1, len(entries)))
+        flown = next((k for k in candidates if is_reported(entries[k].sent)), None)
         if flown is None:
             return None
         changed = math.inf
-        overdue = [k for k in range(flown + 1, newest + 1) if entries[k].effective + unclear < until]
+        overdue = [k for k in range(flown + 1, newest + 1) if entries[k].effective + tolerance < until]
         for k in overdue:
-            changed = min(changed, self._overwrite(entries[k], uav, which, told))
+            changed = min(changed, self._set_lost(entries[k], uav, which, reported))
         first = flown
-        while first > 0 and is_told(entries[first - 1].sent):
+        while first > 0 and is_reported(entries[first - 1].sent):
             first -= 1
         delay = None
-        took = since - float(entries[first].leaves[uav])
-        if first and flown - first < LOST_MAX and -PUNCTUAL <= took <= longest:
-            if first == flown and not entries[first].known[uav]:
-                delay = max(took, 0.0)
+        latency = since - float(entries[first].sent_at[uav])
+        if first and flown - first < s.losses_max and -s.punctuality <= latency <= latency_max:
+            if first == flown and not entries[first].confirmed[uav]:
+                delay = max(latency, 0.0)
                 changed = min(changed, self._expect(entries[first + 1 :], uav, delay))
-            changed = min(changed, self._begins(entries[first], uav, which, since))
+            changed = min(changed, self._set_start(entries[first], uav, which, since))
         as_sent = None
-        if overdue or entries[flown].effective + unclear < until:
+        if overdue or entries[flown].effective + tolerance < until:
             as_sent = not overdue
             self._learn(uav, float(not as_sent))
         elif changed == math.inf and delay is None:
             return None
         return Confirmation(as_sent, changed if changed < math.inf else None, delay)
 
-    def _overwrite(self, entry: _Entry, uav: int, which: list[int], told: Array) -> float:
-        """One that never came: returns from when on that changes anything."""
-        entry.known[uav] = True
-        if entry.flown is None or bool((entry.flown[which] == told).all()):
+    def _set_lost(self, entry: _Entry, uav: int, which: list[int], flown: Array) -> float:
+        """Set what a vehicle flew instead of a lost set-point; return from when on the history changes (s)."""
+        entry.confirmed[uav] = True
+        if entry.flown is None or bool((entry.flown[which] == flown).all()):
             return math.inf
         entry.flown = entry.flown.copy()
-        entry.flown[which] = told
+        entry.flown[which] = flown
         return entry.effective
 
-    def _begins(self, entry: _Entry, uav: int, which: list[int], since: float) -> float:
-        """One that came, and when: returns from when on that changes anything."""
-        entry.known[uav] = True
+    def _set_start(self, entry: _Entry, uav: int, which: list[int], since: float) -> float:
+        """Set the time at which a set-point took effect; return from when on the history changes (s)."""
+        entry.confirmed[uav] = True
         assert entry.flown is not None and entry.sent is not None
         changed = math.inf
         if bool((entry.flown[which] != entry.sent[which]).any()):
             entry.flown = entry.flown.copy()
             entry.flown[which] = entry.sent[which]
             changed = entry.effective
-        if abs(since - entry.starts[uav]) > PUNCTUAL:
+        if abs(since - entry.starts[uav]) > self._settings.punctuality:
             changed = min(changed, since, float(entry.starts[uav]))
             entry.starts[uav], entry.exact = since, False
         return changed
 
     def _expect(self, later: list[_Entry], uav: int, delay: float) -> float:
-        """What is on its way will take as long, where that is clearly longer than was thought."""
+        """Expect the same delay of those that were sent later, where it is clearly longer than expected."""
         changed = math.inf
         for entry in later:
-            start = float(entry.leaves[uav]) + delay
-            if not entry.known[uav] and start > entry.starts[uav] + UNCLEAR:
+            start = float(entry.sent_at[uav]) + delay
+            if not entry.confirmed[uav] and start > entry.starts[uav] + self._settings.time_tolerance:
                 changed = min(changed, float(entry.starts[uav]))
                 entry.starts[uav], entry.exact = start, False
         return changed
 
     def forget(self, before: float) -> None:
-        """What does not act any more at ``before`` (s)."""
-        del self._entries[: max(self._at(before) - NEIGHBOURS, 0)]
+        """Discard what is no longer in force at ``before`` (s)."""
+        del self._entries[: max(self._at(before) - self._settings.neighbours, 0)]
 
     def _at(self, time: float) -> int:
-        """Index of the last entry that should act at ``time``; -1: none."""
+        """Return the index of the last entry that should be in force at ``time``; -1: none."""
         return bisect.bisect_right(self._entries, time, key=_effective) - 1
 
     def _learn(self, uav: int, lost: float) -> None:
-        share = self.loss[uav] + LOSS_SHARE * (lost - self.loss[uav])
-        self.loss[uav] = max(share, self._least_loss)
+        share = self.loss[uav] + self._settings.loss_share * (lost - self.loss[uav])
+        self.loss[uav] = max(share, self._settings.loss_min)
 
 
 def _effective(entry: _Entry) -> float:

@@ -1,1 +1,1 @@
-"""Which measurements may be used: innovation tests, stuck sensors, isolated channels, noise adaptation."""
+"""Sensor health: which measurements the estimator may use, and how far its own assumptions hold."""

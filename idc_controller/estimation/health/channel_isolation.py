@@ -1,115 +1,115 @@
-"""Which sensors of the vehicles have been refused for so long that nothing they say counts.
+"""Isolation of vehicles' channels that the innovation test has rejected for long, until they are consistent again.
 
-A single refusal may be the filter's error. But while it doubts its own prediction (a gust, a load that changes) its
-gate is wide, and a sensor that has been wrong all along would come through it, and be believed against all others.
+A single rejection may be the filter's error. But after a covariance reset (a gust, a load that changes) its gate is
+wide, and a sensor that has been wrong all along would pass it, and outweigh all others.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import chi2
 
-from idc_controller.estimation.measurement_model import Stack
+from idc_controller.estimation.health.channel import Channel
+from idc_controller.estimation.measurement_model import ObservationStack
 from idc_controller.estimation.measurements import PAYLOAD, Position
+from idc_controller.estimation.settings import ChannelIsolationSettings
 
 Array = NDArray[np.float64]
 
-REFUSED_FOR = 12
-"""Refusals, less what was accepted in between, after which a sensor is distrusted."""
-AGREES_FOR = 25
-"""Times in a row that it must agree with the prediction to be trusted again."""
-AGREES = float(chi2.ppf(0.999, 3))
-"""Square of an innovation, by its covariance, that agrees."""
 
+class ChannelIsolation:
+    """Isolated channels of N vehicles; never of more than half of the vehicles, which do not fail together."""
 
-class Half(NamedTuple):
-    """Pose (0) or motion (1) of one kind of measurement of one UAV."""
+    def __init__(self, number_of_uavs: int, settings: ChannelIsolationSettings | None = None) -> None:
+        self._number_of_uavs, self._settings = number_of_uavs, settings or ChannelIsolationSettings()
+        self._gate = float(chi2.ppf(self._settings.restoring_probability, 3))
+        self._rejections: dict[Channel, int] = {}
+        self._acceptances: dict[Channel, int] = {}
 
-    source: int
-    kind: type
-    which: int
-
-    @property
-    def channel(self) -> str:
-        """position, velocity, attitude or rates."""
-        return (("position", "velocity") if self.kind is Position else ("attitude", "rates"))[self.which]
-
-
-class Distrust:
-    """Of N vehicles' sensors; never of more than half of the vehicles, which are not wrong together."""
-
-    def __init__(self, number_of_uavs: int) -> None:
-        self._number_of_uavs = number_of_uavs
-        self._refused: dict[Half, int] = {}
-        self._agreed: dict[Half, int] = {}
-
-    def __copy__(self) -> Distrust:
-        other = Distrust(self._number_of_uavs)
-        other._refused, other._agreed = self._refused.copy(), self._agreed.copy()
+    def __copy__(self) -> ChannelIsolation:
+        other = ChannelIsolation.__new__(ChannelIsolation)
+        other._number_of_uavs, other._settings, other._gate = self._number_of_uavs, self._settings, self._gate
+        other._rejections, other._acceptances = self._rejections.copy(), self._acceptances.copy()
         return other
 
     @property
-    def halves(self) -> tuple[Half, ...]:
-        """What is distrusted."""
-        return tuple(self._agreed)
+    def isolated(self) -> tuple[Channel, ...]:
+        """The isolated channels."""
+        return tuple(self._acceptances)
 
     @property
-    def lost(self) -> tuple[int, ...]:
-        """UAVs of which neither position nor velocity is believed."""
-        return tuple(sorted(h.source for h in self._agreed if h.kind is Position and not h.which
-                            and h._replace(which=1) in self._agreed))  # fmt: skip
+    def uavs_without_position(self) -> tuple[int, ...]:
+        """UAVs of which both position and velocity are isolated."""
+        return tuple(sorted(c.source for c in self._acceptances if c.kind is Position and not c.part
+                            and c._replace(part=1) in self._acceptances))  # fmt: skip
 
-    def rows(self, stack: Stack) -> NDArray[np.bool_]:
-        """Rows (m,) of a whole ``stack`` that are distrusted."""
+    def rows(self, stack: ObservationStack) -> NDArray[np.bool_]:
+        """Return the rows (m,) of a whole ``stack`` that belong to isolated channels."""
         rows = np.zeros(len(stack.variance), dtype=bool)
-        for half, part in _halves(stack):
-            rows[part] = half in self._agreed
+        for channel, part in _channels(stack):
+            rows[part] = channel in self._acceptances
         return rows
 
     def learn(
-        self, stack: Stack, judged: NDArray[np.bool_], kept: NDArray[np.bool_], contradicts: Callable[[int], bool]
+        self,
+        stack: ObservationStack,
+        tested: NDArray[np.bool_],
+        accepted: NDArray[np.bool_],
+        is_inconsistent: Callable[[int], bool],
     ) -> None:
-        """From one moment: which rows (m,) were ``judged``, and ``kept``.
+        """Count the rejections of one moment, and isolate what has too many.
 
-        ``contradicts``: whether position and velocity of a UAV are against each other. Where they agree, and yet are
-        refused, it is the vehicle that does not fly as it should: it may believe in a wrong attitude.
+        Args:
+            stack: all measurements of the moment.
+            tested: its rows (m,) that took the innovation test.
+            accepted: those of them that passed.
+            is_inconsistent: whether position and velocity of a UAV contradict each other. Where they do not, and yet
+                are rejected, it is the vehicle that does not fly as it should: its own attitude estimate may be wrong.
         """
-        if not self._refused and bool(kept[judged].all()):
+        if not self._rejections and bool(accepted[tested].all()):
             return
-        for half, part in _halves(stack):
-            if not judged[part].all():
+        limit = self._settings.rejections
+        for channel, part in _channels(stack):
+            if not tested[part].all():
                 continue
-            count = self._refused.pop(half, 0) + (-1 if kept[part].all() else 1)
-            is_wrong = half.kind is not Position or contradicts(half.source)
-            if count >= REFUSED_FOR and is_wrong and self._is_no_majority_with(half.source):
-                self._agreed[half] = 0
+            count = self._rejections.pop(channel, 0) + (-1 if accepted[part].all() else 1)
+            is_wrong = channel.kind is not Position or is_inconsistent(channel.source)
+            if count >= limit and is_wrong and self._is_no_majority_with(channel.source):
+                self._acceptances[channel] = 0
             elif count > 0:
-                self._refused[half] = min(count, REFUSED_FOR)
+                self._rejections[channel] = min(count, limit)
 
-    def reconsider(self, stack: Stack, residual: Array, H: Array, P: Array, noise: float) -> None:
-        """Trust again what agrees with the prediction of covariance ``P``: innovations (m,) and their rows ``H``."""
-        for half, part in _halves(stack):
-            if half not in self._agreed or not np.isfinite(residual[part]).all():
+    def restore(self, stack: ObservationStack, residual: Array, H: Array, P: Array, noise_scale: float) -> None:
+        """Restore isolated channels that have been consistent with the prediction for long.
+
+        Args:
+            stack: all measurements of the moment.
+            residual: their innovations (m,).
+            H: their rows (m, n).
+            P: covariance of the prediction (n, n).
+            noise_scale: scale of the measurement variances.
+        """
+        for channel, part in _channels(stack):
+            if channel not in self._acceptances or not np.isfinite(residual[part]).all():
                 continue
-            covariance = H[part] @ P @ H[part].T + noise * np.diag(stack.variance[part])
-            off = float(residual[part] @ np.linalg.solve(covariance, residual[part]))
-            self._agreed[half] = self._agreed[half] + 1 if off <= AGREES else 0
-            if self._agreed[half] >= AGREES_FOR:
-                del self._agreed[half]
+            covariance = H[part] @ P @ H[part].T + noise_scale * np.diag(stack.variance[part])
+            squared = float(residual[part] @ np.linalg.solve(covariance, residual[part]))
+            self._acceptances[channel] = self._acceptances[channel] + 1 if squared <= self._gate else 0
+            if self._acceptances[channel] >= self._settings.acceptances:
+                del self._acceptances[channel]
 
     def _is_no_majority_with(self, source: int) -> bool:
-        return 2 * len({half.source for half in self._agreed} | {source}) <= self._number_of_uavs
+        return 2 * len({channel.source for channel in self._acceptances} | {source}) <= self._number_of_uavs
 
 
-def _halves(stack: Stack) -> list[tuple[Half, slice]]:
-    """Of the vehicles' measurements in a whole stack, and their rows."""
+def _channels(stack: ObservationStack) -> list[tuple[Channel, slice]]:
+    """Return the vehicles' channels in a whole stack, with their rows."""
     return [
-        (Half(source, kind, which), slice(start + which * size // 2, start + (which + 1) * size // 2))
+        (Channel(source, kind, part), slice(start + part * size // 2, start + (part + 1) * size // 2))
         for (source, kind), start, size in zip(stack.keys, stack.starts.tolist(), stack.sizes.tolist(), strict=True)
         if source != PAYLOAD
-        for which in (0, 1)
+        for part in (0, 1)
     ]

@@ -1,4 +1,4 @@
-"""Which measurements of one moment the prediction excludes: a gate on each, and on each half of what it refuses."""
+"""Innovation test of the measurements of one moment: a gate on each, and on each channel of a rejected one."""
 
 from __future__ import annotations
 
@@ -9,70 +9,73 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import chi2
 
-from idc_controller.estimation.measurement_model import Stack
+from idc_controller.estimation.measurement_model import ObservationStack
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Judgement:
-    """Of K measurements with m rows in all."""
+class InnovationTest:
+    """Result for K measurements with m rows in all."""
 
     variance: Array
-    """Of their noise, as it is assumed now (m,)."""
-    white: Array
-    """Innovations with variance 1 (m,)."""
+    """Measurement variance assumed now (m,)."""
+    normalised: Array
+    """Innovations normalised to variance 1 (m,)."""
     mean_squares: Array
-    """Of these, a measurement (K,); on average 1."""
+    """Mean square of each measurement's normalised innovation (K,); on average 1."""
     accepted: NDArray[np.bool_]
-    """(K,)"""
+    """Which measurements pass (K,)."""
     covariance: Array
-    """Of the innovations (m, m)."""
+    """Innovation covariance (m, m)."""
 
 
-class OutlierGate:
-    """The gate that lets a share ``probability`` of sound measurements through."""
+class InnovationGate:
+    """Gate that a share ``probability`` of sound measurements passes."""
 
     def __init__(self, probability: float) -> None:
         self._limits = chi2.ppf(probability, np.arange(7))
         """By the size of a measurement."""
 
-    def judge(self, residual: Array, predicted: Array, stack: Stack, noise: float) -> Judgement:
-        """The innovations ``residual`` (m,), of which the prediction has the covariance ``predicted`` (m, m).
+    def test(self, residual: Array, predicted: Array, stack: ObservationStack, noise_scale: float) -> InnovationTest:
+        """Test the measurements of one moment.
 
-        ``noise``: factor of the sensors' variances.
+        Args:
+            residual: innovations (m,).
+            predicted: covariance of the predicted measurements (m, m).
+            stack: the measurements.
+            noise_scale: scale of the measurement variances.
         """
-        variance = stack.variance * noise
+        variance = stack.variance * noise_scale
         covariance = predicted.copy()
         covariance.flat[:: len(variance) + 1] += variance
-        white = _whitened(residual, covariance, stack)
-        squares = np.add.reduceat(white**2, stack.starts) / stack.sizes
+        normalised = _normalised(residual, covariance, stack)
+        squares = np.add.reduceat(normalised**2, stack.starts) / stack.sizes
         mean_squares = np.nan_to_num(squares, nan=np.inf)
-        return Judgement(
-            variance, white, mean_squares, mean_squares * stack.sizes <= self._limits[stack.sizes], covariance
-        )
+        accepted = mean_squares * stack.sizes <= self._limits[stack.sizes]
+        return InnovationTest(variance, normalised, mean_squares, accepted, covariance)
 
-    def sound_rows(self, residual: Array, judgement: Judgement, stack: Stack) -> NDArray[np.bool_]:
-        """Rows (m,) that are accepted, or are the half of a refused measurement that is.
+    def accepted_rows(self, residual: Array, test: InnovationTest, stack: ObservationStack) -> NDArray[np.bool_]:
+        """Return the rows (m,) of accepted measurements, and of the channels that pass alone in rejected ones.
 
-        The pose or the motion may be right: a drifting position, say, comes with a true velocity.
+        Pose or motion may be right by itself: a drifting position, say, comes with a true velocity.
         """
-        rows = np.repeat(judgement.accepted, stack.sizes)
-        for c in np.flatnonzero(~judgement.accepted & (stack.sizes > 3)):
+        rows = np.repeat(test.accepted, stack.sizes)
+        for c in np.flatnonzero(~test.accepted & (stack.sizes > 3)):
             half = int(stack.sizes[c]) // 2
             for first in (stack.starts[c], stack.starts[c] + half):
                 part = slice(first, first + half)
                 with contextlib.suppress(np.linalg.LinAlgError):
-                    inverse = np.linalg.solve(judgement.covariance[part, part], residual[part])
+                    inverse = np.linalg.solve(test.covariance[part, part], residual[part])
                     rows[part] = float(residual[part] @ inverse) <= self._limits[half]
         return rows
 
 
-def _whitened(residual: Array, covariance: Array, stack: Stack) -> Array:
-    """Each measurement's innovation with variance 1 (m,), by its own block of the covariance."""
-    white = np.full(len(residual), np.inf)
+def _normalised(residual: Array, covariance: Array, stack: ObservationStack) -> Array:
+    """Return each measurement's innovation with variance 1 (m,), by its own block of the covariance."""
+    normalised = np.full(len(residual), np.inf)
     for rows in stack.rows_by_size:
-        with contextlib.suppress(np.linalg.LinAlgError):  # of a filter that is lost already
+        with contextlib.suppress(np.linalg.LinAlgError):  # of a filter that has diverged already
             factor = np.linalg.cholesky(covariance[rows[:, :, None], rows[:, None, :]])
-            white[rows] = np.linalg.solve(factor, residual[rows][..., None])[..., 0]
-    return white
+            normalised[rows] = np.linalg.solve(factor, residual[rows][..., None])[..., 0]
+    return normalised

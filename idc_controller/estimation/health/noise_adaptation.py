@@ -1,96 +1,131 @@
-"""What innovations tell of the filter's own assumptions: how noisy the sensors are, and how restless the forces.
+"""Adaptation of measurement and process noise to the innovations.
 
-Innovations whitened by their covariance have variance 1, and what one of them says of the next is nothing. Where most
-are larger without pointing where the ones before pointed, the sensors are noisier than assumed; where they keep
-pointing the same way, forces change faster than assumed (gusts, a load that is lost).
+Innovations normalised by their covariance have variance 1 and are uncorrelated in time. Where most are larger without
+correlation, the sensors are noisier than assumed; where they keep pointing the same way, forces change faster than
+assumed (gusts, a load that is lost).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from enum import Enum
 
 import numpy as np
 from numpy.typing import NDArray
 
+from idc_controller.estimation.health.innovation_test import InnovationTest
+from idc_controller.estimation.measurements import PAYLOAD, SensorKey
+from idc_controller.estimation.settings import NoiseAdaptationSettings
+
 Array = NDArray[np.float64]
 
-NOISE_MAX = 400.0
-"""Largest factor of the sensors' variances."""
-NOISY = 2.0
-"""Median over the measurements of their mean square, of a sound filter about 1, at which the factor grows."""
-LEVELS = 3
-"""Of restlessness."""
-STEP = 5.0
-"""Factor of the forces' process noise from one level to the next."""
-SHARE = 0.1
-"""Of one moment in the running mean of what is common to consecutive innovations."""
-RISES, FALLS = 0.3, 0.1
-"""That mean, of a sound filter 0 within 0.08, at which the level rises and falls."""
-DWELL = 10
-"""Moments between two changes of the level."""
-GAP = 0.2
-"""Innovations farther apart are not consecutive (s)."""
-PERSISTENT = 0.5
-"""Cosine between consecutive innovations above which it is no noise."""
+
+class Reaction(Enum):
+    """Reaction of the filter to rejected measurements."""
+
+    NONE = "none"
+    COVARIANCE_RESET = "covariance reset"
+    NOISE_INFLATION = "noise inflation"
 
 
-class Adaptation:
-    """Learns from the whitened innovations of one moment after the other."""
+class NoiseAdaptation:
+    """Learns from the normalised innovations of one moment after the other."""
 
-    def __init__(self) -> None:
-        self.noise = 1.0
-        """Factor of the sensors' variances, 1 .. :data:`NOISE_MAX`."""
+    def __init__(self, payload_rejections: int = 3, settings: NoiseAdaptationSettings | None = None) -> None:
+        """``payload_rejections``: rejections of the payload unit in a row after which the prediction is at fault."""
+        self._settings, self._payload_rejections_max = settings or NoiseAdaptationSettings(), payload_rejections
+        self.measurement_scale = 1.0
+        """Scale of the measurement variances, 1 or more."""
         self.level = 0
-        """Restlessness of the forces, 0 .. :data:`LEVELS`."""
+        """Level of the forces' process noise, 0 to ``process_levels``."""
         self._time = -np.inf
         self._keys: Sequence[object] = ()
         self._last = np.zeros(0)
-        self._common = np.zeros(2)
+        self._correlation = np.zeros(2)
         self._since_change = 0
-        self.payload_refused = 0
-        """So many times in a row the payload unit has disagreed with the prediction."""
+        self._payload_rejections = 0
 
     @property
-    def restlessness(self) -> float:
-        """Factor of the densities of the forces' process noise."""
-        return float(STEP**self.level)
+    def process_scale(self) -> float:
+        """Scale of the densities of the forces' process noise."""
+        return float(self._settings.process_step**self.level)
 
-    def persists(self, time: float, keys: Sequence[object], white: Array) -> bool:
-        """Whether the innovation ``white`` (m,) points where the last one pointed."""
-        if not self._follows(time, keys, white):
-            return False
-        product = float(white @ self._last)
-        return product > PERSISTENT * float(np.linalg.norm(white) * np.linalg.norm(self._last))
+    @property
+    def is_at_limit(self) -> bool:
+        """Whether the process noise is at its highest level."""
+        return self.level >= self._settings.process_levels
 
-    def noisier(self, mean_squares: Array) -> None:
-        """Most measurements, whose whitened innovations have these mean squares (K,), are larger than they should."""
-        self.noise = min(self.noise * float(np.clip(np.median(mean_squares), 1.0, NOISE_MAX)), NOISE_MAX)
+    def react(self, time: float, keys: Sequence[SensorKey], test: InnovationTest) -> Reaction:
+        """Return how the filter reacts to rejections, and inflate the measurement noise where that is the reaction.
+
+        Sound sensors do not fail together, so most sources of three or more are right. The payload unit, which senses
+        first what pushes the payload, is right when it persists. Otherwise a filter that kept to its prediction would
+        reject every measurement from here on.
+        """
+        if test.accepted.all():
+            self._payload_rejections = 0
+            return Reaction.NONE
+        sources = {source for source, _ in keys}
+        rejected = {source for (source, _), good in zip(keys, test.accepted, strict=True) if not good}
+        if PAYLOAD in sources:
+            self._payload_rejections = self._payload_rejections + 1 if PAYLOAD in rejected else 0
+        by_most = len(sources) >= 3 and 2 * len(rejected) > len(sources)
+        by_payload = self._payload_rejections >= self._payload_rejections_max
+        if by_payload or (by_most and self._persists(time, keys, test.normalised)):
+            return Reaction.COVARIANCE_RESET
+        if not by_most:
+            return Reaction.NONE
+        limit = self._settings.measurement_scale_max
+        growth = float(np.clip(np.median(test.mean_squares), 1.0, limit))
+        self.measurement_scale = min(self.measurement_scale * growth, limit)
+        return Reaction.NOISE_INFLATION
 
     def learn(
-        self, time: float, keys: Sequence[object], white: Array, mean_squares: Array,
+        self, time: float, keys: Sequence[object], normalised: Array, mean_squares: Array,
         accepted: NDArray[np.bool_], of_payload: NDArray[np.bool_],
     ) -> None:  # fmt: skip
-        """From one moment: rows that were ``accepted`` (m,), and which of them are ``of_payload`` (m,)."""
-        # What goes on in one direction is no noise.
-        middle = float(np.median(mean_squares)) - max(float(self._common.max()), 0.0)
-        if middle > NOISY and not self.persists(time, keys, white):
-            self.noise = min(self.noise * 1.3, NOISE_MAX)
-        elif middle < 1.0:
-            self.noise = max(self.noise * 0.97, 1.0)
-        if self._follows(time, keys, white):
-            product = white * self._last
-            self._common = self._common.copy()  # one as it was may be kept
+        """Learn from one moment.
+
+        Args:
+            time: s.
+            keys: the K measurements.
+            normalised: their normalised innovations (m,).
+            mean_squares: mean square of each (K,).
+            accepted: rows that were accepted (m,).
+            of_payload: rows of the payload unit (m,).
+        """
+        s = self._settings
+        # A correlated part is no noise.
+        median = float(np.median(mean_squares)) - max(float(self._correlation.max()), 0.0)
+        if median > s.median_limit and not self._persists(time, keys, normalised):
+            self.measurement_scale = min(self.measurement_scale * s.growth, s.measurement_scale_max)
+        elif median < 1.0:
+            self.measurement_scale = max(self.measurement_scale * s.decay, 1.0)
+        if self._follows(time, keys, normalised):
+            product = normalised * self._last
+            self._correlation = self._correlation.copy()  # a snapshot may hold the one before
             for k, part in enumerate((of_payload, ~of_payload)):
                 rows = part & accepted
                 if rows.any():
-                    self._common[k] += SHARE * (float(np.clip(product[rows].mean(), -3.0, 3.0)) - self._common[k])
+                    clipped = float(np.clip(product[rows].mean(), -3.0, 3.0))
+                    self._correlation[k] += s.correlation_share * (clipped - self._correlation[k])
             self._since_change += 1
-            common = float(self._common.max())
-            if self._since_change > DWELL and common > RISES and self.level < LEVELS:
+            correlation = float(self._correlation.max())
+            if self._since_change > s.dwell and correlation > s.correlation_rise and self.level < s.process_levels:
                 self.level, self._since_change = self.level + 1, 0
-            elif self._since_change > DWELL and common < FALLS and self.level:
+            elif self._since_change > s.dwell and correlation < s.correlation_fall and self.level:
                 self.level, self._since_change = self.level - 1, 0
-        self._time, self._keys, self._last = time, keys, white
+        self._time, self._keys, self._last = time, keys, normalised
 
-    def _follows(self, time: float, keys: Sequence[object], white: Array) -> bool:
-        return keys == self._keys and len(white) == len(self._last) and 0.0 < time - self._time <= GAP
+    def _persists(self, time: float, keys: Sequence[object], normalised: Array) -> bool:
+        """Whether the innovation (m,) points where the last one pointed."""
+        if not self._follows(time, keys, normalised):
+            return False
+        product = float(normalised @ self._last)
+        limit = self._settings.persistent_cosine
+        return product > limit * float(np.linalg.norm(normalised) * np.linalg.norm(self._last))
+
+    def _follows(self, time: float, keys: Sequence[object], normalised: Array) -> bool:
+        return (
+            keys == self._keys and len(normalised) == len(self._last) and 0.0 < time - self._time <= self._settings.gap
+        )

@@ -1,11 +1,12 @@
-"""The filter notices what its assumptions leave out: sensors that are noisier, forces that change faster."""
+"""Noise adaptation: sensors that are noisier, forces that change faster than assumed."""
 
 import numpy as np
 import pytest
 from flight_in_process import Rehearsal, check_within_limits, short_figure
 
 from gcs.mission.read import read_mission
-from idc_controller.estimation.health.noise_adaptation import LEVELS, Adaptation
+from idc_controller.estimation.health.noise_adaptation import NoiseAdaptation
+from idc_controller.estimation.settings import NoiseAdaptationSettings
 
 pytestmark = pytest.mark.slow
 
@@ -15,41 +16,41 @@ PAYLOAD_ROWS = np.arange(50) < 10
 
 
 def learnt(innovations):
-    adaptation = Adaptation()
-    for k, white in enumerate(innovations):
-        mean_squares = np.add.reduceat(white**2, np.arange(0, 50, 5)) / SIZES
-        adaptation.learn(0.04 * k, KEYS, white, mean_squares, np.ones(50, dtype=bool), PAYLOAD_ROWS)
+    adaptation = NoiseAdaptation()
+    for k, normalised in enumerate(innovations):
+        mean_squares = np.add.reduceat(normalised**2, np.arange(0, 50, 5)) / SIZES
+        adaptation.learn(0.04 * k, KEYS, normalised, mean_squares, np.ones(50, dtype=bool), PAYLOAD_ROWS)
     return adaptation
 
 
-def test_sound_innovations_change_nothing():
+def test_scales_stay_one_for_sound_innovations():
     random = np.random.default_rng(1)
     for _ in range(20):
         adaptation = learnt(random.standard_normal((500, 50)))
-        assert (adaptation.noise, adaptation.level) == (1.0, 0)
+        assert (adaptation.measurement_scale, adaptation.level) == (1.0, 0)
 
 
-def test_large_white_innovations_are_noise():
+def test_measurement_scale_grows_for_large_uncorrelated_innovations():
     adaptation = learnt(3.0 * np.random.default_rng(2).standard_normal((100, 50)))
-    assert adaptation.noise > 50.0
+    assert adaptation.measurement_scale > 50.0
     assert adaptation.level == 0
 
 
 @pytest.mark.parametrize("of_payload", [True, False])
-def test_innovations_that_point_one_way_are_forces(of_payload):
+def test_process_level_rises_for_correlated_innovations(of_payload):
     random = np.random.default_rng(3)
     pushed = np.where(of_payload == PAYLOAD_ROWS, 1.0, 0.0)
     adaptation = learnt(random.standard_normal((200, 50)) + pushed)
-    assert adaptation.level == LEVELS
-    assert adaptation.noise == 1.0
+    assert adaptation.level == NoiseAdaptationSettings().process_levels
+    assert adaptation.measurement_scale == 1.0
 
 
-def test_what_has_passed_is_forgotten():
+def test_scales_return_to_one_after_disturbance():
     random = np.random.default_rng(4)
     calm = 0.3 * random.standard_normal((500, 50))
     pushed, noisy = random.standard_normal((200, 50)) + 1.0, 5.0 * random.standard_normal((100, 50))
     adaptation = learnt([*pushed, *noisy, *calm])
-    assert (adaptation.noise, adaptation.level) == (1.0, 0)
+    assert (adaptation.measurement_scale, adaptation.level) == (1.0, 0)
 
 
 def with_faults(folder, *faults):
@@ -58,7 +59,7 @@ def with_faults(folder, *faults):
     return read_mission(mission)
 
 
-def test_noise_times_five_on_every_channel_is_flown(tmp_path):
+def test_flight_stays_within_limits_with_five_times_noise_on_every_channel(tmp_path):
     channels = ("position", "velocity", "attitude", "rates")
     every = [*channels, *(f"payload_{channel}" for channel in channels)]
     mission = with_faults(
@@ -66,11 +67,11 @@ def test_noise_times_five_on_every_channel_is_flown(tmp_path):
     )  # fmt: skip
     with Rehearsal(mission, tmp_path / "run", seed=41) as flight:
         flight.fly()
-        assert flight.flight.estimator.adaptation.noise > 5.0
+        assert flight.flight.estimator.health.adaptation.measurement_scale > 5.0
         check_within_limits(flight.summary(), rmse=0.1)
 
 
-def test_wind_with_gusts_is_flown(tmp_path):
+def test_flight_completes_in_gusty_wind(tmp_path):
     wind = 'kind = "wind"\nvelocity = [2.0, 2.0, 0.0]\ngust = 0.6\nstart = 5.0'
     with Rehearsal(with_faults(tmp_path, wind), tmp_path / "run", seed=42) as flight:
         flight.fly()
@@ -81,7 +82,7 @@ def test_wind_with_gusts_is_flown(tmp_path):
     assert summary["uav_separation_min_m"] >= 0.75
 
 
-def test_a_third_of_all_datagrams_may_be_lost(tmp_path):
+def test_flight_stays_within_limits_with_a_third_of_datagrams_lost(tmp_path):
     mission = with_faults(tmp_path, 'kind = "packet_loss"\nprobability = 0.3\nstart = 0.0')
     with Rehearsal(mission, tmp_path / "run", seed=43) as flight:
         flight.fly()

@@ -1,16 +1,16 @@
-"""Measurements in order, however they came."""
+"""Measurement history: in order of time, whatever the order of arrival."""
 
 import numpy as np
 
-from idc_controller.estimation.measurement_history import MeasurementHistory
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
+from idc_controller.estimation.replay import MeasurementHistory
 
 
 def position(time, source=0):
     return Position(time, source, np.zeros(3), np.zeros(3))
 
 
-def test_moments_are_in_order_and_what_is_simultaneous_is_one():
+def test_history_orders_moments_and_joins_simultaneous_measurements():
     history = MeasurementHistory(0.002)
     for time in (0.3, 0.1, 0.2, 0.1015):
         history.add(position(time, source=round(1e4 * time)), applied=0.0)
@@ -19,14 +19,14 @@ def test_moments_are_in_order_and_what_is_simultaneous_is_one():
     assert [moment.time for moment in history.after(0.1)] == [0.2, 0.3]
 
 
-def test_the_time_from_which_all_counts_anew_is_that_of_the_moment():
+def test_history_returns_time_of_moment_to_replay_from():
     history = MeasurementHistory(0.002)
     assert history.add(position(0.1), applied=0.0) == 0.1
     assert history.add(position(0.1015, source=1), applied=0.2) == 0.1
     assert history.add(position(0.05), applied=0.2) == 0.05
 
 
-def test_a_relay_of_what_was_applied_adds_nothing():
+def test_history_ignores_relay_of_applied_payload_sample():
     history = MeasurementHistory(0.002)
     assert history.add(position(0.1, PAYLOAD), applied=0.0) == 0.1
     assert history.add(position(0.1, PAYLOAD), applied=0.0) == 0.1
@@ -35,7 +35,7 @@ def test_a_relay_of_what_was_applied_adds_nothing():
     assert len(moment.measurements[PAYLOAD, Position]) == 2
 
 
-def test_what_is_forgotten_is_gone():
+def test_history_discards_moments_until_time():
     history = MeasurementHistory(0.002)
     for time in (0.1, 0.2, 0.3):
         history.add(position(time), applied=0.0)
@@ -43,5 +43,3 @@ def test_what_is_forgotten_is_gone():
     assert [moment.time for moment in history.after(0.0)] == [0.3]
     assert history.has((0, Position), since=0.2) and not history.has((0, Position), since=0.3)
     assert not history.has((0, Attitude), since=0.0)
-    history.clear()
-    assert history.after(0.0) == []

@@ -1,0 +1,82 @@
+"""Measurement update: innovations of one moment, their test, and the correction of the filter."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from idc_controller.estimation.estimate import InnovationRecord
+from idc_controller.estimation.health.covariance_reset import reset_covariance
+from idc_controller.estimation.health.innovation_test import InnovationGate
+from idc_controller.estimation.health.noise_adaptation import Reaction
+from idc_controller.estimation.health.sensor_health import SensorHealth
+from idc_controller.estimation.measurement_model import MeasurementModel
+from idc_controller.estimation.measurements import Position, median_of
+from idc_controller.estimation.propagation import ErrorStateFilter
+from idc_controller.estimation.replay import Moment
+from idc_controller.estimation.settings import EstimatorSettings
+from idc_controller.trajectory.flatness import FlatReference
+
+Array = NDArray[np.float64]
+
+
+class MeasurementUpdate:
+    """Corrects a filter by the measurements of one moment after the other."""
+
+    def __init__(self, model: MeasurementModel, health: SensorHealth, settings: EstimatorSettings) -> None:
+        self._model, self._health, self._settings = model, health, settings
+        self._gate = InnovationGate(settings.gate_probability)
+
+    def apply(
+        self, filter: ErrorStateFilter, moment: Moment, flat: FlatReference, k: int, adapt: bool
+    ) -> InnovationRecord | None:
+        """Correct ``filter`` by the measurements of ``moment``.
+
+        Args:
+            filter: predicted to that time.
+            moment: the measurements.
+            flat: the reference.
+            k: index of that time in the reference.
+            adapt: whether covariance, noise and isolation may adapt to rejections.
+
+        Returns:
+            The innovation test; None where no measurement may be used.
+        """
+        health, size = self._health, filter.process.layout.size
+        measurements = [median_of(copies) for copies in moment.measurements.values()]
+        for measurement in measurements:
+            health.dead_reckoning.add(measurement)
+        whole = stack = self._model.stack(tuple(moment.measurements))
+        y = np.concatenate([self._model.innovation(health.usable(m), flat, k) for m in measurements])
+        H = np.zeros((len(y), filter.process.size))
+        self._model.observe(stack, flat, k, into=H[:, :size])
+        present = health.usable_rows(stack, y, H, filter.x, filter.P)
+        if not present.any():
+            return None
+        if not present.all():
+            stack, y, H = stack.subset(present), y[present], H[present]
+        keys, adaptation = stack.keys, health.adaptation
+        residual = y - H @ filter.x
+        test = self._gate.test(residual, H @ filter.P @ H.T, stack, adaptation.measurement_scale)
+        reaction = adaptation.react(moment.time, keys, test) if adapt else Reaction.NONE
+        if reaction is Reaction.COVARIANCE_RESET:
+            filter.inflate(reset_covariance(filter.process, filter.P, self._settings.reset))
+        if reaction is not Reaction.NONE:
+            test = self._gate.test(residual, H @ filter.P @ H.T, stack, adaptation.measurement_scale)
+        accepted = self._gate.accepted_rows(residual, test, stack)
+        rejected = [c for c, good in enumerate(test.accepted.tolist()) if not good]
+        poses = [keys[c] for c in rejected if keys[c][1] is Position or not accepted[stack.starts[c]]]
+        health.rejected(moment.time, poses)
+        accepted_of_all = present.copy()
+        accepted_of_all[present] = accepted
+        if adapt:
+            health.isolation.learn(whole, present, accepted_of_all, health.dead_reckoning.is_inconsistent)
+            adaptation.learn(moment.time, keys, test.normalised, test.mean_squares, accepted, stack.of_payload)
+        squared = 0.0
+        if accepted.any():
+            measured = accepted_of_all[whole.heights] & accepted_of_all[whole.heights + 3]
+            squared = filter.update(y[accepted], test.variance[accepted], H[accepted], whole.uavs[measured])
+        return InnovationRecord(
+            moment.time, squared, int(accepted.sum()), tuple(keys[c] for c in rejected),
+            reaction is Reaction.COVARIANCE_RESET, keys, stack.split(test.normalised),
+        )  # fmt: skip

@@ -1,0 +1,122 @@
+"""Replay of late measurements: they are kept in order of their time, with snapshots of the filter to return to."""
+
+from __future__ import annotations
+
+import bisect
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from idc_controller.estimation.health.sensor_health import HealthSnapshot
+from idc_controller.estimation.measurements import PAYLOAD, Measurement, SensorKey
+
+Array = NDArray[np.float64]
+
+
+@dataclass
+class Moment:
+    """Measurements of one ``time`` (s) by source and kind; of the payload with all relayed copies."""
+
+    time: float
+    measurements: dict[SensorKey, list[Measurement]]
+
+
+class MeasurementHistory:
+    """Moments, the earliest first. Times in s."""
+
+    def __init__(self, simultaneous: float) -> None:
+        """``simultaneous``: measurements closer than this (s) are of one moment."""
+        self._simultaneous = simultaneous
+        self._moments: list[Moment] = []
+
+    def add(self, measurement: Measurement, applied: float) -> float | None:
+        """Add one; return the time of its moment, or None if it adds nothing to what was ``applied`` until then (s)."""
+        time = measurement.time
+        at = bisect.bisect_left(self._moments, time - self._simultaneous, key=_time_of)
+        if at < len(self._moments) and self._moments[at].time <= time + self._simultaneous:
+            moment = self._moments[at]
+        else:
+            moment = Moment(time, {})
+            self._moments.insert(at, moment)
+        copies = moment.measurements.setdefault((measurement.source, type(measurement)), [])
+        if copies and measurement.source == PAYLOAD and moment.time <= applied:
+            return None  # another vehicle's relay of what was applied already
+        copies.append(measurement)
+        return moment.time
+
+    def after(self, time: float) -> list[Moment]:
+        """Return the moments after ``time`` (s)."""
+        return self._moments[bisect.bisect_right(self._moments, time, key=_time_of) :]
+
+    def has(self, key: SensorKey, since: float) -> bool:
+        """Return whether there is a measurement of a source and kind after ``since`` (s)."""
+        return any(key in moment.measurements for moment in self.after(since))
+
+    def forget(self, until: float) -> None:
+        """Discard all moments until that time (s)."""
+        del self._moments[: bisect.bisect_right(self._moments, until, key=_time_of)]
+
+
+@dataclass(frozen=True, eq=False)
+class Snapshot:
+    """The filter after the measurements of one time (s)."""
+
+    time: float
+    x: Array
+    """Absolute state (n,)."""
+    P: Array
+    """(n, n)"""
+    health: HealthSnapshot
+
+
+class ReplayBuffer:
+    """Measurements and snapshots of the last ``duration`` (s)."""
+
+    def __init__(self, duration: float, simultaneous: float) -> None:
+        """``simultaneous``: measurements closer than this (s) are of one moment."""
+        self._duration, self._simultaneous = duration, simultaneous
+        self.measurements = MeasurementHistory(simultaneous)
+        self.snapshots: list[Snapshot] = []
+
+    def start(self, first: Snapshot) -> None:
+        """Discard all and begin with a snapshot."""
+        self.measurements = MeasurementHistory(self._simultaneous)
+        self.snapshots = [first]
+
+    @property
+    def time(self) -> float:
+        """Time of the last measurement that was applied (s); -inf before the start."""
+        return self.snapshots[-1].time if self.snapshots else -math.inf
+
+    def add(self, measurement: Measurement) -> bool:
+        """Add a measurement and return to before it; returns False for one that is too old."""
+        if measurement.time <= max(self.snapshots[0].time, self.time - self._duration):
+            return False
+        moment = self.measurements.add(measurement, self.time)
+        if moment is not None:
+            self.rewind(moment)
+        return True
+
+    def rewind(self, time: float) -> None:
+        """Return to before ``time`` (s), as far as there are snapshots."""
+        while len(self.snapshots) > 1 and self.snapshots[-1].time >= time:
+            self.snapshots.pop()
+
+    def pending(self) -> list[Moment]:
+        """Return the moments that are not applied yet."""
+        return self.measurements.after(self.time)
+
+    def forget(self) -> float:
+        """Discard what is older than the duration; return the oldest time that is left (s)."""
+        horizon = self.time - self._duration
+        keep = max(bisect.bisect_right(self.snapshots, horizon, key=lambda s: s.time) - 1, 0)
+        del self.snapshots[:keep]
+        oldest = self.snapshots[0].time
+        self.measurements.forget(oldest)
+        return oldest
+
+
+def _time_of(moment: Moment) -> float:
+    return moment.time

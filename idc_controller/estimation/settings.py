@@ -1,0 +1,220 @@
+"""Settings of the estimator: noise densities, tests, isolation, adaptation and memory."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from idc_controller.settings import setting
+
+
+@dataclass(frozen=True)
+class ProcessNoiseSettings:
+    """Densities of the white noise that drives what the linear model leaves out, per square root of a second."""
+
+    payload_acceleration: float = setting(0.003, "m/s2/sqrt(s)", "noise of the payload's acceleration", ge=0.0)
+    payload_angular_acceleration: float = setting(
+        0.003, "rad/s2/sqrt(s)", "noise of the payload's angular acceleration", ge=0.0
+    )
+    link_acceleration: float = setting(0.0015, "1/s2/sqrt(s)", "noise of the acceleration of link directions", ge=0.0)
+    uav_jerk: float = setting(1.0, "1/s3/sqrt(s)", "noise of the third derivative of a UAV's thrust direction", ge=0.0)
+    thrust: float = setting(0.012, "N/s/sqrt(s)", "noise of the derivative of a UAV's thrust", ge=0.0)
+    force: float = setting(0.05, "N/sqrt(s)", "random walk of the disturbance force on the payload", ge=0.0)
+    uav_force: float = setting(0.01, "N/sqrt(s)", "random walk of the disturbance force common to the UAVs", ge=0.0)
+    per_vehicle_force: float = setting(
+        0.01, "N", "change of each UAV's own disturbance force between two samples of its position and velocity", ge=0.0
+    )
+    mass: float = setting(0.005, "kg/sqrt(s)", "random walk of the payload's mass", ge=0.0)
+
+
+@dataclass(frozen=True)
+class InitialCovarianceSettings:
+    """Standard deviations of the state of a team that stands on the ground."""
+
+    position: float = setting(0.05, "m", "initial uncertainty of the payload's position", gt=0.0)
+    velocity: float = setting(0.02, "m/s", "initial uncertainty of the payload's velocity", gt=0.0)
+    attitude: float = setting(0.02, "rad", "initial uncertainty of the payload's attitude", gt=0.0)
+    rates: float = setting(0.02, "rad/s", "initial uncertainty of the payload's body rates", gt=0.0)
+    link: float = setting(0.02, "", "initial uncertainty of the lateral parts of the link directions", gt=0.0)
+    link_rate: float = setting(0.02, "1/s", "initial uncertainty of their derivatives", gt=0.0)
+    thrust_direction: float = setting(0.03, "", "initial uncertainty of the UAVs' thrust directions", gt=0.0)
+    thrust_direction_rate: float = setting(0.1, "1/s", "initial uncertainty of their first derivatives", gt=0.0)
+    thrust_direction_acceleration: float = setting(
+        0.3, "1/s2", "initial uncertainty of their second derivatives", gt=0.0
+    )
+    thrust: float = setting(0.5, "N", "initial uncertainty of a UAV's thrust", gt=0.0)
+    mass: float = setting(0.2, "kg", "initial uncertainty of the payload's mass about its nominal one", ge=0.0)
+    force: float = setting(0.3, "N", "initial uncertainty of the disturbance force on the payload", ge=0.0)
+    uav_force: float = setting(0.05, "N", "initial uncertainty of the disturbance force common to the UAVs", ge=0.0)
+    per_vehicle_force: float = setting(0.05, "N", "initial uncertainty of each UAV's own disturbance force", ge=0.0)
+
+
+@dataclass(frozen=True)
+class CovarianceResetSettings:
+    """Standard deviations added to a prediction that most measurements contradict: what a gust or a blow changes."""
+
+    velocity: float = setting(0.1, "m/s", "added to the payload's velocity", ge=0.0)
+    rates: float = setting(0.1, "rad/s", "added to the payload's body rates", ge=0.0)
+    link_rate: float = setting(0.03, "1/s", "added to the derivatives of the link directions", ge=0.0)
+    force: float = setting(3.0, "N", "to which the uncertainty of the payload's disturbance force is raised", ge=0.0)
+    payload_rejections: int = setting(
+        3, "", "rejections of the payload unit in a row after which the prediction is reset rather than the unit", ge=1
+    )
+
+
+@dataclass(frozen=True)
+class MeasurementModelSettings:
+    """Least standard deviations of measurements: the linear model's own errors, whatever the sensor's noise is."""
+
+    position_noise_min: float = setting(2e-3, "m", "least noise assumed of a position", gt=0.0)
+    velocity_noise_min: float = setting(4e-3, "m/s", "least noise assumed of a velocity", gt=0.0)
+    attitude_noise_min: float = setting(2e-4, "rad", "least noise assumed of an attitude", gt=0.0)
+    rates_noise_min: float = setting(1e-3, "rad/s", "least noise assumed of body rates", gt=0.0)
+
+
+@dataclass(frozen=True)
+class StuckSensorSettings:
+    """When a repeated value is no measurement any more."""
+
+    repeats: int = setting(2, "", "repetitions to the digit after which a channel is stuck", ge=1)
+    relay_interval: float = setting(
+        0.02, "s", "by how much the stamps of one payload sample differ when several vehicles relay it", ge=0.0
+    )
+
+
+@dataclass(frozen=True)
+class ChannelIsolationSettings:
+    """When a channel of a vehicle is isolated, and when it is restored."""
+
+    rejections: int = setting(12, "", "rejections less acceptances after which a channel is isolated", ge=1)
+    acceptances: int = setting(25, "", "consistent samples in a row after which it is restored", ge=1)
+    restoring_probability: float = setting(0.999, "", "share of sound samples that count as consistent", gt=0.0, lt=1.0)
+    unusable_time: float = setting(
+        0.5, "s", "for which a pose counts as unusable after it was missing, stuck or rejected", ge=0.0
+    )
+
+
+@dataclass(frozen=True)
+class DeadReckoningSettings:
+    """When poses contradict the motion measured with them."""
+
+    window: float = setting(2.0, "s", "over which poses are compared with their integrated motion", gt=0.0)
+    gap: float = setting(0.3, "s", "without a sample after which the integration starts anew", gt=0.0)
+    samples: int = setting(9, "", "samples at either end of the window whose median is compared", ge=1)
+    smoothed: int = setting(5, "", "samples whose median motion is integrated", ge=1)
+    position_error: float = setting(0.03, "m", "error of integrated velocities over the window", gt=0.0)
+    attitude_error: float = setting(0.02, "rad", "error of integrated body rates over the window", gt=0.0)
+    sigmas: float = setting(5.0, "", "standard deviations of the medians' difference allowed beside that", gt=0.0)
+    consistent_ratio: float = setting(
+        0.5,
+        "",
+        "test ratio up to which a source is evidence against inconsistent ones (1: inconsistent)",
+        gt=0.0,
+        lt=1.0,
+    )
+    consecutive: int = setting(
+        3, "", "inconsistent tests in a row that are needed of the payload unit, which has no second one", ge=1
+    )
+    misfit_limit: float = setting(
+        25.0, "", "squared normalised innovation at most counted when poses and motions of a group are compared", gt=0.0
+    )
+
+
+@dataclass(frozen=True)
+class NoiseAdaptationSettings:
+    """How measurement and process noise follow the innovations."""
+
+    measurement_scale_max: float = setting(400.0, "", "largest scale of the measurement variances", ge=1.0)
+    median_limit: float = setting(2.0, "", "median squared normalised innovation above which the scale grows", gt=1.0)
+    growth: float = setting(1.3, "", "factor of the scale at each such update", gt=1.0)
+    decay: float = setting(0.97, "", "factor of the scale where that median is below 1", gt=0.0, lt=1.0)
+    process_levels: int = setting(3, "", "highest level of the process-noise scale of the forces", ge=0)
+    process_step: float = setting(5.0, "", "factor of the forces' process noise from level to level", gt=1.0)
+    correlation_share: float = setting(
+        0.1, "", "share of an update in the mean correlation of innovations", gt=0.0, le=1.0
+    )
+    correlation_rise: float = setting(0.3, "", "mean correlation above which the level rises", gt=0.0)
+    correlation_fall: float = setting(0.1, "", "mean correlation below which it falls", gt=0.0)
+    dwell: int = setting(10, "", "updates between two changes of the level", ge=0)
+    gap: float = setting(0.2, "s", "between updates that are still consecutive", gt=0.0)
+    persistent_cosine: float = setting(
+        0.5, "", "cosine between consecutive innovations above which a mismatch is no noise", gt=-1.0, lt=1.0
+    )
+
+
+@dataclass(frozen=True)
+class SetpointHistorySettings:
+    """How commanded set-points are matched with those the vehicles report to have flown."""
+
+    loss_min: float = setting(0.005, "", "least probability with which a set-point is lost on its link", gt=0.0, le=1.0)
+    loss_share: float = setting(0.05, "", "share of one set-point in the running mean of the loss", gt=0.0, le=1.0)
+    losses_max: int = setting(20, "", "set-points lost in a row that are noticed", ge=1)
+    time_tolerance: float = setting(
+        0.012, "s", "about the time at which a set-point takes effect in which it is not known which one acts", ge=0.0
+    )
+    period_min: float = setting(0.012, "s", "least time between set-points", gt=0.0)
+    punctuality: float = setting(
+        0.005,
+        "s",
+        "error of the time at which a vehicle reports that a set-point took effect: a step of its own",
+        ge=0.0,
+    )
+    tilt_tolerance: float = setting(2e-4, "", "by which the tilts of one set-point differ", ge=0.0)
+    thrust_tolerance: float = setting(2e-3, "N", "by which the thrusts of one set-point differ", ge=0.0)
+    neighbours: int = setting(3, "", "set-points before and after one that may act in its place", ge=1)
+
+
+@dataclass(frozen=True)
+class WindSettings:
+    """Memory, uncertainties and extent of the wind estimate."""
+
+    memory: float = setting(10.0, "s", "time constant with which the past is discounted", gt=0.0)
+    speed_max: float = setting(8.0, "m/s", "largest wind along each axis", gt=0.0)
+    spacing: float = setting(0.5, "m/s", "spacing of the grid of winds", gt=0.0)
+    gust_force: float = setting(1.0, "N", "force that a steady wind leaves unexplained, root mean square", gt=0.0)
+    gust_time: float = setting(2.0, "s", "correlation time of that force", gt=0.0)
+    factor_sigma: float = setting(0.3, "", "standard deviation of the drag factor about 1", gt=0.0)
+    factor_max: float = setting(2.0, "", "largest drag factor", gt=0.0)
+    speed_sigma: float = setting(4.0, "m/s", "standard deviation of the wind along each axis", gt=0.0)
+    force_min: float = setting(0.4, "N", "force below which there is no wind, root mean square over the memory", gt=0.0)
+    explained_min: float = setting(
+        0.3, "", "share of the force that a wind must explain to be used at all", ge=0.0, le=1.0
+    )
+    explained_full: float = setting(0.7, "", "share from which on it is used wholly", gt=0.0, le=1.0)
+
+
+@dataclass(frozen=True)
+class InnovationMonitorSettings:
+    """When the innovations of one sensor over about a second show a bias or noise."""
+
+    false_alarm: float = setting(
+        1e-10, "", "probability per sample of an alarm of a sound sensor; an hour has about 1e6 samples", gt=0.0, lt=1.0
+    )
+    share: float = setting(0.04, "", "share of one sample in the running means", gt=0.0, lt=1.0)
+    rejections: int = setting(3, "", "rejections within the time below that are an alarm", ge=1)
+    rejection_time: float = setting(1.0, "s", "in which they are counted", gt=0.0)
+    manoeuvre_factor: float = setting(
+        2.5, "", "of these limits for a UAV's attitude, whose model is less exact in quick manoeuvres", ge=1.0
+    )
+
+
+@dataclass(frozen=True)
+class EstimatorSettings:
+    """All settings of the estimator, by part."""
+
+    gate_probability: float = setting(
+        1.0 - 1e-6, "", "share of sound measurements that pass the innovation test", gt=0.0, lt=1.0
+    )
+    history: float = setting(1.0, "s", "by which a measurement may be late and is still used", gt=0.0)
+    simultaneous: float = setting(0.002, "s", "within which measurements are of one moment", ge=0.0)
+    payload_timeout: float = setting(
+        0.3, "s", "without the payload unit after which a payload on the ground is taken to stay", gt=0.0
+    )
+    process: ProcessNoiseSettings = field(default_factory=ProcessNoiseSettings)
+    initial: InitialCovarianceSettings = field(default_factory=InitialCovarianceSettings)
+    reset: CovarianceResetSettings = field(default_factory=CovarianceResetSettings)
+    measurement: MeasurementModelSettings = field(default_factory=MeasurementModelSettings)
+    stuck_sensor: StuckSensorSettings = field(default_factory=StuckSensorSettings)
+    isolation: ChannelIsolationSettings = field(default_factory=ChannelIsolationSettings)
+    dead_reckoning: DeadReckoningSettings = field(default_factory=DeadReckoningSettings)
+    adaptation: NoiseAdaptationSettings = field(default_factory=NoiseAdaptationSettings)
+    setpoints: SetpointHistorySettings = field(default_factory=SetpointHistorySettings)

@@ -1,0 +1,85 @@
+"""Innovation monitor: biases, noise and repeated rejections of one sensor."""
+
+import numpy as np
+import pytest
+
+from idc_controller.estimation.health.innovation_monitor import InnovationMonitor
+from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
+from idc_controller.estimation.settings import InnovationMonitorSettings
+
+KEYS = ((PAYLOAD, Position), (0, Position), (1, Position), (1, Attitude))
+SIZES = (6, 6, 6, 4)
+GATE = 1.0 - 1e-6
+REJECTIONS = InnovationMonitorSettings().rejections
+
+
+def findings(samples, *, changed=lambda k, i, white: white, rejected=lambda k: ()):
+    """Return sensor and finding with the time of its first report, after so many moments of normal innovations."""
+    random, monitor, found = np.random.default_rng(5), InnovationMonitor(GATE), {}
+    for k in range(samples):
+        time = 0.04 * k
+        white = [changed(k, i, random.standard_normal(size)) for i, size in enumerate(SIZES)]
+        monitor.learn(time, KEYS, white, rejected(k))
+        for key, names in monitor.findings(time).items():
+            for name in names:
+                found.setdefault((key, name), time)
+    return found
+
+
+def test_monitor_has_no_finding_for_sound_innovations_and_single_rejections():
+    single = [((0, Position),) if k % 15 == 0 else () for k in range(5000)]
+    assert findings(5000, rejected=lambda k: single[k]) == {}
+
+
+def test_monitor_has_no_finding_for_single_outliers():
+    assert findings(2000, changed=lambda k, i, white: white + 1e6 * (i == 1 and k % 100 == 50)) == {}
+
+
+def test_monitor_finds_repeated_rejections():
+    found = findings(200, rejected=lambda k: [(1, Position)] if k >= 100 else ())
+    assert found == {((1, Position), "refused"): pytest.approx(0.04 * (100 + REJECTIONS - 1))}
+
+
+@pytest.mark.parametrize("which", [0, 1])
+def test_monitor_finds_bias_far_below_the_gate(which):
+    push = np.array([0.0, 0.0, 1.5, 0.0, 0.0, 0.0])
+    found = findings(300, changed=lambda k, i, white: white + push if i == which and k >= 100 else white)
+    assert {key for key, _ in found} == {KEYS[which]}
+    assert 4.0 < found[KEYS[which], "disagrees"] < 6.5
+
+
+def test_monitor_finds_noise_of_one_sensor():
+    found = findings(300, changed=lambda k, i, white: white * (2.0 if i == 2 and k >= 100 else 1.0))
+    assert {key for key, _ in found} == {KEYS[2]}
+    assert 4.0 < found[KEYS[2], "noisy"] < 6.0
+
+
+def test_monitor_allows_attitudes_larger_innovations():
+    assert findings(300, changed=lambda k, i, white: white * (1.5 if i == 3 else 1.0)) == {}
+    assert (KEYS[3], "noisy") in findings(300, changed=lambda k, i, white: white * (3.0 if i == 3 else 1.0))
+
+
+def test_monitor_forgets_attitudes_of_uavs_only():
+    monitor = InnovationMonitor(GATE)
+    for k in range(50):
+        monitor.learn(0.04 * k, KEYS, [np.full(size, 5.0) for size in SIZES], ())
+    monitor.forget_attitudes()
+    assert set(monitor.findings(2.0)) == set(KEYS[:3])
+
+
+def test_monitor_treats_single_channel_by_itself():
+    rng, monitor, key = np.random.default_rng(4), InnovationMonitor(GATE), (1, Position)
+    for k in range(200):
+        white = rng.standard_normal(6) if k < 50 else rng.standard_normal(3) + (2.0 if k >= 100 else 0.0)
+        monitor.learn(0.04 * k, [key], [white], [])
+        found = monitor.findings(0.04 * k)
+        if k < 100:
+            assert found == {}
+    assert "disagrees" in found[key]
+
+
+def test_monitor_counts_replayed_moment_once():
+    monitor = InnovationMonitor(GATE)
+    for k in range(2 * REJECTIONS):
+        monitor.learn(0.1, KEYS[:1], [np.zeros(6)], [(PAYLOAD, Position)])
+        assert monitor.findings(0.1 + 0.01 * k) == {}

@@ -1,0 +1,40 @@
+"""Stuck sensors: repeated values of a channel with noise."""
+
+import numpy as np
+import pytest
+
+from idc_controller.estimation.health.stuck_sensor import StuckSensors
+from idc_controller.estimation.measurements import PAYLOAD, Attitude, MeasurementNoise, Position
+
+NOISE = MeasurementNoise()
+UNIT = np.array([1.0, 0.0, 0.0, 0.0])
+
+
+@pytest.mark.parametrize("source", [PAYLOAD, 2])
+@pytest.mark.parametrize("part", [0, 1])
+@pytest.mark.parametrize("kind", [Position, Attitude])
+def test_stuck_part_is_detected_alone(source, part, kind):
+    random, sensors = np.random.default_rng(1), StuckSensors(NOISE)
+
+    def sample(k):
+        parts = [random.standard_normal(4 if kind is Attitude else 3), random.standard_normal(3)]
+        if k >= 5:
+            parts[part] = np.ones(len(parts[part]))
+        return kind(0.04 * k, source, *parts)
+
+    found = [sensors.check(sample(k)) for k in range(12)]
+    assert [stuck[part] for stuck in found] == [False] * 7 + [True] * 5
+    assert not any(stuck[1 - part] for stuck in found)
+    assert not any(sensors.check(kind(1.0, source, random.standard_normal(4 if kind is Attitude else 3), np.zeros(3))))
+
+
+def test_relayed_and_late_copies_do_not_count_as_repeats():
+    sensors = StuckSensors(NOISE)
+    for k in range(5):
+        for time in (0.04 * k, 0.04 * k, 0.04 * k, 0.04 * max(k - 1, 0)):
+            assert not any(sensors.check(Position(time, PAYLOAD, np.full(3, time), np.full(3, 2.0 + time))))
+
+
+def test_repeated_value_is_not_stuck_without_noise():
+    sensors = StuckSensors(MeasurementNoise(position=0.0, uav_velocity=0.0))
+    assert not any(any(sensors.check(Position(0.04 * k, 1, np.zeros(3), np.zeros(3)))) for k in range(9))
