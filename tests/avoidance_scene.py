@@ -9,7 +9,9 @@ from scipy.spatial import ConvexHull
 
 from idc_controller.estimation.estimate import Estimate
 from idc_controller.geometry.shapes import PredictedObstacle, Shape
-from idc_controller.guidance.navigator import NavigatorSettings
+from idc_controller.guidance.navigator import Navigator
+from idc_controller.guidance.progress import AdaptiveGuidance
+from idc_controller.guidance.settings import NavigatorSettings, ProgressSettings
 from idc_controller.safety.safety_filter import AvoidanceFilter
 from idc_controller.safety.settings import PlannerSettings
 from idc_controller.trajectory.flatness import Load, flat_forces
@@ -101,20 +103,44 @@ def straight(length, speed=1.5, altitude=5.0, start=0.0):
     return WaypointTrajectory([0.0, 0.0, -altitude], legs, Limits(speed, 1.5, 2.0, 6.0), start=start)
 
 
+class Avoidance:
+    """Guidance and safety filter together, as the controller runs them."""
+
+    def __init__(self, safety, guidance):
+        self.safety, self.guidance = safety, guidance
+
+    @property
+    def report(self):
+        return self.safety.report
+
+    def step(self, time, mission, estimate):
+        """The trajectory to track from ``time`` on."""
+        trajectory = self.safety.filter(time, self.guidance.reference(time, mission), estimate)
+        self.guidance.observe(trajectory, self.report.lag, self.report.deviation, None)
+        return trajectory
+
+
 def avoidance(obstacles, n=4, margin=0.5, speed=1.5, **settings):
+    parameters, scene = system(n), Scene(obstacles)
+    safety = AvoidanceFilter(parameters, PlannerSettings(margin=margin, **settings), scene)
+    stages = safety.settings.chain.times
     navigation = NavigatorSettings(limits=Limits(speed, 1.5, 2.0, 6.0), margin=margin)
-    return AvoidanceFilter(system(n), PlannerSettings(margin=margin, **settings), Scene(obstacles), navigation)
+    navigator = Navigator(parameters, navigation, scene, stages)
+    guidance = AdaptiveGuidance(navigator, ProgressSettings(), stages, parameters.m_0 * parameters.g)
+    return Avoidance(safety, guidance)
 
 
 @dataclass
 class Flown:
     """What a flight came to."""
 
-    safety: AvoidanceFilter
+    avoidance: Avoidance
     mission: WaypointTrajectory
     times: list = field(default_factory=list)
     derivatives: list = field(default_factory=list)
     reports: list = field(default_factory=list)
+    rates: list = field(default_factory=list)
+    """Progress rates."""
     seams: list = field(default_factory=list)
     """Largest step of position to snap where one plan follows another (5,)."""
     ends_at: float = np.nan
@@ -131,9 +157,9 @@ class Flown:
 
     def clearance(self, every=2):
         """Least true distance of every obstacle to the exact hull, {name: m}."""
-        points = hull_of(self.safety.navigator and system(self.safety.formation.hover_offsets.shape[0]), self.path)
+        points = hull_of(system(self.avoidance.safety.formation.hover_offsets.shape[0]), self.path)
         least = {}
-        for name, shape, motion, _ in self.safety.obstacles.obstacles:
+        for name, shape, motion, _ in self.avoidance.safety.obstacles.obstacles:
             places = motion(np.array(self.times))
             reach = shape.reach + 6.0
             lateral = np.linalg.norm((places - self.path[0])[:, :2], axis=1)
@@ -142,23 +168,24 @@ class Flown:
         return least
 
 
-def fly(safety, mission, duration, on_step=lambda flown, time: None, until_end=True, time=0.0):
+def fly(avoidance, mission, duration, on_step=lambda flown, time: None, until_end=True, time=0.0):
     """Fly ``mission``; stops a second after its end is reached."""
-    flown = Flown(safety, mission)
+    flown = Flown(avoidance, mission)
     before = None
     position = mission.position(time)
     while time < duration:
-        trajectory = safety.filter(time, mission, estimate_at(time, position))
+        trajectory = avoidance.step(time, mission, estimate_at(time, position))
         now = trajectory.derivatives(np.array([time, time + STEP]))
         if before is not None:
             flown.seams.append(np.abs(now[:, 0] - before.derivatives(np.array([time]))[:, 0]).max(axis=1))
         flown.times.append(time)
         flown.derivatives.append(now[:, 0])
-        flown.reports.append(safety.report)
+        flown.reports.append(avoidance.report)
+        flown.rates.append(avoidance.guidance.rate)
         position, before = now[0, 1], trajectory
         time = round(time + STEP, 6)
         on_step(flown, time)
-        if np.isnan(flown.ends_at) and np.isfinite(mission.end) and safety.mission_time(time) >= mission.end:
+        if np.isnan(flown.ends_at) and np.isfinite(mission.end) and avoidance.guidance.progress(time) >= mission.end:
             flown.ends_at = time
         if until_end and time > flown.ends_at + 4.0:
             break

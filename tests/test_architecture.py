@@ -40,15 +40,16 @@ ALLOWED = {
     "gcs.record": "gcs.flight idc_controller.control idc_controller.perception",
     "gcs.reproduce": (
         "gcs.campaign gcs.config gcs.flight gcs.record idc_controller.estimation idc_controller.geometry "
-        "idc_controller.model idc_controller.paper idc_controller.safety idc_controller.trajectory"
+        "idc_controller.guidance idc_controller.model idc_controller.paper idc_controller.safety "
+        "idc_controller.trajectory"
     ),
     "idc_controller.control": (
-        "idc_controller.estimation idc_controller.model idc_controller.qp idc_controller.safety "
-        "idc_controller.trajectory"
+        "idc_controller.estimation idc_controller.guidance idc_controller.model idc_controller.qp "
+        "idc_controller.safety idc_controller.trajectory"
     ),
     "idc_controller.estimation": "idc_controller.model idc_controller.trajectory",
     "idc_controller.geometry": "",
-    "idc_controller.guidance": "idc_controller.geometry idc_controller.trajectory",
+    "idc_controller.guidance": "idc_controller.geometry idc_controller.model idc_controller.trajectory",
     "idc_controller.model": "",
     "idc_controller.paper": (
         "idc_controller.control idc_controller.estimation idc_controller.geometry idc_controller.model "
@@ -57,8 +58,8 @@ ALLOWED = {
     "idc_controller.perception": "idc_controller.estimation idc_controller.geometry",
     "idc_controller.qp": "",
     "idc_controller.safety": (
-        "idc_controller.estimation idc_controller.geometry idc_controller.guidance idc_controller.model "
-        "idc_controller.qp idc_controller.trajectory"
+        "idc_controller.estimation idc_controller.geometry idc_controller.model idc_controller.qp "
+        "idc_controller.trajectory"
     ),
     "idc_controller.trajectory": "idc_controller.model",
     "vehicle_sim.app": (

@@ -148,8 +148,8 @@ def test_only_what_is_near_takes_part():
     assert [s.obstacle.name for s in found] == ["near", "grown"]
     # Stages that are far are told as no nearer than they are looked at.
     assert found[0].distance[0] >= 2.5
-    assert found[0].room == pytest.approx(found[0].distance.min())
-    assert found[1].room == pytest.approx(found[1].distance.min() - 3.0)
+    assert found[0].clearance == pytest.approx(found[0].distance.min())
+    assert found[1].clearance == pytest.approx(found[1].distance.min() - 3.0)
 
 
 def test_overlap_is_negative():

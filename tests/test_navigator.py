@@ -1,4 +1,4 @@
-"""When a way round is searched, where it leads, and what is said when there is none."""
+"""When a detour is searched, where it leads, and what is said when there is none."""
 
 import numpy as np
 import pytest
@@ -6,11 +6,17 @@ from avoidance_scene import Scene, pole, straight, wall
 from paper_system import system
 
 from idc_controller.geometry.free_space import Formation, first_conflict
-from idc_controller.guidance.navigator import Navigator, NavigatorSettings
+from idc_controller.guidance.navigator import Navigator
+from idc_controller.guidance.settings import NavigatorSettings
+from idc_controller.trajectory.trajectory import RestTrajectory
 
 ACROSS = wall("barrier", 10.0, 0.0, (0.3, 6.0, 12.0))
 CLOSED = wall("the long wall", 10.0, 0.0, (0.3, 400.0, 60.0))
 HERE = np.array([6.5, 0.0, -5.0])
+
+
+STAGES = 0.1 * np.arange(33)
+TRACKED = RestTrajectory(HERE, 0.0)
 
 
 def now(*obstacles):
@@ -23,11 +29,12 @@ def formation():
 
 @pytest.fixture
 def navigator():
-    return Navigator(formation(), NavigatorSettings())
+    return Navigator(system(), NavigatorSettings(), Scene([]), STAGES)
 
 
-def held_up(navigator, obstacles, seconds, rate=0.3, clock=5.0, begin=0.0, mission=None):
-    """Watch at 20 Hz; the clock at the end, and when ways round were searched."""
+def held_up(navigator, obstacles, seconds, rate=0.3, progress=5.0, begin=0.0, mission=None):
+    """Watch at 20 Hz; the progress at the end, and when detours were searched."""
+    navigator.obstacles = Scene(obstacles)
     searches, search = [], navigator._search
     mission = mission or straight(18.0)
 
@@ -37,45 +44,45 @@ def held_up(navigator, obstacles, seconds, rate=0.3, clock=5.0, begin=0.0, missi
 
     navigator._search = watched
     for time in begin + 0.05 * np.arange(round(seconds / 0.05) + 1):
-        clock = navigator.watch(time, clock, rate, mission, HERE, obstacles)
+        progress = navigator.watch(time, progress, rate, mission, TRACKED)
         if navigator.detours:
             break
     navigator._search = search
-    return clock, searches
+    return progress, searches
 
 
 def test_mission_is_followed_while_it_goes_on(navigator):
     mission = straight(18.0)
-    clock, searches = held_up(navigator, now(ACROSS), 5.0, rate=0.9, mission=mission)
+    progress, searches = held_up(navigator, [ACROSS], 5.0, rate=0.9, mission=mission)
     assert not searches
-    assert clock == 5.0
+    assert progress == 5.0
     assert navigator.followed(mission) is mission
-    assert navigator.mission_time(4.2) == 4.2
+    assert navigator.mission_progress(4.2) == 4.2
     assert navigator.blocked(5.0) == ""
 
 
 def test_it_is_patient(navigator):
     settings = navigator.settings
-    held_up(navigator, now(ACROSS), settings.patience - 0.1)
+    held_up(navigator, [ACROSS], settings.patience - 0.1)
     assert navigator.detours == 0
     # Held up anew, it waits anew.
-    navigator.watch(1.0, 5.0, 1.0, straight(18.0), HERE, now(ACROSS))
-    held_up(navigator, now(ACROSS), settings.patience - 0.1, begin=1.05)
+    navigator.watch(1.0, 5.0, 1.0, straight(18.0), TRACKED)
+    held_up(navigator, [ACROSS], settings.patience - 0.1, begin=1.05)
     assert navigator.detours == 0
-    held_up(navigator, now(ACROSS), 0.3, begin=1.05 + settings.patience - 0.1)
+    held_up(navigator, [ACROSS], 0.3, begin=1.05 + settings.patience - 0.1)
     assert navigator.detours == 1
 
 
 @pytest.mark.parametrize("obstacles", [[ACROSS], [pole("p", 10.0, 0.0)], [pole("a", 10.0, -1.0), pole("b", 10.0, 1.0)]])
 def test_way_round_keeps_its_distance_and_leads_back_to_the_mission(navigator, obstacles):
     mission = straight(18.0)
-    clock, _ = held_up(navigator, now(*obstacles), 0.6, mission=mission)
+    progress, _ = held_up(navigator, obstacles, 0.6, mission=mission)
     detour = navigator.followed(mission)
     assert detour is not mission
-    assert clock == pytest.approx(0.0)
+    assert progress == pytest.approx(0.0)
     np.testing.assert_allclose(detour.position(0.0), HERE, atol=1e-9)
     detour.derivatives(np.array([200.0]), 0)
-    resume = navigator.mission_time(3.0)
+    resume = navigator.mission_progress(3.0)
     np.testing.assert_allclose(detour.position(detour.end), mission.position(resume), atol=1e-6)
     assert resume > 5.0
     path = detour.derivatives(np.linspace(0.0, detour.end, 300), 0)[0]
@@ -89,23 +96,23 @@ def test_way_round_keeps_its_distance_and_leads_back_to_the_mission(navigator, o
 
 def test_behind_it_the_mission_is_taken_up_again(navigator):
     mission = straight(18.0)
-    held_up(navigator, now(ACROSS), 0.6, mission=mission)
-    detour, resume = navigator.followed(mission), navigator.mission_time(0.0)
+    held_up(navigator, [ACROSS], 0.6, mission=mission)
+    detour, resume = navigator.followed(mission), navigator.mission_progress(0.0)
     detour.derivatives(np.array([200.0]), 0)
     assert navigator.advance(detour.end - 1.0) == detour.end - 1.0
     assert navigator.followed(mission) is detour
     assert navigator.advance(detour.end - 0.2) == resume
     assert navigator.followed(mission) is mission
-    assert navigator.mission_time(resume + 0.5) == resume + 0.5
+    assert navigator.mission_progress(resume + 0.5) == resume + 0.5
 
 
 def test_closed_way_is_said_after_a_while_and_names_what_closes_it(navigator):
     settings = navigator.settings
     # The bystander is nearer than the wall's centre, but not than the wall.
-    obstacles = now(pole("bystander", 6.5, 30.0), wall("the long wall", 10.0, 100.0, (0.3, 600.0, 60.0)))
-    clock, searches = held_up(navigator, obstacles, settings.give_up)
+    obstacles = [pole("bystander", 6.5, 30.0), wall("the long wall", 10.0, 100.0, (0.3, 600.0, 60.0))]
+    progress, searches = held_up(navigator, obstacles, settings.give_up)
     assert navigator.detours == 0
-    assert clock == 5.0
+    assert progress == 5.0
     assert "the long wall" in navigator.reason
     # Searches become rarer.
     gaps = np.diff(searches)
@@ -118,24 +125,24 @@ def test_closed_way_is_said_after_a_while_and_names_what_closes_it(navigator):
 
 
 def test_what_opens_is_passed_and_no_longer_complained_of(navigator):
-    held_up(navigator, now(CLOSED), 3.0)
+    held_up(navigator, [CLOSED], 3.0)
     assert navigator.reason
-    held_up(navigator, now(ACROSS), 9.0, begin=3.05)
+    held_up(navigator, [ACROSS], 9.0, begin=3.05)
     assert navigator.detours == 1
     assert navigator.reason == ""
     assert navigator.blocked(100.0) == ""
 
 
 def test_going_on_clears_the_reason(navigator):
-    held_up(navigator, now(CLOSED), 3.0)
-    navigator.watch(3.1, 5.0, 1.0, straight(18.0), HERE, now(CLOSED))
+    held_up(navigator, [CLOSED], 3.0)
+    navigator.watch(3.1, 5.0, 1.0, straight(18.0), TRACKED)
     assert navigator.reason == ""
     assert navigator.blocked(100.0) == ""
 
 
 def test_a_waypoint_inside_an_obstacle_is_named(navigator):
     mission = straight(10.0)
-    held_up(navigator, now(wall("block", 10.0, 0.0, (3.0, 3.0, 8.0))), 3.0, mission=mission)
+    held_up(navigator, [wall("block", 10.0, 0.0, (3.0, 3.0, 8.0))], 3.0, mission=mission)
     assert navigator.detours == 0
     assert "block" in navigator.reason
     assert "10.0 m north" in navigator.reason
@@ -143,8 +150,8 @@ def test_a_waypoint_inside_an_obstacle_is_named(navigator):
 
 def test_forgetting_drops_the_way_round(navigator):
     mission = straight(18.0)
-    held_up(navigator, now(ACROSS), 0.6, mission=mission)
-    navigator.forget()
+    held_up(navigator, [ACROSS], 0.6, mission=mission)
+    navigator.reset()
     assert navigator.followed(mission) is mission
-    assert navigator.mission_time(7.0) == 7.0
+    assert navigator.mission_progress(7.0) == 7.0
     assert navigator.blocked(1000.0) == ""

@@ -34,6 +34,7 @@ from gcs.record.landing import is_set_down
 from gcs.record.recorder import FlightRecorder
 from gcs.record.run_folder import open_run_folder, write_manifest
 from gcs.record.summary import summarise, within_limits, write_summary
+from idc_controller.guidance.progress import Guidance
 from idc_controller.guidance.resting_place import RestingPlace
 from idc_controller.paper.printed_filter import PrintedFilter
 from idc_controller.safety.filter_protocol import NoObstacles, SafetyFilter
@@ -191,12 +192,15 @@ def ground_station(
     stopwatch = time.perf_counter
     obstacle_map = stack.obstacle_map(mission)
     safety: SafetyFilter = NoObstacles()
+    guidance: Guidance | None = None
     if controller == "idc":
         safety = stack.avoidance(config, model, obstacle_map)
+        guidance = stack.guidance(config, model, obstacle_map)
     elif controller == "paper":
         safety = PrintedFilter(model, obstacle_map, config.avoidance.margin)
     flight = Flight(
-        mission, team, stack.estimator(config, model), stack.controller(config, model, safety, stopwatch), stopwatch,
+        mission, team, stack.estimator(config, model),
+        stack.controller(config, model, safety, stopwatch, guidance), stopwatch,
         brake=RestingPlace(model.parameters, obstacle_map),
     )  # fmt: skip
     return GroundStation(team, flight, 1.0 / config.rates.control, recorder, obstacle_map)

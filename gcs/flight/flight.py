@@ -133,7 +133,7 @@ class Flight:
     def asked(self, times: Array) -> tuple[Array, Array]:
         """Position and velocity (K, 3) that the mission asks of the payload at ``times`` since take-off began."""
         if self.course is not None:
-            clock = self.controller.safety.mission_time
+            clock = self.controller.guidance.progress
             return self.course.asked(np.array([clock(t) for t in times]))
         assert self._pad is not None
         position, velocity = self._pad.derivatives(times, 1)
@@ -170,10 +170,10 @@ class Flight:
         elif self.phase in (Phase.ARM, Phase.SPOOL_UP):
             self._begin_disarming(time)
         elif self.course is not None:
-            safety = self.controller.safety
-            followed, clock = safety.followed(time, self.course.trajectory)
-            self.course.break_off(followed, clock)
-            safety.replaced(time, clock)
+            guidance = self.controller.guidance
+            followed, progress = guidance.stopping_trajectory(time, self.course.trajectory)
+            self.course.break_off(followed, progress)
+            guidance.restart(time, progress)
 
     def give_up(self, reason: str) -> None:
         """The vehicles cannot be reached any more: they are on their own."""
@@ -314,7 +314,7 @@ class Flight:
         return self.phase in (Phase.SPOOL_UP, *IN_THE_AIR, Phase.SPOOL_DOWN)
 
     def _fly(self, time: float, effective: float, leaves: Array) -> tuple[Setpoints | None, StepRecord | None]:
-        if self.phase in IN_THE_AIR and (blocked := self.controller.safety.blocked(time)):
+        if self.phase in IN_THE_AIR and (blocked := self.controller.guidance.blocked(time)):
             self.break_off(time, blocked)
         trajectory = self._trajectory(time)
         if self._down is not None:
@@ -359,7 +359,7 @@ class Flight:
     def _descent(self, time: float) -> tuple[float, Trajectory]:
         """The course and its clock (s)."""
         assert self.course is not None
-        return self.controller.safety.mission_time(time), self.course.trajectory
+        return self.controller.guidance.progress(time), self.course.trajectory
 
     def _advance(self, time: float, estimate: Estimate, share: float) -> None:
         """From one phase to the next."""
@@ -372,7 +372,7 @@ class Flight:
             if share <= 0.0:
                 self._begin_disarming(time)
         elif self.course is not None:
-            clock = self.controller.safety.mission_time(time)
+            clock = self.controller.guidance.progress(time)
             self.phase = Phase(self.course.phase(clock))
             if self.phase is Phase.LAND and self.payload.has_touched(*self._descent(time), estimate):
                 position = estimate.x[self.controller.layout.r_0]

@@ -17,7 +17,9 @@ from idc_controller.control.settings import MpcSettings, MpcWeights
 from idc_controller.estimation.estimator import Estimator
 from idc_controller.estimation.measurements import MeasurementNoise
 from idc_controller.geometry.shapes import ObstacleSource
-from idc_controller.guidance.navigator import NavigatorSettings
+from idc_controller.guidance.navigator import Navigator
+from idc_controller.guidance.progress import AdaptiveGuidance, Guidance
+from idc_controller.guidance.settings import NavigatorSettings, ProgressSettings
 from idc_controller.model.linear import LinearModel
 from idc_controller.perception.obstacle_map import ObstacleMap
 from idc_controller.perception.scan_assembly import SensorModel
@@ -55,14 +57,25 @@ def obstacle_map(mission: Mission) -> ObstacleMap:
 
 def avoidance(config: SystemConfig, model: LinearModel, obstacles: ObstacleSource) -> AvoidanceFilter:
     """The safety filter that keeps ``obstacles`` out of the hull."""
-    margin, motion = config.avoidance.margin, config.motion
-    settings = PlannerSettings(margin=margin, barrier_rates=config.avoidance.barrier_rates)
+    settings = PlannerSettings(margin=config.avoidance.margin, barrier_rates=config.avoidance.barrier_rates)
+    return AvoidanceFilter(model.parameters, settings, obstacles)
+
+
+def guidance(config: SystemConfig, model: LinearModel, obstacles: ObstacleSource) -> AdaptiveGuidance:
+    """The guidance that waits for the payload, and leads round ``obstacles``."""
+    motion, stages = config.motion, PlannerSettings().chain.times
     limits = Limits(motion.speed, motion.acceleration, motion.jerk, motion.snap)
-    return AvoidanceFilter(model.parameters, settings, obstacles, NavigatorSettings(limits=limits, margin=margin))
+    settings = NavigatorSettings(limits=limits, margin=config.avoidance.margin)
+    navigator = Navigator(model.parameters, settings, obstacles, stages)
+    return AdaptiveGuidance(navigator, ProgressSettings(), stages, model.parameters.m_0 * model.parameters.g)
 
 
 def controller(
-    config: SystemConfig, model: LinearModel, safety: SafetyFilter, stopwatch: Callable[[], float]
+    config: SystemConfig,
+    model: LinearModel,
+    safety: SafetyFilter,
+    stopwatch: Callable[[], float],
+    guidance: Guidance | None = None,
 ) -> IntegratedDecisionController:
     """The integrated decision controller with the MPC as its tracker."""
     period = 1.0 / config.rates.control
@@ -82,6 +95,7 @@ def controller(
         safety,
         ControllerSettings(period=period, horizon=config.controller.horizon),
         stopwatch,
+        guidance,
     )
 
 

@@ -79,7 +79,16 @@ class FlightRecorder:
         safety = decision.safety
         bounds = (math.nan if b is None else b for b in (safety.payload_bound, safety.uav_bound))
         self._plan.write(
-            [time, *position, *acceleration, safety.slack, safety.lag, safety.clock_rate, safety.detours, *bounds]
+            [
+                time,
+                *position,
+                *acceleration,
+                safety.slack,
+                safety.lag,
+                decision.progress_rate,
+                decision.detours,
+                *bounds,
+            ]
         )
 
     def obstacles(self, obstacle_map: ObstacleMap, time: float) -> None:

@@ -14,6 +14,7 @@ from gcs.flight import stack
 from gcs.reproduce.scene import MARGIN, RADIUS, KnownSpheres, Sphere, configuration, printed_reference
 from idc_controller.estimation.estimate import Estimate
 from idc_controller.geometry.formation import Formation
+from idc_controller.guidance.progress import Guidance
 from idc_controller.model.linear import LinearModel, StateLayout
 from idc_controller.paper.avoidance import (
     Encounter,
@@ -165,10 +166,12 @@ class ProjectControl:
         model = LinearModel(parameters)
         self._layout = model.layout
         self._safety: SafetyFilter = NoObstacles()
+        guidance: Guidance | None = None
         if spheres:
             changed = replace(config, avoidance=replace(config.avoidance, margin=margin))
-            self._safety = stack.avoidance(changed, model, KnownSpheres(spheres))
-        self._controller = stack.controller(config, model, self._safety, lambda: 0.0)
+            known = KnownSpheres(spheres)
+            self._safety, guidance = stack.avoidance(changed, model, known), stack.guidance(changed, model, known)
+        self._controller = stack.controller(config, model, self._safety, lambda: 0.0, guidance)
         N = parameters.number_of_uavs
         self._directions, self._thrusts = np.tile([0.0, 0.0, -1.0], (N, 1)), parameters.hover_thrust
         self._thrust, self._torque = parameters.hover_thrust, np.zeros((N, 3))

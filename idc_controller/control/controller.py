@@ -18,6 +18,7 @@ from idc_controller.control.ground_controller import StandingTracker
 from idc_controller.control.tracker import Tracker
 from idc_controller.estimation.estimate import Estimate
 from idc_controller.estimation.wind import WindEstimator
+from idc_controller.guidance.progress import Guidance
 from idc_controller.model.drag import Air
 from idc_controller.model.linear import LinearModel
 from idc_controller.parameters import SystemParameters
@@ -74,7 +75,11 @@ class Decision:
     tracker_time: float
     """Spent in the tracker (s)."""
     safety: SafetyReport
-    """What the safety filter did."""
+    """Outcome of the safety filter's last plan."""
+    progress_rate: float
+    """Of the mission's progress: 1 is its own speed, 0 rest."""
+    detours: int
+    """Detours taken so far."""
 
 
 class IntegratedDecisionController:
@@ -87,11 +92,13 @@ class IntegratedDecisionController:
         safety: SafetyFilter,
         settings: ControllerSettings,
         stopwatch: Callable[[], float] = lambda: 0.0,
+        guidance: Guidance | None = None,
     ) -> None:
-        """``stopwatch`` (s) times the parts of a step for the records; it decides nothing."""
+        """Args: ``stopwatch`` (s) times the parts of a step for the records; ``guidance``, None: follow the mission."""
         self.parameters: SystemParameters = model.parameters
         self.layout = model.layout
         self.tracker, self.safety, self.settings = tracker, safety, settings
+        self.guidance = guidance or Guidance()
         self._standing = StandingTracker(model, settings.period)
         self._tracked: PayloadTrajectory | None = None
         self._stopwatch = stopwatch
@@ -117,7 +124,10 @@ class IntegratedDecisionController:
         ``standing``: the payload stands on the ground. ``learn_load`` is off while the ground may carry part of it.
         """
         begin = self._stopwatch()
-        trajectory = mission if standing else self.safety.filter(estimate.time, mission, estimate, self.load.air)
+        trajectory: PayloadTrajectory = mission
+        if not standing:
+            trajectory = self.safety.filter(estimate.time, self.guidance.reference(estimate.time, mission), estimate)
+            self.guidance.observe(trajectory, self.safety.report.lag, self.safety.report.deviation, self.load.air)
         self._tracked = None if standing else trajectory
         planned = self._stopwatch()
         if standing:
@@ -155,6 +165,8 @@ class IntegratedDecisionController:
             planner_time=planned - begin,
             tracker_time=tracked - ready,
             safety=self.safety.report,
+            progress_rate=self.guidance.rate,
+            detours=self.guidance.detours,
         )
 
     def _let_go(self) -> None:

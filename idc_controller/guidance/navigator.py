@@ -1,140 +1,126 @@
-"""Which way: follows the mission, and leads round what the safety filter alone cannot pass.
+"""Choice between mission and detour: leads round what the safety filter alone cannot pass.
 
-The safety programme looks a few seconds ahead; a wall across the path, or a pole met slowly, leaves it standing before
-the obstacle, safe but stuck. Then a way round is searched on the map as it is known now, flown, and the mission taken
-up again behind the obstacle. Where there is no way the reason is kept for whoever has to decide.
+The safety QP looks a few seconds ahead; a wall across the path, or a pole met slowly, leaves the payload at rest before
+the obstacle, safe but held up. Then a detour is searched on the present map and flown, and the mission is followed
+again behind the obstacle. Where there is no detour the reason is kept: the flight ends for it.
 """
 
 from __future__ import annotations
-
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from idc_controller.geometry.free_space import Formation, Room, first_conflict
-from idc_controller.geometry.shapes import PredictedObstacle
+from idc_controller.geometry.shapes import ObstacleSource, PredictedObstacle
 from idc_controller.guidance.detour import find_detour
+from idc_controller.guidance.settings import NavigatorSettings
+from idc_controller.parameters import SystemParameters
+from idc_controller.trajectory.flatness import PayloadTrajectory
 from idc_controller.trajectory.paths import Leg
-from idc_controller.trajectory.trajectory import Limits, Trajectory
+from idc_controller.trajectory.trajectory import Trajectory
 from idc_controller.trajectory.waypoints import WaypointTrajectory
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class NavigatorSettings:
-    """When a way round is searched, and how it is flown."""
-
-    limits: Limits = Limits(1.5, 1.5, 2.0, 6.0)  # noqa: RUF009 (frozen)
-    margin: float = 0.5
-    """Room between hull and obstacles (m)."""
-    spare: float = 0.2
-    """More than the margin, so that the safety filter need not touch the detour (m)."""
-    held_up_rate: float = 0.5
-    """The mission is held up while its clock runs slower than this."""
-    patience: float = 0.5
-    """How long it may be held up before a way round is searched (s)."""
-    search_interval: float = 1.0
-    """Time between searches (s)."""
-    give_up: float = 15.0
-    """How long it may be held up, with no way found, before that is said (s)."""
-    look_ahead: float = 60.0
-    """How far along the mission its continuation is searched (s)."""
-    sample: float = 0.25
-    """Spacing of that search (s)."""
-    behind: float = 6.0
-    """How far back a waypoint may lie that was not reached (s)."""
-    lowest: float = 0.35
-    """Lowest altitude of a detour (m)."""
-    climb: float = 8.0
-    """How far above the mission a detour may lead (m)."""
+REJOIN = 0.3
+"""s before the end of a detour, at which the mission is followed again."""
+FIXED = 0.2
+"""m; an obstacle that moves less over the stages does not leave a waypoint free."""
 
 
 class Navigator:
-    """Chooses between mission and detour; keeps the clock of whichever is followed."""
+    """Chooses between mission and detour, and how the progress goes on where they meet."""
 
-    def __init__(self, formation: Formation, settings: NavigatorSettings) -> None:
-        self.formation, self.settings = formation, settings
+    def __init__(
+        self, parameters: SystemParameters, settings: NavigatorSettings, obstacles: ObstacleSource, stages: Array
+    ) -> None:
+        """Args: the ``stages`` (K + 1,) (s) over which obstacles are predicted."""
+        self.formation = Formation.of(parameters, settings.link_tilt)
+        self.settings, self.obstacles = settings, obstacles
+        self._stages = stages
         self._detour: WaypointTrajectory | None = None
         self._resume = 0.0
         self._held_since: float | None = None
         self._last_search = -np.inf
         self._interval = settings.search_interval
-        self._stuck_since: float | None = None
+        self._blocked_since: float | None = None
         self.detours = 0
-        """Ways round taken so far."""
+        """Detours taken so far."""
         self.reason = ""
-        """Why there is no way on, as the last search found; empty: there is one."""
+        """Why the last search found no detour; empty: it found one."""
 
     def followed(self, mission: Trajectory) -> Trajectory:
-        """The mission or the detour."""
+        """Return the mission or the detour."""
         return self._detour or mission
 
-    def mission_time(self, clock: float) -> float:
-        """The mission's time when the followed trajectory's clock shows ``clock`` (s)."""
-        return clock if self._detour is None else self._resume
+    def mission_progress(self, progress: float) -> float:
+        """Return the mission's progress when that along the followed trajectory is ``progress`` (s)."""
+        return progress if self._detour is None else self._resume
 
     def blocked(self, time: float) -> str:
-        """Why the mission cannot go on, once that has been so for long; empty: it can."""
-        if self._stuck_since is None or time - self._stuck_since < self.settings.give_up:
+        """Return why the mission cannot go on, once that has been so for long; empty: it can."""
+        if self._blocked_since is None or time - self._blocked_since < self.settings.give_up:
             return ""
         return self.reason
 
-    def forget(self) -> None:
-        """Follow whatever mission is given next from its own clock."""
-        self._detour, self._held_since, self._stuck_since, self.reason = None, None, None, ""
+    def reset(self) -> None:
+        """Follow whatever mission is given next, by its own progress."""
+        self._detour, self._held_since, self._blocked_since, self.reason = None, None, None, ""
 
-    def advance(self, clock: float) -> float:
-        """The clock to go on with: back to the mission's when the detour is done."""
-        if self._detour is not None and clock >= self._detour.end - 0.3:
+    def advance(self, progress: float) -> float:
+        """Return the progress (s) to go on with: back on the mission when the detour is flown."""
+        if self._detour is not None and progress >= self._detour.end - REJOIN:
             self._detour = None
             return self._resume
-        return clock
+        return progress
 
     def watch(
-        self,
-        time: float,
-        clock: float,
-        rate: float,
-        mission: Trajectory,
-        position: Array,
-        obstacles: list[PredictedObstacle],
+        self, time: float, progress: float, rate: float, mission: Trajectory, tracked: PayloadTrajectory
     ) -> float:
-        """Search a way round if one is needed; ``position`` (3,) is where the trajectory is. Returns the clock."""
+        """Search a detour if one is needed, and return the progress (s) to go on with.
+
+        Args:
+            time: now (s).
+            progress, rate: along what is followed (s), and its rate.
+            mission: what the detour leads back to.
+            tracked: the trajectory that is tracked now; the detour begins on it.
+        """
         s = self.settings
         if rate >= s.held_up_rate:
             self._held_since = None
             if rate > 0.9:
-                self._stuck_since, self.reason, self._interval = None, "", s.search_interval
-            return clock
+                self._blocked_since, self.reason, self._interval = None, "", s.search_interval
+            return progress
         if self._held_since is None:
             self._held_since = time
         if time - self._held_since < s.patience or time - self._last_search < self._interval:
-            return clock
+            return progress
         self._last_search = time
         # A search that found nothing is repeated ever more rarely: the map must change first.
-        self._interval = min(2.0 * self._interval, 8.0 * s.search_interval)
-        found = self._search(self.mission_time(clock), mission, position, obstacles)
+        self._interval = min(2.0 * self._interval, s.search_interval_max)
+        position = tracked.derivatives(np.array([time]), 0)[0, 0]
+        obstacles = list(self.obstacles.predict(time + self._stages))
+        found = self._search(self.mission_progress(progress), mission, position, obstacles)
         if found is None:
-            if self._stuck_since is None:
-                self._stuck_since = time
-            return clock
-        self._stuck_since, self.reason, self._held_since = None, "", None
+            if self._blocked_since is None:
+                self._blocked_since = time
+            return progress
+        self._blocked_since, self.reason, self._held_since = None, "", None
         self._interval = s.search_interval
         waypoints, self._resume = found
         legs = [Leg(waypoint, s.limits.speed) for waypoint in waypoints[1:]]
-        self._detour = WaypointTrajectory(position, legs, s.limits, corner=0.1)
+        self._detour = WaypointTrajectory(position, legs, s.limits, corner=s.corner)
         self.detours += 1
         return 0.0
 
     def _search(
-        self, clock: float, mission: Trajectory, position: Array, obstacles: list[PredictedObstacle]
+        self, progress: float, mission: Trajectory, position: Array, obstacles: list[PredictedObstacle]
     ) -> tuple[Array, float] | None:
-        """Waypoints of a way round, and the mission's time where it leads."""
+        """Return waypoints of a detour, and the mission's progress where it leads; None: there is no detour."""
         s = self.settings
         now = [PredictedObstacle(o.name, o.shape, o.positions[:1], o.growth[:1]) for o in obstacles]
-        ahead = clock + np.arange(0.0, s.look_ahead, s.sample)
+        ahead = progress + np.arange(0.0, s.look_ahead, s.sample)
         path = mission.derivatives(ahead, 0)[0]
         keep = s.margin + s.spare
         conflicts = np.array([first_conflict(p[None], now, self.formation, keep) is not None for p in path])
@@ -145,10 +131,10 @@ class Navigator:
         begin = int(np.argmax(conflicts)) if conflicts.any() else 0
         free = np.flatnonzero(~conflicts[begin:]) + begin
         until = ahead[int(free[0])] if len(free) else ahead[-1]
-        standing = [now[i] for i, o in enumerate(obstacles) if np.linalg.norm(o.positions[-1] - o.positions[0]) < 0.2]
-        # The mission's clock is ahead of the payload when it is held up.
-        for waypoint in mission.waypoints(clock - s.behind, until):
-            for obstacle in standing:
+        fixed = [now[i] for i, o in enumerate(obstacles) if np.linalg.norm(o.positions[-1] - o.positions[0]) < FIXED]
+        # The progress is ahead of the payload when that is held up.
+        for waypoint in mission.waypoints(progress - s.behind, until):
+            for obstacle in fixed:
                 if first_conflict(waypoint[None], [obstacle], self.formation, 0.0) is not None:
                     north, east, down = waypoint
                     self.reason = f"{obstacle.name} stands at the waypoint {north:.1f} m north, {east:.1f} m east, "

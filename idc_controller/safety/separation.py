@@ -27,7 +27,7 @@ class Separation:
     """Unit vectors from hull to obstacle (K + 1, 3)."""
 
     @property
-    def room(self) -> float:
+    def clearance(self) -> float:
         """Least distance over the stages, less the growth (m)."""
         return float(np.min(self.distance - self.obstacle.growth))
 

@@ -50,3 +50,20 @@ class PlannerSettings:
     def __post_init__(self) -> None:
         if any(not rate > 0.0 for rate in self.barrier_rates):
             raise ParameterError(f"barrier rates {self.barrier_rates} must be real and positive")
+
+
+@dataclass(frozen=True)
+class FilterSettings:
+    """Which obstacles take part in a plan, and how plans follow each other."""
+
+    watch: float = setting(2.5, "m", "obstacles that come closer to the hull than this take part in the QP", gt=0.0)
+    memory: float = setting(2.5, "s", "how long plans of the past are kept: late measurements refer to them", gt=0.0)
+    recovery: float = setting(
+        1.5, "s", "time constant with which the tracker brings the payload back onto the plan", gt=0.0
+    )
+    excess_max: float = setting(
+        1.0, "m", "largest distance off the plan, beyond the tracking bound, by which obstacles are grown", ge=0.0
+    )
+    switching_share: float = setting(
+        0.9, "", "share of the present plan's cost below which another side of an obstacle is chosen", gt=0.0, le=1.0
+    )

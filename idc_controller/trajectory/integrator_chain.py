@@ -34,6 +34,11 @@ class Chain:
         return len(self.blocks)
 
     @cached_property
+    def times(self) -> Array:
+        """Times of the stages 0 .. K (s)."""
+        return self.period * np.arange(self.stages + 1, dtype=np.float64)
+
+    @cached_property
     def snap_of_stage(self) -> tuple[Array, Array]:
         """Snap at stages 0 .. K as ``first * s_0 + others @ knots``: (K + 1,), (K + 1, knots)."""
         first, others = np.zeros(self.stages + 1), np.zeros((self.stages + 1, self.knots))

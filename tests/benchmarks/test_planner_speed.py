@@ -52,9 +52,10 @@ class Recorded:
     def __init__(self, count, n, steps):
         parameters = system(n)
         model = LinearModel(parameters)
-        safety = avoidance(field(count), n=n)
+        avoided = avoidance(field(count), n=n)
+        safety = avoided.safety
         mpc = ModelPredictiveController(model, MpcSettings())
-        controller = IntegratedDecisionController(model, mpc, safety, ControllerSettings())
+        controller = IntegratedDecisionController(model, mpc, safety, ControllerSettings(), guidance=avoided.guidance)
         mission, rng = straight(24.0), np.random.default_rng(n)
         self.planner, self.mpc, self.filter_ms, self.step_ms = [], [], [], []
         solve, track, real_filter = safety.planner.solver.solve, mpc.qp.solve, safety.filter

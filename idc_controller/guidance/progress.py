@@ -1,0 +1,163 @@
+"""Mission progress: which trajectory is the reference, how far along it the payload is meant to be, and how fast.
+
+The progress is the path parameter of the mission's trajectory (s): its own time, as long as nothing holds the payload
+up. Where the payload falls behind, or the wind would take more thrust than there is, the progress rate drops below 1.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from idc_controller.guidance.navigator import Navigator
+from idc_controller.guidance.settings import ProgressSettings
+from idc_controller.model.drag import Air
+from idc_controller.trajectory.flatness import PayloadTrajectory
+from idc_controller.trajectory.scaled import ScaledReference
+from idc_controller.trajectory.trajectory import RestTrajectory, Trajectory
+
+Array = NDArray[np.float64]
+
+
+class Guidance:
+    """Follows the mission at its own speed: progress is time. Where a controller does not avoid obstacles."""
+
+    @property
+    def rate(self) -> float:
+        """Progress rate in force."""
+        return 1.0
+
+    @property
+    def detours(self) -> int:
+        """Detours taken so far."""
+        return 0
+
+    def reference(self, time: float, mission: Trajectory) -> ScaledReference:
+        """Return the reference from ``time`` (s) on; the same object as before as long as nothing changes."""
+        return ScaledReference(mission)
+
+    def observe(self, tracked: PayloadTrajectory, lag: float, deviation: Array | None, air: Air | None) -> None:
+        """Take note of what the safety filter made of the last reference.
+
+        Args:
+            tracked: the trajectory that is tracked.
+            lag: of that trajectory behind the reference, along its path (m).
+            deviation: states of its deviation from the reference at the stages (K + 1, 5, 3), SI; None: none.
+            air: estimated motion and drag of the air; None: not estimated.
+        """
+
+    def progress(self, time: float) -> float:
+        """Return the mission's progress (s) at ``time`` (s)."""
+        return time
+
+    def stopping_trajectory(self, time: float, mission: Trajectory) -> tuple[Trajectory, float]:
+        """Return the trajectory to stop from at ``time``, and the progress along it (s)."""
+        return mission, time
+
+    def restart(self, time: float, progress: float) -> None:
+        """Follow another mission, whose progress is ``progress`` (s) at ``time`` (s), from the next step on."""
+
+    def blocked(self, time: float) -> str:
+        """Return why the mission cannot go on; empty: it can."""
+        return ""
+
+
+class AdaptiveGuidance(Guidance):
+    """Slows the progress while the payload is held up, and leads round what holds it up for long."""
+
+    def __init__(self, navigator: Navigator, settings: ProgressSettings, stages: Array, weight: float) -> None:
+        """Args: the planner's ``stages`` (K + 1,) (s); ``weight`` of the payload (N)."""
+        self.navigator, self.settings = navigator, settings
+        self._stages, self._weight = stages, weight
+        self._interval = settings.stage_share * float(stages[1])
+        self._current: ScaledReference | None = None
+        self._observed: ScaledReference | None = None
+        self._next_rate = 1.0
+        self._tracked: PayloadTrajectory | None = None
+        self._deflected = False
+        self._restart: tuple[float, float] | None = None
+        """When another mission was given, and its progress then; until the next step."""
+
+    @property
+    def rate(self) -> float:
+        """Progress rate in force."""
+        return 1.0 if self._current is None else self._current.rate
+
+    @property
+    def detours(self) -> int:
+        """Detours taken so far."""
+        return self.navigator.detours
+
+    def reference(self, time: float, mission: Trajectory) -> ScaledReference:
+        """See :meth:`Guidance.reference`."""
+        current = self._current
+        if self._restart is None and current is not None and time < current.start + self._interval:
+            return current
+        progress = self.navigator.advance(self._followed_progress(time))
+        if self._tracked is not None:
+            progress = self.navigator.watch(time, progress, self._next_rate, mission, self._tracked)
+        self._restart = None
+        self._current = ScaledReference(self.navigator.followed(mission), time, progress, self._next_rate)
+        return self._current
+
+    def observe(self, tracked: PayloadTrajectory, lag: float, deviation: Array | None, air: Air | None) -> None:
+        """See :meth:`Guidance.observe`."""
+        self._tracked = tracked
+        if self._current is None or self._observed is self._current:
+            return
+        self._observed, self._deflected = self._current, deviation is not None
+        rate_in_wind = None if air is None else self._rate_in_wind(self._current, deviation, air)
+        self._next_rate = self._changed_rate(self._current.rate, lag, rate_in_wind)
+
+    def progress(self, time: float) -> float:
+        """See :meth:`Guidance.progress`; on a detour, where that leads back to the mission."""
+        return self.navigator.mission_progress(self._followed_progress(time))
+
+    def stopping_trajectory(self, time: float, mission: Trajectory) -> tuple[Trajectory, float]:
+        """See :meth:`Guidance.stopping_trajectory`.
+
+        While the tracked trajectory is deflected, or the payload held up, the mission is no place to stop at: then it
+        is a rest near where the payload is.
+        """
+        current = self._current
+        if current is None or self._tracked is None or (not self._deflected and current.rate == 1.0):
+            return self.navigator.followed(mission), self._followed_progress(time)
+        position, velocity = self._tracked.derivatives(np.array([time]), 1)[:, 0]
+        return RestTrajectory(position + 0.5 * self.settings.stopping_time * velocity, time), time
+
+    def restart(self, time: float, progress: float) -> None:
+        """See :meth:`Guidance.restart`."""
+        self.navigator.reset()
+        if progress != self._followed_progress(time):
+            self._next_rate = 1.0
+        self._restart = time, progress
+
+    def blocked(self, time: float) -> str:
+        """See :meth:`Guidance.blocked`."""
+        return self.navigator.blocked(time)
+
+    def _followed_progress(self, time: float) -> float:
+        """Return the progress (s) along what is followed, mission or detour."""
+        if self._restart is not None:
+            begin, progress = self._restart
+            return progress + self._next_rate * (time - begin)
+        return time if self._current is None else self._current.progress_at(time)
+
+    def _rate_in_wind(self, reference: ScaledReference, deviation: Array | None, air: Air) -> float:
+        """Return the largest progress rate at which drag on the payload stays within its limit."""
+        s = self.settings
+        velocity = reference.after(self._stages)[1] / max(reference.rate, s.slowest_in_wind)
+        deflection = 0.0 if deviation is None else deviation[:, 1]
+        rates = np.linspace(1.0, s.slowest_in_wind, 8)
+        drag = np.linalg.norm(air.on_payload(rates[:, None, None] * velocity + deflection), axis=2).max(axis=1)
+        within = np.flatnonzero(drag <= s.drag_limit * self._weight)
+        return float(rates[within[0]] if len(within) else s.slowest_in_wind)
+
+    def _changed_rate(self, rate: float, lag: float, rate_in_wind: float | None) -> float:
+        """Return the rate of the next reference, for ``lag`` (m) and the largest ``rate_in_wind``."""
+        s = self.settings
+        wanted, step = float(np.clip((s.lag_at_rest - lag) / s.slowing_lag, 0.0, 1.0)), s.rate_step
+        if rate_in_wind is not None and rate_in_wind <= wanted:
+            wanted, step = rate_in_wind, s.rate_step_in_wind
+        changed = rate + float(np.clip(wanted - rate, -step, step))
+        return 1.0 if changed > 0.999 else changed

@@ -1,0 +1,56 @@
+"""Settings of the guidance: progress along the mission, and detours."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from idc_controller.settings import setting
+from idc_controller.trajectory.trajectory import Limits
+
+
+@dataclass(frozen=True)
+class ProgressSettings:
+    """How the progress along the mission answers to lag and wind."""
+
+    stage_share: float = setting(
+        0.7,
+        "",
+        "how long a reference and its plan stay, as a share of the planner's stage: plans made more often have their "
+        "stages between those of the plan before, and the two disagree by turns",
+        gt=0.0,
+        le=1.0,
+    )
+    slowing_lag: float = setting(1.2, "m", "lag over which the progress rate falls from 1 to 0", gt=0.0)
+    lag_at_rest: float = setting(2.4, "m", "lag from which the progress rests", gt=0.0)
+    rate_step: float = setting(0.05, "", "largest change of the progress rate from reference to reference", gt=0.0)
+    rate_step_in_wind: float = setting(
+        0.01, "", "the same where wind limits it: foreseen for long, and a fast change would be a disturbance", gt=0.0
+    )
+    drag_limit: float = setting(0.45, "", "drag on the payload, over its weight, above which the rate is lowered", gt=0)
+    slowest_in_wind: float = setting(
+        0.6, "", "rate that wind does not lower it beyond: slower counts as held up", gt=0.0, le=1.0
+    )
+    stopping_time: float = setting(
+        2.0, "s", "in which the payload is brought to rest when a deflected trajectory is broken off", gt=0.0
+    )
+
+
+@dataclass(frozen=True)
+class NavigatorSettings:
+    """When a detour is searched, and how it is flown."""
+
+    limits: Limits = Limits(1.5, 1.5, 2.0, 6.0)  # noqa: RUF009 (frozen)
+    margin: float = setting(0.5, "m", "clearance to keep between hull and obstacles", ge=0.0)
+    spare: float = setting(0.2, "m", "more than the margin, so that the safety filter need not act on a detour", ge=0.0)
+    corner: float = setting(0.1, "m", "by how much a detour's corners are cut", gt=0.0)
+    link_tilt: float = setting(0.08726646259971647, "rad", "link tilt for which a detour leaves clearance", ge=0.0)
+    held_up_rate: float = setting(0.5, "", "progress rate below which the mission is held up", gt=0.0, lt=1.0)
+    patience: float = setting(0.5, "s", "how long it may be held up before a detour is searched", ge=0.0)
+    search_interval: float = setting(1.0, "s", "between searches, at first", gt=0.0)
+    search_interval_max: float = setting(8.0, "s", "between searches that find nothing, at most", gt=0.0)
+    give_up: float = setting(15.0, "s", "held up for so long without a detour, the mission counts as blocked", gt=0.0)
+    look_ahead: float = setting(60.0, "s", "how far along the mission its continuation is searched", gt=0.0)
+    sample: float = setting(0.25, "s", "spacing of that search", gt=0.0)
+    behind: float = setting(6.0, "s", "how far back a waypoint may lie that was not reached", ge=0.0)
+    lowest: float = setting(0.35, "m", "lowest altitude of the payload's centre on a detour", gt=0.0)
+    climb: float = setting(8.0, "m", "how far above the mission a detour may lead", ge=0.0)
