@@ -15,3 +15,7 @@ class SolverError(IdcError):
 
 class TrajectoryError(IdcError):
     """No trajectory satisfies what was asked (too few points, limits that are not positive, ...)."""
+
+
+class ShapeError(IdcError):
+    """A shape that does not exist, or one whose lengths have no meaning."""

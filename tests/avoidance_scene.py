@@ -8,7 +8,10 @@ from paper_system import system
 from scipy.spatial import ConvexHull
 
 from idc_controller.estimation.estimate import Estimate
-from idc_controller.geometry.shapes import PredictedObstacle, Shape
+from idc_controller.geometry.box import Wall
+from idc_controller.geometry.obstacles import PredictedObstacle
+from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.sphere import Sphere
 from idc_controller.guidance.navigator import Navigator
 from idc_controller.guidance.progress import AdaptiveGuidance
 from idc_controller.guidance.settings import NavigatorSettings, ProgressSettings
@@ -58,23 +61,23 @@ def clearance_of(points, shape, position):
 
 def sphere(name, position, velocity=(0.0, 0.0, 0.0), radius=0.5, growth=0.0):
     place, velocity = np.array(position, dtype=float), np.array(velocity, dtype=float)
-    return name, Shape("sphere", radius), lambda t: place + np.outer(t, velocity), growth
+    return name, Sphere(radius), lambda t: place + np.outer(t, velocity), growth
 
 
 def swinging(name, position, amplitude, frequency=1.0, phase=0.0, radius=0.5):
     place, swing = np.array(position, dtype=float), np.array(amplitude, dtype=float)
-    return name, Shape("sphere", radius), lambda t: place + np.outer(np.sin(frequency * t + phase), swing), 0.0
+    return name, Sphere(radius), lambda t: place + np.outer(np.sin(frequency * t + phase), swing), 0.0
 
 
 def pole(name, north, east, radius=0.3, height=15.0):
     place = np.array([north, east, -height / 2.0])
-    return name, Shape("pole", radius, (0.0, 0.0, height)), lambda t: np.tile(place, (len(t), 1)), 0.0
+    return name, Pole(radius, height), lambda t: np.tile(place, (len(t), 1)), 0.0
 
 
 def wall(name, north, east, size, yaw=0.0):
     """A wall that stands on the ground."""
     place = np.array([north, east, -size[2] / 2.0])
-    return name, Shape("wall", size=tuple(size), yaw=yaw), lambda t: np.tile(place, (len(t), 1)), 0.0
+    return name, Wall(size=tuple(size), yaw=yaw), lambda t: np.tile(place, (len(t), 1)), 0.0
 
 
 class Scene:

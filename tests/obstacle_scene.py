@@ -8,6 +8,9 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 from gcs.mavlink.telemetry import detection
 from gcs.mission.known_obstacles import known_obstacles
 from idc_controller.estimation.measurements import Attitude, Position
+from idc_controller.geometry.box import Wall
+from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.sphere import Sphere
 from idc_controller.perception.obstacle_map import ObstacleMap
 from idc_controller.perception.scan_assembly import SensorModel
 from idc_controller.perception.surfaces.points import SurfacePoints, joined
@@ -24,15 +27,15 @@ HERE = np.array([0.0, 0.0, -6.0])
 
 
 def sphere(position, radius=0.5, name="sphere"):
-    return Obstacle(name, "sphere", tuple(position), radius)
+    return Obstacle(name, Sphere(radius), tuple(position))
 
 
 def pole(position, radius=0.2, height=15.0, name="pole"):
-    return Obstacle(name, "pole", (position[0], position[1], -height / 2.0), radius, (0.0, 0.0, height))
+    return Obstacle(name, Pole(radius, height), (position[0], position[1], -height / 2.0))
 
 
 def wall(position, size=(0.3, 5.0, 6.0), yaw=0.3, name="wall"):
-    return Obstacle(name, "wall", tuple(position), 0.0, tuple(size), yaw)
+    return Obstacle(name, Wall(tuple(size), yaw), tuple(position))
 
 
 def messages_of(scan):

@@ -37,7 +37,7 @@ ALLOWED = {
     ),
     "gcs.mavlink": "idc_controller.estimation idc_controller.perception",
     "gcs.mission": "gcs.config gcs.faults idc_controller.geometry idc_controller.perception",
-    "gcs.record": "gcs.flight idc_controller.control idc_controller.perception",
+    "gcs.record": "gcs.flight idc_controller.control idc_controller.geometry idc_controller.perception",
     "gcs.reproduce": (
         "gcs.campaign gcs.config gcs.flight gcs.record idc_controller.estimation idc_controller.geometry "
         "idc_controller.guidance idc_controller.model idc_controller.paper idc_controller.safety "
@@ -73,7 +73,7 @@ ALLOWED = {
         "gcs.config gcs.mavlink gcs.mission vehicle_sim.autopilot vehicle_sim.faults vehicle_sim.mavlink "
         "vehicle_sim.world"
     ),
-    "vehicle_sim.world": "gcs.mission gcs.record idc_controller.model",
+    "vehicle_sim.world": "gcs.mission gcs.record idc_controller.geometry idc_controller.model",
 }
 COMMON = {f"idc_controller.{name}" for name in ("errors", "parameters", "rotations", "settings")} | {"gcs.errors"}
 """Modules beside the sub-packages that everything above them may import."""

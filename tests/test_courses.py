@@ -2,7 +2,6 @@
 
 import dataclasses
 import json
-import math
 import threading
 
 import numpy as np
@@ -20,15 +19,16 @@ from gcs.campaign.courses.schedule import Schedule, arrival
 from gcs.campaign.process_pool import Ended
 from gcs.errors import UnusableInput
 from gcs.flight.spool import SPOOL_UP
-from gcs.mission import Lissajous, Sphere, mover, read_mission, rest_position
+from gcs.mission import Lissajous, mover, read_mission
 from gcs.record.run_folder import open_run_folder
 from gcs.record.tables import truth_columns
-from idc_controller.geometry.shapes import PredictedObstacle, Shape
-from idc_controller.guidance.detour import Formation, first_conflict
+from idc_controller.geometry.obstacles import PredictedObstacle
+from idc_controller.geometry.sphere import Sphere
+from idc_controller.guidance.detour import BoundingCylinder, first_conflict
 
 pytestmark = pytest.mark.slow
 
-FORMATION = Formation(1.0, 3.45, 0.25)
+FORMATION = BoundingCylinder(1.0, 3.45, 0.25)
 
 
 def read(course, folder):
@@ -75,21 +75,13 @@ def test_courses_are_what_they_are_to_be(kind, number, tmp_path):
         assert np.linalg.norm(places[:, :2] - schedule.goal[:2], axis=1).min() > 3.0
 
 
-def shape_of(obstacle):
-    if obstacle.shape == "sphere":
-        return Shape("sphere", obstacle.radius)
-    if obstacle.shape == "pole":
-        return Shape("pole", obstacle.radius, (0.0, 0.0, obstacle.height))
-    return Shape("wall", size=obstacle.size, yaw=math.radians(obstacle.yaw_deg))
-
-
 def standing_there(obstacle):
-    return PredictedObstacle(obstacle.name, shape_of(obstacle), np.array([rest_position(obstacle)]), np.zeros(1))
+    return PredictedObstacle(obstacle.name, obstacle.shape, np.array([obstacle.position]), np.zeros(1))
 
 
 def moving_there(obstacle, schedule):
     places = np.array(obstacle.position) + displacement(obstacle.motion, schedule.times)
-    return PredictedObstacle(obstacle.name, shape_of(obstacle), places, np.zeros(len(places)))
+    return PredictedObstacle(obstacle.name, obstacle.shape, places, np.zeros(len(places)))
 
 
 def test_kinds_of_obstacles_and_motions_all_occur(tmp_path):
@@ -125,7 +117,7 @@ def test_the_missions_own_spheres_confront_the_payload(name, missions):
     mission = read_mission(missions / name)
     schedule = Schedule(mission)
     [sphere] = [o for o in mission.obstacles if o.motion is not None]
-    assert isinstance(sphere, Sphere) and not sphere.known
+    assert isinstance(sphere.shape, Sphere) and not sphere.known
     distance = np.linalg.norm(schedule.positions - np.array(sphere.position), axis=1)
     near = [
         i for i in range(1, len(distance) - 1)

@@ -6,28 +6,30 @@ from itertools import pairwise
 import coal
 import numpy as np
 import pytest
-import shapely
 
 from idc_controller.errors import TrajectoryError
-from idc_controller.geometry.shapes import PredictedObstacle, Shape
-from idc_controller.guidance.detour import Formation, Room, find_detour, first_conflict
+from idc_controller.geometry.box import Wall
+from idc_controller.geometry.obstacles import PredictedObstacle
+from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.sphere import Sphere
+from idc_controller.guidance.detour import BoundingCylinder, FreeSpace, find_detour, first_conflict
 
-FORMATION = Formation(radius=1.1, above=3.75, below=0.25)
+FORMATION = BoundingCylinder(radius=1.1, above=3.75, below=0.25)
 MARGIN = 0.5
 START, GOAL = (0.0, 0.0, -5.0), (20.0, 0.0, -5.0)
 HIGH = 15.0  # m, of what is not to be flown over
 
 
 def pole(north, east, radius=0.3, height=HIGH):
-    return Shape("pole", radius, (0.0, 0.0, height)), (north, east, -height / 2.0)
+    return Pole(radius, height), (north, east, -height / 2.0)
 
 
 def wall(north, east, size_x, size_y, height=HIGH, yaw=0.0):
-    return Shape("wall", size=(size_x, size_y, height), yaw=yaw), (north, east, -height / 2.0)
+    return Wall(size=(size_x, size_y, height), yaw=yaw), (north, east, -height / 2.0)
 
 
 def sphere(*position, radius=0.5):
-    return Shape("sphere", radius), position
+    return Sphere(radius), position
 
 
 def way(obstacles, start=START, goal=GOAL, margin=MARGIN, highest=12.0, **others):
@@ -102,15 +104,15 @@ def test_not_between_two_poles_with_a_narrow_gap():
 
 
 def test_a_gap_that_the_coarse_grid_misses():
-    """0.34 m wider than it must be, in a wall that goes from boundary to boundary."""
+    """0.34 m wider than it must be, in a wall across the whole region of the search."""
     half = 1.1 + MARGIN + 0.17
     walls = [wall(10.0, 0.75 - half - 10.0, 0.3, 20.0), wall(10.0, 0.75 + half + 10.0, 0.3, 20.0)]
-    boundary = [(-10.0, -8.0), (30.0, -8.0), (30.0, 8.0), (-10.0, 8.0)]
-    detour = way(walls, boundary=boundary)
+    region = (-10.0, -6.5, -12.0), (30.0, 6.5, -0.5)
+    detour = way(walls, region=region)
     assert detour.waypoints is not None
     assert np.interp(10.0, detour.waypoints[:, 0], detour.waypoints[:, 1]) == pytest.approx(0.75, abs=0.17)
     narrow = [wall(10.0, 0.75 - 1.59 - 10.0, 0.3, 20.0), wall(10.0, 0.75 + 1.59 + 10.0, 0.3, 20.0)]
-    assert "too narrow" in way(narrow, boundary=boundary).reason
+    assert "too narrow" in way(narrow, region=region).reason
 
 
 def test_a_closed_box_cannot_be_reached():
@@ -129,7 +131,6 @@ def test_a_closed_box_cannot_be_reached():
         (sphere(20.0, 1.9, -5.0), {}, "would be 0.30 m from the ball, less than the margin of 0.5 m"),
         (sphere(20.0, 2.2, -5.0), {"growth": [0.2]}, "would be 0.40 m from the ball"),
         (sphere(9.0, 9.0, -5.0), {"goal": (20.0, 0.0, -13.0)}, "the goal, 13.00 m high, is not within 0.5 to 12 m"),
-        (sphere(9.0, 9.0, -5.0), {"boundary": [(-9, -9), (21, -9), (21, 9), (-9, 9)]}, "goal is outside the boundary"),
     ],
 )
 def test_a_goal_that_cannot_be(obstacle, others, reason):
@@ -137,16 +138,6 @@ def test_a_goal_that_cannot_be(obstacle, others, reason):
                                           "highest": 12.0, "names": ["the ball"]} | others))  # fmt: skip
     assert detour.waypoints is None
     assert reason in detour.reason
-
-
-def test_boundary_is_kept_by_the_whole_formation():
-    boundary = [(-5.0, -8.0), (25.0, -8.0), (25.0, 4.0), (-5.0, 4.0)]
-    free = way([wall(10.0, 0.5, 0.3, 5.0)], goal=(20.0, 2.0, -5.0))
-    assert side(free) > 0.0
-    kept = way([wall(10.0, 0.5, 0.3, 5.0)], goal=(20.0, 2.0, -5.0), boundary=boundary)
-    assert kept.waypoints[:, 1].min() < -3.0
-    hull = shapely.LineString(kept.waypoints[:, :2]).buffer(FORMATION.radius)
-    assert shapely.Polygon(boundary).buffer(1e-6).contains(hull)
 
 
 def test_altitudes_are_kept():
@@ -162,7 +153,7 @@ def test_a_start_too_near_is_left_without_coming_nearer():
     ball = sphere(1.9, 0.0, -5.0)
     detour = find_detour([ball], START, GOAL, FORMATION, MARGIN, highest=12.0)
     assert detour.waypoints is not None
-    room = Room([ball], FORMATION, MARGIN, 0.5, 12.0)
+    room = FreeSpace([ball], FORMATION, MARGIN, 0.5, 12.0)
     at_start = room.clearance(np.array([START]))[0, 0]
     assert at_start == pytest.approx(0.3)
     first, rest = detour.waypoints[:2], detour.waypoints[1:]
@@ -195,10 +186,10 @@ def test_random_courses_keep_the_margin_and_repeat(seed):
 
 def test_clearance_is_the_library_s():
     rng = np.random.default_rng(5)
-    shapes = [Shape("sphere", 0.7), Shape("pole", 0.4, (0.0, 0.0, 5.0)), Shape("wall", size=(3.0, 0.5, 2.0), yaw=0.7)]
+    shapes = [Sphere(0.7), Pole(0.4, 5.0), Wall(size=(3.0, 0.5, 2.0), yaw=0.7)]
     obstacles = [(shape, rng.uniform(-3.0, 3.0, 3)) for shape in shapes]
     places = rng.uniform(-9.0, 9.0, (200, 3))
-    found = Room(obstacles, FORMATION, 0.0, -100.0, 100.0).clearance(places)
+    found = FreeSpace(obstacles, FORMATION, 0.0, -100.0, 100.0).clearance(places)
     for place, row in zip(places, found, strict=True):
         for obstacle, distance in zip(obstacles, row, strict=True):
             expected = clearance_by_coal([obstacle], np.array([place, place]))
@@ -208,7 +199,7 @@ def test_clearance_is_the_library_s():
 def test_first_conflict():
     times = np.linspace(0.0, 6.0, 61)
     positions = np.column_stack([2.0 * times, np.zeros(61), np.full(61, -5.0)])
-    shape = Shape("sphere", 0.5)
+    shape = Sphere(0.5)
     standing = PredictedObstacle("standing", shape, np.array([[9.0, 0.0, -5.0]]), np.zeros(1))
     # 9 - 0.5 - 1.1 - 0.3 = 7.1 m: passed between samples 35 (7.0) and 36 (7.2).
     assert first_conflict(positions, [standing], FORMATION, 0.3) == 36
@@ -221,9 +212,9 @@ def test_first_conflict():
 
 
 def test_formation_of_parameters(parameters):
-    formation = Formation.of(parameters)
+    formation = BoundingCylinder.of(parameters)
     assert [formation.radius, formation.above, formation.below] == pytest.approx([math.sqrt(0.5) + 0.3, 3.45, 0.25])
-    assert Formation.of(parameters, 0.2).radius == pytest.approx(formation.radius + 3.2 * math.sin(0.2))
+    assert BoundingCylinder.of(parameters, 0.2).radius == pytest.approx(formation.radius + 3.2 * math.sin(0.2))
 
 
 @pytest.fixture
@@ -236,11 +227,10 @@ def parameters():
 
 def test_what_has_no_meaning_is_refused():
     for wrong in (
-        lambda: Formation(-1.0, 1.0, 1.0),
+        lambda: BoundingCylinder(-1.0, 1.0, 1.0),
         lambda: way([], margin=-0.1),
         lambda: way([], highest=0.2),
         lambda: way([], goal=(0.0, math.nan, 0.0)),
-        lambda: way([(Shape("cone", 1.0), (0.0, 0.0, 0.0))]),
         lambda: way([sphere(1.0, math.inf, 0.0)]),
         lambda: way([pole(10.0, 0.0)], region=((0.0, 0.0, -99.0), (9.0, 9.0, -98.0))),
     ):

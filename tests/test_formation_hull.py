@@ -6,13 +6,16 @@ from avoidance_scene import hull_of
 from paper_system import system
 from proxsuite import proxqp
 
+from idc_controller.geometry.box import Wall
 from idc_controller.geometry.formation import Formation
-from idc_controller.geometry.shapes import PredictedObstacle, Shape
+from idc_controller.geometry.obstacles import PredictedObstacle
+from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.sphere import Sphere
 from idc_controller.safety.separation import separations
 from idc_controller.trajectory.flatness import Load, flat_forces
 
 TEAMS = [3, 4, 6, 8]
-SHAPES = [Shape("sphere", 0.5), Shape("pole", 0.3, (0.0, 0.0, 12.0)), Shape("wall", size=(0.3, 4.0, 5.0), yaw=0.4)]
+SHAPES = [Sphere(0.5), Pole(0.3, 12.0), Wall(size=(0.3, 4.0, 5.0), yaw=0.4)]
 
 
 def accelerations(rng, K=40, lateral=3.0, vertical=2.5):
@@ -30,7 +33,7 @@ def surface(shape):
         return signs * shape.size @ shape.rotation.T, 0.0
     angle = np.linspace(0.0, 2.0 * np.pi, 90, endpoint=False)
     ring = shape.radius * np.column_stack([np.cos(angle), np.sin(angle)])
-    half = shape.size[2] / 2.0
+    half = shape.height / 2.0
     return np.vstack([np.column_stack([ring, np.full(90, z)]) for z in (-half, half)]), 0.0
 
 
@@ -135,7 +138,7 @@ def test_distance_and_plane_are_those_of_the_convex_hulls(n, shape):
 
 def test_only_what_is_near_takes_part():
     formation = Formation(system())
-    shape = Shape("sphere", 0.5)
+    shape = Sphere(0.5)
     K = 5
     position = np.column_stack([np.linspace(0.0, 8.0, K), np.zeros(K), np.full(K, -5.0)])
     near, far, grown = (
@@ -154,6 +157,6 @@ def test_only_what_is_near_takes_part():
 
 def test_overlap_is_negative():
     formation = Formation(system())
-    inside = PredictedObstacle("in", Shape("sphere", 0.5), np.array([[0.0, 0.0, -6.0]]), np.zeros(1))
+    inside = PredictedObstacle("in", Sphere(0.5), np.array([[0.0, 0.0, -6.0]]), np.zeros(1))
     (found,) = separations(formation, np.array([[0.0, 0.0, -5.0]]), np.zeros((1, 3)), [inside], 2.5)
     assert found.distance[0] < -0.4

@@ -5,15 +5,18 @@ import pytest
 from obstacle_scene import HERE, NOISE, Scene, map_of, messages_of, pole, sphere, wall
 
 from gcs.mavlink.telemetry import detection
-from gcs.mission.model import Pole, Sphere, Wall
+from gcs.mission.model import Obstacle
 from idc_controller.estimation.measurements import Attitude, Position
+from idc_controller.geometry.box import Wall
+from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.sphere import Sphere
 
 EVERYONE = frozenset(range(4))
 UNKNOWN = np.array([0.0, 6.0, -6.0])
 ON_THE_MAP = {
-    "sphere": (Sphere("a", (5.0, 0.0, -6.0), 0.5, True), sphere((5.0, 0.0, -6.0))),
-    "pole": (Pole("a", (5.0, 0.0), 0.2, 15.0, True), pole((5.0, 0.0))),
-    "wall": (Wall("a", (5.0, 0.0, -6.0), (0.3, 5.0, 6.0), np.degrees(0.3), True), wall((5.0, 0.0, -6.0))),
+    "sphere": (Obstacle("a", (5.0, 0.0, -6.0), Sphere(0.5), True), sphere((5.0, 0.0, -6.0))),
+    "pole": (Obstacle("a", (5.0, 0.0, -7.5), Pole(0.2, 15.0), True), pole((5.0, 0.0))),
+    "wall": (Obstacle("a", (5.0, 0.0, -6.0), Wall((0.3, 5.0, 6.0), 0.3), True), wall((5.0, 0.0, -6.0))),
 }
 
 

@@ -6,8 +6,10 @@ from pathlib import Path
 import pytest
 from mission_files import CIRCLE, MISSIONS, RETURN, TAKE_OFF, TOML, A, B, legs, plan, read, row, shape, told, wpl
 
-from gcs.mission import Lissajous, Pole, Wall, read_mission
+from gcs.mission import Lissajous, read_mission
 from gcs.mission.route import FlyTo, Land
+from idc_controller.geometry.box import Wall
+from idc_controller.geometry.pole import Pole
 
 
 def test_hover() -> None:
@@ -42,8 +44,8 @@ def test_delivery() -> None:
 def test_fenced_delivery() -> None:
     mission = read_mission(MISSIONS / "fenced_delivery.plan")
     circle, polygon = mission.obstacles
-    assert isinstance(circle, Pole) and circle.radius == 2.0 and circle.known
-    assert isinstance(polygon, Wall) and polygon.size[:2] == pytest.approx((3.0, 5.0), abs=0.01)
+    assert isinstance(circle.shape, Pole) and circle.shape.radius == 2.0 and circle.known
+    assert isinstance(polygon.shape, Wall) and polygon.shape.size[:2] == pytest.approx((3.0, 5.0), abs=0.01)
     assert mission.boundary is not None and len(mission.boundary) == 4
     across = [note for note in mission.notes if "leads across fence" in note]
     assert len(across) == len(mission.notes) == 2

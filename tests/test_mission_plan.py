@@ -20,7 +20,8 @@ from mission_files import (
     survey,
 )
 
-from gcs.mission import Pole, Wall
+from idc_controller.geometry.box import Wall
+from idc_controller.geometry.pole import Pole
 
 
 def test_survey_is_flown_by_its_stored_items(tmp_path: Path) -> None:
@@ -44,14 +45,14 @@ def test_fence(tmp_path: Path) -> None:
     )
     mission = read(tmp_path, document)
     pole, box, *edges = mission.obstacles
-    assert isinstance(pole, Pole) and isinstance(box, Wall)
-    assert pole.position == pytest.approx((30.0, 0.0), abs=0.1)
-    assert (pole.radius, pole.known, pole.motion) == (5.0, True, None)
+    assert isinstance(pole.shape, Pole) and isinstance(box.shape, Wall)
+    assert pole.position[:2] == pytest.approx((30.0, 0.0), abs=0.1)
+    assert (pole.shape.radius, pole.known, pole.motion) == (5.0, True, None)
     assert box.position[:2] == pytest.approx((30.0, 0.0), abs=0.1)
-    assert box.size[:2] == pytest.approx((10.0, 10.0), abs=0.1)
-    assert box.position[2] == -box.size[2] / 2
+    assert box.shape.size[:2] == pytest.approx((10.0, 10.0), abs=0.1)
+    assert box.position[2] == -box.shape.size[2] / 2
     assert len(edges) == 3
-    assert all(isinstance(e, Wall) and math.dist(e.position[:2], (30.0, 0.0)) < 5.2 for e in edges)
+    assert all(isinstance(e.shape, Wall) and math.dist(e.position[:2], (30.0, 0.0)) < 5.2 for e in edges)
     assert mission.boundary is not None and mission.boundary[0] == pytest.approx((100.0, 70.0), abs=0.5)
 
 
@@ -68,7 +69,7 @@ def test_walls_stand_inside_their_polygon(tmp_path: Path) -> None:
         kite = area(5)
         kite["polygon"] = [*kite["polygon"], [HOME[0] + 28 / DEGREE, HOME[1] + 15 / DEGREE]][::turn]
         for wall in read(tmp_path, plan(TAKE_OFF, A, RETURN, geoFence__polygons=[kite])).obstacles:
-            assert isinstance(wall, Wall)
+            assert isinstance(wall.shape, Wall)
             if abs(wall.position[0] - 35.0) < 0.2:  # the northern edge
                 assert 34.8 < wall.position[0] < 34.99
                 break

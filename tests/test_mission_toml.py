@@ -6,7 +6,9 @@ import pytest
 from mission_files import MISSIONS, POINTS, TAKE_OFF, TOML, A, read, refusal, row, shape, wpl
 
 from gcs.config import UnusableFile
-from gcs.mission import Lissajous, Pole, Route, Sphere, read_mission
+from gcs.mission import Lissajous, Route, read_mission
+from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.sphere import Sphere
 
 
 def test_toml(tmp_path: Path) -> None:
@@ -14,7 +16,7 @@ def test_toml(tmp_path: Path) -> None:
     assert mission.reference == Lissajous((6.0, 3.0), 0.5, 5.0, 40.0)
     assert (mission.name, mission.seed) == ("two spheres", 7)
     static, moving = mission.obstacles
-    assert isinstance(static, Sphere) and isinstance(moving, Pole)
+    assert isinstance(static.shape, Sphere) and isinstance(moving.shape, Pole)
     assert static.known and not moving.known
     assert moving.motion is not None and moving.motion.kind == "harmonic"
     (fault,) = mission.faults

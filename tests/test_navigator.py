@@ -5,7 +5,7 @@ import pytest
 from avoidance_scene import Scene, pole, straight, wall
 from paper_system import system
 
-from idc_controller.geometry.free_space import Formation, first_conflict
+from idc_controller.geometry.free_space import BoundingCylinder, first_conflict
 from idc_controller.guidance.navigator import Navigator
 from idc_controller.guidance.settings import NavigatorSettings
 from idc_controller.trajectory.trajectory import RestTrajectory
@@ -24,7 +24,7 @@ def now(*obstacles):
 
 
 def formation():
-    return Formation.of(system(), float(np.radians(5.0)))
+    return BoundingCylinder.of(system(), float(np.radians(5.0)))
 
 
 @pytest.fixture

@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 from obstacle_scene import MOTIONS, NOISE, Scene, pole, random_motion, sphere, stop_and_go, wall
 
+from idc_controller.geometry.box import Wall
 from idc_controller.geometry.distance import Bodies
-from idc_controller.geometry.shapes import Shape
+from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.sphere import Sphere
 from idc_controller.perception.motion_imm import BankSettings, MotionModels
 from idc_controller.perception.obstacle_filter import ObstacleFilter
 from idc_controller.perception.surfaces.round import RoundSurface
@@ -40,15 +42,15 @@ def uncovered(track, obstacle):
     x, y, z = obstacle.position_in_world
     direction = rng.normal(size=(600, 3))
     direction /= np.linalg.norm(direction, axis=1)[:, None]
-    if obstacle.shape == "sphere":
-        surface = obstacle.radius * direction
-    elif obstacle.shape == "pole":
+    shape = obstacle.shape
+    if isinstance(shape, Sphere):
+        surface = shape.radius * direction
+    elif isinstance(shape, Pole):
         around = direction[:, :2] / np.linalg.norm(direction[:, :2], axis=1)[:, None]
-        surface = np.column_stack([obstacle.radius * around, rng.uniform(-0.5, 0.5, 600) * obstacle.size[2]])
+        surface = np.column_stack([shape.radius * around, rng.uniform(-0.5, 0.5, 600) * shape.height])
     else:
-        corner = np.sign(direction) * np.array(obstacle.size) / 2.0
-        cosine, sine = np.cos(obstacle.yaw), np.sin(obstacle.yaw)
-        surface = corner @ np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+        corner = np.sign(direction) * np.array(shape.size) / 2.0
+        surface = corner @ shape.rotation.T
     return Bodies([track.shape]).distance(surface + np.array([x, y, z]), track.state[0][None])[0].max()
 
 
@@ -101,7 +103,7 @@ def test_no_point_lies_on_the_side_that_nobody_sees(seed):
     obstacle, rng = sphere((0.0, 0.0, -6.0)), np.random.default_rng([seed, 17])
     seen = Scene(seed).frame(0.0, np.array([-7.0, 0.0, -6.0]), obstacle)
     seen = replace(seen, points=seen.points + rng.normal(0.0, 5 * NOISE, seen.points.shape), scatter=(5 * NOISE) ** 2)
-    surface, place = RoundSurface("sphere", Shape("sphere", 0.5)), np.array([-0.8, 0.0, -6.0])
+    surface, place = RoundSurface("sphere", Sphere(0.5)), np.array([-0.8, 0.0, -6.0])
     for _ in range(10):
         place = surface.fit(seen, place).position
     assert abs(place[0]) < 0.35
@@ -133,8 +135,8 @@ def test_standing_poles(radius, height, seed):
     assert track.kind == "pole"
     assert track.shape.radius == pytest.approx(radius, abs=0.05)
     assert np.linalg.norm(track.state[0][:2] - [2.0, -1.0]) < 0.08
-    top = track.state[0][2] - track.shape.size[2] / 2.0
-    bottom = track.state[0][2] + track.shape.size[2] / 2.0
+    top = track.state[0][2] - track.shape.height / 2.0
+    bottom = track.state[0][2] + track.shape.height / 2.0
     assert bottom == pytest.approx(0.0, abs=0.01)
     # From 3 m away and 6 m up, 15 m is at the sensors' limit: the top may be taken higher, not lower.
     assert -height - 3.2 < top < -height + 0.05
@@ -279,9 +281,9 @@ def test_a_late_frame_does_no_harm():
 @pytest.mark.parametrize(
     ("known", "obstacle"),
     [
-        (Shape("sphere", 0.7), lambda p: sphere(p, 0.7)),
-        (Shape("pole", 0.3, (0.0, 0.0, 12.0)), lambda p: pole(p[:2], 0.3, 12.0)),
-        (Shape("wall", 0.0, (0.4, 4.0, 12.0), 0.3), lambda p: wall((p[0], p[1], -6.0), (0.4, 4.0, 12.0), 0.3)),
+        (Sphere(0.7), lambda p: sphere(p, 0.7)),
+        (Pole(0.3, 12.0), lambda p: pole(p[:2], 0.3, 12.0)),
+        (Wall((0.4, 4.0, 12.0), 0.3), lambda p: wall((p[0], p[1], -6.0), (0.4, 4.0, 12.0), 0.3)),
     ],
 )
 def test_a_known_shape_stays_and_its_motion_is_found(known, obstacle):

@@ -21,9 +21,12 @@ from obstacle_scene import (
 
 from gcs.flight import stack
 from gcs.mavlink.telemetry import detection
-from gcs.mission import HarmonicMotion, Pole, Sphere, Wall
+from gcs.mission import HarmonicMotion, Obstacle
 from gcs.mission.read import read_mission
 from idc_controller.estimation.measurements import Attitude, Position
+from idc_controller.geometry.box import Wall
+from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.sphere import Sphere
 from vehicle_sim.swarm import Swarm
 
 
@@ -83,7 +86,7 @@ def test_shapes_together():
 
 
 def test_predictions_have_the_shape_asked_for():
-    m = run(map_of(Pole("known", (9.0, 9.0), 0.3, 8.0)), four, 1.0)
+    m = run(map_of(Obstacle("known", (9.0, 9.0, -4.0), Pole(0.3, 8.0))), four, 1.0)
     times = 1.0 + 0.1 * np.arange(33)
     for o in m.predict(times):
         assert o.positions.shape == (33, 3)
@@ -196,10 +199,10 @@ def test_when_all_links_are_silent_nothing_is_dropped_for_being_unseen():
 
 def test_known_standing_obstacles_are_told_from_the_start_and_their_detections_make_no_tracks():
     known = (
-        Sphere("ball", (5.0, 0.0, -6.0), 0.5), Pole("mast", (0.0, 6.0), 0.3, 12.0),
-        Wall("house", (-6.0, 0.0, -4.0), (0.3, 5.0, 8.0), 12.0),
+        Obstacle("ball", (5.0, 0.0, -6.0), Sphere(0.5)), Obstacle("mast", (0.0, 6.0, -6.0), Pole(0.3, 12.0)),
+        Obstacle("house", (-6.0, 0.0, -4.0), Wall((0.3, 5.0, 8.0), np.radians(12.0))),
     )  # fmt: skip
-    m = map_of(*known, Sphere("secret", (0.0, -5.0, -6.0), 0.5, known=False))
+    m = map_of(*known, Obstacle("secret", (0.0, -5.0, -6.0), Sphere(0.5), known=False))
     before = m.predict(np.array([0.0, 1.0]))
     assert [o.name for o in before] == ["ball", "mast", "house"]
     true = [
@@ -217,7 +220,7 @@ def test_known_standing_obstacles_are_told_from_the_start_and_their_detections_m
 
 
 def test_an_unknown_obstacle_that_passes_a_known_one_keeps_its_track():
-    m = map_of(Wall("house", (5.0, 0.0, -4.0), (0.3, 6.0, 8.0)))
+    m = map_of(Obstacle("house", (5.0, 0.0, -4.0), Wall((0.3, 6.0, 8.0))))
     house = wall((5.0, 0.0, -4.0), (0.3, 6.0, 8.0), 0.0, "house")
 
     def ball(t):
@@ -239,7 +242,7 @@ def test_a_known_moving_obstacle_keeps_its_shape_and_its_motion_is_followed():
         return np.array([6.0 + 1.5 * np.sin(t), 0.0, -6.0])
 
     motion = HarmonicMotion((1.5, 0.0, 0.0), 1.0)
-    m = map_of(Sphere("swing", (6.0, 0.0, -6.0), 0.45, motion=motion))
+    m = map_of(Obstacle("swing", (6.0, 0.0, -6.0), Sphere(0.45), motion=motion))
     (before,) = m.predict(np.array([0.0]))
     np.testing.assert_array_equal(before.positions[0], [6.0, 0.0, -6.0])
     assert before.growth[0] == 0.5
@@ -257,7 +260,7 @@ def test_a_known_moving_obstacle_keeps_its_shape_and_its_motion_is_followed():
 
 
 def test_a_known_moving_obstacle_that_is_not_where_it_should_be_is_left_out_until_it_is_seen():
-    m = map_of(Sphere("swing", (6.0, 0.0, -6.0), 0.45, motion=HarmonicMotion((1.5, 0.0, 0.0), 1.0)))
+    m = map_of(Obstacle("swing", (6.0, 0.0, -6.0), Sphere(0.45), motion=HarmonicMotion((1.5, 0.0, 0.0), 1.0)))
     run(m, lambda t: [], 2.0)
     assert m.predict(np.array([2.0])) == []
     run(m, lambda t: [sphere((6.5, 0.5, -6.0), 0.45)], 3.0, begin=2.0)
@@ -281,8 +284,9 @@ def test_in_flight_the_ground_finds_what_the_vehicles_sense(tmp_path):
     """The whole way: sensors, MAVLink, the ground's codec and clocks, the map, the records."""
     mission = read_mission(short_figure(tmp_path))
     obstacles = (
-        Sphere("ball", (4.0, 4.0, -3.5), 0.5, known=False), Pole("mast", (0.0, 6.0), 0.3, 9.0, known=False),
-        Sphere("known", (-5.0, 0.0, -3.0), 0.4),
+        Obstacle("ball", (4.0, 4.0, -3.5), Sphere(0.5), known=False),
+        Obstacle("mast", (0.0, 6.0, -4.5), Pole(0.3, 9.0), known=False),
+        Obstacle("known", (-5.0, 0.0, -3.0), Sphere(0.4)),
     )  # fmt: skip
     mission = replace(mission, obstacles=obstacles)
     with Rehearsal(mission, tmp_path / "run") as flight:

@@ -10,12 +10,13 @@ from gcs.mission import (
     CircleMotion,
     HarmonicMotion,
     LinearMotion,
+    Obstacle,
     RandomWalkMotion,
-    Sphere,
     WaypointsMotion,
     mover,
     read_mission,
 )
+from idc_controller.geometry.sphere import Sphere
 from vehicle_sim.world.moving_obstacles import MovingObstacles
 
 SQUARE = ((0.0, 0.0, 0.0), (2.0, 0.0, 0.0), (2.0, 1.0, 0.0))
@@ -90,7 +91,7 @@ class _World:
     def __init__(self):
         self.places = {}
 
-    def add_obstacle(self, name, kind, place, *_args, **_kwargs):
+    def add_obstacle(self, name, shape, place):
         self.places[name] = place
 
     def move_obstacle(self, name, place):
@@ -100,7 +101,7 @@ class _World:
 def test_the_world_has_them_where_they_are():
     world = _World()
     motions = [CircleMotion(1.0, 1.0), WaypointsMotion(SQUARE, 1.0), RandomWalkMotion(3, (1.0, 1.0, 1.0), 1.0)]
-    obstacles = [Sphere(str(i), (5.0, i, -4.0), 0.5, motion=motion) for i, motion in enumerate(motions)]
+    obstacles = [Obstacle(str(i), (5.0, i, -4.0), Sphere(0.5), motion=motion) for i, motion in enumerate(motions)]
     moving = MovingObstacles(world, obstacles)
     for time in (0.0, 1.25):
         moving.move(time)

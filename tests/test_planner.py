@@ -8,8 +8,11 @@ from paper_system import system
 from proxsuite import proxqp
 
 from idc_controller.errors import ParameterError
+from idc_controller.geometry.box import Wall
 from idc_controller.geometry.formation import Formation
-from idc_controller.geometry.shapes import PredictedObstacle, Shape
+from idc_controller.geometry.obstacles import PredictedObstacle
+from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.sphere import Sphere
 from idc_controller.qp.daqp_solver import DaqpSolver
 from idc_controller.safety.constraints.exponential_barrier import barrier_operator
 from idc_controller.safety.planner import Planner, terminal_weight
@@ -99,7 +102,7 @@ def test_barrier_limits_how_fast_an_obstacle_is_approached(rates):
     s = PlannerSettings(barrier_rates=rates)
     planner = Planner(Formation(system()), s)
     mission = cruising()
-    obstacle = standing(Shape("sphere", 0.5), [4.5, 0.4, -6.5])
+    obstacle = standing(Sphere(0.5), [4.5, 0.4, -6.5])
     plan, near, about = solved(planner, np.zeros((5, 3)), mission, [obstacle])
     assert plan.slack < 1e-6
     position = mission[0] + plan.deviation[:, 0]
@@ -123,7 +126,7 @@ def test_barrier_limits_how_fast_an_obstacle_is_approached(rates):
 def random_problem(rng):
     mission = cruising(rng.uniform(0.5, 2.0))
     start = rng.normal(size=(5, 3)) * np.array([0.3, 0.3, 0.2, 0.2, 0.5])[:, None]
-    shapes = [Shape("sphere", 0.5), Shape("pole", 0.3, (0.0, 0.0, 15.0)), Shape("wall", size=(0.3, 3.0, 4.0), yaw=0.5)]
+    shapes = [Sphere(0.5), Pole(0.3, 15.0), Wall(size=(0.3, 3.0, 4.0), yaw=0.5)]
     obstacles = []
     for i in range(rng.integers(1, 4)):
         place = np.array([rng.uniform(2.5, 6.0), rng.uniform(-3.0, 3.0), rng.uniform(-8.0, -4.0)])
@@ -213,7 +216,7 @@ def test_free_plan_comes_back(planner):
 
 
 def test_slack_is_zero_when_the_rows_can_be_kept(planner):
-    obstacle = standing(Shape("sphere", 0.5), [4.0, 0.3, -7.0])
+    obstacle = standing(Sphere(0.5), [4.0, 0.3, -7.0])
     plan, _, _ = solved(planner, np.zeros((5, 3)), cruising(1.0), [obstacle])
     assert plan.slack == pytest.approx(0.0, abs=1e-7)
 
@@ -222,7 +225,7 @@ def test_slack_says_by_how_much_safety_is_missed(planner):
     # It begins 0.2 m from the surface: 0.33 m of margin and tracking cannot be had at the first stages.
     position = np.array([0.0, 0.0, -5.0])
     surface = position + np.array([0.5 + 0.2 + 0.5, 0.0, 0.0])
-    obstacle = standing(Shape("sphere", 0.5), surface)
+    obstacle = standing(Sphere(0.5), surface)
     plan, _, _ = solved(planner, np.zeros((5, 3)), cruising(0.0), [obstacle])
     missing = SETTINGS.margin + SETTINGS.tracking - 0.2
     p = np.exp(-SETTINGS.barrier_rates[0] * 0.1)
@@ -234,8 +237,8 @@ def test_slack_says_by_how_much_safety_is_missed(planner):
 
 
 def test_one_obstacle_that_cannot_be_kept_off_does_not_excuse_another(planner):
-    near = standing(Shape("sphere", 0.5), [1.2, 0.0, -5.0], name="near")
-    ahead = standing(Shape("sphere", 0.5), [-4.5, 0.4, -6.5], name="other")
+    near = standing(Sphere(0.5), [1.2, 0.0, -5.0], name="near")
+    ahead = standing(Sphere(0.5), [-4.5, 0.4, -6.5], name="other")
     alone, _, _ = solved(planner, np.zeros((5, 3)), cruising(-1.5), [near])
     assert alone.slack > 0.01
     _, planes, about = solved(planner, np.zeros((5, 3)), cruising(-1.5), [near, ahead])
@@ -246,7 +249,7 @@ def test_one_obstacle_that_cannot_be_kept_off_does_not_excuse_another(planner):
 
 
 def test_growth_of_what_is_not_known_is_kept_off_as_well(planner):
-    sure, unsure = (standing(Shape("sphere", 0.5), [3.5, 0.0, -7.4], growth) for growth in (0.0, 0.3))
+    sure, unsure = (standing(Sphere(0.5), [3.5, 0.0, -7.4], growth) for growth in (0.0, 0.3))
     heights = []
     for obstacle in (sure, unsure):
         plan, _, _ = solved(planner, np.zeros((5, 3)), cruising(1.0), [obstacle])
@@ -277,7 +280,7 @@ def test_limits_never_forbid_the_mission_itself(planner):
 
 def test_mission_near_the_ground_is_not_led_into_it(planner):
     mission = cruising(1.0, altitude=1.2)
-    above = standing(Shape("wall", size=(0.5, 40.0, 2.0)), [3.0, 0.0, -6.2])
+    above = standing(Wall(size=(0.5, 40.0, 2.0)), [3.0, 0.0, -6.2])
     plan, _, _ = solved(planner, np.zeros((5, 3)), mission, [above])
     limited = np.arange(3, K + 1, 3)
     assert np.all(mission[0, limited, 2] + plan.deviation[limited, 0, 2] <= SETTINGS.lowest + 0.02)
@@ -288,6 +291,6 @@ def test_other_chains_do_as_well():
     planner = Planner(Formation(system(6)), PlannerSettings(chain=chain, barrier_rates=(3.0, 3.0)))
     mission = cruising(1.0, stages=chain.stages, period=chain.period)
     k = chain.stages + 1
-    obstacle = PredictedObstacle("o", Shape("sphere", 0.4), np.tile([2.0, 0.3, -7.0], (k, 1)), np.zeros(k))
+    obstacle = PredictedObstacle("o", Sphere(0.4), np.tile([2.0, 0.3, -7.0], (k, 1)), np.zeros(k))
     near = separations(planner.formation, mission[0], mission[2], [obstacle], 2.5)
     assert planner.solve(np.zeros((5, 3)), mission, near, mission[2]) is not None

@@ -76,7 +76,7 @@ def test_row_is_the_second_derivative_of_h(model, obstacle):
 
         def h(t, a=a):
             d = c + estimate.x[layout.v_0] * t + a * t**2 / 2 - (o + o_dot * t + o_ddot * t**2 / 2)
-            return d @ d - (shape.radius + margin) ** 2
+            return d @ d - (shape.columns.radius + margin) ** 2
 
         e = 1e-3
         h_dot, h_ddot = (h(e) - h(-e)) / (2 * e), (h(e) - 2 * h(0.0) + h(-e)) / e**2

@@ -13,14 +13,15 @@ from scripted_ground import ScriptedGround, exchange
 
 from gcs.config import UnusableFile, read_system
 from gcs.mavlink.codec import Codec
-from gcs.mission import HarmonicMotion, Pole, Sphere, Wall
+from gcs.mission import HarmonicMotion, Obstacle
+from idc_controller.geometry.box import Wall
 from idc_controller.geometry.distance import Bodies
-from idc_controller.geometry.shapes import Shape
+from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.sphere import Sphere
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
 from vehicle_sim.faults.interface import Passage
 from vehicle_sim.swarm import Swarm
-from vehicle_sim.world.range_sensor import RangeSensor
-from vehicle_sim.world.visible_surface import visible_points
+from vehicle_sim.world.range_sensor import RangeSensor, visible_points
 
 CONFIG = read_system()
 REACH = 10.0
@@ -32,7 +33,7 @@ OBSTACLES = [
 
 
 def body_of(obstacle):
-    return Bodies([Shape(obstacle.shape, obstacle.radius, obstacle.size, obstacle.yaw)])
+    return Bodies([obstacle.shape])
 
 
 def places(rng, count=40):
@@ -41,7 +42,7 @@ def places(rng, count=40):
         yield tuple(direction / np.linalg.norm(direction) * rng.uniform(1.5, 11.0) + [0.0, 0.0, -6.0])
 
 
-@pytest.mark.parametrize("obstacle", OBSTACLES, ids=lambda o: f"{o.shape} {o.radius} {o.size}")
+@pytest.mark.parametrize("obstacle", OBSTACLES, ids=lambda o: f"{o.shape.kind} {o.shape.dimensions}")
 def test_points_lie_on_the_visible_side_within_range_and_the_first_is_the_nearest(obstacle):
     centre = np.array([obstacle.position_in_world])
     body = body_of(obstacle)
@@ -146,10 +147,10 @@ def test_the_system_file_is_read_strictly(tmp_path, old, new, reason):
 # On the wire
 
 MISSION = (
-    Sphere("known", (6.0, 0.0, -3.0), 0.5),
-    Sphere("unknown", (0.0, 6.0, -3.0), 0.4, known=False, motion=HarmonicMotion((1.0, 0.0, 0.0), 1.0)),
-    Pole("far", (40.0, 0.0), 0.3, 9.0, known=False),
-    Wall("wall", (-6.0, 0.0, -2.0), (0.3, 4.0, 4.0), known=False),
+    Obstacle("known", (6.0, 0.0, -3.0), Sphere(0.5)),
+    Obstacle("unknown", (0.0, 6.0, -3.0), Sphere(0.4), known=False, motion=HarmonicMotion((1.0, 0.0, 0.0), 1.0)),
+    Obstacle("far", (40.0, 0.0, -4.5), Pole(0.3, 9.0), known=False),
+    Obstacle("wall", (-6.0, 0.0, -2.0), Wall((0.3, 4.0, 4.0)), known=False),
 )
 
 
@@ -218,7 +219,7 @@ def test_another_rate_and_range():
     config = replace(CONFIG, range_sensor=replace(CONFIG.range_sensor, rate=5, range=5.0))
     ground = detections(config=config)
     assert ground.of_type("OBSTACLE_DISTANCE_3D") == []  # all are further away, but for the wall's distance of 5.35 m
-    ground = detections(obstacles=(Sphere("near", (3.0, 0.0, -3.0), 0.5),), config=config)
+    ground = detections(obstacles=(Obstacle("near", (3.0, 0.0, -3.0), Sphere(0.5)),), config=config)
     stamps = sorted({m.time_boot_ms for m in ground.of_type("OBSTACLE_DISTANCE_3D", 1)})
     assert {b - a for a, b in pairwise(stamps)} == {200}
 

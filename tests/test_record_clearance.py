@@ -7,6 +7,9 @@ import pytest
 
 from gcs.errors import UnusableInput
 from gcs.record.clearance import ObstacleTrack, clearance_over_time, formation_points, rim_error
+from idc_controller.geometry.box import Wall
+from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.sphere import Sphere
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
 
 LEVEL = np.array([1.0, 0.0, 0.0, 0.0])
@@ -28,7 +31,7 @@ def clearance(obstacle: ObstacleTrack, rotation=LEVEL, shift=(0.0, 0.0, 0.0), ua
 
 
 def sphere(position, radius=0.5) -> ObstacleTrack:
-    return ObstacleTrack("s", "sphere", np.array([position], dtype=float), radius)
+    return ObstacleTrack("s", Sphere(radius), np.array([position], dtype=float))
 
 
 def test_the_bound_is_stated_below_a_millimetre() -> None:
@@ -59,21 +62,21 @@ def test_sphere_beside_the_slanted_side() -> None:
 
 
 def test_pole_reaches_the_hull_at_the_height_of_the_discs() -> None:
-    pole = ObstacleTrack("p", "pole", np.array([[3.0, 0.0, -2.5]]), 0.4, (0.0, 0.0, 15.0))
+    pole = ObstacleTrack("p", Pole(0.4, 15.0), np.array([[3.0, 0.0, -2.5]]))
     assert clearance(pole) == pytest.approx(3.0 - 0.8 - 0.4, abs=BOUND)
 
 
 def test_pole_ends_at_its_top() -> None:
-    pole = ObstacleTrack("p", "pole", np.array([[0.0, 0.0, 6.0]]), 0.4, (0.0, 0.0, 4.0))  # top at z = 4
+    pole = ObstacleTrack("p", Pole(0.4, 4.0), np.array([[0.0, 0.0, 6.0]]))  # top at z = 4
     assert clearance(pole) == pytest.approx(4.0 - 0.25, abs=BOUND)
 
 
 def test_wall_is_turned_about_the_down_axis() -> None:
     # Edge 2 m long along x, turned by 90 degrees: it then reaches 1 m along y.
-    wall = ObstacleTrack("w", "wall", np.array([[0.0, 4.0, 0.0]]), 0.0, (2.0, 0.2, 10.0), np.pi / 2)
+    wall = ObstacleTrack("w", Wall((2.0, 0.2, 10.0), np.pi / 2), np.array([[0.0, 4.0, 0.0]]))
     assert clearance(wall) == pytest.approx(4.0 - 1.0 - 0.8, abs=BOUND)
     # 30 degrees, clockwise from above: the corner at (+x, -y) of the wall comes round towards +x.
-    wall = ObstacleTrack("w", "wall", np.array([[-5.0, 0.0, 0.0]]), 0.0, (2.0, 0.0002, 10.0), np.pi / 6)
+    wall = ObstacleTrack("w", Wall((2.0, 0.0002, 10.0), np.pi / 6), np.array([[-5.0, 0.0, 0.0]]))
     corner = -5.0 + np.cos(np.pi / 6)
     assert clearance(wall) == pytest.approx(-0.8 - corner, abs=BOUND + 1e-4)
 
@@ -140,7 +143,7 @@ def test_size_and_radius_given() -> None:
 
 
 def test_what_is_not_on_record_is_nan() -> None:
-    track = ObstacleTrack("s", "sphere", np.array([[0.0, 0.0, 3.0], [np.nan] * 3]), 0.5)
+    track = ObstacleTrack("s", Sphere(0.5), np.array([[0.0, 0.0, 3.0], [np.nan] * 3]))
     states = [np.repeat(a[None], 2, axis=0) for a in (np.zeros(3), LEVEL, UAVS, np.array([LEVEL] * 4))]
     got = clearance_over_time(*states, [track])
     assert got[0, 0] == pytest.approx(2.25, abs=BOUND)
@@ -156,14 +159,13 @@ def test_points_lie_half_outside_half_inside_the_rim() -> None:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "reason"),
+    ("shape", "reason"),
     [
-        (("cone", np.zeros((1, 3)), 1.0), "shape is 'cone'"),
-        (("sphere", np.zeros((1, 3)), 0.0), "radius must be positive"),
-        (("pole", np.zeros((1, 3)), 1.0), "height must be positive"),
-        (("wall", np.zeros((1, 3)), 0.0, (1.0, float("nan"), 1.0)), "size_y must be positive"),
+        (Sphere(0.0), "radius must be positive"),
+        (Pole(1.0, 0.0), "height must be positive"),
+        (Wall((1.0, float("nan"), 1.0)), "size_y must be positive"),
     ],
 )
-def test_refused_obstacles(arguments, reason) -> None:
+def test_track_refuses_shape_without_extent(shape, reason) -> None:
     with pytest.raises(UnusableInput, match=f"obstacle x: {reason}"):
-        ObstacleTrack("x", *arguments)
+        ObstacleTrack("x", shape, np.zeros((1, 3)))

@@ -16,6 +16,9 @@ from gcs.record.run_folder import open_run_folder, write_json, write_manifest
 from gcs.record.summary import summarise, within_limits, write_summary
 from gcs.record.summary_table import summary_table
 from gcs.record.tables import ESTIMATE_COLUMNS, REFERENCE_COLUMNS, STEP_COLUMNS, TableWriter
+from idc_controller.geometry.box import Wall
+from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.sphere import Sphere
 from idc_controller.rotations import quaternion_from_euler
 from vehicle_sim.world.obstacle_bodies import Obstacle
 from vehicle_sim.world.truth_log import TruthLog
@@ -60,7 +63,7 @@ def write_steps(folder: Path) -> None:
 
 
 def sphere_ahead(time: float):
-    return (Obstacle("ball", "sphere", (14.0, 0.53, -6.21), 0.5),)
+    return (Obstacle("ball", Sphere(0.5), (14.0, 0.53, -6.21)),)
 
 
 FLOWN = {"completed": True, "outcome": "completed", "duration_s": 10.0, "real_time_factor": 5.5}
@@ -166,19 +169,19 @@ def test_every_obstacle_keeps_its_own_track(tmp_path) -> None:
     write_truth(
         folder,
         obstacles=lambda time: (
-            Obstacle("moving, by name", "sphere", (20.0 - time, 5.0, -5.0), 0.5),
-            Obstacle("tree", "pole", (3.0, 9.0, -5.0), 0.4, (0.0, 0.0, 10.0)),
-            Obstacle("tree", "wall", (3.0, -9.0, -5.0), 0.0, (1.0, 2.0, 3.0), 0.5),
+            Obstacle("moving, by name", Sphere(0.5), (20.0 - time, 5.0, -5.0)),
+            Obstacle("tree", Pole(0.4, 10.0), (3.0, 9.0, -5.0)),
+            Obstacle("tree", Wall((1.0, 2.0, 3.0), 0.5), (3.0, -9.0, -5.0)),
         ),
     )
     header, first, *_ = (folder / "obstacles.csv").read_text().splitlines()
     assert header == "time_s,name,shape,x_m,y_m,z_m,radius_m,size_x_m,size_y_m,size_z_m,yaw_rad"
     assert first == '0.0,"moving, by name",sphere,20.0,5.0,-5.0,0.5,0.0,0.0,0.0,0.0'
     tracks = read_run(folder).obstacles
-    assert [(t.name, t.shape, t.radius, t.size, t.yaw) for t in tracks] == [
-        ("moving, by name", "sphere", 0.5, (0.0, 0.0, 0.0), 0.0),
-        ("tree", "pole", 0.4, (0.0, 0.0, 10.0), 0.0),
-        ("tree", "wall", 0.0, (1.0, 2.0, 3.0), 0.5),
+    assert [(t.name, t.shape) for t in tracks] == [
+        ("moving, by name", Sphere(0.5)),
+        ("tree", Pole(0.4, 10.0)),
+        ("tree", Wall((1.0, 2.0, 3.0), 0.5)),
     ]
     assert tracks[0].position[50].tolist() == [15.0, 5.0, -5.0]
 
@@ -303,7 +306,7 @@ def test_report_draws_every_picture_again_and_again(run) -> None:
 
 def test_a_killed_run_is_drawn_as_far_as_it_goes(tmp_path) -> None:
     folder = open_run_folder("hover", tmp_path / "run")  # the manifest is still empty
-    write_truth(folder, rows=30, obstacles=lambda time: (Obstacle("b", "sphere", (time, 9.0, -5.0), 0.5),))
+    write_truth(folder, rows=30, obstacles=lambda time: (Obstacle("b", Sphere(0.5), (time, 9.0, -5.0)),))
     for name, cut in (("truth.csv", 5), ("obstacles.csv", 200)):
         content = (folder / name).read_bytes()
         (folder / name).write_bytes(content[:-cut])

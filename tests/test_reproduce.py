@@ -19,6 +19,9 @@ from gcs.reproduce.numbers import flight_numbers, model_numbers
 from gcs.reproduce.page import ABSENT, paper_text, rounded
 from gcs.reproduce.plan import plan
 from gcs.reproduce.simulation import Case, Flown, simulate
+from idc_controller.geometry.box import Wall
+from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.sphere import Sphere
 from idc_controller.rotations import quaternion_from_euler
 
 pytestmark = pytest.mark.slow
@@ -155,9 +158,9 @@ def recorded(folder, tilt_deg, contacts):
     level = np.tile([1.0, 0.0, 0.0, 0.0], (T, 4, 1))
     uavs = position[:, None] + np.array([[0.5, 0.5, -3.4], [0.5, -0.5, -3.4], [-0.5, -0.5, -3.4], [-0.5, 0.5, -3.4]])
     obstacles = (
-        ObstacleTrack("pole", "pole", np.tile([3.0, 2.0, -5.0], (T, 1)), 0.3, (0.0, 0.0, 10.0)),
-        ObstacleTrack("wall", "wall", np.tile([3.0, 4.0, -5.0], (T, 1)), size=(4.0, 0.3, 10.0)),
-        ObstacleTrack("ball", "sphere", np.tile([6.0, 0.0, -5.0], (T, 1)), 0.5),
+        ObstacleTrack("pole", Pole(0.3, 10.0), np.tile([3.0, 2.0, -5.0], (T, 1))),
+        ObstacleTrack("wall", Wall((4.0, 0.3, 10.0)), np.tile([3.0, 4.0, -5.0], (T, 1))),
+        ObstacleTrack("ball", Sphere(0.5), np.tile([6.0, 0.0, -5.0], (T, 1))),
     )
     summary = {
         "outcome": "collided", "clearance_min_m": 0.0, "contacts": 3, "uav_separation_min_m": 1.0, "duration_s": 6.0,

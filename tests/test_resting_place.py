@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from gcs.config import read_system
-from idc_controller.geometry.shapes import PredictedObstacle, Shape, StandingObstacles
+from idc_controller.geometry.obstacles import PredictedObstacle, StandingObstacles
+from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.sphere import Sphere
 from idc_controller.guidance.resting_place import CLEAR, RestingPlace
 from idc_controller.trajectory.stop_plan import Braking
 
@@ -17,7 +19,7 @@ WIDTH = 0.95  # m, more than the formation's half width
 
 
 def sphere(place, radius=0.5):
-    return StandingObstacles([("sphere", Shape("sphere", radius), np.asarray(place, dtype=float))])
+    return StandingObstacles([("sphere", Sphere(radius), np.asarray(place, dtype=float))])
 
 
 class Swinging:
@@ -29,7 +31,7 @@ class Swinging:
     def predict(self, times):
         positions = np.tile(self._place, (len(times), 1))
         positions[:, 1] += self._amplitude * np.sin(1.5 * np.asarray(times))
-        return [PredictedObstacle("swinging", Shape("sphere", 0.5), positions, np.zeros(len(times)))]
+        return [PredictedObstacle("swinging", Sphere(0.5), positions, np.zeros(len(times)))]
 
 
 def rest_of(braking):
@@ -79,7 +81,7 @@ def test_it_keeps_to_what_it_chose_while_that_is_clear():
 
 def test_where_nothing_is_clear_the_best_is_taken():
     everywhere = StandingObstacles(
-        [(f"{x} {y}", Shape("pole", 0.2, (0.0, 0.0, 10.0)), np.array([x, y, -5.0]))
+        [(f"{x} {y}", Pole(0.2, 10.0), np.array([x, y, -5.0]))
          for x in np.arange(-1.0, 12.0, 2.2) for y in np.arange(-5.5, 6.0, 2.2)]
     )  # fmt: skip
 

@@ -12,7 +12,10 @@ from scripted_ground import GROUND, ScriptedGround, exchange
 from gcs.config import read_system
 from gcs.mavlink import px4
 from gcs.mavlink.codec import Codec
-from gcs.mission import HarmonicMotion, Home, LinearMotion, Pole, Sphere, Wall
+from gcs.mission import HarmonicMotion, Home, LinearMotion, Obstacle
+from idc_controller.geometry.box import Wall
+from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.sphere import Sphere
 from vehicle_sim.faults.interface import Passage
 from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.errors import SimulationError, UnsupportedWorld
@@ -20,9 +23,9 @@ from vehicle_sim.world.truth_log import TruthLog
 
 CONFIG = read_system()
 OBSTACLES = (
-    Sphere("swinging", (6.0, 0.0, -5.0), 0.5, motion=HarmonicMotion((1.5, 0.0, 0.0), 1.0, math.pi / 2)),
-    Pole("drifting", (-8.0, 3.0), 0.2, 12.0, motion=LinearMotion((0.5, -0.25, 0.0))),
-    Wall("standing", (0.0, 20.0, -2.0), (4.0, 0.5, 4.0), yaw_deg=30.0),
+    Obstacle("swinging", (6.0, 0.0, -5.0), Sphere(0.5), motion=HarmonicMotion((1.5, 0.0, 0.0), 1.0, math.pi / 2)),
+    Obstacle("drifting", (-8.0, 3.0, -6.0), Pole(0.2, 12.0), motion=LinearMotion((0.5, -0.25, 0.0))),
+    Obstacle("standing", (0.0, 20.0, -2.0), Wall((4.0, 0.5, 4.0), math.radians(30.0))),
 )
 
 
@@ -169,7 +172,7 @@ def test_the_true_payload_may_weigh_more_than_anybody_knows():
 
 def test_contacts_between_two_rows_are_counted_in_the_second(tmp_path):
     # A ball that passes through the discs of the waiting team as soon as it lifts off.
-    ball = Sphere("ball", (0.5, 0.5, -3.75), 0.1, motion=LinearMotion((0.0, 0.0, -30.0)))
+    ball = Obstacle("ball", (0.5, 0.5, -3.75), Sphere(0.1), motion=LinearMotion((0.0, 0.0, -30.0)))
     ground = ground_of(CONFIG)
     with Swarm(CONFIG, seed=1, obstacles=(ball,)) as swarm:
         swarm.record(TruthLog(tmp_path, 4))
@@ -243,6 +246,6 @@ def test_a_passage_stands_between_samples_and_vehicles_and_between_vehicles_and_
 def test_nothing_is_left_of_a_swarm_that_cannot_be():
     with pytest.raises(UnsupportedWorld):
         Swarm(CONFIG.with_vehicles(16), seed=1)
-    twice = (Sphere("a", (0.0, 0.0, -9.0), 0.5), Sphere("a", (0.0, 5.0, -9.0), 0.5))
+    twice = (Obstacle("a", (0.0, 0.0, -9.0), Sphere(0.5)), Obstacle("a", (0.0, 5.0, -9.0), Sphere(0.5)))
     with pytest.raises(SimulationError, match="the name is taken"):
         Swarm(CONFIG, seed=1, obstacles=twice)

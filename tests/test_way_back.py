@@ -6,6 +6,7 @@ import pytest
 from gcs.record.run_data import read_run
 from gcs.record.tables import REFERENCE_COLUMNS, TableWriter
 from gcs.record.way_back import ways_back
+from idc_controller.geometry.sphere import Sphere
 from vehicle_sim.world.obstacle_bodies import Obstacle
 from vehicle_sim.world.truth_log import TruthLog
 from vehicle_sim.world.world_state import UavState, WorldState
@@ -16,7 +17,7 @@ CORNERS = np.array([[x, y, -3.0] for x in (-0.5, 0.5) for y in (-0.5, 0.5)])
 
 def flown(folder, back_at, until=20.0):
     """North at 1 m/s past a sphere of 0.5 m at 10 m; 2 m aside from 5 s until ``back_at``."""
-    sphere = Obstacle("s", "sphere", (10.0, 0.0, -5.0), 0.5, (0.0, 0.0, 0.0), 0.0)
+    sphere = Obstacle("s", Sphere(0.5), (10.0, 0.0, -5.0))
     with TruthLog(folder, 4) as log, TableWriter(folder / "reference.csv", REFERENCE_COLUMNS) as reference:
         for time in np.arange(0.0, until + 1e-9, 0.02):
             aside = 2.0 if 5.0 <= time < back_at else 0.05

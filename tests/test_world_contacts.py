@@ -8,6 +8,9 @@ import pytest
 from paper_system import system
 from world_runs import uav_array
 
+from idc_controller.geometry.box import Wall
+from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.sphere import Sphere
 from idc_controller.model.nonlinear import (
     hover_state,
     uav_positions,
@@ -21,7 +24,7 @@ def test_uav_driven_into_a_sphere_counts_as_contact():
     with World(parameters) as world:
         world.place(hover_state(parameters, (0, 0, -10.0)))
         front_right = uav_positions(parameters, hover_state(parameters, (0, 0, -10.0)))[0]
-        world.add_obstacle("ball", "sphere", front_right + np.array([1.0, 0, 0]), radius=0.5)
+        world.add_obstacle("ball", Sphere(0.5), front_right + np.array([1.0, 0, 0]))
         assert world.closest_distance("ball") == pytest.approx(0.2, abs=1e-3)
         seen = []
         lift = parameters.hover_thrust.tolist()
@@ -37,14 +40,15 @@ def test_a_link_meets_a_pole_and_a_wall_stops_the_payload():
     parameters = system(4)
     with World(parameters) as world:
         world.place(hover_state(parameters, (0, 0, -6.0)))
-        world.add_obstacle("pole", "pole", (0.6, 0.5), radius=0.05, size=(0, 0, 8.0))
+        world.add_obstacle("pole", Pole(0.05, 8.0), (0.6, 0.5, -4.0))
         assert world.closest_distance("pole") == pytest.approx(0.04, abs=2e-3)
         world.move_obstacle("pole", (0.55, 0.5, -4.0))
-        world.add_obstacle("wall", "wall", (-2.5, 0, -6.0), size=(1.0, 4.0, 0.2))
-        # Payload to wall: 2.5 - 0.5 - 0.5; turned by 90 degrees the wall is 2 m long towards it, and they touch.
+        world.add_obstacle("wall", Wall((1.0, 4.0, 0.2)), (-2.5, 0, -6.0))
+        # Payload to wall: 2.5 - 0.5 - 0.5; one turned by 90 degrees is 2 m long towards it, and they touch.
         assert world.closest_distance("wall") == pytest.approx(1.5, abs=3e-3)
-        world.move_obstacle("wall", (-2.5, 0, -6.0), yaw=math.pi / 2)
-        assert world.closest_distance("wall") == pytest.approx(0.0, abs=3e-3)
+        world.add_obstacle("turned", Wall((1.0, 4.0, 0.2), math.pi / 2), (-2.5, 0, -6.0))
+        assert world.closest_distance("turned") == pytest.approx(0.0, abs=3e-3)
+        world.move_obstacle("turned", (-40.0, 0, -6.0))
         world.move_obstacle("wall", (-20.0, 0, -6.0))
         world.step([14.0] * 4, [(0.0, 0.0, 0.0)] * 4)
         assert world.contacts() == 1  # link 1 and the pole
@@ -56,7 +60,7 @@ def test_a_link_meets_a_pole_and_a_wall_stops_the_payload():
         assert world.closest_distance("pole") < 0
         world.move_obstacle("pole", (50.0, 50.0, -4.0))
         assert world.closest_distance("pole", within=10.0) == math.inf
-        assert [(o.name, o.shape) for o in world.obstacles()] == [("pole", "pole"), ("wall", "wall")]
+        assert [(o.name, o.shape.kind) for o in world.obstacles()][:2] == [("pole", "pole"), ("wall", "wall")]
         assert world.obstacles()[0].position_in_world == (50.0, 50.0, -4.0)
 
 
@@ -64,10 +68,9 @@ def test_wall_yaw_turns_clockwise_seen_from_above():
     with World(system(4)) as world:
         world.place(hover_state(system(4), (0, 0, -10.0)))
         # A long wall to the north-east, lying towards the payload only when yaw is +45 degrees (north to east).
-        world.add_obstacle("wall", "wall", (3.0, 3.0, -10.0), size=(4.0, 0.1, 0.4), yaw=math.pi / 4)
-        towards = world.closest_distance("wall")
-        world.move_obstacle("wall", (3.0, 3.0, -10.0), yaw=-math.pi / 4)
-        assert towards < world.closest_distance("wall") - 1.0
+        for name, yaw in ("towards", math.pi / 4), ("across", -math.pi / 4):
+            world.add_obstacle(name, Wall((4.0, 0.1, 0.4), yaw), (3.0, 3.0, -10.0))
+        assert world.closest_distance("towards") < world.closest_distance("across") - 1.0
 
 
 def test_discs_that_meet_count():
@@ -103,18 +106,17 @@ def test_toppled_system_on_the_ground_counts():
 @pytest.mark.parametrize(
     ("arguments", "reason"),
     [
-        (("a", "cube", (0, 0, 0), 1.0), "shape"),
-        (("a", "sphere", (0, 0, 0)), "radius"),
-        (("a", "sphere", (0, math.nan, 0), 1.0), "finite"),
-        (("a", "sphere", (0, 0), 1.0), "three numbers"),
-        (("a", "pole", (0, 0), 1.0), "height"),
-        (("a", "wall", (0, 0, 0), 0.0, (1, 0, 1)), "size"),
-        (("taken", "sphere", (0, 0, 0), 1.0), "taken"),
+        (("a", Sphere(0.0), (0, 0, 0)), "radius"),
+        (("a", Sphere(1.0), (0, math.nan, 0)), "finite"),
+        (("a", Pole(1.0, 0.0), (0, 0, 0)), "height"),
+        (("a", Wall((1, 0, 1)), (0, 0, 0)), "size_y"),
+        (("a", Wall((1, 1, 1), math.inf), (0, 0, 0)), "yaw"),
+        (("taken", Sphere(1.0), (0, 0, 0)), "taken"),
     ],
 )
 def test_obstacles_without_a_meaning_are_refused(arguments, reason):
     with World(system(4)) as world:
-        world.add_obstacle("taken", "sphere", (9, 9, -9), radius=1.0)
+        world.add_obstacle("taken", Sphere(1.0), (9, 9, -9))
         with pytest.raises(SimulationError, match=reason):
             world.add_obstacle(*arguments)
         with pytest.raises(SimulationError, match="nobody"):

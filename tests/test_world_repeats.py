@@ -6,13 +6,14 @@ import pytest
 from paper_system import system
 from world_runs import run
 
+from idc_controller.geometry.sphere import Sphere
 from vehicle_sim.world.world import World
 
 
 def scenario(world, look):
     """Take-off, a bump against a sphere, fall to the ground; ``look`` at the state on the way or only at the end."""
     hover = world.parameters.hover_thrust
-    world.add_obstacle("ball", "sphere", (0.6, 0.5, -5.0), radius=0.5)
+    world.add_obstacle("ball", Sphere(0.5), (0.6, 0.5, -5.0))
     for k in range(2000):
         factor = 1.2 if k < 1000 else 0.5
         sway = 0.01 * math.sin(0.05 * k)

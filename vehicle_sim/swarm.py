@@ -10,7 +10,7 @@ from gcs.config import SystemConfig
 from gcs.mavlink import px4
 from gcs.mavlink.address import Address
 from gcs.mission import Home as MissionHome
-from gcs.mission import Pole, Sphere, Wall
+from gcs.mission import Obstacle
 from vehicle_sim.autopilot.airframe import Airframe
 from vehicle_sim.faults.interface import Passage
 from vehicle_sim.mavlink.geodesy import Home
@@ -46,7 +46,7 @@ class Swarm:
         *,
         seed: int,
         home: MissionHome | None = None,
-        obstacles: Sequence[Sphere | Pole | Wall] = (),
+        obstacles: Sequence[Obstacle] = (),
         ground_address: Address | None = None,
         passage: Passage | None = None,
         gui: bool = False,

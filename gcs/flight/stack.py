@@ -16,7 +16,7 @@ from idc_controller.control.mpc import ModelPredictiveController
 from idc_controller.control.settings import MpcSettings, MpcWeights
 from idc_controller.estimation.estimator import Estimator
 from idc_controller.estimation.measurements import MeasurementNoise
-from idc_controller.geometry.shapes import ObstacleSource
+from idc_controller.geometry.obstacles import ObstacleSource
 from idc_controller.guidance.navigator import Navigator
 from idc_controller.guidance.progress import AdaptiveGuidance, Guidance
 from idc_controller.guidance.settings import NavigatorSettings, ProgressSettings

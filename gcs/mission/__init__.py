@@ -13,13 +13,11 @@ from gcs.mission.model import (
     LinearMotion,
     Lissajous,
     Mission,
-    Pole,
+    Obstacle,
     RandomWalkMotion,
-    Sphere,
-    Wall,
     WaypointsMotion,
 )
-from gcs.mission.motion import mover, rest_position
+from gcs.mission.motion import mover
 from gcs.mission.read import read_mission
 from gcs.mission.route import Circle, FlyTo, HoldForever, Land, Leg, Route, TakeOff
 
@@ -40,15 +38,12 @@ __all__ = [
     "LinearMotion",
     "Lissajous",
     "Mission",
-    "Pole",
+    "Obstacle",
     "RandomWalkMotion",
     "Route",
-    "Sphere",
     "TakeOff",
-    "Wall",
     "WaypointsMotion",
     "describe",
     "mover",
     "read_mission",
-    "rest_position",
 ]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from gcs.mission.items import MissionItem
-from gcs.mission.model import Pole, Wall
+from gcs.mission.model import Obstacle
 
 ITEM_LIMIT = 10_000
 
@@ -23,7 +23,7 @@ class FileHome:
 class Fence:
     """A geofence in m about home."""
 
-    obstacles: tuple[Pole | Wall, ...] = ()
+    obstacles: tuple[Obstacle, ...] = ()
     boundary: tuple[tuple[float, float], ...] | None = None
 
 

@@ -14,7 +14,7 @@ from rich.text import Text
 
 from gcs.config import MotionConfig
 from gcs.faults import KINDS
-from gcs.mission.model import RESTING_ALTITUDE, Fault, Limits, Lissajous, Mission, Pole, Sphere, Wall
+from gcs.mission.model import RESTING_ALTITUDE, Fault, Limits, Lissajous, Mission
 from gcs.mission.route import Circle, FlyTo, HoldForever, Land, Leg, Position, Route, TakeOff
 
 SHOWN_LEGS = 40
@@ -127,17 +127,11 @@ def _time(length: float, speed: float, motion: MotionConfig) -> float:
 
 def _surroundings(mission: Mission) -> Iterable[str]:
     for obstacle in mission.obstacles:
-        place = ", ".join(f"{x:.1f}" for x in obstacle.position)
-        match obstacle:
-            case Sphere(radius=radius):
-                size = f"radius {radius:g} m"
-            case Pole(radius=radius, height=height):
-                size = f"radius {radius:.4g} m, {height:g} m high"
-            case Wall(size=edges, yaw_deg=yaw):
-                size = " x ".join(f"{edge:.4g}" for edge in edges) + f" m, heading {yaw:.1f} deg"
+        shape = obstacle.shape
+        place = ", ".join(f"{x:.1f}" for x in obstacle.position[: 2 if shape.is_grounded else 3])
         moving = f", moving ({obstacle.motion.kind})" if obstacle.motion else ""
         hidden = "" if obstacle.known else ", not on the map"
-        yield f"{obstacle.shape} '{obstacle.name}' at [{place}], {size}{hidden}{moving}"
+        yield f"{shape.kind} '{obstacle.name}' at [{place}], {shape.dimensions}{hidden}{moving}"
     if mission.boundary:
         yield f"boundary of {len(mission.boundary)} corners"
     for fault in mission.faults:

@@ -7,12 +7,15 @@ from itertools import pairwise
 from typing import Any, TypeGuard
 
 import numpy as np
-from numpy.typing import NDArray
+import shapely
 
 from gcs.mission.content import Fence, FileHome
 from gcs.mission.geodesy import north_east
 from gcs.mission.items import ItemError
-from gcs.mission.model import Pole, Wall
+from gcs.mission.model import Obstacle
+from idc_controller.geometry.box import Wall
+from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.shape import Shape
 
 Point = tuple[float, float]
 
@@ -26,7 +29,7 @@ CIRCLE_CORNERS = 32
 def read_fence(section: dict[str, Any], home: FileHome) -> Fence:
     """The ``geoFence`` section of a plan in m about home. Raises :class:`ItemError`."""
     origin = (home.latitude, home.longitude, home.altitude or 0.0)
-    obstacles: list[Pole | Wall] = []
+    obstacles: list[Obstacle] = []
     boundaries: list[tuple[Point, ...]] = []
     for number, (where, raw) in enumerate(_entries(section, "circles"), start=1):
         circle = raw.get("circle")
@@ -43,13 +46,13 @@ def read_fence(section: dict[str, Any], home: FileHome) -> Fence:
                 tuple((centre[0] + radius * math.cos(a), centre[1] + radius * math.sin(a)) for a in angles)
             )
         else:
-            obstacles.append(Pole(f"fence circle {number}", centre, float(radius), FENCE_HEIGHT))
+            obstacles.append(_standing(f"fence circle {number}", centre, Pole(float(radius), FENCE_HEIGHT)))
     for number, (where, raw) in enumerate(_entries(section, "polygons"), start=1):
         corners = raw.get("polygon")
         if not isinstance(corners, list) or not 3 <= len(corners) <= CORNER_LIMIT:
             raise ItemError(where, f"polygon: expected 3 to {CORNER_LIMIT} corners")
         polygon = tuple(_place(c, f"{where}.polygon", origin) for c in corners)
-        if abs(_area(polygon)) < 1e-3 or _crosses_itself(polygon):
+        if not (area := shapely.Polygon(polygon)).is_valid or area.area < 1e-3:
             raise ItemError(where, "polygon: has no area, or crosses itself")
         if _inclusion(raw, where):
             boundaries.append(polygon)
@@ -61,40 +64,13 @@ def read_fence(section: dict[str, Any], home: FileHome) -> Fence:
 
 
 def is_inside(point: Point, polygon: tuple[Point, ...]) -> bool:
-    """Whether a point lies inside a polygon (even-odd rule)."""
-    inside = False
-    for (x1, y1), (x2, y2) in pairwise((*polygon, polygon[0])):
-        if (y1 > point[1]) != (y2 > point[1]) and point[0] < x1 + (point[1] - y1) * (x2 - x1) / (y2 - y1):
-            inside = not inside
-    return inside
+    """Whether a point lies in a polygon."""
+    return bool(shapely.Polygon(polygon).covers(shapely.Point(point)))
 
 
-def crosses(start: Point, end: Point, polygon: tuple[Point, ...]) -> bool:
-    """Whether a straight way crosses an edge of a polygon."""
-    a, b, c = np.array(start), np.array(end), np.array(polygon)
-    d = np.roll(c, -1, axis=0)
-    return bool(np.any((_side(a, b, c) * _side(a, b, d) < 0) & (_side(c, d, a) * _side(c, d, b) < 0)))
-
-
-def distance_to_way(point: Point, start: Point, end: Point) -> float:
-    """Distance of a point from a straight way (m)."""
-    a, b, p = np.array(start), np.array(end), np.array(point)
-    along = float((p - a) @ (b - a)) / max(float((b - a) @ (b - a)), 1e-12)
-    return float(np.linalg.norm(p - a - min(max(along, 0.0), 1.0) * (b - a)))
-
-
-def wall_corners(wall: Wall) -> tuple[Point, ...]:
-    """The four corners (north, east) of a wall (m)."""
-    yaw = math.radians(wall.yaw_deg)
-    along, across = (math.cos(yaw), math.sin(yaw)), (-math.sin(yaw), math.cos(yaw))
-    a, b = wall.size[0] / 2.0, wall.size[1] / 2.0
-    return tuple(
-        (
-            wall.position[0] + s * a * along[0] + t * b * across[0],
-            wall.position[1] + s * a * along[1] + t * b * across[1],
-        )
-        for s, t in ((1, 1), (-1, 1), (-1, -1), (1, -1))
-    )
+def leaves(start: Point, end: Point, polygon: tuple[Point, ...]) -> bool:
+    """Whether a straight line between two points crosses an edge of a polygon."""
+    return start != end and bool(shapely.LineString([start, end]).crosses(shapely.Polygon(polygon)))
 
 
 def _entries(section: dict[str, Any], kind: str) -> list[tuple[str, dict[str, Any]]]:
@@ -128,44 +104,22 @@ def _place(value: Any, where: str, origin: tuple[float, float, float]) -> Point:
         raise ItemError(where, str(problem)) from problem
 
 
-def _area(polygon: tuple[Point, ...]) -> float:
-    return 0.5 * sum(a[0] * b[1] - b[0] * a[1] for a, b in pairwise((*polygon, polygon[0])))
-
-
-def _crosses_itself(polygon: tuple[Point, ...]) -> bool:
-    points = np.array(polygon)
-    starts, ends = points, np.roll(points, -1, axis=0)
-    n = len(points)
-    for i in range(n):
-        others = [j for j in range(i + 2, n) if (j + 1) % n != i]
-        a, b, c, d = starts[i], ends[i], starts[others], ends[others]
-        if np.any((_side(a, b, c) * _side(a, b, d) < 0) & (_side(c, d, a) * _side(c, d, b) < 0)):
-            return True
-    return False
-
-
-def _side(a: NDArray[np.float64], b: NDArray[np.float64], c: NDArray[np.float64]) -> NDArray[np.float64]:
-    """On which side of the line from a to b the point c lies: -1, 0 or 1."""
-    u, v = b - a, c - a
-    return np.sign(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])
-
-
-def boundary_walls(polygon: tuple[Point, ...]) -> list[Wall]:
+def boundary_walls(polygon: tuple[Point, ...]) -> list[Obstacle]:
     """One wall along each edge of an area that must not be left, on its outer side."""
     return walls_along("boundary", polygon, inside=False)
 
 
-def _walls(name: str, polygon: tuple[Point, ...]) -> list[Wall]:
+def _walls(name: str, polygon: tuple[Point, ...]) -> list[Obstacle]:
     """One wall for a rectangle; for any other polygon one along each edge, on its inner side."""
     if (rectangle := _rectangle(polygon)) is not None:
-        centre, size, yaw_deg = rectangle
-        return [Wall(name, (*centre, -FENCE_HEIGHT / 2.0), (*size, FENCE_HEIGHT), yaw_deg)]
+        centre, size, yaw = rectangle
+        return [_standing(name, centre, Wall((*size, FENCE_HEIGHT), yaw))]
     return walls_along(name, polygon, inside=True)
 
 
-def walls_along(name: str, polygon: tuple[Point, ...], *, inside: bool) -> list[Wall]:
+def walls_along(name: str, polygon: tuple[Point, ...], *, inside: bool) -> list[Obstacle]:
     """One wall along each edge of a polygon, on its inner or its outer side."""
-    inward = 1.0 if (_area(polygon) > 0.0) == inside else -1.0
+    inward = 1.0 if shapely.LinearRing(polygon).is_ccw == inside else -1.0
     walls = []
     for number, (a, b) in enumerate(pairwise((*polygon, polygon[0])), start=1):
         length = math.dist(a, b)
@@ -174,19 +128,18 @@ def walls_along(name: str, polygon: tuple[Point, ...], *, inside: bool) -> list[
         along = ((b[0] - a[0]) / length, (b[1] - a[1]) / length)
         offset = inward * WALL_THICKNESS / 2.0
         centre = ((a[0] + b[0]) / 2.0 - along[1] * offset, (a[1] + b[1]) / 2.0 + along[0] * offset)
-        walls.append(
-            Wall(
-                f"{name} edge {number}",
-                (*centre, -FENCE_HEIGHT / 2.0),
-                (length, WALL_THICKNESS, FENCE_HEIGHT),
-                math.degrees(math.atan2(along[1], along[0])),
-            )
-        )
+        wall = Wall((length, WALL_THICKNESS, FENCE_HEIGHT), math.atan2(along[1], along[0]))
+        walls.append(_standing(f"{name} edge {number}", centre, wall))
     return walls
 
 
+def _standing(name: str, place: Point, shape: Shape) -> Obstacle:
+    """Return an obstacle as high as a fence that stands on the ground at ``place``."""
+    return Obstacle(name, (*place, -FENCE_HEIGHT / 2.0), shape)
+
+
 def _rectangle(polygon: tuple[Point, ...]) -> tuple[Point, Point, float] | None:
-    """Centre, edge lengths and heading (deg) of a polygon that is a rectangle within 5 cm; otherwise None."""
+    """Centre, edge lengths and heading (rad) of a polygon that is a rectangle within 5 cm; otherwise None."""
     if len(polygon) != 4:
         return None
     a, b, c, d = (np.array(p) for p in polygon)
@@ -194,5 +147,5 @@ def _rectangle(polygon: tuple[Point, ...]) -> tuple[Point, Point, float] | None:
     if np.linalg.norm(a + c - b - d) > 0.05 or abs((b - a) @ (d - a)) > 0.05 * max(x, y):
         return None
     centre = (a + b + c + d) / 4.0
-    heading = math.degrees(math.atan2(b[1] - a[1], b[0] - a[0]))
+    heading = math.atan2(b[1] - a[1], b[0] - a[0])
     return (float(centre[0]), float(centre[1])), (x, y), heading

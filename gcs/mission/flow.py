@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from itertools import islice
 
 from gcs.mission.content import Fence
-from gcs.mission.fence import crosses, distance_to_way, is_inside, wall_corners
-from gcs.mission.model import Pole, Wall
+from gcs.mission.fence import is_inside, leaves
+from gcs.mission.model import Obstacle
 from gcs.mission.route import (
     Circle,
     Climb,
@@ -160,16 +160,12 @@ def _ways_across_fence(legs: list[Leg], fence: Fence) -> Iterator[str]:
         end = leg.end(start) if isinstance(leg, Circle) else leg.position
         crossed = []
         if isinstance(leg, FlyTo) and fence != Fence():
-            if fence.boundary is not None and crosses(start[:2], end[:2], fence.boundary):
+            if fence.boundary is not None and leaves(start[:2], end[:2], fence.boundary):
                 crossed.append("the fence's inclusion area")
             low = min(-start[2], -end[2])
             for obstacle in fence.obstacles:
-                if isinstance(obstacle, Pole):
-                    through = distance_to_way(obstacle.position, start[:2], end[:2]) < obstacle.radius
-                    through = through and low < obstacle.height
-                else:
-                    through = crosses(start[:2], end[:2], wall_corners(obstacle)) and low < obstacle.size[2]
-                if through:
+                here, there = (_from_centre(place, obstacle) for place in (start, end))
+                if low < _top(obstacle) and obstacle.shape.plan_view.is_crossed(here, there):
                     crossed.append(obstacle.name)
         for name in crossed:
             if (leg.source, name) not in told:
@@ -178,7 +174,14 @@ def _ways_across_fence(legs: list[Leg], fence: Fence) -> Iterator[str]:
         start = end
 
 
-def _is_within(place: Position, obstacle: Pole | Wall) -> bool:
-    if isinstance(obstacle, Pole):
-        return math.dist(place[:2], obstacle.position) <= obstacle.radius and -place[2] <= obstacle.height
-    return is_inside(place[:2], wall_corners(obstacle)) and -place[2] <= obstacle.size[2]
+def _is_within(place: Position, obstacle: Obstacle) -> bool:
+    return -place[2] <= _top(obstacle) and obstacle.shape.plan_view.contains(_from_centre(place, obstacle))
+
+
+def _from_centre(place: Position, obstacle: Obstacle) -> tuple[float, float]:
+    return place[0] - obstacle.position[0], place[1] - obstacle.position[1]
+
+
+def _top(obstacle: Obstacle) -> float:
+    """Altitude of its top (m)."""
+    return obstacle.shape.half_height - obstacle.position[2]

@@ -1,16 +1,13 @@
-"""Obstacles of the mission file as shapes in the world, for the ground that knows them."""
+"""Obstacles of a mission that the ground knows before the flight."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 
 import numpy as np
 
 from gcs.mission.fence import boundary_walls
-from gcs.mission.model import Mission, Pole, Sphere, Wall
-from gcs.mission.motion import rest_position
-from idc_controller.geometry.shapes import Shape
+from gcs.mission.model import Mission, Obstacle
 from idc_controller.perception.obstacle_map import MapObstacle
 
 
@@ -20,20 +17,10 @@ def map_of(mission: Mission) -> list[MapObstacle]:
     return known_obstacles((*mission.obstacles, *fence))
 
 
-def known_obstacles(obstacles: Iterable[Sphere | Pole | Wall]) -> list[MapObstacle]:
+def known_obstacles(obstacles: Iterable[Obstacle]) -> list[MapObstacle]:
     """Return those of ``obstacles`` that are marked as known."""
     return [
-        MapObstacle(
-            obstacle.name, _shape(obstacle), np.array(rest_position(obstacle), dtype=float), obstacle.motion is not None
-        )
+        MapObstacle(obstacle.name, obstacle.shape, np.array(obstacle.position), obstacle.motion is not None)
         for obstacle in obstacles
         if obstacle.known
     ]
-
-
-def _shape(obstacle: Sphere | Pole | Wall) -> Shape:
-    if isinstance(obstacle, Sphere):
-        return Shape("sphere", obstacle.radius)
-    if isinstance(obstacle, Pole):
-        return Shape("pole", obstacle.radius, (0.0, 0.0, obstacle.height))
-    return Shape("wall", 0.0, obstacle.size, math.radians(obstacle.yaw_deg))

@@ -13,6 +13,7 @@ from gcs.config.system import SystemConfig
 from gcs.config.tables import Vector
 from gcs.config.toml_file import NotNegative, Positive, strict
 from gcs.mission.route import Route
+from idc_controller.geometry.shape import Shape
 
 RESTING_ALTITUDE = 0.30
 """Height of the payload's centre above home when it stands on the pad (m); nothing is flown below."""
@@ -119,48 +120,18 @@ AnyMotion = HarmonicMotion | LinearMotion | CircleMotion | WaypointsMotion | Ran
 Motion = Annotated[AnyMotion, Field(discriminator="kind")]
 
 
-@strict
 @dataclass(frozen=True)
-class Sphere:
-    """A ball: centre (NED, m) and radius (m)."""
+class Obstacle:
+    """An obstacle: its shape, and where its centre is (NED, m), without the displacement by its ``motion``.
 
-    name: Name
-    position: Vector
-    radius: Positive
+    ``known``: it is on the map; otherwise only range sensors show it.
+    """
+
+    name: str
+    position: tuple[float, float, float]
+    shape: Shape
     known: bool = True
-    motion: Motion | None = None
-    shape: Literal["sphere"] = "sphere"
-
-
-@strict
-@dataclass(frozen=True)
-class Pole:
-    """An upright cylinder on the ground: (north, east), radius, height (m)."""
-
-    name: Name
-    position: tuple[float, float]
-    radius: Positive
-    height: Positive
-    known: bool = True
-    motion: Motion | None = None
-    shape: Literal["pole"] = "pole"
-
-
-@strict
-@dataclass(frozen=True)
-class Wall:
-    """A box: centre (NED, m), edge lengths (m), heading of its x edge (deg, from north towards east)."""
-
-    name: Name
-    position: Vector
-    size: tuple[Positive, Positive, Positive]
-    yaw_deg: float = 0.0
-    known: bool = True
-    motion: Motion | None = None
-    shape: Literal["wall"] = "wall"
-
-
-Obstacle = Annotated[Sphere | Pole | Wall, Field(discriminator="shape")]
+    motion: AnyMotion | None = None
 
 
 @strict
@@ -211,7 +182,7 @@ class Mission:
     system: SystemConfig
     reference: Lissajous | Route
     home: Home = DEFAULT_HOME
-    obstacles: tuple[Sphere | Pole | Wall, ...] = ()
+    obstacles: tuple[Obstacle, ...] = ()
     boundary: tuple[tuple[float, float], ...] | None = None
     faults: tuple[Fault, ...] = ()
     limits: Limits | None = None

@@ -14,10 +14,7 @@ from gcs.mission.model import (
     CircleMotion,
     HarmonicMotion,
     LinearMotion,
-    Pole,
     RandomWalkMotion,
-    Sphere,
-    Wall,
     WaypointsMotion,
 )
 
@@ -27,14 +24,6 @@ COMPONENTS = 12
 """Sines on each axis of a random walk."""
 LOWEST = 0.2
 """Lowest angular frequency of a random walk over its bandwidth."""
-
-
-def rest_position(obstacle: Sphere | Pole | Wall) -> Displacement:
-    """Centre of an obstacle (NED, m) without its motion; a pole stands on the ground."""
-    if isinstance(obstacle, Pole):
-        north, east = obstacle.position
-        return north, east, -obstacle.height / 2.0
-    return obstacle.position
 
 
 def mover(motion: AnyMotion) -> Callable[[float], Displacement]:

@@ -19,8 +19,9 @@ from gcs.config.tables import Vector
 from gcs.config.toml_file import NotNegative, Positive, TomlFile, read_toml, strict
 from gcs.faults import KINDS, settings_adapter
 from gcs.mission.faults import fault_problems
-from gcs.mission.model import RESTING_ALTITUDE, Fault, Limits, Lissajous, Name, Obstacle, Pole, WaypointsMotion
+from gcs.mission.model import RESTING_ALTITUDE, Fault, Limits, Lissajous, Name, WaypointsMotion
 from gcs.mission.motion import moves_vertically
+from gcs.mission.obstacle_table import ObstacleTable
 from gcs.mission.route import Descend, Go, Place, Route, Step
 
 DEFAULT_SEED = 1
@@ -59,7 +60,7 @@ class MissionFile:
 
     mission: MissionTable
     reference: Annotated[Lissajous | WaypointsTable, Field(discriminator="kind")]
-    obstacle: Annotated[tuple[Obstacle, ...], Field(max_length=1000)] = ()
+    obstacle: Annotated[tuple[ObstacleTable, ...], Field(max_length=1000)] = ()
     fault: Annotated[tuple[Fault, ...], Field(max_length=1000)] = ()
     limits: Limits | None = field(default=None)
 
@@ -202,11 +203,13 @@ def _disagreements(file: TomlFile, mission: MissionFile) -> list[str]:
         if names[obstacle.name] > 1:
             reason = f"'{obstacle.name}' stands {names[obstacle.name]} times"
             problems.append(file.problem(("obstacle", i, "name"), reason))
-        if isinstance(obstacle, Pole) and obstacle.motion is not None and moves_vertically(obstacle.motion):
-            problems.append(file.problem(("obstacle", i, "motion"), "a pole stands on the ground: no vertical motion"))
-        if isinstance(obstacle.motion, WaypointsMotion):
-            points = obstacle.motion.points
-            way = [*points, points[0]] if obstacle.motion.repeat else points
+        shape, motion = obstacle.shape, obstacle.motion
+        if shape.is_grounded and motion is not None and moves_vertically(motion):
+            reason = f"a {shape.kind} stands on the ground: no vertical motion"
+            problems.append(file.problem(("obstacle", i, "motion"), reason))
+        if isinstance(motion, WaypointsMotion):
+            points = motion.points
+            way = [*points, points[0]] if motion.repeat else points
             if any(a == b for a, b in pairwise(way)):
                 reason = "two points after one another are the same"
                 problems.append(file.problem(("obstacle", i, "motion"), reason))

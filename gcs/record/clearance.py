@@ -6,8 +6,8 @@ between them. A convex hull never moves more than its parts do, so the clearance
 
     disc_radius (1 - cos(pi / RIM_VERTICES)) / (1 + cos(pi / RIM_VERTICES)),
 
-0.18 mm for a disc of 0.3 m, plus the 0.001 mm to which GJK is run. Obstacles are exact (sphere, cylinder,
-box). The hull is built and the distance taken by ``coal`` (Gilbert-Johnson-Keerthi on its support functions).
+0.18 mm for a disc of 0.3 m, plus the 0.001 mm to which GJK is run. Obstacles are exact.
+The hull is built and the distance taken by ``coal`` (Gilbert-Johnson-Keerthi on its support functions).
 """
 
 from __future__ import annotations
@@ -20,45 +20,33 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gcs.errors import UnusableInput
+from idc_controller.errors import ShapeError
+from idc_controller.geometry.shape import Shape
 from idc_controller.rotations import rotation_from_quaternion
 
 Array = NDArray[np.float64]
 
 RIM_VERTICES = 64
-SHAPES = ("sphere", "pole", "wall")
 
 _DISTANCE_TOLERANCE = 1e-6  # m
 
 
 @dataclass(frozen=True, eq=False)
 class ObstacleTrack:
-    """One obstacle over time, as ``obstacles.csv`` holds it. NED, m.
+    """One obstacle over time: its shape, and its centre ``position`` (T, 3) at each of the T times. NED, m.
 
-    ``shape`` is sphere, pole or wall; ``position`` (T, 3) is the centre at each of the T times; ``radius`` is
-    a sphere's or a pole's; ``size`` (3,) holds a wall's edges or, as its last element, a pole's height;
-    ``yaw`` (rad) turns a wall about the down axis. Raises :class:`UnusableInput` for an unknown shape or
-    lengths that are not positive.
+    Raises :class:`UnusableInput` for a shape whose lengths are not positive.
     """
 
     name: str
-    shape: str
+    shape: Shape
     position: Array
-    radius: float = 0.0
-    size: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    yaw: float = 0.0
 
     def __post_init__(self) -> None:
-        needed = {
-            "sphere": {"radius": self.radius},
-            "pole": {"radius": self.radius, "height": self.size[2]},
-            "wall": dict(zip(("size_x", "size_y", "size_z"), self.size, strict=True)),
-        }
-        if self.shape not in needed:
-            expected = ", ".join(SHAPES)
-            raise UnusableInput(f"obstacle {self.name}: shape is {self.shape!r}, expected one of {expected}")
-        for field, value in needed[self.shape].items():
-            if not (np.isfinite(value) and value > 0.0):
-                raise UnusableInput(f"obstacle {self.name}: {field} must be positive, got {value}")
+        try:
+            self.shape.check()
+        except ShapeError as error:
+            raise UnusableInput(f"obstacle {self.name}: {error}") from error
 
 
 def rim_error(disc_radius: float) -> float:
@@ -107,8 +95,8 @@ def clearance_over_time(
     payload_quaternion = np.asarray(payload_quaternion, dtype=float)
     uav_position = np.asarray(uav_position_in_world, dtype=float)
     uav_quaternion = np.asarray(uav_quaternion, dtype=float)
-    shapes = [_coal_shape(obstacle) for obstacle in obstacles]
-    rotations = [_rotation_about_down(obstacle.yaw) for obstacle in obstacles]
+    shapes = [obstacle.shape.geometry() for obstacle in obstacles]
+    rotations = [obstacle.shape.rotation for obstacle in obstacles]
     request = coal.DistanceRequest()
     request.gjk_tolerance = _DISTANCE_TOLERANCE
     request.gjk_max_iterations = 1000
@@ -135,16 +123,3 @@ def _coal_hull(points: Array) -> coal.ConvexBase:
     vertices = coal.StdVec_Vec3s()
     vertices.extend(list(points))
     return coal.ConvexBase.convexHull(vertices, False, "")
-
-
-def _coal_shape(obstacle: ObstacleTrack) -> coal.ShapeBase:
-    if obstacle.shape == "sphere":
-        return coal.Sphere(obstacle.radius)
-    if obstacle.shape == "pole":
-        return coal.Cylinder(obstacle.radius, obstacle.size[2])
-    return coal.Box(*obstacle.size)
-
-
-def _rotation_about_down(yaw: float) -> Array:
-    cosine, sine = np.cos(yaw), np.sin(yaw)
-    return np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])

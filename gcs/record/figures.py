@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.patches import Circle, Polygon
+from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
 from gcs.errors import UnusableInput
@@ -158,7 +158,7 @@ def _draw_obstacle(ax: Axes, obstacle: ObstacleTrack, label: str | None) -> None
     moved = float(np.max(np.linalg.norm(track[:, :2] - track[0, :2], axis=1))) > 1e-6
     for north, east in (track[[0, -1], :2] if moved else track[:1, :2]).tolist():
         faint = moved and (north, east) == tuple(track[-1, :2])
-        patch = _outline(obstacle, north, east)
+        patch = Polygon((obstacle.shape.plan_view.outline() + np.array([north, east]))[:, ::-1], closed=True)
         patch.set(facecolor=OBSTACLE, edgecolor="black", alpha=0.25 if faint else 0.8, lw=0.8)
         if label is not None and not faint:
             patch.set_label(label)
@@ -166,16 +166,6 @@ def _draw_obstacle(ax: Axes, obstacle: ObstacleTrack, label: str | None) -> None
     if moved:
         ax.plot(track[:, 1], track[:, 0], ":", color=OBSTACLE, lw=1.2)
     ax.annotate(obstacle.name, (track[0, 1], track[0, 0]), ha="center", va="center", fontsize=8)
-
-
-def _outline(obstacle: ObstacleTrack, north: float, east: float) -> Circle | Polygon:
-    if obstacle.shape != "wall":
-        return Circle((east, north), obstacle.radius)
-    half_x, half_y = obstacle.size[0] / 2.0, obstacle.size[1] / 2.0
-    corners = np.array([[half_x, half_y], [half_x, -half_y], [-half_x, -half_y], [-half_x, half_y]])
-    cosine, sine = np.cos(obstacle.yaw), np.sin(obstacle.yaw)
-    north_east = corners @ np.array([[cosine, sine], [-sine, cosine]]) + (north, east)
-    return Polygon(north_east[:, ::-1], closed=True)
 
 
 def _figure(run: RunData, title: str, size: tuple[float, float]) -> Figure:

@@ -99,10 +99,10 @@ class FlightRecorder:
         for belief in obstacle_map.beliefs(time):
             if self._obstacles is None:
                 self._obstacles = TableWriter(self._run_dir / "obstacles_estimate.csv", OBSTACLE_ESTIMATE_COLUMNS)
-            shape = belief.shape
+            shape, columns = belief.shape, belief.shape.columns
             self._obstacles.write(
-                [round(time, 6), belief.name, shape.kind, *belief.position, *belief.velocity, shape.radius, *shape.size,
-                 shape.yaw, belief.growth]
+                [round(time, 6), belief.name, shape.kind, *belief.position, *belief.velocity, columns.radius,
+                 *columns.size, columns.yaw, belief.growth]
             )  # fmt: skip
 
     def alarm(self, alarm: Alarm) -> None:

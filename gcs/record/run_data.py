@@ -24,6 +24,9 @@ from gcs.record.tables import (
     read_text_table,
     truth_columns,
 )
+from idc_controller.errors import ShapeError
+from idc_controller.geometry.shape import Columns, Shape
+from idc_controller.geometry.shapes import shape_class
 
 Array = NDArray[np.float64]
 Table = dict[str, Array]
@@ -181,7 +184,7 @@ def _obstacles(path: Path, time: Array) -> tuple[ObstacleTrack, ...]:
     _check_columns(path, table, OBSTACLE_COLUMNS)
     row_of_time = {moment: row for row, moment in enumerate(time.tolist())}
     seen: Counter[tuple[str, str]] = Counter()
-    shape_of: dict[tuple[str, int], tuple[str, float, tuple[float, float, float], float]] = {}
+    shapes: dict[tuple[str, int], Shape] = {}
     tracks: dict[tuple[str, int], Array] = {}
     numbers = [table[name] for name in OBSTACLE_COLUMNS if name not in ("time_s", "name", "shape")]
     rows = zip(table["time_s"], table["name"], table["shape"], *numbers, strict=True)
@@ -196,10 +199,17 @@ def _obstacles(path: Path, time: Array) -> tuple[ObstacleTrack, ...]:
         seen[moment, name] += 1
         if key not in tracks:
             tracks[key] = np.full((len(time), 3), np.nan)
-            shape_of[key] = (shape, radius, (size_x, size_y, size_z), yaw)
+            shapes[key] = _shape(name, shape, Columns(radius, (size_x, size_y, size_z), yaw))
         if at in row_of_time:
             tracks[key][row_of_time[at]] = (x, y, z)
-    return tuple(ObstacleTrack(key[0], shape_of[key][0], track, *shape_of[key][1:]) for key, track in tracks.items())
+    return tuple(ObstacleTrack(key[0], shapes[key], track) for key, track in tracks.items())
+
+
+def _shape(name: str, kind: str, columns: Columns) -> Shape:
+    try:
+        return shape_class(kind).from_columns(columns)
+    except ShapeError as error:
+        raise UnusableInput(f"obstacle {name}: {error}") from error
 
 
 def _json(path: Path) -> Mapping[str, Any]:

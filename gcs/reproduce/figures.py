@@ -179,16 +179,14 @@ def draw_course(runs: Mapping[str, RunData], path: Path) -> None:
     above, side = figure.subplots(2, 1, sharex=True)
     for number, obstacle in enumerate(next(iter(runs.values())).obstacles):
         track = obstacle.position[np.all(np.isfinite(obstacle.position), axis=1)]
-        half = np.array(obstacle.size) / 2.0 if obstacle.shape == "wall" else np.full(3, obstacle.radius)
-        if obstacle.shape == "pole":
-            half[2] = obstacle.size[2] / 2.0
+        half = obstacle.shape.support(np.eye(3))
         for ax, axis in ((above, 1), (side, 2)):
             sign = 1.0 if axis == 1 else -1.0
             low, high = np.sort(sign * np.array([track[0, axis] - half[axis], track[0, axis] + half[axis]]))
             left = track[0, 0] - half[0]
             label = "obstacle" if number == 0 and axis == 1 else None
             ax.fill([left, left + 2 * half[0], left + 2 * half[0], left], [low, low, high, high],
-                    color=OBSTACLE, alpha=0.2 if obstacle.shape == "wall" else 0.7, label=label)  # fmt: skip
+                    color=OBSTACLE, alpha=0.7 if obstacle.shape.round_axes else 0.2, label=label)  # fmt: skip
             ax.plot(track[:, 0], sign * track[:, axis], color=OBSTACLE, lw=1.0, alpha=0.6)
     for color, (name, run) in zip(SERIES, runs.items(), strict=False):
         way, lost = _until_lost(run)

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcs.config import SystemConfig
-from idc_controller.geometry.shapes import PredictedObstacle, Shape
+from idc_controller.geometry.obstacles import PredictedObstacle
+from idc_controller.geometry.sphere import Sphere as SphereShape
 from idc_controller.trajectory.lissajous import LissajousCurve, LissajousTrajectory
 from idc_controller.trajectory.paths import Leg
 from idc_controller.trajectory.trajectory import Limits, Trajectory
@@ -108,4 +109,4 @@ class KnownSpheres:
     def predict(self, times: Array) -> list[PredictedObstacle]:
         """All of them at ``times`` (K,)."""
         none = np.zeros(len(times))
-        return [PredictedObstacle(s.name, Shape("sphere", RADIUS), s.motion(times)[0], none) for s in self.spheres]
+        return [PredictedObstacle(s.name, SphereShape(RADIUS), s.motion(times)[0], none) for s in self.spheres]

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from gcs.record.clearance import ObstacleTrack, clearance_over_time
 from gcs.reproduce.controls import PERIOD, Control, PaperControl, PaperVariant, ProjectControl
 from gcs.reproduce.scene import MARGIN, RADIUS, Sphere, configuration, shaped_figure, two_spheres
+from idc_controller.geometry.sphere import Sphere as SphereShape
 from idc_controller.paper.plant import Plant, PlantState
 from idc_controller.parameters import SystemParameters
 from idc_controller.rotations import euler_from_quaternion
@@ -169,7 +170,7 @@ def _run(flown: Flown, control: Control, truth: SystemParameters, end: float) ->
     flown.angles = np.degrees(euler_from_quaternion(quaternion))
     flown.reference = control.reference(times)
     flown.infeasible_tracking, flown.infeasible_avoidance = control.infeasible_tracking, control.infeasible_avoidance
-    tracks = [ObstacleTrack(s.name, "sphere", s.motion(times)[0], RADIUS) for s in flown.spheres]
+    tracks = [ObstacleTrack(s.name, SphereShape(RADIUS), s.motion(times)[0]) for s in flown.spheres]
     if tracks:
         flown.clearance = clearance_over_time(
             position, quaternion, uavs, uav_quaternion, tracks, truth.payload_size, truth.disc_radius

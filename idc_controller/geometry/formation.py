@@ -6,12 +6,16 @@ With the payload level and the links along g e3 - a, UAV i stands at r + p_i - l
 
 from __future__ import annotations
 
+import math
+from dataclasses import dataclass
+
 import coal
 import numpy as np
 import trimesh
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from idc_controller.errors import TrajectoryError
 from idc_controller.parameters import SystemParameters
 
 Array = NDArray[np.float64]
@@ -92,3 +96,28 @@ class Formation:
         along = np.sum(normals * axis, axis=1)
         flat = np.sqrt(np.maximum(1.0 - along**2, 0.0)) + 0.1
         return np.max(normals @ self.hover_offsets.T, axis=1) + self.disc_radius * np.minimum(flat, 1.0)
+
+
+@dataclass(frozen=True)
+class BoundingCylinder:
+    """The upright cylinder that holds payload, links and discs, about the payload's centre (m)."""
+
+    radius: float
+    above: float
+    """From the payload's centre up to the highest disc."""
+    below: float
+    """From the payload's centre down to the payload's lowest point."""
+
+    def __post_init__(self) -> None:
+        for name in ("radius", "above", "below"):
+            if not (math.isfinite(getattr(self, name)) and getattr(self, name) >= 0.0):
+                raise TrajectoryError(f"the formation's {name} must be zero or more, not {getattr(self, name)}")
+
+    @classmethod
+    def of(cls, parameters: SystemParameters, link_tilt: float = 0.0) -> BoundingCylinder:
+        """Return that of the formation at rest, its links tilted together by up to ``link_tilt`` (rad)."""
+        reach = np.linalg.norm(parameters.p[:, :2], axis=1) + parameters.l * math.sin(link_tilt)
+        box = float(np.hypot(*parameters.payload_size[:2])) / 2.0
+        top = parameters.l - parameters.p[:, 2] + parameters.disc_radius * math.sin(link_tilt)
+        radius = max(box, float(reach.max()) + parameters.disc_radius)
+        return cls(radius, float(top.max()), float(parameters.payload_size[2]) / 2.0)

@@ -1,67 +1,40 @@
-"""Where the whole formation has room: its bounding cylinder against obstacles, altitudes and a boundary.
+"""Free space of the whole formation: its bounding cylinder against obstacles and altitudes.
 
-The cylinder is upright and moves with the payload's centre. The obstacles (balls, upright cylinders, boxes turned
-about the vertical) have exact closed forms of distance to it: a horizontal and a vertical gap, joined by
-Pythagoras. Every distance is a convex function along a straight line, so its least value on a segment is found
-exactly by golden section.
+The cylinder is upright and moves with the payload's centre. The obstacles, by their upright bounds (a box turned about
+the vertical, rounded), have closed forms of distance to it: a horizontal and a vertical gap, joined by Pythagoras.
+Every distance is a convex function along a straight line, so its least value on a segment is found exactly by golden
+section.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
-import shapely
 from numpy.typing import ArrayLike, NDArray
 
 from idc_controller.errors import TrajectoryError
-from idc_controller.geometry.shapes import PredictedObstacle, Shape
-from idc_controller.parameters import SystemParameters
+from idc_controller.geometry.formation import BoundingCylinder
+from idc_controller.geometry.obstacles import PredictedObstacle
+from idc_controller.geometry.shape import Shape
 
 Array = NDArray[np.float64]
 
 TOUCHING = 1e-6
 """m; a place that keeps the margin to within this keeps it."""
 _GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
-_SEARCH_STEPS = 20  # golden section to 1e-4 of a way
+_SEARCH_STEPS = 20  # golden section to 1e-4 of a segment
 
 
-@dataclass(frozen=True)
-class Formation:
-    """The upright cylinder that bounds payload, links and discs, about the payload's centre (m)."""
-
-    radius: float
-    above: float
-    """From the payload's centre up to the highest disc."""
-    below: float
-    """From the payload's centre down to the payload's lowest point."""
-
-    def __post_init__(self) -> None:
-        for name in ("radius", "above", "below"):
-            if not (math.isfinite(getattr(self, name)) and getattr(self, name) >= 0.0):
-                raise TrajectoryError(f"the formation's {name} must be zero or more, not {getattr(self, name)}")
-
-    @classmethod
-    def of(cls, parameters: SystemParameters, link_tilt: float = 0.0) -> Formation:
-        """The formation at rest; with the common ``link_tilt`` (rad), or any smaller one, in any direction."""
-        reach = np.linalg.norm(parameters.p[:, :2], axis=1) + parameters.l * math.sin(link_tilt)
-        box = float(np.hypot(*parameters.payload_size[:2])) / 2.0
-        top = parameters.l - parameters.p[:, 2] + parameters.disc_radius * math.sin(link_tilt)
-        radius = max(box, float(reach.max()) + parameters.disc_radius)
-        return cls(radius, float(top.max()), float(parameters.payload_size[2]) / 2.0)
-
-
-class Room:
-    """Places of the payload's centre, (P, 3) NED (m), and how far the formation there is from what is around it.
+class FreeSpace:
+    """Clearance of the formation at places of the payload's centre, (P, 3) NED (m), between obstacles and altitudes.
 
     Args:
         obstacles: (shape, centre (3,)) of each.
-        formation: what must not come near.
+        formation: the upright cylinder that must keep away.
         margin: m, the least distance to keep between formation and obstacles.
         lowest, highest: altitudes between which the payload's centre may be (m, up).
-        boundary: corners (north, east) of the area that the formation must not leave; None: no boundary.
         growth: m, by how much each obstacle is to be taken larger; None: not at all.
 
     Raises:
@@ -71,11 +44,10 @@ class Room:
     def __init__(
         self,
         obstacles: Sequence[tuple[Shape, ArrayLike]],
-        formation: Formation,
+        formation: BoundingCylinder,
         margin: float,
         lowest: float,
         highest: float,
-        boundary: Sequence[tuple[float, float]] | None = None,
         growth: ArrayLike | None = None,
     ) -> None:
         if not (math.isfinite(margin) and margin >= 0.0):
@@ -88,15 +60,10 @@ class Room:
         if self.growth.shape != (len(obstacles),) or not np.isfinite(self.centres).all():
             raise TrajectoryError("every obstacle needs a finite centre and one growth")
         self._bodies = _Bodies([shape for shape, _ in obstacles])
-        self.lateral_reach = np.array([_lateral(shape) for shape, _ in obstacles]) + self.growth
+        self.lateral_reach = np.array([shape.horizontal_reach for shape, _ in obstacles]) + self.growth
         """Of each obstacle from its centre outwards (M,) (m)."""
         self.vertical_reach = self._bodies.half_height + self.growth
         """Of each obstacle from its centre up and down (M,) (m)."""
-        self.inside: shapely.Polygon | None = None
-        """Where the payload's centre may be, seen from above."""
-        if boundary is not None:
-            self.inside = shapely.Polygon(boundary).buffer(-(formation.radius + margin))
-            shapely.prepare(self.inside)
 
     def clearance(self, places: Array) -> Array:
         """Distance of the formation at each place to each obstacle (P, M); negative inside (m)."""
@@ -113,9 +80,6 @@ class Room:
         """:meth:`is_free` at every combination of coordinates (X,), (Y,), (Z,) -> (X, Y, Z)."""
         altitude = (-down >= self.lowest - TOUCHING) & (-down <= self.highest + TOUCHING)
         free = np.broadcast_to(altitude, (len(north), len(east), len(down))).copy()
-        if self.inside is not None:
-            x, y = (grid.ravel() for grid in np.meshgrid(north, east, indexing="ij"))
-            free &= shapely.intersects_xy(self.inside, x, y).reshape(len(north), len(east), 1)
         keep = self.margin + extra + self.growth - TOUCHING
         around = self.lateral_reach - self.growth + self.formation.radius + keep
         for index, (centre, distance, reach) in enumerate(zip(self.centres, keep, around, strict=True)):
@@ -135,23 +99,17 @@ class Room:
         return free
 
     def within_bounds(self, places: Array) -> NDArray[np.bool_]:
-        """Whether altitude and boundary hold at each place (P,)."""
-        held = (-places[:, 2] >= self.lowest - TOUCHING) & (-places[:, 2] <= self.highest + TOUCHING)
-        if self.inside is not None:
-            held &= shapely.intersects_xy(self.inside, places[:, 0], places[:, 1])
-        return np.asarray(held)
+        """Whether the altitude is within its bounds at each place (P,)."""
+        return np.asarray((-places[:, 2] >= self.lowest - TOUCHING) & (-places[:, 2] <= self.highest + TOUCHING))
 
-    def are_free_ways(self, starts: Array, ends: Array) -> NDArray[np.bool_]:
-        """Whether the margin and the bounds are kept all the way from ``starts`` to ``ends`` (E, 3) -> (E,)."""
+    def are_free_segments(self, starts: Array, ends: Array) -> NDArray[np.bool_]:
+        """Whether the margin and the bounds are kept on the segments from ``starts`` to ``ends`` (E, 3) -> (E,)."""
         free = self.within_bounds(starts) & self.within_bounds(ends)
-        if self.inside is not None:
-            ways = shapely.linestrings(np.stack([starts[:, :2], ends[:, :2]], axis=1))
-            free &= shapely.covers(self.inside, ways)
         free[free] = self.keep_away(starts[free], ends[free], np.full(len(self.centres), self.margin - TOUCHING))
         return np.asarray(free)
 
     def keep_away(self, starts: Array, ends: Array, least: Array) -> NDArray[np.bool_]:
-        """Whether the clearance is ``least`` (M,) or more all the way from ``starts`` to ``ends`` (E, 3) -> (E,)."""
+        """Whether the clearance is ``least`` (M,) or more on segments from ``starts`` to ``ends`` (E, 3) -> (E,)."""
         if not (len(self.centres) and len(starts)):
             return np.ones(len(starts), dtype=bool)
         half = np.linalg.norm(ends - starts, axis=1)[:, None] / 2.0
@@ -159,19 +117,19 @@ class Room:
         outer = np.minimum(self.clearance(starts), self.clearance(ends)) - least
         kept: NDArray[np.bool_] = np.all((middle >= 0.0) & (outer >= 0.0), axis=1)
         # Nowhere does the distance change faster than the place.
-        unsure = (outer + middle < half) & kept[:, None]
-        way, body = np.nonzero(unsure)
-        if len(way):
-            lowest = self._least(starts[way], ends[way], body)
-            kept[way[lowest < least[body]]] = False
+        undecided = (outer + middle < half) & kept[:, None]
+        segment, body = np.nonzero(undecided)
+        if len(segment):
+            lowest = self._least(starts[segment], ends[segment], body)
+            kept[segment[lowest < least[body]]] = False
         return kept
 
     def _least(self, starts: Array, ends: Array, index: NDArray[np.intp]) -> Array:
-        """The least clearance on each way (E, 3) to the one obstacle of that ``index`` (E,) -> (E,)."""
-        bodies, offsets, ways = self._bodies.chosen(index), starts - self.centres[index], ends - starts
+        """Return the least clearance on each segment (E, 3) to the one obstacle of that ``index`` (E,) -> (E,)."""
+        bodies, offsets, segments = self._bodies.chosen(index), starts - self.centres[index], ends - starts
 
         def at(fraction: Array) -> Array:
-            return bodies.distance(offsets + fraction[:, None] * ways, self.formation)
+            return bodies.distance(offsets + fraction[:, None] * segments, self.formation)
 
         low, high = np.zeros(len(starts)), np.ones(len(starts))
         left, right = np.full(len(starts), 1.0 - _GOLDEN), np.full(len(starts), _GOLDEN)
@@ -187,7 +145,7 @@ class Room:
 
 
 def first_conflict(
-    positions: Array, obstacles: Sequence[PredictedObstacle], formation: Formation, margin: float
+    positions: Array, obstacles: Sequence[PredictedObstacle], formation: BoundingCylinder, margin: float
 ) -> int | None:
     """Index of the first of ``positions`` (K, 3) at which the formation is nearer than ``margin`` to an obstacle.
 
@@ -208,7 +166,7 @@ class _Bodies:
     """The obstacles' sizes side by side: a box with half edges, rounded horizontally or in all directions."""
 
     def __init__(self, shapes: Sequence[Shape]) -> None:
-        self._take(np.array([_sizes(shape) for shape in shapes]).reshape(len(shapes), 7))
+        self._take(np.array([shape.upright_bounds for shape in shapes]).reshape(len(shapes), 7))
 
     def _take(self, sizes: Array) -> None:
         self._sizes = sizes
@@ -226,12 +184,12 @@ class _Bodies:
         """(M,) (m)."""
         return np.asarray(self._half_z + self.ball)
 
-    def distance(self, offsets: Array, formation: Formation) -> Array:
+    def distance(self, offsets: Array, formation: BoundingCylinder) -> Array:
         """Distance between bodies (M) and the formation ``offsets`` (..., M, 3) away from them; < 0 inside (m)."""
         horizontal, vertical = self.gaps(offsets, formation)
         return np.asarray(_joined(horizontal, vertical) - self.ball)
 
-    def gaps(self, offsets: Array, formation: Formation) -> tuple[Array, Array]:
+    def gaps(self, offsets: Array, formation: BoundingCylinder) -> tuple[Array, Array]:
         """Horizontal and vertical part (..., M) of the distance to the bodies less their ``ball`` (m)."""
         x, y = offsets[..., 0], offsets[..., 1]
         if self._turned:
@@ -248,18 +206,3 @@ def _joined(a: Array, b: Array) -> Array:
     """Distance to the region where both gaps, at right angles, are below zero; negative inside."""
     outside = np.sqrt(np.maximum(a, 0.0) ** 2 + np.maximum(b, 0.0) ** 2)
     return np.asarray(outside + np.minimum(np.maximum(a, b), 0.0))
-
-
-def _sizes(shape: Shape) -> tuple[float, ...]:
-    x, y, z = (edge / 2.0 for edge in shape.size)
-    if shape.kind == "sphere":
-        return 0.0, 0.0, 0.0, 0.0, shape.radius, 1.0, 0.0
-    if shape.kind == "pole":
-        return 0.0, 0.0, z, shape.radius, 0.0, 1.0, 0.0
-    if shape.kind == "wall":
-        return x, y, z, 0.0, 0.0, math.cos(shape.yaw), math.sin(shape.yaw)
-    raise TrajectoryError(f"an obstacle is a sphere, a pole or a wall, not {shape.kind!r}")
-
-
-def _lateral(shape: Shape) -> float:
-    return math.hypot(shape.size[0], shape.size[1]) / 2.0 if shape.kind == "wall" else shape.radius

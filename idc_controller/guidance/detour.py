@@ -18,12 +18,12 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
 from idc_controller.errors import TrajectoryError
-from idc_controller.geometry.free_space import Formation, Room, first_conflict
-from idc_controller.geometry.shapes import Shape
+from idc_controller.geometry.free_space import BoundingCylinder, FreeSpace, first_conflict
+from idc_controller.geometry.shape import Shape
 from idc_controller.guidance.straighten import straightened, ways_out
 from idc_controller.trajectory.trajectory import point
 
-__all__ = ["Detour", "Formation", "Room", "find_detour", "first_conflict"]
+__all__ = ["BoundingCylinder", "Detour", "FreeSpace", "find_detour", "first_conflict"]
 
 Array = NDArray[np.float64]
 Box = tuple[Array, Array]
@@ -66,12 +66,11 @@ def find_detour(
     obstacles: Sequence[tuple[Shape, ArrayLike]],
     start: ArrayLike,
     goal: ArrayLike,
-    formation: Formation,
+    formation: BoundingCylinder,
     margin: float,
     *,
     lowest: float = 0.5,
     highest: float = 15.0,
-    boundary: Sequence[tuple[float, float]] | None = None,
     growth: ArrayLike | None = None,
     region: tuple[ArrayLike, ArrayLike] | None = None,
     names: Sequence[str] | None = None,
@@ -87,7 +86,6 @@ def find_detour(
         obstacles, growth: (shape, centre (3,)) and by how much each is taken larger (m); moving ones as they
             are, or will be, at one moment.
         lowest, highest: altitudes of the payload's centre (m, up).
-        boundary: corners (north, east) of the area that the formation must not leave; None: none.
         region: two opposite corners (3,) of the box to search; None: one chosen about start, goal and obstacles.
         names: the obstacles' names, for the reason.
         climb_cost: what a metre up or down is worth in metres sideways.
@@ -96,7 +94,7 @@ def find_detour(
         TrajectoryError: what is given has no meaning.
     """
     begin, end = point(start, "start"), point(goal, "goal")
-    room = Room(obstacles, formation, margin, lowest, highest, boundary, growth)
+    room = FreeSpace(obstacles, formation, margin, lowest, highest, growth)
     called = list(names) if names is not None else [f"{s.kind} {i}" for i, (s, _) in enumerate(obstacles, start=1)]
     if (reason := _refused(room, end, "goal", called)) is not None:
         return Detour(None, reason)
@@ -115,13 +113,11 @@ def find_detour(
     return Detour(None, reason)
 
 
-def _refused(room: Room, place: Array, what: str, names: Sequence[str]) -> str | None:
+def _refused(room: FreeSpace, place: Array, what: str, names: Sequence[str]) -> str | None:
     """Why the formation cannot be at ``place``; None: it can."""
     altitude = -place[2]
     if not room.lowest - 1e-6 <= altitude <= room.highest + 1e-6:
         return f"the {what}, {altitude:.2f} m high, is not within {room.lowest:g} to {room.highest:g} m"
-    if not room.within_bounds(place[None])[0]:
-        return f"the {what} is outside the boundary, or too near to it for the formation"
     if len(room.centres):
         clearance = room.clearance(place[None])[0]
         nearest = int(np.argmin(clearance))
@@ -135,7 +131,7 @@ def _refused(room: Room, place: Array, what: str, names: Sequence[str]) -> str |
     return None
 
 
-def _region(room: Room, start: Array, goal: Array) -> Box:
+def _region(room: FreeSpace, start: Array, goal: Array) -> Box:
     """A box about start and goal that holds the obstacles in between, and a way round them."""
     keep = room.formation.radius + room.margin + AROUND
     low, high = np.minimum(start, goal)[:2] - keep, np.maximum(start, goal)[:2] + keep
@@ -158,7 +154,7 @@ def _region(room: Room, start: Array, goal: Array) -> Box:
     return np.array([*low, -min(top, room.highest)]), np.array([*high, -room.lowest])
 
 
-def _box(region: tuple[ArrayLike, ArrayLike], room: Room) -> Box:
+def _box(region: tuple[ArrayLike, ArrayLike], room: FreeSpace) -> Box:
     corners = np.array([point(corner, "corner of the region") for corner in region])
     low, high = corners.min(axis=0), corners.max(axis=0)
     low[2], high[2] = max(low[2], -room.highest), min(high[2], -room.lowest)
@@ -170,7 +166,7 @@ def _box(region: tuple[ArrayLike, ArrayLike], room: Room) -> Box:
 class _Grid:
     """A lattice over a box, with the first node of every axis placed such that the start is a node."""
 
-    def __init__(self, room: Room, box: Box, spacing: Array, start: Array, goal: Array) -> None:
+    def __init__(self, room: FreeSpace, box: Box, spacing: Array, start: Array, goal: Array) -> None:
         self._room, self._spacing = room, spacing
         self._start, self._goal = start, goal
         # Nodes and the middles between them, numbered together: nodes have even numbers.

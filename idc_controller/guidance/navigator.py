@@ -10,8 +10,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from idc_controller.geometry.free_space import Formation, Room, first_conflict
-from idc_controller.geometry.shapes import ObstacleSource, PredictedObstacle
+from idc_controller.geometry.free_space import BoundingCylinder, FreeSpace, first_conflict
+from idc_controller.geometry.obstacles import ObstacleSource, PredictedObstacle
 from idc_controller.guidance.detour import find_detour
 from idc_controller.guidance.settings import NavigatorSettings
 from idc_controller.parameters import SystemParameters
@@ -36,7 +36,7 @@ class Navigator:
         self, parameters: SystemParameters, settings: NavigatorSettings, obstacles: ObstacleSource, stages: Array
     ) -> None:
         """Args: the ``stages`` (K + 1,) (s) over which obstacles are predicted."""
-        self.formation = Formation.of(parameters, settings.link_tilt)
+        self.formation = BoundingCylinder.of(parameters, settings.link_tilt)
         self.settings, self.obstacles = settings, obstacles
         self._stages = stages
         self._detour: WaypointTrajectory | None = None
@@ -149,7 +149,7 @@ class Navigator:
             if detour.waypoints is not None:
                 return detour.waypoints, float(ahead[goal])
         # By its surface: a long wall's centre may be far.
-        room = Room(bodies, self.formation, keep, s.lowest, highest, growth=growth)
+        room = FreeSpace(bodies, self.formation, keep, s.lowest, highest, growth=growth)
         self.reason = "there is no way on"
         if bodies:
             self.reason = f"the way on is blocked by {names[int(np.argmin(room.clearance(position[None])[0]))]}"

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from idc_controller.geometry.distance import Bodies
-from idc_controller.geometry.shapes import ObstacleSource, PredictedObstacle
+from idc_controller.geometry.obstacles import ObstacleSource, PredictedObstacle
 from idc_controller.parameters import SystemParameters
 from idc_controller.trajectory.stop_plan import BRAKING_LIMIT, Braking
 
@@ -110,5 +110,5 @@ class _Near:
         """Of points relative to the centres (O, K, n, 3)."""
         if not apart.size:
             return np.inf
-        distance = self._bodies.of(apart.reshape(len(apart), -1, 3)).reshape(apart.shape[:3])
+        distance = self._bodies.from_offsets(apart.reshape(len(apart), -1, 3)).reshape(apart.shape[:3])
         return float((distance - self._growth[:, :, None]).min())

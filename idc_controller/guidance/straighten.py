@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from idc_controller.geometry.free_space import Room
+from idc_controller.geometry.free_space import FreeSpace
 
 Array = NDArray[np.float64]
 
@@ -17,14 +17,14 @@ STRAIGHTENED = 40
 """Points among which the straightening chooses its waypoints."""
 
 
-def ways_out(room: Room, place: Array, ends: Array) -> NDArray[np.bool_]:
+def ways_out(room: FreeSpace, place: Array, ends: Array) -> NDArray[np.bool_]:
     """Whether the way from ``place`` (3,) to each of ``ends`` (E, 3) is free.
 
     A place that itself has no room is left on a way that does not come nearer to anything.
     """
     begins = np.broadcast_to(place, ends.shape)
     if room.is_free(place[None])[0]:
-        return room.are_free_ways(begins, ends)
+        return room.are_free_segments(begins, ends)
     free = room.is_free(ends)
     if len(room.centres):
         allowed = np.minimum(room.clearance(place[None]), room.margin) - 1e-3
@@ -32,7 +32,7 @@ def ways_out(room: Room, place: Array, ends: Array) -> NDArray[np.bool_]:
     return free
 
 
-def straightened(room: Room, way: Array, climb_cost: float) -> Array:
+def straightened(room: FreeSpace, way: Array, climb_cost: float) -> Array:
     """The same way with as few and as straight pieces as room allows."""
     scale = np.array([1.0, 1.0, climb_cost])
     points = way
@@ -41,7 +41,7 @@ def straightened(room: Room, way: Array, climb_cost: float) -> Array:
     return points
 
 
-def _tightened(room: Room, points: Array) -> Array:
+def _tightened(room: FreeSpace, points: Array) -> Array:
     """Every corner moved towards the straight way past it, as far as room allows."""
     points = points.copy()
     # The second point of a way out of too little room stays: it is where room begins.
@@ -52,8 +52,8 @@ def _tightened(room: Room, points: Array) -> Array:
         along = float((corner - before) @ way) / max(float(way @ way), 1e-12)
         straight = before + min(max(along, 0.0), 1.0) * way
         tries = corner + np.linspace(1.0, 0.0, 33)[:-1, None] * (straight - corner)
-        free = room.are_free_ways(np.broadcast_to(before, tries.shape), tries)
-        free &= room.are_free_ways(tries, np.broadcast_to(after, tries.shape))
+        free = room.are_free_segments(np.broadcast_to(before, tries.shape), tries)
+        free &= room.are_free_segments(tries, np.broadcast_to(after, tries.shape))
         if free.any():
             points[i] = tries[np.argmax(free)]
     return points
@@ -72,13 +72,13 @@ def _resampled(points: Array) -> Array:
     return np.vstack([*pieces, points[-1]])
 
 
-def _fewest(room: Room, points: Array, scale: Array) -> Array:
+def _fewest(room: FreeSpace, points: Array, scale: Array) -> Array:
     """The best chain of points (M, 3) from the first to the last, in order: short, and with few waypoints."""
     count = len(points)
     first, second = np.triu_indices(count, 1)
     visible = np.zeros((count, count), dtype=bool)
     inner = first > 0
-    visible[first[inner], second[inner]] = room.are_free_ways(points[first[inner]], points[second[inner]])
+    visible[first[inner], second[inner]] = room.are_free_segments(points[first[inner]], points[second[inner]])
     visible[0, 1:] = ways_out(room, points[0], points[1:])
     visible[np.arange(count - 1), np.arange(1, count)] = True  # the way as it came
     cost = np.linalg.norm((points[:, None] - points[None]) * scale, axis=-1) + WAYPOINT_COST

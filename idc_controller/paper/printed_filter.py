@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from idc_controller.errors import SolverError
 from idc_controller.estimation.estimate import Estimate
 from idc_controller.geometry.formation import Formation
-from idc_controller.geometry.shapes import ObstacleSource, PredictedObstacle
+from idc_controller.geometry.obstacles import ObstacleSource, PredictedObstacle
 from idc_controller.model.linear import LinearModel
 from idc_controller.qp.daqp_solver import DaqpSolver
 from idc_controller.qp.problem import QuadraticProgram
@@ -85,11 +85,12 @@ class PrintedFilter(NoObstacles):
             shape.geometry(), coal.Transform3s(shape.rotation, now - position), coal.DistanceRequest(), result,
         )  # fmt: skip
         closest = position + np.array(result.getNearestPoint1())
-        centre = now if shape.kind != "wall" else position + np.array(result.getNearestPoint2())
-        mask = np.array([1.0, 1.0, 0.0]) if shape.kind == "pole" else np.ones(3)
+        is_round = shape.round_axes is not None
+        centre = now if is_round else position + np.array(result.getNearestPoint2())
+        mask = np.array(shape.round_axes) if is_round else np.ones(3)
         d = (closest - centre) * mask
         d_dot = (velocity - obstacle_velocity) * mask
-        R = shape.radius + self.margin
+        R = (shape.columns.radius if is_round else 0.0) + self.margin
         h, h_dot = float(d @ d) - R * R, 2.0 * float(d @ d_dot)
         # h'' = 2 d . (drift + B (f - hover) - a_obs) + 2 |d'|^2
         constant = 2.0 * float(d @ (drift - B @ hover - obstacle_acceleration)) + 2.0 * float(d_dot @ d_dot)

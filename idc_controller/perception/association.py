@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
+from idc_controller.geometry.box import Wall
 from idc_controller.geometry.distance import Bodies
-from idc_controller.geometry.shapes import Shape
+from idc_controller.geometry.shape import Shape
 from idc_controller.perception.scan_assembly import Cluster
 
 Array = NDArray[np.float64]
@@ -35,11 +36,11 @@ def mean_distances(clusters: Sequence[Cluster], shapes: Sequence[Shape], centres
 
 
 def for_gating(shape: Shape) -> Shape:
-    """A shape under observation as large as it may prove to be."""
-    if shape.kind != "wall":
+    """Return a shape under observation as large as it may prove to be."""
+    if not isinstance(shape, Wall):
         return shape
     x, y, z = shape.size
-    return Shape("wall", 0.0, (x, y + _WALL_BEYOND, z + _WALL_BEYOND), shape.yaw)
+    return Wall((x, y + _WALL_BEYOND, z + _WALL_BEYOND), shape.yaw)
 
 
 def assigned(

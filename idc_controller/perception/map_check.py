@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from idc_controller.geometry.distance import Bodies
-from idc_controller.geometry.shapes import Shape
+from idc_controller.geometry.shape import Shape
 from idc_controller.perception.association import REMEMBERED_GATE
 from idc_controller.perception.obstacle_filter import surface_of
 from idc_controller.perception.scan_assembly import Cluster
@@ -49,7 +49,7 @@ class _Offset:
         surface = surface_of(shape.kind, shape)
         seen = replace(seen, scatter=self.scatter)
         # What jumped far would be fitted to the side of a round shape that no sensor sees.
-        predicted = centre + self.mean if shape.kind == "wall" else surface.guess(seen)
+        predicted = surface.guess(seen) if shape.round_axes else centre + self.mean
         fit = surface.fit(seen, predicted, iterations=8)
         told, noise = fit.position + surface.offset - centre, fit.variance * max(fit.score, 1.0)
         self.variance = self.variance + _WALK**2 * max(seen.time - self.time, 0.0)

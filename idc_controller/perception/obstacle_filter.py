@@ -7,16 +7,18 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from idc_controller.geometry.shapes import Shape
+from idc_controller.geometry.box import Wall
+from idc_controller.geometry.shape import Shape
 from idc_controller.perception.manoeuvre import AHEAD, Agility, AgilitySettings
 from idc_controller.perception.motion_imm import MotionBank, MotionModels
 from idc_controller.perception.surfaces.fit import Fit
 from idc_controller.perception.surfaces.flat import FlatSurface
+from idc_controller.perception.surfaces.known import KnownSurface
 from idc_controller.perception.surfaces.points import SurfacePoints
 from idc_controller.perception.surfaces.round import RoundSurface
 
 Array = NDArray[np.float64]
-Surface = RoundSurface | FlatSurface
+Surface = RoundSurface | FlatSurface | KnownSurface
 
 KINDS = ("sphere", "pole", "wall")
 #: What a score must be better by for the less simple shape, and for a change of mind.
@@ -63,7 +65,7 @@ class ObstacleFilter:
             # Before the kind is chosen: with much scatter a wall would take in anything.
             self._learn_scatter(min(_fresh_fit(kind, first)[1].unexplained for kind in KINDS), share=1.0)
         first = replace(first, scatter=self._scatter)
-        predicted = self._surface.guess(first) if known is None or known.kind != "wall" else first.points.mean(axis=0)
+        predicted = self._surface.guess(first)
         fit = self._surface.fit(first, predicted, iterations=8)
         self._bank = MotionBank(models, first.time, fit.position, fit.variance)
         self._agility = Agility(first.time, self.settings.agility)
@@ -194,8 +196,12 @@ class ObstacleFilter:
 
 
 def surface_of(kind: str, known: Shape | None) -> Surface:
-    """To be fitted to points; ``known``: the shape is given and only its place is to be found."""
-    return FlatSurface(known) if kind == "wall" else RoundSurface(kind, known)
+    """Return a surface to be fitted to points; ``known``: the shape is given and only its place is to be found."""
+    if known is None:
+        return FlatSurface() if kind == FlatSurface.kind else RoundSurface(kind)
+    if isinstance(known, Wall):
+        return FlatSurface(known)
+    return RoundSurface(kind, known) if known.round_axes else KnownSurface(known)
 
 
 def _fresh_fit(kind: str, seen: SurfacePoints) -> tuple[Surface, Fit]:

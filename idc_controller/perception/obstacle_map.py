@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from idc_controller.estimation.measurements import Measurement
 from idc_controller.geometry.distance import Bodies
-from idc_controller.geometry.shapes import PredictedObstacle, Shape
+from idc_controller.geometry.obstacles import PredictedObstacle
+from idc_controller.geometry.shape import Shape
 from idc_controller.perception.association import assigned, for_gating, mean_distances
 from idc_controller.perception.map_check import MapCheck, moved
 from idc_controller.perception.motion_imm import BankSettings, MotionModels
@@ -55,7 +56,7 @@ class MapObstacle(NamedTuple):
 
 
 class ObstacleMap:
-    """An :class:`~idc_controller.geometry.shapes.ObstacleSource`. Times are the team's (s).
+    """An :class:`~idc_controller.geometry.obstacles.ObstacleSource`. Times are the team's (s).
 
     Hand over telemetry with :meth:`measured` and :meth:`detected`, call :meth:`update` once a control step, then
     :meth:`predict`.

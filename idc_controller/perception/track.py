@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from idc_controller.geometry.shapes import PredictedObstacle, Shape
+from idc_controller.geometry.obstacles import PredictedObstacle
+from idc_controller.geometry.shape import Shape
 from idc_controller.perception.motion_imm import MotionModels
 from idc_controller.perception.obstacle_filter import ObstacleFilter
 from idc_controller.perception.surfaces.points import SurfacePoints, joined

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from idc_controller.geometry.shapes import PredictedObstacle
+from idc_controller.geometry.obstacles import PredictedObstacle
 from idc_controller.safety.constraints.exponential_barrier import ExponentialBarrier
 from idc_controller.safety.separation import Separation
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from idc_controller.estimation.estimate import Estimate
 from idc_controller.geometry.formation import Formation
-from idc_controller.geometry.shapes import ObstacleSource, PredictedObstacle
+from idc_controller.geometry.obstacles import ObstacleSource, PredictedObstacle
 from idc_controller.parameters import SystemParameters
 from idc_controller.safety.alternatives import alternatives
 from idc_controller.safety.filter_protocol import SafetyReport

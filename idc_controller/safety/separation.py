@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from idc_controller.geometry.formation import Formation
-from idc_controller.geometry.shapes import PredictedObstacle
+from idc_controller.geometry.obstacles import PredictedObstacle
 
 Array = NDArray[np.float64]
 
@@ -45,8 +45,8 @@ def separations(
     points = formation.hull_points(acceleration)
     centre = (points.max(axis=1) + points.min(axis=1)) / 2.0
     about = points - centre[:, None]
-    # Most obstacles are far at all stages: a ball about the hull, for poles and walls an upright cylinder, tells.
-    upright = np.array([obstacle.shape.kind != "sphere" for obstacle in obstacles])
+    # Most obstacles are far at all stages: a ball about the hull, for upright ones a cylinder, tells.
+    upright = np.array([obstacle.shape.is_upright for obstacle in obstacles])
     offsets = np.stack([obstacle.positions for obstacle in obstacles]) - position
     directions = offsets - centre
     directions[upright, :, 2] = 0.0
@@ -87,6 +87,6 @@ def separations(
 
 
 def _reach(obstacle: PredictedObstacle) -> float:
-    """From the centre to the farthest of the surface, of poles and walls as seen from above (m)."""
+    """From the centre to the farthest of the surface, of upright shapes as seen from above (m)."""
     shape = obstacle.shape
-    return float(np.hypot(shape.size[0], shape.size[1])) / 2.0 if shape.kind == "wall" else shape.radius
+    return shape.horizontal_reach if shape.is_upright else shape.reach

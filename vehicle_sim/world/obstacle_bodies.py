@@ -1,4 +1,4 @@
-"""Obstacles in the physics engine: spheres, poles and walls that stand or are moved, and push but are never pushed."""
+"""Obstacles in the physics engine: bodies that stand or are moved, and push but are never pushed."""
 
 from __future__ import annotations
 
@@ -8,40 +8,27 @@ from dataclasses import dataclass, replace
 
 import pybullet
 
+from idc_controller.errors import ShapeError
+from idc_controller.geometry.shape import Shape
 from vehicle_sim.world.errors import SimulationError
-from vehicle_sim.world.world_state import Vector, flipped
-
-SHAPES = ("sphere", "pole", "wall")
+from vehicle_sim.world.world_state import Vector, flipped, quaternion_to_engine
 
 
 @dataclass(frozen=True)
 class Obstacle:
-    """An obstacle as it stands, NED.
-
-    ``shape`` is sphere, pole or wall; ``position_in_world`` the centre (m); ``radius`` (m) a sphere's or a pole's, 0
-    for a wall; ``size`` (m) a wall's edges, (0, 0, height) for a pole, 0 for a sphere; ``yaw`` (rad) turns a wall
-    about the down axis.
-    """
+    """An obstacle as it stands: its shape, and its centre in the world (NED, m)."""
 
     name: str
-    shape: str
+    shape: Shape
     position_in_world: Vector
-    radius: float = 0.0
-    size: Vector = (0.0, 0.0, 0.0)
-    yaw: float = 0.0
 
     def __post_init__(self) -> None:
-        if self.shape not in SHAPES:
-            raise SimulationError(f"obstacle {self.name}: shape {self.shape!r} is not one of {', '.join(SHAPES)}")
-        numbers = (*self.position_in_world, self.radius, *self.size, self.yaw)
-        if len(numbers) != 8 or not all(math.isfinite(number) for number in numbers):
-            raise SimulationError(f"obstacle {self.name}: position, radius, size and yaw must be finite numbers")
-        if self.shape != "wall" and self.radius <= 0.0:
-            raise SimulationError(f"obstacle {self.name}: radius must be positive, got {self.radius}")
-        if self.shape == "pole" and self.size[2] <= 0.0:
-            raise SimulationError(f"obstacle {self.name}: height must be positive, got {self.size[2]}")
-        if self.shape == "wall" and min(self.size) <= 0.0:
-            raise SimulationError(f"obstacle {self.name}: size must be positive, got {list(self.size)}")
+        try:
+            self.shape.check()
+        except ShapeError as error:
+            raise SimulationError(f"obstacle {self.name}: {error}") from error
+        if len(self.position_in_world) != 3 or not all(map(math.isfinite, self.position_in_world)):
+            raise SimulationError(f"obstacle {self.name}: position must be three finite numbers")
 
 
 class ObstacleBodies:
@@ -69,32 +56,24 @@ class ObstacleBodies:
         """Raises :class:`SimulationError` if the name is taken."""
         if obstacle.name in self._obstacles:
             raise SimulationError(f"obstacle {obstacle.name}: the name is taken")
-        if obstacle.shape == "sphere":
-            shape = {"shapeType": pybullet.GEOM_SPHERE, "radius": obstacle.radius}
-        elif obstacle.shape == "pole":
-            shape = {"shapeType": pybullet.GEOM_CYLINDER, "radius": obstacle.radius, "height": obstacle.size[2]}
-        else:
-            shape = {"shapeType": pybullet.GEOM_BOX, "halfExtents": [edge / 2 for edge in obstacle.size]}
-        collision = pybullet.createCollisionShape(**shape, physicsClientId=self._client)
+        primitive, dimensions = obstacle.shape.collision()
+        collision = pybullet.createCollisionShape(
+            getattr(pybullet, f"GEOM_{primitive.upper()}"), **dimensions, physicsClientId=self._client
+        )
         body = pybullet.createMultiBody(
             0.0, collision, basePosition=flipped(obstacle.position_in_world),
-            baseOrientation=_orientation(obstacle.yaw), physicsClientId=self._client,
+            baseOrientation=quaternion_to_engine(obstacle.shape.quaternion), physicsClientId=self._client,
         )  # fmt: skip
         self._obstacles[obstacle.name] = obstacle
         self._bodies[obstacle.name] = body
 
-    def move(self, name: str, position_in_world: Sequence[float], yaw: float | None = None) -> None:
-        """Put an obstacle elsewhere: its centre (3,) NED (m), and a wall's yaw (rad)."""
+    def move(self, name: str, position_in_world: Sequence[float]) -> None:
+        """Put an obstacle elsewhere: its centre (3,) NED (m)."""
         body = self.body(name)
-        old = self._obstacles[name]
         x, y, z = (float(value) for value in position_in_world)
-        new = replace(old, position_in_world=(x, y, z), yaw=old.yaw if yaw is None else float(yaw))
+        new = replace(self._obstacles[name], position_in_world=(x, y, z))
         self._obstacles[name] = new
         pybullet.resetBasePositionAndOrientation(
-            body, flipped(new.position_in_world), _orientation(new.yaw), physicsClientId=self._client
-        )
-
-
-def _orientation(yaw: float) -> tuple[float, float, float, float]:
-    """The engine's quaternion of a turn by ``yaw`` about the down axis."""
-    return 0.0, 0.0, -math.sin(yaw / 2), math.cos(yaw / 2)
+            body, flipped(new.position_in_world), quaternion_to_engine(new.shape.quaternion),
+            physicsClientId=self._client,
+        )  # fmt: skip

@@ -13,7 +13,6 @@ from typing import NamedTuple
 import numpy as np
 
 from vehicle_sim.world.obstacle_bodies import Obstacle
-from vehicle_sim.world.visible_surface import is_beyond, visible_points
 from vehicle_sim.world.world_state import Quaternion, Vector, into_body
 
 #: Nothing nearer is measured (m).
@@ -57,7 +56,7 @@ class RangeSensor:
         detections: list[Detection] = []
         seen: dict[str, int] = {}
         for obstacle in obstacles:
-            if is_beyond(obstacle, s, self._reach):
+            if _is_beyond(obstacle, s, self._reach):
                 continue
             points = visible_points(obstacle, s, self._reach, float(self._generator.uniform(0.0, math.pi / 3.0)))
             if not points:
@@ -77,3 +76,22 @@ class RangeSensor:
                 detections.append(Detection(number, (scale * a, scale * b, scale * c)))
         self._ids = seen  # one that leaves and comes back is a new one to the vehicle
         return RangeSample(now, self._reach, tuple(detections))
+
+
+def visible_points(obstacle: Obstacle, sensor: Vector, reach: float, turn: float) -> list[Vector]:
+    """Points of the surface in the world, the nearest first; empty if none is within ``reach`` (m).
+
+    An obstacle hides its own far side; it does not hide others.
+    """
+    x, y, z = obstacle.position_in_world
+    offset = (sensor[0] - x, sensor[1] - y, sensor[2] - z)
+    limit = reach + 1e-9
+    points = obstacle.shape.visible_points(offset, reach, turn)
+    return [(x + a, y + b, z + c) for a, b, c in points if math.dist((a, b, c), offset) <= limit]
+
+
+def _is_beyond(obstacle: Obstacle, sensor: Vector, reach: float) -> bool:
+    """Whether an obstacle is surely out of reach: a cheap check before the others."""
+    radius, (a, b, c), _ = obstacle.shape.columns
+    size = radius + 0.5 * math.sqrt(a * a + b * b + c * c)
+    return math.dist(obstacle.position_in_world, sensor) > reach + size

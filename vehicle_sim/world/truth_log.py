@@ -60,8 +60,9 @@ class TruthLog:
         if self._obstacles is None:
             self._obstacles = TableWriter(self._run_dir / "obstacles.csv", OBSTACLE_COLUMNS)
         for obstacle in obstacles:
-            numbers = (*obstacle.position_in_world, obstacle.radius, *obstacle.size, obstacle.yaw)
-            self._obstacles.write([float(state.time), obstacle.name, obstacle.shape, *map(float, numbers)])
+            shape = obstacle.shape
+            numbers = (*obstacle.position_in_world, shape.columns.radius, *shape.columns.size, shape.columns.yaw)
+            self._obstacles.write([float(state.time), obstacle.name, shape.kind, *map(float, numbers)])
 
     def write_mode(self, time: float, vehicle: int, mode: str, armed: bool, failsafe: bool) -> None:
         """Append what a vehicle (its system id) flies from ``time`` (s) on."""

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 import pybullet
 
+from idc_controller.geometry.shape import Shape
 from idc_controller.model.nonlinear import SystemState
 from idc_controller.parameters import SystemParameters
 from vehicle_sim.world.cradles import Cradles
@@ -184,32 +185,14 @@ class World:
             return False
         return self._contacts_and_standing()[1]
 
-    def add_obstacle(
-        self,
-        name: str,
-        shape: str,
-        position_in_world: Sequence[float],
-        radius: float = 0.0,
-        size: Sequence[float] = (0.0, 0.0, 0.0),
-        yaw: float = 0.0,
-    ) -> None:
-        """Add a sphere, a pole or a wall; see :class:`~vehicle_sim.world.obstacle_bodies.Obstacle` for the arguments.
+    def add_obstacle(self, name: str, shape: Shape, position_in_world: Sequence[float]) -> None:
+        """Add an obstacle, its centre (3,) in NED (m). Raises :class:`SimulationError`."""
+        x, y, z = (float(value) for value in position_in_world)
+        self._obstacles.add(Obstacle(name, shape, (x, y, z)))
 
-        A pole's position may be (north, east): it stands on the ground.
-        """
-        position = [float(value) for value in position_in_world]
-        if shape == "pole" and len(position) == 2:
-            position.append(-float(size[2]) / 2)
-        if len(position) != 3 or len(size) != 3:
-            raise SimulationError(f"obstacle {name}: position and size have three numbers (a pole's position two)")
-        edges = (float(size[0]), float(size[1]), float(size[2]))
-        self._obstacles.add(
-            Obstacle(name, shape, (position[0], position[1], position[2]), float(radius), edges, float(yaw))
-        )
-
-    def move_obstacle(self, name: str, position_in_world: Sequence[float], yaw: float | None = None) -> None:
+    def move_obstacle(self, name: str, position_in_world: Sequence[float]) -> None:
         """Put an obstacle elsewhere, its centre (3,) in NED (m); it counts from the next step on."""
-        self._obstacles.move(name, position_in_world, yaw)
+        self._obstacles.move(name, position_in_world)
 
     def obstacles(self) -> tuple[Obstacle, ...]:
         """The obstacles as they stand now."""

@@ -22,16 +22,17 @@ from gcs.campaign.courses.schedule import Schedule
 from gcs.campaign.courses.text import mission_text
 from gcs.config import SystemConfig, read_system
 from gcs.errors import GcsError
-from gcs.mission.model import RESTING_ALTITUDE, Limits, Lissajous, Mission, Pole, Sphere, Wall
-from gcs.mission.motion import rest_position
+from gcs.mission.model import RESTING_ALTITUDE, Limits, Lissajous, Mission, Obstacle
 from gcs.mission.route import Route
 from gcs.mission.toml_mission import route_through
-from idc_controller.geometry.shapes import Shape
-from idc_controller.guidance.detour import Formation, Room, find_detour
+from idc_controller.geometry.box import Wall
+from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.shape import Shape
+from idc_controller.geometry.sphere import Sphere
+from idc_controller.guidance.detour import BoundingCylinder, FreeSpace, find_detour
 
 Array = NDArray[np.float64]
 Random = np.random.Generator
-Obstacle = Sphere | Pole | Wall
 
 KINDS = ("spheres", "poles", "walls", "moving", "mixed")
 HELD_TO = Limits(clearance=0.3, payload_tilt_deg=6.0)
@@ -159,7 +160,9 @@ class _Draft:
         where, _, _ = self.place(along, self.random.uniform(-1.2, 1.2))
         radius = round(self.random.uniform(0.3, 0.8), 3)
         up = self.random.uniform(-0.5, 3.5)  # anywhere between payload and discs
-        self._stand(along, Sphere(self._name("sphere"), _rounded(where - [0.0, 0.0, up]), radius, self._known()))
+        self._stand(
+            along, Obstacle(self._name("sphere"), _rounded(where - [0.0, 0.0, up]), Sphere(radius), self._known())
+        )
 
     def add_poles(self) -> None:
         """One pole, or two with a gap that is wide enough or none at all."""
@@ -175,7 +178,9 @@ class _Draft:
             where, _, _ = self.place(along, offset)
             radius = round(self.random.uniform(0.15, 0.4), 3)
             north, east, _ = _rounded(where)
-            self._stand(along, Pole(self._name("pole"), (north, east), radius, height, self._known()))
+            self._stand(
+                along, Obstacle(self._name("pole"), (north, east, -height / 2.0), Pole(radius, height), self._known())
+            )
 
     def add_wall(self) -> None:
         """Across the way: low, to be flown over, or high, to be flown round."""
@@ -192,7 +197,7 @@ class _Draft:
         size = (round(random.uniform(0.2, 0.5), 3), round(width, 3), round(float(height), 3))
         yaw = math.degrees(math.atan2(direction[1], direction[0])) + random.uniform(-25.0, 25.0)
         centre = (*_rounded(where)[:2], -size[2] / 2.0)
-        self._stand(along, Wall(self._name("wall"), centre, size, round(yaw, 2), self._known()))
+        self._stand(along, Obstacle(self._name("wall"), centre, Wall(size, math.radians(round(yaw, 2))), self._known()))
 
     def add_moving(self) -> None:
         """A sphere that is where the payload is when it passes, or would."""
@@ -207,7 +212,7 @@ class _Draft:
         rest = _rounded(where - [0.0, 0.0, up] - then)
         known = bool(random.random() < MOVING_ON_THE_MAP)
         self._moving.append((along, where))
-        self.obstacles.append(Sphere(self._name("moving sphere"), rest, radius, known, motion))
+        self.obstacles.append(Obstacle(self._name("moving sphere"), rest, Sphere(radius), known, motion))
 
     def _stand(self, along: float, obstacle: Obstacle) -> None:
         self._standing.append(along)
@@ -225,9 +230,9 @@ class _Draft:
         """See the head of the module."""
         if not self.obstacles:
             return False
-        formation = Formation.of(self._system.parameters(), LINK_TILT)
-        standing = [(_shape(o), np.array(rest_position(o))) for o in self.obstacles if o.motion is None]
-        moving = [o for o in self.obstacles if isinstance(o, Sphere) and o.motion is not None]
+        formation = BoundingCylinder.of(self._system.parameters(), LINK_TILT)
+        standing = [(o.shape, np.array(o.position)) for o in self.obstacles if o.motion is None]
+        moving = [o for o in self.obstacles if o.motion is not None]
         return (
             self._is_clear_at_ends(standing, formation)
             and self._is_clear_at_waypoints(standing, formation)
@@ -236,23 +241,23 @@ class _Draft:
             and self._has_room_about(standing)
         )
 
-    def _is_clear_at_ends(self, standing: Sequence[tuple[Shape, Array]], formation: Formation) -> bool:
+    def _is_clear_at_ends(self, standing: Sequence[tuple[Shape, Array]], formation: BoundingCylinder) -> bool:
         """At every height between the ground and the altitude of the way."""
-        room = Room(standing, formation, CLEAR, 0.0, 100.0)
+        room = FreeSpace(standing, formation, CLEAR, 0.0, 100.0)
         top = self.schedule.goal[2]
         ends = [
             [x, y, z] for x, y, _ in (self._way[0], self.schedule.goal) for z in np.arange(top, -RESTING_ALTITUDE, 0.5)
         ]
         return bool(room.is_free(np.array(ends)).all())
 
-    def _is_clear_at_waypoints(self, standing: Sequence[tuple[Shape, Array]], formation: Formation) -> bool:
+    def _is_clear_at_waypoints(self, standing: Sequence[tuple[Shape, Array]], formation: BoundingCylinder) -> bool:
         """A waypoint in something that stands could not be reached."""
         if not isinstance(self.reference, dict):
             return True
-        room = Room(standing, formation, MARGIN, 0.0, 100.0)
+        room = FreeSpace(standing, formation, MARGIN, 0.0, 100.0)
         return bool(room.is_free(np.array(self.reference["points"])).all())
 
-    def _is_open(self, standing: Sequence[tuple[Shape, Array]], formation: Formation) -> bool:
+    def _is_open(self, standing: Sequence[tuple[Shape, Array]], formation: BoundingCylinder) -> bool:
         """Whether there is a way round what stands, past every place between two obstacles."""
         stops = sorted(set(self._standing))
         between = [(a + b) / 2.0 for a, b in pairwise(stops)]
@@ -263,16 +268,16 @@ class _Draft:
                 return False
         return True
 
-    def _comes_upon_nothing(self, obstacle: Sphere, formation: Formation) -> bool:
+    def _comes_upon_nothing(self, obstacle: Obstacle, formation: BoundingCylinder) -> bool:
         """Whether it is slow enough, stays in the air, and leaves alone who takes off or lands."""
         assert obstacle.motion is not None
         if top_speed(obstacle.motion) > self._fastest + 1e-3:
             return False
         times = FLIGHT[: int((self.schedule.landing + LATE + 15.0) / FLIGHT[1])]
         places = np.array(obstacle.position) + displacement(obstacle.motion, times)
-        if (-places[:, 2]).min() < obstacle.radius + 0.3:
+        if (-places[:, 2]).min() < obstacle.shape.reach + 0.3:
             return False
-        keep = CLEAR + obstacle.radius + formation.radius
+        keep = CLEAR + obstacle.shape.reach + formation.radius
         for place, busy in (
             (self._way[0], times < self._times[0] + 4.0),
             (self.schedule.goal, times > self.schedule.landing - 4.0),
@@ -285,18 +290,8 @@ class _Draft:
         """Whether what stands leaves room about the places where something comes the payload's way."""
         if not (standing and self._moving):
             return True
-        room = Room(standing, Formation(0.0, TALL, TALL), 0.0, -100.0, 100.0)
+        room = FreeSpace(standing, BoundingCylinder(0.0, TALL, TALL), 0.0, -100.0, 100.0)
         return bool((room.clearance(np.array([place for _, place in self._moving])) >= APART - 1.0).all())
-
-
-def _shape(obstacle: Obstacle) -> Shape:
-    match obstacle:
-        case Sphere():
-            return Shape("sphere", obstacle.radius)
-        case Pole():
-            return Shape("pole", obstacle.radius, (0.0, 0.0, obstacle.height))
-        case Wall():
-            return Shape("wall", size=obstacle.size, yaw=math.radians(obstacle.yaw_deg))
 
 
 def _rounded(place: Array) -> tuple[float, float, float]:

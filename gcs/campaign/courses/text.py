@@ -8,14 +8,15 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from gcs.config import SystemConfig
-from gcs.mission.model import Limits, Lissajous, Pole, Sphere, Wall
+from gcs.mission.model import Limits, Lissajous, Obstacle
+from gcs.mission.obstacle_table import keys_of
 
 
 def mission_text(
     name: str,
     seed: int,
     reference: Lissajous | Mapping[str, Any],
-    obstacles: Sequence[Sphere | Pole | Wall],
+    obstacles: Sequence[Obstacle],
     limits: Limits,
     comments: Sequence[str] = (),
 ) -> str:
@@ -25,7 +26,7 @@ def mission_text(
         "\n".join(f"# {comment}" for comment in comments),
         _table("[mission]", {"name": name, "seed": seed}),
         _table("[reference]", keys),
-        *(_table("[[obstacle]]", _fields(obstacle)) for obstacle in obstacles),
+        *(_table("[[obstacle]]", keys_of(obstacle)) for obstacle in obstacles),
         _table("[limits]", _fields(limits)),
     ]
     return "\n\n".join(table for table in tables if table) + "\n"

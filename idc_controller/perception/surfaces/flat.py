@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from idc_controller.geometry.shapes import Shape
+from idc_controller.geometry.box import Wall
 from idc_controller.perception.surfaces.fit import EndOfSurface, Fit, score, unexplained
 from idc_controller.perception.surfaces.points import SurfacePoints
 
@@ -30,7 +30,7 @@ class FlatSurface:
 
     kind = "wall"
 
-    def __init__(self, known: Shape | None = None) -> None:
+    def __init__(self, known: Wall | None = None) -> None:
         self.known = known
         self._yaw = known.yaw if known else 0.0
         self._yaw_variance = 0.1**2
@@ -40,13 +40,13 @@ class FlatSurface:
         self._ends = {key: EndOfSurface(SIDE_MARGIN if key[0] == 1 else TOP_MARGIN) for key in _SIDES}
 
     @property
-    def shape(self) -> Shape:
+    def shape(self) -> Wall:
         """As it is believed to be."""
         if self.known is not None:
             return self.known
         lo, hi = self._extent()
         x, y, z = hi - lo
-        return Shape("wall", 0.0, (float(x), float(y), float(z)), float(self._yaw))
+        return Wall((float(x), float(y), float(z)), float(self._yaw))
 
     @property
     def offset(self) -> Array:
@@ -65,7 +65,9 @@ class FlatSurface:
         return float(min(np.sqrt(self._yaw_variance) * (hi[1] - lo[1]) / 2.0, 0.3))
 
     def guess(self, seen: SurfacePoints) -> Array:
-        """Orient the box by the points alone, and give a point of its front (3,)."""
+        """Orient the box by the points alone, and return a point of its front (3,); of a known one their middle."""
+        if self.known is not None:
+            return np.asarray(seen.points.mean(axis=0))
         flat = seen.points[:, :2]
         i, j = _pairs(len(flat))
         along = flat[j] - flat[i]

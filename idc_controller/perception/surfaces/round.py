@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from idc_controller.geometry.shapes import Shape
+from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.shape import Shape
+from idc_controller.geometry.sphere import Sphere
 from idc_controller.perception.surfaces.fit import EndOfSurface, Fit, score, unexplained
 from idc_controller.perception.surfaces.points import SurfacePoints
 
@@ -30,8 +32,9 @@ class RoundSurface:
     def __init__(self, kind: str, known: Shape | None = None) -> None:
         self.kind = kind
         self.known = known
-        self._axes = 3 if kind == "sphere" else 2
-        self._radius = known.radius if known else FIRST_RADIUS
+        self._is_pole = kind == Pole.kind
+        self._axes = 2 if self._is_pole else 3
+        self._radius = known.columns.radius if known else FIRST_RADIUS
         self._variance = 1e-6 if known else FIRST_RADIUS_SIGMA**2
         self._top = EndOfSurface(margin=3.0)
 
@@ -40,14 +43,14 @@ class RoundSurface:
         """As it is believed to be."""
         if self.known is not None:
             return self.known
-        if self.kind == "sphere":
-            return Shape("sphere", self._radius)
-        return Shape("pole", self._radius, (0.0, 0.0, max(self._top.outermost, 0.1)))
+        if self._is_pole:
+            return Pole(self._radius, max(self._top.outermost, 0.1))
+        return Sphere(self._radius)
 
     @property
     def offset(self) -> Array:
         """From the reference point to the shape's centre (3,)."""
-        return np.array([0.0, 0.0, 0.0 if self.kind == "sphere" else -self.shape.size[2] / 2.0])
+        return np.array([0.0, 0.0, -self.shape.half_height if self._is_pole else 0.0])
 
     @property
     def size_sigma(self) -> float:
@@ -59,7 +62,7 @@ class RoundSurface:
         ray = seen.points - seen.origins
         nearest = int(np.argmin(np.einsum("ij,ij->i", ray, ray)))
         direction = seen.rays[nearest].copy()
-        if self.kind == "pole":
+        if self._is_pole:
             direction[2] = 0.0
             direction /= max(np.hypot(direction[0], direction[1]), 1e-3)
         return seen.points[nearest] + self._radius * direction
@@ -77,7 +80,7 @@ class RoundSurface:
         for _ in range(iterations):
             residual, normal, variance = self._residuals(points, rays, theta, seen, H[:, -1])
             weight = 1.0 / (variance * (1.0 + residual**2 / (9.0 * np.maximum(variance, 0.0025))))
-            if self.kind == "pole":
+            if self._is_pole:
                 weight[residual < -_INSIDE - 0.2 * theta[-1]] = 0.0
             H[:, :n_axes] = -normal
             HW = H.T * weight
@@ -97,7 +100,7 @@ class RoundSurface:
         guessed = 1.0 + _SCATTER_LOSS * seen.scatter / theta[-1] ** 2
         spread[:n_axes] = guessed * np.diag(covariance)[:n_axes] + common
         residual, _, variance = self._residuals(points, rays, theta, seen, H[:, -1])
-        if self.kind == "pole":
+        if self._is_pole:
             on_side = residual > -_INSIDE - 0.2 * theta[-1]
             # What lies inside the side must be the top: the highest points.
             height = seen.points[:, 2] - seen.points[:, 2].min()
@@ -105,7 +108,7 @@ class RoundSurface:
         if self.known is None:
             self._radius = float(theta[-1])
             self._variance = max(float(covariance[-1, -1]), RADIUS_SIGMA_LEAST**2)
-            if self.kind == "pole":
+            if self._is_pole:
                 self._top.seen(-seen.points[:, 2], seen.cut)
         fitted = n_axes + (self.known is None)
         return Fit(position, spread, score(residual, variance), unexplained(residual, variance, fitted))

@@ -1,0 +1,184 @@
+"""Boxes: the wall, which stands upright, and what boxes have in common."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import ClassVar, Self
+
+import coal
+import numpy as np
+import shapely
+
+from idc_controller.geometry.shape import (
+    ANGLE,
+    LENGTH,
+    Array,
+    CollisionGeometry,
+    Columns,
+    PlanView,
+    Shape,
+    UprightBounds,
+    Vector,
+)
+
+
+@dataclass(frozen=True)
+class Wall(Shape):
+    """An upright box of edges ``size`` (x, y, z) (m), its x edge turned by ``yaw`` (rad) from north towards east."""
+
+    size: Vector = field(metadata=LENGTH)
+    yaw: float = field(default=0.0, metadata=ANGLE)
+
+    kind: ClassVar[str] = "wall"
+    is_upright: ClassVar[bool] = True
+
+    @property
+    def rotation(self) -> Array:
+        """Shape frame to world (3, 3)."""
+        cosine, sine = np.cos(self.yaw), np.sin(self.yaw)
+        return np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+
+    @property
+    def quaternion(self) -> tuple[float, float, float, float]:
+        """Shape frame to world, w first."""
+        return math.cos(self.yaw / 2), 0.0, 0.0, math.sin(self.yaw / 2)
+
+    @property
+    def columns(self) -> Columns:
+        """The shape as the tables hold it."""
+        return Columns(0.0, self.size, self.yaw)
+
+    @classmethod
+    def from_columns(cls, columns: Columns) -> Self:
+        """Return the shape that the tables hold."""
+        return cls(columns.size, columns.yaw)
+
+    @property
+    def dimensions(self) -> str:
+        """Its sizes in words."""
+        edges = " x ".join(f"{edge:.4g}" for edge in self.size)
+        return f"{edges} m, heading {math.degrees(self.yaw):.1f} deg"
+
+    def geometry(self) -> coal.ShapeBase:
+        """Return the shape for distance queries."""
+        return coal.Box(*self.size)
+
+    def collision(self) -> CollisionGeometry:
+        """Return the shape for a physics engine."""
+        return CollisionGeometry("box", {"halfExtents": [edge / 2 for edge in self.size]})
+
+    def support(self, directions: Array) -> Array:
+        """Largest ``direction . y`` over the body, for unit ``directions`` (..., 3) -> (...)."""
+        return np.asarray(np.abs(directions @ self.rotation) @ (np.array(self.size) / 2.0))
+
+    @classmethod
+    def distances(cls, shapes: Sequence[Self], offsets: Array) -> Array:
+        """Signed distance of points (B, n, 3) about the centres of B walls (B, n) (m)."""
+        half = np.array([shape.size for shape in shapes]).reshape(-1, 3)[:, None] / 2.0
+        yaw = np.array([shape.yaw for shape in shapes])[:, None]
+        cosine, sine = np.cos(yaw), np.sin(yaw)
+        x, y, z = offsets[..., 0], offsets[..., 1], offsets[..., 2]
+        return distance_of_gaps(
+            np.abs(cosine * x + sine * y) - half[..., 0],
+            np.abs(cosine * y - sine * x) - half[..., 1],
+            np.abs(z) - half[..., 2],
+        )
+
+    @property
+    def reach(self) -> float:
+        """Radius of the ball about the centre that holds the body (m)."""
+        return float(np.linalg.norm(self.size)) / 2.0
+
+    @property
+    def horizontal_reach(self) -> float:
+        """Radius of the upright cylinder that holds the body (m)."""
+        return math.hypot(self.size[0], self.size[1]) / 2.0
+
+    @property
+    def upright_bounds(self) -> UprightBounds:
+        """The body itself."""
+        x, y, z = (edge / 2.0 for edge in self.size)
+        return UprightBounds(x, y, z, 0.0, 0.0, math.cos(self.yaw), math.sin(self.yaw))
+
+    @property
+    def plan_view(self) -> PlanView:
+        """A rectangle."""
+        signs = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
+        return PlanView(shapely.Polygon(signs * (np.array(self.size[:2]) / 2.0) @ self.rotation[:2, :2].T), 0.0)
+
+    def visible_points(self, sensor: Vector, reach: float, turn: float) -> list[Vector]:
+        """Points of the surface that a range sensor hits: corners and middle of the faces that it sees."""
+        cosine, sine = math.cos(self.yaw), math.sin(self.yaw)
+        a, b, c = sensor
+        local = (cosine * a + sine * b, cosine * b - sine * a, c)
+        points = visible_points_of_box(self.size, local, reach)
+        return [(cosine * u - sine * v, sine * u + cosine * v, w) for u, v, w in points]
+
+
+def distance_of_gaps(a: Array, b: Array, c: Array) -> Array:
+    """Signed distance to a box, from the distances beyond its faces on its three axes."""
+    inside = np.minimum(np.maximum(np.maximum(a, b), c), 0.0)
+    a, b, c = np.maximum(a, 0.0), np.maximum(b, 0.0), np.maximum(c, 0.0)
+    return np.asarray(np.sqrt(a * a + b * b + c * c) + inside)
+
+
+def visible_points_of_box(size: Vector, sensor: Vector, reach: float) -> list[Vector]:
+    """Points of a box about its centre, in its own frame, that a ``sensor`` there hits."""
+    s, halves = sensor, (size[0] / 2.0, size[1] / 2.0, size[2] / 2.0)
+    visible = [k for k in range(3) if abs(s[k]) > halves[k]]
+    if not visible:
+        return []
+    nearest = _clamped(s, halves)
+    if math.dist(nearest, s) > reach:
+        return []
+    # The face that shows most of itself first.
+    visible.sort(key=lambda k: -_visible_area(halves, s, k))
+    points = [nearest]
+    for rank, axis in enumerate(visible):
+        foot = list(nearest)
+        foot[axis] = math.copysign(halves[axis], s[axis])
+        corners = [_shortened(s, foot, corner, reach) for corner in _corners(halves, axis, foot[axis])]
+        if rank > 0:  # its near corners are the first face's
+            corners = sorted(corners, key=lambda p: -math.dist(p, s))[:2]
+        points += corners
+        if rank == 0:
+            middle = [0.5 * (corners[0][k] + corners[2][k]) for k in range(3)]
+            points.append((middle[0], middle[1], middle[2]))
+    return points
+
+
+def _corners(halves: Vector, axis: int, level: float) -> list[Vector]:
+    """Return the corners of the face across ``axis`` at ``level``, in turn."""
+    j, k = (axis + 1) % 3, (axis + 2) % 3
+    corners = []
+    for a, b in ((1, 1), (1, -1), (-1, -1), (-1, 1)):
+        corner = [0.0, 0.0, 0.0]
+        corner[axis], corner[j], corner[k] = level, a * halves[j], b * halves[k]
+        corners.append((corner[0], corner[1], corner[2]))
+    return corners
+
+
+def _visible_area(halves: Vector, s: Vector, axis: int) -> float:
+    """Area of a face times the cosine of the angle of incidence."""
+    j, k = (axis + 1) % 3, (axis + 2) % 3
+    return halves[j] * halves[k] * (abs(s[axis]) - halves[axis]) / math.dist(s, (0.0, 0.0, 0.0))
+
+
+def _shortened(s: Vector, start: list[float], end: Vector, reach: float) -> Vector:
+    """From ``start``, which is in reach, towards ``end`` as far as the reach goes."""
+    d = [end[k] - start[k] for k in range(3)]
+    o = [start[k] - s[k] for k in range(3)]
+    a = sum(v * v for v in d)
+    b = sum(v * w for v, w in zip(d, o, strict=True))
+    c = sum(v * v for v in o) - reach * reach
+    share = 1.0
+    if a > 0.0:
+        share = min(1.0, max(0.0, (-b + math.sqrt(max(b * b - a * c, 0.0))) / a))
+    return start[0] + share * d[0], start[1] + share * d[1], start[2] + share * d[2]
+
+
+def _clamped(s: Vector, halves: Vector) -> Vector:
+    x, y, z = (min(max(value, -half), half) for value, half in zip(s, halves, strict=True))
+    return x, y, z

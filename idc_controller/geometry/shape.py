@@ -1,0 +1,189 @@
+"""The interface of an obstacle's shape: a convex body about its centre, everything that depends on its kind a method.
+
+A kind of shape is one module with one class, entered in :data:`idc_controller.geometry.shapes.SHAPES`. SI units, NED.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar, NamedTuple, Self
+
+import coal
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from idc_controller.errors import ShapeError
+
+Array = NDArray[np.float64]
+Vector = tuple[float, float, float]
+
+_CIRCLE_SEGMENTS = 32
+"""Of a quarter of a circle, where a plan view is drawn as a polygon."""
+
+
+LENGTH: Mapping[str, str] = {"unit": "m"}
+"""Metadata of a shape's field that is a length, or a tuple of lengths (m): positive; a key of the mission file."""
+ANGLE: Mapping[str, str] = {"unit": "rad"}
+"""Metadata of a field that is an angle (rad); in the mission file its key ends in ``_deg``."""
+
+
+class Columns(NamedTuple):
+    """A shape in the tables of a run: radius (m), edges of its upright bounding box (m), yaw (rad); 0 where none."""
+
+    radius: float
+    size: Vector
+    yaw: float
+
+
+class CollisionGeometry(NamedTuple):
+    """A body for a physics engine: a primitive with its dimensions in the engine's words, or a hull of vertices."""
+
+    primitive: str
+    """sphere, cylinder, capsule or box, their axis along z; mesh: the convex hull of ``vertices``."""
+    dimensions: Mapping[str, Any]
+
+
+class UprightBounds(NamedTuple):
+    """A box turned about the vertical, rounded horizontally by ``radial`` and in all directions by ``ball`` (m).
+
+    It holds the body; of shapes that are such a box it is the body.
+    """
+
+    half_x: float
+    half_y: float
+    half_z: float
+    radial: float
+    ball: float
+    cosine: float
+    sine: float
+
+
+class PlanView(NamedTuple):
+    """A shape seen from above: all that is within ``radius`` (m) of ``core``; north and east from the centre (m)."""
+
+    core: shapely.Geometry
+    radius: float
+
+    def contains(self, place: tuple[float, float]) -> bool:
+        """Whether a place (north, east) about the centre (m) lies within."""
+        return bool(self.core.distance(shapely.Point(place)) <= self.radius)
+
+    def is_crossed(self, start: tuple[float, float], end: tuple[float, float]) -> bool:
+        """Whether the straight line from ``start`` to ``end`` about the centre (m) leads through."""
+        if start == end:
+            return False
+        line = shapely.LineString([start, end])
+        return bool(line.distance(self.core) < self.radius or line.relate_pattern(self.core, "T********"))
+
+    def outline(self) -> Array:
+        """Return the corners (n, 2) of the outline; a circle is drawn by many."""
+        whole = self.core.buffer(self.radius, quad_segs=_CIRCLE_SEGMENTS) if self.radius else self.core
+        return np.array(whole.exterior.coords)[:-1]
+
+
+@dataclass(frozen=True)
+class Shape(ABC):
+    """A convex body about its centre, in the attitude in which it stands."""
+
+    kind: ClassVar[str]
+    """The name of the shape in mission files and tables."""
+    round_axes: ClassVar[Vector | None] = None
+    """Axes (0 or 1) on which the surface is one radius from the centre; None: it is not round about any centre."""
+    is_upright: ClassVar[bool] = False
+    """Whether obstacles of this kind are tall enough that those far off are told by their plan view alone."""
+    is_grounded: ClassVar[bool] = False
+    """Whether it stands on the ground, so that its place is (north, east)."""
+
+    def check(self) -> None:
+        """Raise :class:`ShapeError` for lengths that are not positive and angles that are not finite."""
+        for part in fields(self):
+            value = getattr(self, part.name)
+            if part.metadata.get("unit") == "rad":
+                if not math.isfinite(value):
+                    raise ShapeError(f"{part.name} must be finite, got {value}")
+            elif part.metadata.get("unit") == "m":
+                several = isinstance(value, tuple)
+                for axis, edge in zip("xyz", value if several else (value,), strict=False):
+                    if not (math.isfinite(edge) and edge > 0.0):
+                        raise ShapeError(f"{part.name}{f'_{axis}' * several} must be positive, got {edge}")
+
+    @property
+    def rotation(self) -> Array:
+        """Shape frame to world (3, 3)."""
+        return np.eye(3)
+
+    @property
+    def quaternion(self) -> tuple[float, float, float, float]:
+        """Shape frame to world, w first."""
+        return 1.0, 0.0, 0.0, 0.0
+
+    @property
+    @abstractmethod
+    def columns(self) -> Columns:
+        """The shape as the tables hold it."""
+
+    @classmethod
+    @abstractmethod
+    def from_columns(cls, columns: Columns) -> Self:
+        """Return the shape that the tables hold. Raises :class:`ShapeError` where they do not hold all of it."""
+
+    @property
+    @abstractmethod
+    def dimensions(self) -> str:
+        """Its sizes in words, for people."""
+
+    @abstractmethod
+    def geometry(self) -> coal.ShapeBase:
+        """Return the shape for distance queries, in its own frame."""
+
+    @abstractmethod
+    def collision(self) -> CollisionGeometry:
+        """Return the shape for a physics engine, in its own frame."""
+
+    @abstractmethod
+    def support(self, directions: Array) -> Array:
+        """Largest ``direction . y`` over the body about its centre, for unit ``directions`` (..., 3) -> (...)."""
+
+    @classmethod
+    @abstractmethod
+    def distances(cls, shapes: Sequence[Self], offsets: Array) -> Array:
+        """Signed distance (m) of points (B, n, 3), relative to each body's centre, to B bodies of this kind (B, n)."""
+
+    @property
+    @abstractmethod
+    def reach(self) -> float:
+        """Radius of the ball about the centre that holds the body (m)."""
+
+    @property
+    @abstractmethod
+    def horizontal_reach(self) -> float:
+        """Radius of the upright cylinder about the centre that holds the body (m)."""
+
+    @property
+    @abstractmethod
+    def upright_bounds(self) -> UprightBounds:
+        """The rounded upright box about the centre that holds the body."""
+
+    @property
+    def half_height(self) -> float:
+        """From the centre up and down to the ends of its upright bounds (m)."""
+        return self.upright_bounds.half_z + self.upright_bounds.ball
+
+    @property
+    @abstractmethod
+    def plan_view(self) -> PlanView:
+        """The body seen from above."""
+
+    @abstractmethod
+    def visible_points(self, sensor: Vector, reach: float, turn: float) -> list[Vector]:
+        """Points of the surface that a range sensor hits, about the centre: the nearest first, then to the edges.
+
+        Args:
+            sensor: where the sensor is, relative to the centre (m); one inside hits nothing.
+            reach: range of the sensor (m); points slightly beyond may be among the result.
+            turn: rad, turns the pattern of rays where it has no other reason to lie one way or another.
+        """

@@ -1,0 +1,55 @@
+"""The place of any known convex shape from surface points: Gauss-Newton on the distance to its surface."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from idc_controller.geometry.distance import Bodies
+from idc_controller.geometry.shape import Shape
+from idc_controller.perception.surfaces.fit import Fit, score, unexplained
+from idc_controller.perception.surfaces.points import SurfacePoints
+
+Array = NDArray[np.float64]
+
+_SIDEWAYS = 0.1  # m: how firmly it is held on axes on which no point shows its place
+_STEP = 1e-4  # m, of the differences that give the surface's normals
+
+
+class KnownSurface:
+    """A shape that is given; only the place of its centre, the reference point, is found."""
+
+    size_sigma = 0.0
+    """Standard deviation of the size (m)."""
+
+    def __init__(self, known: Shape) -> None:
+        self.shape = known
+        self.kind = known.kind
+        self.offset = np.zeros(3)
+        self._body = Bodies([known])
+
+    def guess(self, seen: SurfacePoints) -> Array:
+        """Return a first place for the centre: half the body behind the middle of the points (3,)."""
+        middle, ray = seen.points.mean(axis=0), seen.rays.mean(axis=0)
+        return np.asarray(middle + self.shape.support(ray) * ray)
+
+    def fit(self, seen: SurfacePoints, predicted: Array, iterations: int = 3) -> Fit:
+        """Return where the centre is in this frame; ``predicted`` (3,): where it is expected."""
+        place = predicted.copy()
+        prior = np.eye(3) / _SIDEWAYS**2
+        variance = seen.noise**2 + seen.pose_variance + seen.scatter
+        for _ in range(iterations):
+            residual, normal = self._distance(seen.points - place)
+            weight = 1.0 / (variance * (1.0 + residual**2 / (9.0 * variance)))
+            information = (normal.T * weight) @ normal + prior
+            place = place + np.linalg.solve(information, (normal.T * weight) @ residual + prior @ (predicted - place))
+        residual, _ = self._distance(seen.points - place)
+        common = float(np.mean(seen.pose_variance)) / seen.sensors
+        spread = np.diag(np.linalg.inv(information)) + common
+        return Fit(place, spread, score(residual, variance), unexplained(residual, variance, fitted=3))
+
+    def _distance(self, offsets: Array) -> tuple[Array, Array]:
+        """Distance of points (n, 3) about the centre from the surface (n,), and its gradient (n, 3)."""
+        steps = np.concatenate([np.zeros((1, 3)), _STEP * np.eye(3)])
+        distance = self._body.from_offsets((offsets + steps[:, None]).reshape(1, -1, 3)).reshape(4, -1)
+        return distance[0], (distance[1:] - distance[0]).T / _STEP

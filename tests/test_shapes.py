@@ -1,0 +1,123 @@
+"""Every shape of the registry: its methods agree with each other and with the distance library's geometry."""
+
+import coal
+import numpy as np
+import pytest
+import shapely
+
+from idc_controller.errors import ShapeError
+from idc_controller.geometry.box import Wall
+from idc_controller.geometry.distance import Bodies
+from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.shapes import SHAPES, shape_class
+from idc_controller.geometry.sphere import Sphere
+
+EXAMPLES = [Sphere(0.6), Pole(0.3, 4.0), Wall((0.4, 3.0, 2.0), 0.4)]
+HERE = np.array([1.0, -2.0, -4.0])
+
+
+def test_every_registered_shape_has_an_example():
+    assert {type(shape) for shape in EXAMPLES} == set(SHAPES.values())
+
+
+def test_unknown_shape_is_refused():
+    with pytest.raises(ShapeError, match="shape is 'cone', expected one of sphere, pole, wall"):
+        shape_class("cone")
+
+
+@pytest.fixture(params=EXAMPLES, ids=lambda shape: shape.kind)
+def shape(request):
+    return request.param
+
+
+def points_about(shape, count=200, seed=3):
+    rng = np.random.default_rng(seed)
+    return rng.uniform(-1.0, 1.0, (count, 3)) * (shape.reach + 1.5)
+
+
+def distance_by_library(shape, point):
+    place = coal.Transform3s(shape.rotation, np.zeros(3))
+    probe = coal.Transform3s(np.eye(3), point)
+    return coal.distance(
+        shape.geometry(), place, coal.Sphere(1e-9), probe, coal.DistanceRequest(), coal.DistanceResult()
+    )
+
+
+def test_distance_outside_is_that_of_the_distance_library(shape):
+    points = points_about(shape)
+    distance = Bodies([shape]).distance(points + HERE, HERE[None])[0]
+    outside = distance > 0.01
+    assert outside.any()
+    expected = [distance_by_library(shape, point) for point in points[outside]]
+    np.testing.assert_allclose(distance[outside], expected, atol=1e-5)
+
+
+def test_points_inside_have_negative_distance(shape):
+    assert Bodies([shape]).from_offsets(np.zeros((1, 1, 3)))[0, 0] < -0.1
+
+
+def test_distance_of_several_shapes_together_is_that_of_each_alone():
+    points = points_about(EXAMPLES[0])
+    shapes = [*EXAMPLES, *EXAMPLES[::-1]]
+    centres = np.random.default_rng(1).uniform(-3.0, 3.0, (len(shapes), 3))
+    together = Bodies(shapes).distance(points, centres)
+    for shape, centre, distance in zip(shapes, centres, together, strict=True):
+        np.testing.assert_array_equal(distance, Bodies([shape]).distance(points, centre[None])[0])
+
+
+def test_support_is_reached_and_not_exceeded_by_the_body(shape):
+    points = points_about(shape, 4000)
+    inside = points[Bodies([shape]).from_offsets(points[None])[0] <= 0.0]
+    directions = np.random.default_rng(2).normal(size=(50, 3))
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    support = shape.support(directions)
+    assert ((inside @ directions.T).max(axis=0) <= support + 1e-9).all()
+    # A point just beyond the supporting plane's point of contact does not belong to the body.
+    assert (Bodies([shape]).from_offsets((directions * (support + 0.01)[:, None])[None])[0] > 0.0).all()
+    assert (support <= shape.reach + 1e-9).all()
+
+
+def test_bounds_hold_the_body(shape):
+    points = points_about(shape, 4000)
+    inside = points[Bodies([shape]).from_offsets(points[None])[0] <= 0.0]
+    assert np.hypot(inside[:, 0], inside[:, 1]).max() <= shape.horizontal_reach + 1e-9
+    bounds = shape.upright_bounds
+    along = np.abs(bounds.cosine * inside[:, 0] + bounds.sine * inside[:, 1]) - bounds.half_x
+    across = np.abs(bounds.cosine * inside[:, 1] - bounds.sine * inside[:, 0]) - bounds.half_y
+    lateral = np.hypot(np.maximum(along, 0.0), np.maximum(across, 0.0)) - bounds.radial
+    above = np.abs(inside[:, 2]) - bounds.half_z
+    assert (np.hypot(np.maximum(lateral, 0.0), np.maximum(above, 0.0)) <= bounds.ball + 1e-9).all()
+    outline = shapely.Polygon(shape.plan_view.outline()).buffer(1e-3 * shape.horizontal_reach)
+    assert shapely.contains_xy(outline, inside[:, 0], inside[:, 1]).all()
+    assert all(shape.plan_view.contains(tuple(point)) for point in inside[:50, :2])
+
+
+def test_range_sensor_hits_the_surface_that_faces_it(shape):
+    for direction in np.random.default_rng(5).normal(size=(30, 3)):
+        sensor = direction / np.linalg.norm(direction) * (shape.reach + 2.0)
+        points = np.array(shape.visible_points(tuple(sensor), 20.0, 0.3))
+        distance = Bodies([shape]).from_offsets(points[None])[0]
+        np.testing.assert_allclose(distance, 0.0, atol=1e-6)
+        ranges = np.linalg.norm(points - sensor, axis=1)
+        assert ranges[0] == pytest.approx(Bodies([shape]).from_offsets(sensor[None, None])[0, 0], abs=1e-4)
+        # Nothing of the body lies between the sensor and the points.
+        between = sensor + np.linspace(0.0, 0.98, 25)[:, None, None] * (points - sensor)
+        assert (Bodies([shape]).from_offsets(between.reshape(1, -1, 3)) > -1e-6).all()
+    assert shape.visible_points((0.0, 0.0, 0.0), 20.0, 0.0) == []
+
+
+def test_quaternion_is_the_rotation(shape):
+    from idc_controller.rotations import rotation_from_quaternion
+
+    np.testing.assert_allclose(rotation_from_quaternion(np.array(shape.quaternion)), shape.rotation, atol=1e-12)
+
+
+def test_columns_give_the_shape_back(shape):
+    assert type(shape).from_columns(shape.columns) == shape
+
+
+def test_shape_without_extent_is_refused():
+    with pytest.raises(ShapeError, match="size_y must be positive, got 0"):
+        Wall((1.0, 0.0, 1.0)).check()
+    with pytest.raises(ShapeError, match="yaw must be finite"):
+        Wall((1.0, 1.0, 1.0), float("nan")).check()
