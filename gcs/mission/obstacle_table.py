@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import Field as ShapeField
 from dataclasses import dataclass, field, fields, make_dataclass
-from typing import Annotated, Any, Literal, Union
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Union
 
-from pydantic import Field, GetCoreSchemaHandler
-from pydantic_core import CoreSchema, core_schema
+from pydantic import AfterValidator, Field
 
 from gcs.config.tables import Vector
 from gcs.config.toml_file import Positive, strict
@@ -80,13 +79,11 @@ def _obstacle(table: Any) -> Obstacle:
     return Obstacle(table.name, position, shape, table.known, table.motion)
 
 
-class _FromTable:
-    """Makes pydantic read an :class:`Obstacle` from the table of its shape."""
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        tables: Any = Union[tuple(_table(kind, shape) for kind, shape in SHAPES.items())]  # noqa: UP007
-        schema = handler.generate_schema(Annotated[tables, Field(discriminator="shape")])
-        return core_schema.no_info_after_validator_function(_obstacle, schema)
-
-
-ObstacleTable = Annotated[Obstacle, _FromTable()]
+if TYPE_CHECKING:
+    ObstacleTable = Obstacle
+else:  # read from the table of its shape
+    ObstacleTable = Annotated[
+        Union[tuple(_table(kind, shape) for kind, shape in SHAPES.items())],  # noqa: UP007
+        Field(discriminator="shape"),
+        AfterValidator(_obstacle),
+    ]
