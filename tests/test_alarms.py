@@ -1,4 +1,4 @@
-"""The alarm record: what is noticed, when, of whom; nothing where nothing is wrong."""
+"""Alarms: code, time and source; none without a fault."""
 
 import json
 from dataclasses import replace
@@ -7,7 +7,9 @@ import pytest
 from flight_in_process import HOP, Rehearsal, system_file
 
 from gcs.campaign.faults.detection import detection, first_start
-from gcs.flight.alarms import QUIET, AlarmBook, Events
+from gcs.flight.alarms import AlarmLog
+from gcs.flight.detectors import EventCounter, MonitorAlarm
+from gcs.flight.settings import DEFAULTS
 from gcs.mavlink.link_statistics import PATIENCE, LinkStatistics
 from gcs.mission.model import Fault
 from gcs.mission.read import read_mission
@@ -17,24 +19,27 @@ from vehicle_sim.faults import FaultPassage
 pytestmark = pytest.mark.slow
 
 
-def test_one_trouble_is_one_alarm_until_it_is_over():
-    book = AlarmBook()
+def test_alarm_log_records_a_lasting_condition_once():
+    sink = []
+    log = AlarmLog(sink.append)
     for k in range(100):
-        book.tell(0.05 * k, "vehicle 2", "silent", f"{k}")
-    assert [(alarm.time, alarm.detail) for alarm in book.alarms] == [(0.0, "0")]
-    book.tell(5.0, "vehicle 3", "silent")
-    book.tell(5.0, "vehicle 2", "frozen")
-    book.tell(4.95 + QUIET + 0.05, "vehicle 2", "silent")
-    told = [(alarm.source, alarm.what) for alarm in book.alarms[1:]]
-    assert told == [("vehicle 3", "silent"), ("vehicle 2", "frozen"), ("vehicle 2", "silent")]
+        log.raise_alarm(0.05 * k, "vehicle 2", MonitorAlarm.TELEMETRY_TIMEOUT, f"{k}")
+    assert [(alarm.time, alarm.text) for alarm in log.alarms] == [(0.0, "0")]
+    log.raise_alarm(5.0, "vehicle 3", MonitorAlarm.TELEMETRY_TIMEOUT)
+    log.raise_alarm(5.0, "vehicle 2", MonitorAlarm.STUCK_SENSOR)
+    log.raise_alarm(4.95 + DEFAULTS.monitor.hold_time + 0.05, "vehicle 2", MonitorAlarm.TELEMETRY_TIMEOUT)
+    raised = [(alarm.source, alarm.code.code) for alarm in log.alarms[1:]]
+    expected = [("vehicle 3", "telemetry_timeout"), ("vehicle 2", "stuck_sensor"), ("vehicle 2", "telemetry_timeout")]
+    assert raised == expected
+    assert sink == log.alarms
 
 
-def test_events_are_forgotten():
-    events = Events(2.0)
-    events.add(("vehicle 1", "messages lost"), 0.0)
-    events.add(("vehicle 1", "messages lost"), 1.0, 2)
-    assert events.recent(1.5) == {("vehicle 1", "messages lost"): 3}
-    assert events.recent(2.5) == {("vehicle 1", "messages lost"): 2}
+def test_event_counter_forgets_events_after_its_window():
+    events, key = EventCounter(2.0), ("vehicle 1", MonitorAlarm.MESSAGES_LOST)
+    events.add(key, 0.0)
+    events.add(key, 1.0, 2)
+    assert events.recent(1.5) == {key: 3}
+    assert events.recent(2.5) == {key: 2}
     assert events.recent(9.0) == {}
 
 
@@ -63,7 +68,7 @@ def test_sequence_numbers_tell_what_became_of_messages(numbers, counts):
 
 
 def write_records(folder, rows, starts):
-    lines = [",".join(ALARM_COLUMNS), *(f"{time},vehicle 2,refused,position" for time in rows)]
+    lines = [",".join(ALARM_COLUMNS), *(f"{time},vehicle 2,measurements_rejected,warning,position" for time in rows)]
     (folder / "alarms.csv").write_text("\n".join(lines) + "\n")
     faults = [{"activations": [] if start is None else [[start, None]]} for start in starts]
     (folder / "faults.json").write_text(json.dumps({"take_off_s": 3.0, "end_s": 20.0, "faults": faults}))
@@ -74,7 +79,7 @@ def test_detection_counts_from_the_first_fault_of_the_case(tmp_path):
     assert first_start(tmp_path) == 5.0
     assert first_start(tmp_path, 3) == 7.0
     found = detection(tmp_path, 3)
-    assert (found.after, found.told, found.false) == (0.5, "refused, vehicle 2", 1)
+    assert (found.after, found.told, found.false) == (0.5, "measurements_rejected, vehicle 2", 1)
 
 
 def test_detection_without_faults_or_records(tmp_path):
@@ -92,15 +97,15 @@ def hop(folder, *faults):
     return replace(read_mission(path), faults=faults)
 
 
-def test_a_flight_without_a_fault_has_no_alarm(tmp_path):
+def test_flight_without_a_fault_raises_no_alarm(tmp_path):
     with Rehearsal(hop(tmp_path), tmp_path / "run", seed=51) as flight:
         flight.fly()
         assert flight.flight.completed
-        assert flight.station.watch.alarms == []
+        assert flight.flight.failsafes.alarms.alarms == []
     assert read_text_table(tmp_path / "run" / "alarms.csv") == {name: [] for name in ALARM_COLUMNS}
 
 
-def test_a_biased_position_is_noticed_of_its_vehicle_at_once(tmp_path):
+def test_biased_position_raises_an_alarm_of_its_vehicle_at_once(tmp_path):
     fault = Fault("bias", 3.0, vehicles=(3,), settings={"channel": "position", "amount": 0.3, "axes": ["x"]})
     mission = hop(tmp_path, fault)
     passage = FaultPassage(mission.faults, 52, mission.system)
@@ -108,14 +113,14 @@ def test_a_biased_position_is_noticed_of_its_vehicle_at_once(tmp_path):
         flight.fly()
     begin = passage.faults[0].schedule.take_off + fault.start
     rows = read_text_table(tmp_path / "run" / "alarms.csv")
-    assert (rows["source"][0], rows["alarm"][0]) == ("vehicle 3", "refused")
+    assert (rows["source"][0], rows["code"][0]) == ("vehicle 3", "measurements_rejected")
     assert 0.0 < float(rows["time_s"][0]) - begin < 0.5
     assert set(rows["source"]) == {"vehicle 3"}
     assert len(rows["time_s"]) <= 4
 
 
 @pytest.mark.parametrize("start", [3.0, 3.04, 3.044])
-def test_a_link_that_flaps_is_noticed_whenever_it_does(tmp_path, start):
+def test_flapping_link_raises_telemetry_timeout_at_any_phase(tmp_path, start):
     """Down for 0.2 s in every 1.2 s, of which steps and samples are whole shares: always at the same moment between."""
     fault = Fault("flapping", start, vehicles=(2,), settings={"down": 0.2, "up": 1.0})
     mission = hop(tmp_path, fault)
@@ -124,5 +129,5 @@ def test_a_link_that_flaps_is_noticed_whenever_it_does(tmp_path, start):
         flight.fly()
     begin = passage.faults[0].schedule.take_off + start
     rows = read_text_table(tmp_path / "run" / "alarms.csv")
-    silent = [float(t) for t, alarm in zip(rows["time_s"], rows["alarm"], strict=True) if alarm == "silent"]
-    assert silent and 0.0 < silent[0] - begin < 0.4
+    found = [float(t) for t, code in zip(rows["time_s"], rows["code"], strict=True) if code == "telemetry_timeout"]
+    assert found and 0.0 < found[0] - begin < 0.4

@@ -18,7 +18,7 @@ from gcs.campaign.courses.outcome import draw_distribution, from_bad_end, outcom
 from gcs.campaign.courses.schedule import Schedule, arrival
 from gcs.campaign.process_pool import Ended
 from gcs.errors import UnusableInput
-from gcs.flight.spool import SPOOL_UP
+from gcs.flight.settings import DEFAULTS
 from gcs.mission import Lissajous, mover, read_mission
 from gcs.record.run_folder import open_run_folder
 from gcs.record.tables import truth_columns
@@ -170,7 +170,7 @@ def record(plan, late=0.0, stop_short=False):
     spool_up = 1.2  # s after the records begin
     rows = []
     for time in np.arange(0.0, schedule.landing + 10.0 + late, 0.02):
-        on_course = time - spool_up - late - SPOOL_UP + schedule.start
+        on_course = time - spool_up - late - DEFAULTS.takeoff_landing.spool_up_time + schedule.start
         position = schedule.position(np.array([on_course]))[0]
         if stop_short:
             position = position * 0.8

@@ -120,7 +120,10 @@ def test_closed_way_is_given_up_safely(tmp_path):
 
 @pytest.mark.parametrize(
     ("fault", "reason"),
-    [('kind = "drift"\nrate = 0.1', "no vehicle sees obstacles where they are"), ('kind = "stuck"', "what all tell")],
+    [
+        ('kind = "drift"\nrate = 0.1', "no vehicle detects obstacles where they are"),
+        ('kind = "stuck"', "is impossible"),
+    ],
 )
 def test_range_sensors_that_all_go_wrong_alike_end_the_flight_safely(tmp_path, fault, reason):
     shape = 'shape = "pole"\nposition = [7.0, 0.0]\nradius = 0.3\nheight = 12.0'

@@ -171,7 +171,9 @@ def test_a_vehicle_at_another_ones_address_is_told_apart(tmp_path):
     with Rehearsal(short_figure(tmp_path), tmp_path / "run") as flight:
         first, second, *_ = flight.station.links
         first.address, second.address = second.address, first.address
-        flight.station._by_address = {(link.address, link.system_id): i for i, link in enumerate(flight.station.links)}
+        flight.station.router._by_address = {
+            (link.address, link.system_id): i for i, link in enumerate(flight.station.links)
+        }
         flight.fly()
         assert flight.flight.reason == "vehicle 1 does not answer at 127.0.0.1:14541: vehicle 2 does"
 
@@ -275,16 +277,16 @@ def test_nothing_is_touched_high_above_the_ground(tmp_path):
 
             return estimate
 
-        reference = flight.controller.reference(flight.course.trajectory)
+        reference = flight.controller.reference(flight.mission_trajectory.trajectory)
         high, low = (still_at(height)(rehearsal.now, reference) for height in (5.0, 0.3))
         descent = RestTrajectory(np.array([0.0, 0.0, -1.5]), rehearsal.now - 20.0)
-        assert not flight.payload.has_touched(rehearsal.now, descent, high)
-        assert flight.payload.has_touched(rehearsal.now, descent, low)
-        assert not flight.payload.stays_up(rehearsal.now, descent, low)
-        flight.course._trajectory = descent
+        assert not flight.payload.has_touched_down(rehearsal.now, descent, high)
+        assert flight.payload.has_touched_down(rehearsal.now, descent, low)
+        assert not flight.payload.is_descent_stalled(rehearsal.now, descent, low)
+        flight.mission_trajectory._trajectory = descent
         flight.estimator.estimate = still_at(5.0)
         rehearsal.fly()
-        assert flight.reason == "the payload does not come down"
+        assert flight.reason == "the payload does not descend"
         assert rehearsal.leave_alone()
         summary = rehearsal.summary()
     assert is_set_down(summary["landing"])

@@ -47,7 +47,7 @@ def test_an_answer_of_one_who_is_not_the_vehicle_does_not_count(station):
     tell(station, answer, system=2, address=address_of(1))
     tell(station, answer, system=1, address=("10.0.0.66", 14540))
     assert command.state is CommandState.PENDING
-    assert station.refused_datagrams == 3
+    assert station.router.refused == 3
 
 
 def test_only_our_own_timesync_requests_tell_of_the_way_and_each_once(station):

@@ -9,7 +9,7 @@ from hostile_messages import hostile_to_ground, hostile_to_vehicle
 from hostile_traffic import HostileTraffic, Traffic, with_random_contents
 
 from gcs.flight.ground_station import GROUND_SYSTEM
-from gcs.flight.phase import IN_THE_AIR
+from gcs.flight.phase import IN_AIR
 from gcs.mavlink import px4
 
 pytestmark = pytest.mark.slow
@@ -52,7 +52,7 @@ class Storm:
 
     def __call__(self, rehearsal):
         now = rehearsal.now
-        if rehearsal.flight.phase not in IN_THE_AIR or now <= self._last:
+        if rehearsal.flight.phase not in IN_AIR or now <= self._last:
             return
         self._last = now
         vehicle = rehearsal.swarm.vehicles[VEHICLE - 1]
@@ -86,7 +86,7 @@ def test_hostile_datagrams_change_nothing_of_a_flight(tmp_path):
         check_within_limits(flight.summary())
     assert storm.left == 0
     assert flight.swarm.vehicles[VEHICLE - 1].refused_setpoints > 0.01 * DATAGRAMS
-    assert flight.station.refused_datagrams > 0.9 * DATAGRAMS
+    assert flight.station.router.refused > 0.9 * DATAGRAMS
     for name in ("truth.csv", "estimate.csv"):
         assert (tmp_path / "storm" / name).read_bytes() == (tmp_path / "calm" / name).read_bytes()
 

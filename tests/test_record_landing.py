@@ -9,6 +9,7 @@ import pytest
 from flight_in_process import HOP, system_file
 
 from gcs.app.fly import _result
+from gcs.flight.alarms import AlarmLog
 from gcs.mission.read import read_mission
 from gcs.record import landing as landings
 from gcs.record.landing import is_set_down, landing_figures
@@ -109,10 +110,9 @@ def test_the_truth_decides_how_a_flight_ended(tmp_path, rows, landed, completed,
     path = tmp_path / "hop.toml"
     path.write_text(HOP + "\n[limits]\ntouchdown_speed = 0.9\n")
     run = write_flight(tmp_path / "run", rows)
-    flown = SimpleNamespace(
-        completed=completed, landed=landed, takeoff_time=0.0, broken_off_time=1.0, reason="", interrupted=False
-    )
-    station = SimpleNamespace(flight=flown, watch=SimpleNamespace(alarms=[]))
+    failsafes = SimpleNamespace(time=1.0, interrupted=False, alarms=AlarmLog())
+    flown = SimpleNamespace(completed=completed, landed=landed, takeoff_time=0.0, reason="", failsafes=failsafes)
+    station = SimpleNamespace(flight=flown)
     summary = _result(run, read_mission(path), station, 9.0, 1.0).summary
     assert (summary["outcome"], summary["completed"]) == (outcome, outcome == "completed")
     assert summary["limits"]["touchdown_speed"][2] == (outcome != "failed")

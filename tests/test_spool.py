@@ -1,30 +1,35 @@
-"""Thrust while the payload stands: it grows, and fades once no link leans any more."""
+"""Spool-up and spool-down: the thrust fades once no link leans any more."""
 
 import pytest
 
-from gcs.flight.spool import LEAN, SPOOL_DOWN, SPOOL_UP, STANDING_SHARE, UPRIGHT_TIMEOUT, SpoolDown, spooling_up
+from gcs.flight.settings import DEFAULTS
+from gcs.flight.spool import SpoolDown, spool_up_share
+
+S = DEFAULTS.takeoff_landing
 
 
-def test_it_grows_to_the_hover_thrust():
-    assert [spooling_up(SPOOL_UP * part) for part in (0.0, 0.5, 2.0)] == pytest.approx([0.0, 0.5, 1.0])
+def test_spool_up_grows_to_the_hover_thrust():
+    assert [spool_up_share(S.spool_up_time * part) for part in (0.0, 0.5, 2.0)] == pytest.approx([0.0, 0.5, 1.0])
 
 
-def test_upright_it_fades_at_once():
+def test_spool_down_begins_at_once_with_upright_links():
     spool = SpoolDown(10.0)
     for k in range(50):
         elapsed = 0.05 * k
-        assert spool.share(10.0 + elapsed, 0.0) == pytest.approx(max(1.0 - elapsed / SPOOL_DOWN, 0.0), abs=0.03)
+        assert spool.share(10.0 + elapsed, 0.0) == pytest.approx(max(1.0 - elapsed / S.spool_down_time, 0.0), abs=0.03)
 
 
-def test_leaning_it_waits_and_then_fades_from_there():
+def test_spool_down_waits_for_leaning_links():
     spool = SpoolDown(10.0)
     for k in range(30):
-        assert spool.share(10.0 + 0.1 * k, 2.0 * LEAN) >= STANDING_SHARE
-    assert spool.share(13.0, 0.5 * LEAN) == pytest.approx(STANDING_SHARE)
-    assert spool.share(13.0 + 0.5 * STANDING_SHARE * SPOOL_DOWN, 2.0 * LEAN) == pytest.approx(0.5 * STANDING_SHARE)
+        assert spool.share(10.0 + 0.1 * k, 2.0 * S.upright_lean) >= S.standing_share
+    assert spool.share(13.0, 0.5 * S.upright_lean) == pytest.approx(S.standing_share)
+    assert spool.share(13.0 + 0.5 * S.standing_share * S.spool_down_time, 2.0 * S.upright_lean) == pytest.approx(
+        0.5 * S.standing_share
+    )
 
 
-def test_it_does_not_wait_for_ever():
+def test_spool_down_waits_for_links_until_its_timeout():
     spool = SpoolDown(10.0)
-    assert spool.share(10.0 + UPRIGHT_TIMEOUT + 0.05, 1.0) == pytest.approx(STANDING_SHARE)
-    assert spool.share(10.0 + UPRIGHT_TIMEOUT + SPOOL_DOWN + 0.05, 1.0) == 0.0
+    assert spool.share(10.0 + S.upright_timeout + 0.05, 1.0) == pytest.approx(S.standing_share)
+    assert spool.share(10.0 + S.upright_timeout + S.spool_down_time + 0.05, 1.0) == 0.0

@@ -23,13 +23,14 @@ class FlightLog:
 
     def update(self) -> None:
         """Write what has changed."""
-        station, flight = self._station, self._station.flight
+        flight = self._station.flight
         if flight.phase.value != self._phase:
             self._phase = flight.phase.value
             LOG.info("%.2f s: phase %s", flight.time, self._phase)
-        for alarm in station.watch.alarms[self._alarms :]:
+        for alarm in flight.failsafes.alarms.alarms[self._alarms :]:
             self._alarms += 1
-            LOG.warning("%.2f s: %s: %s%s", alarm.time, alarm.source, alarm.what, alarm.detail and f" ({alarm.detail})")
+            text = alarm.text and f" ({alarm.text})"
+            LOG.warning("%.2f s: %s: %s%s", alarm.time, alarm.source, alarm.code.code, text)
         for link in self._links:
             link.update(flight.time)
 

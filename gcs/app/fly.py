@@ -22,6 +22,9 @@ from gcs.drivers.realtime import run_in_real_time
 from gcs.drivers.simulator import Simulator, arguments_for
 from gcs.errors import GcsError, UnusableInput
 from gcs.flight import stack
+from gcs.flight.alarms import AlarmLog
+from gcs.flight.control_loop import ControlLoop
+from gcs.flight.failsafe import Failsafe, Trigger
 from gcs.flight.flight import Flight
 from gcs.flight.ground_station import GroundStation, Recorder
 from gcs.flight.team import Team
@@ -42,7 +45,7 @@ from idc_controller.safety.filter_protocol import NoObstacles, SafetyFilter
 
 @dataclass(frozen=True)
 class FlyOptions:
-    """What the command line of ``gcs fly`` asks for."""
+    """Options of the command line of ``gcs fly``."""
 
     mission: Path
     config: Path | None = None
@@ -129,7 +132,7 @@ def fly(options: FlyOptions, mission: Mission, progress: Callable[[Flight], None
 
         wall = time.monotonic()
 
-        def tell() -> None:
+        def update() -> None:
             nonlocal wall
             if math.isnan(station.flight.takeoff_time):
                 wall = time.monotonic()
@@ -138,14 +141,15 @@ def fly(options: FlyOptions, mission: Mission, progress: Callable[[Flight], None
 
         try:
             if options.realtime:
-                run_in_real_time(station, connection, interrupt, speed=options.speed, progress=tell, gone=gone)
+                run_in_real_time(station, connection, interrupt, speed=options.speed, progress=update, gone=gone)
             else:
                 run_in_lockstep(
-                    station, connection, _clock_address(options, simulator), interrupt, progress=tell, gone=gone
+                    station, connection, _clock_address(options, simulator), interrupt, progress=update, gone=gone
                 )
         except KeyboardInterrupt:
-            station.flight.give_up("interrupted twice: the vehicles were left to land on their own")
-            station.flight.interrupted = True
+            flight = station.flight
+            reason = "interrupted twice: the vehicles land autonomously"
+            flight.raise_failsafe(flight.time, Failsafe.INTERRUPTED_TWICE, Trigger(reason))
     return _result(run_dir, mission, station, recorder.last_time, time.monotonic() - wall)
 
 
@@ -164,9 +168,9 @@ def _result(run_dir: Path, mission: Mission, station: GroundStation, last_time: 
         obstacles=bool(mission.obstacles),
     )
     # By the clock of the records, as it may be before take-off.
-    summary["broken_off_s"] = None if math.isnan(flight.broken_off_time) else round(flight.broken_off_time, 6)
-    summary["alarms"] = len(station.watch.alarms)
-    # The ground may have lost sight of what the vehicles did, or be wrong about it: the truth decides.
+    summary["broken_off_s"] = None if math.isnan(flight.failsafes.time) else round(flight.failsafes.time, 6)
+    summary["alarms"] = len(flight.failsafes.alarms.alarms)
+    # The ground may have lost its link to the vehicles, or be wrong about them: the truth decides.
     if begun and (landing := summary["landing"]) is not None:
         down = is_set_down(landing)
         outcome = "failed" if not down else "completed" if flight.completed else "aborted"
@@ -174,7 +178,7 @@ def _result(run_dir: Path, mission: Mission, station: GroundStation, last_time: 
     if summary["contacts"]:
         summary |= {"outcome": "collided", "completed": False}
     write_summary(run_dir, summary)
-    return FlightResult(run_dir, mission, summary, flight.reason, flight.interrupted, begun)
+    return FlightResult(run_dir, mission, summary, flight.reason, flight.failsafes.interrupted, begun)
 
 
 def ground_station(
@@ -188,7 +192,6 @@ def ground_station(
     config = mission.system
     model = stack.linear_model(config)
     links = [VehicleLink(i, address) for i, address in enumerate(addresses, start=1)]
-    team = Team(links, model.parameters)
     stopwatch = time.perf_counter
     obstacle_map = stack.obstacle_map(mission)
     safety: SafetyFilter = NoObstacles()
@@ -198,12 +201,12 @@ def ground_station(
         guidance = stack.guidance(config, model, obstacle_map)
     elif controller == "paper":
         safety = PrintedFilter(model, obstacle_map, config.avoidance.margin)
-    flight = Flight(
-        mission, team, stack.estimator(config, model),
-        stack.controller(config, model, safety, stopwatch, guidance), stopwatch,
+    control = ControlLoop(
+        stack.estimator(config, model), stack.controller(config, model, safety, stopwatch, guidance), stopwatch,
         brake=RestingPlace(model.parameters, obstacle_map),
     )  # fmt: skip
-    return GroundStation(team, flight, 1.0 / config.rates.control, recorder, obstacle_map)
+    flight = Flight(mission, Team(links, model.parameters), control, AlarmLog(recorder.alarm), obstacle_map)
+    return GroundStation(flight, recorder)
 
 
 def _swarm(
@@ -232,7 +235,7 @@ def _swarm(
 def _clock_address(options: FlyOptions, simulator: Simulator | None) -> Address:
     if simulator is not None:
         if simulator.clock_address is None:
-            raise GcsError("vehicle-sim does not tell its clock's address")
+            raise GcsError("vehicle-sim has not printed the address of its clock")
         return simulator.clock_address
     first = min(options.connect, key=lambda url: url.port)
     return first.host, first.port - 1

@@ -1,4 +1,4 @@
-"""Ctrl-C as a wish: the first asks the flight to land, the second ends the program's patience."""
+"""Ctrl-C: the first one lands the flight, the second one ends control."""
 
 from __future__ import annotations
 

@@ -8,12 +8,13 @@ from collections.abc import Callable
 
 from gcs.drivers.connection import Connection
 from gcs.drivers.interrupt import Interrupt
+from gcs.flight.failsafe import Failsafe
 from gcs.flight.ground_station import GroundStation
 from gcs.mavlink.address import Address
 from gcs.mavlink.lockstep import Done, Tick, decode_tick
 
-ASK_AGAIN = 0.5  # s of wall time after which an unanswered join is repeated
-PATIENCE = 20.0  # s of wall time without a tick after which the world is taken for lost
+JOIN_INTERVAL = 0.5  # s of wall time after which an unanswered join is repeated
+TICK_TIMEOUT = 20.0  # s of wall time without a tick after which the world is lost
 
 
 def run_in_lockstep(
@@ -27,25 +28,26 @@ def run_in_lockstep(
 ) -> None:
     """Run ``station`` until its flight has ended, one exchange with the world at a time.
 
-    ``gone`` tells why the world cannot be there any more, if it is known.
+    ``gone`` returns why the world has ended, None while it runs.
     """
     connection.send(Done(0, None).encode(), clock_address)
     landing = False
-    waited = 0.0
+    waited = now = 0.0
     joined = False
     inbox: list[tuple[bytes, Address]] = []
     while not station.ended:
         tick = _next_tick(connection, clock_address, inbox)
         if tick is None:
-            ready, _, _ = select.select([connection.socket], [], [], ASK_AGAIN)
+            ready, _, _ = select.select([connection.socket], [], [], JOIN_INTERVAL)
             if ready:
                 continue
-            waited += ASK_AGAIN
+            waited += JOIN_INTERVAL
             if (reason := gone()) is not None:
-                station.flight.give_up(reason)
+                station.raise_failsafe(now, Failsafe.SIMULATION_LOST, reason)
                 break
-            if waited >= PATIENCE:
-                station.flight.give_up(f"the simulated world does not answer for {PATIENCE:g} s")
+            if waited >= TICK_TIMEOUT:
+                reason = f"the simulated world does not answer for {TICK_TIMEOUT:g} s"
+                station.raise_failsafe(now, Failsafe.SIMULATION_LOST, reason)
                 break
             if not joined:
                 connection.send(Done(0, None).encode(), clock_address)
@@ -54,7 +56,7 @@ def run_in_lockstep(
         now = tick.time_us * 1e-6
         if interrupt.requested and not landing:
             landing = True
-            station.break_off(now, "interrupted", interrupted=True)
+            station.raise_failsafe(now, Failsafe.INTERRUPTED, "interrupted")
         for datagram, sender in inbox:
             station.receive(datagram, sender, now)
         inbox.clear()

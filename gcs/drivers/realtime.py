@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 from gcs.drivers.connection import Connection
 from gcs.drivers.interrupt import Interrupt
+from gcs.flight.failsafe import Failsafe
 from gcs.flight.ground_station import GroundStation
 
 LONGEST_WAIT = 0.1  # s of wall time, so that an interrupt is seen
@@ -24,7 +25,7 @@ def run_in_real_time(
 ) -> None:
     """Run ``station`` until its flight has ended. ``speed`` is ground seconds a wall second.
 
-    ``gone`` tells why the vehicles cannot be there any more, if it is known.
+    ``gone`` returns why the vehicles have ended, None while they run.
     """
     start = clock()
     landing = False
@@ -32,14 +33,14 @@ def run_in_real_time(
         now = (clock() - start) * speed
         if interrupt.requested and not landing:
             landing = True
-            station.break_off(now, "interrupted", interrupted=True)
+            station.raise_failsafe(now, Failsafe.INTERRUPTED, "interrupted")
         if (reason := gone()) is not None:
-            station.flight.give_up(reason)
+            station.raise_failsafe(now, Failsafe.SIMULATION_LOST, reason)
         for datagram, sender in connection.receive():
             station.receive(datagram, sender, now)
         for datagram, address in station.datagrams_to_send(now):
             connection.send(datagram, address)
-        station.thought((clock() - start) * speed - now)
+        station.add_latency((clock() - start) * speed - now)
         progress()
         due = station.next_timer()
         if due is None:

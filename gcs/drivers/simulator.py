@@ -21,7 +21,7 @@ class Simulator:
     """A running ``vehicle-sim``; a context manager that ends it."""
 
     def __init__(self, arguments: Sequence[str]) -> None:
-        """Start it and read where it listens. Raises :class:`GcsError` with what it said when it does not start."""
+        """Start it and read where it listens. Raises :class:`GcsError` with its error output when it does not start."""
         # A session of its own: Ctrl-C at the terminal is for the ground, which lands the vehicles first.
         self._process = subprocess.Popen(
             [sys.executable, "-m", "vehicle_sim", "--with-parent", *arguments],
@@ -44,26 +44,26 @@ class Simulator:
                 else:
                     self.vehicles.append(address)
         assert self._process.stderr is not None
-        said = self._process.stderr.read().strip()
+        error = self._process.stderr.read().strip()
         self._process.wait()
-        raise GcsError(f"vehicle-sim did not start: {said.splitlines()[-1] if said else 'it said nothing'}")
+        raise GcsError(f"vehicle-sim did not start: {error.splitlines()[-1] if error else 'no error output'}")
 
     def gone(self) -> str | None:
-        """How it ended, if it has ended."""
+        """Return how it ended; None while it runs."""
         code = self._process.poll()
         if code is None:
             return None
         how = f"was killed by signal {-code}" if code < 0 else f"ended with exit code {code}"
-        return f"the simulated world is gone: vehicle-sim {how}"
+        return f"the simulated world has ended: vehicle-sim {how}"
 
     def close(self) -> None:
         """Let it end, and wait until its records are closed: without its parent's pipe it lands what still flies."""
-        for timeout, insist in ((LANDING_TIMEOUT, self._process.terminate), (END_TIMEOUT, self._process.kill)):
+        for timeout, stop in ((LANDING_TIMEOUT, self._process.terminate), (END_TIMEOUT, self._process.kill)):
             try:
                 self._process.communicate(timeout=timeout)
                 return
             except subprocess.TimeoutExpired:
-                insist()
+                stop()
         self._process.communicate()
 
     def __enter__(self) -> Simulator:

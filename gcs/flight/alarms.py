@@ -1,59 +1,69 @@
-"""The alarm record: what was noticed, when, of whom; each trouble once, however long it lasts."""
+"""Alarms: codes with a MAVLink severity and a text for people, and the log of those that were raised."""
 
 from __future__ import annotations
 
 import math
-from collections import defaultdict, deque
+from collections.abc import Callable
 from dataclasses import dataclass
+from enum import Enum, IntEnum
 
-QUIET = 2.0
-"""A trouble that is not seen for so long is over, and a new alarm when it comes back (s)."""
+import pymavlink.dialects.v20.ardupilotmega as mavlink
+
+from gcs.flight.settings import DEFAULTS, MonitorSettings
+
+
+class Severity(IntEnum):
+    """MAV_SEVERITY, as far as alarms use it."""
+
+    ALERT = mavlink.MAV_SEVERITY_ALERT
+    CRITICAL = mavlink.MAV_SEVERITY_CRITICAL
+    ERROR = mavlink.MAV_SEVERITY_ERROR
+    WARNING = mavlink.MAV_SEVERITY_WARNING
+    NOTICE = mavlink.MAV_SEVERITY_NOTICE
+
+
+class AlarmCode(Enum):
+    """Base of the enums of alarms: each member has a severity, what it means, and what to do about it.
+
+    Members are declared where the alarm is detected: :mod:`gcs.flight.detectors`, :mod:`gcs.flight.failsafe`.
+    """
+
+    severity: Severity
+    meaning: str
+    action: str
+
+    @property
+    def code(self) -> str:
+        """What programs read: the name in snake case."""
+        return self.name.lower()
 
 
 @dataclass(frozen=True)
 class Alarm:
-    """One row of the record."""
+    """One row of ``alarms.csv``."""
 
     time: float
-    """When it was noticed (s, team time)."""
+    """When it was raised (s, team time)."""
     source: str
-    """Of whom: ``vehicle 3``, ``payload``, ``team``, or an obstacle's name."""
-    what: str
-    detail: str
+    """``vehicle 3``, ``payload``, ``team``, or an obstacle's name."""
+    code: AlarmCode
+    text: str
 
 
-class AlarmBook:
-    """All alarms of a flight, in the order in which they were noticed."""
+class AlarmLog:
+    """All alarms of a flight, in the order in which they were raised."""
 
-    def __init__(self) -> None:
+    def __init__(
+        self, sink: Callable[[Alarm], None] = lambda alarm: None, settings: MonitorSettings = DEFAULTS.monitor
+    ) -> None:
+        """``sink`` gets every new alarm."""
+        self._sink, self._hold_time = sink, settings.hold_time
         self.alarms: list[Alarm] = []
-        self._seen: dict[tuple[str, str], float] = {}
+        self._last: dict[tuple[str, AlarmCode], float] = {}
 
-    def tell(self, time: float, source: str, what: str, detail: str = "") -> None:
-        """Something is wrong at ``time``: a new alarm, unless it has been so for a while."""
-        if time - self._seen.get((source, what), -math.inf) > QUIET:
-            self.alarms.append(Alarm(time, source, what, detail))
-        self._seen[source, what] = time
-
-
-class Events:
-    """Counts of what happened lately, by source and what it was."""
-
-    def __init__(self, window: float) -> None:
-        """``window``: how long an event counts (s)."""
-        self._window = window
-        self._times: dict[tuple[str, str], deque[float]] = defaultdict(deque)
-
-    def add(self, key: tuple[str, str], time: float, count: int = 1) -> None:
-        """It happened ``count`` times at ``time``."""
-        self._times[key].extend([time] * count)
-
-    def recent(self, time: float) -> dict[tuple[str, str], int]:
-        """How often each happened in the window before ``time``; those that did at all."""
-        found = {}
-        for key, times in self._times.items():
-            while times and time - times[0] > self._window:
-                times.popleft()
-            if times:
-                found[key] = len(times)
-        return found
+    def raise_alarm(self, time: float, source: str, code: AlarmCode, text: str = "") -> None:
+        """Raise an alarm at ``time`` (s), unless it has been raised within the hold time."""
+        if time - self._last.get((source, code), -math.inf) > self._hold_time:
+            self.alarms.append(Alarm(time, source, code, text))
+            self._sink(self.alarms[-1])
+        self._last[source, code] = time

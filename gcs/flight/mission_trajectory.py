@@ -1,4 +1,4 @@
-"""The course of a flight: one trajectory of the payload from pad to ground, made of take-off, mission and landing."""
+"""Mission trajectory: one trajectory of the payload from pad to ground, made of take-off, mission and landing."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcs.config import MotionConfig
+from gcs.flight.settings import DEFAULTS, TakeoffLandingSettings
 from gcs.mission.model import Lissajous, Mission
 from gcs.mission.route import Circle, FlyTo, HoldForever, Land, Leg, Speed, TakeOff
 from idc_controller.trajectory import paths
@@ -19,21 +20,21 @@ from idc_controller.trajectory.waypoints import WaypointTrajectory
 
 Array = NDArray[np.float64]
 
-BELOW_GROUND = 0.15
-"""How far below the expected ground a landing aims (m): it ends by touching, not by a height."""
-ON_PAD = 0.2
-"""A landing this close to where it began is on the pad again (m)."""
-SLOW_BELOW = 1.0
-"""Height above the ground from which on a landing is slow (m)."""
 
+class MissionTrajectory:
+    """Trajectory of the payload from take-off to touchdown, from ``position`` on the pad at ``start``.
 
-class Course:
-    """What the payload is to do from take-off to touch-down, and how to break it off.
-
-    Times are the team's (s), positions NED (m). ``mission`` is what is flown between; an endless one has no end.
+    Times are the team's (s), positions NED (m). An endless mission has no end.
     """
 
-    def __init__(self, mission: Mission, position: Array, start: float) -> None:
+    def __init__(
+        self,
+        mission: Mission,
+        position: Array,
+        start: float,
+        settings: TakeoffLandingSettings = DEFAULTS.takeoff_landing,
+    ) -> None:
+        self._settings = settings
         self._motion = mission.system.motion
         self._ground = -mission.system.payload.size[2] / 2.0
         self._pad = position
@@ -44,17 +45,17 @@ class Course:
         self._climb: Trajectory | None = up
         along = up.then(lambda time, here: self._flown(mission, legs, time, here))
         self._trajectory: Trajectory = RememberedTrajectory(along.then(self._land))
-        self._broken_off = False
+        self._braking = False
 
     @property
     def trajectory(self) -> Trajectory:
-        """The whole course."""
+        """The whole trajectory."""
         return self._trajectory
 
-    def asked(self, times: Array) -> tuple[Array, Array]:
-        """Position and velocity (K, 3) that the mission asks for: a landing ends on the ground, not below it."""
+    def reference(self, times: Array) -> tuple[Array, Array]:
+        """Return position and velocity (K, 3) at ``times``: a descent ends on the ground, not below it."""
         position, velocity = self._trajectory.derivatives(times, 1)
-        on_pad = np.linalg.norm(position[:, :2] - self._pad[:2], axis=1) < ON_PAD
+        on_pad = np.linalg.norm(position[:, :2] - self._pad[:2], axis=1) < self._settings.pad_radius
         lowest = np.where(on_pad, self._pad[2], self._ground)
         below = position[:, 2] > lowest
         position[below, 2] = lowest[below]
@@ -67,29 +68,30 @@ class Course:
         return self._landing_from
 
     def phase(self, time: float) -> str:
-        """What is done at ``time``: climb, fly, hold, land."""
+        """Return the phase at ``time``: climb, fly, hold, land."""
         if time >= self._landing_from:
             return "land"
-        # Asked at each call: a trajectory learns of its end while it is flown.
+        # Evaluated at each call: the end of a lazy trajectory is known only when it is reached.
         if self._climb is not None and time < self._climb.end:
             return "climb"
         speed = np.linalg.norm(self._trajectory.derivatives(np.array([time]), 1)[1, 0])
         return "fly" if speed > 0.05 else "hold"
 
-    def break_off(self, followed: Trajectory, time: float) -> None:
-        """Come to rest as soon as the limits allow, then land there; harmless when it does already.
+    def brake_and_land(self, followed: Trajectory, time: float) -> None:
+        """Come to rest as soon as the limits allow, then land there; without effect while braking or landing.
 
-        ``followed`` is what is flown at ``time`` of its own clock, the course or a way round something; the course goes
-        on by that clock.
+        Args:
+            followed: the trajectory that is flown, this one or a detour.
+            time: where on it; from now on this trajectory goes on at that time.
         """
-        if self._broken_off or (followed is self._trajectory and time >= self._landing_from):
+        if self._braking or (followed is self._trajectory and time >= self._landing_from):
             return
-        self._broken_off = True
+        self._braking = True
         self._climb = None
         self._trajectory = RememberedTrajectory(followed.stop(time).then(self._land))
 
     def _split(self, mission: Mission, position: Array) -> tuple[list[paths.Leg], Iterator[Leg]]:
-        """The climb, and the legs that follow it."""
+        """Return the climb, and the legs that follow it."""
         if isinstance(mission.reference, Lissajous):
             altitude, delay = mission.reference.altitude, 0.0
             legs: Iterator[Leg] = iter(())
@@ -107,12 +109,12 @@ class Course:
     def _flown(self, mission: Mission, legs: Iterator[Leg], time: float, here: Array) -> Trajectory:
         if isinstance(mission.reference, Lissajous):
             return self._figure(mission.reference, time, here)
-        asked = [step.speed for step in mission.reference.steps if isinstance(step, Speed) and step.speed]
-        limits = self._limits(max([mission.reference.speed, *asked]))
+        speeds = [step.speed for step in mission.reference.steps if isinstance(step, Speed) and step.speed]
+        limits = self._limits(max([mission.reference.speed, *speeds]))
         return WaypointTrajectory(here, self._legs(legs), limits, start=time)
 
     def _figure(self, figure: Lissajous, time: float, here: Array) -> Trajectory:
-        """To the curve's beginning, along it, and back to where it began."""
+        """Return the trajectory to the curve's beginning, along it, and back to ``here``."""
         curve = LissajousCurve(figure.amplitude, down=-figure.altitude)
         begin = curve.by_phase(np.zeros(1), 0)[0][0]
         limits = self._limits(self._motion.speed)
@@ -141,8 +143,8 @@ class Course:
 
     def _land(self, time: float, here: Array) -> Trajectory:
         self._landing_from = time
-        slow = np.array([here[0], here[1], self._ground - SLOW_BELOW])
-        touch = np.array([here[0], here[1], self._ground + BELOW_GROUND])
+        slow = np.array([here[0], here[1], self._ground - self._settings.slow_height])
+        touch = np.array([here[0], here[1], self._ground + self._settings.landing_overshoot])
         limits = self._vertical_limits()
         last = paths.Leg(touch, self._motion.landing_speed)
         if here[2] >= slow[2] - 0.5:

@@ -1,4 +1,4 @@
-"""Where a flight is."""
+"""Flight phases."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from enum import Enum
 
 
 class Phase(Enum):
-    """Where the flight is."""
+    """Phase of a flight; the value is shown to people."""
 
     CONNECT = "connect"
     CHECK = "check"
@@ -16,11 +16,13 @@ class Phase(Enum):
     FLY = "fly"
     HOLD = "hold"
     LAND = "land"
-    ON_THEIR_OWN = "vehicles land on their own"
+    AUTONOMOUS_LANDING = "autonomous landing"
     SPOOL_DOWN = "spool down"
     DISARM = "disarm"
     ENDED = "ended"
 
 
-IN_THE_AIR = (Phase.CLIMB, Phase.FLY, Phase.HOLD, Phase.LAND)
-CLEAR_OF_GROUND = (Phase.FLY, Phase.HOLD)
+IN_AIR = frozenset({Phase.CLIMB, Phase.FLY, Phase.HOLD, Phase.LAND})
+CLEAR_OF_GROUND = frozenset({Phase.FLY, Phase.HOLD})
+CONTROLLED = IN_AIR | {Phase.SPOOL_UP, Phase.SPOOL_DOWN}
+"""Phases in which the estimator and the controller run."""

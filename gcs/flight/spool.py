@@ -1,32 +1,28 @@
-"""How much of the hover thrust there is while the payload stands: growing before the climb, fading after it."""
+"""Share of the hover thrust while the payload is on the ground: spool-up before the climb, spool-down after landing."""
 
 from __future__ import annotations
 
-SPOOL_UP = 2.5  # s from idle to hover thrust
-SPOOL_DOWN = 2.0  # s from hover thrust to idle
-STANDING_SHARE = 0.8  # of the hover thrust, with which the payload stands and the links are taut
-LEAN = 0.05  # sine of a link's tilt with which it stays upright as the thrust fades
-UPRIGHT_TIMEOUT = 5.0  # s that are waited for this
+from gcs.flight.settings import DEFAULTS, TakeoffLandingSettings
 
 
-def spooling_up(elapsed: float) -> float:
-    """Share of the hover thrust ``elapsed`` (s) after the rotors have started."""
-    return min(elapsed / SPOOL_UP, 1.0)
+def spool_up_share(elapsed: float, settings: TakeoffLandingSettings = DEFAULTS.takeoff_landing) -> float:
+    """Return the share of the hover thrust ``elapsed`` (s) after the rotors have started."""
+    return min(elapsed / settings.spool_up_time, 1.0)
 
 
 class SpoolDown:
-    """The thrust fades, but not before links that lean against the wind have come upright."""
+    """Spool-down from ``time`` (s) of the touchdown; it waits until links that lean in the wind are upright."""
 
-    def __init__(self, time: float) -> None:
-        """``time`` (s) of the touch-down."""
-        self._since = time
+    def __init__(self, time: float, settings: TakeoffLandingSettings = DEFAULTS.takeoff_landing) -> None:
+        self._since, self._settings = time, settings
         self._leaning = True
 
     def share(self, time: float, lean: float) -> float:
-        """Share of the hover thrust at ``time`` (s); ``lean``: the largest sine of a link's tilt along an axis."""
+        """Return the share of the hover thrust at ``time`` (s); ``lean``: largest sine of a link's tilt by axis."""
+        s = self._settings
         if self._leaning:
-            share = max(1.0 - (time - self._since) / SPOOL_DOWN, STANDING_SHARE)
-            if share > STANDING_SHARE or (lean > LEAN and time - self._since < UPRIGHT_TIMEOUT):
+            share = max(1.0 - (time - self._since) / s.spool_down_time, s.standing_share)
+            if share > s.standing_share or (lean > s.upright_lean and time - self._since < s.upright_timeout):
                 return share
-            self._leaning, self._since = False, time - (1.0 - STANDING_SHARE) * SPOOL_DOWN
-        return max(1.0 - (time - self._since) / SPOOL_DOWN, 0.0)
+            self._leaning, self._since = False, time - (1.0 - s.standing_share) * s.spool_down_time
+        return max(1.0 - (time - self._since) / s.spool_down_time, 0.0)

@@ -25,7 +25,8 @@ from idc_controller.rotations import quaternion_from_euler
 
 if TYPE_CHECKING:
     from gcs.flight.alarms import Alarm
-    from gcs.flight.flight import Flight, StepRecord
+    from gcs.flight.control_loop import StepRecord
+    from gcs.flight.flight import Flight
     from idc_controller.control.controller import Decision
     from idc_controller.perception.obstacle_map import ObstacleMap
 
@@ -92,7 +93,7 @@ class FlightRecorder:
         )
 
     def obstacles(self, obstacle_map: ObstacleMap, time: float) -> None:
-        """What is believed of the obstacles at team ``time`` (s); ten times a second, once there are any."""
+        """Tracked obstacles at team ``time`` (s); ten times a second, once there are any."""
         if time < self._next_obstacles - _GRID_TOLERANCE:
             return
         self._next_obstacles = (math.floor(time / OBSTACLE_INTERVAL + _GRID_TOLERANCE) + 1) * OBSTACLE_INTERVAL
@@ -106,8 +107,9 @@ class FlightRecorder:
             )  # fmt: skip
 
     def alarm(self, alarm: Alarm) -> None:
-        """Something was noticed."""
-        self._alarms.write([round(alarm.time, 6), alarm.source, alarm.what, alarm.detail])
+        """A new alarm."""
+        code = alarm.code
+        self._alarms.write([round(alarm.time, 6), alarm.source, code.code, code.severity.name.lower(), alarm.text])
 
     def _write_reference(self, flight: Flight, time: float) -> None:
         if flight.ended:
@@ -117,7 +119,7 @@ class FlightRecorder:
         last = math.floor(time / REFERENCE_INTERVAL + _GRID_TOLERANCE)
         times = np.arange(self._next_row, last + 1, dtype=np.float64) * REFERENCE_INTERVAL
         if len(times):
-            position, velocity = flight.asked(times)
+            position, velocity = flight.reference(times)
             for row in zip(times, position, velocity, strict=True):
                 self._reference.write([round(row[0], 6), *row[1], *row[2]])
             self._next_row = last + 1

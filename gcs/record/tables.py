@@ -44,9 +44,9 @@ OBSTACLE_ESTIMATE_COLUMNS = (
 # What each vehicle flew from when on, as it stood on board, and whether against the ground's intention.
 MODE_COLUMNS = ("time_s", "vehicle", "mode", "armed", "failsafe")
 
-# What the ground noticed, of whom.
+# Alarms of the ground.
 ALARMS = "alarms.csv"
-ALARM_COLUMNS = ("time_s", "source", "alarm", "detail")
+ALARM_COLUMNS = ("time_s", "source", "code", "severity", "text")
 
 Cell = float | int | bool | str
 

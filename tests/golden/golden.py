@@ -32,6 +32,8 @@ import pymavlink.dialects.v20.common as mavlink  # noqa: E402
 from flight_in_process import Rehearsal  # noqa: E402
 from threadpoolctl import threadpool_limits  # noqa: E402
 
+from gcs.flight.failsafe import Failsafe  # noqa: E402
+
 CHECKSUMS = HERE / "checksums.json"
 MISSIONS = HERE / "missions"
 FILES = ("truth.csv", "reference.csv", "estimate.csv", "plan.csv", "telemetry.tlog")
@@ -54,7 +56,7 @@ class Golden:
 def interrupt_at_8_seconds(flight: Rehearsal) -> None:
     """Break the flight off as Ctrl-C does."""
     if flight.now >= 8.0:
-        flight.station.break_off(flight.now, "interrupted", interrupted=True)
+        flight.station.raise_failsafe(flight.now, Failsafe.INTERRUPTED, "interrupted")
 
 
 def fault(kind: str, keys: str) -> str:

@@ -15,7 +15,7 @@ from gcs.campaign.courses.generator import HELD_TO, RandomCourse
 from gcs.campaign.courses.schedule import Schedule, arrival
 from gcs.campaign.process_pool import Ended, fly_process
 from gcs.errors import GcsError
-from gcs.flight.spool import SPOOL_UP
+from gcs.flight.settings import DEFAULTS
 from gcs.mission.model import Limits
 from gcs.mission.read import read_mission
 from gcs.record.run_data import read_run
@@ -91,7 +91,7 @@ def evaluate(plan: FlightPlan, ended: Ended) -> Result:
     nominal = arrival(schedule.times, schedule.positions, schedule.goal, AT_GOAL)
     nominal = schedule.landing if nominal is None else nominal
     # By the clock that starts when the rotors do, as the summary's.
-    spent = SPOOL_UP - schedule.start
+    spent = DEFAULTS.takeoff_landing.spool_up_time - schedule.start
     arrived, goal_error = _arrival(plan.run_dir, schedule) if summary else (None, None)
     angles = [angle for angle in summary.get("payload_tilt_max_deg", {}).values() if angle is not None]
     tilt = max(angles, default=None)

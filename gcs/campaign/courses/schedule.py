@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from gcs.flight.mission_trajectory import Course
-from gcs.flight.spool import SPOOL_UP
+from gcs.flight.mission_trajectory import MissionTrajectory
+from gcs.flight.settings import DEFAULTS
 from gcs.mission.model import RESTING_ALTITUDE, Mission
 from idc_controller.parameters import SystemParameters
 
@@ -28,8 +28,9 @@ LONGEST = 3600.0
 def course_start(parameters: SystemParameters) -> float:
     """Time of the obstacles' clock at which the course begins (s)."""
     own_weight = parameters.m * parameters.g / parameters.hover_thrust
-    release = SPOOL_UP * float(own_weight.min()) + LAG
-    return SPOOL_UP - release
+    spool_up = DEFAULTS.takeoff_landing.spool_up_time
+    release = spool_up * float(own_weight.min()) + LAG
+    return spool_up - release
 
 
 class Schedule:
@@ -38,7 +39,7 @@ class Schedule:
     def __init__(self, mission: Mission) -> None:
         """Raises :class:`ValueError` for a mission that lasts longer than an hour."""
         pad = np.array([PAD_OFFSET, -PAD_OFFSET, -RESTING_ALTITUDE])
-        self._course = Course(mission, pad, 0.0)
+        self._course = MissionTrajectory(mission, pad, 0.0)
         self.start = course_start(mission.system.parameters())
         """When the climb begins."""
         count = 4096

@@ -54,7 +54,7 @@ def detection(run_dir: Path, count: int) -> Detection:
         return Detection(None, "", None)
     first, begin = first_start(run_dir), first_start(run_dir, count) if count else None
     false = sum(first is None or time < first for time in times)
-    told = ((t, f"{alarms['alarm'][i]}, {alarms['source'][i]}") for i, t in enumerate(times))
+    told = ((t, f"{alarms['code'][i]}, {alarms['source'][i]}") for i, t in enumerate(times))
     found = min(
         (each for each in told if begin is not None and each[0] >= begin), default=None, key=lambda each: each[0]
     )

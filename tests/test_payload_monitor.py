@@ -7,7 +7,7 @@ import pytest
 from flight_in_process import MISSIONS
 
 from gcs.config import read_system
-from gcs.flight.payload_monitor import PayloadWatch
+from gcs.flight.payload_monitor import PayloadMonitor
 from idc_controller.trajectory.trajectory import RestTrajectory
 
 PARAMETERS = read_system(MISSIONS / "system.toml").parameters()
@@ -16,12 +16,12 @@ HALF = float(PARAMETERS.payload_size[2]) / 2.0
 
 def touched(heights, velocities, below):
     """After how many control steps it is noticed; the reference is ``below`` (m) the ground. None: not at all."""
-    watch = PayloadWatch(PARAMETERS)
+    monitor = PayloadMonitor(PARAMETERS)
     descent = RestTrajectory(np.array([0.0, 0.0, -HALF + below]), 0.0)
     for k, (height, velocity) in enumerate(zip(heights, velocities, strict=True)):
         x = np.zeros(56)
         x[2], x[5] = -HALF - height, velocity
-        if watch.has_touched(0.0, descent, SimpleNamespace(x=x)):
+        if monitor.has_touched_down(0.0, descent, SimpleNamespace(x=x)):
             return k + 1
     return None
 

@@ -1,0 +1,99 @@
+"""Sequences of commands to all vehicles: arm, disarm, land autonomously."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import pymavlink.dialects.v20.ardupilotmega as mavlink
+
+from gcs.flight.settings import DEFAULTS, FlightSettings
+from gcs.flight.team import Team
+from gcs.mavlink import px4
+
+
+class CommandSequence(Protocol):
+    """A sequence that is stepped until it is done or has failed."""
+
+    done: bool
+    problem: str
+    """Why it has failed; empty: it has not."""
+
+    def step(self, time: float, now: float) -> None:
+        """Go on at team ``time`` (s), ``now`` on the ground's clock."""
+        ...
+
+
+class Arming:
+    """OFFBOARD, then arm. Set-points are to be sent meanwhile, or vehicles refuse OFFBOARD."""
+
+    def __init__(self, team: Team, time: float, settings: FlightSettings = DEFAULTS) -> None:
+        self._team, self._since, self._settings = team, time, settings
+        self._command: int | None = None
+        self.done, self.problem = False, ""
+
+    def step(self, time: float, now: float) -> None:
+        """See :class:`CommandSequence`."""
+        team, elapsed = self._team, time - self._since
+        timeout = self._settings.failsafe.arm_timeout
+        if team.refusal is not None or elapsed > timeout:
+            self.problem = team.refusal or f"not every vehicle is armed after {timeout:g} s"
+        elif self._command is None:
+            if elapsed > self._settings.takeoff_landing.offboard_delay:
+                self._command = _set_mode(team, px4.MainMode.OFFBOARD)
+        elif team.answered and self._command == mavlink.MAV_CMD_DO_SET_MODE:
+            self._command = _arm(team, True)
+        elif team.answered and team.armed:
+            self.done = True
+
+
+class Disarming:
+    """Rotors off, by force where a vehicle refuses: payload and vehicles are on the ground whatever it estimates."""
+
+    def __init__(self, team: Team, time: float, settings: FlightSettings = DEFAULTS) -> None:
+        self._team, self._since, self._timeout = team, time, settings.failsafe.disarm_timeout
+        self._forced = False
+        self.done, self.problem = False, ""
+        _arm(team, False)
+
+    def step(self, time: float, now: float) -> None:
+        """See :class:`CommandSequence`."""
+        team = self._team
+        if team.answered and team.disarmed:
+            self.done = True
+        elif team.refusal is not None and not self._forced:
+            self._forced = True
+            _arm(team, False, px4.FORCE_ARM_DISARM)
+        elif team.refusal is not None or time - self._since > self._timeout:
+            self.problem = team.refusal or f"not every vehicle is disarmed after {self._timeout:g} s"
+
+
+class AutonomousLanding:
+    """Hold at the end of the stop plan, then descend when a vehicle does that receives nothing."""
+
+    def __init__(self, team: Team, time: float, settings: FlightSettings = DEFAULTS) -> None:
+        self._team, self._since, self._settings = team, time, settings.failsafe
+        self.descent_pending = True
+        """Whether the descent is still to be commanded."""
+        self.done, self.problem = False, ""
+        _set_mode(team, px4.MainMode.AUTO, px4.AutoMode.LOITER)
+
+    def step(self, time: float, now: float) -> None:
+        """See :class:`CommandSequence`."""
+        s, elapsed = self._settings, time - self._since
+        if self.descent_pending and elapsed >= self._team.land_delay:
+            self.descent_pending = False
+            _set_mode(self._team, px4.MainMode.AUTO, px4.AutoMode.LAND)
+        if self._team.reachable_are_disarmed(now, s.telemetry_timeout):
+            self.done = True
+        elif elapsed > s.landing_timeout:
+            self.problem = f"not every vehicle has landed after {s.landing_timeout:g} s"
+
+
+def _set_mode(team: Team, *mode: float) -> int:
+    team.command_all(mavlink.MAV_CMD_DO_SET_MODE, mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, *mode)
+    return mavlink.MAV_CMD_DO_SET_MODE
+
+
+def _arm(team: Team, arm: bool, *parameters: float) -> int:
+    team.command_all(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, float(arm), *parameters)
+    return mavlink.MAV_CMD_COMPONENT_ARM_DISARM

@@ -1,0 +1,90 @@
+"""Control step: estimate, decision, set-points, and the stop plan that goes out with them."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from idc_controller.control.controller import Decision, IntegratedDecisionController
+from idc_controller.estimation.estimate import Estimate
+from idc_controller.estimation.estimator import Estimator
+from idc_controller.trajectory.stop_plan import Braking, StopPlan, stop_plan
+from idc_controller.trajectory.trajectory import Trajectory
+
+Array = NDArray[np.float64]
+
+STOP_PLANS = 100
+"""Control steps whose stop plans are kept; more than a vehicle flies without set-points."""
+STAMP_TOLERANCE = 0.01  # s
+
+
+@dataclass(frozen=True, eq=False)
+class Setpoints:
+    """Set-points of all vehicles: unit thrust directions (N, 3), NED, and thrusts (N,) (N)."""
+
+    directions: Array
+    thrusts: Array
+
+    @classmethod
+    def idle(cls, number_of_uavs: int) -> Setpoints:
+        """Return upright rotors without thrust."""
+        return cls(np.tile([0.0, 0.0, -1.0], (number_of_uavs, 1)), np.zeros(number_of_uavs))
+
+
+@dataclass(frozen=True, eq=False)
+class StepRecord:
+    """One control step, for the records; compute times in s."""
+
+    estimate: Estimate
+    decision: Decision
+    estimator_time: float
+    controller_time: float
+
+
+class ControlLoop:
+    """Estimator, controller and stop plan. Times are the team's (s)."""
+
+    def __init__(
+        self,
+        estimator: Estimator,
+        controller: IntegratedDecisionController,
+        stopwatch: Callable[[], float],
+        brake: Callable[[float, Array], Braking] = lambda time, state: Braking(),
+    ) -> None:
+        """``brake``: the stop of a vehicle without set-points, see :mod:`idc_controller.trajectory.stop_plan`."""
+        self.estimator, self.controller = estimator, controller
+        self._stopwatch, self._brake = stopwatch, brake
+        self._stop_plans: deque[StopPlan] = deque(maxlen=STOP_PLANS)
+        self.stop_plan: StopPlan | None = None
+        """How all vehicles stop when set-points are lost; it goes out with the set-points."""
+        self._estimator_time = 0.0
+
+    def estimate(self, effective: float, trajectory: Trajectory) -> Estimate:
+        """Return the estimate at ``effective`` (s), about ``trajectory``."""
+        begin = self._stopwatch()
+        estimate = self.estimator.estimate(effective, self.controller.reference(trajectory))
+        self._estimator_time = self._stopwatch() - begin
+        return estimate
+
+    def decide(self, estimate: Estimate, trajectory: Trajectory, *, on_ground: bool, learn_load: bool) -> StepRecord:
+        """Return the decision on an ``estimate`` of this step."""
+        begin = self._stopwatch()
+        decision = self.controller.decide(estimate, trajectory, standing=on_ground, learn_load=learn_load)
+        return StepRecord(estimate, decision, self._estimator_time, self._stopwatch() - begin)
+
+    def send(self, record: StepRecord, effective: float, leaves: Array) -> None:
+        """Take over the set-points of a step in the air, which leave at ``leaves`` (N,) and act at ``effective``."""
+        self.estimator.add_setpoint(effective, record.decision.u, leaves)
+        self.stop_plan = stop_plan(
+            self.controller.parameters, record.decision.flat, effective, record.estimate.x, self._brake
+        )
+        self._stop_plans.append(self.stop_plan)
+
+    def choose_stop_plan(self, sent_until: float) -> None:
+        """Take the last stop plan that a vehicle has received which was sent everything until ``sent_until`` (s)."""
+        received = [plan for plan in self._stop_plans if plan.start <= sent_until + STAMP_TOLERANCE]
+        self.stop_plan = received[-1] if received else self.stop_plan

@@ -1,0 +1,64 @@
+"""Tables of failsafes and alarms for ``docs/failsafes.md``: ``python -m gcs.flight.listing > docs/failsafes.md``."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+
+from gcs.flight.detectors import MonitorAlarm
+from gcs.flight.failsafe import Failsafe
+from gcs.flight.settings import DEFAULTS, FlightSettings
+
+_REACTIONS = {
+    "REFUSE": "the flight does not begin, nothing is armed",
+    "DISARM": "rotors off, on the ground",
+    "BRAKE_AND_LAND": "come to rest along the path that is followed, then land there under the ground's control",
+    "AUTONOMOUS_LANDING": "all vehicles follow the same stop plan, hold, and descend on board",
+    "END_CONTROL": "the ground stops sending; each vehicle is left to its own failsafes",
+}
+
+
+def listing(settings: FlightSettings = DEFAULTS) -> str:
+    """Return the whole page, with the thresholds of ``settings``."""
+    reactions = "\n".join(f"| `{name}` | {text} |" for name, text in _REACTIONS.items())
+    failsafes = "\n".join(
+        f"| `{row.code}` | {row.meaning.format(**asdict(settings.failsafe))} | {row.check.value} "
+        f"| `{row.reaction.name}` | {row.severity.name.lower()} | {row.action} |"
+        for row in Failsafe
+    )
+    alarms = "\n".join(
+        f"| `{row.code}` | {row.meaning.format(**asdict(settings.monitor))} | {row.scope.value} "
+        f"| {row.severity.name.lower()} | {row.action} |"
+        for row in MonitorAlarm
+    )
+    return f"""# Failsafes and alarms
+
+This page is made from the code: `python -m gcs.flight.listing > docs/failsafes.md`. Thresholds are those of the default
+settings (`gcs/flight/settings.py`).
+
+## Failsafes
+
+Every condition that ends or changes a flight is a member of `Failsafe` in `gcs/flight/failsafe.py`. Of several
+conditions the one with the most severe reaction counts; a reaction that is under way gives way only to a more severe
+one. Before arming every reaction but `END_CONTROL` is `REFUSE`, and until the climb it is `DISARM`.
+
+| reaction, in ascending severity | what is done |
+|---|---|
+{reactions}
+
+| code | condition | evaluated | reaction | severity | what to do |
+|---|---|---|---|---|---|
+{failsafes}
+
+## Alarms
+
+What the detectors in `gcs/flight/detectors.py` find changes nothing by itself. With the failsafes they are the codes of
+`alarms.csv` in the run folder; severities are those of MAV_SEVERITY. "Clear of the ground" is 0.3 m above it.
+
+| code | meaning | looked for | severity | what to do |
+|---|---|---|---|---|
+{alarms}
+"""
+
+
+if __name__ == "__main__":
+    print(listing(), end="")

@@ -1,0 +1,93 @@
+"""Before take-off: all data that a flight needs, and where payload and vehicles are on the ground."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcs.flight.settings import DEFAULTS, FlightSettings
+from gcs.flight.team import Team
+from gcs.mavlink import px4
+from gcs.mavlink.vehicle_link import VehicleLink
+from idc_controller.estimation.measurements import PAYLOAD, Measurement, Position
+
+Array = NDArray[np.float64]
+
+NEEDED_PARAMETERS = (
+    px4.PARAM_THRUST_MAX,
+    px4.PARAM_ATTITUDE_KP,
+    px4.PARAM_ATTITUDE_KD,
+    px4.PARAM_MOTOR_LAG,
+    px4.PARAM_ONBOARD_RATE,
+    px4.PARAM_SETPOINT_LOSS,
+    px4.PARAM_LAND_DELAY,
+)
+
+
+class Preflight:
+    """Connection to all vehicles, then the mean of their positions on the pad (NED, m)."""
+
+    def __init__(self, team: Team, settings: FlightSettings = DEFAULTS) -> None:
+        self._team, self._settings = team, settings
+        self.connect_start = math.nan
+        """When the first attempt to connect was made (s, ground)."""
+        self.check_start = math.nan
+        """When all had connected (s, team)."""
+        self.missing = ""
+        """What the first incomplete vehicle lacks; empty: all are complete."""
+        self._positions: dict[int, list[Array]] = {source: [] for source in (PAYLOAD, *range(len(team.links)))}
+
+    def connect(self, now: float) -> bool:
+        """Request what is missing at ``now`` (s, ground); return whether all vehicles have sent all."""
+        # Team time jumps with the first telemetry: only the ground's clock measures the timeout.
+        if math.isnan(self.connect_start):
+            self.connect_start = now
+        self.missing = ""
+        for link in self._team.links:
+            link.want_parameters(NEEDED_PARAMETERS)
+            if not self.missing and (missing := self._missing(link, now)):
+                self.missing = f"vehicle {link.system_id} {missing}"
+        return not self.missing
+
+    def add(self, measurement: Measurement) -> None:
+        """Take telemetry of a vehicle or of the payload unit on the ground."""
+        if isinstance(measurement, Position) and measurement.has_pose:
+            samples = self._positions[measurement.source]
+            samples.append(measurement.position)
+            del samples[: -self._settings.takeoff_landing.position_samples]
+
+    def is_settled(self, time: float) -> bool:
+        """Return whether telemetry has been averaged for long enough at team ``time`` (s)."""
+        return time - self.check_start >= self._settings.takeoff_landing.settle_time
+
+    @property
+    def has_positions(self) -> bool:
+        """Whether every vehicle and the payload unit have sent a position."""
+        return all(self._positions.values())
+
+    @property
+    def payload(self) -> Array:
+        """Position of the payload (3,)."""
+        return np.mean(self._positions[PAYLOAD], axis=0)
+
+    @property
+    def vehicles(self) -> Array:
+        """Positions of the vehicles (N, 3)."""
+        return np.array([np.mean(samples, axis=0) for source, samples in self._positions.items() if source != PAYLOAD])
+
+    def _missing(self, link: VehicleLink, now: float) -> str:
+        timeout = self._settings.failsafe.telemetry_timeout
+        if now - link.heard > timeout:
+            if link.address is None:
+                return "has not called in"
+            other = "" if link.found_instead is None else f": vehicle {link.found_instead} does"
+            return f"does not answer at {link.address[0]}:{link.address[1]}{other}"
+        if now - link.whole_telemetry_heard > timeout:
+            return "sends no attitude and position"
+        if now - link.payload_heard > timeout:
+            return "relays no payload navigation data"
+        if absent := [name for name in NEEDED_PARAMETERS if name not in link.parameters]:
+            return "does not send " + ", ".join(absent)
+        return "has not reported whether it is ready" if link.prearm_ok is None else ""

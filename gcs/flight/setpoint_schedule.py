@@ -1,0 +1,58 @@
+"""Delayed set-points: those to vehicles with short links wait, so that all vehicles act simultaneously."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from statistics import median
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcs.flight.settings import DEFAULTS, TimingSettings
+from gcs.flight.team_clock import TOLERANCE
+from gcs.mavlink.messages import Message
+
+Array = NDArray[np.float64]
+
+
+class SetpointSchedule:
+    """When set-points leave and act; times are the ground's (s)."""
+
+    def __init__(self, settings: TimingSettings = DEFAULTS.timing) -> None:
+        self._simultaneous = settings.simultaneous
+        self._latencies: deque[float] = deque(maxlen=settings.latency_steps)
+        self.latency = 0.0
+        """Compute latency: from the beginning of a control step until its set-points are sent."""
+        self._waiting: list[tuple[float, int, list[Message]]] = []
+        """When they are due, the vehicle's index, the messages."""
+
+    def add_latency(self, duration: float) -> None:
+        """Take the compute latency of one control step."""
+        self._latencies.append(duration)
+        self.latency = median(self._latencies)
+
+    def waits(self, delays: Array) -> Array:
+        """Return how long the set-points of each vehicle wait, for the ``delays`` (N,) of the links."""
+        waits = delays.max() - delays
+        waits[waits < self._simultaneous] = 0.0
+        return waits
+
+    def add(self, due: float, vehicle: int, messages: list[Message]) -> None:
+        """Let ``messages`` to a vehicle (0 .. N-1) wait until ``due``."""
+        self._waiting.append((due, vehicle, messages))
+
+    def take(self, now: float) -> list[tuple[int, list[Message]]]:
+        """Return what is due at ``now``, with the vehicle's index."""
+        due = [(i, messages) for time, i, messages in self._waiting if time <= now + TOLERANCE]
+        self._waiting = [entry for entry in self._waiting if entry[0] > now + TOLERANCE]
+        return due
+
+    def clear(self) -> None:
+        """Discard what waits."""
+        self._waiting.clear()
+
+    @property
+    def next_due(self) -> float:
+        """When something is due next; inf: nothing waits."""
+        return min((due for due, _, _ in self._waiting), default=math.inf)

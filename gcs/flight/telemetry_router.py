@@ -1,0 +1,145 @@
+"""Telemetry routing: datagram -> codec -> vehicle link -> system-id check -> estimator and obstacle map."""
+
+from __future__ import annotations
+
+import math
+
+import pymavlink.dialects.v20.ardupilotmega as mavlink
+
+from gcs.flight.flight import Flight
+from gcs.flight.phase import Phase
+from gcs.flight.settings import DEFAULTS, TimingSettings
+from gcs.flight.team_clock import TeamClock
+from gcs.mavlink import px4
+from gcs.mavlink.address import Address
+from gcs.mavlink.codec import Codec
+from gcs.mavlink.id_check import Identities
+from gcs.mavlink.messages import Received
+from gcs.mavlink.telemetry import detection, measurement, setpoint_flown
+from gcs.mavlink.vehicle_link import VehicleLink
+
+_STAMPED = (
+    mavlink.MAVLink_attitude_quaternion_message,
+    mavlink.MAVLink_local_position_ned_message,
+    mavlink.MAVLink_attitude_target_message,
+    mavlink.MAVLink_obstacle_distance_3d_message,
+)
+"""Messages of one moment, which their stamp names."""
+
+
+class TelemetryRouter:
+    """Takes datagrams of all vehicles. Times are the ground's (s) unless said otherwise."""
+
+    def __init__(
+        self,
+        codec: Codec,
+        flight: Flight,
+        clock: TeamClock,
+        identities: Identities,
+        settings: TimingSettings = DEFAULTS.timing,
+    ) -> None:
+        self._codec, self._flight, self._clock, self._identities = codec, flight, clock, identities
+        self._clock_settled = settings.clock_settled
+        self._links = flight.team.links
+        self._by_address: dict[tuple[Address, int], int] = {
+            (link.address, link.system_id): i for i, link in enumerate(self._links) if link.address is not None
+        }
+        self.refused = 0
+        """Datagrams from addresses that belong to no vehicle of this flight."""
+
+    def receive(self, datagram: bytes, sender: Address, now: float) -> bool:
+        """Take a datagram; return whether it is from a vehicle of this flight."""
+        unread = self._codec.unread
+        messages = self._codec.decode(datagram)
+        if self._codec.unread > unread and (link := self._link_at(sender)) is not None:
+            link.statistics.damaged += 1
+        known = False
+        latest = -math.inf
+        for received in messages:
+            index = self._by_address.get((sender, received.system))
+            if index is None:
+                index = self._new_vehicle(received, sender)
+            if index is None:
+                continue
+            known = True
+            if not received.is_for(self._codec.system_id):
+                continue  # an answer to another system behind this address
+            link = self._links[index]
+            link.handle(received, now)
+            if link.clock.known:
+                latest = max(latest, self._route(received, index, latest, now))
+        self.refused += not known
+        return known
+
+    def _link_at(self, address: Address) -> VehicleLink | None:
+        return next((link for link in self._links if link.address == address), None)
+
+    def _new_vehicle(self, received: Received, sender: Address) -> int | None:
+        """Return the index of a vehicle that calls in for the first time with this heartbeat; None: none does."""
+        is_heartbeat = isinstance(received.message, mavlink.MAVLink_heartbeat_message)
+        if not is_heartbeat or received.component != px4.AUTOPILOT_COMPONENT:
+            return None
+        system_id = received.system
+        for i, link in enumerate(self._links):
+            if link.address is None and link.system_id == system_id:
+                link.address = sender
+                self._by_address[sender, system_id] = i
+                return i
+            if link.address == sender:
+                link.found_instead = system_id
+        return None
+
+    def _route(self, received: Received, index: int, latest: float, now: float) -> float:
+        """Route a message with a time stamp; return that (s, team), -inf: it has none.
+
+        ``latest``: the latest stamp of the messages before it in its datagram.
+        """
+        message = received.message
+        if not isinstance(message, _STAMPED):
+            return -math.inf
+        link = self._links[index]
+        if index == 0:
+            offset = link.clock.offset + link.clock.set_back
+            self._clock.follow(offset, now, connecting=self._flight.phase is Phase.CONNECT)
+        time = whole_ms(message.time_boot_ms * 1e-3 - link.clock.offset + self._clock.offset)
+        if isinstance(message, mavlink.MAVLink_attitude_target_message):
+            self._confirm_setpoint(message, index, time, latest, now)
+        elif isinstance(message, mavlink.MAVLink_obstacle_distance_3d_message):
+            obstacle_map = self._flight.system.obstacle_map
+            # Detections from before a clock jump have the stamp of another pose.
+            if obstacle_map is not None and now - link.clock.jumped > self._clock_settled:
+                obstacle_map.detected(detection(message), index, time)
+        else:
+            self._add_measurement(received, index, time)
+        return time
+
+    def _confirm_setpoint(
+        self, message: mavlink.MAVLink_attitude_target_message, index: int, time: float, latest: float, now: float
+    ) -> None:
+        link = self._links[index]
+        setpoint = setpoint_flown(message, link.parameters.get(px4.PARAM_THRUST_MAX, math.nan))
+        if setpoint is None:
+            return
+        # Its stamp is that of the moment at which it began to act.
+        until = min(max(time, latest), self._clock.time(now))
+        flight = self._flight
+        confirmation = flight.confirm_setpoint(index, time, until, setpoint, link.clock.spread, link.longest_way)
+        if confirmation is not None:
+            link.confirmed(confirmation)
+
+    def _add_measurement(self, received: Received, index: int, time: float) -> None:
+        obstacle_map = self._flight.system.obstacle_map
+        sample = measurement(received, self._identities.whose(index), time)
+        if sample is None or not (sample.has_pose and sample.has_motion):
+            self._links[index].statistics.unusable(received.component)
+        if sample is None:
+            return
+        self._identities.told(sample)
+        used = self._flight.add_measurement(sample)
+        if obstacle_map is not None and used is not None:
+            obstacle_map.measured(used)
+
+
+def whole_ms(time: float) -> float:
+    """Return ``time`` (s) in whole milliseconds, as stamps are: what is estimated for one of them serves them all."""
+    return round(time, 3)

@@ -1,0 +1,134 @@
+"""The failsafe table: complete, documented, and the more severe reaction wins."""
+
+import math
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from gcs.flight.alarms import AlarmLog
+from gcs.flight.detectors import MonitorAlarm
+from gcs.flight.failsafe import Check, Failsafe, FailsafeState, Moment, Reaction, System, Trigger
+from gcs.flight.listing import listing
+from gcs.flight.phase import Phase
+from gcs.flight.settings import DEFAULTS
+
+PAGE = Path(__file__).parents[1] / "docs" / "failsafes.md"
+
+
+def link(number, *, age=0.0, attitude_age=0.0, latency=0.0, armed=True, offboard=True):
+    """Link of a vehicle at ground time 100 s."""
+    clock = SimpleNamespace(delay=latency, least_delay=lambda window, now: 0.0)
+    return SimpleNamespace(
+        system_id=number, telemetry_heard=100.0 - age, whole_telemetry_heard=100.0 - max(age, attitude_age),
+        heard=100.0 - age, clock=clock, armed=armed, offboard=offboard, custom_mode=0, texts=[],
+        parameters={"COM_OF_LOSS_T": 0.46},
+    )  # fmt: skip
+
+
+def state(*links, lost=()):
+    estimator = SimpleNamespace(health=SimpleNamespace(isolation=SimpleNamespace(uavs_without_position=lost)))
+    system = System(SimpleNamespace(links=links), estimator, SimpleNamespace(blocked=lambda time: ""), None, None)
+    return FailsafeState(system, AlarmLog())
+
+
+def evaluated(flight, check=Check.LINK, phase=Phase.FLY):
+    return flight.evaluate(check, Moment(phase, 50.0, 100.0))
+
+
+def test_page_is_made_from_the_tables():
+    assert PAGE.read_text(encoding="utf-8") == listing(), "run python -m gcs.flight.listing > docs/failsafes.md"
+
+
+def test_codes_are_unique():
+    codes = [row.code for row in (*Failsafe, *MonitorAlarm)]
+    assert len(codes) == len(set(codes))
+    assert all(row.condition is not None for row in Failsafe if row.check is not Check.EVENT)
+
+
+def test_no_failsafe_is_raised_by_healthy_links():
+    assert evaluated(state(*(link(i) for i in range(1, 5)))) is None
+
+
+@pytest.mark.parametrize(
+    ("links", "failsafe", "reason", "cut_off"),
+    [
+        ([link(1), link(2, age=0.5)], Failsafe.TELEMETRY_LOST, "vehicle 2 sends no telemetry for 0.46 s", 0.5),
+        ([link(1, age=0.5), link(2, age=0.6)], Failsafe.ALL_TELEMETRY_LOST, "no vehicle sends telemetry", 0.46),
+        (
+            [link(1), link(2, latency=0.13)],
+            Failsafe.LINK_LATENCY_EXCEEDED, "link latency to vehicle 2 is 130 ms (limit 110 ms)", 0.13,
+        ),
+        ([link(1), link(2, armed=False)], Failsafe.DISARMED_IN_FLIGHT, "vehicle 2 has disarmed itself", 0.0),
+        ([link(1, offboard=False), link(2)], Failsafe.OFFBOARD_LEFT, "vehicle 1 has left OFFBOARD", 0.46),
+        (
+            [link(1, attitude_age=0.5), link(2), link(3, attitude_age=0.5)],
+            Failsafe.TELEMETRY_INCOMPLETE, "vehicles 1 and 3 do not send all telemetry", 0.0,
+        ),
+    ],
+)  # fmt: skip
+def test_link_failsafe_names_vehicle_value_and_limit(links, failsafe, reason, cut_off):
+    found, trigger = evaluated(state(*links))
+    assert found is failsafe
+    assert trigger.reason.startswith(reason)
+    assert trigger.cut_off == pytest.approx(cut_off)
+
+
+@pytest.mark.parametrize(("lost", "failsafe"), [((1,), None), ((0, 1), Failsafe.STATES_UNKNOWN)])
+def test_states_of_two_vehicles_unknown_is_a_failsafe(lost, failsafe):
+    found = evaluated(state(link(1), link(2), lost=lost))
+    assert (found and found[0]) is failsafe
+
+
+def test_one_vehicle_without_attitude_is_no_failsafe():
+    assert evaluated(state(link(1, attitude_age=0.5), link(2))) is None
+
+
+def test_first_vehicle_counts_where_reactions_are_equal():
+    found, trigger = evaluated(state(link(1, offboard=False), link(2, age=0.5), link(3)))
+    assert (found, trigger.vehicle) == (Failsafe.OFFBOARD_LEFT, 0)
+
+
+def test_more_severe_reaction_wins_and_a_milder_one_is_only_recorded():
+    flight = state(link(1))
+    raised = [
+        flight.raise_failsafe(time, Phase.FLY, failsafe, Trigger(failsafe.code))
+        for time, failsafe in ((1.0, Failsafe.NO_PATH), (2.0, Failsafe.TELEMETRY_LOST), (3.0, Failsafe.INTERRUPTED))
+    ]
+    assert raised == [Reaction.BRAKE_AND_LAND, Reaction.AUTONOMOUS_LANDING, Reaction.NONE]
+    assert (flight.reason, flight.time, flight.interrupted) == ("no_path", 1.0, True)
+    assert [alarm.code for alarm in flight.alarms.alarms] == [
+        Failsafe.NO_PATH, Failsafe.TELEMETRY_LOST, Failsafe.INTERRUPTED
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("phase", "reaction"),
+    [
+        (Phase.CHECK, Reaction.REFUSE),
+        (Phase.SPOOL_UP, Reaction.DISARM),
+        (Phase.LAND, Reaction.AUTONOMOUS_LANDING),
+    ],
+)
+def test_reaction_on_the_ground_is_to_stay_there(phase, reaction):
+    assert Failsafe.TELEMETRY_LOST.reaction.in_phase(phase) is reaction
+    assert Failsafe.DATA_LINK_LOST.reaction.in_phase(phase) is Reaction.END_CONTROL
+
+
+def test_threshold_follows_its_setting():
+    assert "for 0.46 s" in listing()
+    late = state(link(1), link(2, age=DEFAULTS.failsafe.telemetry_timeout - 0.01))
+    assert evaluated(late) is None
+
+
+def test_data_link_loss_waits_for_a_pending_descent():
+    flight = state(link(1, age=4.0))
+    pending = SimpleNamespace(descent_pending=True, problem="")
+    moment = Moment(Phase.AUTONOMOUS_LANDING, 50.0, 100.0, pending)
+    assert flight.evaluate(Check.STEP, moment) is None
+    found, _ = evaluated(flight, Check.STEP, Phase.AUTONOMOUS_LANDING)
+    assert found is Failsafe.DATA_LINK_LOST
+
+
+def test_data_link_of_vehicles_that_never_answered_is_not_lost():
+    assert evaluated(state(link(1, age=math.inf)), Check.STEP, Phase.CONNECT) is None
