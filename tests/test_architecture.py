@@ -75,7 +75,9 @@ ALLOWED = {
     ),
     "vehicle_sim.world": "gcs.mission gcs.record idc_controller.geometry idc_controller.model",
 }
-COMMON = {f"idc_controller.{name}" for name in ("errors", "parameters", "rotations", "settings")} | {"gcs.errors"}
+COMMON = {f"idc_controller.{name}" for name in ("errors", "parameters", "rotations", "rotations_float", "settings")} | {
+    "gcs.errors"
+}
 """Modules beside the sub-packages that everything above them may import."""
 
 

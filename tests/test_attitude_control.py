@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from idc_controller.rotations import quaternion_from_euler
+from idc_controller.rotations_float import attitude_of_force
 from vehicle_sim.autopilot.attitude_control import AttitudeController
-from vehicle_sim.autopilot.hold_control import HoldPlan, attitude_of_force
+from vehicle_sim.autopilot.hold_control import HoldPlan
 from vehicle_sim.world.sensors import Measurement, NavigationSensor, SensorNoise
 
 LEVEL = (1.0, 0.0, 0.0, 0.0)

@@ -10,7 +10,7 @@ from scipy.linalg import expm
 
 from gcs.mavlink import px4
 from idc_controller.rotations import euler_from_quaternion, quaternion_from_euler
-from vehicle_sim.autopilot.attitude_control import Quaternion
+from idc_controller.rotations_float import Quaternion
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.parameter_table import vehicle_parameters
 from vehicle_sim.autopilot.setpoints import AttitudeSetpoint

@@ -7,12 +7,12 @@ import pytest
 from flight_in_process import MISSIONS
 
 from gcs.config import read_system
-from gcs.mavlink.setpoints import attitude_of
 from idc_controller.estimation.estimator import Estimator
 from idc_controller.estimation.health.channel import SensorGroup
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
 from idc_controller.model.linear import LinearModel
 from idc_controller.rotations import quaternion_product
+from idc_controller.rotations_float import attitude_of_direction
 from idc_controller.trajectory.flatness import Load
 from idc_controller.trajectory.reference import Reference
 from idc_controller.trajectory.trajectory import RestTrajectory
@@ -278,7 +278,8 @@ def test_estimated_vehicles_head_north_at_any_tilt(tilt):
         x[LAYOUT.n] = n + time * n_dot
         attitudes.append(next(t for t in model.vehicles(time, x) if isinstance(t, Attitude)))
     now, then = attitudes
-    assert now.quaternion == pytest.approx(attitude_of([*tilt, -np.sqrt(1.0 - np.square(tilt).sum())]), abs=1e-12)
+    direction = [*tilt, -np.sqrt(1.0 - np.square(tilt).sum())]
+    assert now.quaternion == pytest.approx(attitude_of_direction(direction), abs=1e-12)
     turned = quaternion_product(now.quaternion * [1.0, -1.0, -1.0, -1.0], then.quaternion)
     assert 2.0 * turned[1:] / step == pytest.approx(now.rates, abs=1e-4)
 

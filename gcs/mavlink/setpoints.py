@@ -2,31 +2,18 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink import px4
+from idc_controller.rotations_float import attitude_of_direction
 
 IGNORE_RATES = (
     mavlink.ATTITUDE_TARGET_TYPEMASK_BODY_ROLL_RATE_IGNORE
     | mavlink.ATTITUDE_TARGET_TYPEMASK_BODY_PITCH_RATE_IGNORE
     | mavlink.ATTITUDE_TARGET_TYPEMASK_BODY_YAW_RATE_IGNORE
 )
-
-
-def attitude_of(direction: Sequence[float]) -> tuple[float, float, float, float]:
-    """w-first quaternion with heading north whose thrust points along the unit vector ``direction`` (NED).
-
-    The body z axis is -direction; roll about the body x axis follows pitch about y (ZYX with yaw 0).
-    """
-    z_x, z_y, z_z = -direction[0], -direction[1], -direction[2]
-    roll = -math.asin(max(-1.0, min(1.0, z_y)))
-    pitch = math.atan2(z_x, z_z)
-    cos_roll, sin_roll = math.cos(roll / 2), math.sin(roll / 2)
-    cos_pitch, sin_pitch = math.cos(pitch / 2), math.sin(pitch / 2)
-    return (cos_roll * cos_pitch, sin_roll * cos_pitch, cos_roll * sin_pitch, -sin_roll * sin_pitch)
 
 
 def attitude_target(
@@ -38,7 +25,7 @@ def attitude_target(
         target_system=system_id,
         target_component=px4.AUTOPILOT_COMPONENT,
         type_mask=IGNORE_RATES,
-        q=attitude_of(direction),
+        q=attitude_of_direction(direction),
         body_roll_rate=0.0,
         body_pitch_rate=0.0,
         body_yaw_rate=0.0,

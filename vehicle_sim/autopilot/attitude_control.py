@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from idc_controller.rotations_float import IDENTITY, Quaternion, Vector, half_rotation
 from vehicle_sim.world.errors import SimulationError
 
-Three = tuple[float, float, float]
-Quaternion = tuple[float, float, float, float]
-
-LEVEL: Quaternion = (1.0, 0.0, 0.0, 0.0)
-NO_RATES: Three = (0.0, 0.0, 0.0)
+LEVEL = IDENTITY
+NO_RATES: Vector = (0.0, 0.0, 0.0)
 
 
 class AttitudeController:
@@ -30,9 +28,11 @@ class AttitudeController:
         )  # fmt: skip
         self._two_kp = 2.0 * kp
         self._kd = kd
-        self.asked: Three = NO_RATES
+        self.asked: Vector = NO_RATES
 
-    def torque(self, attitude: Quaternion, rates: Three, setpoint: Quaternion | None, setpoint_rates: Three) -> Three:
+    def torque(
+        self, attitude: Quaternion, rates: Vector, setpoint: Quaternion | None, setpoint_rates: Vector
+    ) -> Vector:
         """Body torques (N m). Unit quaternions body to world; rates in the body frame (rad/s).
 
         Without an attitude set-point the body rates alone are controlled.
@@ -42,12 +42,10 @@ class AttitudeController:
         y = kd * (setpoint_rates[1] - rates[1])
         z = kd * (setpoint_rates[2] - rates[2])
         if setpoint is not None:
-            aw, ax, ay, az = attitude
-            bw, bx, by, bz = setpoint
-            gain = self._two_kp if aw * bw + ax * bx + ay * by + az * bz >= 0.0 else -self._two_kp
-            x += gain * (aw * bx - ax * bw - ay * bz + az * by)
-            y += gain * (aw * by + ax * bz - ay * bw - az * bx)
-            z += gain * (aw * bz - ax * by + ay * bx - az * bw)
+            e_x, e_y, e_z = half_rotation(attitude, setpoint)
+            x += self._two_kp * e_x
+            y += self._two_kp * e_y
+            z += self._two_kp * e_z
         self.asked = x, y, z
         j_xx, j_yy, j_zz, j_xy, j_xz, j_yz = self._j
         return (

@@ -12,9 +12,10 @@ from typing import NamedTuple
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink import px4
+from idc_controller.rotations_float import Quaternion, Vector, attitude_of_force, euler_of
 from vehicle_sim.autopilot.airframe import Airframe
-from vehicle_sim.autopilot.attitude_control import LEVEL, NO_RATES, AttitudeController, Quaternion, Three
-from vehicle_sim.autopilot.hold_control import DESCENT_RAMP, HoldController, HoldPlan, attitude_of_force, yaw_of
+from vehicle_sim.autopilot.attitude_control import LEVEL, NO_RATES, AttitudeController
+from vehicle_sim.autopilot.hold_control import DESCENT_RAMP, HoldController, HoldPlan
 from vehicle_sim.autopilot.land_detector import LandDetector
 from vehicle_sim.autopilot.navigation import Navigation
 from vehicle_sim.autopilot.parameter_table import ParameterTable
@@ -56,7 +57,7 @@ def rejected_for_now(text: str) -> Answer:
     return Answer(mavlink.MAV_RESULT_TEMPORARILY_REJECTED, text)
 
 
-Target = tuple[Quaternion | None, Three, float]
+Target = tuple[Quaternion | None, Vector, float]
 
 
 class Autopilot:
@@ -261,7 +262,7 @@ class Autopilot:
             attitude, rates, share, _ = setpoint
             thrust = self._thrust if share is None else share * self._thrust_max
         else:  # armed, on the ground, waiting
-            attitude, thrust = attitude_of_force(0.0, 0.0, -1.0, yaw_of(measured.attitude)), 0.0
+            attitude, thrust = attitude_of_force(0.0, 0.0, -1.0, euler_of(measured.attitude)[2]), 0.0
         if thrust > self._thrust_max:
             thrust = self._thrust_max
         self._thrust = thrust
@@ -332,7 +333,7 @@ class Autopilot:
             return
         speed = self._parameters[px4.PARAM_LAND_SPEED]
         plan = self._plan_of_all(measured, now, descent_start, speed) or HoldPlan.braking(
-            now, measured.position, measured.velocity, yaw_of(measured.attitude), descent_start, speed
+            now, measured.position, measured.velocity, euler_of(measured.attitude)[2], descent_start, speed
         )
         if not self._land.in_air:
             self._land.lift(self._thrust)

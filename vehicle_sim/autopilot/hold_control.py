@@ -15,8 +15,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.interpolate import BPoly
 
+from idc_controller.rotations_float import Quaternion, Vector, attitude_of_force
 from idc_controller.trajectory.stop_plan import BRAKING_LIMIT, BRAKING_TIME
-from vehicle_sim.autopilot.attitude_control import Quaternion, Three
 from vehicle_sim.world.sensors import Measurement
 
 # Horizontal gains 1/s2, 1/s, 1/s3; vertical gains 1/s2, 1/s. There is no vertical integral: four altitudes
@@ -31,15 +31,15 @@ TILT_LIMIT = 0.35  # horizontal acceleration, in g
 VERTICAL_LIMIT = 0.35  # vertical acceleration, in g
 
 DESCENT_RAMP = 1.0  # s to reach the descent speed
-STILL: Three = (0.0, 0.0, 0.0)
+STILL: Vector = (0.0, 0.0, 0.0)
 
 
 class PlannedState(NamedTuple):
     """Where a plan wants the vehicle: m, m/s, m/s2 in the world (NED)."""
 
-    position: Three
-    velocity: Three
-    acceleration: Three
+    position: Vector
+    velocity: Vector
+    acceleration: Vector
 
 
 @dataclass(frozen=True)
@@ -52,14 +52,14 @@ class HoldPlan:
 
     start: float
     duration: float
-    control_points: tuple[Three, ...]
+    control_points: tuple[Vector, ...]
     yaw: float
     descent_start: float = math.inf
     descent_speed: float = 0.5
 
     @classmethod
     def braking(
-        cls, start: float, position: Three, velocity: Three, yaw: float,
+        cls, start: float, position: Vector, velocity: Vector, yaw: float,
         descent_start: float = math.inf, descent_speed: float = 0.5,
     ) -> HoldPlan:  # fmt: skip
         """From an own state to rest along the own horizontal velocity, as 1 - 3 s^2 + 2 s^3 of it.
@@ -118,7 +118,7 @@ class HoldController:
         self._integral_x = 0.0
         self._integral_y = 0.0
         self._last_time = plan.start
-        self._stands: Three | None = None
+        self._stands: Vector | None = None
 
     def command(self, measured: Measurement, now: float, standing: bool = False) -> tuple[Quaternion, float]:
         """Attitude set-point (unit quaternion body to world) and thrust (N).
@@ -161,23 +161,3 @@ class HoldController:
         up = g - a_z
         thrust = carried / g * math.sqrt(a_x * a_x + a_y * a_y + up * up)
         return attitude_of_force(a_x, a_y, -up, self.plan.yaw), max(thrust, self._thrust_min)
-
-
-def attitude_of_force(f_x: float, f_y: float, f_z: float, yaw: float) -> Quaternion:
-    """Attitude (unit quaternion body to world) whose thrust axis, body -z, lies along a force in the world (NED).
-
-    The shortest turn from level that tilts the axis, after a turn by ``yaw`` (rad). The force points upwards.
-    """
-    size = math.sqrt(f_x * f_x + f_y * f_y + f_z * f_z)
-    # From (0, 0, -1) to the force: w = 1 + cos, axis = (0, 0, -1) x force.
-    w, x, y = 1.0 - f_z / size, f_y / size, -f_x / size
-    scale = 1.0 / math.sqrt(w * w + x * x + y * y)
-    w, x, y = w * scale, x * scale, y * scale
-    c, s = math.cos(0.5 * yaw), math.sin(0.5 * yaw)
-    return w * c, x * c + y * s, y * c - x * s, w * s
-
-
-def yaw_of(attitude: Quaternion) -> float:
-    """Yaw (rad) of a unit quaternion body to world."""
-    w, x, y, z = attitude
-    return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))

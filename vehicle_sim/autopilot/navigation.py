@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from vehicle_sim.autopilot.attitude_control import Quaternion, Three
+from idc_controller.rotations_float import Quaternion, Vector, half_rotation, turned
 from vehicle_sim.world.sensors import Measurement
 
 FROZEN_AFTER = 3  # samples the same to the digit: no sensor's noise repeats itself
@@ -26,7 +26,7 @@ class Navigation:
         self._known: Measurement | None = None
         self._raw: Measurement | None = None
         self._repeated = {"attitude": 0, "rates": 0}
-        self._observed: tuple[Quaternion, Three, Three] | None = None  # attitude, rates, their derivative
+        self._observed: tuple[Quaternion, Vector, Vector] | None = None  # attitude, rates, their derivative
         self._has_rates = True
 
     @property
@@ -36,7 +36,7 @@ class Navigation:
             return self._known
         return self._known._replace(rates=(math.nan, math.nan, math.nan))
 
-    def update(self, sample: Measurement, asked: Three) -> Measurement | None:
+    def update(self, sample: Measurement, asked: Vector) -> Measurement | None:
         """What to fly by after a ``sample``; None before the first whose numbers all are.
 
         ``asked``: the angular acceleration for which the torque was last set (rad/s2).
@@ -72,20 +72,20 @@ class Navigation:
         )
         return self._known
 
-    def _is_alive(self, channel: str, value: Quaternion | Three) -> bool:
+    def _is_alive(self, channel: str, value: Quaternion | Vector) -> bool:
         # A vehicle at rest in a world without noise has rates of exactly zero.
         repeats = self._raw is not None and getattr(self._raw, channel) == value and any(value)
         self._repeated[channel] = self._repeated[channel] + 1 if repeats else 0
         return _are_numbers(value) and self._repeated[channel] < FROZEN_AFTER
 
-    def _rates_of(self, attitude: Quaternion, step: float, asked: Three) -> Three:
+    def _rates_of(self, attitude: Quaternion, step: float, asked: Vector) -> Vector:
         """Body rates (rad/s) by an observer that follows the ``attitude``, ``step`` (s) after the last one."""
         assert self._known is not None
         if self._observed is None or not 0.0 < step < _STEP_MAX:
             self._observed = self._known.attitude, self._known.rates, asked
         guess, rates, turning = self._observed
         guess = turned(guess, rates, step)
-        off = _rotation_between(guess, attitude)
+        off = tuple(2.0 * x for x in half_rotation(guess, attitude))
         share = 1.0 - math.exp(-step / self._motor_lag)
         a, b, c = (now + share * (then - now) for now, then in zip(turning, asked, strict=True))
         p, q, r = (
@@ -97,31 +97,5 @@ class Navigation:
         return p, q, r
 
 
-def turned(attitude: Quaternion, rates: Three, duration: float) -> Quaternion:
-    """A unit quaternion, body to world, turned by body ``rates`` (rad/s) for a short ``duration`` (s)."""
-    w, x, y, z = attitude
-    p, q, r = (0.5 * duration * rate for rate in rates)
-    w, x, y, z = (
-        w - x * p - y * q - z * r,
-        x + w * p + y * r - z * q,
-        y + w * q + z * p - x * r,
-        z + w * r + x * q - y * p,
-    )
-    length = math.hypot(w, x, y, z)
-    return w / length, x / length, y / length, z / length
-
-
-def _rotation_between(a: Quaternion, b: Quaternion) -> Three:
-    """From attitude ``a`` to ``b``, in the body frame of ``a`` (rad), for small angles."""
-    aw, ax, ay, az = a
-    bw, bx, by, bz = b
-    twice = 2.0 if aw * bw + ax * bx + ay * by + az * bz >= 0.0 else -2.0
-    return (
-        twice * (aw * bx - ax * bw - ay * bz + az * by),
-        twice * (aw * by + ax * bz - ay * bw - az * bx),
-        twice * (aw * bz - ax * by + ay * bx - az * bw),
-    )
-
-
-def _are_numbers(values: Quaternion | Three) -> bool:
+def _are_numbers(values: Quaternion | Vector) -> bool:
     return -1e6 < sum(values) < 1e6

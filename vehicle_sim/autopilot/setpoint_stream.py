@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import deque
 
-from vehicle_sim.autopilot.attitude_control import Quaternion
+from idc_controller.rotations_float import mean_attitude
 from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
 
 HELD_FOR = 0.1  # s: longer than set-points are usually apart
@@ -62,17 +62,5 @@ def _mean(setpoints: list[AttitudeSetpoint]) -> AttitudeSetpoint:
         return last
     n = len(setpoints)
     rates = [sum(s.rates[axis] for s in setpoints) / n for axis in range(3)]
-    attitude = _mean_attitude(attitudes)
+    attitude = mean_attitude(attitudes)
     return AttitudeSetpoint(attitude, (rates[0], rates[1], rates[2]), sum(thrusts) / n, last.time_boot_ms)
-
-
-def _mean_attitude(attitudes: list[Quaternion]) -> Quaternion:
-    """Of unit quaternions not far from each other, of either sign."""
-    last = attitudes[-1]
-    total = [0.0, 0.0, 0.0, 0.0]
-    for q in attitudes:
-        sign = 1.0 if sum(a * b for a, b in zip(q, last, strict=True)) >= 0.0 else -1.0
-        total = [t + sign * v for t, v in zip(total, q, strict=True)]
-    norm = math.sqrt(sum(t * t for t in total))
-    w, x, y, z = (t / norm for t in total)
-    return w, x, y, z

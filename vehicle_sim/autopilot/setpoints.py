@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
-from vehicle_sim.autopilot.attitude_control import Quaternion, Three
+from idc_controller.rotations_float import Quaternion, Vector
 from vehicle_sim.world.errors import SimulationError
 
 _IGNORE_RATE = (
@@ -42,7 +42,7 @@ class AttitudeSetpoint(NamedTuple):
     """
 
     attitude: Quaternion | None
-    rates: Three
+    rates: Vector
     thrust: float | None
     time_boot_ms: int
 
@@ -91,7 +91,7 @@ class StopPlan(NamedTuple):
 
     start: float
     duration: float
-    control_points: tuple[Three, ...]
+    control_points: tuple[Vector, ...]
     yaw: float
 
 

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from gcs.mavlink.address import Address
+from idc_controller.rotations_float import Vector
 from vehicle_sim.world.range_sensor import RangeSample
 from vehicle_sim.world.sensors import Measurement, Told
-from vehicle_sim.world.world_state import Vector
 
 if TYPE_CHECKING:
     from vehicle_sim.world.world import World

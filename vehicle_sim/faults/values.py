@@ -9,10 +9,10 @@ import numpy as np
 
 from gcs.config import SystemConfig
 from gcs.faults import values as kinds
+from idc_controller.rotations_float import Vector, quaternion_of, rotation_vector
 from vehicle_sim.faults.impairment import OnOff
 from vehicle_sim.faults.schedule import Moment
 from vehicle_sim.world.sensors import Measurement
-from vehicle_sim.world.world_state import Quaternion, Vector
 
 LARGEST = 1e30  # finite values are kept below, so that they can be told in 32 bits whatever faults are combined
 _AXES = {"x": 0, "y": 1, "z": 2}
@@ -110,21 +110,3 @@ def change(sample: Measurement, channel: str, effect: ValueEffect, moment: Momen
             return sample._replace(rates=effect(sample.rates, moment))
     vector = effect(rotation_vector(sample.attitude), moment)
     return sample._replace(attitude=quaternion_of(vector))
-
-
-def rotation_vector(q: Quaternion) -> Vector:
-    """Of a unit quaternion, w first: axis times angle (rad), not longer than pi."""
-    w, x, y, z = q if q[0] >= 0.0 else (-q[0], -q[1], -q[2], -q[3])
-    sine = math.sqrt(x * x + y * y + z * z)
-    scale = 2.0 if sine < 1e-9 else 2.0 * math.atan2(sine, w) / sine
-    return scale * x, scale * y, scale * z
-
-
-def quaternion_of(vector: Vector) -> Quaternion:
-    """The unit quaternion, w first, of a rotation vector (rad); of NaN and infinity, those."""
-    angle = math.sqrt(sum(v * v for v in vector)) if all(abs(v) < 1e100 for v in vector) else math.nan
-    if not math.isfinite(angle):
-        worst = next(v for v in vector if not abs(v) < 1e100)
-        return worst, worst, worst, worst
-    scale = 0.5 if angle < 1e-9 else math.sin(0.5 * angle) / angle
-    return math.cos(0.5 * angle), scale * vector[0], scale * vector[1], scale * vector[2]

@@ -11,10 +11,10 @@ import math
 from collections.abc import Sequence
 
 from gcs.faults import world as kinds
+from idc_controller.rotations_float import Vector, into_body
 from vehicle_sim.faults.active import WORLD, ActiveFault
 from vehicle_sim.faults.interface import Forces
 from vehicle_sim.world.world import World
-from vehicle_sim.world.world_state import Vector, into_body
 
 AIR_DENSITY = 1.225  # kg/m3
 PAYLOAD_DRAG = 1.05  # c_d of a box

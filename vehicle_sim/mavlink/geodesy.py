@@ -40,25 +40,3 @@ def clamp(value: float, bits: int) -> int:
     """The nearest integer of so many bits: a value out of range must not stop the telemetry."""
     limit = (1 << (bits - 1)) - 1
     return round(min(max(value, -limit), limit))
-
-
-def euler(measured: Measurement) -> tuple[float, float, float]:
-    """Roll, pitch and yaw (rad)."""
-    w, x, y, z = measured.attitude
-    return (
-        math.atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y)),
-        math.asin(min(max(2.0 * (w * y - z * x), -1.0), 1.0)),
-        math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)),
-    )
-
-
-def in_body(measured: Measurement) -> tuple[float, float, float]:
-    """The velocity in the body frame (m/s)."""
-    w, x, y, z = measured.attitude
-    v_x, v_y, v_z = measured.velocity
-    t_x, t_y, t_z = 2.0 * (v_y * z - v_z * y), 2.0 * (v_z * x - v_x * z), 2.0 * (v_x * y - v_y * x)
-    return (
-        v_x + w * t_x + t_y * z - t_z * y,
-        v_y + w * t_y + t_z * x - t_x * z,
-        v_z + w * t_z + t_x * y - t_y * x,
-    )

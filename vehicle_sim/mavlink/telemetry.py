@@ -9,9 +9,10 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink import px4
 from gcs.mavlink.messages import Message
+from idc_controller.rotations_float import euler_of, into_body
 from vehicle_sim.autopilot.attitude_control import LEVEL
 from vehicle_sim.autopilot.autopilot import Autopilot
-from vehicle_sim.mavlink.geodesy import Home, clamp, euler, in_body, is_finite
+from vehicle_sim.mavlink.geodesy import Home, clamp, is_finite
 from vehicle_sim.world.range_sensor import MIN_DISTANCE, RangeSample
 from vehicle_sim.world.sensors import Measurement, Told
 
@@ -145,7 +146,7 @@ class Telemetry:
         measured = self._own_attitude
         if measured is None or not is_finite(measured):
             return ()
-        roll, pitch, yaw = euler(measured)
+        roll, pitch, yaw = euler_of(measured.attitude)
         return (mavlink.MAVLink_attitude_message(self.time_boot_ms(measured.time), roll, pitch, yaw, *measured.rates),)
 
     def _global_position(self, now: float) -> Built:
@@ -154,7 +155,7 @@ class Telemetry:
             return ()
         latitude, longitude, altitude = self._home.geodetic(measured)
         v_x, v_y, v_z = (clamp(100.0 * v, 16) for v in measured.velocity)
-        heading = round(math.degrees(euler(measured)[2]) * 100.0) % 36000
+        heading = round(math.degrees(euler_of(measured.attitude)[2]) * 100.0) % 36000
         return (
             mavlink.MAVLink_global_position_int_message(
                 self.time_boot_ms(measured.time), latitude, longitude, altitude,
@@ -212,7 +213,7 @@ class Telemetry:
             return ()
         v_n, v_e, v_d = measured.velocity
         speed = math.hypot(v_n, v_e)
-        heading = round(math.degrees(euler(measured)[2])) % 360
+        heading = round(math.degrees(euler_of(measured.attitude)[2])) % 360
         throttle = round(100.0 * self._autopilot.attitude_target[2])
         altitude = self._home.altitude - measured.position[2]
         return (mavlink.MAVLink_vfr_hud_message(speed, speed, heading, throttle, altitude, -v_d),)
@@ -222,10 +223,11 @@ class Telemetry:
         if measured is None:
             return ()
         unknown = [_NAN] + [0.0] * 20
+        velocity = into_body(measured.attitude, measured.velocity)
         return (
             mavlink.MAVLink_odometry_message(
                 self.time_boot_ms(measured.time) * 1000, mavlink.MAV_FRAME_LOCAL_NED, mavlink.MAV_FRAME_BODY_FRD,
-                *measured.position, list(measured.attitude), *in_body(measured), *measured.rates, unknown, unknown,
+                *measured.position, list(measured.attitude), *velocity, *measured.rates, unknown, unknown,
             ),
         )  # fmt: skip
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from gcs.mission import Obstacle, mover
+from idc_controller.rotations_float import Vector
 from vehicle_sim.world.world import World
-from vehicle_sim.world.world_state import Vector
 
 
 class MovingObstacles:

@@ -10,8 +10,9 @@ import pybullet
 
 from idc_controller.errors import ShapeError
 from idc_controller.geometry.shape import Shape
+from idc_controller.rotations_float import Vector
 from vehicle_sim.world.errors import SimulationError
-from vehicle_sim.world.world_state import Vector, flipped, quaternion_to_engine
+from vehicle_sim.world.world_state import flipped, quaternion_to_engine
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from idc_controller.rotations_float import Quaternion, Vector, into_body
 from vehicle_sim.world.obstacle_bodies import Obstacle
-from vehicle_sim.world.world_state import Quaternion, Vector, into_body
 
 #: Nothing nearer is measured (m).
 MIN_DISTANCE = 0.05

@@ -13,19 +13,12 @@ import pybullet
 from idc_controller.geometry.shape import Shape
 from idc_controller.model.nonlinear import SystemState
 from idc_controller.parameters import SystemParameters
+from idc_controller.rotations_float import Vector, into_body
 from vehicle_sim.world.cradles import Cradles
 from vehicle_sim.world.errors import SimulationError
 from vehicle_sim.world.multibody import check_supported, load_multibody
 from vehicle_sim.world.obstacle_bodies import Obstacle, ObstacleBodies
-from vehicle_sim.world.world_state import (
-    UavState,
-    Vector,
-    WorldState,
-    flipped,
-    into_body,
-    quaternion_from_engine,
-    quaternion_to_engine,
-)
+from vehicle_sim.world.world_state import UavState, WorldState, flipped, quaternion_from_engine, quaternion_to_engine
 
 PAD_THICKNESS = 0.05  # m
 PAD_MARGIN = 0.25  # m, by which the pad is larger than the payload on every side

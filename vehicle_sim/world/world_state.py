@@ -10,8 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-Vector = tuple[float, float, float]
-Quaternion = tuple[float, float, float, float]
+from idc_controller.rotations_float import Quaternion, Vector
 
 
 @dataclass(slots=True, frozen=True)
@@ -63,12 +62,3 @@ def quaternion_from_engine(q: Sequence[float]) -> Quaternion:
 def quaternion_to_engine(q: Sequence[float]) -> Quaternion:
     """The inverse of :func:`quaternion_from_engine`."""
     return q[1], -q[2], -q[3], q[0]
-
-
-def into_body(q: Quaternion, v: Vector) -> Vector:
-    """The vector ``v`` in the frame whose attitude is the w-first quaternion ``q`` (body to world)."""
-    w, x, y, z = q
-    a, b, c = v
-    # v + 2 w (v x u) + 2 u x (u x v), u the vector part: the rotation by the conjugate.
-    s, t, r = 2.0 * (b * z - c * y), 2.0 * (c * x - a * z), 2.0 * (a * y - b * x)
-    return a + w * s + t * z - r * y, b + w * t + r * x - s * z, c + w * r + s * y - t * x
