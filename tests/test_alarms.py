@@ -7,9 +7,9 @@ import pytest
 from flight_in_process import HOP, Rehearsal, system_file
 
 from gcs.campaign.faults.detection import detection, first_start
+from gcs.config.flight_settings import DEFAULTS
 from gcs.flight.alarms import AlarmLog
 from gcs.flight.detectors import EventCounter, MonitorAlarm
-from gcs.flight.settings import DEFAULTS
 from gcs.mavlink.link_statistics import PATIENCE, LinkStatistics
 from gcs.mission.model import Fault
 from gcs.mission.read import read_mission

@@ -66,7 +66,7 @@ ALLOWED = {
         "gcs.app gcs.config gcs.faults gcs.mavlink gcs.mission gcs.record vehicle_sim.faults vehicle_sim.swarm "
         "vehicle_sim.world"
     ),
-    "vehicle_sim.autopilot": "gcs.mavlink idc_controller.trajectory vehicle_sim.world",
+    "vehicle_sim.autopilot": "gcs.config gcs.mavlink idc_controller.trajectory vehicle_sim.world",
     "vehicle_sim.faults": "gcs.config gcs.faults gcs.mavlink gcs.mission gcs.record vehicle_sim.world",
     "vehicle_sim.mavlink": "gcs.mavlink vehicle_sim.autopilot vehicle_sim.world",
     "vehicle_sim.swarm": (

@@ -17,8 +17,8 @@ from gcs.campaign.courses.moving import MOTIONS, displacement, motion_for, top_s
 from gcs.campaign.courses.outcome import draw_distribution, from_bad_end, outcome_table
 from gcs.campaign.courses.schedule import Schedule, arrival
 from gcs.campaign.process_pool import Ended
+from gcs.config.flight_settings import DEFAULTS
 from gcs.errors import UnusableInput
-from gcs.flight.settings import DEFAULTS
 from gcs.mission import Lissajous, mover, read_mission
 from gcs.record.run_folder import open_run_folder
 from gcs.record.tables import truth_columns

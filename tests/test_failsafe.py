@@ -1,19 +1,23 @@
 """The failsafe table: complete, documented, and the more severe reaction wins."""
 
 import math
+from contextlib import closing
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
+from gcs.config import read_system
+from gcs.config.flight_settings import DEFAULTS
 from gcs.flight.alarms import AlarmLog
 from gcs.flight.detectors import MonitorAlarm
 from gcs.flight.failsafe import Check, Failsafe, FailsafeState, Moment, Reaction, System, Trigger
 from gcs.flight.listing import listing
 from gcs.flight.phase import Phase
-from gcs.flight.settings import DEFAULTS
+from vehicle_sim.swarm import Swarm
 
-PAGE = Path(__file__).parents[1] / "docs" / "failsafes.md"
+DOCS = Path(__file__).parents[1] / "docs"
+PAGE, SETTINGS = DOCS / "failsafes.md", DOCS / "settings.md"
 
 
 def link(number, *, age=0.0, attitude_age=0.0, latency=0.0, armed=True, offboard=True):
@@ -132,3 +136,13 @@ def test_data_link_loss_waits_for_a_pending_descent():
 
 def test_data_link_of_vehicles_that_never_answered_is_not_lost():
     assert evaluated(state(link(1, age=math.inf)), Check.STEP, Phase.CONNECT) is None
+
+
+def test_set_point_loss_of_the_vehicles_follows_the_telemetry_timeout(tmp_path):
+    path = tmp_path / "system.toml"
+    path.write_text("[flight.failsafe]\ntelemetry_timeout = 0.6\n")
+    config = read_system(path)
+    assert config.flight.failsafe.telemetry_timeout == 0.6
+    with closing(Swarm(config, seed=1)) as swarm:
+        assert [vehicle.parameters["COM_OF_LOSS_T"] for vehicle in swarm.vehicles] == pytest.approx([0.6] * 4)
+    assert "telemetry_timeout" in SETTINGS.read_text(encoding="utf-8")

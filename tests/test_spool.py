@@ -2,7 +2,7 @@
 
 import pytest
 
-from gcs.flight.settings import DEFAULTS
+from gcs.config.flight_settings import DEFAULTS
 from gcs.flight.spool import SpoolDown, spool_up_share
 
 S = DEFAULTS.takeoff_landing

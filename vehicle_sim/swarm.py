@@ -86,6 +86,7 @@ class Swarm:
             Vehicle(
                 i, airframe, onboard_rate=rates.onboard, telemetry_rate=rates.telemetry, home=where,
                 ground_address=ground_address, clock=partial(self._passage.clock, i),
+                setpoint_loss=config.flight.failsafe.telemetry_timeout,
             )
             for i, airframe in enumerate(airframes, start=1)
         )  # fmt: skip

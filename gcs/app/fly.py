@@ -205,7 +205,8 @@ def ground_station(
         stack.estimator(config, model), stack.controller(config, model, safety, stopwatch, guidance), stopwatch,
         brake=RestingPlace(model.parameters, obstacle_map),
     )  # fmt: skip
-    flight = Flight(mission, Team(links, model.parameters), control, AlarmLog(recorder.alarm), obstacle_map)
+    alarms = AlarmLog(recorder.alarm, config.flight.monitor)
+    flight = Flight(mission, Team(links, model.parameters), control, alarms, obstacle_map)
     return GroundStation(flight, recorder)
 
 

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from pydantic import TypeAdapter
 
+from gcs.config.flight_settings import FlightSettings
 from gcs.config.problems import UnusableFile
 from gcs.config.schema import table_type
 from gcs.config.tables import (
@@ -49,6 +50,7 @@ class SystemConfig:
     world: WorldConfig = field(default_factory=WorldConfig)
     controller: ControllerConfig = field(default_factory=ControllerConfig)
     avoidance: AvoidanceConfig = field(default_factory=AvoidanceConfig)
+    flight: FlightSettings = field(default_factory=FlightSettings)
 
     def parameters(self) -> SystemParameters:
         """Return the system as the controller models it.

@@ -9,7 +9,7 @@ from enum import Enum, IntEnum
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
-from gcs.flight.settings import DEFAULTS, MonitorSettings
+from gcs.config.flight_settings import DEFAULTS, MonitorSettings
 
 
 class Severity(IntEnum):

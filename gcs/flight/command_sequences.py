@@ -6,7 +6,7 @@ from typing import Protocol
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
-from gcs.flight.settings import DEFAULTS, FlightSettings
+from gcs.config.flight_settings import DEFAULTS, FlightSettings
 from gcs.flight.team import Team
 from gcs.mavlink import px4
 

@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import chi2
 
+from gcs.config.flight_settings import MonitorSettings
 from gcs.flight.alarms import AlarmCode, AlarmLog, Severity
 from gcs.flight.flight import Flight, StepRecord
-from gcs.flight.settings import MonitorSettings
 from gcs.mavlink.id_check import Identities
 from gcs.mavlink.vehicle_link import VehicleLink
 from idc_controller.estimation.health.innovation_monitor import InnovationMonitor

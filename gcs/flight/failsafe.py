@@ -13,12 +13,12 @@ from enum import Enum, IntEnum
 
 import numpy as np
 
+from gcs.config.flight_settings import DEFAULTS, FailsafeSettings
 from gcs.flight.alarms import AlarmCode, AlarmLog, Severity
 from gcs.flight.command_sequences import CommandSequence
 from gcs.flight.payload_monitor import PayloadMonitor
 from gcs.flight.phase import IN_AIR, Phase
 from gcs.flight.preflight import Preflight
-from gcs.flight.settings import DEFAULTS, FailsafeSettings
 from gcs.flight.team import Team, last_text
 from gcs.mavlink import px4
 from gcs.mavlink.vehicle_link import VehicleLink
@@ -276,7 +276,7 @@ def _names(links: Iterable[VehicleLink]) -> str:
 
 
 class Failsafe(AlarmCode):
-    """The table. In ``meaning``, names in braces are fields of :class:`~gcs.flight.settings.FailsafeSettings`.
+    """The table. In ``meaning``, names in braces are fields of :class:`~gcs.config.flight_settings.FailsafeSettings`.
 
     Of several that hold at once the one with the most severe reaction counts, then that of the first vehicle, then the
     first of the table.

@@ -16,7 +16,6 @@ from gcs.flight.mission_trajectory import MissionTrajectory
 from gcs.flight.payload_monitor import PayloadMonitor
 from gcs.flight.phase import CONTROLLED, IN_AIR, Phase
 from gcs.flight.preflight import Preflight
-from gcs.flight.settings import DEFAULTS, FlightSettings
 from gcs.flight.spool import SpoolDown, spool_up_share
 from gcs.flight.team import Team
 from gcs.mission.model import Mission
@@ -53,9 +52,9 @@ class Flight:
         control: ControlLoop,
         alarms: AlarmLog,
         obstacle_map: ObstacleMap | None = None,
-        settings: FlightSettings = DEFAULTS,
     ) -> None:
-        self.mission, self.control, self._settings = mission, control, settings
+        self.mission, self.control, self._settings = mission, control, mission.system.flight
+        settings = self._settings
         payload, preflight = PayloadMonitor(control.controller.parameters, settings), Preflight(team, settings)
         system = System(
             team, control.estimator, control.controller.guidance, payload, preflight, obstacle_map, settings.failsafe
@@ -323,9 +322,7 @@ class Flight:
             if share >= 1.0:
                 assert self._pad is not None
                 position = self._pad.position(time)
-                self.mission_trajectory = MissionTrajectory(
-                    self.mission, position, time, self._settings.takeoff_landing
-                )
+                self.mission_trajectory = MissionTrajectory(self.mission, position, time)
                 self.phase = Phase.CLIMB
         elif self.phase is Phase.SPOOL_DOWN:
             if share <= 0.0:

@@ -18,7 +18,6 @@ from gcs.flight.flight import Flight
 from gcs.flight.monitor import FlightMonitor
 from gcs.flight.phase import Phase
 from gcs.flight.setpoint_schedule import SetpointSchedule
-from gcs.flight.settings import DEFAULTS, FlightSettings
 from gcs.flight.team_clock import IntervalTimer, StepTimer, TeamClock
 from gcs.flight.telemetry_router import TelemetryRouter, whole_ms
 from gcs.mavlink import px4
@@ -58,7 +57,8 @@ class Recorder(Protocol):
 class GroundStation:
     """All vehicles of one flight. A driver calls :meth:`receive`, :meth:`datagrams_to_send` and :meth:`next_timer`."""
 
-    def __init__(self, flight: Flight, recorder: Recorder, settings: FlightSettings = DEFAULTS) -> None:
+    def __init__(self, flight: Flight, recorder: Recorder) -> None:
+        settings = flight.mission.system.flight
         timing = settings.timing
         self.flight = flight
         self._recorder = recorder

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import asdict
 
+from gcs.config.flight_settings import DEFAULTS, FlightSettings
 from gcs.flight.detectors import MonitorAlarm
 from gcs.flight.failsafe import Failsafe
-from gcs.flight.settings import DEFAULTS, FlightSettings
 
 _REACTIONS = {
     "REFUSE": "the flight does not begin, nothing is armed",
@@ -33,7 +33,7 @@ def listing(settings: FlightSettings = DEFAULTS) -> str:
     return f"""# Failsafes and alarms
 
 This page is made from the code: `python -m gcs.flight.listing > docs/failsafes.md`. Thresholds are those of the default
-settings (`gcs/flight/settings.py`).
+settings (`gcs/config/flight_settings.py`).
 
 ## Failsafes
 

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcs.config import MotionConfig
-from gcs.flight.settings import DEFAULTS, TakeoffLandingSettings
 from gcs.mission.model import Lissajous, Mission
 from gcs.mission.route import Circle, FlyTo, HoldForever, Land, Leg, Speed, TakeOff
 from idc_controller.trajectory import paths
@@ -32,9 +31,8 @@ class MissionTrajectory:
         mission: Mission,
         position: Array,
         start: float,
-        settings: TakeoffLandingSettings = DEFAULTS.takeoff_landing,
     ) -> None:
-        self._settings = settings
+        self._settings = mission.system.flight.takeoff_landing
         self._motion = mission.system.motion
         self._ground = -mission.system.payload.size[2] / 2.0
         self._pad = position

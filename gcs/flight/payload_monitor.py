@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from gcs.flight.settings import DEFAULTS, FlightSettings
+from gcs.config.flight_settings import DEFAULTS, FlightSettings
 from idc_controller.estimation.estimate import Estimate
 from idc_controller.model.linear import StateLayout
 from idc_controller.parameters import SystemParameters

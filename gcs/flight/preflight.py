@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from gcs.flight.settings import DEFAULTS, FlightSettings
+from gcs.config.flight_settings import DEFAULTS, FlightSettings
 from gcs.flight.team import Team
 from gcs.mavlink import px4
 from gcs.mavlink.vehicle_link import VehicleLink

@@ -9,7 +9,7 @@ from statistics import median
 import numpy as np
 from numpy.typing import NDArray
 
-from gcs.flight.settings import DEFAULTS, TimingSettings
+from gcs.config.flight_settings import DEFAULTS, TimingSettings
 from gcs.flight.team_clock import TOLERANCE
 from gcs.mavlink.messages import Message
 

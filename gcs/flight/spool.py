@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from gcs.flight.settings import DEFAULTS, TakeoffLandingSettings
+from gcs.config.flight_settings import DEFAULTS, TakeoffLandingSettings
 
 
 def spool_up_share(elapsed: float, settings: TakeoffLandingSettings = DEFAULTS.takeoff_landing) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from gcs.flight.settings import DEFAULTS, TimingSettings
+from gcs.config.flight_settings import DEFAULTS, TimingSettings
 
 TOLERANCE = 1e-6
 """For timers that are sums of periods (s)."""

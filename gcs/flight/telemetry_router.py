@@ -6,9 +6,9 @@ import math
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
+from gcs.config.flight_settings import DEFAULTS, TimingSettings
 from gcs.flight.flight import Flight
 from gcs.flight.phase import Phase
-from gcs.flight.settings import DEFAULTS, TimingSettings
 from gcs.flight.team_clock import TeamClock
 from gcs.mavlink import px4
 from gcs.mavlink.address import Address

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
+from gcs.config.flight_settings import DEFAULTS
 from gcs.mavlink import px4
 from vehicle_sim.autopilot.airframe import Airframe
 from vehicle_sim.world.errors import SimulationError
@@ -15,8 +16,8 @@ from vehicle_sim.world.errors import SimulationError
 REAL: int = mavlink.MAV_PARAM_TYPE_REAL32
 INTEGER: int = mavlink.MAV_PARAM_TYPE_INT32
 
-SETPOINT_LOSS = 0.46
-"""s without set-points until a vehicle stops."""
+SETPOINT_LOSS = DEFAULTS.failsafe.telemetry_timeout
+"""s without set-points until a vehicle stops, where the system file says nothing else."""
 
 
 class ParameterRefusalError(SimulationError):
@@ -80,7 +81,9 @@ class ParameterTable:
         parameter.value = value
 
 
-def vehicle_parameters(airframe: Airframe, system_id: int, onboard_rate: int) -> ParameterTable:
+def vehicle_parameters(
+    airframe: Airframe, system_id: int, onboard_rate: int, setpoint_loss: float = SETPOINT_LOSS
+) -> ParameterTable:
     """The parameters of one vehicle with their defaults; ``onboard_rate`` of the attitude loop in Hz."""
     return ParameterTable(
         [
@@ -97,7 +100,7 @@ def vehicle_parameters(airframe: Airframe, system_id: int, onboard_rate: int) ->
             Parameter("CAL_GYRO0_ID", 1, INTEGER),
             Parameter("CAL_ACC0_ID", 1, INTEGER),
             Parameter("CAL_MAG0_ID", 1, INTEGER),
-            Parameter(px4.PARAM_SETPOINT_LOSS, SETPOINT_LOSS, limits=(0.1, 60.0)),
+            Parameter(px4.PARAM_SETPOINT_LOSS, setpoint_loss, limits=(0.1, 60.0)),
             Parameter(px4.PARAM_LAND_DELAY, 5.0, limits=(0.0, 3600.0)),
             Parameter(px4.PARAM_LINK_LOSS, 10, INTEGER, limits=(5, 300)),
             Parameter(px4.PARAM_LAND_SPEED, 0.5, limits=(0.1, 1.0)),

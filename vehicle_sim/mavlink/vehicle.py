@@ -13,7 +13,7 @@ from gcs.mavlink.codec import Codec
 from gcs.mavlink.messages import BROADCAST
 from vehicle_sim.autopilot.airframe import Airframe
 from vehicle_sim.autopilot.autopilot import Autopilot
-from vehicle_sim.autopilot.parameter_table import vehicle_parameters
+from vehicle_sim.autopilot.parameter_table import SETPOINT_LOSS, vehicle_parameters
 from vehicle_sim.mavlink.commands import CommandServer
 from vehicle_sim.mavlink.control_owner import ControlOwner
 from vehicle_sim.mavlink.dispatcher import Dispatcher, Request
@@ -53,6 +53,7 @@ class Vehicle:
         clock: Callable[[float], float] = float,
         link_settings: VehicleLinkSettings | None = None,
         stream_intervals: StreamIntervals | None = None,
+        setpoint_loss: float = SETPOINT_LOSS,
     ) -> None:
         """``system_id`` 1 .. 255; rates in Hz; ``boot_time`` (s) is the zero of every ``time_boot_ms``.
 
@@ -61,7 +62,7 @@ class Vehicle:
         settings = link_settings or VehicleLinkSettings()
         intervals = default_intervals(stream_intervals or StreamIntervals(), 1.0 / telemetry_rate)
         self.system_id = system_id
-        self.parameters = vehicle_parameters(airframe, system_id, round(onboard_rate))
+        self.parameters = vehicle_parameters(airframe, system_id, round(onboard_rate), setpoint_loss)
         self.autopilot = Autopilot(airframe, self.parameters)
         self.telemetry = Telemetry(system_id, self.autopilot, home or Home(), boot_time, clock)
         self._decoder = Codec(system_id, px4.AUTOPILOT_COMPONENT)

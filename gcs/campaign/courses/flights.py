@@ -15,7 +15,6 @@ from gcs.campaign.courses.generator import HELD_TO, RandomCourse
 from gcs.campaign.courses.schedule import Schedule, arrival
 from gcs.campaign.process_pool import Ended, fly_process
 from gcs.errors import GcsError
-from gcs.flight.settings import DEFAULTS
 from gcs.mission.model import Limits
 from gcs.mission.read import read_mission
 from gcs.record.run_data import read_run
@@ -87,11 +86,12 @@ def fly_course(plan: FlightPlan, stop: threading.Event) -> Result | None:
 def evaluate(plan: FlightPlan, ended: Ended) -> Result:
     """The result of a flight."""
     summary = ended.summary
-    schedule = Schedule(read_mission(plan.mission, _config(plan.options)))
+    mission = read_mission(plan.mission, _config(plan.options))
+    schedule = Schedule(mission)
     nominal = arrival(schedule.times, schedule.positions, schedule.goal, AT_GOAL)
     nominal = schedule.landing if nominal is None else nominal
     # By the clock that starts when the rotors do, as the summary's.
-    spent = DEFAULTS.takeoff_landing.spool_up_time - schedule.start
+    spent = mission.system.flight.takeoff_landing.spool_up_time - schedule.start
     arrived, goal_error = _arrival(plan.run_dir, schedule) if summary else (None, None)
     angles = [angle for angle in summary.get("payload_tilt_max_deg", {}).values() if angle is not None]
     tilt = max(angles, default=None)

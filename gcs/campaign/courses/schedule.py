@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from gcs.config.flight_settings import TakeoffLandingSettings
 from gcs.flight.mission_trajectory import MissionTrajectory
-from gcs.flight.settings import DEFAULTS
 from gcs.mission.model import RESTING_ALTITUDE, Mission
 from idc_controller.parameters import SystemParameters
 
@@ -25,10 +25,10 @@ SAMPLE = 0.02
 LONGEST = 3600.0
 
 
-def course_start(parameters: SystemParameters) -> float:
+def course_start(parameters: SystemParameters, settings: TakeoffLandingSettings) -> float:
     """Time of the obstacles' clock at which the course begins (s)."""
     own_weight = parameters.m * parameters.g / parameters.hover_thrust
-    spool_up = DEFAULTS.takeoff_landing.spool_up_time
+    spool_up = settings.spool_up_time
     release = spool_up * float(own_weight.min()) + LAG
     return spool_up - release
 
@@ -40,7 +40,7 @@ class Schedule:
         """Raises :class:`ValueError` for a mission that lasts longer than an hour."""
         pad = np.array([PAD_OFFSET, -PAD_OFFSET, -RESTING_ALTITUDE])
         self._course = MissionTrajectory(mission, pad, 0.0)
-        self.start = course_start(mission.system.parameters())
+        self.start = course_start(mission.system.parameters(), mission.system.flight.takeoff_landing)
         """When the climb begins."""
         count = 4096
         while True:  # a lazy course tells its end only when asked beyond it

@@ -14,7 +14,7 @@ class FailsafeSettings:
 
     connect_timeout: float = setting(10.0, "s", "until every vehicle has sent all that a flight needs", gt=0.0)
     telemetry_timeout: float = setting(
-        0.46, "s", "telemetry older than this is lost: the set-point-loss time of the vehicles", gt=0.0
+        0.46, "s", "age at which telemetry is lost, and set-point loss of the vehicles (COM_OF_LOSS_T)", ge=0.1, le=60.0
     )
     data_link_timeout: float = setting(3.0, "s", "without any message of any vehicle, ends control", gt=0.0)
     latency_limit: float = setting(0.11, "s", "one-way link latency above which the loop cannot be closed", gt=0.0)
