@@ -91,13 +91,13 @@ class Scene:
         ``off`` (3,): what the vehicles are off by where they say they are (m), while the ground knows better.
         """
         for i, position, quaternion, scan in self.look(time, centre, obstacles):
-            obstacle_map.measured(Attitude(time, i, quaternion, np.zeros(3)))
-            told = position if off is None else position + off
-            obstacle_map.measured(Position(time, i, told, np.zeros(3)))
+            obstacle_map.add_measured_pose(Attitude(time, i, quaternion, np.zeros(3)))
+            reported = position if off is None else position + off
+            obstacle_map.add_measured_pose(Position(time, i, reported, np.zeros(3)))
             if off is not None:
-                obstacle_map.estimated(Position(time, i, position, np.zeros(3)))
+                obstacle_map.add_estimated_pose(Position(time, i, position, np.zeros(3)))
             for message in messages_of(scan):
-                obstacle_map.detected(detection(message), i, time)
+                obstacle_map.add_detection(detection(message), i, time)
 
     def frame(self, time, centre, obstacle):
         """All points on one obstacle; None if nobody sees it."""

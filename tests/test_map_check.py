@@ -31,12 +31,12 @@ def look(known, true, off, until=6.0, seed=0, noise=1.0):
         for uav, position, quaternion, scan in (
             scene.look(t, HERE, [true, sphere(UNKNOWN, name="other")]) if k % 2 == 0 else ()
         ):
-            m.measured(Attitude(t, uav, quaternion, np.zeros(3)))
-            m.measured(Position(t, uav, position, np.zeros(3)))
+            m.add_measured_pose(Attitude(t, uav, quaternion, np.zeros(3)))
+            m.add_measured_pose(Position(t, uav, position, np.zeros(3)))
             for message in messages_of(scan):
                 wrong = np.asarray(off(t, uav)) + rng.normal(0.0, np.sqrt(noise**2 - 1.0) * NOISE * (t >= 2.0), 3)
                 message.x, message.y, message.z = np.array([message.x, message.y, message.z]) + wrong
-                m.detected(detection(message), uav, t)
+                m.add_detection(detection(message), uav, t)
         m.update(t)
         yield t, m
 
@@ -50,30 +50,32 @@ def test_a_drift_of_all_is_found_out_and_corrected(shape):
     known, true = ON_THE_MAP[shape]
     found = None
     for t, m in look(known, true, drift(EVERYONE)):
-        found = t if found is None and m.is_astray else found
+        found = t if found is None and m.map_offset_detected else found
         if found is None:
-            assert not m.is_blind
+            assert not m.sensing_lost
     assert 2.5 < found < 6.0
     normal = np.array([np.cos(0.3), np.sin(0.3), 0.0]) if shape == "wall" else np.array([1.0, 0.0, 0.0])
-    for offset in m.astray.values():  # where it can be seen: across a wall
+    for offset in m.map_offsets.values():  # where it can be seen: across a wall
         assert normal @ offset == pytest.approx(0.4 * normal.sum(), abs=0.1)
     if shape == "sphere":
-        (other,) = m.beliefs(t)
+        (other,) = m.confirmed_tracks(t)
         assert np.linalg.norm(other.position - UNKNOWN) < 0.25
 
 
 def test_one_that_drifts_is_left_out():
     known, true = ON_THE_MAP["sphere"]
     for t, m in look(known, true, drift({2}), until=10.0):
-        assert not m.is_astray, t
-    assert set(m.astray) == {2}
-    (other,) = m.beliefs(t)
+        assert not m.map_offset_detected, t
+    assert set(m.map_offsets) == {2}
+    (other,) = m.confirmed_tracks(t)
     assert np.linalg.norm(other.position - UNKNOWN) < 0.1
 
 
 def test_one_that_jumps_is_found_out_and_believed_again():
     known, true = ON_THE_MAP["sphere"]
-    told = [set(m.astray) for _, m in look(known, true, lambda t, uav: np.full(3, 0.5 * (uav == 1 and 2.0 <= t < 4.0)))]
+    told = [
+        set(m.map_offsets) for _, m in look(known, true, lambda t, uav: np.full(3, 0.5 * (uav == 1 and 2.0 <= t < 4.0)))
+    ]
     assert told[39] == set() and told[55] == {1} and told[-1] == set()
 
 
@@ -82,10 +84,10 @@ def test_one_that_jumps_is_found_out_and_believed_again():
 @pytest.mark.parametrize("seed", range(3))
 def test_no_noise_is_taken_for_it(noise, seed):
     known, true = ON_THE_MAP["sphere"]
-    assert not any(m.astray for _, m in look(known, true, lambda t, uav: np.zeros(3), 20.0, seed, noise))
+    assert not any(m.map_offsets for _, m in look(known, true, lambda t, uav: np.zeros(3), 20.0, seed, noise))
 
 
 def test_an_obstacle_that_never_stood_where_the_map_has_it_says_nothing():
     known, _ = ON_THE_MAP["sphere"]
     beside = sphere((5.0, 0.7, -6.0))
-    assert not any(m.astray for _, m in look(known, beside, lambda t, uav: np.zeros(3)))
+    assert not any(m.map_offsets for _, m in look(known, beside, lambda t, uav: np.zeros(3)))

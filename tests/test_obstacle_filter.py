@@ -10,11 +10,11 @@ from idc_controller.geometry.box import Wall
 from idc_controller.geometry.distance import Bodies
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
-from idc_controller.perception.motion_imm import BankSettings, MotionModels
+from idc_controller.perception.motion_imm import MotionModels
 from idc_controller.perception.obstacle_filter import ObstacleFilter
 from idc_controller.perception.surfaces.round import RoundSurface
 
-MODELS = MotionModels(BankSettings())
+MODELS = MotionModels()
 PERIOD = 0.1
 
 

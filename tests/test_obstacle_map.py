@@ -27,11 +27,12 @@ from idc_controller.estimation.measurements import Attitude, Position
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
+from idc_controller.perception.scan_assembly import Cluster
 from vehicle_sim.swarm import Swarm
 
 
 def places(obstacle_map, time):
-    return {b.name: b.position for b in obstacle_map.beliefs(time)}
+    return {b.name: b.position for b in obstacle_map.confirmed_tracks(time)}
 
 
 def nearest(obstacle_map, time, place):
@@ -139,7 +140,7 @@ def test_duplicates_are_merged():
     (first,) = m.tracks
     # A second track of the same obstacle, as a bad pose might have begun it, with a vehicle's number bound to it.
     parts = [cluster for i, _, cluster in Scene(8).scans(1.0, HERE, [obstacle]) if i == 0]
-    m._begin([type("C", (), {"uav": 0, "number": 0, "seen": p})() for p in parts], 1.0)
+    m._tracks.begin([Cluster(0, 0, part) for part in parts], 1.0)
     m.tracks[-1].clusters = 5
     assert len(m.tracks) == 2
     run(m, lambda t: [obstacle], 2.0, begin=1.0, scene=Scene(0))
@@ -291,12 +292,13 @@ def test_in_flight_the_ground_finds_what_the_vehicles_sense(tmp_path):
     mission = replace(mission, obstacles=obstacles)
     with Rehearsal(mission, tmp_path / "run") as flight:
         obstacle_map = stack.obstacle_map(mission)
-        flight.station._obstacle_map = obstacle_map
+        failsafes = flight.flight.failsafes
+        failsafes.system = replace(failsafes.system, obstacle_map=obstacle_map)
         flight.swarm.close()
         flight.swarm = Swarm(mission.system, seed=1, home=mission.home, obstacles=obstacles)
         flight.fly(until=6.0)
         believed = {o.name: o for o in obstacle_map.predict(np.array([flight.now]))}
-        assert obstacle_map.refused == 0
+        assert obstacle_map.discarded == 0
     assert len(believed) == 3
     kinds = {o.shape.kind: o for name, o in believed.items() if name != "known"}
     assert np.linalg.norm(kinds["sphere"].positions[0] - [4.0, 4.0, -3.5]) < 0.08
@@ -316,12 +318,12 @@ def test_what_comes_into_sight_later_is_taken_to_scatter_as_what_was_seen_before
     scatter = []
     for k in range(40):
         for i, position, quaternion, scan in scene.look(0.1 * k, HERE, [near, late] if k >= 30 else [near]):
-            m.measured(Attitude(0.1 * k, i, quaternion, np.zeros(3)))
-            m.measured(Position(0.1 * k, i, position, np.zeros(3)))
+            m.add_measured_pose(Attitude(0.1 * k, i, quaternion, np.zeros(3)))
+            m.add_measured_pose(Position(0.1 * k, i, position, np.zeros(3)))
             for message in messages_of(scan):
                 x, y, z = rng.normal(0.0, 5 * NOISE, 3)
                 message.x, message.y, message.z = message.x + x, message.y + y, message.z + z
-                m.detected(detection(message), i, 0.1 * k)
+                m.add_detection(detection(message), i, 0.1 * k)
         m.update(0.1 * k)
         scatter.append([track.filter.scatter**0.5 for track in m.tracks])
     assert len(scatter[29]) == 1 and scatter[29][0] > 3 * NOISE

@@ -16,7 +16,7 @@ from obstacle_scene import (
 
 from gcs.mavlink.telemetry import detection
 from idc_controller.estimation.measurements import Attitude, Position
-from idc_controller.perception.scan_assembly import ScanInbox
+from idc_controller.perception.scan_assembly import ScanAssembly
 from vehicle_sim.world.range_sensor import Detection, RangeSample
 
 
@@ -26,29 +26,29 @@ def test_what_a_vehicle_sees_that_is_not_where_it_says_is_placed_by_the_estimate
     for k in range(10):
         t = 0.1 * k
         scene.feed(m, t, HERE, [sphere(truth)], off=away)
-        m.update(t, misplaced=everyone)
-    (belief,) = m.beliefs(0.9)
-    assert np.linalg.norm(belief.position - truth) < 0.1
+        m.update(t, unusable_positions=everyone)
+    (track,) = m.confirmed_tracks(0.9)
+    assert np.linalg.norm(track.position - truth) < 0.1
 
 
 def test_motion_between_samples_is_the_estimated_one_where_none_is_told():
-    inbox, t, turning = ScanInbox(SENSORS), 0.02, np.array([0.0, 1.0, 0.0])
+    scans, t, turning = ScanAssembly(SENSORS), 0.02, np.array([0.0, 1.0, 0.0])
     level, unknown, moving = np.array([1.0, 0.0, 0.0, 0.0]), np.full(3, np.nan), np.array([0.0, 2.0, 0.0])
-    inbox.measured(Attitude(0.0, 0, level, unknown))
-    inbox.measured(Position(0.0, 0, HERE, unknown))
-    inbox.estimated(Attitude(0.0, 0, level, turning))
-    inbox.estimated(Position(0.0, 0, HERE + 1.0, moving))
+    scans.poses.add_measured(Attitude(0.0, 0, level, unknown))
+    scans.poses.add_measured(Position(0.0, 0, HERE, unknown))
+    scans.poses.add_estimated(Attitude(0.0, 0, level, turning))
+    scans.poses.add_estimated(Position(0.0, 0, HERE + 1.0, moving))
     for message in messages_of(RangeSample(t, REACH, (Detection(1, (5.0, 0.0, 0.0)),))):
-        inbox.detected(detection(message), 0, t)
-    [[cluster]] = inbox.frames(t)
-    assert cluster.seen.points[0] == pytest.approx(HERE + np.array([5.0, 2.0 * t, -5.0 * t]), abs=2e-3)
+        scans.add(detection(message), 0, t)
+    [[cluster]] = scans.frames(t)
+    assert cluster.surface_points.points[0] == pytest.approx(HERE + np.array([5.0, 2.0 * t, -5.0 * t]), abs=2e-3)
 
 
 def test_without_a_pose_and_an_estimate_nothing_is_placed():
     m, scene = map_of(), Scene(0)
     for k in range(10):
         scene.feed(m, 0.1 * k, HERE, [sphere((5.0, 0.0, -6.0))])
-        m.update(0.1 * k, misaligned=frozenset(range(4)))
+        m.update(0.1 * k, unusable_attitudes=frozenset(range(4)))
     assert m.tracks == []
 
 
@@ -57,14 +57,14 @@ def test_scans_wait_for_their_pose_and_nonsense_is_refused():
     scene = Scene(0)
     ((i, position, quaternion, scan),) = scene.look(1.0, HERE, [sphere((5.0, 0.0, -6.0))])[:1]
     for message in messages_of(scan):
-        m.detected(detection(message), i, 1.0)
+        m.add_detection(detection(message), i, 1.0)
     m.update(1.0)
     assert m.tracks == []
-    m.measured(Position(1.0, i, position, np.full(3, np.nan)))  # of its motion nothing is known
-    m.measured(Attitude(1.0, i, quaternion, np.full(3, np.nan)))
+    m.add_measured_pose(Position(1.0, i, position, np.full(3, np.nan)))  # of its motion nothing is known
+    m.add_measured_pose(Attitude(1.0, i, quaternion, np.full(3, np.nan)))
     m.update(1.05)
     assert len(m.tracks) == 1
-    assert m.refused == 0
+    assert m.discarded == 0
 
     def nonsense(**changes):
         fields = {
@@ -77,15 +77,15 @@ def test_scans_wait_for_their_pose_and_nonsense_is_refused():
         {"frame": mavlink.MAV_FRAME_GLOBAL}, {"x": float("nan")}, {"y": float("inf")}, {"x": 0.0}, {"x": 1e6},
         {"max_distance": 0.0}, {"max_distance": float("nan")},
     ):  # fmt: skip
-        m.detected(detection(nonsense(**bad)), 0, 1.1)
-    assert m.refused == 7
-    m.detected(detection(nonsense()), 3, 1.1)  # of a vehicle whose pose never comes
+        m.add_detection(detection(nonsense(**bad)), 0, 1.1)
+    assert m.discarded == 7
+    m.add_detection(detection(nonsense()), 3, 1.1)  # of a vehicle whose pose never comes
     m.update(1.1)
     m.update(1.5)
-    assert m.refused == 8
+    assert m.discarded == 8
     for k in range(5000):  # a flood
-        m.detected(detection(nonsense(time_boot_ms=2000 + k)), 2, 2.0)
-    assert m.refused > 3000
+        m.add_detection(detection(nonsense(time_boot_ms=2000 + k)), 2, 2.0)
+    assert m.discarded > 3000
 
 
 # Obstacles of the mission
@@ -100,7 +100,7 @@ def blinded(kind):
         t = k / 20
         scene.feed(m, t, HERE, [])
         if kind == "broken":
-            m.broken({0, 1, 2, 3}, t)
+            m.set_failed_sensors({0, 1, 2, 3}, t)
         elif k % 2 == 0:
             for uav, messages in enumerate(frozen):
                 # How many points there are, and under which number, may still follow what is in sight.
@@ -109,7 +109,7 @@ def blinded(kind):
                     message.time_boot_ms = round(t * 1e3)
                     if kind == "nan":
                         message.x = np.nan
-                    m.detected(detection(message), uav, t)
+                    m.add_detection(detection(message), uav, t)
         m.update(t)
         yield m
 
@@ -120,15 +120,15 @@ def test_one_whose_sensor_works_is_enough():
     run(m, lambda t: here, 1.0, scene=scene)
     for k in range(20, 80):
         scene.feed(m, k / 20, HERE, [])
-        m.broken({0, 1, 3}, k / 20)
+        m.set_failed_sensors({0, 1, 3}, k / 20)
         m.update(k / 20)
-        assert not m.is_blind
+        assert not m.sensing_lost
     assert m.predict(np.array([4.0])) == []
 
 
 @pytest.mark.parametrize("kind", ["nan", "frozen", "frozen values", "broken"])
 def test_blind_vehicles_are_found_out_and_nothing_is_forgotten(kind):
-    told = [m.is_blind for m in blinded(kind)]
+    told = [m.sensing_lost for m in blinded(kind)]
     assert not told[0] and all(told[20:])
     *_, last = blinded(kind)
     (left,) = last.predict(np.array([4.0]))
@@ -144,13 +144,13 @@ def test_what_blind_vehicles_did_not_see_comes_back():
     assert m.predict(np.array([2.5])) == []
     for k in range(50, 75):
         scene.feed(m, k / 20, HERE, [])
-        m.broken({0, 1, 2, 3}, k / 20)
+        m.set_failed_sensors({0, 1, 2, 3}, k / 20)
         m.update(k / 20)
-    assert m.is_blind
+    assert m.sensing_lost
     for k in range(75, 135):  # and is kept, although they tell that they work again
         scene.feed(m, k / 20, HERE, [])
-        m.broken(set(), k / 20)
+        m.set_failed_sensors(set(), k / 20)
         m.update(k / 20)
-    assert not m.is_blind
+    assert not m.sensing_lost
     (back,) = m.predict(np.array([6.75]))
     assert np.linalg.norm(back.positions[0] - [5.0, 0.0, -6.0]) < 0.3

@@ -374,10 +374,9 @@ def obstacles(seen: Observation) -> None:
     """Obstacles that are no longer detected, or elsewhere than on the map."""
     if (obstacle_map := seen.flight.system.obstacle_map) is None:
         return
-    for name in obstacle_map.vanished:
+    for name in obstacle_map.take_deleted_tracks():
         seen.raise_alarm(name, MonitorAlarm.TRACK_LOST, "not detected although a vehicle is near")
-    obstacle_map.vanished.clear()
-    for uav, offset in obstacle_map.astray.items():
+    for uav, offset in obstacle_map.map_offsets.items():
         text = f"detects obstacles {float(np.linalg.norm(offset)):.2f} m from the map"
         seen.raise_alarm(seen.name(uav), MonitorAlarm.VEHICLE_MAP_OFFSET, text)
 

@@ -242,13 +242,13 @@ def _data_link_lost(system: System, moment: Moment) -> Trigger | None:
 
 
 def _obstacle_sensing_lost(system: System, moment: Moment) -> Trigger | None:
-    if moment.phase not in IN_AIR or system.obstacle_map is None or not system.obstacle_map.is_blind:
+    if moment.phase not in IN_AIR or system.obstacle_map is None or not system.obstacle_map.sensing_lost:
         return None
     return Trigger("no vehicle detects obstacles, or what all of them detect is impossible")
 
 
 def _map_offset(system: System, moment: Moment) -> Trigger | None:
-    if moment.phase not in IN_AIR or system.obstacle_map is None or not system.obstacle_map.is_astray:
+    if moment.phase not in IN_AIR or system.obstacle_map is None or not system.obstacle_map.map_offset_detected:
         return None
     return Trigger("no vehicle detects obstacles where they are on the map any more")
 

@@ -162,7 +162,7 @@ class GroundStation:
         obstacle_map, estimator = self.flight.system.obstacle_map, self.flight.estimator
         if obstacle_map is None:
             return
-        obstacle_map.broken({i for i, link in enumerate(self.links) if not link.sees}, time)
+        obstacle_map.set_failed_sensors({i for i, link in enumerate(self.links) if not link.sees}, time)
         noise = math.sqrt(estimator.health.adaptation.measurement_scale)
         obstacle_map.update(time, noise, estimator.unusable_poses(Position), estimator.unusable_poses(Attitude))
         self._recorder.obstacles(obstacle_map, time)
@@ -173,7 +173,7 @@ class GroundStation:
         self._identities.compare(estimated)
         if (obstacle_map := self.flight.system.obstacle_map) is not None:
             for sample in estimated:
-                obstacle_map.estimated(sample)
+                obstacle_map.add_estimated_pose(sample)
 
     def _setpoint_messages(self, i: int, now: float, setpoints: Setpoints | None) -> list[Message]:
         """Return stop plan and set-point of vehicle ``i`` (0 .. N-1), as far as there are any."""

@@ -108,7 +108,7 @@ class TelemetryRouter:
             obstacle_map = self._flight.system.obstacle_map
             # Detections from before a clock jump have the stamp of another pose.
             if obstacle_map is not None and now - link.clock.jumped > self._clock_settled:
-                obstacle_map.detected(detection(message), index, time)
+                obstacle_map.add_detection(detection(message), index, time)
         else:
             self._add_measurement(received, index, time)
         return time
@@ -137,7 +137,7 @@ class TelemetryRouter:
         self._identities.told(sample)
         used = self._flight.add_measurement(sample)
         if obstacle_map is not None and used is not None:
-            obstacle_map.measured(used)
+            obstacle_map.add_measured_pose(used)
 
 
 def whole_ms(time: float) -> float:

@@ -97,13 +97,13 @@ class FlightRecorder:
         if time < self._next_obstacles - _GRID_TOLERANCE:
             return
         self._next_obstacles = (math.floor(time / OBSTACLE_INTERVAL + _GRID_TOLERANCE) + 1) * OBSTACLE_INTERVAL
-        for belief in obstacle_map.beliefs(time):
+        for track in obstacle_map.confirmed_tracks(time):
             if self._obstacles is None:
                 self._obstacles = TableWriter(self._run_dir / "obstacles_estimate.csv", OBSTACLE_ESTIMATE_COLUMNS)
-            shape, columns = belief.shape, belief.shape.columns
+            shape, columns = track.shape, track.shape.columns
             self._obstacles.write(
-                [round(time, 6), belief.name, shape.kind, *belief.position, *belief.velocity, columns.radius,
-                 *columns.size, columns.yaw, belief.growth]
+                [round(time, 6), track.name, shape.kind, *track.position, *track.velocity, columns.radius,
+                 *columns.size, columns.yaw, track.growth]
             )  # fmt: skip
 
     def alarm(self, alarm: Alarm) -> None:

@@ -1,8 +1,9 @@
-"""Which cluster belongs to which obstacle: nearest surface, one obstacle of a kind for each cluster of a vehicle."""
+"""Association of clusters with obstacles: the nearest surface, a different one for each cluster of a vehicle."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,52 +13,58 @@ from idc_controller.geometry.box import Wall
 from idc_controller.geometry.distance import Bodies
 from idc_controller.geometry.shape import Shape
 from idc_controller.perception.scan_assembly import Cluster
+from idc_controller.perception.settings import AssociationSettings
 
 Array = NDArray[np.float64]
 
-REMEMBERED_GATE = 1.2  # m: as far may a cluster be from the obstacle to which it belonged before
-_REMEMBERED = 0.5  # m: what it is worth that it did
-_WALL_BEYOND = 4.0  # m: how much longer and higher than what is seen of it a wall may prove to be
 _FAR = 1e3
 
 
 def mean_distances(clusters: Sequence[Cluster], shapes: Sequence[Shape], centres: Array) -> Array:
-    """Mean distance of every cluster's points from every surface (clusters, bodies) (m).
+    """Return the mean distance of every cluster's points from every surface (clusters, bodies) (m).
 
-    ``shapes`` at ``centres`` (bodies, 3).
+    ``shapes`` at ``centres`` (bodies, 3) (NED, m).
     """
     if not shapes:
         return np.zeros((len(clusters), 0))
-    points = np.concatenate([cluster.seen.points for cluster in clusters])
-    counts = np.array([len(cluster.seen.points) for cluster in clusters])
+    points = np.concatenate([cluster.surface_points.points for cluster in clusters])
+    counts = np.array([len(cluster.surface_points.points) for cluster in clusters])
     starts = np.concatenate([[0], np.cumsum(counts)[:-1]])
     distance = np.abs(Bodies(shapes).distance(points, centres))
-    return (np.add.reduceat(distance, starts, axis=1) / counts).T
+    return np.asarray((np.add.reduceat(distance, starts, axis=1) / counts).T)
 
 
-def for_gating(shape: Shape) -> Shape:
-    """Return a shape under observation as large as it may prove to be."""
+def gating_shape(shape: Shape, wall_extension: float) -> Shape:
+    """Return a tracked shape as large as it may prove to be; ``wall_extension`` (m) beyond what was detected."""
     if not isinstance(shape, Wall):
         return shape
     x, y, z = shape.size
-    return Wall((x, y + _WALL_BEYOND, z + _WALL_BEYOND), shape.yaw)
+    return Wall((x, y + wall_extension, z + wall_extension), shape.yaw)
 
 
-def assigned(
-    clusters: Sequence[Cluster], distances: Array, gates: Array, remembered: Sequence[int | None]
+def associate(
+    clusters: Sequence[Cluster],
+    distances: Array,
+    gates: Array,
+    remembered: Sequence[int | None],
+    settings: AssociationSettings,
 ) -> list[int | None]:
-    """For every cluster the body it belongs to, None if to none.
+    """Return the body of every cluster, None if it belongs to none.
 
-    ``distances`` (clusters, bodies); ``gates`` (bodies,) (m); ``remembered``: the body of each cluster's vehicle and
-    number at the last frame. A vehicle has told its clusters apart: they are different bodies.
+    Args:
+        clusters: of one frame; those of one vehicle are different bodies.
+        distances: mean distances (clusters, bodies) (m).
+        gates: of the bodies (bodies,) (m).
+        remembered: the body of each cluster's vehicle and number at the last frame.
+        settings: gates and preference of remembered bodies.
     """
     result: list[int | None] = [None] * len(clusters)
     if distances.shape[1] == 0:
         return result
     cost = np.where(distances < gates, distances, _FAR)
     for row, body in enumerate(remembered):
-        if body is not None and distances[row, body] < max(REMEMBERED_GATE, gates[body]):
-            cost[row, body] = distances[row, body] - _REMEMBERED
+        if body is not None and distances[row, body] < max(settings.remembered_gate, gates[body]):
+            cost[row, body] = distances[row, body] - settings.remembered_gain
     uavs = np.array([cluster.uav for cluster in clusters])
     for uav in np.unique(uavs):
         rows = np.flatnonzero(uavs == uav)
@@ -65,3 +72,32 @@ def assigned(
             if cost[rows[i], body] < _FAR / 2.0:
                 result[rows[i]] = int(body)
     return result
+
+
+@dataclass
+class ClusterMemory:
+    """Obstacle of each vehicle's cluster number, for ``duration`` (s)."""
+
+    duration: float
+    _entries: dict[tuple[int, int], tuple[str, float]] = field(default_factory=dict)
+
+    def name(self, cluster: Cluster, time: float) -> str:
+        """Return the name of the cluster's obstacle at ``time`` (s); empty if there is none."""
+        name, since = self._entries.get((cluster.uav, cluster.number), ("", -np.inf))
+        return name if time - since < self.duration else ""
+
+    def set(self, cluster: Cluster, name: str, time: float) -> None:
+        """Assign the cluster's number to an obstacle at ``time`` (s)."""
+        self._entries[cluster.uav, cluster.number] = name, time
+
+    def rename(self, old: str, new: str) -> None:
+        """Assign all numbers of one obstacle to another."""
+        for key, (name, since) in tuple(self._entries.items()):
+            if name == old:
+                self._entries[key] = new, since
+
+    def forget(self, now: float) -> None:
+        """Discard what is too old at ``now`` (s)."""
+        for key, (_, since) in tuple(self._entries.items()):
+            if now - since > self.duration:
+                del self._entries[key]

@@ -1,22 +1,22 @@
-"""How an obstacle moves: a bank of Kalman filters, one a motion model, mixed by likelihood.
+"""Motion of an obstacle by an interacting multiple model (IMM) filter: a Kalman filter for each motion model.
 
 All models share the state (position, velocity, acceleration) on each of the three axes, and differ in how it goes on:
 
-- *static*: it stands;
+- *static*;
 - *constant velocity*, and *constant acceleration for a while* (Singer 1970), the latter slow and fast;
 - *harmonic* at several frequencies: x''' = -omega^2 x', a swing about a centre that the state implies.
 
-They interact as in the IMM estimator (Blom and Bar-Shalom 1988). The axes are filtered apart, with a model's weight in
-common. ``filterpy`` has the same filters one at a time; here all models and axes are one array, since there are many
-obstacles and little time. The tests hold a single model against ``filterpy``.
+They interact as in Blom and Bar-Shalom (1988). The axes are filtered separately, with a model's weight in common.
+``filterpy`` has the same filters one at a time; here all models and axes are one array, since there are many obstacles
+and little time. The tests compare a single model with ``filterpy``.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
+
+from idc_controller.perception.settings import ImmSettings
 
 Array = NDArray[np.float64]
 
@@ -24,48 +24,27 @@ _LOG_2PI = float(np.log(2.0 * np.pi))
 _DIAGONAL = np.arange(3)
 
 
-@dataclass(frozen=True)
-class BankSettings:
-    """Which models there are, and how much their motion strays. SI units."""
-
-    static_walk: float = 0.01
-    """Of the static model: random walk of its position (m / sqrt(s))."""
-    velocity_walk: float = 0.15
-    """Of constant velocity: random walk of the velocity (m/s / sqrt(s))."""
-    singer: tuple[tuple[float, float], ...] = ((1.0, 1.0), (4.0, 0.5))
-    """Standard deviation (m/s2) and correlation time (s) of the acceleration."""
-    frequencies: tuple[float, ...] = (0.5, 0.7, 1.0, 1.4, 2.0, 2.8)
-    """Of the harmonic models (rad/s)."""
-    harmonic_walk: float = 0.1
-    """Random walk of the harmonic models' acceleration at 1 rad/s; proportional to the frequency (m/s2 / sqrt(s))."""
-    first_velocity: float = 1.5
-    """Standard deviation of the velocity before anything is known of it (m/s)."""
-    first_acceleration: float = 1.5
-    """The same of the acceleration (m/s2)."""
-    change: float = 0.1
-    """Share of the models' weight that moves to the others in a second."""
-
-
 class MotionModels:
-    """Transition and process noise of all models (M of them), for arrays of time steps."""
+    """Transition and process noise of all M models, for arrays of time steps."""
 
-    def __init__(self, settings: BankSettings) -> None:
-        self.settings = settings
+    def __init__(self, settings: ImmSettings | None = None) -> None:
+        self.settings = settings = settings or ImmSettings()
+        singer = tuple(zip(settings.singer_accelerations, settings.singer_times, strict=True))
         self.names = (
-            "static", "velocity", *(f"singer {s:g}/{tau:g}" for s, tau in settings.singer),
+            "static", "velocity", *(f"singer {s:g}/{tau:g}" for s, tau in singer),
             *(f"harmonic {omega:g}" for omega in settings.frequencies),
         )  # fmt: skip
         self.count = len(self.names)
-        self._singer = slice(2, 2 + len(settings.singer))
-        self._harmonic = slice(2 + len(settings.singer), self.count)
-        self._sigma = np.array([s for s, _ in settings.singer])
-        self._tau = np.array([tau for _, tau in settings.singer])
+        self._singer = slice(2, 2 + len(singer))
+        self._harmonic = slice(2 + len(singer), self.count)
+        self._sigma = np.array(settings.singer_accelerations)
+        self._tau = np.array(settings.singer_times)
         self._omega = np.array(settings.frequencies)
         self._cache: dict[float, tuple[Array, Array]] = {}
         self._horizons: dict[bytes, tuple[Array, Array]] = {}
 
     def transition(self, dt: Array) -> Array:
-        """F (M, K, 3, 3) over the times ``dt`` (K,) (s), on (position, velocity, acceleration)."""
+        """Return F (M, K, 3, 3) over the times ``dt`` (K,) (s), on (position, velocity, acceleration)."""
         dt = np.asarray(dt, dtype=float)
         F = np.zeros((self.count, len(dt), 3, 3))
         F[:, :, 0, 0] = 1.0
@@ -87,7 +66,7 @@ class MotionModels:
         return F
 
     def noise(self, dt: Array) -> Array:
-        """Q (M, K, 3, 3) gathered over the times ``dt`` (K,) (s), by white noise on each model's last derivative."""
+        """Return Q (M, K, 3, 3) accumulated over the times ``dt`` (K,) (s)."""
         dt = np.asarray(dt, dtype=float)
         s = self.settings
         Q = np.zeros((self.count, len(dt), 3, 3))
@@ -105,7 +84,7 @@ class MotionModels:
         return Q
 
     def step(self, dt: float) -> tuple[Array, Array]:
-        """F and Q (M, 3, 3) over one step; remembered, since steps repeat."""
+        """Return F and Q (M, 3, 3) over one step (s); cached, since steps repeat."""
         key = round(dt, 5)
         if key not in self._cache:
             if len(self._cache) > 500:
@@ -114,7 +93,7 @@ class MotionModels:
         return self._cache[key]
 
     def horizon(self, dt: Array) -> tuple[Array, Array]:
-        """F and Q (M, K, 3, 3) over a whole horizon; remembered, since controllers ask for the same few."""
+        """Return F and Q (M, K, 3, 3) over a horizon (K,) (s); cached, since controllers use the same few."""
         rounded = np.round(dt, 4)
         key = rounded.tobytes()
         if key not in self._horizons:
@@ -124,7 +103,7 @@ class MotionModels:
         return self._horizons[key]
 
 
-class MotionBank:
+class MotionImm:
     """The motion of one obstacle: ``x`` (M, axis, 3), ``P`` (M, axis, 3, 3), ``weight`` (M,) at ``time`` (s)."""
 
     def __init__(self, models: MotionModels, time: float, position: Array, variance: Array) -> None:
@@ -135,27 +114,28 @@ class MotionBank:
         self.x[:, :, 0] = position
         self.P = np.zeros((m, 3, 3, 3))
         self.P[:, :, 0, 0] = variance
-        self.P[1:, :, 1, 1] = s.first_velocity**2
-        self.P[2:, :, 2, 2] = s.first_acceleration**2
+        self.P[1:, :, 1, 1] = s.initial_velocity**2
+        self.P[2:, :, 2, 2] = s.initial_acceleration**2
         # A Singer acceleration starts as large as it usually is.
-        self.P[2 : 2 + len(s.singer), :, 2, 2] = np.array([sigma for sigma, _ in s.singer])[:, None] ** 2
+        sigma = np.array(s.singer_accelerations)
+        self.P[2 : 2 + len(sigma), :, 2, 2] = sigma[:, None] ** 2
         self.weight = np.full(m, 1.0 / m)
 
     @property
     def state(self) -> tuple[Array, Array, Array]:
-        """Position, velocity and acceleration (3,) of the mixture."""
+        """Position (NED, m), velocity and acceleration (3,) of the mixture."""
         mean = self.weight @ self.x.reshape(len(self.weight), 9)
         position, velocity, acceleration = mean.reshape(3, 3).T
         return position, velocity, acceleration
 
     @property
     def position_variance(self) -> Array:
-        """(3,) (m2) of the mixture."""
+        """Variance of the mixture's position (3,) (m2)."""
         mean = self.weight @ self.x[:, :, 0]
-        return self.weight @ (self.P[:, :, 0, 0] + (self.x[:, :, 0] - mean) ** 2)
+        return np.asarray(self.weight @ (self.P[:, :, 0, 0] + (self.x[:, :, 0] - mean) ** 2))
 
     def advance(self, time: float) -> None:
-        """To ``time`` (s); harmless when it is there."""
+        """Predict to ``time`` (s); earlier times are passed over."""
         dt = time - self.time
         if dt <= 0.0:
             return
@@ -166,31 +146,32 @@ class MotionBank:
         self.P = F[:, None] @ self.P @ F_transposed[:, None] + Q[:, None]
         self.time = time
 
-    def measured(self, position: Array, variance: Array) -> float:
-        """The obstacle was at ``position`` (3,) with ``variance`` (3,) at the bank's time; a nan axis was not seen.
+    def update(self, position: Array, variance: Array) -> float:
+        """Correct by a ``position`` (3,) (m) with ``variance`` (3,) (m2); an axis that is nan is not measured.
 
-        Returns the square of the mixture's innovation over its variance, mean over the axes seen.
+        Returns:
+            The squared innovation of the mixture over its variance, mean over the measured axes.
         """
-        seen = np.isfinite(position)
+        measured = np.isfinite(position)
         S = self.P[:, :, 0, 0] + variance
         expected = self.weight @ self.x[:, :, 0]
-        off = np.where(seen, (position - expected) ** 2 / (self.position_variance + variance), 0.0)
-        y = np.where(seen, position - self.x[:, :, 0], 0.0)
-        log_likelihood = -0.5 * ((y**2 / S + np.log(S) + _LOG_2PI) * seen).sum(axis=1)
-        K = self.P[:, :, :, 0] / S[..., None] * seen[:, None]
+        squared = np.where(measured, (position - expected) ** 2 / (self.position_variance + variance), 0.0)
+        y = np.where(measured, position - self.x[:, :, 0], 0.0)
+        log_likelihood = -0.5 * ((y**2 / S + np.log(S) + _LOG_2PI) * measured).sum(axis=1)
+        K = self.P[:, :, :, 0] / S[..., None] * measured[:, None]
         self.x = self.x + K * y[..., None]
         self.P = self.P - K[..., :, None] * self.P[:, :, None, 0, :]
         weight = self.weight * np.exp(np.maximum(log_likelihood - log_likelihood.max(), -50.0))
         weight = np.maximum(weight, 1e-6 * weight.sum())
         self.weight = weight / weight.sum()
-        return float(off.sum()) / max(int(seen.sum()), 1)
+        return float(squared.sum()) / max(int(measured.sum()), 1)
 
     def shift(self, by: Array) -> None:
-        """Move the point that is tracked by (3,) (m)."""
+        """Shift the tracked point ``by`` (3,) (m)."""
         self.x[:, :, 0] += by
 
     def predict(self, times: Array) -> tuple[Array, Array]:
-        """Mean (K, 3) and covariance (K, 3, 3) of the position at ``times`` (K,) (s), of the mixture."""
+        """Return mean (K, 3) (m) and covariance (K, 3, 3) (m2) of the position at ``times`` (K,) (s)."""
         dt = np.maximum(np.asarray(times, dtype=float) - self.time, 0.0)
         F, Q = self.models.horizon(dt)
         f = F[:, :, 0, :]  # (M, K, 3): how the position comes about
@@ -206,9 +187,9 @@ class MotionBank:
         return mean, covariance
 
     def _mix(self, dt: float) -> None:
-        """Interaction: the obstacle may have changed its model; each filter starts from all, by what is likely."""
+        """Mix the models' states by the probability that the obstacle has changed its model."""
         m = len(self.weight)
-        change = min(self.models.settings.change * dt, 0.5)
+        change = min(self.models.settings.transition_rate * dt, 0.5)
         # From model i to j: stays with 1 - change, else any of the others.
         to = self.weight[:, None] * (np.eye(m) * (1.0 - change - change / (m - 1)) + change / (m - 1))
         weight = to.sum(axis=0)

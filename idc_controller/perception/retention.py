@@ -1,61 +1,62 @@
-"""How long a followed obstacle outlives not being seen."""
+"""Retention of tracks without detections: coasting, deletion, and restoration when obstacle sensing was lost."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from idc_controller.perception.settings import RetentionSettings
 from idc_controller.perception.track import Track
 
-GHOST_AFTER = 1.0  # s unseen, although in range
-FORGET_AFTER = 2.0  # s unseen and out of range, if it moves
-UNCONFIRMED_AFTER = 0.5  # s
-GHOST_DOUBTED = 3.0  # s for which one that was not seen may still have been there: the sensors may prove to be blind
 
+class TrackRetention:
+    """Decides which tracks are kept; remembers the deleted ones for a while. Times are the team's (s)."""
 
-class Unseen:
-    """Remembers the ghosts: what was believed, and was not where vehicles could not have missed it."""
+    def __init__(self, settings: RetentionSettings | None = None) -> None:
+        self._settings = settings or RetentionSettings()
+        self._deleted: list[tuple[float, Track]] = []
 
-    def __init__(self) -> None:
-        self._ghosts: list[tuple[float, Track]] = []
-
-    def left(
-        self, tracks: Sequence[Track], now: float, blind: bool, could_see: Callable[[Track], bool]
+    def retain(
+        self, tracks: Sequence[Track], now: float, sensing_lost: bool, in_field_of_view: Callable[[Track], bool]
     ) -> tuple[list[Track], list[str]]:
-        """The tracks that are kept at ``now`` (s), and the names of those that vanished.
+        """Return the tracks that are kept at ``now`` (s), and the names of confirmed ones that are deleted.
 
-        ``blind``: no vehicle sees anything; then nothing is forgotten. ``could_see``: whether a vehicle could not miss
-        it.
+        Args:
+            tracks: all tracks.
+            now: s.
+            sensing_lost: whether no vehicle can detect obstacles; then nothing is deleted.
+            in_field_of_view: whether a vehicle would certainly detect a track.
         """
-        self._ghosts = [(when, track) for when, track in self._ghosts if now - when <= GHOST_DOUBTED]
-        if blind:
-            return self._kept(tracks), []
-        left, vanished = [], []
+        s = self._settings
+        self._deleted = [(since, track) for since, track in self._deleted if now - since <= s.restorable]
+        if sensing_lost:
+            return self._restored(tracks), []
+        kept, deleted = [], []
         for track in tracks:
-            silent = now - track.last_seen
-            is_known = track.known is not None
-            if silent <= UNCONFIRMED_AFTER or track.is_kept or (is_known and track.is_gone):
-                left.append(track)
-            elif not track.is_believed:
+            silence = now - track.last_detected
+            on_map = track.map_shape is not None
+            if silence <= s.tentative_time or track.is_retained or (on_map and track.is_deleted):
+                kept.append(track)
+            elif not track.is_confirmed:
                 pass
-            elif silent > GHOST_AFTER and could_see(track):
-                vanished.append(track.name)
-                self._ghosts.append((now, track))
-                if is_known:
-                    track.is_gone = True
-                    left.append(track)
-            elif is_known or track.is_static or silent <= FORGET_AFTER:
-                left.append(track)
-        return left, vanished
+            elif silence > s.delete_after and in_field_of_view(track):
+                deleted.append(track.name)
+                self._deleted.append((now, track))
+                if on_map:
+                    track.is_deleted = True
+                    kept.append(track)
+            elif on_map or track.is_static or silence <= s.forget_after:
+                kept.append(track)
+        return kept, deleted
 
-    def _kept(self, tracks: Sequence[Track]) -> list[Track]:
-        """What was believed before the sensors proved to be blind; what they did not see since is no ghost."""
-        back = []
-        for _, track in self._ghosts:
-            track.is_gone = False
+    def _restored(self, tracks: Sequence[Track]) -> list[Track]:
+        """Return the tracks confirmed before obstacle sensing was lost, with those that were deleted meanwhile."""
+        restored = []
+        for _, track in self._deleted:
+            track.is_deleted = False
             if track not in tracks:
-                back.append(track)
-        self._ghosts.clear()
-        kept = [*tracks, *back]
+                restored.append(track)
+        self._deleted.clear()
+        kept = [*tracks, *restored]
         for track in kept:
-            track.is_kept = track.is_kept or track.is_believed
+            track.is_retained = track.is_retained or track.is_confirmed
         return kept

@@ -1,4 +1,4 @@
-"""One obstacle that is followed by the vehicles' sensors."""
+"""Track of one obstacle."""
 
 from __future__ import annotations
 
@@ -12,92 +12,98 @@ from idc_controller.geometry.obstacles import PredictedObstacle
 from idc_controller.geometry.shape import Shape
 from idc_controller.perception.motion_imm import MotionModels
 from idc_controller.perception.obstacle_filter import ObstacleFilter
+from idc_controller.perception.settings import PerceptionSettings
 from idc_controller.perception.surfaces.points import SurfacePoints, joined
 
 Array = NDArray[np.float64]
 
-OUT_OF_SIGHT = 0.3  # s
-CONFIRMED = 2  # clusters after which a track is believed
-GROWTH_UNSEEN = 0.5  # m, of a known obstacle whose place has not been seen yet
-
 
 @dataclass(eq=False)
 class Track:
-    """An obstacle with a filter; a known one that moves has none before it is seen. Times are the team's (s)."""
+    """An obstacle with its filter; a moving obstacle of the map has none until it is detected. Times in s."""
 
     name: str
     models: MotionModels
-    filter: ObstacleFilter | None = None
-    known: Shape | None = None
+    settings: PerceptionSettings
+    map_shape: Shape | None = None
+    """Of an obstacle of the map."""
+    map_centre: Array = field(default_factory=lambda: np.zeros(3))
+    """Its place on the map (3,) (NED, m), until it is detected."""
     scatter: float = 0.0
-    """Of its points (m2), before it is seen."""
-    place: Array = field(default_factory=lambda: np.zeros(3))
-    """Of a known one, before it is seen: its place on the map (3,)."""
-    last_seen: float = -math.inf
+    """Variance of its points beyond their sensors' (m2), until it is detected."""
+    filter: ObstacleFilter | None = None
+    last_detected: float = -math.inf
     clusters: int = 0
-    is_gone: bool = False
-    """It was not where it was expected, although the vehicles could have seen it there."""
-    is_kept: bool = False
-    """It was believed when all sensors proved to be blind, and is from then on, whatever they do not see."""
+    is_deleted: bool = False
+    """It was not detected where it should be, in the field of view; one of the map is kept for another detection."""
+    is_retained: bool = False
+    """It was confirmed when all obstacle sensing proved to be lost: never deleted from then on."""
     overlaps: dict[str, int] = field(default_factory=dict)
-    """How many frames in a row it covered what belongs to another track."""
+    """Frames in a row in which its points belonged to another track as well."""
 
     def update(self, parts: list[SurfacePoints]) -> None:
-        """Points of one frame, by all vehicles that see it."""
-        seen = joined(parts)
+        """Take the points of one frame, by all vehicles that detect it."""
+        points = joined(parts)
         if self.filter is None:
-            self.filter = ObstacleFilter(self.models, seen, self.known, scatter=self.scatter)
+            self.filter = ObstacleFilter(
+                self.models, points, self.map_shape, self.settings.tracking, scatter=self.scatter
+            )
         else:
-            self.filter.update(seen)
-        self.last_seen = max(self.last_seen, seen.time)
+            self.filter.update(points)
+        self.last_detected = max(self.last_detected, points.time)
         self.clusters += len(parts)
-        self.is_gone = False
+        self.is_deleted = False
 
     @property
-    def is_believed(self) -> bool:
+    def is_confirmed(self) -> bool:
         """Whether it counts as an obstacle."""
-        return not self.is_gone and (self.known is not None or self.clusters >= CONFIRMED)
+        confirmed = self.map_shape is not None or self.clusters >= self.settings.retention.confirmations
+        return not self.is_deleted and confirmed
 
     @property
     def is_static(self) -> bool:
-        """Whether it surely stands."""
+        """Whether it stands still."""
         return self.filter is not None and self.filter.is_static
 
     @property
     def shape(self) -> Shape:
-        """As it is known or believed to be."""
-        if self.known is not None:
-            return self.known
+        """Shape on the map or as estimated."""
+        if self.map_shape is not None:
+            return self.map_shape
         assert self.filter is not None
         return self.filter.shape
 
+    @property
+    def velocity(self) -> Array:
+        """Velocity (3,) (NED, m/s)."""
+        return np.zeros(3) if self.filter is None else self.filter.state[1]
+
     def predict(self, times: Array, now: float) -> PredictedObstacle:
-        """At ``times`` (K,), as believed at ``now``. One that stood when it was last seen is taken to stand still."""
+        """Return the obstacle at ``times`` (K,) as estimated at ``now`` (s); a static one that coasts stays at rest."""
         if self.filter is None:
-            positions = np.tile(self.place, (len(times), 1))
-            return PredictedObstacle(self.name, self.shape, positions, np.full(len(times), GROWTH_UNSEEN))
-        if self._rests(now):
-            times = times - (now - self.last_seen)
+            positions = np.tile(self.map_centre, (len(times), 1))
+            growth = np.full(len(times), self.settings.retention.undetected_growth)
+            return PredictedObstacle(self.name, self.shape, positions, growth)
+        if self._coasts_at_rest(now):
+            times = times - (now - self.last_detected)
         return PredictedObstacle(self.name, self.shape, *self.filter.predict(times))
 
     def centre(self, time: float) -> tuple[Array, float]:
-        """Centre (3,) and growth at one time, as believed then."""
+        """Return centre (3,) (NED, m) and growth (m) at ``time`` (s), as estimated then."""
         predicted = self.predict(np.array([time]), time)
         return predicted.positions[0], float(predicted.growth[0])
 
     def expected(self, time: float) -> tuple[Array, float]:
-        """Where it is expected at the time of a new frame, and its standard deviation; carries the filter there."""
+        """Return the expected centre (3,) (NED, m) at the time of a new frame, and its standard deviation (m).
+
+        The filter is predicted to that time.
+        """
+        largest = self.settings.retention.undetected_growth
         if self.filter is None:
-            return self.place, GROWTH_UNSEEN
-        if not self._rests(time):
+            return self.map_centre, largest
+        if not self._coasts_at_rest(time):
             self.filter.advance(time)
-        return self.filter.state[0], min(self.filter.position_sigma, GROWTH_UNSEEN)
+        return self.filter.state[0], min(self.filter.position_sigma, largest)
 
-    def _rests(self, now: float) -> bool:
-        """Whether nothing is to be expected of it although it is not seen."""
-        return self.is_static and now - self.last_seen > OUT_OF_SIGHT
-
-    @property
-    def velocity(self) -> Array:
-        """(3,) (m/s)"""
-        return np.zeros(3) if self.filter is None else self.filter.state[1]
+    def _coasts_at_rest(self, now: float) -> bool:
+        return self.is_static and now - self.last_detected > self.settings.retention.coasting_after

@@ -1,13 +1,14 @@
-"""The bank of Kalman filters: against filterpy, against exact motion, and on its own account of its errors."""
+"""The imm of Kalman filters: against filterpy, against exact motion, and on its own account of its errors."""
 
 import numpy as np
 import pytest
 from filterpy.kalman import KalmanFilter
 from scipy.linalg import expm
 
-from idc_controller.perception.motion_imm import BankSettings, MotionBank, MotionModels
+from idc_controller.perception.motion_imm import MotionImm, MotionModels
+from idc_controller.perception.settings import ImmSettings
 
-MODELS = MotionModels(BankSettings())
+MODELS = MotionModels()
 SIGMA = 0.03
 VARIANCE = np.full(3, SIGMA**2)
 
@@ -19,9 +20,9 @@ def continuous(index):
         return np.zeros((3, 3))
     if index == 1:
         return np.array([[0, 1, 0], [0, 0, 0], [0, 0, 0.0]])
-    if index < 2 + len(s.singer):
-        return np.array([[0, 1, 0], [0, 0, 1], [0, 0, -1 / s.singer[index - 2][1]]])
-    omega = s.frequencies[index - 2 - len(s.singer)]
+    if index < 2 + len(s.singer_times):
+        return np.array([[0, 1, 0], [0, 0, 1], [0, 0, -1 / s.singer_times[index - 2]]])
+    omega = s.frequencies[index - 2 - len(s.singer_times)]
     return np.array([[0, 1, 0], [0, 0, 1], [0, -(omega**2), 0.0]])
 
 
@@ -40,7 +41,11 @@ def test_transitions_are_the_exponentials(dt):
 def test_noise_is_the_integral(dt):
     Q = MODELS.noise(np.array([dt]))[:, 0]
     s = MODELS.settings
-    strength = [0.0, 0.0, *(2 * sigma**2 / tau for sigma, tau in s.singer)]
+    strength = [
+        0.0,
+        0.0,
+        *(2 * sigma**2 / tau for sigma, tau in zip(s.singer_accelerations, s.singer_times, strict=True)),
+    ]
     strength += [(s.harmonic_walk * omega) ** 2 for omega in s.frequencies]
     t = np.linspace(0.0, dt, 2001)
     for i in range(2, MODELS.count):
@@ -54,44 +59,44 @@ def test_noise_is_the_integral(dt):
 @pytest.mark.parametrize("singer", [(1.0, 1.0), (4.0, 0.5)])
 def test_one_model_is_the_kalman_filter_of_filterpy(singer):
     """With all weight on one model and no changes between them, axis by axis."""
-    models = MotionModels(BankSettings(change=0.0, singer=(singer,)))
+    models = MotionModels(ImmSettings(transition_rate=0.0, singer_accelerations=singer[:1], singer_times=singer[1:]))
     rng = np.random.default_rng(1)
-    bank = MotionBank(models, 0.0, np.array([1.0, 2.0, 3.0]), VARIANCE)
+    imm = MotionImm(models, 0.0, np.array([1.0, 2.0, 3.0]), VARIANCE)
     index = 2
     references = []
     for axis in range(3):
         reference = KalmanFilter(dim_x=3, dim_z=1)
-        reference.x = bank.x[index, axis].copy()
-        reference.P = bank.P[index, axis].copy()
+        reference.x = imm.x[index, axis].copy()
+        reference.P = imm.P[index, axis].copy()
         reference.H = np.array([[1.0, 0.0, 0.0]])
         reference.R = np.array([[VARIANCE[axis]]])
         references.append(reference)
     F, Q = models.step(0.1)
     for k in range(1, 30):
-        bank.weight = np.eye(models.count)[index] + 1e-12
+        imm.weight = np.eye(models.count)[index] + 1e-12
         z = np.array([1.0, 2.0, 3.0]) + 0.05 * k + rng.normal(0.0, SIGMA, 3)
-        bank.advance(0.1 * k)
-        bank.measured(z, VARIANCE)
+        imm.advance(0.1 * k)
+        imm.update(z, VARIANCE)
         for axis, reference in enumerate(references):
             reference.predict(F=F[index], Q=Q[index])
             reference.update(z[axis])
-            np.testing.assert_allclose(bank.x[index, axis], np.ravel(reference.x), atol=1e-9)
-            np.testing.assert_allclose(bank.P[index, axis], reference.P, atol=1e-9)
+            np.testing.assert_allclose(imm.x[index, axis], np.ravel(reference.x), atol=1e-9)
+            np.testing.assert_allclose(imm.P[index, axis], reference.P, atol=1e-9)
 
 
-def followed(motion, seed=0, until=8.0, each=lambda bank: None):
-    bank = None
+def followed(motion, seed=0, until=8.0, each=lambda imm: None):
+    imm = None
     rng = np.random.default_rng(seed)
     for k in range(round(until * 10)):
         t = 0.1 * k
         z = motion(t) + rng.normal(0.0, SIGMA, 3)
-        if bank is None:
-            bank = MotionBank(MODELS, t, z, VARIANCE)
+        if imm is None:
+            imm = MotionImm(MODELS, t, z, VARIANCE)
         else:
-            bank.advance(t)
-            bank.measured(z, VARIANCE)
-        each(bank)
-    return bank
+            imm.advance(t)
+            imm.update(z, VARIANCE)
+        each(imm)
+    return imm
 
 
 @pytest.mark.parametrize(
@@ -107,15 +112,15 @@ def followed(motion, seed=0, until=8.0, each=lambda bank: None):
 def test_the_right_model_wins_and_foresees(motion, likely):
     errors = []
 
-    def watch(bank):
-        if bank.time > 4.0:
-            times = bank.time + np.array([0.0, 1.0])
-            errors.append(bank.predict(times)[0] - [motion(t) for t in times])
+    def watch(imm):
+        if imm.time > 4.0:
+            times = imm.time + np.array([0.0, 1.0])
+            errors.append(imm.predict(times)[0] - [motion(t) for t in times])
 
-    bank = followed(motion, each=watch)
-    assert MODELS.names[int(np.argmax(bank.weight))] == likely
-    times = bank.time + np.array([0.0, 0.5, 1.0])
-    _, covariance = bank.predict(times)
+    imm = followed(motion, each=watch)
+    assert MODELS.names[int(np.argmax(imm.weight))] == likely
+    times = imm.time + np.array([0.0, 0.5, 1.0])
+    _, covariance = imm.predict(times)
     now, ahead = np.sqrt(np.mean(np.sum(np.square(errors), axis=2), axis=0))
     assert now < 0.05
     assert ahead < 0.2
@@ -124,31 +129,31 @@ def test_the_right_model_wins_and_foresees(motion, likely):
 
 
 def test_prediction_is_what_advancing_would_give_when_models_do_not_change():
-    models = MotionModels(BankSettings(change=0.0))
-    bank = MotionBank(models, 0.0, np.array([1.0, 0.0, -5.0]), VARIANCE)
+    models = MotionModels(ImmSettings(transition_rate=0.0))
+    imm = MotionImm(models, 0.0, np.array([1.0, 0.0, -5.0]), VARIANCE)
     for k in range(1, 8):
-        bank.advance(0.1 * k)
-        bank.measured(np.array([1.0 + 0.1 * k, 0.0, -5.0]), VARIANCE)
-    mean, covariance = bank.predict(np.array([bank.time + 0.4]))
-    bank.advance(bank.time + 0.4)
-    np.testing.assert_allclose(mean[0], bank.state[0], atol=1e-12)
-    np.testing.assert_allclose(np.diag(covariance[0]), bank.position_variance, atol=1e-9)
+        imm.advance(0.1 * k)
+        imm.update(np.array([1.0 + 0.1 * k, 0.0, -5.0]), VARIANCE)
+    mean, covariance = imm.predict(np.array([imm.time + 0.4]))
+    imm.advance(imm.time + 0.4)
+    np.testing.assert_allclose(mean[0], imm.state[0], atol=1e-12)
+    np.testing.assert_allclose(np.diag(covariance[0]), imm.position_variance, atol=1e-9)
 
 
 def test_an_axis_that_was_not_seen_is_left_alone():
-    bank = followed(lambda t: np.array([t, 0.0, 0.0]), until=2.0)
-    before = bank.x[:, 1].copy()
-    off = bank.measured(np.array([1.9, np.nan, 0.0]), VARIANCE)
-    np.testing.assert_array_equal(bank.x[:, 1], before)
+    imm = followed(lambda t: np.array([t, 0.0, 0.0]), until=2.0)
+    before = imm.x[:, 1].copy()
+    off = imm.update(np.array([1.9, np.nan, 0.0]), VARIANCE)
+    np.testing.assert_array_equal(imm.x[:, 1], before)
     assert np.isfinite(off)
 
 
 def test_the_innovation_that_is_returned_is_in_units_of_its_own_spread():
     near, far = (followed(lambda t: np.array([t, 0.0, 0.0]), until=2.0) for _ in range(2))
     ahead = near.time + 0.1
-    for bank in (near, far):
-        bank.advance(ahead)
+    for imm in (near, far):
+        imm.advance(ahead)
     spread = np.sqrt(near.position_variance + VARIANCE)
     expected = near.state[0]
-    assert near.measured(expected, VARIANCE) == pytest.approx(0.0, abs=1e-12)
-    assert far.measured(expected + 3.0 * spread, VARIANCE) == pytest.approx(9.0)
+    assert near.update(expected, VARIANCE) == pytest.approx(0.0, abs=1e-12)
+    assert far.update(expected + 3.0 * spread, VARIANCE) == pytest.approx(9.0)

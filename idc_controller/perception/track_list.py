@@ -1,0 +1,119 @@
+"""List of tracks: initiation from unassigned clusters, merging, and retention."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from idc_controller.perception.association import ClusterMemory, gating_shape, mean_distances
+from idc_controller.perception.motion_imm import MotionModels
+from idc_controller.perception.retention import TrackRetention
+from idc_controller.perception.scan_assembly import Cluster
+from idc_controller.perception.settings import PerceptionSettings
+from idc_controller.perception.track import Track
+
+Array = NDArray[np.float64]
+
+
+class TrackList:
+    """Tracks, the oldest first. Times are the team's (s)."""
+
+    def __init__(
+        self, known: Sequence[Track], names: Sequence[str], models: MotionModels, settings: PerceptionSettings
+    ) -> None:
+        """``known``: tracks of the map's moving obstacles; ``names``: of all its obstacles."""
+        self._settings = settings
+        self.tracks = list(known)
+        self.memory = ClusterMemory(settings.association.memory)
+        self._models = models
+        self._names = set(names)
+        self._retention = TrackRetention(settings.retention)
+        self._next_number = 1
+        self._scatter = 0.0
+
+    def update(self, assigned: dict[int, list[Cluster]]) -> None:
+        """Update tracks by the clusters of one frame, by index of the track."""
+        for index, members in assigned.items():
+            self.tracks[index].update([cluster.surface_points for cluster in members])
+        # Scatter is of the sensors: new tracks begin with it.
+        scatter = [t.filter.scatter for t in self.tracks if t.map_shape is None and t.filter is not None]
+        self._scatter = max(scatter, default=self._scatter)
+
+    def begin(self, clusters: list[Cluster], time: float) -> None:
+        """Begin tracks from clusters that belong to no obstacle, at ``time`` (s)."""
+        for members in self._grouped(clusters):
+            while f"track {self._next_number}" in self._names:
+                self._next_number += 1
+            track = self._track(f"track {self._next_number}")
+            self._next_number += 1
+            track.update([member.surface_points for member in members])
+            self.tracks.append(track)
+            for member in members:
+                self.memory.set(member, track.name, time)
+
+    def merge(self, clusters: list[Cluster], bodies: list[int | None], distances: Array, standing: list[str]) -> None:
+        """Remove the younger of two tracks of one obstacle, whose points belong to the older one for some frames.
+
+        Args:
+            clusters: of one frame.
+            bodies: index of the track or standing obstacle of each (None: none).
+            distances: mean distances (clusters, tracks and standing obstacles) (m).
+            standing: names of the standing obstacles of the map, which come after the tracks.
+        """
+        s, tracks = self._settings.association, self.tracks[:]
+        names = [track.name for track in tracks] + standing
+        by_track: dict[int, list[int]] = defaultdict(list)
+        for row, body in enumerate(bodies):
+            if body is not None and body < len(tracks):
+                by_track[body].append(row)
+        for younger, rows in by_track.items():
+            track = tracks[younger]
+            if track.map_shape is not None:
+                continue
+            uavs = {clusters[row].uav for row in rows}
+            for older, name in enumerate(names):
+                if older < len(tracks) and (older >= younger or tracks[older].filter is None):
+                    continue
+                apart = any(bodies[i] == older and clusters[i].uav in uavs for i in range(len(clusters)))
+                if apart or distances[rows, older].max() > s.merge_gate:
+                    track.overlaps.pop(name, None)
+                    continue
+                track.overlaps[name] = track.overlaps.get(name, 0) + 1
+                if track.overlaps[name] >= s.merge_frames:
+                    if track in self.tracks:
+                        self.tracks.remove(track)
+                    self.memory.rename(track.name, name)
+                    break
+
+    def retain(self, now: float, sensing_lost: bool, in_field_of_view: Callable[[Track], bool]) -> list[str]:
+        """Delete tracks, see :meth:`TrackRetention.retain`; return the names of confirmed ones that are deleted."""
+        self.tracks, deleted = self._retention.retain(self.tracks, now, sensing_lost, in_field_of_view)
+        self.memory.forget(now)
+        return deleted
+
+    def _track(self, name: str) -> Track:
+        return Track(name, self._models, self._settings, scatter=self._scatter)
+
+    def _grouped(self, clusters: list[Cluster]) -> list[list[Cluster]]:
+        """Return clusters of several vehicles that lie on one surface, together."""
+        s = self._settings.association
+        groups: list[tuple[list[Cluster], Track]] = []
+        for cluster in clusters:
+            for members, trial in groups:
+                if any(member.uav == cluster.uav for member in members):
+                    continue
+                centre, _ = trial.centre(cluster.surface_points.time)
+                shape = gating_shape(trial.shape, s.wall_extension)
+                if mean_distances([cluster], [shape], centre[None])[0, 0] < s.group_gate:
+                    members.append(cluster)
+                    trial.filter = None
+                    trial.update([member.surface_points for member in members])
+                    break
+            else:
+                trial = self._track("")
+                trial.update([cluster.surface_points])
+                groups.append(([cluster], trial))
+        return [members for members, _ in groups]

@@ -1,0 +1,89 @@
+"""Manoeuvre detection: model mismatch and prediction error of obstacles."""
+
+import numpy as np
+import pytest
+
+from idc_controller.perception.manoeuvre import ManoeuvreDetector
+from idc_controller.perception.motion_imm import MotionImm, MotionModels
+from idc_controller.perception.settings import ManoeuvreSettings
+
+SETTINGS = ManoeuvreSettings()
+SIGMA = 0.03
+VARIANCE = np.full(3, SIGMA**2)
+STEP = 0.1
+
+
+def detector_of(motion, until, seed=1):
+    """The detector of an obstacle whose ``motion`` an IMM filter follows."""
+    rng = np.random.default_rng(seed)
+    imm = MotionImm(MotionModels(), 0.0, motion(0.0), VARIANCE)
+    detector = ManoeuvreDetector(0.0, SETTINGS)
+    for k in range(1, round(until / STEP) + 1):
+        imm.advance(STEP * k)
+        detector.advance(imm.time)
+        detector.add_innovation(imm.update(motion(imm.time) + SIGMA * rng.standard_normal(3), VARIANCE))
+        detector.compare(*imm.state[:2])
+        if detector.is_settled:
+            detector.add_prediction(imm.predict(np.array([imm.time + SETTINGS.horizon]))[0][0])
+    return detector
+
+
+def along_north(distance):
+    return lambda t: np.array([distance(t), 0.0, 0.0])
+
+
+def detectors(motion, until):
+    return [detector_of(motion, until, seed) for seed in range(1, 11)]
+
+
+def stopping(t):
+    return 2.0 * min(t, 3.0)
+
+
+def test_detector_finds_no_manoeuvre_in_steady_motion():
+    worst = max(detectors(along_north(lambda t: 2.0 * t), until=8.0), key=lambda detector: detector.prediction_error)
+    assert worst.prediction_error < 0.25
+    assert worst.growth_limit(0.0) < SETTINGS.growth_limit - 0.5
+
+
+def test_detector_finds_mismatch_of_obstacle_that_stops():
+    steady = detectors(along_north(lambda t: 2.0 * t), until=4.0)
+    stopped = detectors(along_north(stopping), until=4.0)
+    assert np.mean([detector.model_mismatch for detector in steady]) < 0.5
+    assert min(detector.model_mismatch for detector in stopped) > 0.6
+    detector = stopped[0]
+    spread = np.sqrt(detector.variance(np.array([1.0, 2.0])))
+    assert spread[0] > 0.6 * 0.5 * SETTINGS.mismatch_acceleration
+    assert spread[1] == pytest.approx(4.0 * spread[0])
+
+
+def test_detector_finds_prediction_error_of_obstacle_that_stops_and_starts_again():
+    def stops_and_goes(t):
+        return 2.0 * (min(t, 5.0) + max(t - 7.0, 0.0))
+
+    before = detector_of(along_north(stops_and_goes), until=4.9)
+    after = detector_of(along_north(stops_and_goes), until=7.0)
+    assert before.prediction_error < 0.2
+    assert after.prediction_error > 0.8  # of 2 m that it was expected to go
+    assert after.growth_limit(0.0) == SETTINGS.growth_limit
+
+
+def test_prediction_error_decays():
+    detector = ManoeuvreDetector(0.0, SETTINGS)
+    detector.advance(4.0)
+    detector.add_prediction(np.zeros(3))
+    detector.advance(5.0)
+    detector.compare(np.array([0.65, 0.0, 0.0]), np.zeros(3))
+    assert detector.prediction_error == pytest.approx(0.5)
+    assert detector.growth_limit(0.0) == pytest.approx(SETTINGS.growth_max + 0.5 * SETTINGS.growth_per_error)
+    detector.advance(5.0 + SETTINGS.memory)
+    assert detector.prediction_error == pytest.approx(0.5 / np.e)
+
+
+def test_prediction_between_frames_is_compared_at_its_time():
+    detector = ManoeuvreDetector(0.0, SETTINGS)
+    detector.advance(4.0)
+    detector.add_prediction(np.array([1.0, 0.0, 0.0]))
+    detector.advance(5.04)
+    detector.compare(np.array([1.04, 0.0, 0.0]), np.array([1.0, 0.0, 0.0]))
+    assert detector.prediction_error == 0.0
