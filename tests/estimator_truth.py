@@ -7,7 +7,7 @@ from idc_controller.rotations import euler_from_quaternion, rotation_from_quater
 
 
 def true_state(state, parameters):
-    """x (12 + 11 N,) of a WorldState; ``n_acc``, which no sensor and no world tells, is nan."""
+    """x (12 + 11 N,) of a WorldState; ``n_acc``, which neither sensors nor world measure, is nan."""
     layout = StateLayout(parameters.number_of_uavs)
     x = np.full(layout.size, np.nan)
     r_0, v_0 = np.array(state.payload_position_in_world), np.array(state.payload_velocity_in_world)
@@ -32,5 +32,5 @@ def true_state(state, parameters):
 
 
 def known_to_the_world(layout):
-    """Indices of the coordinates that :func:`true_state` tells."""
+    """Indices of the coordinates that :func:`true_state` has."""
     return np.setdiff1d(np.arange(layout.size), np.arange(layout.n_acc.start, layout.n_acc.stop))

@@ -1,4 +1,4 @@
-"""Obstacles seen by range sensors, for tests of the ground's obstacle estimate: points with noise, no wire."""
+"""Obstacles detected by range sensors, for tests of the obstacle map: points with noise, no MAVLink."""
 
 import math
 
@@ -58,28 +58,28 @@ class Scene:
         self.sensors = [RangeSensor(reach, noise, seed, i) for i in range(1, uavs + 1)]
 
     def look(self, time, centre, obstacles):
-        """[(uav, believed position, believed attitude, RangeSample)] at ``time``, the formation at ``centre`` (3,)."""
+        """Return [(uav, position, attitude, RangeSample)] at ``time``, the formation at ``centre`` (3,)."""
         found = []
         for i, sensor in enumerate(self.sensors):
             position = np.asarray(centre) + FORMATION[i]
             angles = self.rng.normal(0.0, 0.05, 3)
             scan = sensor.scan(time, position, tuple(quaternion_from_euler(*angles)), obstacles)
-            believed = position + self.rng.normal(0.0, POSITION_NOISE, 3)
+            measured = position + self.rng.normal(0.0, POSITION_NOISE, 3)
             errors = self.rng.normal(0.0, ATTITUDE_NOISE, 3)
             if self.rng.uniform() >= self.loss:
-                found.append((i, believed, quaternion_from_euler(*(angles + errors)), scan))
+                found.append((i, measured, quaternion_from_euler(*(angles + errors)), scan))
         return found
 
     def scans(self, time, centre, obstacles):
         """[(uav, id, SurfacePoints)] of the scans at ``time`` with the formation at ``centre`` (3,)."""
         found = []
-        for i, believed, quaternion, scan in self.look(time, centre, obstacles):
+        for i, measured, quaternion, scan in self.look(time, centre, obstacles):
             rotation = rotation_from_quaternion(quaternion)
             for number in sorted({d.obstacle_id for d in scan.detections}):
                 body = np.array([d.position_in_body for d in scan.detections if d.obstacle_id == number])
                 distance = np.linalg.norm(body, axis=1)
                 found.append((i, number, SurfacePoints(
-                    time, believed + body @ rotation.T, np.tile(believed, (len(body), 1)),
+                    time, measured + body @ rotation.T, np.tile(measured, (len(body), 1)),
                     distance > self.reach - 4.0 * self.noise, self.noise,
                     POSITION_NOISE**2 + (ATTITUDE_NOISE * distance) ** 2,
                 )))  # fmt: skip
@@ -88,7 +88,7 @@ class Scene:
     def feed(self, obstacle_map, time, centre, obstacles, off=None):
         """Hand a map what it would get from telemetry at ``time``.
 
-        ``off`` (3,): what the vehicles are off by where they say they are (m), while the ground knows better.
+        ``off`` (3,): error of the reported positions (m), of which the ground has estimates.
         """
         for i, position, quaternion, scan in self.look(time, centre, obstacles):
             obstacle_map.add_measured_pose(Attitude(time, i, quaternion, np.zeros(3)))
@@ -100,7 +100,7 @@ class Scene:
                 obstacle_map.add_detection(detection(message), i, time)
 
     def frame(self, time, centre, obstacle):
-        """All points on one obstacle; None if nobody sees it."""
+        """All points on one obstacle; None if no vehicle detects it."""
         parts = [points for _, _, points in self.scans(time, centre, [obstacle])]
         return joined(parts) if parts else None
 

@@ -1,4 +1,4 @@
-"""Vehicles that see the standing obstacles of the map elsewhere than they did: found out, corrected or left out."""
+"""Map check: vehicles whose detections of the map's standing obstacles are offset."""
 
 import numpy as np
 import pytest
@@ -46,7 +46,7 @@ def drift(vehicles, begin=2.0, rate=0.1):
 
 
 @pytest.mark.parametrize("shape", ON_THE_MAP)
-def test_a_drift_of_all_is_found_out_and_corrected(shape):
+def test_offset_of_all_vehicles_is_detected_and_corrected(shape):
     known, true = ON_THE_MAP[shape]
     found = None
     for t, m in look(known, true, drift(EVERYONE)):
@@ -55,14 +55,14 @@ def test_a_drift_of_all_is_found_out_and_corrected(shape):
             assert not m.sensing_lost
     assert 2.5 < found < 6.0
     normal = np.array([np.cos(0.3), np.sin(0.3), 0.0]) if shape == "wall" else np.array([1.0, 0.0, 0.0])
-    for offset in m.map_offsets.values():  # where it can be seen: across a wall
+    for offset in m.map_offsets.values():  # where it is observable: across a wall
         assert normal @ offset == pytest.approx(0.4 * normal.sum(), abs=0.1)
     if shape == "sphere":
         (other,) = m.confirmed_tracks(t)
         assert np.linalg.norm(other.position - UNKNOWN) < 0.25
 
 
-def test_one_that_drifts_is_left_out():
+def test_detections_of_one_drifting_vehicle_are_not_used():
     known, true = ON_THE_MAP["sphere"]
     for t, m in look(known, true, drift({2}), until=10.0):
         assert not m.map_offset_detected, t
@@ -71,23 +71,23 @@ def test_one_that_drifts_is_left_out():
     assert np.linalg.norm(other.position - UNKNOWN) < 0.1
 
 
-def test_one_that_jumps_is_found_out_and_believed_again():
+def test_offset_of_one_vehicle_is_detected_and_ends():
     known, true = ON_THE_MAP["sphere"]
-    told = [
+    offset = [
         set(m.map_offsets) for _, m in look(known, true, lambda t, uav: np.full(3, 0.5 * (uav == 1 and 2.0 <= t < 4.0)))
     ]
-    assert told[39] == set() and told[55] == {1} and told[-1] == set()
+    assert offset[39] == set() and offset[55] == {1} and offset[-1] == set()
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("noise", [1.0, 5.0])
 @pytest.mark.parametrize("seed", range(3))
-def test_no_noise_is_taken_for_it(noise, seed):
+def test_noise_is_no_offset(noise, seed):
     known, true = ON_THE_MAP["sphere"]
     assert not any(m.map_offsets for _, m in look(known, true, lambda t, uav: np.zeros(3), 20.0, seed, noise))
 
 
-def test_an_obstacle_that_never_stood_where_the_map_has_it_says_nothing():
+def test_obstacle_that_never_agreed_with_the_map_is_not_compared():
     known, _ = ON_THE_MAP["sphere"]
     beside = sphere((5.0, 0.7, -6.0))
     assert not any(m.map_offsets for _, m in look(known, beside, lambda t, uav: np.zeros(3)))

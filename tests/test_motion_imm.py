@@ -1,4 +1,4 @@
-"""The imm of Kalman filters: against filterpy, against exact motion, and on its own account of its errors."""
+"""IMM filter: against filterpy, against exact motion, and errors against its own covariance."""
 
 import numpy as np
 import pytest
@@ -27,7 +27,7 @@ def continuous(index):
 
 
 @pytest.mark.parametrize("dt", [0.05, 0.1, 1.0, 3.0])
-def test_transitions_are_the_exponentials(dt):
+def test_transitions_are_matrix_exponentials(dt):
     F = MODELS.transition(np.array([dt]))[:, 0]
     for i in range(MODELS.count):
         expected = expm(continuous(i) * dt)
@@ -38,7 +38,7 @@ def test_transitions_are_the_exponentials(dt):
 
 
 @pytest.mark.parametrize("dt", [0.1, 1.0])
-def test_noise_is_the_integral(dt):
+def test_process_noise_is_its_integral(dt):
     Q = MODELS.noise(np.array([dt]))[:, 0]
     s = MODELS.settings
     strength = [
@@ -57,7 +57,7 @@ def test_noise_is_the_integral(dt):
 
 
 @pytest.mark.parametrize("singer", [(1.0, 1.0), (4.0, 0.5)])
-def test_one_model_is_the_kalman_filter_of_filterpy(singer):
+def test_single_model_equals_kalman_filter_of_filterpy(singer):
     """With all weight on one model and no changes between them, axis by axis."""
     models = MotionModels(ImmSettings(transition_rate=0.0, singer_accelerations=singer[:1], singer_times=singer[1:]))
     rng = np.random.default_rng(1)
@@ -109,7 +109,7 @@ def followed(motion, seed=0, until=8.0, each=lambda imm: None):
         (lambda t: np.array([1.4 * np.cos(1.4 * t), 1.4 * np.sin(1.4 * t), 0.0]), "harmonic 1.4"),
     ],
 )
-def test_the_right_model_wins_and_foresees(motion, likely):
+def test_true_model_is_most_probable_and_predicts(motion, likely):
     errors = []
 
     def watch(imm):
@@ -128,7 +128,7 @@ def test_the_right_model_wins_and_foresees(motion, likely):
     assert np.all(np.diff(np.trace(covariance, axis1=1, axis2=2)) > 0.0)
 
 
-def test_prediction_is_what_advancing_would_give_when_models_do_not_change():
+def test_prediction_equals_propagation_without_model_changes():
     models = MotionModels(ImmSettings(transition_rate=0.0))
     imm = MotionImm(models, 0.0, np.array([1.0, 0.0, -5.0]), VARIANCE)
     for k in range(1, 8):
@@ -140,7 +140,7 @@ def test_prediction_is_what_advancing_would_give_when_models_do_not_change():
     np.testing.assert_allclose(np.diag(covariance[0]), imm.position_variance, atol=1e-9)
 
 
-def test_an_axis_that_was_not_seen_is_left_alone():
+def test_update_leaves_unmeasured_axis_unchanged():
     imm = followed(lambda t: np.array([t, 0.0, 0.0]), until=2.0)
     before = imm.x[:, 1].copy()
     off = imm.update(np.array([1.9, np.nan, 0.0]), VARIANCE)
@@ -148,7 +148,7 @@ def test_an_axis_that_was_not_seen_is_left_alone():
     assert np.isfinite(off)
 
 
-def test_the_innovation_that_is_returned_is_in_units_of_its_own_spread():
+def test_returned_innovation_is_normalised():
     near, far = (followed(lambda t: np.array([t, 0.0, 0.0]), until=2.0) for _ in range(2))
     ahead = near.time + 0.1
     for imm in (near, far):

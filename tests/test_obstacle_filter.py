@@ -25,19 +25,19 @@ def approached(obstacle, seed=0, begin=9.9, end=3.0, speed=1.5, aside=0.3, each=
     for k in range(int((begin - end) / speed / PERIOD) + 1):
         time = k * PERIOD
         place = np.array([centre[0] - begin + speed * time, centre[1] + aside, -6.0])
-        seen = scene.frame(time, place, obstacle)
-        if seen is None:
+        points = scene.frame(time, place, obstacle)
+        if points is None:
             continue
         if track is None:
-            track = ObstacleFilter(MODELS, seen)
+            track = ObstacleFilter(MODELS, points)
         else:
-            track.update(seen)
+            track.update(points)
         each(track, time)
     return track
 
 
 def uncovered(track, obstacle):
-    """How far the true surface stands out of the believed body (m), over points of it all round."""
+    """Return how far the true surface lies outside the estimated body (m), over points all round."""
     rng = np.random.default_rng(5)
     x, y, z = obstacle.position_in_world
     direction = rng.normal(size=(600, 3))
@@ -56,7 +56,7 @@ def uncovered(track, obstacle):
 
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("radius", [0.3, 0.5, 1.0])
-def test_standing_spheres(radius, seed):
+def test_filter_finds_standing_sphere(radius, seed):
     obstacle = sphere((0.0, 0.0, -5.5), radius)
     early = []
 
@@ -80,16 +80,16 @@ def test_standing_spheres(radius, seed):
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_sensors_noisier_than_they_should_be_are_found_out(seed):
+def test_filter_estimates_scatter_of_noisy_sensors(seed):
     obstacle, scene, rng = sphere((0.0, 0.0, -5.5)), Scene(seed), np.random.default_rng([seed, 13])
     track, bare, speeds = None, [], []
     for k in range(60):
-        seen = scene.frame(k * PERIOD, np.array([-4.0, 0.3, -6.0]), obstacle)
-        seen = replace(seen, points=seen.points + rng.normal(0.0, 5 * NOISE, seen.points.shape))
+        points = scene.frame(k * PERIOD, np.array([-4.0, 0.3, -6.0]), obstacle)
+        points = replace(points, points=points.points + rng.normal(0.0, 5 * NOISE, points.points.shape))
         if track is None:
-            track = ObstacleFilter(MODELS, seen)
+            track = ObstacleFilter(MODELS, points)
         else:
-            track.update(seen)
+            track.update(points)
         if k >= 20:
             bare.append(uncovered(track, obstacle) - track.predict(np.array([track.time]))[1][0])
             speeds.append(np.linalg.norm(track.state[1]))
@@ -98,30 +98,32 @@ def test_sensors_noisier_than_they_should_be_are_found_out(seed):
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_no_point_lies_on_the_side_that_nobody_sees(seed):
-    """However near it was expected: else scattered points would do as well for a body that is nearer by its width."""
+def test_sphere_fit_places_points_on_the_side_facing_the_sensors(seed):
+    """However near it was predicted: else scattered points would fit a body that is nearer by its width as well."""
     obstacle, rng = sphere((0.0, 0.0, -6.0)), np.random.default_rng([seed, 17])
-    seen = Scene(seed).frame(0.0, np.array([-7.0, 0.0, -6.0]), obstacle)
-    seen = replace(seen, points=seen.points + rng.normal(0.0, 5 * NOISE, seen.points.shape), scatter=(5 * NOISE) ** 2)
+    points = Scene(seed).frame(0.0, np.array([-7.0, 0.0, -6.0]), obstacle)
+    points = replace(
+        points, points=points.points + rng.normal(0.0, 5 * NOISE, points.points.shape), scatter=(5 * NOISE) ** 2
+    )
     surface, place = RoundSurface("sphere", Sphere(0.5)), np.array([-0.8, 0.0, -6.0])
     for _ in range(10):
-        place = surface.fit(seen, place).position
+        place = surface.fit(points, place).position
     assert abs(place[0]) < 0.35
 
 
 @pytest.mark.parametrize("seed", range(8))
-def test_a_moving_sphere_stays_one_where_points_are_known_to_scatter(seed):
+def test_moving_sphere_stays_a_sphere_with_known_scatter(seed):
     scene, rng, motion, track = Scene(seed), np.random.default_rng([seed, 19]), MOTIONS["harmonic"], None
     errors = []
     for k in range(120):
         time = k * PERIOD
         centre = motion(time) + np.array([6.0, 0.0, -6.0])
-        seen = scene.frame(time, np.array([-1.0, 0.0, -6.5]), sphere(centre))
-        seen = replace(seen, points=seen.points + rng.normal(0.0, 5 * NOISE, seen.points.shape))
+        points = scene.frame(time, np.array([-1.0, 0.0, -6.5]), sphere(centre))
+        points = replace(points, points=points.points + rng.normal(0.0, 5 * NOISE, points.points.shape))
         if track is None:
-            track = ObstacleFilter(MODELS, seen, scatter=(5 * NOISE) ** 2)
+            track = ObstacleFilter(MODELS, points, scatter=(5 * NOISE) ** 2)
         else:
-            track.update(seen)
+            track.update(points)
         errors.append(np.linalg.norm(track.state[0] - centre))
     assert track.kind == "sphere"
     assert rms(errors[30:]) < 0.35
@@ -129,7 +131,7 @@ def test_a_moving_sphere_stays_one_where_points_are_known_to_scatter(seed):
 
 @pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize(("radius", "height"), [(0.1, 15.0), (0.3, 15.0), (1.0, 15.0), (0.4, 4.5)])
-def test_standing_poles(radius, height, seed):
+def test_filter_finds_standing_pole(radius, height, seed):
     obstacle = pole((2.0, -1.0), radius, height)
     track = approached(obstacle, seed)
     assert track.kind == "pole"
@@ -149,7 +151,7 @@ def test_standing_poles(radius, height, seed):
 @pytest.mark.parametrize(
     ("size", "yaw"), [((0.3, 5.0, 6.0), 0.3), ((6.0, 0.5, 8.0), 0.7), ((0.2, 3.0, 4.0), 0.0), ((0.3, 9.0, 9.0), -0.5)]
 )
-def test_standing_walls(size, yaw, seed):
+def test_filter_finds_standing_wall(size, yaw, seed):
     obstacle = wall((0.0, 0.0, -size[2] / 2.0), size, yaw)
     track = approached(obstacle, seed)
     assert track.kind == "wall"
@@ -164,16 +166,16 @@ def test_standing_walls(size, yaw, seed):
     assert np.linalg.norm(track.state[1]) < 0.05
 
 
-def test_a_wall_grows_as_it_comes_into_range_and_reaches_beyond_what_is_seen():
+def test_wall_grows_with_detections_and_extends_beyond_them():
     obstacle = wall((0.0, 0.0, -6.0), (0.3, 30.0, 12.0), 0.0)
     lengths = []
     approached(obstacle, each=lambda track, time: lengths.append(track.shape.size[1]))
-    seen = 2.0 * np.sqrt(10.0**2 - 3.0**2)
-    assert seen + 1.0 < lengths[-1] < seen + 3.0
+    points = 2.0 * np.sqrt(10.0**2 - 3.0**2)
+    assert points + 1.0 < lengths[-1] < points + 3.0
     assert lengths[5] < lengths[-1]
 
 
-def test_a_wall_seen_from_its_end_is_covered_once_its_side_is_seen():
+def test_wall_detected_from_its_end_is_covered_once_its_side_is_detected():
     obstacle = wall((0.0, 0.0, -4.0), (6.0, 0.3, 8.0), 0.1)
     track = approached(obstacle, aside=1.2, end=4.0)
     assert uncovered(track, obstacle) < 0.3
@@ -194,13 +196,13 @@ def tracked(motion, seed=0, until=9.0, radius=0.5, loss=0.0):
     place = np.array([0.0, 0.0, -6.0])
     for k in range(round(until / PERIOD)):
         time = k * PERIOD
-        seen = scene.frame(time, [-6.0, 0.0, -6.5], sphere(motion(time) + place, radius))
-        if seen is None:
+        points = scene.frame(time, [-6.0, 0.0, -6.5], sphere(motion(time) + place, radius))
+        if points is None:
             continue
         if track is None:
-            track, begin = ObstacleFilter(MODELS, seen), time
+            track, begin = ObstacleFilter(MODELS, points), time
         else:
-            track.update(seen)
+            track.update(points)
         if time < begin + 1.5:
             continue
         position, velocity, _ = track.state
@@ -218,46 +220,46 @@ def rms(values):
 
 
 @pytest.mark.parametrize("name", MOVING)
-def test_moving_spheres(name, record_property):
+def test_filter_tracks_moving_sphere(name, record_property):
     track, rows = tracked(MOVING[name])
     figures = {"position": rms(rows[:, 0]), "velocity": rms(rows[:, 1]), "1 s ahead": rms(rows[:, 2])}
     record_property("rms", figures)
     assert track.kind == "sphere"
     assert track.shape.radius == pytest.approx(0.5, abs=0.05)
     assert figures["position"] < 0.08
-    foreseen = {"standing": 0.08, "linear": 0.2, "harmonic": 0.25, "fast harmonic": 0.25}.get(name)
-    if foreseen is not None:
-        assert figures["1 s ahead"] < foreseen
+    limit = {"standing": 0.08, "linear": 0.2, "harmonic": 0.25, "fast harmonic": 0.25}.get(name)
+    if limit is not None:
+        assert figures["1 s ahead"] < limit
     # Consistency: the error is not much larger than the growth says, or the growth is at its limit.
     limited = rows[:, 4] > 0.45
     assert np.mean((rows[:, 2] < 2.5 * rows[:, 4]) | limited) > 0.85
     assert np.mean(rows[:, 0] < 3.0 * rows[:, 3] + 0.03) > 0.95
     # Larger bodies only for what was misjudged before: it stood, and went off again.
-    assert rows[:, 4].max() <= (0.5 if foreseen is not None else 1.5)
+    assert rows[:, 4].max() <= (0.5 if limit is not None else 1.5)
     if name == "stop and go":
         assert rows[:, 4].max() > 0.7
 
 
-def test_a_third_of_the_scans_lost():
+def test_filter_tracks_sphere_with_a_third_of_scans_lost():
     _, rows = tracked(MOTIONS["harmonic"], loss=0.33)
     assert rms(rows[:, 0]) < 0.08
 
 
-def test_three_frames_tell_the_velocity():
+def test_velocity_is_estimated_after_three_frames():
     scene = Scene(4)
     track = None
     for k in range(3):
-        seen = scene.frame(0.1 * k, [0.0, 0.0, -6.0], sphere((8.0 - 0.2 * k, 0.0, -6.0)))
+        points = scene.frame(0.1 * k, [0.0, 0.0, -6.0], sphere((8.0 - 0.2 * k, 0.0, -6.0)))
         if track is None:
-            track = ObstacleFilter(MODELS, seen)
+            track = ObstacleFilter(MODELS, points)
         else:
-            track.update(seen)
+            track.update(points)
     position, velocity, _ = track.state
     assert np.linalg.norm(position - [7.6, 0.0, -6.0]) < 0.12
     assert velocity[0] < -1.0
 
 
-def test_a_late_frame_does_no_harm():
+def test_late_frame_does_not_degrade_estimate():
     motion = MOTIONS["linear"]
 
     def run(late):
@@ -269,8 +271,8 @@ def test_a_late_frame_does_no_harm():
         if late:
             frames[30], frames[32] = frames[32], frames[30]
         track = ObstacleFilter(MODELS, frames[0])
-        for seen in frames[1:]:
-            track.update(seen)
+        for points in frames[1:]:
+            track.update(points)
         return track
 
     expected = motion(3.9) + np.array([4.0, 4.0, -6.0])
@@ -286,24 +288,24 @@ def test_a_late_frame_does_no_harm():
         (Wall((0.4, 4.0, 12.0), 0.3), lambda p: wall((p[0], p[1], -6.0), (0.4, 4.0, 12.0), 0.3)),
     ],
 )
-def test_a_known_shape_stays_and_its_motion_is_found(known, obstacle):
+def test_known_shape_is_kept_and_its_motion_estimated(known, obstacle):
     def motion(t):
         return np.array([0.0, 0.0, -6.0]) + 1.2 * np.sin(t) * np.array([np.cos(0.3), np.sin(0.3), 0.0])
 
     scene, track, errors = Scene(1), None, []
     for k in range(70):
-        seen = scene.frame(0.1 * k, [-6.0, 0.0, -6.0], obstacle(motion(0.1 * k)))
+        points = scene.frame(0.1 * k, [-6.0, 0.0, -6.0], obstacle(motion(0.1 * k)))
         if track is None:
-            track = ObstacleFilter(MODELS, seen, known)
+            track = ObstacleFilter(MODELS, points, known)
         else:
-            track.update(seen)
+            track.update(points)
         if k > 20:
             errors.append(np.linalg.norm(track.state[0] - motion(0.1 * k)))
     assert track.shape is known
     assert rms(errors) < 0.12
 
 
-def test_equal_points_give_equal_tracks():
+def test_filter_is_deterministic():
     tracks = [tracked(MOTIONS["circle"], seed=6, until=3.0)[0] for _ in range(2)]
     for a, b in zip(tracks[0].state, tracks[1].state, strict=True):
         np.testing.assert_array_equal(a, b)

@@ -1,4 +1,4 @@
-"""The ground's map of obstacles: association across vehicles and time, ghosts, and the obstacles of the mission."""
+"""Obstacle map: association across vehicles and time, track retention, and the obstacles of the mission."""
 
 import csv
 from dataclasses import replace
@@ -54,7 +54,7 @@ def four(t):
     return [sphere(place(t), 0.4, name) for name, place in FOUR.items()]
 
 
-def test_four_vehicles_four_obstacles_four_tracks():
+def test_map_has_one_track_for_each_obstacle_of_four_vehicles():
     counts = []
     m = map_of()
     run(m, four, 6.0, each=lambda t: counts.append(len(m.predict(np.array([t])))))
@@ -67,7 +67,7 @@ def test_four_vehicles_four_obstacles_four_tracks():
     assert len(set(names)) == 4
 
 
-def test_one_vehicle_needs_two_scans():
+def test_track_of_one_vehicle_is_confirmed_by_two_scans():
     counts = []
     m = map_of()
     run(m, lambda t: [sphere((5.0, 0.0, -6.0))], 0.5, scene=Scene(0, uavs=1),
@@ -76,7 +76,7 @@ def test_one_vehicle_needs_two_scans():
     assert counts[2] == 1
 
 
-def test_shapes_together():
+def test_map_tracks_all_shapes_at_once():
     things = [
         pole((0.0, 6.0), 0.3, 12.0), wall((-6.0, 0.0, -4.0), (0.3, 5.0, 8.0), 0.2), sphere((6.0, 0.0, -6.0), 0.7),
         pole((4.0, -6.0), 0.2, 9.0, "other"),
@@ -86,7 +86,7 @@ def test_shapes_together():
     assert found == ["pole", "pole", "sphere", "wall"]
 
 
-def test_predictions_have_the_shape_asked_for():
+def test_predictions_have_one_entry_for_each_time():
     m = run(map_of(Obstacle("known", (9.0, 9.0, -4.0), Pole(0.3, 8.0))), four, 1.0)
     times = 1.0 + 0.1 * np.arange(33)
     for o in m.predict(times):
@@ -98,7 +98,7 @@ def test_predictions_have_the_shape_asked_for():
 
 
 @pytest.mark.parametrize("loss", [0.0, 0.3, 0.6])
-def test_crossing_obstacles_keep_their_names(loss):
+def test_tracks_keep_their_obstacles_when_they_cross(loss):
     """Two pass each other at 3 m/s with 0.3 m between their surfaces, and two others at the same height behind."""
 
     def crossing(t):
@@ -124,7 +124,7 @@ def test_crossing_obstacles_keep_their_names(loss):
     assert len(m.tracks) == 4
 
 
-def test_one_obstacle_never_stays_two_tracks():
+def test_late_vehicle_joins_existing_track():
     """A vehicle that comes late, with a number of its own, joins the track of the others."""
     m = map_of()
     late, early = Scene(1), Scene(2, uavs=3)
@@ -133,7 +133,7 @@ def test_one_obstacle_never_stays_two_tracks():
     assert len(m.tracks) == 1
 
 
-def test_duplicates_are_merged():
+def test_duplicate_tracks_are_merged():
     m = map_of()
     obstacle = sphere((6.0, 0.0, -6.0), 0.5)
     run(m, lambda t: [obstacle], 1.0)
@@ -150,12 +150,12 @@ def test_duplicates_are_merged():
 # Coming and going
 
 
-def test_a_ghost_is_dropped_and_a_single_false_detection_never_counts():
+def test_track_is_deleted_in_field_of_view_and_single_detection_never_confirmed():
     m = map_of()
     run(m, lambda t: [sphere((5.0, 0.0, -6.0))], 1.0)
     assert len(m.predict(np.array([1.0]))) == 1
     run(m, lambda t: [], 1.8, begin=1.0)
-    assert len(m.predict(np.array([1.8]))) == 1  # still foreseen after a short silence
+    assert len(m.predict(np.array([1.8]))) == 1  # still predicted while it coasts briefly
     run(m, lambda t: [], 2.5, begin=1.8)
     assert m.predict(np.array([2.5])) == []
     m = map_of()
@@ -170,7 +170,7 @@ def leaving(t):
     return np.array([-max(t - 1.0, 0.0) * 3.0, 0.0, -6.0])
 
 
-def test_out_of_range_what_stands_is_kept_and_what_moves_is_forgotten():
+def test_out_of_range_static_track_is_kept_and_moving_one_deleted():
     def things(t):
         return [sphere((5.0, 0.0, -6.0), 0.5, "stands"), sphere((5.0, -2.0 + 1.5 * t, -6.0), 0.4, "moves")]
 
@@ -178,10 +178,10 @@ def test_out_of_range_what_stands_is_kept_and_what_moves_is_forgotten():
     run(m, things, 12.0, centre=leaving)
     (left,) = m.predict(np.array([12.0, 13.0]))
     assert np.linalg.norm(left.positions[0] - [5.0, 0.0, -6.0]) < 0.1
-    assert left.growth[0] < 0.1  # as sure as when it was last seen
+    assert left.growth[0] < 0.1  # as certain as when it was last detected
 
 
-def test_a_moving_obstacle_is_carried_on_for_a_while_after_it_left_the_range():
+def test_moving_track_coasts_after_it_left_the_range():
     m = map_of()
     run(m, lambda t: [sphere((5.0 + 1.8 * t, 0.0, -6.0))], 4.0)  # out of range after 3 s
     (o,) = m.predict(np.array([4.0]))
@@ -190,7 +190,7 @@ def test_a_moving_obstacle_is_carried_on_for_a_while_after_it_left_the_range():
     assert m.predict(np.array([6.0])) == []
 
 
-def test_when_all_links_are_silent_nothing_is_dropped_for_being_unseen():
+def test_no_track_is_deleted_when_telemetry_of_all_vehicles_times_out():
     m = map_of()
     run(m, lambda t: [sphere((5.0, 0.0, -6.0))], 1.0)
     for k in range(20, 60):
@@ -198,7 +198,7 @@ def test_when_all_links_are_silent_nothing_is_dropped_for_being_unseen():
     assert len(m.predict(np.array([3.0]))) == 1
 
 
-def test_known_standing_obstacles_are_told_from_the_start_and_their_detections_make_no_tracks():
+def test_standing_obstacles_of_the_map_are_predicted_from_the_start_and_begin_no_tracks():
     known = (
         Obstacle("ball", (5.0, 0.0, -6.0), Sphere(0.5)), Obstacle("mast", (0.0, 6.0, -6.0), Pole(0.3, 12.0)),
         Obstacle("house", (-6.0, 0.0, -4.0), Wall((0.3, 5.0, 8.0), np.radians(12.0))),
@@ -220,7 +220,7 @@ def test_known_standing_obstacles_are_told_from_the_start_and_their_detections_m
     assert [track.name for track in m.tracks] == ["track 1"]
 
 
-def test_an_unknown_obstacle_that_passes_a_known_one_keeps_its_track():
+def test_track_is_kept_when_its_obstacle_passes_one_of_the_map():
     m = map_of(Obstacle("house", (5.0, 0.0, -4.0), Wall((0.3, 6.0, 8.0))))
     house = wall((5.0, 0.0, -4.0), (0.3, 6.0, 8.0), 0.0, "house")
 
@@ -238,7 +238,7 @@ def test_an_unknown_obstacle_that_passes_a_known_one_keeps_its_track():
     assert max(errors) < 0.25
 
 
-def test_a_known_moving_obstacle_keeps_its_shape_and_its_motion_is_followed():
+def test_moving_obstacle_of_the_map_keeps_its_shape_and_is_tracked():
     def place(t):
         return np.array([6.0 + 1.5 * np.sin(t), 0.0, -6.0])
 
@@ -260,7 +260,7 @@ def test_a_known_moving_obstacle_keeps_its_shape_and_its_motion_is_followed():
     assert np.sqrt(np.mean(np.square(errors))) < 0.1
 
 
-def test_a_known_moving_obstacle_that_is_not_where_it_should_be_is_left_out_until_it_is_seen():
+def test_moving_obstacle_of_the_map_is_deleted_until_detected_where_it_is_missing():
     m = map_of(Obstacle("swing", (6.0, 0.0, -6.0), Sphere(0.45), motion=HarmonicMotion((1.5, 0.0, 0.0), 1.0)))
     run(m, lambda t: [], 2.0)
     assert m.predict(np.array([2.0])) == []
@@ -281,8 +281,8 @@ def test_equal_seeds_give_equal_maps():
 
 
 @pytest.mark.slow
-def test_in_flight_the_ground_finds_what_the_vehicles_sense(tmp_path):
-    """The whole way: sensors, MAVLink, the ground's codec and clocks, the map, the records."""
+def test_map_in_flight_has_the_obstacles_the_vehicles_detect(tmp_path):
+    """The whole loop: sensors, MAVLink, the ground's codec and clocks, the map, the records."""
     mission = read_mission(short_figure(tmp_path))
     obstacles = (
         Obstacle("ball", (4.0, 4.0, -3.5), Sphere(0.5), known=False),
@@ -297,10 +297,10 @@ def test_in_flight_the_ground_finds_what_the_vehicles_sense(tmp_path):
         flight.swarm.close()
         flight.swarm = Swarm(mission.system, seed=1, home=mission.home, obstacles=obstacles)
         flight.fly(until=6.0)
-        believed = {o.name: o for o in obstacle_map.predict(np.array([flight.now]))}
+        predicted = {o.name: o for o in obstacle_map.predict(np.array([flight.now]))}
         assert obstacle_map.discarded == 0
-    assert len(believed) == 3
-    kinds = {o.shape.kind: o for name, o in believed.items() if name != "known"}
+    assert len(predicted) == 3
+    kinds = {o.shape.kind: o for name, o in predicted.items() if name != "known"}
     assert np.linalg.norm(kinds["sphere"].positions[0] - [4.0, 4.0, -3.5]) < 0.08
     assert np.linalg.norm(kinds["pole"].positions[0][:2] - [0.0, 6.0]) < 0.08
     with (tmp_path / "run" / "obstacles_estimate.csv").open(newline="") as file:
@@ -311,8 +311,8 @@ def test_in_flight_the_ground_finds_what_the_vehicles_sense(tmp_path):
     assert len(times) > 40
 
 
-def test_what_comes_into_sight_later_is_taken_to_scatter_as_what_was_seen_before():
-    """Scatter is of the sensors: an obstacle that has been seen once says nothing of it yet."""
+def test_new_track_begins_with_scatter_of_earlier_ones():
+    """Scatter is of the sensors: an obstacle that was detected once has no information on it yet."""
     m, scene, rng = map_of(), Scene(3), np.random.default_rng(3)
     near, late = sphere((5.0, 3.0, -6.0)), sphere((5.0, -4.0, -6.0), 0.5, "late")
     scatter = []

@@ -1,4 +1,4 @@
-"""Where scans are placed, and vehicles that see nothing or tell what can not be."""
+"""Placement of scans, and vehicles whose range sensors are lost or invalid."""
 
 import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
@@ -20,7 +20,7 @@ from idc_controller.perception.scan_assembly import ScanAssembly
 from vehicle_sim.world.range_sensor import Detection, RangeSample
 
 
-def test_what_a_vehicle_sees_that_is_not_where_it_says_is_placed_by_the_estimate():
+def test_detections_are_placed_by_estimate_when_position_is_unusable():
     m, scene, truth = map_of(), Scene(0), np.array([5.0, 0.0, -6.0])
     away, everyone = np.array([0.0, 1.0, 0.0]), frozenset(range(4))
     for k in range(10):
@@ -31,7 +31,7 @@ def test_what_a_vehicle_sees_that_is_not_where_it_says_is_placed_by_the_estimate
     assert np.linalg.norm(track.position - truth) < 0.1
 
 
-def test_motion_between_samples_is_the_estimated_one_where_none_is_told():
+def test_pose_is_extrapolated_by_estimated_motion_when_none_is_measured():
     scans, t, turning = ScanAssembly(SENSORS), 0.02, np.array([0.0, 1.0, 0.0])
     level, unknown, moving = np.array([1.0, 0.0, 0.0, 0.0]), np.full(3, np.nan), np.array([0.0, 2.0, 0.0])
     scans.poses.add_measured(Attitude(0.0, 0, level, unknown))
@@ -44,7 +44,7 @@ def test_motion_between_samples_is_the_estimated_one_where_none_is_told():
     assert cluster.surface_points.points[0] == pytest.approx(HERE + np.array([5.0, 2.0 * t, -5.0 * t]), abs=2e-3)
 
 
-def test_without_a_pose_and_an_estimate_nothing_is_placed():
+def test_scan_is_discarded_without_pose_and_estimate():
     m, scene = map_of(), Scene(0)
     for k in range(10):
         scene.feed(m, 0.1 * k, HERE, [sphere((5.0, 0.0, -6.0))])
@@ -52,7 +52,7 @@ def test_without_a_pose_and_an_estimate_nothing_is_placed():
     assert m.tracks == []
 
 
-def test_scans_wait_for_their_pose_and_nonsense_is_refused():
+def test_scan_waits_for_pose_and_impossible_detections_are_discarded():
     m = map_of()
     scene = Scene(0)
     ((i, position, quaternion, scan),) = scene.look(1.0, HERE, [sphere((5.0, 0.0, -6.0))])[:1]
@@ -91,8 +91,8 @@ def test_scans_wait_for_their_pose_and_nonsense_is_refused():
 # Obstacles of the mission
 
 
-def blinded(kind):
-    """A map whose vehicles see an obstacle for a second and then tell what can not be."""
+def with_invalid_sensors(kind):
+    """Yield a map whose vehicles detect an obstacle for a second and whose sensors are invalid from then on."""
     m, scene, here = map_of(), Scene(0), [sphere((5.0, 0.0, -6.0))]
     run(m, lambda t: here, 1.0, scene=scene)
     frozen = [messages_of(scan) for _, _, _, scan in scene.look(1.0, HERE, here)]
@@ -114,7 +114,7 @@ def blinded(kind):
         yield m
 
 
-def test_one_whose_sensor_works_is_enough():
+def test_sensing_is_not_lost_with_one_valid_sensor():
     m = map_of()
     scene, here = Scene(0), [sphere((5.0, 0.0, -6.0))]
     run(m, lambda t: here, 1.0, scene=scene)
@@ -127,17 +127,17 @@ def test_one_whose_sensor_works_is_enough():
 
 
 @pytest.mark.parametrize("kind", ["nan", "frozen", "frozen values", "broken"])
-def test_blind_vehicles_are_found_out_and_nothing_is_forgotten(kind):
-    told = [m.sensing_lost for m in blinded(kind)]
-    assert not told[0] and all(told[20:])
-    *_, last = blinded(kind)
+def test_sensing_lost_is_detected_and_tracks_are_retained(kind):
+    lost = [m.sensing_lost for m in with_invalid_sensors(kind)]
+    assert not lost[0] and all(lost[20:])
+    *_, last = with_invalid_sensors(kind)
     (left,) = last.predict(np.array([4.0]))
-    # The first scan that sticks is believed, with the attitude of the second.
+    # The first stuck scan is used, with the attitude of the second.
     assert "frozen" in kind or np.linalg.norm(left.positions[0] - [5.0, 0.0, -6.0]) < 0.3
 
 
-def test_what_blind_vehicles_did_not_see_comes_back():
-    """Until they are found out, an obstacle that they no longer see is taken for a ghost."""
+def test_track_deleted_before_sensing_loss_is_restored():
+    """Until the loss is detected, the track of an obstacle in view is deleted."""
     m, scene = map_of(), Scene(0)
     run(m, lambda t: [sphere((5.0, 0.0, -6.0))], 1.0, scene=scene)
     run(m, lambda t: [], 2.5, begin=1.0, scene=scene)

@@ -1,4 +1,4 @@
-"""Drag of moving air, and what is learnt of the wind from the forces that it makes."""
+"""Wind estimator: drag of moving air, and the wind estimated from it."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def eight(times):
 
 
 def learnt(force_at, times=TIMES, noise=0.05, seed=5):
-    """What a payload on a figure eight believes at the end; ``force_at`` (velocity) -> force on it and on each UAV."""
+    """Return the estimated air after a figure eight; ``force_at`` (velocity) -> force on payload and on each UAV."""
     estimator, generator = WindEstimator(SIZE, PERIOD, LIMIT), np.random.default_rng(seed)
     for velocity in eight(times)[1]:
         force, uav_force = force_at(velocity)
@@ -32,7 +32,7 @@ def learnt(force_at, times=TIMES, noise=0.05, seed=5):
 
 
 @pytest.mark.parametrize("limit", [np.inf, 12.0], ids=["plain", "fading"])
-def test_rates_of_the_drag_are_its_derivatives(limit):
+def test_drag_rates_are_its_derivatives(limit):
     air, h = Air(np.array([2.0, 1.0, 0.2]), box_coefficients(SIZE), 0.02, limit), 1e-4
     force, rate, acceleration = air.on_payload_along(eight(TIMES))
     before, after = (air.on_payload_along(eight(TIMES + d)) for d in (-h, h))
@@ -44,7 +44,7 @@ def test_rates_of_the_drag_are_its_derivatives(limit):
 
 @pytest.mark.parametrize("wind", [(2.1, 2.1), (-3.0, 0.5), (0.0, -4.0)])
 @pytest.mark.parametrize("factor", [0.7, 1.0, 1.4])
-def test_a_steady_wind_is_learnt_and_so_is_how_much_it_drags(wind, factor):
+def test_steady_wind_and_drag_factor_are_estimated(wind, factor):
     true = Air(np.array([*wind, 0.0]), factor * box_coefficients(SIZE), 0.018)
     air = learnt(lambda velocity: (true.on_payload(velocity), true.on_uav(velocity)))
     assert air.wind == pytest.approx(true.wind, abs=0.3)
@@ -54,19 +54,19 @@ def test_a_steady_wind_is_learnt_and_so_is_how_much_it_drags(wind, factor):
     assert air.uav == pytest.approx(true.uav, rel=0.2)
 
 
-def test_without_a_force_there_is_no_wind():
+def test_no_wind_without_force():
     assert learnt(lambda _: (np.zeros(3), np.zeros(3))) is None
 
 
-def test_a_force_that_is_the_same_at_all_velocities_is_no_wind():
+def test_no_wind_for_force_independent_of_velocity():
     assert learnt(lambda _: (np.array([0.0, 8.0, 0.0]), np.zeros(3))) is None
 
 
-def test_a_force_that_points_along_the_velocity_is_no_wind():
+def test_no_wind_for_force_along_velocity():
     assert learnt(lambda velocity: (1.5 * velocity, np.zeros(3))) is None
 
 
-def test_a_wind_that_has_ended_is_forgotten():
+def test_wind_estimate_ends_after_wind():
     true = Air(np.array([2.1, 2.1, 0.0]), box_coefficients(SIZE), 0.018)
     estimator = WindEstimator(SIZE, PERIOD, LIMIT)
     for velocity in eight(TIMES)[1]:
