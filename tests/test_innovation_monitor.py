@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from idc_controller.estimation.health.innovation_monitor import InnovationMonitor
+from idc_controller.estimation.health.innovation_monitor import Finding, InnovationMonitor
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
 from idc_controller.estimation.settings import InnovationMonitorSettings
 
@@ -37,7 +37,7 @@ def test_monitor_has_no_finding_for_single_outliers():
 
 def test_monitor_finds_repeated_rejections():
     found = findings(200, rejected=lambda k: [(1, Position)] if k >= 100 else ())
-    assert found == {((1, Position), "refused"): pytest.approx(0.04 * (100 + REJECTIONS - 1))}
+    assert found == {((1, Position), Finding.REJECTED): pytest.approx(0.04 * (100 + REJECTIONS - 1))}
 
 
 @pytest.mark.parametrize("which", [0, 1])
@@ -45,18 +45,18 @@ def test_monitor_finds_bias_far_below_the_gate(which):
     push = np.array([0.0, 0.0, 1.5, 0.0, 0.0, 0.0])
     found = findings(300, changed=lambda k, i, white: white + push if i == which and k >= 100 else white)
     assert {key for key, _ in found} == {KEYS[which]}
-    assert 4.0 < found[KEYS[which], "disagrees"] < 6.5
+    assert 4.0 < found[KEYS[which], Finding.BIASED] < 6.5
 
 
 def test_monitor_finds_noise_of_one_sensor():
     found = findings(300, changed=lambda k, i, white: white * (2.0 if i == 2 and k >= 100 else 1.0))
     assert {key for key, _ in found} == {KEYS[2]}
-    assert 4.0 < found[KEYS[2], "noisy"] < 6.0
+    assert 4.0 < found[KEYS[2], Finding.NOISY] < 6.0
 
 
 def test_monitor_allows_attitudes_larger_innovations():
     assert findings(300, changed=lambda k, i, white: white * (1.5 if i == 3 else 1.0)) == {}
-    assert (KEYS[3], "noisy") in findings(300, changed=lambda k, i, white: white * (3.0 if i == 3 else 1.0))
+    assert (KEYS[3], Finding.NOISY) in findings(300, changed=lambda k, i, white: white * (3.0 if i == 3 else 1.0))
 
 
 def test_monitor_forgets_attitudes_of_uavs_only():
@@ -75,7 +75,7 @@ def test_monitor_treats_single_channel_by_itself():
         found = monitor.findings(0.04 * k)
         if k < 100:
             assert found == {}
-    assert "disagrees" in found[key]
+    assert Finding.BIASED in found[key]
 
 
 def test_monitor_counts_replayed_moment_once():

@@ -20,7 +20,7 @@ from gcs.flight.alarms import AlarmCode, AlarmLog, Severity
 from gcs.flight.flight import Flight, StepRecord
 from gcs.mavlink.id_check import Identities
 from gcs.mavlink.vehicle_link import VehicleLink
-from idc_controller.estimation.health.innovation_monitor import InnovationMonitor
+from idc_controller.estimation.health.innovation_monitor import Finding, InnovationMonitor
 from idc_controller.estimation.measurements import PAYLOAD, Position
 from idc_controller.estimation.settings import InnovationMonitorSettings
 
@@ -315,9 +315,9 @@ class Innovations:
 
 
 _OF_FINDING = {
-    "refused": MonitorAlarm.MEASUREMENTS_REJECTED,
-    "disagrees": MonitorAlarm.INNOVATION_BIAS,
-    "noisy": MonitorAlarm.INNOVATION_NOISE,
+    Finding.REJECTED: MonitorAlarm.MEASUREMENTS_REJECTED,
+    Finding.BIASED: MonitorAlarm.INNOVATION_BIAS,
+    Finding.NOISY: MonitorAlarm.INNOVATION_NOISE,
 }
 
 

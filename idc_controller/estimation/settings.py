@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from idc_controller.errors import ParameterError
 from idc_controller.settings import setting
 
 
@@ -180,6 +181,11 @@ class WindSettings:
         0.3, "", "share of the force that a wind must explain to be used at all", ge=0.0, le=1.0
     )
     explained_full: float = setting(0.7, "", "share from which on it is used wholly", gt=0.0, le=1.0)
+
+    def __post_init__(self) -> None:
+        if self.explained_full <= self.explained_min:
+            low, high = self.explained_min, self.explained_full
+            raise ParameterError(f"explained_full ({high:g}) is not above explained_min ({low:g})")
 
 
 @dataclass(frozen=True)

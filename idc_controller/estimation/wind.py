@@ -21,6 +21,43 @@ from idc_controller.model.drag import Air, box_coefficients, box_drag
 Array = NDArray[np.float64]
 
 
+class _Sums:
+    """Integrals over the memory of what winds on the grid explain of the forces."""
+
+    def __init__(self, shape: tuple[int, ...], period: float, memory: float) -> None:
+        self._period, self._keep = period, float(np.exp(-period / memory))
+        self.product = np.zeros(shape)
+        """F . drag (N2 s), for each wind."""
+        self.square = np.zeros(shape)
+        """|drag|^2 (N2 s), for each wind."""
+        self.force_square = 0.0
+        """|F|^2 (N2 s)."""
+        self.mean, self.time = np.zeros(2), 0.0  # F (N s), and how much of the memory is filled (s)
+        self.uav_product = self.uav_square = 0.0
+
+    def add_force(self, force: Array) -> None:
+        """Add the level force (2,) (N) of one period."""
+        self.force_square = self._keep * self.force_square + self._period * float(force @ force)
+        self.mean = self._keep * self.mean + self._period * force
+        self.time = self._keep * self.time + self._period
+
+    def add_drag(self, force: Array, drag: Array) -> None:
+        """Add the level force (2,) and the ``drag`` of every wind (..., 2) (N) of one period."""
+        self.product = self._keep * self.product + self._period * (drag @ force)
+        self.square = self._keep * self.square + self._period * np.einsum("ijk,ijk->ij", drag, drag)
+
+    def add_uav(self, force: Array, drag: Array) -> None:
+        """Add the level force on a UAV (2,) (N) and the square of its airspeed (2,) (m2/s2) of one period."""
+        self.uav_product = self._keep * self.uav_product + self._period * float(force @ drag)
+        self.uav_square = self._keep * self.uav_square + self._period * float(drag @ drag)
+
+    def decay(self) -> None:
+        """Let a period pass without drag."""
+        self.product *= self._keep
+        self.square *= self._keep
+        self.uav_product, self.uav_square = self._keep * self.uav_product, self._keep * self.uav_square
+
+
 class WindEstimator:
     """Learns the wind from the estimated forces of one control step after the other."""
 
@@ -36,21 +73,15 @@ class WindEstimator:
         self.settings = s = settings or WindSettings()
         self._coefficients = box_coefficients(payload_size)
         self._limit = limit
-        self._period, self._keep = period, float(np.exp(-period / s.memory))
         count = round(s.speed_max / s.spacing)
-        axis = s.spacing * np.arange(-count, count + 1)
-        self._axis = axis
+        self._axis = axis = s.spacing * np.arange(-count, count + 1)
         north, east = np.meshgrid(axis, axis, indexing="ij")
         self._winds = np.stack([north, east, np.zeros_like(north)], axis=-1)
         # Of minus twice the logarithm of the probability, in N2 s: what gusts leave counts once in their time.
         self._unit = unit = 2.0 * s.gust_force**2 * s.gust_time
         self._factor_prior = 0.5 * unit / s.factor_sigma**2
-        self._prior = 0.5 * unit / s.speed_sigma**2 * (north**2 + east**2)
-        self._product = np.zeros(north.shape)  # F . drag, integrated over the memory (N2 s)
-        self._square = np.zeros(north.shape)  # |drag|^2
-        self._force_square = 0.0  # |F|^2 (N2 s)
-        self._mean, self._time = np.zeros(2), 0.0  # F, and how much of the memory is filled (s)
-        self._uav_product = self._uav_square = 0.0
+        self._wind_prior = 0.5 * unit / s.speed_sigma**2 * (north**2 + east**2)
+        self._sums = _Sums(north.shape, period, s.memory)
         self.air: Air | None = None
         """Estimated wind and drag; None: no wind."""
 
@@ -62,43 +93,34 @@ class WindEstimator:
             uav_force: that on each UAV (3,) (N, NED).
             velocity: of the payload (3,) (m/s, NED).
         """
-        s = self.settings
-        self._force_square = self._keep * self._force_square + self._period * float(force[:2] @ force[:2])
-        self._mean = self._keep * self._mean + self._period * force[:2]
-        self._time = self._keep * self._time + self._period
+        s, sums = self.settings, self._sums
+        sums.add_force(force[:2])
         least = s.force_min**2 * s.memory
-        if self._force_square < least:
+        if sums.force_square < least:
             self.air = None
-            self._product *= self._keep
-            self._square *= self._keep
-            self._uav_product, self._uav_square = self._keep * self._uav_product, self._keep * self._uav_square
+            sums.decay()
             return
-        drag = box_drag(self._coefficients, self._winds - velocity)
-        self._product = self._keep * self._product + self._period * (drag[..., :2] @ force[:2])
-        self._square = self._keep * self._square + self._period * np.einsum("ijk,ijk->ij", drag[..., :2], drag[..., :2])
-        factor = np.clip((self._product + self._factor_prior) / (self._square + self._factor_prior), 0.0, s.factor_max)
-        cost = factor * (factor * self._square - 2.0 * self._product)
-        cost += self._factor_prior * (factor - 1.0) ** 2 + self._prior
+        sums.add_drag(force[:2], box_drag(self._coefficients, self._winds - velocity)[..., :2])
+        prior = self._factor_prior
+        factor = np.clip((sums.product + prior) / (sums.square + prior), 0.0, s.factor_max)
+        cost = factor * (factor * sums.square - 2.0 * sums.product)
+        cost += prior * (factor - 1.0) ** 2 + self._wind_prior
         best = np.unravel_index(int(np.argmin(cost)), cost.shape)
         wind = np.array([self._axis[best[0]] + self._vertex(cost[:, best[1]], int(best[0])),
                          self._axis[best[1]] + self._vertex(cost[best[0]], int(best[1])), 0.0])  # fmt: skip
-        self._learn_uav(uav_force, wind - velocity)
+        airspeed = wind - velocity
+        sums.add_uav(uav_force[:2], float(np.linalg.norm(airspeed)) * airspeed[:2])
         low, high = s.explained_min, s.explained_full
-        explained = -(float(cost[best]) + least) / self._force_square
+        explained = -(float(cost[best]) + least) / sums.force_square
         weight = float(np.clip((explained - low) / (high - low), 0.0, 1.0))
         # A force that is the same at all velocities is no wind.
-        steady = self._force_square - float(self._mean @ self._mean) / self._time
-        weight *= float(np.clip(2.0 - (self._force_square + float(cost[best]) - steady) / self._unit, 0.0, 1.0))
+        steady = sums.force_square - float(sums.mean @ sums.mean) / sums.time
+        weight *= float(np.clip(2.0 - (sums.force_square + float(cost[best]) - steady) / self._unit, 0.0, 1.0))
         if weight == 0.0:
             self.air = None
             return
-        uav = max(self._uav_product / self._uav_square, 0.0) if self._uav_square > 0.0 else 0.0
+        uav = max(sums.uav_product / sums.uav_square, 0.0) if sums.uav_square > 0.0 else 0.0
         self.air = Air(wind, weight * float(factor[best]) * self._coefficients, weight * uav, self._limit)
-
-    def _learn_uav(self, force: Array, u: Array) -> None:
-        drag = float(np.linalg.norm(u)) * u[:2]
-        self._uav_product = self._keep * self._uav_product + self._period * float(force[:2] @ drag)
-        self._uav_square = self._keep * self._uav_square + self._period * float(drag @ drag)
 
     def _vertex(self, cost: Array, best: int) -> float:
         """Return the distance (m/s) from the least ``cost`` (M,) to the vertex of a parabola through its neighbours."""

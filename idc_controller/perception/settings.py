@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from idc_controller.errors import ParameterError
 from idc_controller.settings import setting
 
 
@@ -102,11 +103,13 @@ class ImmSettings:
     static_walk: float = setting(0.01, "m/sqrt(s)", "static model: random walk of the position", ge=0.0)
     velocity_walk: float = setting(0.15, "m/s/sqrt(s)", "constant-velocity model: random walk of the velocity", ge=0.0)
     singer_accelerations: tuple[float, ...] = setting(
-        (1.0, 4.0), "m/s2", "Singer models: standard deviations of the acceleration"
+        (1.0, 4.0), "m/s2", "Singer models: standard deviations of the acceleration", gt=0.0
     )
-    singer_times: tuple[float, ...] = setting((1.0, 0.5), "s", "Singer models: correlation times of the acceleration")
+    singer_times: tuple[float, ...] = setting(
+        (1.0, 0.5), "s", "Singer models: correlation times of the acceleration", gt=0.0
+    )
     frequencies: tuple[float, ...] = setting(
-        (0.5, 0.7, 1.0, 1.4, 2.0, 2.8), "rad/s", "harmonic models: angular frequencies"
+        (0.5, 0.7, 1.0, 1.4, 2.0, 2.8), "rad/s", "harmonic models: angular frequencies", gt=0.0
     )
     harmonic_walk: float = setting(
         0.1, "m/s2/sqrt(s)", "harmonic models: random walk of the acceleration at 1 rad/s, proportional to it", ge=0.0
@@ -114,6 +117,11 @@ class ImmSettings:
     initial_velocity: float = setting(1.5, "m/s", "initial standard deviation of the velocity", gt=0.0)
     initial_acceleration: float = setting(1.5, "m/s2", "initial standard deviation of the acceleration", gt=0.0)
     transition_rate: float = setting(0.1, "1/s", "share of a model's weight that moves to the others", ge=0.0)
+
+    def __post_init__(self) -> None:
+        sigmas, times = len(self.singer_accelerations), len(self.singer_times)
+        if sigmas != times:
+            raise ParameterError(f"singer_accelerations has {sigmas} values and singer_times {times}: one each a model")
 
 
 @dataclass(frozen=True)
@@ -134,6 +142,12 @@ class ManoeuvreSettings:
     growth_max: float = setting(0.5, "m", "largest growth of a body while predictions are right", ge=0.0)
     growth_per_error: float = setting(1.5, "", "by which that rises with the prediction error", ge=0.0)
     growth_limit: float = setting(1.5, "m", "up to which it rises: an obstacle may come faster than the team", ge=0.0)
+
+    def __post_init__(self) -> None:
+        if self.mismatch_full <= self.mismatch_begin:
+            raise ParameterError(
+                f"mismatch_full {self.mismatch_full:g} is not above mismatch_begin {self.mismatch_begin:g}"
+            )
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections import defaultdict, deque
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from enum import Enum
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,14 @@ from idc_controller.estimation.measurements import PAYLOAD, Attitude, SensorKey
 from idc_controller.estimation.settings import InnovationMonitorSettings
 
 Array = NDArray[np.float64]
+
+
+class Finding(Enum):
+    """What is wrong with a sensor."""
+
+    REJECTED = "rejected"
+    BIASED = "biased"
+    NOISY = "noisy"
 
 
 @dataclass
@@ -82,18 +91,18 @@ class InnovationMonitor:
             if source != PAYLOAD and kind is Attitude:
                 del self._statistics[entry]
 
-    def findings(self, time: float) -> dict[SensorKey, list[str]]:
-        """Return what is wrong with sensors at ``time`` (s): ``refused``, ``disagrees`` (biased) or ``noisy``."""
+    def findings(self, time: float) -> dict[SensorKey, list[Finding]]:
+        """Return what is wrong with sensors at ``time`` (s)."""
         s = self._settings
-        found: dict[SensorKey, list[str]] = defaultdict(list)
+        found: dict[SensorKey, list[Finding]] = defaultdict(list)
         for (key, _), statistics in self._statistics.items():
             while statistics.rejections and time - statistics.rejections[0] > s.rejection_time:
                 statistics.rejections.popleft()
             factor = s.manoeuvre_factor if key[0] != PAYLOAD and key[1] is Attitude else 1.0
             if len(statistics.rejections) >= factor * s.rejections:
-                found[key].append("refused")
+                found[key].append(Finding.REJECTED)
             if float(statistics.mean @ statistics.mean) > factor * self._mean_limits[statistics.size]:
-                found[key].append("disagrees")
+                found[key].append(Finding.BIASED)
             if statistics.square > factor * self._square_limits[statistics.size]:
-                found[key].append("noisy")
+                found[key].append(Finding.NOISY)
         return dict(found)
