@@ -1,4 +1,4 @@
-"""Every way in which a flight can end: a clear message and exit code, the payload on the ground, records closed."""
+"""Every end of a flight: a clear message and exit code, the payload on the ground, records closed."""
 
 import json
 import os
@@ -62,7 +62,7 @@ def test_ctrl_c_in_flight_lands_and_closes_the_records(tmp_path, number):
     check_on_the_ground(gcs.folder)
 
 
-def test_a_second_ctrl_c_leaves_the_vehicles_to_land_on_their_own(tmp_path):
+def test_second_ctrl_c_ends_control_and_vehicles_land(tmp_path):
     gcs = GcsProcess(short_figure(tmp_path, duration=30.0), tmp_path / "run")
     gcs.until_phase("fly")
     gcs.process.send_signal(signal.SIGINT)
@@ -74,7 +74,7 @@ def test_a_second_ctrl_c_leaves_the_vehicles_to_land_on_their_own(tmp_path):
     check_on_the_ground(gcs.folder, height=0.275)
 
 
-def test_the_world_killed_in_flight_is_said_and_ends_it(tmp_path):
+def test_killed_simulation_ends_the_flight_with_its_reason(tmp_path):
     gcs = GcsProcess(short_figure(tmp_path, duration=30.0), tmp_path / "run")
     gcs.until_phase("fly")
     os.kill(gcs.child(), signal.SIGKILL)
@@ -86,7 +86,7 @@ def test_the_world_killed_in_flight_is_said_and_ends_it(tmp_path):
     assert (gcs.folder / "telemetry.tlog").stat().st_size > 10_000
 
 
-def test_the_ground_killed_in_flight_leaves_vehicles_that_hold_then_land(tmp_path):
+def test_vehicles_hold_then_land_when_the_ground_is_killed(tmp_path):
     mission = short_figure(tmp_path, duration=30.0)
     options = ("--lockstep", "--mission", mission, "--run-dir", tmp_path / "world", "--base-port", free_port())
     swarm = swarm_process(*options)
@@ -110,7 +110,7 @@ def test_the_ground_killed_in_flight_leaves_vehicles_that_hold_then_land(tmp_pat
     assert truth["contacts"].max() == 0
 
 
-def test_nobody_there_is_said(tmp_path):
+def test_unreachable_vehicles_are_refused_with_their_address(tmp_path):
     base = free_port()
     urls = [f"udp://127.0.0.1:{base + i}" for i in range(4)]
     code, errors = GcsProcess(
@@ -159,7 +159,7 @@ class Cut(Passage):
         return () if self.telemetry and vehicle == self.vehicle and now >= self.at else leaving
 
 
-def test_a_vehicle_that_never_answers(tmp_path):
+def test_vehicle_that_never_answers_is_refused(tmp_path):
     with Rehearsal(short_figure(tmp_path), tmp_path / "run", passage=Cut(3, 0.0)) as flight:
         flight.fly()
         assert flight.flight.reason == "vehicle 3 does not answer at 127.0.0.1:14542"
@@ -167,7 +167,7 @@ def test_a_vehicle_that_never_answers(tmp_path):
         assert flight.swarm.at_rest
 
 
-def test_a_vehicle_at_another_ones_address_is_told_apart(tmp_path):
+def test_vehicle_at_the_address_of_another_is_refused(tmp_path):
     with Rehearsal(short_figure(tmp_path), tmp_path / "run") as flight:
         first, second, *_ = flight.station.links
         first.address, second.address = second.address, first.address
@@ -178,7 +178,7 @@ def test_a_vehicle_at_another_ones_address_is_told_apart(tmp_path):
         assert flight.flight.reason == "vehicle 1 does not answer at 127.0.0.1:14541: vehicle 2 does"
 
 
-def test_a_vehicle_that_refuses_to_arm(tmp_path):
+def test_vehicle_that_refuses_to_arm_disarms_all(tmp_path):
     with Rehearsal(short_figure(tmp_path), tmp_path / "run") as flight:
         flight.fly(stop=lambda: flight.flight.phase.value == "arm")
         autopilot = flight.swarm.vehicles[1].autopilot
@@ -189,7 +189,7 @@ def test_a_vehicle_that_refuses_to_arm(tmp_path):
         assert not any(vehicle.autopilot.armed for vehicle in flight.swarm.vehicles)
 
 
-def test_a_vehicle_that_is_armed_already_is_left_alone(tmp_path):
+def test_vehicle_that_is_armed_already_is_refused(tmp_path):
     with Rehearsal(short_figure(tmp_path), tmp_path / "run") as flight:
         flight.swarm.advance_to(0.1)
         flight.swarm.vehicles[2].autopilot.arm(0.1)
@@ -197,7 +197,7 @@ def test_a_vehicle_that_is_armed_already_is_left_alone(tmp_path):
         assert "vehicle 3 is armed already" in flight.flight.reason
 
 
-def test_a_vehicle_of_another_make_is_refused(tmp_path):
+def test_vehicle_with_another_parameter_is_refused(tmp_path):
     with Rehearsal(short_figure(tmp_path), tmp_path / "run") as flight:
         flight.swarm.vehicles[0].parameters.by_name(px4.PARAM_THRUST_MAX).value = 20.0
         flight.fly()
@@ -213,7 +213,7 @@ def test_a_vehicle_of_another_make_is_refused(tmp_path):
     ],
     ids=["both ways", "telemetry", "commands"],
 )
-def test_a_vehicle_that_drops_out_in_flight_brings_all_of_them_down(tmp_path, telemetry, commands, reason):
+def test_link_loss_of_one_vehicle_lands_all_of_them(tmp_path, telemetry, commands, reason):
     passage, followed = Cut(2, 16.4, telemetry, commands), {}
 
     def plans_followed(flight):
@@ -245,7 +245,7 @@ class Deaf(Passage):
         return () if now >= self.at else leaving
 
 
-def test_vehicles_that_are_not_heard_but_hear_are_told_to_descend(tmp_path):
+def test_descent_is_commanded_when_only_telemetry_is_lost(tmp_path):
     modes = []
 
     def look(flight):
@@ -261,7 +261,7 @@ def test_vehicles_that_are_not_heard_but_hear_are_told_to_descend(tmp_path):
     check_set_down(tmp_path / "run", summary)
 
 
-def test_nothing_is_touched_high_above_the_ground(tmp_path):
+def test_touchdown_is_not_detected_high_above_the_ground(tmp_path):
     """Above its reference and still, as wind may hold it: no touch-down, and the vehicles are left to land at last."""
     with Rehearsal(short_figure(tmp_path, duration=2.0, altitude=1.5), tmp_path / "run") as rehearsal:
         rehearsal.fly(stop=lambda: rehearsal.flight.phase is Phase.LAND)
@@ -293,7 +293,7 @@ def test_nothing_is_touched_high_above_the_ground(tmp_path):
 
 
 @pytest.mark.parametrize("moment", [13.3, 17.8])
-def test_vehicles_whose_ground_is_gone_stop_together_and_set_the_payload_down(tmp_path, moment):
+def test_vehicles_without_ground_stop_simultaneously_and_set_the_payload_down(tmp_path, moment):
     with Rehearsal(short_figure(tmp_path, duration=20.0), tmp_path / "run", seed=1201) as flight:
         flight.fly(until=moment)
         assert flight.leave_alone()
@@ -302,7 +302,7 @@ def test_vehicles_whose_ground_is_gone_stop_together_and_set_the_payload_down(tm
 
 
 @pytest.mark.parametrize(("start", "velocity", "seed"), [(9.0, (0.0, -4.0), 9103), (17.0, (2.83, 2.83), 7)])
-def test_so_do_they_in_wind(tmp_path, start, velocity, seed):
+def test_vehicles_without_ground_set_the_payload_down_in_wind(tmp_path, start, velocity, seed):
     """They have braced the payload against the wind; once it stands they must not be driven over by that."""
     mission = short_figure(tmp_path, duration=20.0)
     with mission.open("a") as file:
@@ -331,7 +331,7 @@ gust = 0.5
     assert max(stops.values()) - flight.swarm.take_off_time - start <= 0.5
 
 
-def test_for_the_vehicles_a_partition_is_a_killed_ground(tmp_path):
+def test_partition_is_to_the_vehicles_as_a_killed_ground(tmp_path):
     start, truths = 8.0007, []
     mission = short_figure(tmp_path, duration=4.0, altitude=1.5)
     with Rehearsal(mission, tmp_path / "killed", seed=4) as flight:

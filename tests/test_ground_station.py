@@ -1,4 +1,4 @@
-"""What the ground learns from datagrams, and what it does not."""
+"""Ground station: which datagrams count, and which are ignored."""
 
 import pymavlink.dialects.v20.common as mavlink
 import pytest
@@ -34,13 +34,13 @@ def tell(station, message, system=1, address=None, now=0.0):
         ((0, 0), CommandState.REFUSED),  # as autopilots answer that do not tell
     ],
 )
-def test_an_answer_to_another_system_at_the_same_address_is_not_ours(station, target, state):
+def test_acknowledgement_to_another_system_is_ignored(station, target, state):
     command = station.links[0].command(ARM, 1.0)
     tell(station, mavlink.MAVLink_command_ack_message(ARM, mavlink.MAV_RESULT_DENIED, 0, 0, *target))
     assert command.state is state
 
 
-def test_an_answer_of_one_who_is_not_the_vehicle_does_not_count(station):
+def test_acknowledgement_from_another_sender_is_ignored(station):
     command = station.links[0].command(ARM, 1.0)
     answer = mavlink.MAVLink_command_ack_message(ARM, mavlink.MAV_RESULT_DENIED)
     tell(station, answer, system=1, address=address_of(2))
@@ -50,7 +50,7 @@ def test_an_answer_of_one_who_is_not_the_vehicle_does_not_count(station):
     assert station.router.refused == 3
 
 
-def test_only_our_own_timesync_requests_tell_of_the_way_and_each_once(station):
+def test_timesync_answer_counts_once_and_only_to_an_own_request(station):
     clock = station.links[0].clock
     sent = [m for m, address in station.datagrams_to_send(1.0) if address == address_of(1)]
     [request] = [m for data in sent for m, *_ in Codec(2, 1).decode(data) if m.get_type() == "TIMESYNC"]

@@ -1,4 +1,4 @@
-"""Whether the payload has touched the ground, by an estimate that knows nothing of the ground."""
+"""Touchdown detection, by an estimate without a model of the ground."""
 
 from types import SimpleNamespace
 
@@ -26,15 +26,15 @@ def touched(heights, velocities, below):
     return None
 
 
-def test_it_stands_where_the_reference_sinks_on():
+def test_touchdown_is_detected_where_the_reference_sinks_on():
     assert touched([0.05] * 6, [0.0] * 6, below=0.1) == 4
 
 
-def test_a_payload_that_bounces_on_its_pad_stands():
+def test_touchdown_is_detected_of_a_payload_that_bounces_on_its_pad():
     assert touched([0.05, 0.06, 0.04, 0.05, 0.05], [0.2, -0.1, 0.2, -0.15, 0.1], below=0.05) == 4
 
 
 @pytest.mark.parametrize(("height", "velocity"), [(0.3, 0.2), (0.05, 0.2), (1.5, 0.0)])
-def test_one_that_follows_its_reference_down_or_is_high_up_does_not(height, velocity):
+def test_touchdown_is_not_detected_while_the_payload_follows_its_reference_or_is_high(height, velocity):
     below = 0.3 if height > 1.0 else -height + 0.02
     assert touched([height] * 20, [velocity] * 20, below) is None

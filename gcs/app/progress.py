@@ -13,7 +13,7 @@ from gcs.flight.phase import Phase
 
 
 class FlightProgress:
-    """One line at a terminal that tells phase, flight time and how much is left; elsewhere one line a phase."""
+    """One line at a terminal with phase, flight time and how much is left; elsewhere one line a phase."""
 
     def __init__(self, console: Console) -> None:
         self._console = console

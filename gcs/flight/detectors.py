@@ -17,7 +17,8 @@ from scipy.stats import chi2
 
 from gcs.config.flight_settings import MonitorSettings
 from gcs.flight.alarms import AlarmCode, AlarmLog, Severity
-from gcs.flight.flight import Flight, StepRecord
+from gcs.flight.control_loop import StepRecord
+from gcs.flight.flight import Flight
 from gcs.mavlink.id_check import Identities
 from gcs.mavlink.vehicle_link import VehicleLink
 from idc_controller.estimation.health.innovation_monitor import Finding, InnovationMonitor

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from gcs.config.flight_settings import DEFAULTS, MonitorSettings
 from gcs.flight.alarms import AlarmLog
+from gcs.flight.control_loop import StepRecord
 from gcs.flight.detectors import ManoeuvreDetector, Observation, detectors
-from gcs.flight.flight import Flight, StepRecord
+from gcs.flight.flight import Flight
 from gcs.flight.phase import IN_AIR
 from gcs.mavlink.id_check import Identities
 

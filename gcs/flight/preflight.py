@@ -70,7 +70,7 @@ class Preflight:
     @property
     def payload(self) -> Array:
         """Position of the payload (3,)."""
-        return np.mean(self._positions[PAYLOAD], axis=0)
+        return np.asarray(np.mean(self._positions[PAYLOAD], axis=0))
 
     @property
     def vehicles(self) -> Array:

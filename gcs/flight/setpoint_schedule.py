@@ -34,7 +34,7 @@ class SetpointSchedule:
 
     def waits(self, delays: Array) -> Array:
         """Return how long the set-points of each vehicle wait, for the ``delays`` (N,) of the links."""
-        waits = delays.max() - delays
+        waits: Array = delays.max() - delays
         waits[waits < self._simultaneous] = 0.0
         return waits
 

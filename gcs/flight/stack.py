@@ -30,7 +30,7 @@ from idc_controller.trajectory.trajectory import Limits
 
 
 def linear_model(config: SystemConfig) -> LinearModel:
-    """The model as the ground believes it."""
+    """Return the controller's model of the system."""
     return LinearModel(config.parameters())
 
 
