@@ -3,7 +3,7 @@
 from flight_in_process import short_figure
 
 from gcs.campaign.faults.campaign_file import read_campaign
-from gcs.campaign.faults.sweep import flights_of
+from gcs.campaign.faults.sweep import FaultFlights
 
 CAMPAIGN = """
 [campaign]
@@ -34,7 +34,7 @@ def campaign_file(folder, text=CAMPAIGN):
 
 
 def flights(folder, text=CAMPAIGN):
-    return list(flights_of(read_campaign(campaign_file(folder, text))))
+    return list(FaultFlights(read_campaign(campaign_file(folder, text))).plans(folder / "out"))
 
 
 SUMMARY = {

@@ -9,9 +9,10 @@ from flight_in_process import short_figure
 from small_campaign import CAMPAIGN, campaign_file, flights
 
 from gcs.app.cli import main
+from gcs.campaign.engine import Campaign
 from gcs.campaign.faults.base_mission import read_base
-from gcs.campaign.faults.campaign import FaultCampaign, FaultCampaignOptions
 from gcs.campaign.faults.campaign_file import read_campaign
+from gcs.campaign.faults.sweep import FaultFlights
 from gcs.config import UnusableFile
 from gcs.mission import Fault, read_mission
 from gcs.mission.model import Limits
@@ -19,11 +20,11 @@ from gcs.mission.model import Limits
 MISSIONS = Path(__file__).parents[1] / "missions"
 
 
-def test_every_case_in_every_mission_with_every_seed(tmp_path):
+def test_campaign_plans_every_case_in_every_mission_with_every_seed(tmp_path):
     found = flights(tmp_path, CAMPAIGN.replace('.toml"]', f'.toml", "{MISSIONS}/square.waypoints"]'))
     assert len(found) == 3 * 2 * 2 and [flight.number for flight in found] == list(range(1, 13))
-    told = [(f.case.name, f.case.severity, f.mission, f.seed) for f in found[:5]]
-    assert told == [
+    labels = [tuple(f.labels[key] for key in ("fault", "severity", "mission", "seed")) for f in found[:5]]
+    assert labels == [
         ("loss", "probability 0.1", "short_figure", 3), ("loss", "probability 0.1", "short_figure", 7),
         ("loss", "probability 0.1", "square", 3), ("loss", "probability 0.1", "square", 7),
         ("loss", "probability 0.3", "short_figure", 3),
@@ -31,13 +32,13 @@ def test_every_case_in_every_mission_with_every_seed(tmp_path):
     assert len({flight.name for flight in found}) == 12
 
 
-def test_each_flight_is_a_mission_file(tmp_path):
+def test_campaign_writes_a_mission_file_for_each_flight(tmp_path):
     file = read_campaign(campaign_file(tmp_path, CAMPAIGN + "\n[limits]\nclearance = 0.4\n"))
-    campaign = FaultCampaign(file, FaultCampaignOptions(tmp_path / "out"))
-    missions = [read_mission(tmp_path / "out" / "missions" / f"{f.name}.toml") for f in campaign.flights]
+    campaign = Campaign(FaultFlights(file), tmp_path / "out")
+    missions = [read_mission(tmp_path / "out" / "missions" / f"{f.name}.toml") for f in campaign.plans]
     base = read_mission(tmp_path / "short_figure.toml")
-    for mission, flight in zip(missions, campaign.flights, strict=True):
-        assert (mission.seed, mission.limits) == (flight.seed, Limits(clearance=0.4))
+    for mission, flight in zip(missions, campaign.plans, strict=True):
+        assert (mission.seed, mission.limits) == (flight.labels["seed"], Limits(clearance=0.4))
         assert (mission.system, mission.reference) == (base.system, base.reference)
     assert [m.faults[0].settings for m in missions[::2]] == [
         {"probability": 0.1},
@@ -48,7 +49,7 @@ def test_each_flight_is_a_mission_file(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["square.waypoints", "fenced_delivery.plan", "pole_course.toml"])
-def test_a_mission_made_of_another_is_the_same_otherwise(name, tmp_path):
+def test_mission_made_of_another_differs_only_in_name_seed_and_faults(name, tmp_path):
     base = read_base(MISSIONS / name)
     base.write_files(tmp_path)
     fault = Fault("packet_loss", 1.0, vehicles=(1, 2), settings={"probability": 0.2})
@@ -60,7 +61,7 @@ def test_a_mission_made_of_another_is_the_same_otherwise(name, tmp_path):
     assert same == read
 
 
-def test_a_mission_keeps_its_own_faults(tmp_path):
+def test_mission_keeps_its_own_faults(tmp_path):
     own = '[[fault]]\nkind = "wind"\nstart = 1.0\nvelocity = [1.0, 0.0, 0.0]\n'
     path = short_figure(tmp_path, 2.0)
     path.write_text(path.read_text() + own)
@@ -68,35 +69,35 @@ def test_a_mission_keeps_its_own_faults(tmp_path):
     assert [fault["kind"] for fault in faults] == ["wind", "partition"]
 
 
-def test_tables_of_one_name_are_flown_together(tmp_path):
+def test_fault_tables_of_one_name_make_one_case(tmp_path):
     text = CAMPAIGN + '[[fault]]\nname = "slow"\nkind = "jitter"\nstart = 4.0\nseverity = { spread = [0.01, 0.02] }\n'
-    slow = [flight for flight in flights(tmp_path, text) if flight.case.name == "slow"][::2]
-    assert [[f.kind for f in flight.case.faults_for(3)] for flight in slow] == [["latency", "jitter"]] * 2
-    assert [flight.case.faults_for(3)[1].settings for flight in slow] == [{"spread": 0.01}, {"spread": 0.02}]
-    assert slow[0].case.kind == "latency + jitter"
+    slow = [case for case in read_campaign(campaign_file(tmp_path, text)).cases if case.name == "slow"]
+    assert [[f.kind for f in case.faults_for(3)] for case in slow] == [["latency", "jitter"]] * 2
+    assert [case.faults_for(3)[1].settings for case in slow] == [{"spread": 0.01}, {"spread": 0.02}]
+    assert slow[0].kind == "latency + jitter"
 
 
-def test_starts_are_drawn_for_every_seed(tmp_path):
+def test_fault_starts_are_drawn_per_seed(tmp_path):
     found = flights(tmp_path, CAMPAIGN.replace("start = 5.0", "start_between = [5.0, 9.0]"))[:4]
-    starts = [flight.case.faults_for(flight.seed)[0].start for flight in found]
+    starts = [tomllib.loads(flight.files[flight.mission])["fault"][0]["start"] for flight in found]
     assert starts[:2] == starts[2:] and starts[0] != starts[1]  # the same at every severity
     assert all(5.0 <= start <= 9.0 for start in starts)
 
 
-def test_flights_without_a_fault_and_counted_seeds(tmp_path):
+def test_campaign_plans_fault_free_flights_and_counted_seeds(tmp_path):
     counted = CAMPAIGN.replace("seeds = [3, 7]", "first_seed = 10\nseed_count = 3\nclean = true")
     found = flights(tmp_path, counted)
-    assert [(f.case.name, f.seed, f.case.kind) for f in found[:4]] == [
+    assert [tuple(f.labels[key] for key in ("fault", "seed", "kind")) for f in found[:4]] == [
         ("no fault", 10, ""), ("no fault", 11, ""), ("no fault", 12, ""), ("loss", 10, "packet_loss"),
     ]  # fmt: skip
-    assert "[[fault]]" not in found[0].text
+    assert "[[fault]]" not in found[0].files[found[0].mission]
 
 
-def test_the_example_can_be_flown(tmp_path):
+def test_example_campaign_makes_valid_missions(tmp_path):
     file = read_campaign(MISSIONS / "telemetry_faults.toml")
-    campaign = FaultCampaign(file, FaultCampaignOptions(tmp_path / "out"))
-    assert campaign.total == 34
-    for flight in campaign.flights[::5]:
+    campaign = Campaign(FaultFlights(file), tmp_path / "out")
+    assert len(campaign.plans) == 34
+    for flight in campaign.plans[::5]:
         read_mission(tmp_path / "out" / "missions" / f"{flight.name}.toml")
 
 
@@ -104,7 +105,7 @@ SWEEP = "{ probability = [0.1, 0.3] }"
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "told"),
+    ("old", "new", "reason"),
     [
         ("seeds = [3, 7]", "seeds = [3]\ncolour = 1", "line 6: campaign.colour: unknown key"),
         ("seeds = [3, 7]", "", "line 2: campaign: needs either seeds or seed_count"),
@@ -134,17 +135,18 @@ SWEEP = "{ probability = [0.1, 0.3] }"
         ("[campaign]", "[campaign", "line 2: not valid TOML"),
     ],
 )  # fmt: skip
-def test_what_is_wrong_is_told_with_its_line(old, new, told, tmp_path, capsys):
+def test_campaign_file_is_refused_with_line_and_reason(old, new, reason, tmp_path, capsys):
     assert old in CAMPAIGN
     path = campaign_file(tmp_path, CAMPAIGN.replace(old, new))
     with pytest.raises(UnusableFile) as raised:
         read_campaign(path)
-    assert any(told in reason and reason.startswith(str(path)) for reason in raised.value.reasons), raised.value.reasons
+    found = raised.value.reasons
+    assert any(reason in line and line.startswith(str(path)) for line in found), found
     assert main(["faults", str(path), "--out", str(tmp_path / "out")]) == 2
-    assert told in capsys.readouterr().err and not (tmp_path / "out").exists()
+    assert reason in capsys.readouterr().err and not (tmp_path / "out").exists()
 
 
-def test_what_is_wrong_with_a_mission_is_told(tmp_path):
+def test_campaign_file_is_refused_with_reasons_of_its_mission(tmp_path):
     path = campaign_file(tmp_path)
     mission = tmp_path / "short_figure.toml"
     mission.write_text(mission.read_text().replace("altitude", "height"))

@@ -6,18 +6,21 @@ import json
 import pandas
 import pytest
 from scipy.stats import binomtest
-from small_campaign import OUTSIDE, SUMMARY, flights
+from small_campaign import OUTSIDE, SUMMARY, campaign_file
 
-from gcs.campaign.faults.outcome import draw_matrix, outcome_table
-from gcs.campaign.faults.result import COLUMNS, NOT_FLOWN, VERDICTS, evaluate, stop_time, team_stop
-from gcs.campaign.faults.tables import interval, rates_of, write_tables
-from gcs.campaign.process_pool import Ended
+from gcs.campaign.engine import Campaign
+from gcs.campaign.faults.campaign_file import read_campaign
+from gcs.campaign.faults.judgement import COLUMNS, NOT_FLOWN, VERDICTS, stop_time, team_stop
+from gcs.campaign.faults.rates import interval, rates_of
+from gcs.campaign.faults.report import draw_matrix, report
+from gcs.campaign.faults.sweep import FaultFlights
+from gcs.campaign.process_pool import FlownProcess
 
 
 def results(tmp_path, within, outside=0, **figures):
-    flight = flights(tmp_path)[0]
-    made = [evaluate(flight, Ended(0, SUMMARY, "", 1.0), tmp_path / "none", "gcs fly x") for _ in range(within)]
-    made += [evaluate(flight, Ended(1, SUMMARY | OUTSIDE, "", 1.0), tmp_path / "none", "gcs fly x")] * outside
+    campaign = Campaign(FaultFlights(read_campaign(campaign_file(tmp_path))), tmp_path / "out")
+    processes = [FlownProcess(0, SUMMARY, "", 1.0)] * within + [FlownProcess(1, SUMMARY | OUTSIDE, "", 1.0)] * outside
+    made = [campaign.result_of(campaign.plans[0], process) for process in processes]
     return [dataclasses.replace(result, **figures) for result in made]
 
 
@@ -31,10 +34,10 @@ def test_rates_have_wilson_intervals(tmp_path):
     assert hit.safe == 0
 
 
-def test_the_tables_say_the_same(tmp_path):
+def test_csv_and_parquet_agree(tmp_path):
     made = results(tmp_path, 2, 1)
     made.append(dataclasses.replace(made[0], clearance_min_m=0.25, contacts=None, outcome=NOT_FLOWN, level=2))
-    table, parquet, rates = write_tables(made, tmp_path)
+    _, [table, parquet, rates, _] = report("a test", made, tmp_path)
     frame = pandas.read_parquet(parquet)
     assert tuple(frame.columns) == COLUMNS and len(frame) == 4
     assert frame["clearance_min_m"].isna().tolist() == [True, True, True, False]
@@ -45,14 +48,14 @@ def test_the_tables_say_the_same(tmp_path):
     assert pandas.read_csv(rates)["flights"].tolist() == [3, 1]
 
 
-def test_all_outcomes_are_drawn_and_told(tmp_path):
+def test_report_covers_all_outcomes(tmp_path):
     [result] = results(tmp_path, 1)
     made = [dataclasses.replace(result, outcome=o, level=i % 3 + 1, notes="x") for i, o in enumerate(VERDICTS)]
     assert draw_matrix("a test", made, tmp_path).stat().st_size > 5_000
-    outcome_table(made, [])
+    report("a test", made, tmp_path)
 
 
-def test_time_to_the_stop_of_the_team(tmp_path):
+def test_team_stop_counts_from_first_fault_of_case(tmp_path):
     faults = [{"activations": [[5.0, None]]}]
     (tmp_path / "faults.json").write_text(json.dumps({"take_off_s": 3.0, "end_s": 20.0, "faults": faults}))
     assert team_stop(tmp_path, 1) == (None, None)
@@ -64,7 +67,7 @@ def test_time_to_the_stop_of_the_team(tmp_path):
     assert team_stop(tmp_path, 2) == (0.5, 0.05)
 
 
-def test_time_to_the_stop(tmp_path):
+def test_stop_time_counts_from_first_fault_of_case(tmp_path):
     faults = [{"activations": [[5.0, 6.0]]}, {"activations": []}, {"activations": [[4.0, None]]}]
     (tmp_path / "faults.json").write_text(json.dumps({"take_off_s": 3.0, "end_s": 20.0, "faults": faults}))
     assert stop_time({"broken_off_s": 9.25}, tmp_path, 3) == 2.25

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gcs.campaign.courses.text import tables_text
+from gcs.campaign.toml_text import tables_text
 from gcs.config import SystemConfig, UnusableFile, read_system
 from gcs.config.schema import ListedSetting, listed_settings
 from gcs.config.settings_page import settings_page

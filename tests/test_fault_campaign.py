@@ -13,10 +13,12 @@ from flight_in_process import HOP
 from small_campaign import CAMPAIGN, OUTSIDE, SUMMARY, campaign_file
 
 from gcs.app.cli import main
-from gcs.campaign.faults import campaign as campaigns
-from gcs.campaign.faults.campaign import FaultCampaign, FaultCampaignOptions
+from gcs.campaign import engine
+from gcs.campaign.engine import Campaign
 from gcs.campaign.faults.campaign_file import read_campaign
-from gcs.campaign.process_pool import Ended, sole_flyer
+from gcs.campaign.faults.sweep import FaultFlights
+from gcs.campaign.folder import folder_lock
+from gcs.campaign.process_pool import FlownProcess
 from gcs.errors import UnusableInput
 
 pytestmark = pytest.mark.slow
@@ -31,24 +33,24 @@ def flown(monkeypatch):
         names.append(mission.stem)
         run_dir.mkdir()
         bad = "0.3" in mission.stem
-        return Ended(int(bad), SUMMARY | (OUTSIDE if bad else {}), "", 1.0)
+        return FlownProcess(int(bad), SUMMARY | (OUTSIDE if bad else {}), "", 1.0)
 
-    monkeypatch.setattr(campaigns, "fly_process", fly)
+    monkeypatch.setattr(engine, "fly_process", fly)
     return names
 
 
 def campaign_in(folder, text=CAMPAIGN, **options):
-    return FaultCampaign(read_campaign(campaign_file(folder, text)), FaultCampaignOptions(folder / "out", **options))
+    return Campaign(FaultFlights(read_campaign(campaign_file(folder, text))), folder / "out", **options)
 
 
 def nothing(_):
     pass
 
 
-def test_every_flight_is_flown_once(tmp_path, flown):
+def test_campaign_flies_every_flight_once(tmp_path, flown):
     campaign = campaign_in(tmp_path, jobs=2)
     campaign.fly(nothing, nothing)
-    assert sorted(flown) == sorted(flight.name for flight in campaign.flights)
+    assert sorted(flown) == sorted(flight.name for flight in campaign.plans)
     assert [result.number for result in campaign.results] == [1, 2, 3, 4, 5, 6]
     assert [result.outcome for result in campaign.results[1:4]] == ["within limits", "outside limits", "outside limits"]
     # Of those within limits only the results are kept.
@@ -58,7 +60,7 @@ def test_every_flight_is_flown_once(tmp_path, flown):
     assert len(flown) == 6
 
 
-def test_a_campaign_goes_on_where_it_was_cut_off(tmp_path, flown):
+def test_campaign_resumes_after_an_interrupt(tmp_path, flown):
     def interrupted(result):
         if result.number == 3:
             raise KeyboardInterrupt
@@ -69,11 +71,11 @@ def test_a_campaign_goes_on_where_it_was_cut_off(tmp_path, flown):
     again = campaign_in(tmp_path, jobs=1)
     assert [result.number for result in again.results] == [1, 2, 3]
     again.fly(nothing, nothing)
-    assert [flown.count(flight.name) for flight in again.flights[:3]] == [1, 1, 1]
+    assert [flown.count(flight.name) for flight in again.plans[:3]] == [1, 1, 1]
     assert len(again.results) == 6 and not (tmp_path / "out" / "flights" / ".half-flown").exists()
 
 
-def test_a_campaign_that_has_grown_flies_what_is_new(tmp_path, flown):
+def test_grown_campaign_flies_only_what_is_new(tmp_path, flown):
     campaign_in(tmp_path).fly(nothing, nothing)
     grown = CAMPAIGN.replace("[0.1, 0.3]", "[0.05, 0.1, 0.3]").replace("[3, 7]", "[3, 7, 8]")
     campaign = campaign_in(tmp_path, grown)
@@ -82,24 +84,24 @@ def test_a_campaign_that_has_grown_flies_what_is_new(tmp_path, flown):
     assert [(r.level, r.severity) for r in campaign.results[3:9:3]] == [(2, "probability 0.1"), (3, "probability 0.3")]
 
 
-def test_a_mission_that_has_changed_is_flown_again(tmp_path, flown):
+def test_campaign_flies_changed_mission_again(tmp_path, flown):
     campaign_in(tmp_path).fly(nothing, nothing)
     path = campaign_file(tmp_path)
     system = tmp_path / "system.toml"
     system.write_text(system.read_text().replace("link_length = 3.2", "link_length = 3.1"))
-    assert FaultCampaign(read_campaign(path), FaultCampaignOptions(tmp_path / "out")).results == []
+    assert Campaign(FaultFlights(read_campaign(path)), tmp_path / "out").results == []
 
 
-def test_a_folder_is_of_one_campaign_and_one_process(tmp_path, flown):
+def test_folder_is_refused_to_another_campaign_or_process(tmp_path, flown):
     campaign = campaign_in(tmp_path)
     with pytest.raises(UnusableInput, match="was begun with faults a test, not another"):
         campaign_in(tmp_path, CAMPAIGN.replace("a test", "another"))
-    with sole_flyer(tmp_path / "out"), pytest.raises(UnusableInput, match="another process is flying there"):
+    with folder_lock(tmp_path / "out"), pytest.raises(UnusableInput, match="another process is flying there"):
         campaign.fly(nothing, nothing)
     assert flown == []
 
 
-def test_the_command(tmp_path, flown, capsys):
+def test_command_flies_and_reports(tmp_path, flown, capsys):
     path, out = str(campaign_file(tmp_path)), tmp_path / "out"
     assert main(["faults", path, "--out", str(out), "--jobs", "2"]) == 1
     said = capsys.readouterr().out
@@ -111,15 +113,15 @@ def test_the_command(tmp_path, flown, capsys):
     assert len(flown) == 6
 
 
-def test_a_campaign_may_require_a_safe_landing_alone(tmp_path, flown, monkeypatch, capsys):
+def test_campaign_passes_safe_landings_where_file_requires_no_more(tmp_path, flown, monkeypatch, capsys):
     landing = {"on_ground": True, "speed_mps": 0.5, "tilt_deg": 1.5}
     aborted = SUMMARY | {"completed": False, "outcome": "aborted", "limits": {}, "landing": landing}
     ends = {"0.1": aborted, "0.3": aborted | OUTSIDE, "slow": aborted | {"outcome": "collided", "contacts": 1}}
 
     def fly(mission, options, run_dir, stop):
-        return Ended(1, next(end for name, end in ends.items() if name in mission.stem), "", 1.0)
+        return FlownProcess(1, next(end for name, end in ends.items() if name in mission.stem), "", 1.0)
 
-    monkeypatch.setattr(campaigns, "fly_process", fly)
+    monkeypatch.setattr(engine, "fly_process", fly)
     for require, passed in (("safe", 2), ("within limits", 0)):  # what is on record is judged anew
         text = CAMPAIGN.replace("seeds =", f'require = "{require}"\nseeds =')
         assert main(["faults", str(campaign_file(tmp_path, text)), "--out", str(tmp_path / "out")]) == 1
@@ -131,19 +133,19 @@ def test_a_campaign_may_require_a_safe_landing_alone(tmp_path, flown, monkeypatc
     assert frame["end_tilt_deg"].tolist() == [1.5] * 6
 
 
-def test_an_interrupt_keeps_the_results(tmp_path, flown, monkeypatch, capsys):
-    def interrupted(campaign, console, what, line):
-        campaign._fly(campaign.flights[0], None)
+def test_interrupted_command_exits_130(tmp_path, flown, monkeypatch, capsys):
+    def interrupted(campaign, console):
+        campaign.fly_one(campaign.plans[0], None)
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("gcs.app.commands.faults.show_progress", interrupted)
+    monkeypatch.setattr("gcs.app.campaigns.fly_with_progress", interrupted)
     assert main(["faults", str(campaign_file(tmp_path)), "--out", str(tmp_path / "out")]) == 130
     assert "interrupted with 6 flights to go" in capsys.readouterr().err
 
 
-def test_neither_a_campaign_nor_the_kinds(capsys):
+def test_command_refuses_neither_campaign_nor_kinds(capsys):
     assert main(["faults"]) == 2
-    assert "name what to do" in capsys.readouterr().err
+    assert "no campaign file" in capsys.readouterr().err
 
 
 REAL = """
@@ -164,7 +166,7 @@ severity = { probability = [0.05, 0.1] }
 """
 
 
-def test_killed_twice_in_the_middle_it_is_complete_and_none_is_flown_twice(tmp_path):
+def test_campaign_killed_twice_completes_without_flying_twice(tmp_path):
     """Six real flights, two at a time; the campaign is killed when one has ended, and again after two more."""
     path, out = campaign_file(tmp_path, REAL), tmp_path / "out"
     (tmp_path / "hop.toml").write_text(HOP)

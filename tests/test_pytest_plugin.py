@@ -10,7 +10,7 @@ import pytest
 from flight_in_process import HOP, system_file
 
 from gcs.campaign import testing
-from gcs.campaign.process_pool import Ended
+from gcs.campaign.process_pool import FlownProcess
 from gcs.campaign.testing import fault
 from gcs.errors import GcsError, UnusableInput
 from gcs.faults.link import PacketLoss
@@ -78,7 +78,7 @@ def flown(monkeypatch):
     def fly(mission, options, run_dir, stop):
         missions.append((read_mission(mission), options))
         run_dir.mkdir()
-        return Ended(0, SUMMARY, "", 1.0)
+        return FlownProcess(0, SUMMARY, "", 1.0)
 
     monkeypatch.setattr(testing, "fly_process", fly)
     return missions
@@ -120,7 +120,7 @@ def test_what_cannot_be_flown_is_told(arguments, told, fly_with_faults, hop, flo
 
 
 def test_a_flight_that_did_not_end_is_an_error(fly_with_faults, hop, monkeypatch):
-    monkeypatch.setattr(testing, "fly_process", lambda *_: Ended(-9, {}, "no memory", 1.0))
+    monkeypatch.setattr(testing, "fly_process", lambda *_: FlownProcess(-9, {}, "no memory", 1.0))
     with pytest.raises(GcsError, match="not flown: no memory"):
         fly_with_faults(hop)
     assert "gcs fly" in fly_with_faults.log[0]

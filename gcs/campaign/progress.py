@@ -1,46 +1,19 @@
-"""The progress line while many flights go on side by side."""
+"""The progress display of a campaign."""
 
 from __future__ import annotations
-
-from collections.abc import Callable
-from typing import Protocol, TypeVar
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
+from gcs.campaign.engine import Campaign, FlightPlan
+from gcs.campaign.result import Result
 
-class FlightResult(Protocol):
-    """What came of one flight."""
-
-    @property
-    def name(self) -> str:
-        """Of the flight."""
-
-    @property
-    def passed(self) -> bool:
-        """Whether it was within its limits."""
+SHOWN_FLIGHTS = 6
 
 
-R = TypeVar("R", bound=FlightResult)
-
-
-class Flights(Protocol[R]):
-    """What is flown side by side: a campaign, a study."""
-
-    @property
-    def results(self) -> list[R]:
-        """Of those flown so far."""
-
-    @property
-    def total(self) -> int:
-        """Number of flights."""
-
-    def fly(self, started: Callable[[str], None], ended: Callable[[R], None]) -> None:
-        """Fly those that have no result yet."""
-
-
-def show_progress(campaign: Flights[R], console: Console, what: str, line: Callable[[R], str]) -> None:
-    """Fly with a progress line at a terminal; elsewhere one ``line`` a flight."""
+def fly_with_progress(campaign: Campaign, console: Console) -> None:
+    """Fly with a progress bar at a terminal and a line for each flight that fails; elsewhere a line for each flight."""
+    what = campaign.generator.what
     failed = sum(not result.passed for result in campaign.results)
     flying: list[str] = []
     progress = Progress(
@@ -54,18 +27,30 @@ def show_progress(campaign: Flights[R], console: Console, what: str, line: Calla
         disable=not console.is_terminal,
     )
     with progress:
-        task = progress.add_task(what, total=campaign.total, completed=len(campaign.results), failed=failed, flying="")
+        done = len(campaign.results)
+        task = progress.add_task(what, total=len(campaign.plans), completed=done, failed=failed, flying="")
 
-        def started(name: str) -> None:
-            flying.append(name)
-            progress.update(task, flying=" ".join(flying[:6]))
+        def started(plan: FlightPlan) -> None:
+            flying.append(plan.name)
+            progress.update(task, flying=" ".join(flying[:SHOWN_FLIGHTS]))
 
-        def ended(result: R) -> None:
+        def ended(result: Result) -> None:
             nonlocal failed
             failed += not result.passed
             flying.remove(result.name)
-            progress.update(task, advance=1, failed=failed, flying=" ".join(flying[:6]))
+            progress.update(task, advance=1, failed=failed, flying=" ".join(flying[:SHOWN_FLIGHTS]))
             if not console.is_terminal or not result.passed:
-                console.print(line(result), markup=False)
+                console.print(flight_line(campaign, result), markup=False)
 
         campaign.fly(started, ended)
+
+
+def flight_line(campaign: Campaign, result: Result) -> str:
+    """Return a flight on one line."""
+    figures = []
+    for title, column, unit in campaign.generator.shown:
+        value = result.figure(column)
+        figures.append(f"{title} {'-' if value is None else f'{value:.2f}'} {unit}")
+    verdict = "passed" if result.passed else f"FAILED: {result.outcome}"
+    failures = f" ({result.failures})" if result.failures else ""
+    return f"{result.name}: {', '.join(figures)}, {result.wall_s:.0f} s: {verdict}{failures}"

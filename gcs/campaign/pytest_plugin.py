@@ -20,7 +20,7 @@ _FAILED = pytest.StashKey[bool]()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Where the run folders of failed tests are kept."""
+    """Add the option for the folder of failed tests' run folders."""
     parser.getgroup("cooplift").addoption(
         "--fault-runs", metavar="DIR", default="fault-test-failures",
         help="where the run folders of failed tests with faults are kept (default: fault-test-failures)",
@@ -29,9 +29,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 @pytest.fixture
 def fly_with_faults(request: pytest.FixtureRequest) -> Generator[FaultFlights, None, None]:
-    """Flies a mission with faults in lockstep: ``fly_with_faults("hover.toml", [fault, ...], seed=3)``."""
-    from gcs.campaign.faults.base_mission import digest
-    from gcs.campaign.faults.sweep import plain
+    """Fly a mission with faults in lockstep: ``fly_with_faults("hover.toml", [fault, ...], seed=3)``."""
+    from gcs.campaign.folder import digest, plain
     from gcs.campaign.testing import FaultFlights
 
     node = request.node
@@ -50,7 +49,7 @@ def fly_with_faults(request: pytest.FixtureRequest) -> Generator[FaultFlights, N
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestReport, pytest.TestReport]:
-    """Say how the flights of a failed test are repeated."""
+    """Report how the flights of a failed test are repeated."""
     report = yield
     flights = item.stash.get(_FLIGHTS, None)
     if flights is not None and report.failed:

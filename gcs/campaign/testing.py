@@ -9,10 +9,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, overload
 
-from gcs.campaign.faults.base_mission import read_base, write_text
-from gcs.campaign.faults.result import limits_not_held, replay_command, verdict
-from gcs.campaign.faults.sweep import plain
-from gcs.campaign.process_pool import Ended, fly_process
+from gcs.campaign.engine import replay_command
+from gcs.campaign.faults.base_mission import read_base
+from gcs.campaign.faults.judgement import limits_not_held, verdict
+from gcs.campaign.folder import plain, write_text
+from gcs.campaign.process_pool import FlownProcess, fly_process
 from gcs.errors import GcsError
 from gcs.faults import KINDS
 from gcs.mission.model import Fault, Limits
@@ -53,9 +54,9 @@ class FlownWithFaults:
     run_dir: Path
     replay: str
     outcome: str
-    """One of :data:`gcs.campaign.faults.result.VERDICTS`."""
+    """One of :data:`gcs.campaign.faults.judgement.VERDICTS`."""
     reason: str
-    """Why it was broken off; else empty."""
+    """Why it was aborted; else empty."""
 
     @property
     def within_limits(self) -> bool:
@@ -135,11 +136,11 @@ class FaultFlights:
     def _flown(self, path: Path, seed: int, controller: str) -> FlownWithFaults:
         options, run_dir = ("--controller", controller), path.with_suffix("")
         replay = replay_command(self._shown(path), options)
-        ended = fly_process(path, options, run_dir, threading.Event()) or Ended(1, {}, "", 0.0)
-        if not ended.summary:
+        process = fly_process(path, options, run_dir, threading.Event()) or FlownProcess(1, {}, "", 0.0)
+        if not process.summary:
             self.log.append(f"seed {seed}: not flown\n  {replay}")
-            raise GcsError(f"{self._shown(path)}: not flown: {ended.reason}")
-        flown = FlownWithFaults(seed, ended.summary, run_dir, replay, verdict(ended), ended.reason)
+            raise GcsError(f"{self._shown(path)}: not flown: {process.reason}")
+        flown = FlownWithFaults(seed, process.summary, run_dir, replay, verdict(process), process.reason)
         self.log.append(f"{flown}\n  run folder {self._shown(run_dir)}\n  {replay}")
         return flown
 

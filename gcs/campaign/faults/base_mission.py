@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import dataclasses
-import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from gcs.campaign.courses.text import tables_text
+from gcs.campaign.folder import digest, write_text
+from gcs.campaign.toml_text import tables_text
 from gcs.config.system import SystemConfig
 from gcs.config.text_file import read_text
 from gcs.config.toml_file import read_toml
-from gcs.errors import UnusableInput
 from gcs.mission.model import Fault, Limits
 from gcs.mission.read import mission_format, read_mission
 from gcs.record.run_folder import make_folder
@@ -88,17 +87,3 @@ def fault_table(fault: Fault | Mapping[str, Any]) -> dict[str, Any]:
         return dict(fault)
     own = {key: value for key, value in dataclasses.asdict(fault).items() if key not in ("settings", "line")}
     return {key: value for key, value in own.items() if value is not None} | dict(fault.settings)
-
-
-def write_text(path: Path, text: str) -> None:
-    """Write a file unless it has that content. Raises :class:`UnusableInput` where it cannot."""
-    try:
-        if not path.exists() or path.read_text(encoding="utf-8") != text:
-            path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise UnusableInput(f"{path}: cannot be written: {error.strerror}") from None
-
-
-def digest(*texts: str) -> str:
-    """Short and different for different texts, as part of a file name."""
-    return hashlib.sha256("\0".join(texts).encode()).hexdigest()[:8]

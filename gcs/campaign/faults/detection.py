@@ -1,4 +1,4 @@
-"""When the ground noticed the faults of a flight, and what it noticed without one."""
+"""When the ground station detected the faults of a flight, and its false alarms."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from gcs.record.tables import ALARMS, read_text_table
 class Detection:
     """``after`` (s): from the start of the case's first fault to the first alarm since; None: no alarm.
 
-    ``told``: that alarm and of whom it was. ``false``: alarms before the flight's first fault.
+    ``alarm``: that alarm and its source. ``false``: alarms before the flight's first fault.
     """
 
     after: float | None
-    told: str
+    alarm: str
     false: int | None
 
 
 def first_start(run_dir: Path, count: int | None = None) -> float | None:
-    """When the first of the last ``count`` faults of a flight (None: of all) came, by the clock of the tables (s).
+    """Return when the first of the last ``count`` faults of a flight (None: of all) came, in time of the tables (s).
 
     The faults before them are the mission's own; among them wind and load count only where nothing else is wrong.
     None: none came, or there is no record of them.
@@ -46,7 +46,7 @@ def _is_of_world(kind: str | None) -> bool:
 
 
 def detection(run_dir: Path, count: int) -> Detection:
-    """Of the last ``count`` faults of a flight, from its alarms and its faults."""
+    """Return the detection of the last ``count`` faults of a flight, from its tables of alarms and faults."""
     try:
         alarms = read_text_table(run_dir / ALARMS)
         times = [float(time) for time in alarms["time_s"]]
@@ -54,9 +54,9 @@ def detection(run_dir: Path, count: int) -> Detection:
         return Detection(None, "", None)
     first, begin = first_start(run_dir), first_start(run_dir, count) if count else None
     false = sum(first is None or time < first for time in times)
-    told = ((t, f"{alarms['code'][i]}, {alarms['source'][i]}") for i, t in enumerate(times))
+    rows = ((t, f"{alarms['code'][i]}, {alarms['source'][i]}") for i, t in enumerate(times))
     found = min(
-        (each for each in told if begin is not None and each[0] >= begin), default=None, key=lambda each: each[0]
+        (each for each in rows if begin is not None and each[0] >= begin), default=None, key=lambda each: each[0]
     )
     if begin is None or found is None:
         return Detection(None, "", false)

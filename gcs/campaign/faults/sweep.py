@@ -1,22 +1,28 @@
-"""What is flown: every case in every mission with every seed."""
+"""Plans of flights with faults (``gcs faults``): every case in every mission with every seed."""
 
 from __future__ import annotations
 
-import re
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from rich.console import RenderableType
 
-from gcs.campaign.faults.base_mission import digest
+from gcs.campaign.engine import FlightPlan, PlanGenerator
+from gcs.campaign.faults.judgement import COLUMNS, WITHIN_LIMITS, judge, meets
+from gcs.campaign.folder import digest, plain
+from gcs.campaign.result import Result
+from gcs.errors import UnusableInput
 from gcs.mission.model import Fault
 
 if TYPE_CHECKING:
     from gcs.campaign.faults.campaign_file import CampaignFile
 
+MAX_FLIGHTS = 1_000_000
 CLEAN = "no fault"
 """The name of the case without one."""
 
@@ -35,7 +41,7 @@ class SweptFault:
 
 @dataclass(frozen=True)
 class Case:
-    """Faults that are flown together, at the ``level``-th (from 1) of their severities, which ``severity`` tells."""
+    """Faults that are flown together, at the ``level``-th (from 1) of their severities; ``severity`` is its label."""
 
     name: str
     level: int
@@ -44,11 +50,11 @@ class Case:
 
     @property
     def kind(self) -> str:
-        """Of fault; of several, all of them."""
+        """The kind of fault; of several, all of them."""
         return " + ".join(dict.fromkeys(swept.fault.kind for swept in self.faults))
 
     def faults_for(self, seed: int) -> tuple[Fault, ...]:
-        """With the starts of a seed, which are the same at every severity."""
+        """Return the faults with the starts of a seed, which are the same at every severity."""
         return tuple(
             swept.fault
             if swept.start_between is None
@@ -57,43 +63,70 @@ class Case:
         )
 
 
-@dataclass(frozen=True)
-class FaultFlight:
-    """One flight of a campaign; ``name`` is also that of its files, ``text`` its mission."""
-
-    number: int
-    name: str
-    case: Case
-    mission: str
-    seed: int
-    text: str
-
-
-def flights_of(campaign: CampaignFile) -> Iterator[FaultFlight]:
-    """All flights, by case, then mission, then seed.
+class FaultFlights(PlanGenerator):
+    """Every case of a campaign file in every mission with every seed, in this order.
 
     A name holds a digest of everything that the flight is flown by, except the program: another flight has another.
     """
-    number = 0
-    for case in campaign.cases:
-        for mission, base in campaign.missions.items():
-            for seed in campaign.seeds:
-                number += 1
-                told = " ".join(part for part in (mission, case.name, case.severity) if part)
-                text = base.text(told, seed, case.faults_for(seed), campaign.limits)
-                name = plain(" ".join([case.name, case.severity, Path(mission).stem, f"seed{seed}"]))
-                name += f"-{digest(text, campaign.controller)}"
-                yield FaultFlight(number, name, case, mission, seed, text)
+
+    columns = COLUMNS
+    shown = (
+        ("clearance", "clearance_min_m", "m"),
+        ("tilt", "tilt_max_deg", "deg"),
+        ("separation", "uav_separation_min_m", "m"),
+        ("error", "position_rmse_m", "m"),
+    )
+
+    def __init__(self, file: CampaignFile) -> None:
+        """Raises :class:`UnusableInput` for too many flights."""
+        self.file = file
+        count = len(file.cases) * len(file.missions) * len(file.seeds)
+        if count > MAX_FLIGHTS:
+            raise UnusableInput(f"{count} flights are more than {MAX_FLIGHTS}: list fewer faults, missions or seeds")
+        if file.require != WITHIN_LIMITS:
+            self.passed_means = "set down safely, with their limits held"
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """The name: a campaign may grow."""
+        return {"faults": self.file.name}
+
+    def plans(self, out: Path) -> Iterator[FlightPlan]:
+        """Yield all flights, by case, then mission, then seed."""
+        file, folder = self.file, out / "missions"
+        flights = [(case, mission, seed) for case in file.cases for mission in file.missions for seed in file.seeds]
+        for number, (case, mission, seed) in enumerate(flights, start=1):
+            base = file.missions[mission]
+            title = " ".join(part for part in (mission, case.name, case.severity) if part)
+            text = base.text(title, seed, case.faults_for(seed), file.limits)
+            name = plain(" ".join([case.name, case.severity, Path(mission).stem, f"seed{seed}"]))
+            name += f"-{digest(text, file.controller)}"
+            path = folder / f"{name}.toml"
+            yield FlightPlan(
+                number,
+                name,
+                path,
+                ("--controller", file.controller),
+                partial(judge, len(case.faults)),
+                {"fault": case.name, "kind": case.kind, "level": case.level, "severity": case.severity,
+                 "mission": mission, "seed": seed},
+                {path: text, **{folder / file_name: content for file_name, content in base.files.items()}},
+            )  # fmt: skip
+
+    def passes(self, result: Result) -> bool:
+        """Return whether a flight meets the requirement of the campaign file."""
+        return meets(self.file.require, result)
+
+    def report(self, results: Sequence[Result], out: Path) -> tuple[list[RenderableType], list[Path]]:
+        """Write ``results.csv``, ``results.parquet``, ``rates.csv`` and the matrix."""
+        from gcs.campaign.faults.report import report  # matplotlib takes long to import
+
+        return report(self.file.name, results, out)
 
 
 def label(values: Mapping[str, Any]) -> str:
-    """A severity as people read it: ``probability 0.3``."""
+    """Return a severity for people: ``probability 0.3``."""
     return ", ".join(f"{key} {_value(value)}" for key, value in values.items())
-
-
-def plain(text: str) -> str:
-    """As part of a file name."""
-    return re.sub(r"[^\w.]+", "-", text).strip("-.")[:120] or "flight"
 
 
 def _value(value: Any) -> str:

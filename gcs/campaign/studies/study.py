@@ -1,44 +1,44 @@
-"""Studies: the same missions flown again with one thing changed at a time, to see what depends on it, and how far."""
+"""Plans of studies (``gcs study``): the same missions flown again with one parameter changed at a time."""
 
 from __future__ import annotations
 
 import dataclasses
-import hashlib
 import json
-import re
 import tomllib
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import count
 from pathlib import Path
 from typing import Any
 
 from pydantic import TypeAdapter
+from rich.console import RenderableType
 
-from gcs.campaign.courses.campaign import fly_all, keep_result, read_result
-from gcs.campaign.courses.flights import COLUMNS, FlightPlan, Result
-from gcs.campaign.courses.generator import HELD_TO, RandomCourse, generate
-from gcs.campaign.courses.moving import top_speed
-from gcs.campaign.courses.text import system_text
-from gcs.campaign.process_pool import all_cores, sole_flyer, write_table
+from gcs.campaign.engine import FlightPlan, PlanGenerator
+from gcs.campaign.folder import digest, plain
+from gcs.campaign.result import Result
+from gcs.campaign.scenarios.generator import HELD_TO, generate
+from gcs.campaign.scenarios.judgement import COLUMNS, OPTIONAL, judge
+from gcs.campaign.scenarios.moving import top_speed
+from gcs.campaign.scenarios.plans import Scenarios
+from gcs.campaign.toml_text import system_text
 from gcs.config import SystemConfig
 from gcs.config.text_file import read_text
-from gcs.errors import UnusableInput
 from gcs.mission.model import AnyMotion, Motion
 from gcs.mission.read import read_mission
-from gcs.record.run_folder import make_folder
 
 MARGIN = "avoidance.margin"
 FAST = 0.85
-"""Share of the asked speed that the fastest obstacle of a moving course reaches at least."""
+"""Share of the highest speed that the fastest obstacle of a moving scenario reaches at least."""
 SPHERES = "figure_eight_spheres"
 MOVING = "moving courses"
-"""In place of a mission's name: random courses with spheres that move, none of them on the ground's map."""
+"""In place of a mission's name: random scenarios with spheres that move, none of them on the map."""
 
 
 @dataclass(frozen=True)
 class Variant:
-    """One way of flying: ``changes`` to the system file by key, and how fast the obstacles of random courses are.
+    """One variant: ``changes`` to the system file by key, and the highest speed of obstacles of random scenarios (m/s).
 
     ``value`` is where it stands on the axis of the picture; None: by its label.
     """
@@ -80,16 +80,16 @@ def _barrier(rates: Sequence[float]) -> Variant:
 STUDIES = {
     study.name: study
     for study in (
-        Study("margin", "the room asked for between hull and obstacles", "margin asked for (m)", (SPHERES,),
+        Study("margin", "the margin between hull and obstacles", "margin (m)", (SPHERES,),
               _values(MARGIN, "m", 0.25, 0.5, 0.75, 1.0)),
-        Study("mass", "a payload lighter and heavier than the controller believes", "true over believed payload mass",
+        Study("mass", "a payload lighter and heavier than the controller's model", "true over modelled payload mass",
               (SPHERES,), _values("world.payload_mass_factor", "", 0.9, 1.0, 1.1)),
         Study("rate-noise", "noise of the payload's rates (rad/s) and velocity (m/s)",
               "standard deviation (rad/s and m/s)", (SPHERES,),
               tuple(_rate_noise(sigma) for sigma in (0.008, 0.012, 0.035, 0.1)), logarithmic=True),
-        Study("speed", "how fast the obstacles found in flight are", "speed of the fastest obstacle (m/s)",
+        Study("speed", "the speed of obstacles that are detected in flight", "speed of the fastest obstacle (m/s)",
               (MOVING,), tuple(Variant(f"{v:g} m/s", v, fastest=v) for v in (2.0, 3.0, 4.0, 5.0)), seeds=20, quick=2),
-        Study("detection", "how far the range sensors see, obstacles at 2 m/s", "range of the sensors (m)",
+        Study("detection", "the range of the range sensors, obstacles at 2 m/s", "range of the sensors (m)",
               (MOVING,), _values("range_sensor.range", "m", 10.0, 7.0, 5.0, 3.0), seeds=20, quick=2),
         Study("controllers", "the controllers on the same missions", "", ("figure_eight", SPHERES, "pole_course"),
               tuple(Variant(name, controller=name) for name in ("idc", "mpc", "paper"))),
@@ -99,164 +99,87 @@ STUDIES = {
 }  # fmt: skip
 
 
-@dataclass(frozen=True)
-class StudyOptions:
-    """What the command line of ``gcs study`` asks for. ``seeds``: flights of each kind; None: the study's own."""
-
-    study: Study
-    out: Path
-    seeds: int | None = None
-    quick: bool = False
-    jobs: int | None = None
-    missions: Path = Path("missions")
-    keep: str = "failures"
+LABELS = ("mission", "variant", "seed", "clearance_asked_m", "tilt_limit_deg")
+STUDY_COLUMNS = (*LABELS, *COLUMNS)
+"""Of the table ``NAME.csv``; the labels are not stored with the results, for studies share their flights."""
 
 
-@dataclass(frozen=True)
-class StudyFlight:
-    """One flight of a study."""
+class StudyFlights(PlanGenerator):
+    """Every variant of a study in every mission with every seed.
 
-    mission: str
-    variant: Variant
-    seed: int
-    plan: FlightPlan
-    result_path: Path
-
-
-@dataclass(frozen=True)
-class StudyRow:
-    """One flight and what came of it."""
-
-    flight: StudyFlight
-    result: Result
-
-    def columns(self) -> dict[str, Any]:
-        """The row of the table, in the order of :data:`STUDY_COLUMNS`."""
-        flight, held_to = self.flight, self.flight.plan.held_to
-        own = (flight.mission, flight.variant.label, flight.seed, held_to.clearance, held_to.payload_tilt_deg)
-        return dict(zip(_OWN_COLUMNS, own, strict=True)) | dataclasses.asdict(self.result)
-
-
-_OWN_COLUMNS = ("mission", "variant", "seed", "clearance_asked_m", "tilt_limit_deg")
-STUDY_COLUMNS = (*_OWN_COLUMNS, *COLUMNS)
-
-
-class StudyFlights:
-    """The flights of a study in a folder.
-
-    ``systems/`` and ``missions/`` hold what is flown where it is not a mission as it is, ``flights/`` the run folders,
-    ``results/`` what came of each. A flight that is there already, of this study or of another one in the same folder,
-    is not flown again: its file is named after everything that it was flown by, except the program itself.
+    A name holds everything that the flight is flown by, except the program: studies in one folder share flights.
     """
 
-    def __init__(self, options: StudyOptions) -> None:
-        """Write what will be flown. Raises :class:`UnusableInput` for a mission that cannot be read, and where it
-        cannot write."""
-        self.options = options
-        for name in ("missions", "systems", "flights", "results"):
-            make_folder(options.out / name)
-        study = options.study
-        self._courses: dict[float, tuple[list[str], Iterator[str]]] = {}
-        seeds = options.seeds or (study.quick if options.quick else study.seeds)
-        self.flights = [
-            self._flight(number, mission, variant, seed)
-            for number, (mission, variant, seed) in enumerate(
-                ((m, v, s) for m in study.missions for v in study.variants for s in range(1, seeds + 1)), start=1
-            )
-        ]
-        self.results: list[Result] = []
-        self._results: dict[str, Result] = {}
-        for flight in self.flights:
-            if (result := read_result(flight.result_path)) is not None:
-                self._add(flight.plan, result)
+    columns = COLUMNS
+    optional = OPTIONAL
+    shown = Scenarios.shown
 
-    @property
-    def total(self) -> int:
-        """Number of flights."""
-        return len(self.flights)
+    def __init__(
+        self, study: Study, seeds: int | None = None, quick: bool = False, missions: Path = Path("missions")
+    ) -> None:
+        """``seeds``: flights of each variant; None: the study's own number."""
+        self.study = study
+        self._seeds = seeds or (study.quick if quick else study.seeds)
+        self._missions = missions
+        self._moving: dict[float, tuple[list[str], Iterator[str]]] = {}
 
-    @property
-    def rows(self) -> list[StudyRow]:
-        """Of the flights flown so far, in their order."""
-        flown = ((flight, self._results.get(flight.plan.course.name)) for flight in self.flights)
-        return [StudyRow(flight, result) for flight, result in flown if result is not None]
+    def plans(self, out: Path) -> Iterator[FlightPlan]:
+        """Yield all flights, by mission, then variant, then seed. Raises :class:`UnusableInput` without a mission."""
+        study, seeds = self.study, range(1, self._seeds + 1)
+        flights = [(m, v, s) for m in study.missions for v in study.variants for s in seeds]
+        for number, (mission, variant, seed) in enumerate(flights, start=1):
+            yield self._plan(out, number, mission, variant, seed)
 
-    def fly(self, started: Callable[[str], None], ended: Callable[[Result], None]) -> None:
-        """Fly those that have no result yet; as :meth:`Campaign.fly`."""
-        paths = {flight.plan.course.name: flight.result_path for flight in self.flights}
+    def report(self, results: Sequence[Result], out: Path) -> tuple[list[RenderableType], list[Path]]:
+        """Write ``NAME.csv`` and ``NAME.png``."""
+        from gcs.campaign.studies.report import report  # matplotlib takes long to import
 
-        def kept(plan: FlightPlan, result: Result) -> None:
-            self._add(plan, result)
-            keep_result(paths[plan.course.name], plan, result, self.options.keep)
-            ended(result)
+        return report(self.study, results, out)
 
-        plans = [flight.plan for flight in self.flights if flight.plan.course.name not in self._results]
-        with sole_flyer(self.options.out):
-            fly_all(plans, self.options.jobs or all_cores(), started, kept)
-
-    def write_rows(self) -> Path:
-        """Write ``NAME.csv``, a row a flight."""
-        path = self.options.out / f"{self.options.study.name}.csv"
-        return write_table(path, STUDY_COLUMNS, [row.columns() for row in self.rows])
-
-    def _add(self, plan: FlightPlan, result: Result) -> None:
-        # Flown by another study, it was counted and called otherwise.
-        result = dataclasses.replace(result, number=plan.course.number, kind=plan.course.kind)
-        self.results.append(result)
-        self._results[plan.course.name] = result
-
-    def _flight(self, number: int, mission: str, variant: Variant, seed: int) -> StudyFlight:
-        flags = ["--controller", variant.controller]
+    def _plan(self, out: Path, number: int, mission: str, variant: Variant, seed: int) -> FlightPlan:
+        options = ["--controller", variant.controller]
+        files: dict[Path, str] = {}
+        # Compared by their text: a flight of another study of the folder is the same where its values are.
         changes = _real_changes(variant.changes)
+        system, changed = system_text(changes), _text_of(changes)
+        config = None
         if changes:
-            # Compared by their text: a flight of another study of the folder is the same where its values are.
-            system = self.options.out / "systems" / f"{_plain(_told(changes))}.toml"
-            self._write(system, system_text(changes))
-            flags += ["--config", str(system)]
+            config = out / "systems" / f"{plain(changed)}.toml"
+            files[config] = system
+            options += ["--config", str(config)]
         if mission == MOVING:
-            path, told, text = self._moving_course(variant.fastest, seed)
+            title = f"moving{variant.fastest:g}"
+            path, text = out / "missions" / f"{title}-{seed:04d}.toml", self._moving_scenario(variant.fastest, seed)
+            files[path] = text
             held_to = HELD_TO
         else:
-            path = self.options.missions / f"{mission}.toml"
-            told, text = mission, read_text(path)
+            title, path = mission, self._missions / f"{mission}.toml"
+            text = read_text(path)
             limits = read_mission(path).limits or HELD_TO
-            flags += ["--seed", str(seed)]
-            # A mission with a clearance to keep is held to the margin, where that is what is asked.
+            options += ["--seed", str(seed)]
+            # A mission with a clearance limit is held to the margin, where that is what is changed.
             asked = variant.changes.get(MARGIN, limits.clearance) if limits.clearance is not None else None
             held_to = dataclasses.replace(limits, clearance=asked)
-        told = " ".join([told, variant.controller, _told(changes), f"seed{seed}"])
-        name = _plain(f"{told} {_digest(text, system_text(changes), repr(held_to))}")
-        plan = FlightPlan(
-            RandomCourse(number, variant.label, name, text),
-            path,
-            self.options.out / "flights" / name,
-            tuple(flags),
-            held_to,
-        )
-        return StudyFlight(mission, variant, seed, plan, self.options.out / "results" / f"{name}.json")
+        title = " ".join([title, variant.controller, changed, f"seed{seed}"])
+        name = plain(f"{title} {digest(text, system, repr(held_to))}")
+        labels = {
+            "kind": variant.label, "mission": mission, "variant": variant.label, "seed": seed,
+            "clearance_asked_m": held_to.clearance, "tilt_limit_deg": held_to.payload_tilt_deg,
+        }  # fmt: skip
+        return FlightPlan(number, name, path, tuple(options), partial(judge, path, config, held_to), labels, files)
 
-    def _moving_course(self, fastest: float, number: int) -> tuple[Path, str, str]:
-        """A random course of seed 1, its file, and how it is called."""
-        told = f"moving{fastest:g}"
-        courses = self._courses.setdefault(fastest, ([], fast_courses(fastest)))
-        while len(courses[0]) < number:
-            courses[0].append(next(courses[1]))
-        path, text = self.options.out / "missions" / f"{told}-{number:04d}.toml", courses[0][number - 1]
-        self._write(path, text)
-        return path, told, text
-
-    @staticmethod
-    def _write(path: Path, text: str) -> None:
-        try:
-            path.write_text(text, encoding="utf-8")
-        except OSError as error:
-            raise UnusableInput(f"{path}: cannot be written: {error.strerror}") from None
+    def _moving_scenario(self, fastest: float, number: int) -> str:
+        """Return the mission of a random scenario of seed 1."""
+        texts, more = self._moving.setdefault(fastest, ([], fast_scenarios(fastest)))
+        while len(texts) < number:
+            texts.append(next(more))
+        return texts[number - 1]
 
 
-def fast_courses(fastest: float) -> Iterator[str]:
-    """Missions: the moving courses of seed 1 that have an obstacle which does go at about ``fastest`` (m/s).
+def fast_scenarios(fastest: float) -> Iterator[str]:
+    """Yield the missions of kind "moving" of seed 1 whose fastest obstacle reaches about ``fastest`` (m/s).
 
-    A course has obstacles of any speed up to that. These are chosen by how they are laid out, not how they are flown.
+    A scenario has obstacles of any speed up to that. These are chosen by their obstacles, not by their flights.
     """
     motions: TypeAdapter[AnyMotion] = TypeAdapter(Motion)
     for number in count(1):
@@ -264,12 +187,12 @@ def fast_courses(fastest: float) -> Iterator[str]:
         obstacles = tomllib.loads(text)["obstacle"]
         speeds = [top_speed(motions.validate_json(json.dumps(obstacle["motion"]))) for obstacle in obstacles]
         if max(speeds) >= FAST * fastest:
-            # What is on the map is seen from any distance: here everything has to be found.
+            # Obstacles of the map are known at any distance: here the sensors have to detect all.
             yield text.replace("known = true", "known = false")
 
 
 def _real_changes(changes: Mapping[str, Any]) -> dict[str, Any]:
-    """Without those that ask for what the system file has anyway."""
+    """Return ``changes`` without those that leave the value of the default system."""
     tables = SystemConfig().tables()
     return {key: value for key, value in changes.items() if _lookup(tables, key) != value}
 
@@ -281,14 +204,5 @@ def _lookup(tables: Mapping[str, Any], key: str) -> Any:
     return found
 
 
-def _told(changes: Mapping[str, Any]) -> str:
+def _text_of(changes: Mapping[str, Any]) -> str:
     return " ".join(f"{key.rpartition('.')[2]} {value}" for key, value in changes.items())
-
-
-def _plain(text: str) -> str:
-    """As part of a file name."""
-    return re.sub(r"[^\w.]+", "-", text).strip("-")
-
-
-def _digest(*texts: str) -> str:
-    return hashlib.sha256("\0".join(texts).encode()).hexdigest()[:8]

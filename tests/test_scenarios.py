@@ -1,4 +1,4 @@
-"""Random courses: what is generated can be flown and repeats; a campaign keeps its results and goes on."""
+"""Random obstacle scenarios: what is generated can be flown and repeats; a campaign keeps its results and resumes."""
 
 import dataclasses
 import json
@@ -6,17 +6,18 @@ import threading
 
 import numpy as np
 import pytest
-from course_results import result_of
+from scenario_results import result_of
 
 from gcs.app.cli import main
-from gcs.campaign.courses import campaign as campaigns
-from gcs.campaign.courses.campaign import Campaign, CampaignOptions
-from gcs.campaign.courses.flights import COLUMNS, FlightPlan, evaluate, fly_course
-from gcs.campaign.courses.generator import KINDS, RandomCourse, generate
-from gcs.campaign.courses.moving import MOTIONS, displacement, motion_for, top_speed
-from gcs.campaign.courses.outcome import draw_distribution, from_bad_end, outcome_table
-from gcs.campaign.courses.schedule import Schedule, arrival
-from gcs.campaign.process_pool import Ended
+from gcs.campaign.engine import Campaign
+from gcs.campaign.process_pool import FlownProcess
+from gcs.campaign.result import Result
+from gcs.campaign.scenarios.generator import KINDS, generate
+from gcs.campaign.scenarios.judgement import COLUMNS
+from gcs.campaign.scenarios.moving import MOTIONS, displacement, motion_for, top_speed
+from gcs.campaign.scenarios.plans import Scenarios
+from gcs.campaign.scenarios.report import from_bad_end, report
+from gcs.campaign.scenarios.schedule import Schedule, arrival
 from gcs.config.flight_settings import DEFAULTS
 from gcs.errors import UnusableInput
 from gcs.mission import Lissajous, mover, read_mission
@@ -31,9 +32,9 @@ pytestmark = pytest.mark.slow
 FORMATION = BoundingCylinder(1.0, 3.45, 0.25)
 
 
-def read(course, folder):
-    path = folder / f"{course.name}.toml"
-    path.write_text(course.text)
+def read(scenario, folder):
+    path = folder / f"{scenario.name}.toml"
+    path.write_text(scenario.text)
     return read_mission(path)
 
 
@@ -41,14 +42,14 @@ def read(course, folder):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_the_same_seed_gives_the_same_course(kind):
+def test_generator_repeats_scenario_of_same_seed(kind):
     assert generate(3, 17, kind) == generate(3, 17, kind)
     assert generate(3, 17, kind).text != generate(3, 18, kind).text != generate(4, 18, kind).text
 
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("number", range(1, 4))
-def test_courses_are_what_they_are_to_be(kind, number, tmp_path):
+def test_generated_scenario_can_be_flown(kind, number, tmp_path):
     mission = read(generate(11, number, kind), tmp_path)
     schedule = Schedule(mission)
     assert mission.obstacles and mission.limits.clearance == 0.3 and mission.limits.payload_tilt_deg == 6.0
@@ -84,7 +85,7 @@ def moving_there(obstacle, schedule):
     return PredictedObstacle(obstacle.name, obstacle.shape, places, np.zeros(len(places)))
 
 
-def test_kinds_of_obstacles_and_motions_all_occur(tmp_path):
+def test_generator_draws_all_kinds_of_obstacles_and_motions(tmp_path):
     found = set()
     for number in range(1, 40):
         for obstacle in read(generate(1, number, ("moving", "mixed")[number % 2]), tmp_path).obstacles:
@@ -94,7 +95,7 @@ def test_kinds_of_obstacles_and_motions_all_occur(tmp_path):
 
 @pytest.mark.parametrize("kind", MOTIONS)
 @pytest.mark.parametrize("fastest", [0.5, 2.0, 5.0])
-def test_motions_are_as_fast_as_asked(kind, fastest):
+def test_motion_keeps_to_highest_speed(kind, fastest):
     random = np.random.default_rng(1)
     speeds = [top_speed(motion_for(kind, random, 20.0, np.array([1.0, 0.0, 0.0]), fastest)) for _ in range(20)]
     assert max(speeds) <= fastest + 1e-3
@@ -112,7 +113,7 @@ def test_harmonic_motion_is_fastest_when_the_payload_passes():
 
 
 @pytest.mark.parametrize("name", ["figure_eight_spheres.toml", "pole_course.toml"])
-def test_the_missions_own_spheres_confront_the_payload(name, missions):
+def test_mission_sphere_is_at_its_mean_position_when_payload_passes(name, missions):
     """Each swinging sphere is at its mean position when the payload passes it, undisturbed."""
     mission = read_mission(missions / name)
     schedule = Schedule(mission)
@@ -135,7 +136,7 @@ def missions():
     return Path(__file__).parents[1] / "missions"
 
 
-def test_arrival_is_for_good():
+def test_arrival_is_final_entry_into_goal_radius():
     times = np.arange(6.0)
     north = np.array([0.0, 5.0, 4.9, 7.0, 5.2, 5.0])
     positions = np.column_stack([north, np.zeros(6), np.full(6, -4.0)])
@@ -148,11 +149,10 @@ def test_arrival_is_for_good():
 # Flights and their results
 
 
-def plan_for(folder, course):
-    mission = folder / "missions" / f"{course.name}.toml"
-    mission.parent.mkdir(parents=True, exist_ok=True)
-    mission.write_text(course.text)
-    return FlightPlan(course, mission, folder / "flights" / course.name, ("--controller", "mpc"))
+@pytest.fixture
+def campaign(tmp_path):
+    """The scenarios 1 and 2, with poles."""
+    return Campaign(Scenarios(count=2, seed=1, kinds=("poles",), controller="mpc"), tmp_path)
 
 
 SUMMARY = {
@@ -162,29 +162,29 @@ SUMMARY = {
 }  # fmt: skip
 
 
-def record(plan, late=0.0, stop_short=False):
-    """A run folder in which the payload flew the nominal course, so much later."""
+def record(campaign, plan, late=0.0, stop_short=False):
+    """A run folder in which the payload flew the nominal trajectory, so much later."""
     schedule = Schedule(read_mission(plan.mission))
-    open_run_folder("", plan.run_dir)
+    open_run_folder("", campaign.run_dir(plan))
     columns = truth_columns(3)
     spool_up = 1.2  # s after the records begin
     rows = []
     for time in np.arange(0.0, schedule.landing + 10.0 + late, 0.02):
-        on_course = time - spool_up - late - DEFAULTS.takeoff_landing.spool_up_time + schedule.start
-        position = schedule.position(np.array([on_course]))[0]
+        on_trajectory = time - spool_up - late - DEFAULTS.takeoff_landing.spool_up_time + schedule.start
+        position = schedule.position(np.array([on_trajectory]))[0]
         if stop_short:
             position = position * 0.8
         values = dict.fromkeys(columns, 0.0) | dict(zip(columns[1:4], position, strict=True)) | {"time_s": time}
         values |= {name: 1.0 for name in columns if name.endswith("_qw")}
         values |= {f"uav{i}_thrust_n": 14.0 for i in (1, 2, 3) if time >= spool_up}
         rows.append(",".join(f"{values[name]:.6f}" for name in columns))
-    (plan.run_dir / "truth.csv").write_text("\n".join([",".join(columns), *rows]) + "\n")
+    (campaign.run_dir(plan) / "truth.csv").write_text("\n".join([",".join(columns), *rows]) + "\n")
 
 
-def test_a_flight_as_planned_is_passed(tmp_path):
-    plan = plan_for(tmp_path, generate(1, 1, "poles"))
-    record(plan)
-    result = evaluate(plan, Ended(0, SUMMARY, "", 12.3))
+def test_flight_on_time_passes(campaign):
+    plan = campaign.plans[0]
+    record(campaign, plan)
+    result = campaign.result_of(plan, FlownProcess(0, SUMMARY, "", 12.3))
     assert result.passed and result.failures == "" and result.reason == ""
     assert result.delay_s == pytest.approx(0.0, abs=0.05)
     assert result.goal_error_m < 0.01
@@ -192,13 +192,12 @@ def test_a_flight_as_planned_is_passed(tmp_path):
     assert result.replay == f"gcs fly {plan.mission} --controller mpc"
 
 
-def test_delay_and_arrival(tmp_path):
-    plan = plan_for(tmp_path, generate(1, 1, "poles"))
-    record(plan, late=3.0)
-    assert evaluate(plan, Ended(0, SUMMARY, "", 1.0)).delay_s == pytest.approx(3.0, abs=0.05)
-    short = plan_for(tmp_path, generate(1, 2, "poles"))
-    record(short, stop_short=True)
-    result = evaluate(short, Ended(0, SUMMARY, "", 1.0))
+def test_delay_and_missed_goal_are_judged(campaign):
+    late, short = campaign.plans
+    record(campaign, late, late=3.0)
+    assert campaign.result_of(late, FlownProcess(0, SUMMARY, "", 1.0)).delay_s == pytest.approx(3.0, abs=0.05)
+    record(campaign, short, stop_short=True)
+    result = campaign.result_of(short, FlownProcess(0, SUMMARY, "", 1.0))
     assert (result.passed, result.failures, result.delay_s) == (False, "arrival", None)
     assert result.goal_error_m > 2.0
 
@@ -216,64 +215,66 @@ def test_delay_and_arrival(tmp_path):
         ({"completed": False, "outcome": "aborted"}, "aborted"),
     ],
 )
-def test_what_fails_a_flight(tmp_path, figures, failures):
-    plan = plan_for(tmp_path, generate(1, 1, "poles"))
-    record(plan)
-    said = "   3.65 s  climb\nflight broken off: a closed wall\n  9.00 s  ended\n"
-    result = evaluate(plan, Ended(1, SUMMARY | figures, said, 1.0))
+def test_flight_outside_a_limit_fails(campaign, figures, failures):
+    plan = campaign.plans[0]
+    record(campaign, plan)
+    messages = "   3.65 s  climb\nflight broken off: a closed wall\n  9.00 s  ended\n"
+    result = campaign.result_of(plan, FlownProcess(1, SUMMARY | figures, messages, 1.0))
     assert (result.passed, result.failures, result.reason) == (False, failures, "a closed wall")
 
 
-def test_a_flight_that_could_not_start_fails_with_its_reason(tmp_path, monkeypatch):
-    course = generate(1, 1, "poles")
-    plan = plan_for(tmp_path, course)
+def test_flight_that_could_not_start_fails_with_its_reason(campaign, monkeypatch):
     monkeypatch.setenv("PATH", "")
-    broken = dataclasses.replace(plan, options=("--controller", "none"))
-    result = fly_course(broken, threading.Event())
+    broken = dataclasses.replace(campaign.plans[0], options=("--controller", "none"))
+    result = campaign.fly_one(broken, threading.Event())
     assert not result.passed and result.exit_code == 2
     assert "invalid choice" in result.reason
 
 
-def test_a_flight_is_ended_when_asked(tmp_path):
-    plan = plan_for(tmp_path, generate(1, 1, "poles"))
+def test_flight_ends_when_stop_is_set(campaign):
     stop = threading.Event()
     stop.set()
-    assert fly_course(plan, stop) is None
+    assert campaign.fly_one(campaign.plans[0], stop) is None
 
 
 # Campaign
 
 
-FAILED = {"passed": False, "failures": "clearance", "clearance_min_m": 0.1}
+FAILED = {"failures": "clearance", "clearance_min_m": 0.1}
 
 
 @pytest.fixture
 def flown(monkeypatch):
-    """Courses are not flown: their numbers are noted, and every fourth fails."""
+    """Scenarios are not flown: their numbers are noted, and every fourth fails."""
     numbers = []
 
-    def fly(plan, stop):
-        numbers.append(plan.course.number)
-        plan.run_dir.mkdir(parents=True)
-        return result_of(plan.course, **({} if plan.course.number % 4 else FAILED))
+    def fly(campaign, plan, stop):
+        numbers.append(plan.number)
+        campaign.run_dir(plan).mkdir(parents=True)
+        return result_of(campaign, plan, **({} if plan.number % 4 else FAILED))
 
-    monkeypatch.setattr(campaigns, "fly_course", fly)
+    monkeypatch.setattr(Campaign, "fly_one", fly)
     return numbers
 
 
-def options(folder, **changes):
-    return CampaignOptions(**({"count": 6, "seed": 5, "out": folder / "out", "kinds": ("poles", "moving")} | changes))
+def campaign_in(folder, jobs=None, **changes):
+    scenarios = Scenarios(**({"count": 6, "seed": 5, "kinds": ("poles", "moving")} | changes))
+    return Campaign(scenarios, folder / "out", jobs)
 
 
-def test_a_campaign_flies_every_course_once(tmp_path, flown):
-    campaign = Campaign(options(tmp_path, jobs=2))
+def nothing(_):
+    pass
+
+
+def test_campaign_flies_every_scenario_once(tmp_path, flown):
+    campaign = campaign_in(tmp_path, jobs=2)
     started, ended = [], []
     campaign.fly(started.append, ended.append)
     assert sorted(flown) == [1, 2, 3, 4, 5, 6]
     assert len(started) == len(ended) == 6
     names = sorted(path.name for path in (tmp_path / "out" / "missions").iterdir())
     assert names == [f"{n:04d}-{kind}.toml" for n, kind in enumerate(["poles", "moving"] * 3, start=1)]
-    table, content = campaign.write_results()
+    _, [table, content, _] = campaign.generator.report(campaign.results, campaign.out)
     lines = table.read_text().splitlines()
     assert lines[0] == ",".join(COLUMNS) and len(lines) == 7
     assert [row["number"] for row in json.loads(content.read_text())] == [1, 2, 3, 4, 5, 6]
@@ -281,57 +282,57 @@ def test_a_campaign_flies_every_course_once(tmp_path, flown):
     assert [path.name for path in (tmp_path / "out" / "flights").iterdir()] == ["0004-moving"]
 
 
-def test_a_campaign_goes_on_where_it_was_cut_off(tmp_path, flown, monkeypatch):
+def test_campaign_resumes_after_an_interrupt(tmp_path, flown):
     def interrupted(result):
         if result.number == 3:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        Campaign(options(tmp_path, jobs=1)).fly(lambda name: None, interrupted)
+        campaign_in(tmp_path, jobs=1).fly(nothing, interrupted)
     before = list(flown)
     assert before[:3] == [1, 2, 3] and len(before) < 6
-    again = Campaign(options(tmp_path, jobs=1, count=8))
-    assert sorted(r.number for r in again.results) == [1, 2, 3]
-    again.fly(lambda name: None, lambda result: None)
+    again = campaign_in(tmp_path, jobs=1, count=8)
+    assert [r.number for r in again.results] == [1, 2, 3]
+    again.fly(nothing, nothing)
     assert sorted(set(flown)) == list(range(1, 9)) and flown.count(1) == flown.count(3) == 1
     assert len(again.results) == 8
 
 
-def test_a_course_that_has_changed_is_flown_again(tmp_path, flown):
-    Campaign(options(tmp_path)).fly(lambda name: None, lambda result: None)
+def test_scenario_that_has_changed_is_flown_again(tmp_path, flown):
+    campaign_in(tmp_path).fly(nothing, nothing)
     (tmp_path / "out" / "missions" / "0002-moving.toml").write_text("another")
-    assert [r.number for r in Campaign(options(tmp_path)).results].count(2) == 0
+    assert [r.number for r in campaign_in(tmp_path).results].count(2) == 0
 
 
 @pytest.mark.parametrize("change", [{"seed": 6}, {"kinds": ("poles",)}, {"controller": "mpc"}, {"fastest": 3.0}])
-def test_a_folder_of_another_campaign_is_refused(tmp_path, change, flown):
-    Campaign(options(tmp_path, count=1))
+def test_folder_of_another_campaign_is_refused(tmp_path, change):
+    campaign_in(tmp_path, count=1)
     with pytest.raises(UnusableInput, match="was begun with"):
-        Campaign(options(tmp_path, count=1, **change))
+        campaign_in(tmp_path, count=1, **change)
 
 
-def test_a_folder_of_something_else_is_refused(tmp_path):
+def test_folder_of_something_else_is_refused(tmp_path):
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / "thesis.tex").touch()
     with pytest.raises(UnusableInput, match="neither empty nor the folder of a campaign"):
-        Campaign(options(tmp_path))
+        campaign_in(tmp_path)
 
 
-def test_the_command(tmp_path, flown, capsys):
+def test_command_flies_and_reports(tmp_path, flown, capsys):
     out = str(tmp_path / "out")
     assert main(["courses", "--count", "3", "--kinds", "poles", "--out", out]) == 0
-    said = capsys.readouterr().out
-    assert "3 of 3 courses passed" in said and "0003-poles" in said
+    printed = capsys.readouterr().out
+    assert "3 of 3 scenarios passed" in printed and "0003-poles" in printed
     assert main(["courses", "--count", "4", "--kinds", "poles", "--out", out]) == 1
-    said = capsys.readouterr().out
-    assert "3 of 4 courses passed" in said and "gcs fly 0004-poles.toml" in said
+    printed = capsys.readouterr().out
+    assert "3 of 4 scenarios passed" in printed and f"gcs fly {out}/missions/0004-poles.toml" in printed
     assert (tmp_path / "out" / "distribution.png").stat().st_size > 10_000
     assert main(["courses", "--count", "4", "--kinds", "walls", "--out", out]) == 2
     assert "was begun with kinds" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("wrong", [["--count", "0"], ["--kinds", "lakes"], ["--jobs", "x"], ["--obstacle-speed", "0"]])
-def test_arguments_that_mean_nothing(wrong, capsys):
+def test_command_refuses_arguments_out_of_range(wrong):
     with pytest.raises(SystemExit) as exit_:
         main(["courses", *wrong])
     assert exit_.value.code == 2
@@ -343,9 +344,8 @@ def test_distribution_counts_from_the_bad_end():
     assert from_bad_end(values, high_is_bad=True) == [100.0, 99.0, 95.0, 50.0]
 
 
-def test_nothing_known_is_drawn_and_told(tmp_path):
-    course = RandomCourse(1, "poles", "0001-poles", "")
-    unknown = dict.fromkeys(("clearance_min_m", "tilt_max_deg", "uav_separation_min_m", "delay_s"))
-    result = result_of(course, **(FAILED | unknown))
-    assert draw_distribution([result], tmp_path).exists()
-    outcome_table([result], tmp_path)
+def test_report_is_written_when_no_figure_is_known(tmp_path):
+    _, files = report(
+        [Result(number=1, name="0001-poles", kind="poles", failures="failed", outcome="failed")], tmp_path
+    )
+    assert all(path.exists() for path in files)

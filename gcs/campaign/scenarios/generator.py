@@ -17,9 +17,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gcs.campaign.courses.moving import FLIGHT, MOTIONS, displacement, motion_for, top_speed
-from gcs.campaign.courses.schedule import Schedule
-from gcs.campaign.courses.text import mission_text
+from gcs.campaign.scenarios.moving import FLIGHT, MOTIONS, displacement, motion_for, top_speed
+from gcs.campaign.scenarios.schedule import Schedule
+from gcs.campaign.toml_text import mission_text
 from gcs.config import SystemConfig, read_system
 from gcs.errors import GcsError
 from gcs.mission.model import RESTING_ALTITUDE, Limits, Lissajous, Mission, Obstacle
@@ -57,7 +57,7 @@ ON_THE_MAP, MOVING_ON_THE_MAP = 0.4, 0.15
 
 
 @dataclass(frozen=True)
-class RandomCourse:
+class RandomScenario:
     """One course: ``text`` is the mission file."""
 
     number: int
@@ -68,7 +68,7 @@ class RandomCourse:
 
 def generate(
     seed: int, number: int, kind: str, config: SystemConfig | None = None, fastest: float = 2.0
-) -> RandomCourse:
+) -> RandomScenario:
     """Course ``number`` of ``seed``; obstacles move at up to ``fastest`` (m/s).
 
     ``config`` is the system that will fly it; None: the packaged one. The same arguments give the same course.
@@ -86,7 +86,7 @@ def generate(
             comment = f"Random course {number} of seed {seed}, kind {kind}."
             noise_seed = int(random.integers(2**31))
             text = mission_text(name, noise_seed, draft.reference, draft.obstacles, HELD_TO, [comment])
-            return RandomCourse(number, kind, name, text)
+            return RandomScenario(number, kind, name, text)
     raise GcsError(f"course {number} of seed {seed}: nothing that can be flown in {MOST_TRIES} tries")
 
 

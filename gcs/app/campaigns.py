@@ -1,0 +1,51 @@
+"""What the commands that fly campaigns share: their arguments, the run, and what is printed at the end."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from rich.console import Console, Group
+
+from gcs.app.arguments import number_of_jobs
+from gcs.app.exit_status import ExitStatus
+from gcs.app.logs import LOG
+from gcs.campaign.engine import KEEP, Campaign, PlanGenerator
+from gcs.campaign.progress import fly_with_progress
+from gcs.campaign.tables import failed_flights, headline
+
+WIDTH = 150
+"""Characters of a line where standard output is no terminal."""
+
+
+def add_campaign_arguments(parser: argparse.ArgumentParser, out: str) -> None:
+    """Add ``--jobs``, ``--out`` (whose default is ``out``) and ``--keep``."""
+    add = parser.add_argument
+    add("--jobs", type=number_of_jobs, metavar="J", help="parallel flights (default: auto, one per core)")
+    add("--out", type=Path, metavar="DIR", help=f"folder (default: {out})")
+    add("--keep", choices=KEEP, default="failures", help="the flights whose run folders are kept (default: failures)")
+
+
+def run_campaign(generator: PlanGenerator, out: Path, arguments: argparse.Namespace) -> ExitStatus:
+    """Fly a campaign in the folder ``out``, and print its report."""
+    console = Console(highlight=False, soft_wrap=True)
+    if not console.is_terminal:
+        console.width = WIDTH
+    with console.status("writing the missions"):
+        campaign = Campaign(generator, out, arguments.jobs, arguments.keep)
+    interrupted = False
+    try:
+        fly_with_progress(campaign, console)
+    except KeyboardInterrupt:
+        interrupted = True
+    results = campaign.results
+    if results:
+        parts, files = generator.report(results, out)
+        first = headline(results, generator.what, generator.passed_means)
+        console.print(Group(first, *parts, *failed_flights(results)))
+        console.print(f"Results   {'  '.join(map(str, files))}", markup=False)
+    if interrupted:
+        left = len(campaign.plans) - len(results)
+        LOG.error("interrupted with %d flights to go: start the command again to resume", left)
+        return ExitStatus.INTERRUPTED
+    return ExitStatus.DONE if all(result.passed for result in results) else ExitStatus.OUTSIDE_LIMITS

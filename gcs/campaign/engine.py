@@ -1,0 +1,160 @@
+"""The campaign engine: flies the plans of a generator, once each, whatever happens in between."""
+
+from __future__ import annotations
+
+import dataclasses
+import shlex
+import threading
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, ClassVar
+
+from rich.console import RenderableType
+
+from gcs.campaign.folder import adopt_folder, folder_lock, remove_folder, write_text
+from gcs.campaign.process_pool import FlownProcess, all_cores, fly_process, run_parallel
+from gcs.campaign.result import Result, read_result, summary_columns
+from gcs.record.run_folder import make_folder, write_json
+
+KEEP = ("failures", "all", "none")
+"""The flights whose run folders are kept."""
+
+
+@dataclass(frozen=True)
+class FlightPlan:
+    """One flight: the mission file, the options of ``gcs fly``, and how the flight is judged.
+
+    ``labels`` are columns of its result that are known before the flight, ``files`` are written before it; ``judge``
+    returns the columns that follow from its process and its run folder, ``failures`` and ``outcome`` among them.
+    """
+
+    number: int
+    name: str
+    mission: Path
+    options: tuple[str, ...]
+    judge: Callable[[FlownProcess, Path], Mapping[str, Any]]
+    labels: Mapping[str, Any] = field(default_factory=dict)
+    files: Mapping[Path, str] = field(default_factory=dict)
+
+    @property
+    def replay(self) -> str:
+        """The command that repeats the flight."""
+        return replay_command(self.mission, self.options)
+
+
+class PlanGenerator(ABC):
+    """What a campaign flies, and how it is reported."""
+
+    what: str = "flights"
+    passed_means: str = "within their limits"
+    columns: ClassVar[tuple[str, ...]]
+    """Of a stored result."""
+    optional: ClassVar[tuple[str, ...]] = ()
+    """Those of ``columns`` that results of earlier versions lack."""
+    shown: ClassVar[tuple[tuple[str, str, str], ...]]
+    """What is printed of each flight: title, column and unit."""
+
+    @property
+    def settings(self) -> Mapping[str, Any] | None:
+        """What another campaign in the same folder would have to share; None: anything."""
+        return None
+
+    @abstractmethod
+    def plans(self, out: Path) -> Iterator[FlightPlan]:
+        """Yield the flights; their files are below ``out``."""
+
+    def passes(self, result: Result) -> bool:
+        """Return whether a flight passed."""
+        return not result.failures
+
+    @abstractmethod
+    def report(self, results: Sequence[Result], out: Path) -> tuple[list[RenderableType], list[Path]]:
+        """Write tables and pictures; return what is to be printed, and the files."""
+
+
+class Campaign:
+    """The flights of a campaign in its folder.
+
+    ``missions/`` holds the mission files that are not somebody else's, ``flights/NAME/`` the run folders,
+    ``results/NAME.json`` the results. A campaign that is started again flies what has no result yet.
+    """
+
+    def __init__(self, generator: PlanGenerator, out: Path, jobs: int | None = None, keep: str = "failures") -> None:
+        """Write the missions. Raises :class:`gcs.errors.UnusableInput` for a folder of something else."""
+        self.generator, self.out = generator, out
+        self._jobs, self._keep = jobs or all_cores(), keep
+        if (settings := generator.settings) is not None:
+            adopt_folder(out, settings)
+        for name in ("missions", "flights", "results"):
+            make_folder(out / name)
+        self.plans: list[FlightPlan] = []
+        self._results: dict[str, Result] = {}
+        for plan in generator.plans(out):
+            self.plans.append(plan)
+            written = [path for path, text in plan.files.items() if write_text(path, text)]
+            if plan.mission in written:  # what was flown was another mission
+                self.result_path(plan).unlink(missing_ok=True)
+            elif (result := read_result(self.result_path(plan), generator.columns, generator.optional)) is not None:
+                self._results[plan.name] = self._judged(plan, result)
+
+    @property
+    def results(self) -> list[Result]:
+        """The results so far, in the order of the plans."""
+        return [self._results[plan.name] for plan in self.plans if plan.name in self._results]
+
+    def fly(self, started: Callable[[FlightPlan], None], ended: Callable[[Result], None]) -> None:
+        """Fly what has no result yet; both callbacks are called in the caller's thread.
+
+        On an interrupt all flights are ended, and the results so far are kept. Raises
+        :class:`gcs.errors.UnusableInput` when another process flies in the folder.
+        """
+
+        def keep(plan: FlightPlan, result: Result) -> None:
+            discard = self._keep == "none" or (self._keep == "failures" and result.passed)
+            if discard:
+                result = dataclasses.replace(result, run_dir="")
+            write_json(self.result_path(plan), result.row(self.generator.columns))
+            self._results[plan.name] = result
+            if discard:
+                remove_folder(self.run_dir(plan))
+            ended(result)
+
+        with folder_lock(self.out):
+            if "run_dir" in self.generator.columns:
+                for result in self.results:
+                    if not result.run_dir:  # the process may have been killed just before it removed the folder
+                        remove_folder(self.out / "flights" / result.name)
+            waiting = [plan for plan in self.plans if plan.name not in self._results]
+            run_parallel(waiting, self._jobs, self.fly_one, started, keep)
+
+    def fly_one(self, plan: FlightPlan, stop: threading.Event) -> Result | None:
+        """Fly and judge; None if ``stop`` was set before the flight ended."""
+        run_dir = self.run_dir(plan)
+        flown = fly_process(plan.mission, plan.options, run_dir, stop)
+        return None if flown is None else self.result_of(plan, flown)
+
+    def result_of(self, plan: FlightPlan, flown: FlownProcess) -> Result:
+        """Judge a flight."""
+        run_dir = self.run_dir(plan)
+        return self._judged(plan, Result(**{**summary_columns(flown, run_dir), **plan.judge(flown, run_dir)}))
+
+    def run_dir(self, plan: FlightPlan) -> Path:
+        """Return the run folder of a flight."""
+        return self.out / "flights" / plan.name
+
+    def result_path(self, plan: FlightPlan) -> Path:
+        """Return the file of the result of a flight."""
+        return self.out / "results" / f"{plan.name}.json"
+
+    def _judged(self, plan: FlightPlan, result: Result) -> Result:
+        """Return the result with what this campaign says of the flight: another one may have flown it."""
+        labels: dict[str, Any] = {"number": plan.number, "name": plan.name, "replay": plan.replay, **plan.labels}
+        result = dataclasses.replace(result, **labels)
+        return dataclasses.replace(result, passed=self.generator.passes(result))
+
+
+def replay_command(mission: Path, options: Sequence[str]) -> str:
+    """Return the command that repeats a flight."""
+    return shlex.join(["gcs", "fly", str(mission), *options])

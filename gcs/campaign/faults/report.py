@@ -1,0 +1,118 @@
+"""The report of a campaign of faults: tables, rates, and the matrix of faults and severities."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch, Rectangle
+from rich.console import RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from gcs.campaign.faults.judgement import ABORTED, COLLIDED, COLUMNS, FAILED, NOT_FLOWN, OUTSIDE, VERDICTS, WITHIN
+from gcs.campaign.faults.rates import CONFIDENCE, Rates, rates_of, write_rates
+from gcs.campaign.result import Result
+from gcs.campaign.tables import extreme, text_table, write_csv, write_parquet
+from gcs.record.pictures import save_picture
+
+MATRIX = "matrix.png"
+COLOURS = {
+    # To be distinguished without red and green, too.
+    WITHIN: "#009E73", OUTSIDE: "#F0E442", ABORTED: "#56B4E9", COLLIDED: "#D55E00", FAILED: "#882255",
+    NOT_FLOWN: "#BBBBBB",
+}  # fmt: skip
+_WIDTH, _HEIGHT = 1.7, 0.55  # in, of a cell
+
+
+def report(name: str, results: Sequence[Result], out: Path) -> tuple[list[RenderableType], list[Path]]:
+    """Write the tables and the matrix; return the rates by fault and severity, and the files."""
+    rates = rates_of(results)
+    files = [
+        write_csv(out / "results.csv", COLUMNS, [result.row(COLUMNS) for result in results]),
+        write_parquet(out / "results.parquet", COLUMNS, results),
+        write_rates(out / "rates.csv", rates),
+        draw_matrix(name, results, out),
+    ]
+    parts: list[RenderableType] = [_rates_table(rates, results)]
+    parts.append(Text(f"Rates with their {100 * CONFIDENCE:.0f} % intervals (Wilson); safe: set down without contact."))
+    if false := sum(result.false_alarms or 0 for result in results):
+        flights = sum(bool(result.false_alarms) for result in results)
+        parts.append(Text(f"{false} alarms before any fault, in {flights} flights", style="bold red"))
+    if idle := sum(bool(result.notes) for result in results):
+        parts.append(Text(f"{idle} flights with a fault that never came or disturbed nothing: see notes in the table"))
+    return parts, files
+
+
+def _rates_table(rates: Sequence[Rates], results: Sequence[Result]) -> Table:
+    """Return a row for each fault and severity; without columns of which nothing is known."""
+    columns: dict[str, list[str]] = {}
+    for rate in rates:
+        chosen = [result for result in results if (result.fault, result.level) == (rate.fault, rate.level)]
+        for title, cell in (
+            ("fault", rate.fault),
+            ("severity", rate.severity),
+            ("flights", str(rate.flights)),
+            ("within limits", _share(rate.within_limits_rate, rate.within_limits_low, rate.within_limits_high)),
+            ("safe", _share(rate.safe_rate, rate.safe_low, rate.safe_high)),
+            ("least clearance", extreme(chosen, "clearance_min_m", min, 2, "m")),
+            ("largest tilt", extreme(chosen, "tilt_max_deg", max, 1, "deg")),
+            ("least separation", extreme(chosen, "uav_separation_min_m", min, 2, "m")),
+            ("touchdown", extreme(chosen, "touchdown_mps", max, 2, "m/s")),
+            ("detected in", _detected(chosen)),
+            ("stopped in", extreme(chosen, "stop_s", max, 2, "s")),
+            ("all in", extreme(chosen, "team_stop_s", max, 2, "s")),
+        ):
+            columns.setdefault(title, []).append(cell)
+    known = {title: cells for title, cells in columns.items() if set(cells) - {"", "-"}}
+    return text_table(known, left=("fault", "severity"))
+
+
+def _detected(results: Sequence[Result]) -> str:
+    """Return the longest time to detection, and in how many flights where it was not in all."""
+    count = sum(result.detected_s is not None for result in results)
+    share = f" ({count} of {len(results)})" if 0 < count < len(results) else ""
+    return extreme(results, "detected_s", max, 2, "s") + share
+
+
+def _share(rate: float, low: float, high: float) -> str:
+    return f"{100 * rate:.0f} % ({100 * low:.0f} to {100 * high:.0f})"
+
+
+def draw_matrix(name: str, results: Sequence[Result], folder: Path) -> Path:
+    """Draw a row for each fault, a cell for each severity, in it the share of each outcome."""
+    faults = list(dict.fromkeys(result.fault for result in results))
+    levels = max((result.level for result in results), default=1)
+    figure = Figure(figsize=(2.8 + _WIDTH * levels, 1.6 + _HEIGHT * max(len(faults), 1)), layout="constrained")
+    FigureCanvasAgg(figure)
+    ax = figure.subplots()
+    cells: dict[tuple[int, int], list[Result]] = {}
+    for result in results:
+        cells.setdefault((faults.index(result.fault), result.level), []).append(result)
+    for (row, level), cell in cells.items():
+        left, counts = level - 0.48, Counter(result.outcome for result in cell)
+        for outcome in VERDICTS:
+            width = 0.96 * counts[outcome] / len(cell)
+            ax.add_patch(Rectangle((left, row - 0.45), width, 0.9, facecolor=COLOURS[outcome], linewidth=0.0))
+            left += width
+        lines = [cell[0].severity, f"{sum(result.passed for result in cell)} of {len(cell)}"]
+        text = "\n".join(line for line in lines if line)
+        back = {"facecolor": "white", "alpha": 0.75, "linewidth": 0.0, "boxstyle": "round,pad=0.15"}
+        ax.text(level, row, text, ha="center", va="center", fontsize=7, bbox=back)
+    ax.set_xlim(0.5, levels + 0.5)
+    ax.set_ylim(len(faults) - 0.5, -0.5)
+    ax.set_yticks(range(len(faults)), faults, fontsize=8)
+    ax.set_xticks(range(1, levels + 1))
+    ax.set_xlabel("severity; in each cell: flights that passed")
+    ax.spines[:].set_visible(False)
+    ax.tick_params(length=0)
+    ax.set_title(name, fontsize=10)
+    seen = [outcome for outcome in VERDICTS if any(result.outcome == outcome for result in results)]
+    figure.legend(
+        handles=[Patch(facecolor=COLOURS[outcome], label=outcome) for outcome in seen],
+        loc="outside lower center", ncols=min(len(seen), 3) or 1, frameon=False, fontsize=8,
+    )  # fmt: skip
+    return save_picture(figure, folder / MATRIX, 130)

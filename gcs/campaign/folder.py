@@ -1,0 +1,95 @@
+"""The folder of a campaign, which a process may be killed in at any moment: locked, adopted, written whole."""
+
+from __future__ import annotations
+
+import fcntl
+import hashlib
+import json
+import re
+import shutil
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from gcs.errors import UnusableInput
+from gcs.record.run_folder import make_folder, write_json
+
+SETTINGS = "campaign.json"
+_LOCK = ".flying"
+
+
+@contextmanager
+def folder_lock(out: Path) -> Iterator[None]:
+    """Lock the folder ``out``, and discard what a killed process left half-flown in ``out/flights``.
+
+    Raises:
+        UnusableInput: Another process has locked it.
+    """
+    try:
+        file = (make_folder(out) / _LOCK).open("a")
+    except OSError as error:
+        raise UnusableInput(f"{out}: cannot be written: {error.strerror}") from None
+    with file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)  # released by the system, however the process ends
+        except OSError:
+            raise UnusableInput(f"{out}: another process is flying there") from None
+        for draft in (out / "flights").glob(".*"):
+            remove_folder(draft)
+        yield
+
+
+def adopt_folder(folder: Path, settings: Mapping[str, Any]) -> None:
+    """Begin a campaign of ``settings`` in ``folder``, or go on with the one that is there.
+
+    Raises:
+        UnusableInput: The folder holds a campaign of other settings, or something else.
+    """
+    path = make_folder(folder) / SETTINGS
+    if path.exists():
+        found = read_object(path)
+        for name, value in settings.items():
+            if found.get(name) != value:
+                reason = f"was begun with {name} {found.get(name)}, not {value}: name another with --out"
+                raise UnusableInput(f"{folder}: {reason}")
+    elif any(folder.iterdir()):
+        raise UnusableInput(f"{folder}: is neither empty nor the folder of a campaign")
+    else:
+        write_json(path, settings)
+
+
+def read_object(path: Path) -> dict[str, Any]:
+    """Read a file of one JSON object; empty if it is anything else. Raises :class:`UnusableInput`."""
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise UnusableInput(f"{path}: cannot be read: {error}") from None
+    return content if isinstance(content, dict) else {}
+
+
+def write_text(path: Path, text: str) -> bool:
+    """Write a file unless it has that content, and return whether it had not. Raises :class:`UnusableInput`."""
+    try:
+        if path.exists() and path.read_text(encoding="utf-8") == text:
+            return False
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise UnusableInput(f"{path}: cannot be written: {error.strerror}") from None
+    return True
+
+
+def remove_folder(folder: Path) -> None:
+    """Remove a folder with all that is in it, if there is one."""
+    shutil.rmtree(folder, ignore_errors=True)
+
+
+def plain(text: str) -> str:
+    """Return ``text`` as part of a file name."""
+    return re.sub(r"[^\w.]+", "-", text).strip("-.")[:120] or "flight"
+
+
+def digest(*texts: str) -> str:
+    """Return a short text that is another for other texts, as part of a file name."""
+    return hashlib.sha256("\0".join(texts).encode()).hexdigest()[:8]

@@ -1,0 +1,129 @@
+"""The result of one flight of a campaign: a row of its table."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from gcs.campaign.folder import read_object
+from gcs.campaign.process_pool import FlownProcess
+
+
+@dataclass(frozen=True)
+class Result:
+    """One flight. m, s, deg; None: not known, or it never happened.
+
+    A table of all columns that any campaign has, hence so many fields; each campaign writes those that it names.
+    """
+
+    number: int = 0
+    name: str = ""
+    kind: str = ""
+    passed: bool = False
+    failures: str = ""
+    outcome: str = ""
+    reason: str = ""
+    exit_code: int = 0
+    wall_s: float = 0.0
+    run_dir: str = ""
+    """Empty where it was discarded."""
+    replay: str = ""
+
+    # From the summary of the flight.
+    clearance_min_m: float | None = None
+    tilt_max_deg: float | None = None
+    uav_separation_min_m: float | None = None
+    contacts: int | None = None
+    duration_s: float | None = None
+    position_rmse_m: float | None = None
+    slack_max_m: float | None = None
+    step_time_p50_ms: float | None = None
+    step_time_p99_ms: float | None = None
+    infeasible_steps: int | None = None
+    real_time_factor: float | None = None
+    landed: bool | None = None
+    touchdown_mps: float | None = None
+    end_tilt_deg: float | None = None
+
+    # Which flight it is, beside number, name and kind.
+    mission: str = ""
+    seed: int = 0
+    fault: str = ""
+    level: int = 0
+    severity: str = ""
+    variant: str = ""
+    clearance_asked_m: float | None = None
+    tilt_limit_deg: float | None = None
+
+    # Judgement of an obstacle scenario.
+    arrival_s: float | None = None
+    nominal_arrival_s: float | None = None
+    delay_s: float | None = None
+    goal_error_m: float | None = None
+
+    # Judgement of a flight with faults, from the start of its case's first fault: to the abort, to the stop of the
+    # last vehicle (then from the first vehicle's), to the first alarm; and alarms before any fault.
+    within_limits: bool = False
+    stop_s: float | None = None
+    team_stop_s: float | None = None
+    team_spread_s: float | None = None
+    detected_s: float | None = None
+    detected_as: str = ""
+    false_alarms: int | None = None
+    notes: str = ""
+    """Faults that never came or disturbed nothing."""
+
+    def row(self, columns: Sequence[str]) -> dict[str, Any]:
+        """Return the values of ``columns``."""
+        return {name: getattr(self, name) for name in columns}
+
+    def figure(self, column: str) -> float | None:
+        """Return the value of a column of numbers."""
+        value = getattr(self, column)
+        return None if value is None else float(value)
+
+
+def summary_columns(flown: FlownProcess, run_dir: Path) -> dict[str, Any]:
+    """Return the columns that follow from the summary of a flight, and how its process ended."""
+    summary = flown.summary
+    angles = [angle for angle in summary.get("payload_tilt_max_deg", {}).values() if angle is not None]
+    steps, landing = summary.get("step_time_ms", {}), summary.get("landing") or {}
+    return {
+        "reason": flown.reason,
+        "exit_code": flown.exit_code,
+        "wall_s": round(flown.wall, 1),
+        "run_dir": str(run_dir) if run_dir.exists() else "",
+        "clearance_min_m": summary.get("clearance_min_m"),
+        "tilt_max_deg": max(angles, default=None),
+        "uav_separation_min_m": summary.get("uav_separation_min_m"),
+        "contacts": summary.get("contacts"),
+        "duration_s": summary.get("duration_s"),
+        "position_rmse_m": summary.get("position_rmse_m", {}).get("total"),
+        "slack_max_m": (summary.get("safety") or {}).get("slack_max_m"),
+        "step_time_p50_ms": steps.get("p50"),
+        "step_time_p99_ms": steps.get("p99"),
+        "infeasible_steps": summary.get("solver", {}).get("infeasible_steps"),
+        "real_time_factor": summary.get("real_time_factor"),
+        "landed": landing.get("on_ground"),
+        "touchdown_mps": landing.get("speed_mps"),
+        "end_tilt_deg": landing.get("tilt_deg"),
+    }
+
+
+def read_result(path: Path, columns: Collection[str], optional: Collection[str] = ()) -> Result | None:
+    """Read a stored result; None where there is none, or one of another version.
+
+    ``optional``: those of ``columns`` that results of earlier versions lack.
+    """
+    if not path.exists():
+        return None
+    content = read_object(path)
+    if not set(columns) - set(optional) <= content.keys() <= set(columns):
+        return None
+    return Result(**content)
+
+
+COLUMN_TYPES = {field.name: str(field.type) for field in dataclasses.fields(Result)}

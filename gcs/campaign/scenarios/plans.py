@@ -1,0 +1,72 @@
+"""Plans of random obstacle scenarios (``gcs courses``)."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from rich.console import RenderableType
+
+from gcs.campaign.engine import FlightPlan, PlanGenerator
+from gcs.campaign.result import Result
+from gcs.campaign.scenarios.generator import HELD_TO, KINDS, generate
+from gcs.campaign.scenarios.judgement import COLUMNS, OPTIONAL, judge
+from gcs.config import read_system
+
+
+@dataclass(frozen=True)
+class Scenarios(PlanGenerator):
+    """``count`` random scenarios of ``seed``, of ``kinds`` in turn; obstacles move at up to ``fastest`` (m/s)."""
+
+    count: int
+    seed: int
+    kinds: tuple[str, ...] = KINDS
+    controller: str = "idc"
+    config: Path | None = None
+    fastest: float = 2.0
+
+    what = "scenarios"
+    passed_means = "passed"
+    columns = COLUMNS
+    optional = OPTIONAL
+    shown = (
+        ("clearance", "clearance_min_m", "m"),
+        ("angle", "tilt_max_deg", "deg"),
+        ("separation", "uav_separation_min_m", "m"),
+        ("delay", "delay_s", "s"),
+    )
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """All but the number of scenarios."""
+        return {
+            "seed": self.seed,
+            "kinds": list(self.kinds),
+            "controller": self.controller,
+            "config": None if self.config is None else hashlib.sha256(self.config.read_bytes()).hexdigest()[:16],
+            "obstacle_speed": self.fastest,
+        }
+
+    def plans(self, out: Path) -> Iterator[FlightPlan]:
+        """Yield a flight for each scenario."""
+        system = None if self.config is None else read_system(self.config)
+        options = ["--controller", self.controller]
+        if self.config is not None:
+            options += ["--config", str(self.config)]
+        for number in range(1, self.count + 1):
+            kind = self.kinds[(number - 1) % len(self.kinds)]
+            scenario = generate(self.seed, number, kind, system, self.fastest)
+            mission = out / "missions" / f"{scenario.name}.toml"
+            judgement = partial(judge, mission, self.config, HELD_TO)
+            labels, files = {"kind": kind}, {mission: scenario.text}
+            yield FlightPlan(number, scenario.name, mission, tuple(options), judgement, labels, files)
+
+    def report(self, results: Sequence[Result], out: Path) -> tuple[list[RenderableType], list[Path]]:
+        """Write ``results.csv``, ``results.json`` and the distribution."""
+        from gcs.campaign.scenarios.report import report  # matplotlib takes long to import
+
+        return report(results, out)

@@ -1,0 +1,96 @@
+"""The distribution over the obstacle scenarios of a campaign: tables and a picture."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from rich.console import RenderableType
+from rich.table import Table
+
+from gcs.campaign.result import Result
+from gcs.campaign.scenarios.generator import HELD_TO
+from gcs.campaign.scenarios.judgement import COLUMNS, SEPARATION
+from gcs.campaign.tables import extreme, text_table, write_csv
+from gcs.record.pictures import save_picture
+from gcs.record.run_folder import write_json
+
+_QUANTITIES = (
+    # field, title, unit, limit, whether high values are the bad ones
+    ("clearance_min_m", "clearance", "m", HELD_TO.clearance, False),
+    ("tilt_max_deg", "payload angle", "deg", HELD_TO.payload_tilt_deg, True),
+    ("uav_separation_min_m", "UAV separation", "m", SEPARATION, False),
+    ("delay_s", "delay", "s", None, True),
+    ("goal_error_m", "error at goal", "m", None, True),
+    ("step_time_p99_ms", "control step, p99", "ms", None, True),
+)
+_SHARES = (0.0, 1.0, 5.0, 50.0)
+_PICTURE = "distribution.png"
+_TITLES = ("figure", "worst", "1 %", "5 %", "median", "limit")
+
+
+def report(results: Sequence[Result], out: Path) -> tuple[list[RenderableType], list[Path]]:
+    """Write ``results.csv``, ``results.json`` and the picture of the distribution; return its tables, and the files."""
+    rows = [result.row(COLUMNS) for result in results]
+    files = [write_csv(out / "results.csv", COLUMNS, rows), write_json(out / "results.json", rows)]
+    return [_kinds(results), _distribution(results)], [*files, draw_distribution(results, out)]
+
+
+def _kinds(results: Sequence[Result]) -> Table:
+    columns: dict[str, list[str]] = {}
+    for kind in sorted({result.kind for result in results}):
+        chosen = [result for result in results if result.kind == kind]
+        arrived = sum(result.arrival_s is not None and result.outcome == "completed" for result in chosen)
+        for title, cell in (
+            ("kind", kind),
+            ("flown", str(len(chosen))),
+            ("passed", str(sum(result.passed for result in chosen))),
+            ("arrived", str(arrived)),
+            ("contacts", str(sum(bool(result.contacts) for result in chosen))),
+            ("least clearance", extreme(chosen, "clearance_min_m", min, 3, "m")),
+        ):
+            columns.setdefault(title, []).append(cell)
+    return text_table(columns, left=("kind",))
+
+
+def _distribution(results: Sequence[Result]) -> Table:
+    columns: dict[str, list[str]] = {}
+    for field, title, unit, limit, high_is_bad in _QUANTITIES:
+        values = _values(results, field)
+        cells = [f"{value:.3f}" for value in from_bad_end(values, high_is_bad)] if len(values) else ["-"] * 4
+        bound = "" if limit is None else f"{'<=' if high_is_bad else '>='} {limit:g}"
+        for name, cell in zip(_TITLES, (f"{title} ({unit})", *cells, bound), strict=True):
+            columns.setdefault(name, []).append(cell)
+    return text_table(columns, left=("figure",))
+
+
+def from_bad_end(values: Sequence[float] | np.ndarray, high_is_bad: bool) -> list[float]:
+    """Worst value, 1 % and 5 % percentile counted from the bad end, and median."""
+    shares = [100.0 - share for share in _SHARES] if high_is_bad else list(_SHARES)
+    return [float(value) for value in np.percentile(values, shares)]
+
+
+def draw_distribution(results: Sequence[Result], folder: Path) -> Path:
+    """Histograms of clearance, tilt, separation and delay. Raises :class:`UnusableInput` where it cannot."""
+    figure = Figure(figsize=(9.0, 6.5), layout="constrained")
+    FigureCanvasAgg(figure)
+    for ax, (field, title, unit, limit, high_is_bad) in zip(figure.subplots(2, 2).flat, _QUANTITIES[:4], strict=True):
+        values = _values(results, field)
+        ax.set_xlabel(f"{title} ({unit})")
+        ax.set_ylabel("scenarios")
+        if len(values):
+            ax.hist(values, bins=min(40, max(8, len(values) // 4)), color="#0072B2")
+            worst, _, _, median = from_bad_end(values, high_is_bad)
+            ax.set_title(f"worst {worst:.2f}, median {median:.2f} {unit}", fontsize=10)
+        if limit is not None:
+            ax.axvline(limit, color="#D55E00", lw=1.5, label=f"limit {limit:g} {unit}")
+            ax.legend(frameon=False, fontsize=9)
+    figure.suptitle(f"{len(results)} random scenarios, {sum(result.passed for result in results)} passed")
+    return save_picture(figure, folder / _PICTURE, 130)
+
+
+def _values(results: Sequence[Result], field: str) -> np.ndarray:
+    return np.array([value for result in results if (value := result.figure(field)) is not None])

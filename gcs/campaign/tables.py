@@ -1,0 +1,84 @@
+"""Tables of results: as files, and for the terminal."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from rich import box
+from rich.table import Table
+from rich.text import Text
+
+from gcs.campaign.result import COLUMN_TYPES, Result
+from gcs.errors import UnusableInput
+
+SHOWN_FAILURES = 20
+_DTYPES = {"int": "Int64", "float": "Float64", "bool": "boolean", "str": "string"}
+
+
+def write_csv(path: Path, columns: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> Path:
+    """Write a CSV file. Raises :class:`UnusableInput` where it cannot."""
+    try:
+        with path.open("w", newline="", encoding="utf-8") as file:
+            writer = csv.DictWriter(file, columns, lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(rows)
+    except OSError as error:
+        raise UnusableInput(f"{path}: cannot be written: {error.strerror}") from None
+    return path
+
+
+def write_parquet(path: Path, columns: Sequence[str], results: Sequence[Result]) -> Path:
+    """Write a Parquet file; what is not known is missing. Raises :class:`UnusableInput` where it cannot."""
+    import pandas  # takes long to import, and no flight needs it
+    import pyarrow
+    import pyarrow.parquet
+
+    dtypes = {name: _DTYPES[COLUMN_TYPES[name].removesuffix(" | None")] for name in columns}
+    frame = pandas.DataFrame([result.row(columns) for result in results], columns=list(dtypes)).astype(dtypes)
+    try:
+        pyarrow.parquet.write_table(pyarrow.Table.from_pandas(frame, preserve_index=False), path)
+    except OSError as error:
+        raise UnusableInput(f"{path}: cannot be written: {error.strerror or error}") from None
+    return path
+
+
+def text_table(columns: Mapping[str, Sequence[str]], left: Sequence[str]) -> Table:
+    """Return a table of ``columns`` by title; those of ``left`` may wrap, figures do not."""
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for title, cells in columns.items():
+        least = max(len(part) for part in (*title.split(), *([] if title in left else cells)))
+        table.add_column(title, justify="left" if title in left else "right", min_width=least)
+    for row in zip(*columns.values(), strict=True):
+        table.add_row(*map(Text, row))
+    return table
+
+
+def extreme(
+    results: Sequence[Result], column: str, of: Callable[[list[float]], float], digits: int, unit: str = ""
+) -> str:
+    """Return the least (``of`` is min) or largest (max) of what is known of a column, as text."""
+    values = [value for result in results if (value := result.figure(column)) is not None]
+    return f"{of(values):.{digits}f} {unit}".strip() if values else "-"
+
+
+def headline(results: Sequence[Result], what: str, passed_means: str) -> Text:
+    """Return how many of the results passed."""
+    passed = sum(result.passed for result in results)
+    colour = "bold green" if passed == len(results) else "bold red"
+    return Text(f"{passed} of {len(results)} {what} {passed_means}", style=colour)
+
+
+def failed_flights(results: Sequence[Result]) -> list[Text]:
+    """Return each flight that did not pass, why, and the command that repeats it."""
+    failed = [result for result in results if not result.passed]
+    lines = []
+    for result in failed[:SHOWN_FAILURES]:
+        why = "; ".join(part for part in (result.failures, result.reason) if part)
+        text = f"{result.name}: {result.outcome}{f' ({why})' if why else ''}"
+        lines.append(Text.assemble((text, "red"), f"\n  {result.replay}"))
+    if len(failed) > SHOWN_FAILURES:
+        lines.append(Text(f"... and {len(failed) - SHOWN_FAILURES} more that did not pass: see the table"))
+    return lines
