@@ -89,7 +89,7 @@ def test_generator_draws_all_kinds_of_obstacles_and_motions(tmp_path):
     found = set()
     for number in range(1, 40):
         for obstacle in read(generate(1, number, ("moving", "mixed")[number % 2]), tmp_path).obstacles:
-            found |= {obstacle.shape, obstacle.known, obstacle.motion.kind if obstacle.motion else None}
+            found |= {obstacle.shape.kind, obstacle.known, obstacle.motion.kind if obstacle.motion else None}
     assert found == {"sphere", "pole", "wall", True, False, None, *MOTIONS}
 
 
