@@ -1,4 +1,4 @@
-"""Flights with faults in tests: what the fixture ``fly_with_faults`` gives (:mod:`gcs.campaign.pytest_plugin`)."""
+"""Flights with faults in tests: the fixture ``fly_with_faults`` (:mod:`gcs.campaign.pytest_plugin`)."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ def mission_text(
     limits: Limits,
     comments: Sequence[str] = (),
 ) -> str:
-    """A mission file. ``reference`` is a figure eight or the keys of a table of kind waypoints."""
+    """Return a mission file. ``reference`` is a figure eight or the keys of a table of kind waypoints."""
     keys = {"kind": "waypoints", **reference} if isinstance(reference, Mapping) else _fields(reference)
     tables = [
         "\n".join(f"# {comment}" for comment in comments),
@@ -49,7 +49,7 @@ def system_text(changes: Mapping[str, Any]) -> str:
 
 
 def tables_text(data: Mapping[str, Any]) -> str:
-    """A file of the tables and arrays of tables ``data``, as :mod:`tomllib` reads them; what they hold is inline."""
+    """Return a file of the tables and arrays of tables ``data``, as :mod:`tomllib` reads them; values are inline."""
     tables = [
         _table(f"[[{name}]]" if array else f"[{name}]", table)
         for name, value in data.items()
@@ -72,7 +72,7 @@ def _table(header: str, keys: Mapping[str, Any]) -> str:
 
 
 def toml_value(value: Any) -> str:
-    """A value of TOML."""
+    """Return a value as TOML."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):

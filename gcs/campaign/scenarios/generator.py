@@ -1,8 +1,7 @@
-"""Random courses that can be flown: a way, and obstacles on it, each course from nothing but its seed and number.
+"""Random obstacle scenarios that can be flown: a path and obstacles on it, each from its seed and number.
 
-What is drawn is thrown away and drawn again until it can be flown by construction: start and goal are clear by 3 m,
-there is a way round everything that stands, obstacles that move leave room about them, and nothing comes upon the
-payload while it takes off or lands.
+A draft is drawn again until it can be flown by construction: start and goal are clear by 3 m, there is a detour round
+all static obstacles, moving obstacles keep clear of them, and none approaches the payload while it takes off or lands.
 """
 
 from __future__ import annotations
@@ -40,25 +39,25 @@ HELD_TO = Limits(clearance=0.3, payload_tilt_deg=6.0)
 CLEAR = 3.0
 """m about the formation where it takes off and lands."""
 MARGIN = 0.9
-"""m that the way round what stands leaves at least: margin, growth for what is not known, corners cut."""
+"""m, the least clearance of a detour round static obstacles: margin, growth for uncertainty, corners cut."""
 LINK_TILT = 0.1
 """rad, for which the formation is bounded."""
 APART = 5.0
-"""m along the way between obstacles, and about those that move."""
+"""m along the path between obstacles, and about moving ones."""
 CEILING = 14.0
-"""m, the highest altitude of a way round."""
+"""m, the highest altitude of a detour."""
 TALL = 18.0
-"""m, what is not to be flown over."""
+"""m, the height of obstacles that cannot be flown over."""
 LATE = 25.0
-"""s by which the payload may be late, and still nothing comes upon it when it lands."""
-MOST_TRIES = 400
+"""s of delay with which no obstacle approaches the landing payload yet."""
+MAX_DRAFTS = 400
 ON_THE_MAP, MOVING_ON_THE_MAP = 0.4, 0.15
 """Shares of the obstacles that the ground knows."""
 
 
 @dataclass(frozen=True)
 class RandomScenario:
-    """One course: ``text`` is the mission file."""
+    """One scenario: ``text`` is the mission file."""
 
     number: int
     kind: str
@@ -69,9 +68,9 @@ class RandomScenario:
 def generate(
     seed: int, number: int, kind: str, config: SystemConfig | None = None, fastest: float = 2.0
 ) -> RandomScenario:
-    """Course ``number`` of ``seed``; obstacles move at up to ``fastest`` (m/s).
+    """Return scenario ``number`` of ``seed``; obstacles move at up to ``fastest`` (m/s).
 
-    ``config`` is the system that will fly it; None: the packaged one. The same arguments give the same course.
+    ``config`` is the system that will fly it; None: the packaged one. The same arguments give the same scenario.
     Raises :class:`GcsError` where none could be found.
     """
     if kind not in KINDS:
@@ -79,7 +78,7 @@ def generate(
     system = read_system(None) if config is None else config
     random = np.random.default_rng([seed, number, KINDS.index(kind)])
     name = f"{number:04d}-{kind}"
-    for _ in range(MOST_TRIES):
+    for _ in range(MAX_DRAFTS):
         draft = _Draft(random, system, fastest)
         _FILL[kind](draft)
         if draft.can_be_flown():
@@ -87,17 +86,17 @@ def generate(
             noise_seed = int(random.integers(2**31))
             text = mission_text(name, noise_seed, draft.reference, draft.obstacles, HELD_TO, [comment])
             return RandomScenario(number, kind, name, text)
-    raise GcsError(f"course {number} of seed {seed}: nothing that can be flown in {MOST_TRIES} tries")
+    raise GcsError(f"scenario {number} of seed {seed}: none can be flown of {MAX_DRAFTS} drafts: take another seed")
 
 
 class _Draft:
-    """A way, and the obstacles drawn so far."""
+    """A path, and the obstacles drawn so far."""
 
     def __init__(self, random: Random, system: SystemConfig, fastest: float) -> None:
         self.random, self._system, self._fastest = random, system, fastest
         self.obstacles: list[Obstacle] = []
-        self._standing: list[float] = []  # where along the way
-        self._moving: list[tuple[float, Array]] = []  # where along the way, and about which place
+        self._standing: list[float] = []  # m along the path
+        self._moving: list[tuple[float, Array]] = []  # m along the path, and the place
         self.reference: Lissajous | dict[str, Any] = {}
 
     def along_points(self) -> None:
@@ -137,7 +136,7 @@ class _Draft:
     # Obstacles
 
     def station(self) -> float | None:
-        """A place along the way (m) that is ``APART`` from the obstacles there are; None: not found."""
+        """Return a place along the path (m) that is ``APART`` from the obstacles so far; None: not found."""
         taken = [*self._standing, *(along for along, _ in self._moving)]
         for _ in range(20):
             along = float(self.random.uniform(5.5, self._along[-1] - 5.0))
@@ -146,7 +145,7 @@ class _Draft:
         return None
 
     def place(self, along: float, sideways: float) -> tuple[Array, Array, float]:
-        """Where that is (3,), ``sideways`` m off the way; the direction of the way there (3,), and the time (s)."""
+        """Return that place (3,), ``sideways`` m off the path, the direction of the path (3,), and the time (s)."""
         index = int(np.searchsorted(self._along, along))
         here = self._way[index]
         before, after = self._way[max(index - 5, 0)], self._way[min(index + 5, len(self._way) - 1)]
@@ -165,7 +164,7 @@ class _Draft:
         )
 
     def add_poles(self) -> None:
-        """One pole, or two with a gap that is wide enough or none at all."""
+        """Add one pole, or two with a gap that is either wide enough or closed."""
         if (along := self.station()) is None:
             return
         height = round(self.random.uniform(12.0, TALL), 3)
@@ -183,7 +182,7 @@ class _Draft:
             )
 
     def add_wall(self) -> None:
-        """Across the way: low, to be flown over, or high, to be flown round."""
+        """Add a wall across the path: low, to be flown over, or high, to be flown round."""
         if (along := self.station()) is None:
             return
         random = self.random
@@ -200,7 +199,7 @@ class _Draft:
         self._stand(along, Obstacle(self._name("wall"), centre, Wall(size, math.radians(round(yaw, 2))), self._known()))
 
     def add_moving(self) -> None:
-        """A sphere that is where the payload is when it passes, or would."""
+        """Add a sphere that is where the undisturbed payload is when it passes."""
         if (along := self.station()) is None:
             return
         random = self.random
@@ -227,7 +226,7 @@ class _Draft:
     # Whether it can be flown
 
     def can_be_flown(self) -> bool:
-        """See the head of the module."""
+        """Return whether the draft can be flown, as in the description of the module."""
         if not self.obstacles:
             return False
         formation = BoundingCylinder.of(self._system.parameters(), LINK_TILT)
@@ -237,28 +236,28 @@ class _Draft:
             self._is_clear_at_ends(standing, formation)
             and self._is_clear_at_waypoints(standing, formation)
             and self._is_open(standing, formation)
-            and all(self._comes_upon_nothing(obstacle, formation) for obstacle in moving)
-            and self._has_room_about(standing)
+            and all(self._keeps_clear_of_ends(obstacle, formation) for obstacle in moving)
+            and self._keeps_clear_of_moving(standing)
         )
 
     def _is_clear_at_ends(self, standing: Sequence[tuple[Shape, Array]], formation: BoundingCylinder) -> bool:
-        """At every height between the ground and the altitude of the way."""
-        room = FreeSpace(standing, formation, CLEAR, 0.0, 100.0)
+        """Return whether both ends are clear at every height between the ground and the altitude of the path."""
+        space = FreeSpace(standing, formation, CLEAR, 0.0, 100.0)
         top = self.schedule.goal[2]
         ends = [
             [x, y, z] for x, y, _ in (self._way[0], self.schedule.goal) for z in np.arange(top, -RESTING_ALTITUDE, 0.5)
         ]
-        return bool(room.is_free(np.array(ends)).all())
+        return bool(space.is_free(np.array(ends)).all())
 
     def _is_clear_at_waypoints(self, standing: Sequence[tuple[Shape, Array]], formation: BoundingCylinder) -> bool:
-        """A waypoint in something that stands could not be reached."""
+        """Return whether no waypoint is inside a static obstacle."""
         if not isinstance(self.reference, dict):
             return True
-        room = FreeSpace(standing, formation, MARGIN, 0.0, 100.0)
-        return bool(room.is_free(np.array(self.reference["points"])).all())
+        space = FreeSpace(standing, formation, MARGIN, 0.0, 100.0)
+        return bool(space.is_free(np.array(self.reference["points"])).all())
 
     def _is_open(self, standing: Sequence[tuple[Shape, Array]], formation: BoundingCylinder) -> bool:
-        """Whether there is a way round what stands, past every place between two obstacles."""
+        """Return whether there is a detour round static obstacles, past every place between two of them."""
         stops = sorted(set(self._standing))
         between = [(a + b) / 2.0 for a, b in pairwise(stops)]
         places = [self._way[0], *(self.place(along, 0.0)[0] for along in between), self._way[-1]]
@@ -268,8 +267,8 @@ class _Draft:
                 return False
         return True
 
-    def _comes_upon_nothing(self, obstacle: Obstacle, formation: BoundingCylinder) -> bool:
-        """Whether it is slow enough, stays in the air, and leaves alone who takes off or lands."""
+    def _keeps_clear_of_ends(self, obstacle: Obstacle, formation: BoundingCylinder) -> bool:
+        """Return whether it is slow enough, stays in the air, and keeps clear of take-off and landing."""
         assert obstacle.motion is not None
         if top_speed(obstacle.motion) > self._fastest + 1e-3:
             return False
@@ -286,12 +285,12 @@ class _Draft:
                 return False
         return True
 
-    def _has_room_about(self, standing: Sequence[tuple[Shape, Array]]) -> bool:
-        """Whether what stands leaves room about the places where something comes the payload's way."""
+    def _keeps_clear_of_moving(self, standing: Sequence[tuple[Shape, Array]]) -> bool:
+        """Return whether static obstacles keep clear of the places where moving ones meet the payload."""
         if not (standing and self._moving):
             return True
-        room = FreeSpace(standing, BoundingCylinder(0.0, TALL, TALL), 0.0, -100.0, 100.0)
-        return bool((room.clearance(np.array([place for _, place in self._moving])) >= APART - 1.0).all())
+        space = FreeSpace(standing, BoundingCylinder(0.0, TALL, TALL), 0.0, -100.0, 100.0)
+        return bool((space.clearance(np.array([place for _, place in self._moving])) >= APART - 1.0).all())
 
 
 def _rounded(place: Array) -> tuple[float, float, float]:

@@ -23,11 +23,11 @@ Random = np.random.Generator
 
 SLOWEST = 0.4  # m/s
 FLIGHT = np.arange(0.0, 120.0, 0.05)
-"""Times (s) at which a motion is looked at."""
+"""Times (s) at which a motion is sampled."""
 
 
 def motion_for(kind: str, random: Random, time: float, travel: Array, fastest: float) -> AnyMotion:
-    """A motion of ``kind`` at up to ``fastest`` (m/s) that is under way at ``time`` (s).
+    """Return a motion of ``kind`` at up to ``fastest`` (m/s) that is under way at ``time`` (s).
 
     ``travel`` (3,) is the direction in which the payload goes then: half of what moves straight confronts it head-on
     within 30 degrees, the rest comes from anywhere.
@@ -36,19 +36,19 @@ def motion_for(kind: str, random: Random, time: float, travel: Array, fastest: f
 
 
 def displacement(motion: AnyMotion, times: Array) -> Array:
-    """Displacement (K, 3) (m) at ``times`` (K,) (s)."""
+    """Return the displacement (K, 3) (m) at ``times`` (K,) (s)."""
     move = mover(motion)
     return np.array([move(time) for time in times.tolist()])
 
 
 def top_speed(motion: AnyMotion) -> float:
-    """The highest speed of a motion over a flight (m/s)."""
+    """Return the highest speed of a motion over a flight (m/s)."""
     step = float(FLIGHT[1])
     return float(np.linalg.norm(np.diff(displacement(motion, FLIGHT), axis=0), axis=1).max()) / step
 
 
 def _against(random: Random, travel: Array) -> tuple[float, float, float]:
-    """A level direction to move in."""
+    """Return a level direction to move in."""
     if random.random() < 0.5 and np.hypot(*travel[:2]) > 0.1:
         angle = math.atan2(-travel[1], -travel[0]) + math.radians(random.uniform(-30.0, 30.0))
     else:

@@ -1,7 +1,7 @@
-"""When the payload is where if nothing is in the way, by the clock of the obstacles.
+"""The undisturbed trajectory of the payload, in the time of the obstacles.
 
-That clock starts with take-off: when the first cradle lets go, which is while the rotors spool up and so before the
-course begins.
+That time starts with take-off: when the first cradle releases, which is while the rotors spool up and so before the
+trajectory begins.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ SAMPLE = 0.02
 LONGEST = 3600.0
 
 
-def course_start(parameters: SystemParameters, settings: TakeoffLandingSettings) -> float:
-    """Time of the obstacles' clock at which the course begins (s)."""
+def trajectory_start(parameters: SystemParameters, settings: TakeoffLandingSettings) -> float:
+    """Return the time of the obstacles at which the trajectory begins (s)."""
     own_weight = parameters.m * parameters.g / parameters.hover_thrust
     spool_up = settings.spool_up_time
     release = spool_up * float(own_weight.min()) + LAG
@@ -39,37 +39,37 @@ class Schedule:
     def __init__(self, mission: Mission) -> None:
         """Raises :class:`ValueError` for a mission that lasts longer than an hour."""
         pad = np.array([PAD_OFFSET, -PAD_OFFSET, -RESTING_ALTITUDE])
-        self._course = MissionTrajectory(mission, pad, 0.0)
-        self.start = course_start(mission.system.parameters(), mission.system.flight.takeoff_landing)
+        self._trajectory = MissionTrajectory(mission, pad, 0.0)
+        self.start = trajectory_start(mission.system.parameters(), mission.system.flight.takeoff_landing)
         """When the climb begins."""
         count = 4096
-        while True:  # a lazy course tells its end only when asked beyond it
+        while True:  # the end of a lazy trajectory is known only after a sample beyond it
             elapsed: Array = SAMPLE * np.arange(count, dtype=np.float64)
-            positions = self._course.trajectory.derivatives(elapsed, 0)[0]
-            if elapsed[-1] > self._course.landing_from:
+            positions = self._trajectory.trajectory.derivatives(elapsed, 0)[0]
+            if elapsed[-1] > self._trajectory.landing_from:
                 break
             if elapsed[-1] > LONGEST:
                 raise ValueError(f"the mission lasts longer than {LONGEST:g} s")
             count *= 2
-        self.landing = self.start + self._course.landing_from
+        self.landing = self.start + self._trajectory.landing_from
         """When the final descent begins."""
-        until = elapsed <= self._course.landing_from
+        until = elapsed <= self._trajectory.landing_from
         self.times: Array = self.start + elapsed[until]
         self.positions: Array = positions[until]
         """Where the payload is at ``times`` (K, 3), from the pad to the place above the landing."""
-        self.goal: Array = np.array(self._course.trajectory.position(self._course.landing_from))
+        self.goal: Array = np.array(self._trajectory.trajectory.position(self._trajectory.landing_from))
 
     def position(self, times: Array) -> Array:
-        """Where the payload is (K, 3), NED (m)."""
-        return np.asarray(self._course.trajectory.derivatives(np.maximum(times - self.start, 0.0), 0)[0])
+        """Return the position of the payload (K, 3), NED (m)."""
+        return np.asarray(self._trajectory.trajectory.derivatives(np.maximum(times - self.start, 0.0), 0)[0])
 
     def velocity(self, times: Array) -> Array:
-        """How fast it is (K, 3) (m/s)."""
-        return np.asarray(self._course.trajectory.derivatives(np.maximum(times - self.start, 0.0), 1)[1])
+        """Return its velocity (K, 3) (m/s)."""
+        return np.asarray(self._trajectory.trajectory.derivatives(np.maximum(times - self.start, 0.0), 1)[1])
 
 
 def arrival(times: Array, positions: Array, goal: Array, within: float) -> float | None:
-    """When the payload comes within ``within`` (m, horizontally) of the goal for good; None: it does not.
+    """Return when the payload comes within ``within`` (m, horizontally) of the goal for good; None: never.
 
     ``times`` (K,) (s), ``positions`` (K, 3).
     """
