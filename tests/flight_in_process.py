@@ -14,7 +14,7 @@ from gcs.app.fly import ground_station
 from gcs.mission.read import read_mission
 from gcs.record.recorder import FlightRecorder
 from gcs.record.summary import summarise, within_limits
-from vehicle_sim.faults import FaultPassage
+from vehicle_sim.faults import FaultInjector
 from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.truth_log import TruthLog
 
@@ -106,7 +106,7 @@ def copied_mission(folder, name, **changes):
 class Rehearsal:
     """One flight. ``on_exchange(rehearsal)`` is called after every exchange and may do what it likes."""
 
-    def __init__(self, mission, folder, *, seed=None, world=None, passage=None, controller="idc"):
+    def __init__(self, mission, folder, *, seed=None, world=None, faults=None, controller="idc"):
         """``mission``: a path or a Mission; ``world``: the system file's config of the world when it differs."""
         if isinstance(mission, Path):
             mission = read_mission(mission)
@@ -114,9 +114,9 @@ class Rehearsal:
         self.folder = folder
         folder.mkdir(parents=True, exist_ok=True)
         config = world or self.mission.system
-        if passage is None and self.mission.faults:
-            passage = FaultPassage(self.mission.faults, self.mission.seed, config)
-        self.swarm = Swarm(config, seed=self.mission.seed, home=self.mission.home, passage=passage)
+        if faults is None and self.mission.faults:
+            faults = FaultInjector(self.mission.faults, self.mission.seed, config)
+        self.swarm = Swarm(config, seed=self.mission.seed, home=self.mission.home, faults=faults)
         self.swarm.record(TruthLog(folder, config.team.vehicles))
         self.recorder = FlightRecorder(folder, 0.0)
         addresses = [address_of(vehicle.system_id) for vehicle in self.swarm.vehicles]

@@ -8,7 +8,7 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink.codec import Codec
 from gcs.record.tlog import frames_in
-from vehicle_sim.faults.interface import Passage
+from vehicle_sim.faults.interface import FaultInterface
 
 REMEMBERED = 64  # genuine datagrams that may be imitated
 
@@ -32,7 +32,7 @@ def with_random_contents(kind, contents, target_system, writer):
     return mavlink.MAVLink_message(kind.id, kind.msgname)._pack(writer, kind.crc_extra, bytes(payload))
 
 
-class Traffic(Passage):
+class Traffic(FaultInterface):
     """Lets everything through, and remembers the last genuine datagrams each way of one vehicle."""
 
     def __init__(self, vehicle):

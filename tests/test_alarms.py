@@ -14,7 +14,7 @@ from gcs.mavlink.link_statistics import PATIENCE, LinkStatistics
 from gcs.mission.model import Fault
 from gcs.mission.read import read_mission
 from gcs.record.tables import ALARM_COLUMNS, read_text_table
-from vehicle_sim.faults import FaultPassage
+from vehicle_sim.faults import FaultInjector
 
 pytestmark = pytest.mark.slow
 
@@ -108,10 +108,10 @@ def test_flight_without_a_fault_raises_no_alarm(tmp_path):
 def test_biased_position_raises_an_alarm_of_its_vehicle_at_once(tmp_path):
     fault = Fault("bias", 3.0, vehicles=(3,), settings={"channel": "position", "amount": 0.3, "axes": ["x"]})
     mission = hop(tmp_path, fault)
-    passage = FaultPassage(mission.faults, 52, mission.system)
-    with Rehearsal(mission, tmp_path / "run", seed=52, passage=passage) as flight:
+    injector = FaultInjector(mission.faults, 52, mission.system)
+    with Rehearsal(mission, tmp_path / "run", seed=52, faults=injector) as flight:
         flight.fly()
-    begin = passage.faults[0].schedule.take_off + fault.start
+    begin = injector.faults[0].schedule.take_off + fault.start
     rows = read_text_table(tmp_path / "run" / "alarms.csv")
     assert (rows["source"][0], rows["code"][0]) == ("vehicle 3", "measurements_rejected")
     assert 0.0 < float(rows["time_s"][0]) - begin < 0.5
@@ -124,10 +124,10 @@ def test_flapping_link_raises_telemetry_timeout_at_any_phase(tmp_path, start):
     """Down for 0.2 s in every 1.2 s, of which steps and samples are whole shares: always at the same moment between."""
     fault = Fault("flapping", start, vehicles=(2,), settings={"down": 0.2, "up": 1.0})
     mission = hop(tmp_path, fault)
-    passage = FaultPassage(mission.faults, 53, mission.system)
-    with Rehearsal(mission, tmp_path / "run", seed=53, passage=passage) as flight:
+    injector = FaultInjector(mission.faults, 53, mission.system)
+    with Rehearsal(mission, tmp_path / "run", seed=53, faults=injector) as flight:
         flight.fly()
-    begin = passage.faults[0].schedule.take_off + start
+    begin = injector.faults[0].schedule.take_off + start
     rows = read_text_table(tmp_path / "run" / "alarms.csv")
     found = [float(t) for t, code in zip(rows["time_s"], rows["code"], strict=True) if code == "telemetry_timeout"]
     assert found and 0.0 < found[0] - begin < 0.4

@@ -5,29 +5,29 @@ import math
 
 import numpy as np
 import pytest
-from fault_passages import codec_frames, fault, passage, position, sent
+from fault_injection import codec_frames, fault, injected, position, sent
 
 from gcs.mavlink.codec import Codec
 
 
 def test_loss_is_as_frequent_as_asked_for_and_independent():
-    arrived = [n for n, *_ in sent(passage(fault("packet_loss", probability=0.3)), 10_000)]
+    arrived = [n for n, *_ in sent(injected(fault("packet_loss", probability=0.3)), 10_000)]
     assert len(arrived) == pytest.approx(7000, abs=4 * math.sqrt(10_000 * 0.3 * 0.7))
     both = sum(1 for a, b in itertools.pairwise(arrived) if b - a == 1)
     assert both == pytest.approx(4900, abs=200)
 
 
 def test_bursts_have_their_lengths():
-    arrived = [n for n, *_ in sent(passage(fault("burst_loss", burst=0.5, gap=2.0)), 50_000, gap=0.01)]
+    arrived = [n for n, *_ in sent(injected(fault("burst_loss", burst=0.5, gap=2.0)), 50_000, gap=0.01)]
     bursts = [b - a - 1 for a, b in itertools.pairwise(arrived) if b - a > 1]
     assert len(bursts) == pytest.approx(200, abs=50)
     assert np.mean(bursts) * 0.01 == pytest.approx(0.5, rel=0.25)
-    part = sent(passage(fault("burst_loss", burst=1e3, gap=1e-3, loss_in_burst=0.4)), 5000)
+    part = sent(injected(fault("burst_loss", burst=1e3, gap=1e-3, loss_in_burst=0.4)), 5000)
     assert len(part) == pytest.approx(3000, abs=150)
 
 
 def test_latency_and_jitter_delay_in_order_and_add_up():
-    arrived = sent(passage(fault("latency", duration=2.0, delay=0.06), fault("jitter", spread=0.02)), 200)
+    arrived = sent(injected(fault("latency", duration=2.0, delay=0.06), fault("jitter", spread=0.02)), 200)
     assert [n for n, *_ in arrived] == list(range(200))
     delays = np.array([arrival - begin for _, begin, arrival, _ in arrived])
     assert delays[:100].min() >= 0.06 - 1e-9 and delays[:100].max() <= 0.08 + 1e-9
@@ -37,7 +37,7 @@ def test_latency_and_jitter_delay_in_order_and_add_up():
 
 
 def test_reordering_lets_some_be_overtaken_and_loses_none():
-    arrived = sent(passage(fault("reordering", probability=0.2, delay=0.05)), 2000)
+    arrived = sent(injected(fault("reordering", probability=0.2, delay=0.05)), 2000)
     order = [n for n, *_ in arrived]
     assert sorted(order) == list(range(2000)) and order != sorted(order)
     late = [arrival - begin for _, begin, arrival, _ in arrived if arrival > begin]
@@ -46,14 +46,14 @@ def test_reordering_lets_some_be_overtaken_and_loses_none():
 
 
 def test_duplication_doubles_some():
-    order = [n for n, *_ in sent(passage(fault("duplication", probability=0.25, delay=0.03)), 2000)]
+    order = [n for n, *_ in sent(injected(fault("duplication", probability=0.25, delay=0.03)), 2000)]
     twice = [n for n in set(order) if order.count(n) == 2]
     assert set(order) == set(range(2000)) and len(order) == 2000 + len(twice)
     assert len(twice) == pytest.approx(500, abs=80)
 
 
 def test_corruption_changes_as_many_bytes_as_asked_for():
-    arrived = sent(passage(fault("corruption", probability=0.5, bytes=3)), 1000)
+    arrived = sent(injected(fault("corruption", probability=0.5, bytes=3)), 1000)
     pairs = [(data, n.to_bytes(4, "little") * 10) for n, _, _, data in arrived]
     changed = [sum(a != b for a, b in zip(data, sent_data, strict=True)) for data, sent_data in pairs]
     assert set(changed) == {0, 3}
@@ -62,7 +62,7 @@ def test_corruption_changes_as_many_bytes_as_asked_for():
 
 def test_a_bad_checksum_spoils_every_frame_and_nothing_but_checksums():
     good = codec_frames(position(1), position(2))
-    arrived = sent(passage(fault("bad_checksum", probability=1.0)), 50, message=lambda i: good)
+    arrived = sent(injected(fault("bad_checksum", probability=1.0)), 50, message=lambda i: good)
     for *_, data in arrived:
         decoder = Codec(255, 1)
         assert not decoder.decode(data)
@@ -71,23 +71,23 @@ def test_a_bad_checksum_spoils_every_frame_and_nothing_but_checksums():
 
 
 def test_truncation_cuts_off():
-    arrived = sent(passage(fault("truncation", probability=0.5)), 1000)
+    arrived = sent(injected(fault("truncation", probability=0.5)), 1000)
     cut = [data for *_, data in arrived if len(data) < 40]
     assert len(arrived) == 1000 and len(cut) == pytest.approx(500, abs=65)
     assert min(map(len, cut)) < 5 and max(map(len, cut)) == 39 and all(cut)
 
 
 def test_a_bandwidth_cap_queues_and_then_loses():
-    arrived = sent(passage(fault("bandwidth_cap", rate=1000.0, queue=400)), 500, gap=0.02)  # 2000 bytes/s wanted
+    arrived = sent(injected(fault("bandwidth_cap", rate=1000.0, queue=400)), 500, gap=0.02)  # 2000 bytes/s wanted
     assert [n for n, *_ in arrived] == sorted(n for n, *_ in arrived)
     assert len(arrived) * 40 == pytest.approx(10_400, abs=100)
     assert max(arrival - begin for _, begin, arrival, _ in arrived) == pytest.approx(0.4, abs=0.021)
-    slow = sent(passage(fault("bandwidth_cap", rate=1000.0)), 50, gap=0.1)
+    slow = sent(injected(fault("bandwidth_cap", rate=1000.0)), 50, gap=0.1)
     assert all(arrival - begin == pytest.approx(0.04) for _, begin, arrival, _ in slow)
 
 
 def test_a_stall_holds_everything_back_and_lets_it_go_at_once_in_order():
-    arrived = sent(passage(fault("stall", start=1.0, duration=1.0)), 200)
+    arrived = sent(injected(fault("stall", start=1.0, duration=1.0)), 200)
     assert [n for n, *_ in arrived] == list(range(200))
     held = [arrival for _, begin, arrival, _ in arrived if 1.0 <= round(begin, 6) < 2.0]
     assert len(held) == 50 and held == pytest.approx([2.0] * 50)
@@ -95,5 +95,5 @@ def test_a_stall_holds_everything_back_and_lets_it_go_at_once_in_order():
 
 
 def test_flapping_goes_down_and_up():
-    up = {n for n, *_ in sent(passage(fault("flapping", down=0.2, up=0.3)), 100, gap=0.05)}
+    up = {n for n, *_ in sent(injected(fault("flapping", down=0.2, up=0.3)), 100, gap=0.05)}
     assert up == {i for i in range(100) if i % 10 >= 4}

@@ -3,10 +3,10 @@
 import itertools
 
 import pytest
-from fault_passages import SYSTEM, TAKE_OFF, codec_frames, fault, passage, position, sent, told
+from fault_injection import SYSTEM, TAKE_OFF, codec_frames, fault, injected, position, reported, sent
 
 from gcs.faults import KINDS
-from vehicle_sim.faults import FaultPassage
+from vehicle_sim.faults import FaultInjector
 from vehicle_sim.faults.record import faults_record
 
 RANDOM = (
@@ -15,7 +15,7 @@ RANDOM = (
 
 
 def test_nothing_happens_before_take_off_and_outside_of_the_times():
-    disturbed = FaultPassage([fault("partition", 1.0, 0.5, every=2.0, times=2)], 1, SYSTEM)
+    disturbed = FaultInjector([fault("partition", 1.0, 0.5, every=2.0, times=2)], 1, SYSTEM)
     assert disturbed.from_vehicle(1, [(b"x", "a")], 100.0) == [(b"x", "a")]
     disturbed.took_off(TAKE_OFF)
     lost = sorted({round(i * 0.02, 2) for i in range(400)} - {round(s, 2) for _, s, _, _ in sent(disturbed, 400)})
@@ -28,18 +28,18 @@ def test_nothing_happens_before_take_off_and_outside_of_the_times():
 
 
 def test_a_fault_is_of_its_vehicles_and_of_its_direction():
-    disturbed = passage(fault("partition", vehicles=(2, 3), direction="command"))
+    disturbed = injected(fault("partition", vehicles=(2, 3), direction="command"))
     for vehicle, way in itertools.product((1, 2, 3, 4), ("telemetry", "command")):
         arrived = sent(disturbed, 5, vehicle=vehicle, way=way)
         assert len(arrived) == (0 if way == "command" and vehicle in (2, 3) else 5)
-    assert not sent(passage(fault("partition")), 5, vehicle=4, way="telemetry")
-    assert len(sent(passage(fault("low_rate")), 5, way="command", message=lambda i: codec_frames(position(i)))) == 5
+    assert not sent(injected(fault("partition")), 5, vehicle=4, way="telemetry")
+    assert len(sent(injected(fault("low_rate")), 5, way="command", message=lambda i: codec_frames(position(i)))) == 5
 
 
 @pytest.mark.parametrize("kind", [k.name for k in KINDS.values() if k.family in ("link", "timing")])
 def test_every_fault_of_datagrams_repeats_and_depends_on_seed_number_vehicle_and_direction(kind):
     def run(seed=1, before=0, vehicle=1, way="telemetry"):
-        disturbed = passage(*[fault("jitter", 1e6)] * before, fault(kind, duration=5.0), seed=seed)
+        disturbed = injected(*[fault("jitter", 1e6)] * before, fault(kind, duration=5.0), seed=seed)
         return sent(disturbed, 300, vehicle=vehicle, way=way, message=lambda i: codec_frames(position(i)))
 
     assert run() == run()
@@ -54,12 +54,12 @@ def test_every_fault_of_datagrams_repeats_and_depends_on_seed_number_vehicle_and
 
 def test_faults_act_one_after_the_other_in_the_missions_order():
     bias, scale = (fault(kind, channel="velocity", axes=["x"]) for kind in ("bias", "scale"))
-    assert told(passage(bias, scale), 1.0).position.velocity[0] == pytest.approx((0.1 + 0.5) * 1.1)
-    assert told(passage(scale, bias), 1.0).position.velocity[0] == pytest.approx(0.1 * 1.1 + 0.5)
-    delayed = sent(passage(fault("latency", delay=0.1), fault("partition", 1.0, 0.5)), 100)
+    assert reported(injected(bias, scale), 1.0).position.velocity[0] == pytest.approx((0.1 + 0.5) * 1.1)
+    assert reported(injected(scale, bias), 1.0).position.velocity[0] == pytest.approx(0.1 * 1.1 + 0.5)
+    delayed = sent(injected(fault("latency", delay=0.1), fault("partition", 1.0, 0.5)), 100)
     assert set(range(100)) - {n for n, *_ in delayed} == set(range(45, 70))  # lost when they come to it
 
 
 def test_whatever_is_combined_can_be_told_in_32_bits():
     huge = [fault("scale", channel="position", factor=1e3) for _ in range(30)]
-    assert max(map(abs, told(passage(*huge), 1.0).position.position)) <= 1e30
+    assert max(map(abs, reported(injected(*huge), 1.0).position.position)) <= 1e30

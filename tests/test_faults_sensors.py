@@ -4,43 +4,43 @@ import math
 
 import numpy as np
 import pytest
-from fault_passages import STILL, TAKE_OFF, at, fault, passage
+from fault_injection import STILL, TAKE_OFF, at, fault, injected
 
 from vehicle_sim.world.range_sensor import Detection, RangeSample
 
 
 def test_lost_sensors():
-    blind = passage(fault("position_lost", 1.0))
+    blind = injected(fault("position_lost", 1.0))
     first = blind.own_sample(1, at(1.0))
     moved = blind.own_sample(1, at(2.0)._replace(position=(9.0, 9.0, 9.0), rates=(1.0, 1.0, 1.0)))
     assert (moved.position, moved.velocity, moved.rates) == (first.position, first.velocity, (1.0, 1.0, 1.0))
-    assert blind.told(1, moved) == (moved, None)
-    assert passage(fault("position_lost", onboard=False)).own_sample(1, at(1.0)) == at(1.0)
+    assert blind.reported_sample(1, moved) == (moved, None)
+    assert injected(fault("position_lost", onboard=False)).own_sample(1, at(1.0)) == at(1.0)
 
-    assert passage(fault("attitude_lost")).told(1, at(1.0)) == (None, at(1.0))
-    assert passage(fault("attitude_lost")).own_sample(1, at(1.0)) == at(1.0)
-    dizzy = passage(fault("attitude_lost", onboard=True))
+    assert injected(fault("attitude_lost")).reported_sample(1, at(1.0)) == (None, at(1.0))
+    assert injected(fault("attitude_lost")).own_sample(1, at(1.0)) == at(1.0)
+    dizzy = injected(fault("attitude_lost", onboard=True))
     dizzy.own_sample(1, at(1.0))
     assert dizzy.own_sample(1, at(2.0)._replace(attitude=(0.0, 1.0, 0.0, 0.0))).attitude == STILL.attitude
 
-    rates = passage(fault("rates_lost")).told(1, at(1.0))
+    rates = injected(fault("rates_lost")).reported_sample(1, at(1.0))
     assert all(math.isnan(w) for w in rates.attitude.rates) and rates.position == at(1.0)
 
-    lost = passage(fault("payload_unit_lost", vehicles=(2,)))
+    lost = injected(fault("payload_unit_lost", vehicles=(2,)))
     assert lost.payload_sample(2, at(1.0)) is None and lost.payload_sample(1, at(1.0)) == at(1.0)
     scan = RangeSample(TAKE_OFF + 1.0, 9.0, (Detection(0, (1.0, 1.0, 1.0)),))
-    dark = passage(fault("obstacle_sensing_lost", vehicles=(2,)))
+    dark = injected(fault("obstacle_sensing_lost", vehicles=(2,)))
     assert dark.range_sample(2, scan) == scan._replace(detections=(), works=False)
     assert dark.range_sample(1, scan) is scan
 
 
 def test_a_glitching_and_a_drifting_position():
-    glitch = passage(fault("position_glitch", size=3.0, rate=0.5, hold=0.2))
+    glitch = injected(fault("position_glitch", size=3.0, rate=0.5, hold=0.2))
     seen = np.array([glitch.own_sample(1, at(i * 0.01)).position for i in range(20_000)]) - STILL.position
     away = np.hypot(seen[:, 0], seen[:, 1]) > 0.0
     assert np.hypot(*seen[away, :2].T) == pytest.approx(np.full(away.sum(), 3.0))
     assert not np.any(seen[:, 2])
     assert away.mean() == pytest.approx(0.2 / 2.2, abs=0.03)
-    drift = passage(fault("position_drift", start=1.0, velocity=[0.1, -0.2, 0.0]))
+    drift = injected(fault("position_drift", start=1.0, velocity=[0.1, -0.2, 0.0]))
     assert drift.own_sample(1, at(6.0)).position == pytest.approx((1.5, 1.0, -5.0))
     assert drift.own_sample(1, at(6.0)).velocity == STILL.velocity

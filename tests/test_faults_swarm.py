@@ -7,14 +7,14 @@ import signal
 
 import numpy as np
 import pytest
-from fault_passages import SYSTEM, fault
+from fault_injection import SYSTEM, fault
 from programs import PATIENCE, process
 from scripted_ground import ScriptedGround, exchange
 
 from gcs.faults.record import fault_notes
-from vehicle_sim.faults import FaultPassage, record_faults
+from vehicle_sim.faults import FaultInjector, record_faults
 from vehicle_sim.faults.active import ActiveFault
-from vehicle_sim.faults.interface import Passage
+from vehicle_sim.faults.interface import FaultInterface
 from vehicle_sim.faults.world import Wind, WorldFaults
 from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.truth_log import TruthLog
@@ -24,17 +24,17 @@ pytestmark = pytest.mark.slow
 
 
 def lifted(*faults, seed=1, until=4.0, folder=None):
-    """A swarm that a scripted ground lifts: (ground, passage, swarm)."""
+    """A swarm that a scripted ground lifts: (ground, injector, swarm)."""
     system = SYSTEM.parameters()
     ground = ScriptedGround([("uav", i) for i in (1, 2, 3, 4)], float(system.hover_thrust.mean()), system.thrust_max)
-    passage = FaultPassage(faults, seed, SYSTEM) if faults else Passage()
-    with Swarm(SYSTEM, seed=seed, passage=passage) as swarm:
+    injector = FaultInjector(faults, seed, SYSTEM) if faults else FaultInterface()
+    with Swarm(SYSTEM, seed=seed, faults=injector) as swarm:
         if folder is not None:
             swarm.record(TruthLog(folder, 4))
         exchange(swarm, ground, until)
         if faults:
-            assert all(f.schedule.take_off == swarm.take_off_time for f in passage.faults)
-    return ground, passage, swarm
+            assert all(f.schedule.take_off == swarm.take_off_time for f in injector.faults)
+    return ground, injector, swarm
 
 
 def stamps(ground, vehicle, kind, component=1):
@@ -63,8 +63,8 @@ def test_the_same_seed_and_faults_give_the_same_truth_to_the_byte(tmp_path):
     truth, faults = {}, {}
     for name, (mixed, seed) in runs.items():
         (tmp_path / name).mkdir()
-        _, passage, swarm = lifted(*mixed, seed=seed, folder=tmp_path / name)
-        faults[name] = record_faults(tmp_path / name, passage, swarm.time).read_bytes()
+        _, injector, swarm = lifted(*mixed, seed=seed, folder=tmp_path / name)
+        faults[name] = record_faults(tmp_path / name, injector, swarm.time).read_bytes()
         truth[name] = (tmp_path / name / "truth.csv").read_bytes()
     assert truth["a"] == truth["b"] and faults["a"] == faults["b"]
     assert truth["a"] != truth["c"] and truth["a"] != truth["d"]
@@ -78,8 +78,8 @@ def test_the_same_seed_and_faults_give_the_same_truth_to_the_byte(tmp_path):
 
 
 def test_a_fault_that_never_came_is_on_record(tmp_path):
-    _, passage, swarm = lifted(fault("packet_loss", 1000.0, probability=1.0), fault("partition", 0.5), until=3.0)
-    record_faults(tmp_path, passage, swarm.time)
+    _, injector, swarm = lifted(fault("packet_loss", 1000.0, probability=1.0), fault("partition", 0.5), until=3.0)
+    record_faults(tmp_path, injector, swarm.time)
     (note,) = fault_notes(tmp_path)
     assert "fault 1, packet_loss" in note and "never came" in note
 

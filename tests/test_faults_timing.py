@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 import pytest
-from fault_passages import TAKE_OFF, at, codec_frames, fault, passage, position, sent
+from fault_injection import TAKE_OFF, at, codec_frames, fault, injected, position, sent
 
 from gcs.mavlink.codec import Codec
 from vehicle_sim.world.range_sensor import RangeSample
@@ -19,7 +19,7 @@ def test_half_rate_is_an_even_share_of_measurements_and_all_of_the_rest(share, k
         return codec_frames(position(i), beat, *points)
 
     decoder = Codec(255, 1)
-    arrived = sent(passage(fault("low_rate", share=share)), 100, message=message)
+    arrived = sent(injected(fault("low_rate", share=share)), 100, message=message)
     messages = [m for *_, data in arrived for m, *_ in decoder.decode(data)]
     stamps = [m.time_boot_ms for m in messages if m.get_type() == "LOCAL_POSITION_NED"]
     assert len(stamps) == kept
@@ -31,7 +31,7 @@ def test_half_rate_is_an_even_share_of_measurements_and_all_of_the_rest(share, k
 
 def test_a_hanging_ground_still_beats():
     beat = codec_frames(mavlink.MAVLink_heartbeat_message(6, 8, 0, 0, 0, 3))
-    disturbed = passage(fault("ground_hang", start=0.1))
+    disturbed = injected(fault("ground_hang", start=0.1))
     arrived = sent(disturbed, 10, way="command", message=lambda i: beat + codec_frames(position(i)))
     assert [len(Codec(1, 1).decode(data)) for *_, data in arrived] == [2] * 5 + [1] * 5
     assert all(data.startswith(beat) for *_, data in arrived)
@@ -39,22 +39,22 @@ def test_a_hanging_ground_still_beats():
 
 
 def test_clocks_run_away_step_and_overflow():
-    skew = passage(fault("clock_skew", 1.0, 2.0, rate=0.01, vehicles=(1,)))
+    skew = injected(fault("clock_skew", 1.0, 2.0, rate=0.01, vehicles=(1,)))
     errors = [round(skew.clock(1, TAKE_OFF + t) - TAKE_OFF - t, 9) for t in (0.5, 1.0, 2.0, 3.0, 9.0)]
     assert errors == [0, 0, 0.01, 0.02, 0.02]
     assert skew.clock(2, 50.0) == 50.0
-    step = passage(fault("clock_step", 1.0, 2.0, step=-0.5))
+    step = injected(fault("clock_step", 1.0, 2.0, step=-0.5))
     assert [round(step.clock(1, TAKE_OFF + t) - TAKE_OFF - t, 9) for t in (0.5, 1.0, 2.9, 3.0)] == [0, -0.5, -0.5, 0]
-    wrap = passage(fault("stamp_wrap", 1.0, lead=2.0))
+    wrap = injected(fault("stamp_wrap", 1.0, lead=2.0))
     stamps = [round(wrap.clock(1, TAKE_OFF + t) * 1e3) & 0xFFFFFFFF for t in (0.9, 1.0, 2.99, 3.01)]
     assert stamps == [3900, 2**32 - 2000, 2**32 - 10, 10]
 
 
 def test_stale_stamps_are_on_everything_that_is_told_but_not_on_what_is_flown_by():
-    disturbed = passage(fault("stale_stamps", age=0.5, vehicles=(1,)))
-    told = disturbed.told(1, at(1.0))
-    assert told.attitude.time == told.position.time == TAKE_OFF + 0.5
+    disturbed = injected(fault("stale_stamps", age=0.5, vehicles=(1,)))
+    reported = disturbed.reported_sample(1, at(1.0))
+    assert reported.attitude.time == reported.position.time == TAKE_OFF + 0.5
     assert disturbed.payload_sample(1, at(1.0)).time == TAKE_OFF + 0.5
     assert disturbed.range_sample(1, RangeSample(TAKE_OFF + 1.0, 9.0, ())).time == TAKE_OFF + 0.5
     assert disturbed.own_sample(1, at(1.0)).time == TAKE_OFF + 1.0
-    assert disturbed.told(2, at(1.0)).position.time == TAKE_OFF + 1.0
+    assert disturbed.reported_sample(2, at(1.0)).position.time == TAKE_OFF + 1.0

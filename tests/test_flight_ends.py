@@ -16,7 +16,7 @@ from gcs.mavlink import px4
 from gcs.record.landing import is_set_down
 from gcs.record.modes import stops_after
 from idc_controller.trajectory.trajectory import RestTrajectory
-from vehicle_sim.faults.interface import Passage
+from vehicle_sim.faults.interface import FaultInterface
 
 pytestmark = pytest.mark.slow
 
@@ -146,7 +146,7 @@ def test_unusable_input_ends_before_anything_is_started(tmp_path, options, reaso
 # One process
 
 
-class Cut(Passage):
+class Cut(FaultInterface):
     """From ``at`` (s) on nothing passes between a vehicle and the ground, in the directions named."""
 
     def __init__(self, vehicle, at, telemetry=True, commands=True):
@@ -160,7 +160,7 @@ class Cut(Passage):
 
 
 def test_vehicle_that_never_answers_is_refused(tmp_path):
-    with Rehearsal(short_figure(tmp_path), tmp_path / "run", passage=Cut(3, 0.0)) as flight:
+    with Rehearsal(short_figure(tmp_path), tmp_path / "run", faults=Cut(3, 0.0)) as flight:
         flight.fly()
         assert flight.flight.reason == "vehicle 3 does not answer at 127.0.0.1:14542"
         assert not flight.flight.completed
@@ -214,14 +214,14 @@ def test_vehicle_with_another_parameter_is_refused(tmp_path):
     ids=["both ways", "telemetry", "commands"],
 )
 def test_link_loss_of_one_vehicle_lands_all_of_them(tmp_path, telemetry, commands, reason):
-    passage, followed = Cut(2, 16.4, telemetry, commands), {}
+    cut, followed = Cut(2, 16.4, telemetry, commands), {}
 
     def plans_followed(flight):
         for vehicle in flight.swarm.vehicles:
             if (hold := vehicle.autopilot._hold) is not None:
                 followed.setdefault(vehicle.system_id, hold.plan.start)
 
-    with Rehearsal(short_figure(tmp_path, duration=20.0), tmp_path / "run", seed=1200, passage=passage) as flight:
+    with Rehearsal(short_figure(tmp_path, duration=20.0), tmp_path / "run", seed=1200, faults=cut) as flight:
         flight.fly(plans_followed)
         assert f"vehicle 2 {reason}" in flight.flight.reason
         assert flight.leave_alone()
@@ -235,7 +235,7 @@ def test_link_loss_of_one_vehicle_lands_all_of_them(tmp_path, telemetry, command
     check_set_down(tmp_path / "run", summary)
 
 
-class Deaf(Passage):
+class Deaf(FaultInterface):
     """From ``at`` (s) on the ground hears nothing, while it is heard."""
 
     def __init__(self, at):
@@ -252,7 +252,7 @@ def test_descent_is_commanded_when_only_telemetry_is_lost(tmp_path):
         modes.append({vehicle.autopilot.mode for vehicle in flight.swarm.vehicles})
 
     mission = short_figure(tmp_path, duration=20.0)
-    with Rehearsal(mission, tmp_path / "run", seed=1201, passage=Deaf(16.4)) as flight:
+    with Rehearsal(mission, tmp_path / "run", seed=1201, faults=Deaf(16.4)) as flight:
         flight.fly(look)
         assert "no vehicle sends telemetry" in flight.flight.reason
         assert modes[-1] == {px4.MODE_LAND}

@@ -81,7 +81,7 @@ def test_hostile_datagrams_change_nothing_of_a_flight(tmp_path):
         calm.fly()
         check_within_limits(calm.summary())
     storm = Storm(seed=5)
-    with Rehearsal(mission, tmp_path / "storm", seed=3, passage=storm.traffic) as flight:
+    with Rehearsal(mission, tmp_path / "storm", seed=3, faults=storm.traffic) as flight:
         flight.fly(storm)
         check_within_limits(flight.summary())
     assert storm.left == 0

@@ -19,7 +19,7 @@ from idc_controller.geometry.distance import Bodies
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
-from vehicle_sim.faults.interface import Passage
+from vehicle_sim.faults.interface import FaultInterface
 from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.range_sensor import RangeSensor, visible_points
 
@@ -154,11 +154,11 @@ MISSION = (
 )
 
 
-def detections(seed=1, obstacles=MISSION, passage=None, until=1.5, config=CONFIG):
+def detections(seed=1, obstacles=MISSION, faults=None, until=1.5, config=CONFIG):
     system = config.parameters()
     addresses = [("uav", i) for i in range(1, system.number_of_uavs + 1)]
     ground = ScriptedGround(addresses, float(system.hover_thrust.mean()), system.thrust_max)
-    with Swarm(config, seed=seed, obstacles=obstacles, passage=passage) as swarm:
+    with Swarm(config, seed=seed, obstacles=obstacles, faults=faults) as swarm:
         exchange(swarm, ground, until)
     return ground
 
@@ -204,11 +204,11 @@ def test_what_is_sent_does_not_tell_names_shapes_or_who_is_known():
 
 
 def test_a_passage_may_hold_scans_back():
-    class Blind(Passage):
+    class Blind(FaultInterface):
         def range_sample(self, vehicle, sample):
             return None if vehicle == 2 else sample._replace(detections=sample.detections[:1])
 
-    ground = detections(passage=Blind(), until=0.6)
+    ground = detections(faults=Blind(), until=0.6)
     assert ground.of_type("OBSTACLE_DISTANCE_3D", 2) == []
     own = ground.of_type("OBSTACLE_DISTANCE_3D", 1)
     assert own

@@ -16,7 +16,7 @@ from gcs.mission import HarmonicMotion, Home, LinearMotion, Obstacle
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
-from vehicle_sim.faults.interface import Passage
+from vehicle_sim.faults.interface import FaultInterface
 from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.errors import SimulationError, UnsupportedWorld
 from vehicle_sim.world.truth_log import TruthLog
@@ -224,7 +224,7 @@ def test_truth_is_written_50_times_a_second_or_more_at_any_physics_rate(tmp_path
 
 
 def test_a_passage_stands_between_samples_and_vehicles_and_between_vehicles_and_wire():
-    class Disturbed(Passage):
+    class Disturbed(FaultInterface):
         def own_sample(self, vehicle, sample):
             return None if vehicle == 2 else sample
 
@@ -234,7 +234,7 @@ def test_a_passage_stands_between_samples_and_vehicles_and_between_vehicles_and_
         def from_vehicle(self, vehicle, leaving, now):
             return [] if vehicle == 4 else leaving
 
-    with Swarm(CONFIG, seed=1, ground_address=GROUND, passage=Disturbed()) as swarm:
+    with Swarm(CONFIG, seed=1, ground_address=GROUND, faults=Disturbed()) as swarm:
         ground = ground_of(CONFIG)
         exchange(swarm, ground, 0.25)
         assert swarm.vehicles[1].autopilot.measurement is None

@@ -12,7 +12,7 @@ from gcs.mavlink.address import Address
 from gcs.mission import Home as MissionHome
 from gcs.mission import Obstacle
 from vehicle_sim.autopilot.airframe import Airframe
-from vehicle_sim.faults.interface import Passage
+from vehicle_sim.faults.interface import FaultInterface
 from vehicle_sim.mavlink.geodesy import Home
 from vehicle_sim.mavlink.vehicle import Vehicle
 from vehicle_sim.world.moving_obstacles import MovingObstacles
@@ -48,7 +48,7 @@ class Swarm:
         home: MissionHome | None = None,
         obstacles: Sequence[Obstacle] = (),
         ground_address: Address | None = None,
-        passage: Passage | None = None,
+        faults: FaultInterface | None = None,
         gui: bool = False,
     ) -> None:
         """``ground_address`` is where the vehicles offer themselves. Raises :class:`SimulationError`."""
@@ -62,7 +62,7 @@ class Swarm:
             raise
         self.time = 0.0
         self.take_off_time: float | None = None
-        self._passage = passage or Passage()
+        self._faults = faults or FaultInterface()
         self._truth: TruthLog | None = None
         self._physics_rate = rates.physics
         self._steps_per_onboard = rates.physics // rates.onboard
@@ -85,7 +85,7 @@ class Swarm:
         self.vehicles = tuple(
             Vehicle(
                 i, airframe, onboard_rate=rates.onboard, telemetry_rate=rates.telemetry, home=where,
-                ground_address=ground_address, clock=partial(self._passage.clock, i),
+                ground_address=ground_address, clock=partial(self._faults.clock, i),
                 setpoint_loss=config.flight.failsafe.telemetry_timeout,
             )
             for i, airframe in enumerate(airframes, start=1)
@@ -151,25 +151,25 @@ class Swarm:
 
     def receive(self, vehicle: int, datagram: bytes, sender: Address, now: float) -> None:
         """A datagram that came to a vehicle's endpoint; ``vehicle`` is its system id."""
-        for arrived, source in self._passage.to_vehicle(vehicle, [(datagram, sender)], now):
+        for arrived, source in self._faults.to_vehicle(vehicle, [(datagram, sender)], now):
             self.vehicles[vehicle - 1].receive(arrived, source, now)
 
     def datagrams_to_send(self, now: float) -> list[tuple[int, bytes, Address]]:
         """All that is due at ``now`` (s): the system id of the vehicle that sends, bytes, address."""
-        passage = self._passage
+        faults = self._faults
         out: list[tuple[int, bytes, Address]] = []
         for vehicle in self.vehicles:
             i = vehicle.system_id
-            for arrived, source in passage.to_vehicle(i, (), now):
+            for arrived, source in faults.to_vehicle(i, (), now):
                 vehicle.receive(arrived, source, now)
-            leaving = passage.from_vehicle(i, vehicle.datagrams_to_send(now), now)
+            leaving = faults.from_vehicle(i, vehicle.datagrams_to_send(now), now)
             out += [(i, datagram, address) for datagram, address in leaving]
         return out
 
     def next_timer(self) -> float | None:
         """When :meth:`datagrams_to_send` has something to do (s; in the past: at once). None: never as things are."""
         timers = [vehicle.next_timer() for vehicle in self.vehicles]
-        timers.append(self._passage.next_timer())
+        timers.append(self._faults.next_timer())
         return min((timer for timer in timers if timer is not None), default=None)
 
     # Inside
@@ -185,7 +185,7 @@ class Swarm:
             thrust, tau_x, tau_y, tau_z = rotors.advance(command)
             thrusts.append(thrust)
             torques.append((tau_x, tau_y, tau_z))
-        forces = self._passage.disturb(world, self.time)
+        forces = self._faults.disturb(world, self.time)
         world.step(thrusts, torques, *(forces or ()))
         self._steps += 1
         self.time = next_time
@@ -199,7 +199,7 @@ class Swarm:
         state = world.state()
         if self.take_off_time is None and not all(uav.cradled for uav in state.uavs):
             self.take_off_time = next_time
-            self._passage.took_off(next_time)
+            self._faults.took_off(next_time)
         if measures:
             self._onboard(state)
         if scans:
@@ -211,7 +211,7 @@ class Swarm:
     def _onboard(self, state: WorldState) -> None:
         """Measure, and let every autopilot make a step."""
         now = state.time
-        passage = self._passage
+        faults = self._faults
         payload_sample = self._payload_sensor.measure(
             now, state.payload_quaternion, state.payload_rates_in_payload, state.payload_position_in_world,
             state.payload_velocity_in_world,
@@ -220,9 +220,9 @@ class Swarm:
             sample = self._sensors[i].measure(
                 now, uav.quaternion, uav.rates_in_body, uav.position_in_world, uav.velocity_in_world
             )
-            vehicle.relay(passage.payload_sample(vehicle.system_id, payload_sample))
-            self._commands[i] = vehicle.step(passage.own_sample(vehicle.system_id, sample), now)
-            vehicle.report(passage.told(vehicle.system_id, vehicle.autopilot.told_measurement))
+            vehicle.relay(faults.payload_sample(vehicle.system_id, payload_sample))
+            self._commands[i] = vehicle.step(faults.own_sample(vehicle.system_id, sample), now)
+            vehicle.report(faults.reported_sample(vehicle.system_id, vehicle.autopilot.told_measurement))
             if self._truth is not None and vehicle.autopilot.changes != self._changes[i]:
                 self._record_mode(i, now)
 
@@ -242,4 +242,4 @@ class Swarm:
         obstacles = self.world.obstacles()
         for sensor, vehicle, uav in zip(self._range_sensors, self.vehicles, state.uavs, strict=True):
             scan = sensor.scan(state.time, uav.position_in_world, uav.quaternion, obstacles)
-            vehicle.take_scan(self._passage.range_sample(vehicle.system_id, scan))
+            vehicle.take_scan(self._faults.range_sample(vehicle.system_id, scan))

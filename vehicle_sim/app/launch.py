@@ -23,7 +23,7 @@ from vehicle_sim.app.ending import Ending
 from vehicle_sim.app.lockstep import LockstepDriver
 from vehicle_sim.app.realtime import RealTimeDriver
 from vehicle_sim.app.sockets import SwarmSockets, url
-from vehicle_sim.faults import FaultPassage, record_faults
+from vehicle_sim.faults import FaultInjector, record_faults
 from vehicle_sim.faults.record import faults_record
 from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.display import check_display
@@ -51,9 +51,9 @@ def _run(options: Namespace, arguments: list[str], started: contextlib.ExitStack
     started.enter_context(threadpool_limits(1))
     ending = started.enter_context(contextlib.closing(Ending(sys.stdin.fileno() if options.with_parent else None)))
     started.enter_context(ending.on_signals())
-    passage = None
+    injector = None
     if mission is not None and mission.faults:
-        passage = FaultPassage(mission.faults, seed, config)
+        injector = FaultInjector(mission.faults, seed, config)
     with messages_of_engine_aside() if options.gui else contextlib.nullcontext():
         swarm = started.enter_context(
             Swarm(
@@ -62,7 +62,7 @@ def _run(options: Namespace, arguments: list[str], started: contextlib.ExitStack
                 home=None if mission is None else mission.home,
                 obstacles=() if mission is None else mission.obstacles,
                 ground_address=_ground_address(options),
-                passage=passage,
+                faults=injector,
                 gui=options.gui,
             )
         )
@@ -71,8 +71,8 @@ def _run(options: Namespace, arguments: list[str], started: contextlib.ExitStack
     )
     if options.run_dir is not None:
         swarm.record(_truth_log(options, arguments, seed, mission, config))
-    if passage is not None:
-        started.callback(_tell_faults, options, passage, swarm)
+    if injector is not None:
+        started.callback(_tell_faults, options, injector, swarm)
     driver: LockstepDriver | RealTimeDriver
     if options.lockstep:
         driver = LockstepDriver(swarm, sockets, ending)
@@ -117,12 +117,12 @@ def _truth_log(
     return TruthLog(folder, config.team.vehicles)
 
 
-def _tell_faults(options: Namespace, passage: FaultPassage, swarm: Swarm) -> None:
+def _tell_faults(options: Namespace, injector: FaultInjector, swarm: Swarm) -> None:
     """What the faults did: on record, and for people what did not happen."""
     if options.run_dir is not None:
-        record_faults(options.run_dir, passage, swarm.time)
+        record_faults(options.run_dir, injector, swarm.time)
     if not options.with_parent:
-        for note in notes_of(faults_record(passage, swarm.time)):
+        for note in notes_of(faults_record(injector, swarm.time)):
             print(note, file=sys.stderr, flush=True)
 
 

@@ -11,7 +11,7 @@ from gcs.faults import KINDS, Direction, Kind, read_settings
 from gcs.mission import Fault
 from vehicle_sim.faults.schedule import Schedule
 
-_STREAM = 2_000_003  # tells these generators apart from the sensors'
+_STREAM = 2_000_003  # separates these generators from the sensors'
 WORLD = 0  # stands for the vehicle where a fault is not of one
 
 
@@ -31,7 +31,7 @@ class ActiveFault:
 
     @classmethod
     def of(cls, number: int, fault: Fault, seed: int, team: int) -> ActiveFault:
-        """A mission's fault. Raises :class:`gcs.errors.UnusableInput`."""
+        """Return a mission's fault, ready to fly. Raises :class:`gcs.errors.UnusableInput`."""
         settings = read_settings(fault.kind, fault.settings)
         vehicles = tuple(range(1, team + 1)) if fault.vehicles is None else fault.vehicles
         schedule = Schedule(fault.start, fault.duration, fault.every, fault.times)
@@ -39,9 +39,9 @@ class ActiveFault:
 
     @property
     def direction(self) -> Direction | None:
-        """The mission's, or the kind's own."""
+        """Return the mission's direction, or the kind's default."""
         return self.fault.direction or self.kind.direction
 
     def generator(self, vehicle: int, *which: int) -> np.random.Generator:
-        """Random numbers by the mission's seed, the fault's number in it and the vehicle, and nothing else."""
+        """Return random numbers that follow from the mission's seed, the fault's number and the vehicle alone."""
         return np.random.default_rng([self.seed, _STREAM, self.number, vehicle, *which])

@@ -1,30 +1,30 @@
-"""The passage of a flight with faults: every sample and datagram goes through them in the mission's order."""
+"""The faults of a flight: every sample and datagram goes through them in the mission's order."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from typing import Any
+from collections.abc import Sequence
+from typing import TypeVar
 
 from gcs.config import SystemConfig
-from gcs.faults import timing as timing_kinds
 from gcs.mission import Fault
-from vehicle_sim.faults import link, timing
+from vehicle_sim.faults import link, sensors, timing, values
 from vehicle_sim.faults.active import ActiveFault
-from vehicle_sim.faults.impairment import Stage
-from vehicle_sim.faults.interface import Datagram, Forces, Passage
-from vehicle_sim.faults.samples import OWN, PAYLOAD, SCAN, TOLD, SampleStage, StaleStamps, value_stages
-from vehicle_sim.faults.sensors import sensor_stage
+from vehicle_sim.faults.impairment import LinkImpairment
+from vehicle_sim.faults.interface import Datagram, FaultInterface, Forces
+from vehicle_sim.faults.samples import OWN, PAYLOAD, REPORTED, SCAN, SampleImpairment
 from vehicle_sim.faults.world import WorldFaults
 from vehicle_sim.world.range_sensor import RangeSample
 from vehicle_sim.world.sensors import Measurement, Told
 from vehicle_sim.world.world import World
 
 _TO_VEHICLE, _FROM_VEHICLE = 1, 2
-_STAGES = {**link.STAGES, **timing.STAGES}
+_LINK_IMPAIRMENTS = link.LINK_IMPAIRMENTS | timing.LINK_IMPAIRMENTS
+_SAMPLE_IMPAIRMENTS = sensors.SAMPLE_IMPAIRMENTS | timing.SAMPLE_IMPAIRMENTS | values.SAMPLE_IMPAIRMENTS
+_Sample = TypeVar("_Sample")
 
 
-class FaultPassage(Passage):
-    """Faults of one flight, each there from its start (s after the first vehicle lifts off) on.
+class FaultInjector(FaultInterface):
+    """Faults of one flight, each active from its start (s after the first vehicle lifts off) on.
 
     Equal seeds and faults disturb equal samples and datagrams equally; the random numbers of each fault, vehicle and
     direction are its own, so that one fault more or less does not change what the others do.
@@ -34,49 +34,49 @@ class FaultPassage(Passage):
         """Raises :class:`gcs.errors.UnusableInput` for a fault that no mission could name."""
         team = system.team.vehicles
         self.faults = tuple(ActiveFault.of(i, fault, seed, team) for i, fault in enumerate(faults, start=1))
-        self._arriving: dict[int, list[Stage]] = {}
-        self._leaving: dict[int, list[Stage]] = {}
-        self._samples: dict[tuple[str, int], list[SampleStage]] = {}
+        self._arriving: dict[int, list[LinkImpairment]] = {}
+        self._leaving: dict[int, list[LinkImpairment]] = {}
+        self._samples: dict[tuple[str, int], list[SampleImpairment]] = {}
         self._clocks: dict[int, list[ActiveFault]] = {}
         for fault in self.faults:
-            if isinstance(fault.settings, timing.CLOCKS):
+            kind = type(fault.settings)
+            if kind in timing.CLOCKS:
                 for vehicle in fault.vehicles:
                     self._clocks.setdefault(vehicle, []).append(fault)
-            elif stage := _STAGES.get(type(fault.settings)):
-                self._add_stages(fault, stage)
-            elif fault.kind.family != "world":
-                for vehicle, each in _sample_stages(fault, system):
-                    for hook in each.acts_on:
-                        self._samples.setdefault((hook, vehicle), []).append(each)
+            elif kind in _LINK_IMPAIRMENTS:
+                self._impair_link(fault, _LINK_IMPAIRMENTS[kind])
+            elif kind in _SAMPLE_IMPAIRMENTS:
+                for vehicle, impairment in _SAMPLE_IMPAIRMENTS[kind].of_vehicles(fault, system).items():
+                    for hook in impairment.acts_on:
+                        self._samples.setdefault((hook, vehicle), []).append(impairment)
         world = [fault for fault in self.faults if fault.kind.family == "world"]
         self._world = WorldFaults(world) if world else None
-        ways = (*self._arriving.values(), *self._leaving.values())
-        self._all_stages = [stage for way in ways for stage in way]
+        directions = (*self._arriving.values(), *self._leaving.values())
+        self._link_impairments = [impairment for direction in directions for impairment in direction]
 
-    def _add_stages(self, fault: ActiveFault, stage: type[Stage]) -> None:
-        hangs = isinstance(fault.settings, timing_kinds.GroundHang)
-        direction = "command" if hangs else fault.direction
+    def _impair_link(self, fault: ActiveFault, impairment: type[LinkImpairment]) -> None:
+        direction = impairment.direction or fault.direction
         for vehicle in fault.vehicles:
             if direction in ("command", "both"):
-                self._arriving.setdefault(vehicle, []).append(stage(fault, fault.generator(vehicle, _TO_VEHICLE)))
+                self._arriving.setdefault(vehicle, []).append(impairment(fault, fault.generator(vehicle, _TO_VEHICLE)))
             if direction in ("telemetry", "both"):
-                self._leaving.setdefault(vehicle, []).append(stage(fault, fault.generator(vehicle, _FROM_VEHICLE)))
+                self._leaving.setdefault(vehicle, []).append(impairment(fault, fault.generator(vehicle, _FROM_VEHICLE)))
 
     def took_off(self, time: float) -> None:
-        """All times of faults count from here."""
+        """Start the schedules of all faults."""
         for fault in self.faults:
             fault.schedule.take_off = time
 
     # The world
 
     def disturb(self, world: World, now: float) -> Forces | None:
-        """Wind and load."""
+        """Apply wind and load."""
         return None if self._world is None else self._world.act(world, now)
 
     # Clocks and samples
 
     def clock(self, vehicle: int, now: float) -> float:
-        """With what the clock is ahead."""
+        """Return the time with the errors of the vehicle's clock."""
         faults = self._clocks.get(vehicle)
         if not faults:
             return now
@@ -89,56 +89,47 @@ class FaultPassage(Passage):
         return shown
 
     def own_sample(self, vehicle: int, sample: Measurement) -> Measurement | None:
-        """What the vehicle itself measures."""
+        """Return what the vehicle itself measures."""
         return self._through(OWN, vehicle, sample.time, sample)
 
-    def told(self, vehicle: int, sample: Measurement | None) -> Told:
-        """What the vehicle tells."""
+    def reported_sample(self, vehicle: int, sample: Measurement | None) -> Told:
+        """Return what the vehicle reports."""
         told = Told(sample, sample)
-        return told if sample is None else self._through(TOLD, vehicle, sample.time, told)
+        return told if sample is None else self._through(REPORTED, vehicle, sample.time, told)
 
     def payload_sample(self, vehicle: int, sample: Measurement) -> Measurement | None:
-        """What the vehicle relays."""
+        """Return what the vehicle relays."""
         return self._through(PAYLOAD, vehicle, sample.time, sample)
 
     def range_sample(self, vehicle: int, sample: RangeSample) -> RangeSample | None:
-        """What the vehicle sees."""
+        """Return what the vehicle detects."""
         return self._through(SCAN, vehicle, sample.time, sample)
 
-    def _through(self, hook: str, vehicle: int, time: float, sample: Any) -> Any:
-        """What the faults at a hook, which is a method of theirs, leave of a sample of ``time`` (s); None: nothing."""
-        for stage in self._samples.get((hook, vehicle), ()):
-            moment = stage.fault.schedule.at(time)
+    def _through(self, hook: str, vehicle: int, time: float, sample: _Sample) -> _Sample:
+        """Return what the methods ``hook`` of the faults leave of a sample of ``time`` (s)."""
+        for impairment in self._samples.get((hook, vehicle), ()):
+            moment = impairment.fault.schedule.at(time)
             if moment is not None and sample is not None:
-                before, sample = sample, getattr(stage, hook)(vehicle, sample, moment)
-                stage.fault.seen += 1
-                stage.fault.disturbed += sample is not before
+                before, sample = sample, getattr(impairment, hook)(vehicle, sample, moment)
+                impairment.fault.seen += 1
+                impairment.fault.disturbed += sample is not before
         return sample
 
     # Datagrams
 
     def to_vehicle(self, vehicle: int, arriving: Sequence[Datagram], now: float) -> Sequence[Datagram]:
-        """Through all faults of the way from the ground."""
-        for stage in self._arriving.get(vehicle, ()):
-            arriving = stage.pass_on(arriving, now)
+        """Pass datagrams through the impairments of the link from the ground."""
+        for impairment in self._arriving.get(vehicle, ()):
+            arriving = impairment.pass_on(arriving, now)
         return arriving
 
     def from_vehicle(self, vehicle: int, leaving: Sequence[Datagram], now: float) -> Sequence[Datagram]:
-        """Through all faults of the way to the ground."""
-        for stage in self._leaving.get(vehicle, ()):
-            leaving = stage.pass_on(leaving, now)
+        """Pass datagrams through the impairments of the link to the ground."""
+        for impairment in self._leaving.get(vehicle, ()):
+            leaving = impairment.pass_on(leaving, now)
         return leaving
 
     def next_timer(self) -> float | None:
-        """When the next datagram that is held back is due."""
-        due = [timer for stage in self._all_stages if (timer := stage.next_timer()) is not None]
+        """Return when the next delayed datagram is due."""
+        due = [timer for impairment in self._link_impairments if (timer := impairment.next_timer()) is not None]
         return min(due, default=None)
-
-
-def _sample_stages(fault: ActiveFault, system: SystemConfig) -> Iterable[tuple[int, SampleStage]]:
-    if fault.kind.family == "values":
-        yield from value_stages(fault, system).items()
-    elif isinstance(fault.settings, timing_kinds.StaleStamps):
-        yield from ((vehicle, StaleStamps(fault)) for vehicle in fault.vehicles)
-    else:
-        yield from ((vehicle, sensor_stage(fault, vehicle)) for vehicle in fault.vehicles)

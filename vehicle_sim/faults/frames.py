@@ -25,7 +25,7 @@ class Frame(NamedTuple):
 
 
 def frames(datagram: bytes) -> Iterator[Frame]:
-    """In order; whatever stands before, between or behind them is left out."""
+    """Yield the frames in order; bytes before, between and behind them are skipped."""
     at, size = 0, len(datagram)
     while at + 8 <= size:
         length = datagram[at + 1]

@@ -1,4 +1,4 @@
-"""What lies between the vehicles and everything else: their sensors on one side, the wire on the other."""
+"""Where faults act: between the vehicles and their sensors, between the vehicles and the wire, and on the world."""
 
 from __future__ import annotations
 
@@ -20,47 +20,47 @@ Forces = tuple[Vector, Sequence[Vector]]
 """On the payload, and on each UAV: at the centres of mass, north-east-down (N)."""
 
 
-class Passage:
-    """Lets everything through, at once and unchanged. Whatever disturbs a flight overrides a method of this class.
+class FaultInterface:
+    """No fault: everything passes at once and unchanged. Whatever disturbs a flight overrides methods of this class.
 
     Vehicles are numbered by their system id, from 1. Times in s.
     """
 
     def took_off(self, time: float) -> None:
-        """The first vehicle has lifted off at ``time``."""
+        """Take note that the first vehicle has lifted off at ``time``."""
 
     def disturb(self, world: World, now: float) -> Forces | None:
-        """Before every physics step: what presses on payload and UAVs besides gravity and thrust; None: nothing."""
+        """Return the forces on payload and UAVs besides gravity and thrust in a physics step; None: no force."""
         return None
 
     def clock(self, vehicle: int, now: float) -> float:
-        """What a vehicle's own clock shows: the base of its stamps."""
+        """Return the time of a vehicle's own clock: the base of its stamps."""
         return now
 
     def own_sample(self, vehicle: int, sample: Measurement) -> Measurement | None:
-        """What a vehicle's autopilot gets of its own measurement; None: nothing."""
+        """Return what a vehicle's autopilot gets of its own measurement; None: nothing."""
         return sample
 
-    def told(self, vehicle: int, sample: Measurement | None) -> Told:
-        """What a vehicle tells of its own measurement, which is what its autopilot flies by."""
+    def reported_sample(self, vehicle: int, sample: Measurement | None) -> Told:
+        """Return what a vehicle's telemetry reports of the measurement that its autopilot flies by."""
         return Told(sample, sample)
 
     def payload_sample(self, vehicle: int, sample: Measurement) -> Measurement | None:
-        """What a vehicle gets to relay of the payload unit's measurement; None: nothing."""
+        """Return what a vehicle gets to relay of the payload unit's measurement; None: nothing."""
         return sample
 
     def range_sample(self, vehicle: int, sample: RangeSample) -> RangeSample | None:
-        """What a vehicle gets to pass on of its range sensor's scan; None: nothing."""
+        """Return what a vehicle gets to report of its range sensor's scan; None: nothing."""
         return sample
 
     def to_vehicle(self, vehicle: int, arriving: Sequence[Datagram], now: float) -> Sequence[Datagram]:
-        """Of the datagrams that come from outside, now or before, those that the vehicle gets now."""
+        """Return the datagrams that reach the vehicle now, of those ``arriving`` and of earlier ones."""
         return arriving
 
     def from_vehicle(self, vehicle: int, leaving: Sequence[Datagram], now: float) -> Sequence[Datagram]:
-        """Of the datagrams that the vehicle sends, now or before, those that leave now."""
+        """Return the datagrams that leave the vehicle's link now, of those ``leaving`` and of earlier ones."""
         return leaving
 
     def next_timer(self) -> float | None:
-        """When something that was held back is due; None: never as things are."""
+        """Return when a delayed datagram is due; None: none is delayed."""
         return None

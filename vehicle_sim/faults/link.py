@@ -1,89 +1,89 @@
-"""Faults of the links."""
+"""Impairments of a link, one class a kind of fault."""
 
 from __future__ import annotations
 
 from gcs.faults import link as kinds
 from vehicle_sim.faults.frames import frames
-from vehicle_sim.faults.impairment import OnOff, OrderedStage, Stage
+from vehicle_sim.faults.impairment import GilbertElliottProcess, LinkImpairment, OrderedImpairment
 from vehicle_sim.faults.interface import Datagram
 from vehicle_sim.faults.schedule import TOLERANCE, Moment
 
 
-class PacketLoss(Stage):
-    """Each one may be lost."""
+class PacketLoss(LinkImpairment):
+    """Loss of each datagram with a probability."""
 
     def disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
-        """Lost or let through."""
+        """Lose the datagram or pass it on."""
         if self.random() < self.fault.settings.probability:
             return True
         out.append(datagram)
         return False
 
 
-class BurstLoss(Stage):
-    """Gilbert-Elliott, the states in continuous time: how often is sent does not change how long they last."""
+class BurstLoss(LinkImpairment):
+    """Gilbert-Elliott loss, its states in continuous time: the traffic does not change their lengths."""
 
-    _state: OnOff | None = None
+    _state: GilbertElliottProcess | None = None
 
     def disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
-        """Lost or let through."""
+        """Lose the datagram or pass it on."""
         settings: kinds.BurstLoss = self.fault.settings
         if self._state is None:
-            self._state = OnOff(self.generator.spawn(1)[0], settings.gap, settings.burst)
-        loss = settings.loss_in_burst if self._state.is_on(moment) else settings.loss_in_gap
+            self._state = GilbertElliottProcess(self.generator.spawn(1)[0], settings.gap, settings.burst)
+        loss = settings.loss_in_burst if self._state.is_bad(moment) else settings.loss_in_gap
         if self.random() < loss:
             return True
         out.append(datagram)
         return False
 
 
-class Latency(OrderedStage):
-    """All of them later."""
+class Latency(OrderedImpairment):
+    """Delay of all datagrams."""
 
     def disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
-        """Held back."""
-        self.hold_in_order(datagram, now + self.fault.settings.delay)
+        """Delay the datagram."""
+        self.delay_in_order(datagram, now + self.fault.settings.delay)
         return True
 
 
-class Jitter(OrderedStage):
-    """All of them later by random times."""
+class Jitter(OrderedImpairment):
+    """Random delays, the order kept."""
 
     def disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
-        """Held back."""
-        self.hold_in_order(datagram, now + self.fault.settings.spread * self.random())
+        """Delay the datagram by a random time."""
+        self.delay_in_order(datagram, now + self.fault.settings.spread * self.random())
         return True
 
 
-class Reordering(Stage):
-    """Some of them behind those that come after."""
+class Reordering(LinkImpairment):
+    """Delay of some datagrams, which later ones overtake."""
 
     def disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
-        """Held back or let through."""
+        """Delay the datagram or pass it on."""
         if self.random() < self.fault.settings.probability:
-            self.hold(datagram, now + self.fault.settings.delay)
+            self.delay(datagram, now + self.fault.settings.delay)
             return True
         out.append(datagram)
         return False
 
 
-class Duplication(Stage):
-    """Some of them twice."""
+class Duplication(LinkImpairment):
+    """Some datagrams twice."""
 
     def disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
-        """Let through, and perhaps once more."""
+        """Pass the datagram on, perhaps twice."""
         out.append(datagram)
         if self.random() >= self.fault.settings.probability:
             return False
-        self.hold(datagram, now + self.fault.settings.delay)
+        self.delay(datagram, now + self.fault.settings.delay)
         return True
 
 
-class Corruption(Stage):
-    """Bytes replaced."""
+class Corruption(LinkImpairment):
+    """Replacement of bytes."""
 
     def disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
-        """Changed or let through."""
+        """Change bytes or pass the datagram on."""
         settings: kinds.Corruption = self.fault.settings
         if self.random() >= settings.probability or not datagram[0]:
             out.append(datagram)
@@ -96,11 +96,11 @@ class Corruption(Stage):
         return True
 
 
-class BadChecksum(Stage):
-    """Checksums wrong."""
+class BadChecksum(LinkImpairment):
+    """Wrong checksums."""
 
     def disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
-        """Changed or let through."""
+        """Change the checksums or pass the datagram on."""
         if self.random() >= self.fault.settings.probability:
             out.append(datagram)
             return False
@@ -111,11 +111,11 @@ class BadChecksum(Stage):
         return True
 
 
-class Truncation(Stage):
-    """Cut off."""
+class Truncation(LinkImpairment):
+    """Datagrams cut off."""
 
     def disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
-        """Cut off or let through."""
+        """Cut the datagram off or pass it on."""
         if self.random() >= self.fault.settings.probability or len(datagram[0]) < 2:
             out.append(datagram)
             return False
@@ -123,44 +123,44 @@ class Truncation(Stage):
         return True
 
 
-class BandwidthCap(OrderedStage):
-    """A queue in front of a slow line."""
+class BandwidthCap(OrderedImpairment):
+    """Queue in front of a slow line."""
 
     _free_at = 0.0
 
     def disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
-        """Held back, or lost."""
+        """Queue the datagram, or lose it when the queue is full."""
         settings: kinds.BandwidthCap = self.fault.settings
         begin = max(now, self._free_at)
         if (begin - now) * settings.rate + len(datagram[0]) > settings.queue:
             return True
         self._free_at = begin + len(datagram[0]) / settings.rate
-        self.hold_in_order(datagram, self._free_at)
+        self.delay_in_order(datagram, self._free_at)
         return begin > now
 
 
-class Partition(Stage):
-    """Nothing passes."""
+class Partition(LinkImpairment):
+    """Loss of every datagram."""
 
     def disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
-        """Lost."""
+        """Lose the datagram."""
         return True
 
 
-class Stall(OrderedStage):
-    """Nothing passes, until all does."""
+class Stall(OrderedImpairment):
+    """Delay of all datagrams until the fault ends."""
 
     def disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
-        """Held back."""
-        self.hold_in_order(datagram, self.fault.schedule.end_after(now))
+        """Delay the datagram to the end of the fault."""
+        self.delay_in_order(datagram, self.fault.schedule.end_after(now))
         return True
 
 
-class Flapping(Stage):
-    """Down and up."""
+class Flapping(LinkImpairment):
+    """Loss of every datagram while the link is down."""
 
     def disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
-        """Lost or let through."""
+        """Lose the datagram or pass it on."""
         settings: kinds.Flapping = self.fault.settings
         if (moment.elapsed + TOLERANCE) % (settings.down + settings.up) < settings.down:
             return True
@@ -168,7 +168,7 @@ class Flapping(Stage):
         return False
 
 
-STAGES: dict[type, type[Stage]] = {
+LINK_IMPAIRMENTS: dict[type, type[LinkImpairment]] = {
     kinds.PacketLoss: PacketLoss,
     kinds.BurstLoss: BurstLoss,
     kinds.Latency: Latency,

@@ -7,19 +7,19 @@ from typing import Any
 
 from gcs.faults.record import FAULTS_FILE
 from gcs.record.run_folder import write_json
-from vehicle_sim.faults.fault_injector import FaultPassage
+from vehicle_sim.faults.fault_injector import FaultInjector
 
-_TOLD = 1000  # occurrences that are listed
+_LISTED = 1000  # occurrences that are listed
 
 
-def record_faults(folder: Path, passage: FaultPassage, end: float) -> Path:
+def record_faults(folder: Path, injector: FaultInjector, end: float) -> Path:
     """Write the file; ``end`` of the flight in s. Raises :class:`gcs.errors.UnusableInput` where it cannot."""
-    return write_json(folder / FAULTS_FILE, faults_record(passage, end))
+    return write_json(folder / FAULTS_FILE, faults_record(injector, end))
 
 
-def faults_record(passage: FaultPassage, end: float) -> dict[str, Any]:
-    """What the file holds."""
-    take_off = passage.faults[0].schedule.take_off if passage.faults else None
+def faults_record(injector: FaultInjector, end: float) -> dict[str, Any]:
+    """Return what the file holds."""
+    take_off = injector.faults[0].schedule.take_off if injector.faults else None
     return {
         "take_off_s": take_off,
         "end_s": end,
@@ -31,11 +31,11 @@ def faults_record(passage: FaultPassage, end: float) -> dict[str, Any]:
                 "start": fault.fault.start,
                 "vehicles": list(fault.vehicles) if fault.kind.of_vehicles else None,
                 "direction": fault.direction,
-                "occurrences": (happened := fault.schedule.occurrences(end, _TOLD))[0],
+                "occurrences": (happened := fault.schedule.occurrences(end, _LISTED))[0],
                 "activations": happened[1],
                 "seen": fault.seen,
                 "disturbed": fault.disturbed,
             }
-            for fault in passage.faults
+            for fault in injector.faults
         ],
     }

@@ -1,4 +1,4 @@
-"""When a fault is there: once or again and again, from take-off on."""
+"""When a fault is active: once or periodically, from take-off on."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ TOLERANCE = 1e-6  # s: sums of steps are not exact, and drivers round to microse
 
 
 class Moment(NamedTuple):
-    """A time at which a fault is there: for how long already (s), and the how-manieth time it is, from 0."""
+    """A time at which a fault is active: since when (s), and in which of its occurrences, from 0."""
 
     elapsed: float
     occurrence: int
@@ -26,10 +26,10 @@ class Schedule:
         self._every = every
         self._last = 0 if every is None else math.inf if times is None else times - 1
         self.take_off: float | None = None
-        """When the first vehicle lifted off (s); None: not yet, and no fault is there."""
+        """When the first vehicle lifted off (s); None: not yet, and no fault is active."""
 
     def at(self, now: float) -> Moment | None:
-        """What ``now`` (s) is to the fault; None: it is not there."""
+        """Return where ``now`` (s) is in the fault; None: the fault is not active."""
         if self.take_off is None:
             return None
         elapsed = now - self.take_off - self._start + TOLERANCE
@@ -44,12 +44,12 @@ class Schedule:
         return Moment(max(elapsed - TOLERANCE, 0.0), occurrence)
 
     def end_after(self, now: float) -> float:
-        """When the occurrence that is there ``now`` ends (s; infinity: never)."""
+        """Return when the occurrence that is active ``now`` ends (s; infinity: never)."""
         moment = self.at(now)
         return math.inf if moment is None else now - moment.elapsed + self._duration
 
-    def time_there(self, now: float) -> float:
-        """For how long in all it has been there until ``now`` (s)."""
+    def active_time(self, now: float) -> float:
+        """Return for how long in all the fault has been active until ``now`` (s)."""
         if self.take_off is None:
             return 0.0
         elapsed = now - self.take_off - self._start
@@ -61,7 +61,10 @@ class Schedule:
         return whole * self._duration + min(elapsed - whole * self._every, self._duration)
 
     def occurrences(self, now: float, limit: int) -> tuple[int, list[tuple[float, float | None]]]:
-        """How often it began until ``now``, and begin and end (s after take-off; None: not over) of the first ones."""
+        """Return the number of occurrences until ``now``, and begin and end of the first ``limit``.
+
+        In s after take-off; an end is None while the occurrence is not over.
+        """
         if self.take_off is None or now - self.take_off + TOLERANCE < self._start:
             return 0, []
         flown = now - self.take_off + TOLERANCE

@@ -1,4 +1,4 @@
-"""Faults of timing: streams that are thinned out, clocks, and stamps."""
+"""Impairments of timing: message rates, clocks, and stamps."""
 
 from __future__ import annotations
 
@@ -8,9 +8,12 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 from gcs.faults import timing as kinds
 from vehicle_sim.faults.active import ActiveFault
 from vehicle_sim.faults.frames import Frame, frames
-from vehicle_sim.faults.impairment import Stage
+from vehicle_sim.faults.impairment import LinkImpairment
 from vehicle_sim.faults.interface import Datagram
+from vehicle_sim.faults.samples import PAYLOAD, REPORTED, SCAN, SampleImpairment
 from vehicle_sim.faults.schedule import Moment
+from vehicle_sim.world.range_sensor import RangeSample
+from vehicle_sim.world.sensors import Measurement, Told
 
 #: Streams of measurements and of set-points: each message begins with its stamp.
 _STREAMED = frozenset(
@@ -31,15 +34,15 @@ _STREAMED = frozenset(
 _OVERFLOW = 2**32 * 1e-3  # s
 
 
-class Thinning(Stage):
-    """Lets through some messages of a datagram and not others."""
+class MessageFilter(LinkImpairment):
+    """Loss of some messages of a datagram."""
 
     def keeps(self, frame: Frame) -> bool:
-        """Whether a message goes on."""
+        """Return whether a message goes on."""
         raise NotImplementedError
 
     def disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
-        """Without what is not kept."""
+        """Pass on the messages that are kept."""
         data = datagram[0]
         found = list(frames(data))
         kept = [frame for frame in found if self.keeps(frame)]
@@ -51,15 +54,15 @@ class Thinning(Stage):
         return True
 
 
-class LowRate(Thinning):
-    """An even share of each stream; messages of one stamp (the points of a scan) stay together."""
+class LowRate(MessageFilter):
+    """Rate limiter: an even share of each stream; messages of one stamp (the points of a scan) stay together."""
 
     def __init__(self, fault: ActiveFault, generator: np.random.Generator) -> None:
         super().__init__(fault, generator)
         self._streams: dict[tuple[int, int], tuple[bytes, float, bool]] = {}
 
     def keeps(self, frame: Frame) -> bool:
-        """By a credit that grows with every new stamp of a stream."""
+        """Keep a message by a credit that grows with every new stamp of its stream."""
         if frame.message_id not in _STREAMED:
             return True
         key = frame.component, frame.message_id
@@ -71,24 +74,26 @@ class LowRate(Thinning):
         return kept
 
 
-class GroundHang(Thinning):
-    """Heartbeats only."""
+class GroundHang(MessageFilter):
+    """Loss of all that the ground sends but its heartbeats."""
+
+    direction = "command"
 
     def keeps(self, frame: Frame) -> bool:
-        """A heartbeat."""
-        return frame.message_id == mavlink.MAVLINK_MSG_ID_HEARTBEAT
+        """Keep a heartbeat."""
+        return bool(frame.message_id == mavlink.MAVLINK_MSG_ID_HEARTBEAT)
 
 
-STAGES: dict[type, type[Stage]] = {kinds.LowRate: LowRate, kinds.GroundHang: GroundHang}
+LINK_IMPAIRMENTS: dict[type, type[LinkImpairment]] = {kinds.LowRate: LowRate, kinds.GroundHang: GroundHang}
 
 CLOCKS = (kinds.ClockSkew, kinds.ClockStep, kinds.StampWrap)
 
 
 def clock_error(fault: ActiveFault, now: float) -> float:
-    """What a vehicle's clock is ahead (s) by a fault of the kinds :data:`CLOCKS`."""
+    """Return by how much a vehicle's clock is ahead (s), for a fault of the kinds :data:`CLOCKS`."""
     settings = fault.settings
     if isinstance(settings, kinds.ClockSkew):
-        return settings.rate * fault.schedule.time_there(now)
+        return settings.rate * fault.schedule.active_time(now)
     moment = fault.schedule.at(now)
     if moment is None:
         return 0.0
@@ -97,6 +102,35 @@ def clock_error(fault: ActiveFault, now: float) -> float:
     return float(settings.step)
 
 
-def stamp_age(fault: ActiveFault, now: float) -> float:
-    """By how much stamps are too old (s)."""
-    return float(fault.settings.age) if fault.schedule.at(now) is not None else 0.0
+class StaleStamps(SampleImpairment):
+    """Stamps of an earlier time on all that is reported."""
+
+    acts_on = frozenset({REPORTED, PAYLOAD, SCAN})
+
+    def reported(self, vehicle: int, told: Told, moment: Moment) -> Told:
+        """Return the report with earlier stamps."""
+        attitude, position = told
+        old_attitude = None if attitude is None else self._aged(attitude)
+        return Told(
+            old_attitude,
+            old_attitude if position is attitude else None if position is None else self._aged(position),
+        )
+
+    def payload(self, vehicle: int, sample: Measurement, moment: Moment) -> Measurement:
+        """Return the sample with an earlier stamp."""
+        return self._aged(sample)
+
+    def scan(self, vehicle: int, sample: RangeSample, moment: Moment) -> RangeSample:
+        """Return the scan with an earlier stamp."""
+        return sample._replace(time=self._stamp(sample.time))
+
+    def _aged(self, sample: Measurement) -> Measurement:
+        return sample._replace(time=self._stamp(sample.time))
+
+    def _stamp(self, time: float) -> float:
+        """By the schedule at the sample's own time: the sample may be reported for the second time."""
+        settings: kinds.StaleStamps = self.fault.settings
+        return max(time - settings.age, 0.0) if self.fault.schedule.at(time) is not None else max(time, 0.0)
+
+
+SAMPLE_IMPAIRMENTS: dict[type, type[SampleImpairment]] = {kinds.StaleStamps: StaleStamps}

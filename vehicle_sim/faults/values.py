@@ -1,28 +1,29 @@
-"""Faults of values: three numbers in, three numbers out, one object for a fault, a vehicle and a channel."""
+"""Impairments of values: a fault changes the three numbers of one channel of one vehicle."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Mapping
 
 import numpy as np
 
 from gcs.config import SystemConfig
+from gcs.faults import KINDS
 from gcs.faults import values as kinds
 from idc_controller.rotations_float import Vector, quaternion_of, rotation_vector
-from vehicle_sim.faults.impairment import OnOff
+from vehicle_sim.faults.active import WORLD, ActiveFault
+from vehicle_sim.faults.impairment import GilbertElliottProcess
+from vehicle_sim.faults.samples import OWN, PAYLOAD, REPORTED, SCAN, SampleImpairment
 from vehicle_sim.faults.schedule import Moment
-from vehicle_sim.world.sensors import Measurement
+from vehicle_sim.world.range_sensor import RangeSample
+from vehicle_sim.world.sensors import Measurement, Told
 
-LARGEST = 1e30  # finite values are kept below, so that they can be told in 32 bits whatever faults are combined
+LARGEST = 1e30  # finite values stay below, so that they fit a 32-bit float whatever faults are combined
 _AXES = {"x": 0, "y": 1, "z": 2}
-
-Change = Callable[[float, int, Moment], float]
-"""A value, its axis and the moment -> the disturbed value."""
 
 
 class ValueEffect:
-    """Disturbs the axes of one channel."""
+    """The change of the axes of one channel."""
 
     def __init__(self, settings: kinds.ValueFault, generator: np.random.Generator, sigma: float) -> None:
         """``sigma``: the channel's own noise, standard deviation."""
@@ -32,10 +33,10 @@ class ValueEffect:
         self._axes = sorted(_AXES[axis] for axis in set(settings.axes))
         self._kept: dict[int, Vector] = {}
         self._occurrence = -1
-        self._state: OnOff | None = None
+        self._process: GilbertElliottProcess | None = None
 
     def __call__(self, value: Vector, moment: Moment, point: int = 0) -> Vector:
-        """``point`` tells several values of one sample apart."""
+        """Return the disturbed value; ``point`` is its number in a sample of several."""
         if moment.occurrence != self._occurrence:
             self._occurrence = moment.occurrence
             self._kept = {}
@@ -79,16 +80,102 @@ class ValueEffect:
                 a, b, c = (self._sigma * math.sqrt(k * k - 1.0) * generator.standard_normal(3)).tolist()
                 return x + a, y + b, z + c
             case kinds.Intermittent(good=good, stuck=stuck):
-                if self._state is None:
-                    self._state = OnOff(generator, good, stuck)
-                if not self._state.is_on(moment):
+                if self._process is None:
+                    self._process = GilbertElliottProcess(generator, good, stuck)
+                if not self._process.is_bad(moment):
                     self._kept[point] = value
                 return self._kept.setdefault(point, value)
         raise AssertionError(f"no effect for {type(self._settings).__name__}")
 
 
+class ValueImpairment(SampleImpairment):
+    """A fault of the values of one channel."""
+
+    def __init__(self, fault: ActiveFault, vehicle: int, system: SystemConfig) -> None:
+        """``vehicle`` WORLD: the payload's own unit, the same for all that relay it."""
+        super().__init__(fault, vehicle, system)
+        settings: kinds.ValueFault = fault.settings
+        self._channel = settings.channel.removeprefix("payload_")
+        if settings.channel == "obstacles":
+            self.acts_on = frozenset({SCAN})
+        elif settings.channel.startswith("payload_"):
+            self.acts_on = frozenset({PAYLOAD})
+        else:
+            self.acts_on = frozenset({OWN if settings.at_source else REPORTED})
+        self._effect = ValueEffect(settings, fault.generator(vehicle), noise_of(settings.channel, system))
+        self._last: tuple[Measurement, Measurement] | None = None
+
+    @classmethod
+    def of_vehicles(cls, fault: ActiveFault, system: SystemConfig) -> Mapping[int, SampleImpairment]:
+        """Return the impairment of each vehicle; at the source of the payload's data, one for all of them."""
+        settings: kinds.ValueFault = fault.settings
+        if settings.at_source and settings.channel.startswith("payload_"):
+            return dict.fromkeys(fault.vehicles, cls(fault, WORLD, system))
+        return super().of_vehicles(fault, system)
+
+    def own(self, vehicle: int, sample: Measurement, moment: Moment) -> Measurement:
+        """Return the disturbed measurement."""
+        return self._changed(sample, moment)
+
+    def reported(self, vehicle: int, told: Told, moment: Moment) -> Told:
+        """Return the report, disturbed in the message that carries the channel."""
+        if self._channel in ("position", "velocity"):
+            before = told.position
+            after = None if before is None else self._changed(before, moment)
+            return told if after is before else told._replace(position=after)
+        before = told.attitude
+        after = None if before is None else self._changed(before, moment)
+        return told if after is before else told._replace(attitude=after)
+
+    def payload(self, vehicle: int, sample: Measurement, moment: Moment) -> Measurement:
+        """Return the disturbed sample; the same for all relays of it, if the fault is in the unit."""
+        if self._last is None or self._last[0] is not sample:
+            self._last = sample, self._changed(sample, moment)
+        return self._last[1]
+
+    def scan(self, vehicle: int, sample: RangeSample, moment: Moment) -> RangeSample:
+        """Return the scan with every point disturbed by itself."""
+        detections = tuple(
+            detection._replace(position_in_body=self._effect(detection.position_in_body, moment, i))
+            for i, detection in enumerate(sample.detections)
+        )
+        return sample if detections == sample.detections else sample._replace(detections=detections)
+
+    def _changed(self, sample: Measurement, moment: Moment) -> Measurement:
+        changed = change(sample, self._channel, self._effect, moment)
+        return sample if changed == sample else changed
+
+
+class SwappedVehicles(SampleImpairment):
+    """Two vehicles that report each other's data; one object for both."""
+
+    acts_on = frozenset({REPORTED})
+
+    def __init__(self, fault: ActiveFault, vehicle: int, system: SystemConfig) -> None:
+        super().__init__(fault, vehicle, system)
+        self._other = {vehicle: fault.settings.other, fault.settings.other: vehicle}
+        self._latest: dict[int, Told] = {}
+
+    @classmethod
+    def of_vehicles(cls, fault: ActiveFault, system: SystemConfig) -> Mapping[int, SampleImpairment]:
+        """Return the one impairment for both vehicles."""
+        vehicle = fault.vehicles[0]
+        return dict.fromkeys((vehicle, fault.settings.other), cls(fault, vehicle, system))
+
+    def reported(self, vehicle: int, told: Told, moment: Moment) -> Told:
+        """Return the other vehicle's report."""
+        self._latest[vehicle] = told
+        return self._latest.get(self._other[vehicle], told)
+
+
+SAMPLE_IMPAIRMENTS: dict[type, type[SampleImpairment]] = {
+    **{kind.settings: ValueImpairment for kind in KINDS.values() if issubclass(kind.settings, kinds.ValueFault)},
+    kinds.SwappedVehicles: SwappedVehicles,
+}
+
+
 def noise_of(channel: str, system: SystemConfig) -> float:
-    """Standard deviation of a channel's own noise, in its unit."""
+    """Return the standard deviation of a channel's own noise, in its unit."""
     sensors = system.sensors
     return {
         "position": sensors.position, "payload_position": sensors.position,
@@ -100,7 +187,7 @@ def noise_of(channel: str, system: SystemConfig) -> float:
 
 
 def change(sample: Measurement, channel: str, effect: ValueEffect, moment: Moment) -> Measurement:
-    """A sample with one of position, velocity, attitude, rates disturbed."""
+    """Return a sample with one of position, velocity, attitude, rates disturbed."""
     match channel:
         case "position":
             return sample._replace(position=effect(sample.position, moment))

@@ -1,8 +1,8 @@
 """Faults of the world: wind, by a simple model of drag, and a load that changes.
 
 Drag is quadratic in the air's velocity against the body, along that velocity, at the centre of mass:
-F = 1/2 rho c_d A |u| u. The payload's area is what its box shows to the wind; of a UAV the product c_d A is the same
-from all sides. Thrust, torques and the links feel no wind. Without a wind fault there is no air at all.
+F = 1/2 rho c_d A |u| u. The payload's area is that of its box across the wind; a UAV's product c_d A is the same
+from all sides. The wind acts on neither thrust, torques nor links. Without a wind fault there is no air at all.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class Wind:
         self._elapsed = 0.0
 
     def velocity(self, now: float) -> Vector | None:
-        """In the world (m/s); None while the fault is not there. Times must not go back."""
+        """Return the velocity in the world (m/s); None while the fault is not active. Times must not decrease."""
         moment = self.fault.schedule.at(now)
         if moment is None:
             return None
@@ -63,9 +63,9 @@ class WorldFaults:
         self._change = 0.0
 
     def act(self, world: World, now: float) -> Forces | None:
-        """Set the load, and give the drag on payload and UAVs (N); None: no air moves."""
+        """Set the load, and return the drag on payload and UAVs (N); None: no air moves."""
         if self._loads:
-            self._weigh(world, now)
+            self._set_load(world, now)
         air = None
         for wind in self._winds:
             velocity = wind.velocity(now)
@@ -75,7 +75,7 @@ class WorldFaults:
                 air = velocity if air is None else (air[0] + velocity[0], air[1] + velocity[1], air[2] + velocity[2])
         return None if air is None else _drag(world, air)
 
-    def _weigh(self, world: World, now: float) -> None:
+    def _set_load(self, world: World, now: float) -> None:
         total = 0.0
         for fault in self._loads:
             if fault.schedule.at(now) is not None:
@@ -91,7 +91,7 @@ def _drag(world: World, air: Vector) -> Forces:
     state = world.state()
     relative = _minus(air, state.payload_velocity_in_world)
     length, width, height = (float(edge) for edge in world.parameters.payload_size)
-    # |u| times what the box shows to u: the sum over its faces of their share in u.
+    # |u| times the area of the box across u: the sum over its faces of their share in u.
     x, y, z = into_body(state.payload_quaternion, relative)
     area_times_speed = abs(x) * width * height + abs(y) * length * height + abs(z) * length * width
     factor = 0.5 * AIR_DENSITY * PAYLOAD_DRAG * area_times_speed

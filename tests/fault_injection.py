@@ -1,4 +1,4 @@
-"""Faults on the passage itself, for tests: samples and datagrams in, samples and datagrams out."""
+"""Fault injection without a flight, for tests: samples and datagrams in, samples and datagrams out."""
 
 import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
@@ -6,7 +6,7 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 from gcs.config import read_system
 from gcs.mavlink.codec import Codec
 from gcs.mission import Fault
-from vehicle_sim.faults import FaultPassage
+from vehicle_sim.faults import FaultInjector
 from vehicle_sim.world.sensors import Measurement
 
 SYSTEM = read_system()
@@ -26,8 +26,8 @@ NEEDED = {
 }  # fmt: skip
 
 
-def passage(*faults, seed=1):
-    made = FaultPassage(faults, seed, SYSTEM)
+def injected(*faults, seed=1):
+    made = FaultInjector(faults, seed, SYSTEM)
     made.took_off(TAKE_OFF)
     return made
 
@@ -70,9 +70,9 @@ def position(stamp):
     return mavlink.MAVLink_local_position_ned_message(stamp, 1.0, 2.0, 3.0, 0.0, 0.0, 0.0)
 
 
-def told(disturbed, time, vehicle=1, **values):
-    return disturbed.told(vehicle, at(time)._replace(**values))
+def reported(disturbed, time, vehicle=1, **values):
+    return disturbed.reported_sample(vehicle, at(time)._replace(**values))
 
 
 def positions(disturbed, count=2000, vehicle=1):
-    return np.array([told(disturbed, i * 0.01, vehicle).position.position for i in range(count)]) - STILL.position
+    return np.array([reported(disturbed, i * 0.01, vehicle).position.position for i in range(count)]) - STILL.position
