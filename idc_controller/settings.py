@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 METADATA_KEY = "setting"
+DERIVED_KEY = "derived"
 
 
 @dataclass(frozen=True)
@@ -44,3 +45,11 @@ def setting(
         gt, ge, lt, le: the bounds that a system file is held to.
     """
     return field(default=default, metadata={METADATA_KEY: Setting(unit, meaning, gt, ge, lt, le)})
+
+
+def derived(default: Any) -> Any:
+    """Declare a field that follows from other settings: no key of the system file.
+
+    ``default`` is its value in the default system.
+    """
+    return field(default=default, metadata={DERIVED_KEY: True})

@@ -75,6 +75,7 @@ ALLOWED = {
     ),
     "vehicle_sim.world": "gcs.mission gcs.record idc_controller.geometry idc_controller.model",
 }
+SETTINGS = sorted((*ROOT.glob("idc_controller/*/settings.py"), *ROOT.glob("gcs/*/settings.py")))
 COMMON = {f"idc_controller.{name}" for name in ("errors", "parameters", "rotations", "rotations_float", "settings")} | {
     "gcs.errors"
 }
@@ -146,7 +147,8 @@ def sub_packages_imported(path):
         for name in names:
             top, _, rest = name.partition(".")
             if top in FORBIDDEN and rest:
-                yield f"{top}.{rest.partition('.')[0]}", node.lineno
+                package, _, module = rest.partition(".")
+                yield f"{top}.{package}" + (".settings" if f"{module}.".startswith("settings.") else ""), node.lineno
 
 
 @pytest.mark.parametrize("package", ALLOWED)
@@ -156,6 +158,9 @@ def test_sub_package_imports_only_what_the_table_allows(package):
     files = [place.with_suffix(".py")] if place.with_suffix(".py").exists() else sorted(place.rglob("*.py"))
     assert files
     allowed = {*ALLOWED[package].split(), package} | COMMON
+    allowed |= {f"{name}.settings" for name in allowed}
+    if package == "gcs.config":  # assembles the tables that the sub-packages declare
+        allowed |= {f"{path.parts[-3]}.{path.parts[-2]}.settings" for path in SETTINGS}
     found = [
         f"{path.relative_to(ROOT)}:{line} imports {name}"
         for path in files
@@ -163,6 +168,12 @@ def test_sub_package_imports_only_what_the_table_allows(package):
         if name not in allowed
     ]
     assert not found, "\n".join(found)
+
+
+@pytest.mark.parametrize("path", SETTINGS, ids=lambda path: path.parts[-2])
+def test_settings_module_imports_mathematics_only(path):
+    """What gcs.config assembles must not need it."""
+    assert all(name.startswith("idc_controller.") for name, _ in sub_packages_imported(path))
 
 
 def test_every_sub_package_is_in_the_table():

@@ -11,7 +11,6 @@ from gcs.config.tables import (
     SensorsConfig,
     TeamConfig,
     UavConfig,
-    WeightsConfig,
     WorldConfig,
 )
 
@@ -26,7 +25,6 @@ __all__ = [
     "TeamConfig",
     "UavConfig",
     "UnusableFile",
-    "WeightsConfig",
     "WorldConfig",
     "read_system",
 ]

@@ -1,8 +1,8 @@
 """The schema of declared settings: a type that pydantic validates strictly, and a listing for people.
 
 A table of the system file is a frozen dataclass whose fields are declared with
-:func:`idc_controller.settings.setting`; a field that is such a dataclass itself is a table within the table. Fields
-that are declared otherwise are not settings: the file cannot name them.
+:func:`idc_controller.settings.setting`; a field that is such a dataclass itself is a table within the table. Other
+fields are no keys of the file: constants, and what is ``derived`` from other settings.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from typing import Annotated, Any, Union, get_args, get_origin, get_type_hints
 from pydantic import AfterValidator, ConfigDict, Field, create_model
 
 from idc_controller.errors import ParameterError
-from idc_controller.settings import METADATA_KEY, Setting
+from idc_controller.settings import DERIVED_KEY, METADATA_KEY, Setting
 
 _STRICT = ConfigDict(extra="forbid", allow_inf_nan=False, protected_namespaces=())
 
@@ -62,12 +62,27 @@ def listed_settings(cls: type[Any], table: str = "") -> Iterator[ListedSetting]:
             yield from listed_settings(hint, f"{table}.{name}" if table else name)
 
 
+def table_of(values: Any) -> dict[str, Any]:
+    """Return an object of a settings dataclass as the table of its keys: arrays as lists, absent what is None."""
+    table = {}
+    for name, _, field in _declared(type(values)):
+        value = getattr(values, name)
+        if value is not None:
+            table[name] = _plain(value) if METADATA_KEY in field.metadata else table_of(value)
+    return table
+
+
+def _plain(value: Any) -> Any:
+    return [_plain(item) for item in value] if isinstance(value, tuple) else value
+
+
 def _declared(cls: type[Any]) -> Iterator[tuple[str, Any, dataclasses.Field[Any]]]:
     """Yield name, type and field of every setting and table of ``cls``."""
     hints = get_type_hints(cls)
     for field in dataclasses.fields(cls):
         hint = hints[field.name]
-        if METADATA_KEY in field.metadata or dataclasses.is_dataclass(hint):
+        is_table = dataclasses.is_dataclass(hint) and DERIVED_KEY not in field.metadata
+        if METADATA_KEY in field.metadata or (is_table and any(_declared(hint))):
             yield field.name, hint, field
 
 

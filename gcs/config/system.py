@@ -7,7 +7,7 @@ settings in its ``settings.py``; they are one field of :class:`SystemConfig`.
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -17,7 +17,8 @@ from pydantic import TypeAdapter
 
 from gcs.config.flight_settings import FlightSettings
 from gcs.config.problems import UnusableFile
-from gcs.config.schema import table_type
+from gcs.config.schema import table_of, table_type
+from gcs.config.sub_packages import ControlConfig, EstimationConfig, GuidanceConfig, SafetyConfig
 from gcs.config.tables import (
     AvoidanceConfig,
     ControllerConfig,
@@ -51,6 +52,10 @@ class SystemConfig:
     controller: ControllerConfig = field(default_factory=ControllerConfig)
     avoidance: AvoidanceConfig = field(default_factory=AvoidanceConfig)
     flight: FlightSettings = field(default_factory=FlightSettings)
+    estimation: EstimationConfig = field(default_factory=EstimationConfig)
+    guidance: GuidanceConfig = field(default_factory=GuidanceConfig)
+    safety: SafetyConfig = field(default_factory=SafetyConfig)
+    control: ControlConfig = field(default_factory=ControlConfig)
 
     def parameters(self) -> SystemParameters:
         """Return the system as the controller models it.
@@ -101,14 +106,7 @@ class SystemConfig:
 
     def tables(self) -> dict[str, Any]:
         """Return the values as a system file holds them: tables of keys, arrays as lists, absent what is None."""
-        tables: dict[str, Any] = _plain(asdict(self))
-        return tables
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items() if item is not None}
-    return [_plain(item) for item in value] if isinstance(value, tuple) else value
+        return table_of(self)
 
 
 @cache

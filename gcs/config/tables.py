@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from idc_controller.control.settings import MpcWeights
 from idc_controller.settings import setting
 
 Vector = tuple[float, float, float]
@@ -112,34 +113,13 @@ class WorldConfig:
 
 
 @dataclass(frozen=True)
-class WeightsConfig:
-    """Diagonals of the controller's cost, for a unit of squared error each; x, y, z or roll, pitch, yaw."""
-
-    position: Vector = setting((60.0, 60.0, 80.0), "1/m2", "payload position", ge=0.0)
-    velocity: Vector = setting((20.0, 20.0, 20.0), "s2/m2", "payload velocity", ge=0.0)
-    attitude: Vector = setting((300.0, 300.0, 800.0), "1/rad2", "payload attitude", ge=0.0)
-    rates: Vector = setting((40.0, 40.0, 120.0), "s2/rad2", "payload body rates", ge=0.0)
-    link_tilt: float = setting(100.0, "1/rad2", "tilt of a link", ge=0.0)
-    link_rate: float = setting(30.0, "s2/rad2", "rate of a link's tilt", ge=0.0)
-    differential_link_tilt: float = setting(
-        200.0, "1/rad2", "tilt of a link less the mean of all: keeps the UAVs apart", ge=0.0
-    )
-    differential_link_rate: float = setting(50.0, "s2/rad2", "its rate", ge=0.0)
-    uav_tilt: float = setting(1.0, "1/rad2", "tilt of a UAV", ge=0.0)
-    uav_tilt_rate: float = setting(0.02, "s2/rad2", "rate of a UAV's tilt", ge=0.0)
-    thrust: float = setting(0.002, "1/N2", "thrust of a UAV", ge=0.0)
-    tilt_setpoint: float = setting(8.0, "1/rad2", "change of a UAV's tilt set-point", gt=0.0)
-    thrust_setpoint: float = setting(0.02, "1/N2", "change of a UAV's thrust set-point", gt=0.0)
-
-
-@dataclass(frozen=True)
 class ControllerConfig:
     """The model predictive controller."""
 
     horizon: int = setting(20, "", "control steps of the prediction", ge=2, le=200)
     payload_tilt_limit_deg: float = setting(5.0, "deg", "soft limit of the payload's tilt", gt=0.0, lt=90.0)
     uav_tilt_limit_deg: float = setting(35.0, "deg", "soft limit of a UAV's tilt", gt=0.0, lt=90.0)
-    weights: WeightsConfig = field(default_factory=WeightsConfig)
+    weights: MpcWeights = field(default_factory=MpcWeights)
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import asdict
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,19 +13,16 @@ from gcs.mission.known_obstacles import map_of
 from gcs.mission.model import Mission
 from idc_controller.control.controller import ControllerSettings, IntegratedDecisionController
 from idc_controller.control.mpc import ModelPredictiveController
-from idc_controller.control.settings import MpcSettings, MpcWeights
 from idc_controller.estimation.estimator import Estimator
 from idc_controller.estimation.measurements import MeasurementNoise
 from idc_controller.geometry.obstacles import ObstacleSource
 from idc_controller.guidance.navigator import Navigator
 from idc_controller.guidance.progress import AdaptiveGuidance, Guidance
-from idc_controller.guidance.settings import NavigatorSettings, ProgressSettings
 from idc_controller.model.linear import LinearModel
 from idc_controller.perception.obstacle_map import ObstacleMap
 from idc_controller.perception.scan_assembly import SensorModel
 from idc_controller.safety.filter_protocol import SafetyFilter
 from idc_controller.safety.safety_filter import AvoidanceFilter
-from idc_controller.safety.settings import PlannerSettings
 from idc_controller.trajectory.trajectory import Limits
 
 
@@ -45,7 +42,7 @@ def estimator(config: SystemConfig, model: LinearModel) -> Estimator:
         payload_velocity=sensors.payload_velocity,
         payload_rates=sensors.payload_rates,
     )
-    return Estimator(model, noise)
+    return Estimator(model, noise, config.estimation.estimator)
 
 
 def obstacle_map(mission: Mission) -> ObstacleMap:
@@ -57,17 +54,19 @@ def obstacle_map(mission: Mission) -> ObstacleMap:
 
 def avoidance(config: SystemConfig, model: LinearModel, obstacles: ObstacleSource) -> AvoidanceFilter:
     """The safety filter that keeps ``obstacles`` out of the hull."""
-    settings = PlannerSettings(margin=config.avoidance.margin, barrier_rates=config.avoidance.barrier_rates)
-    return AvoidanceFilter(model.parameters, settings, obstacles)
+    planner = replace(
+        config.safety.planner, margin=config.avoidance.margin, barrier_rates=config.avoidance.barrier_rates
+    )
+    return AvoidanceFilter(model.parameters, planner, obstacles, config.safety.filter)
 
 
 def guidance(config: SystemConfig, model: LinearModel, obstacles: ObstacleSource) -> AdaptiveGuidance:
     """The guidance that waits for the payload, and leads round ``obstacles``."""
-    motion, stages = config.motion, PlannerSettings().chain.times
+    motion, stages = config.motion, config.safety.planner.chain.times
     limits = Limits(motion.speed, motion.acceleration, motion.jerk, motion.snap)
-    settings = NavigatorSettings(limits=limits, margin=config.avoidance.margin)
+    settings = replace(config.guidance.navigator, limits=limits, margin=config.avoidance.margin)
     navigator = Navigator(model.parameters, settings, obstacles, stages)
-    return AdaptiveGuidance(navigator, ProgressSettings(), stages, model.parameters.m_0 * model.parameters.g)
+    return AdaptiveGuidance(navigator, config.guidance.progress, stages, model.parameters.m_0 * model.parameters.g)
 
 
 def controller(
@@ -79,7 +78,8 @@ def controller(
 ) -> IntegratedDecisionController:
     """The integrated decision controller with the MPC as its tracker."""
     period = 1.0 / config.rates.control
-    settings = MpcSettings(
+    settings = replace(
+        config.control.mpc,
         period=period,
         horizon=config.controller.horizon,
         moves=moves(config.controller.horizon),
@@ -87,7 +87,7 @@ def controller(
         payload_tilt_limit=float(np.radians(config.controller.payload_tilt_limit_deg)),
         uav_tilt_limit=float(np.radians(config.controller.uav_tilt_limit_deg)),
         lowest_payload=-config.payload.size[2] / 2.0,
-        weights=MpcWeights(**asdict(config.controller.weights)),
+        weights=config.controller.weights,
     )
     return IntegratedDecisionController(
         model,

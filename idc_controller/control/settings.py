@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
 from idc_controller.errors import ParameterError
-from idc_controller.settings import setting
+from idc_controller.settings import derived, setting
 
 Triple = tuple[float, float, float]
 
@@ -37,27 +37,29 @@ class MpcWeights:
 class MpcSettings:
     """Horizon, limits and weights of the MPC. Angles in rad."""
 
-    period: float = setting(0.05, "s", "control period", gt=0.0)
-    horizon: int = setting(20, "", "stages N_p of the horizon", ge=1)
-    moves: tuple[int, ...] = setting(
-        (1, 1, 1, 2, 2, 3, 4, 6), "", "stages over which each move is held; they sum to the horizon", ge=1
-    )
-    constraint_stages: tuple[int, ...] = setting(
-        (1, 4, 7, 10, 13, 16, 19), "", "stages at which states are constrained", ge=1
-    )
-    payload_tilt_limit: float = setting(
-        float(np.radians(5.0)), "rad", "largest roll, pitch and yaw of the payload (eq:consOsc)", gt=0.0
-    )
-    uav_tilt_limit: float = setting(float(np.radians(35.0)), "rad", "largest tilt set-point", gt=0.0)
+    period: float = derived(0.05)
+    """Control period (s): ``rates.control``."""
+    horizon: int = derived(20)
+    """Stages N_p of the horizon: ``controller.horizon``."""
+    moves: tuple[int, ...] = derived((1, 1, 1, 2, 2, 3, 4, 6))
+    """Stages over which each move is held; they sum to the horizon."""
+    constraint_stages: tuple[int, ...] = derived((1, 4, 7, 10, 13, 16, 19))
+    """Stages at which states are constrained."""
+    payload_tilt_limit: float = derived(float(np.radians(5.0)))
+    """Largest roll, pitch and yaw of the payload (rad, eq:consOsc): ``controller.payload_tilt_limit_deg``."""
+    uav_tilt_limit: float = derived(float(np.radians(35.0)))
+    """Largest tilt set-point (rad): ``controller.uav_tilt_limit_deg``."""
     thrust_min: float = setting(1.0, "N", "least thrust set-point of a UAV", ge=0.0)
     thrust_share_max: float = setting(
         0.95, "", "largest thrust set-point, as a share of the largest thrust", gt=0, le=1
     )
-    lowest_payload: float = setting(-0.25, "m", "greatest z (NED) of the payload's centre: it is on the ground")
+    lowest_payload: float = derived(-0.25)
+    """Greatest z (m, NED) of the payload's centre, which is on the ground there: by ``payload.size``."""
     uav_separation: float = setting(0.77, "m", "least distance between neighbouring UAVs", gt=0.0)
     slack_linear: float = setting(1e3, "", "linear cost of exceeding a limit of the state", gt=0.0)
     slack_quadratic: float = setting(1e4, "", "quadratic cost of exceeding a limit of the state", gt=0.0)
-    weights: MpcWeights = field(default_factory=MpcWeights)
+    weights: MpcWeights = derived(MpcWeights())
+    """Of ``controller.weights``."""
 
     def __post_init__(self) -> None:
         if sum(self.moves) != self.horizon or min(self.moves) < 1:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from idc_controller.settings import setting
+from idc_controller.settings import derived, setting
 from idc_controller.trajectory.trajectory import Limits
 
 
@@ -39,8 +39,10 @@ class ProgressSettings:
 class NavigatorSettings:
     """When a detour is searched, and how it is flown."""
 
-    limits: Limits = Limits(1.5, 1.5, 2.0, 6.0)  # noqa: RUF009 (frozen)
-    margin: float = setting(0.5, "m", "clearance to keep between hull and obstacles", ge=0.0)
+    limits: Limits = derived(Limits(1.5, 1.5, 2.0, 6.0))
+    """Of the trajectories: table ``motion``."""
+    margin: float = derived(0.5)
+    """Clearance to keep between hull and obstacles (m): ``avoidance.margin``."""
     spare: float = setting(0.2, "m", "more than the margin, so that the safety filter need not act on a detour", ge=0.0)
     corner: float = setting(0.1, "m", "by how much a detour's corners are cut", gt=0.0)
     link_tilt: float = setting(0.08726646259971647, "rad", "link tilt for which a detour leaves clearance", ge=0.0)

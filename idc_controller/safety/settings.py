@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from idc_controller.errors import ParameterError
-from idc_controller.settings import setting
+from idc_controller.settings import derived, setting
 from idc_controller.trajectory.integrator_chain import Chain
 
 Triple = tuple[float, float, float]
@@ -27,10 +27,10 @@ class PlannerSettings:
     acceleration_limit: Triple = setting((3.0, 3.0, 2.7), "m/s2", "largest acceleration of a plan, x, y, z", gt=0.0)
     snap_limit: Triple = setting((6.0, 6.0, 10.0), "m/s4", "largest snap of a plan, x, y, z", gt=0.0)
     lowest: float = setting(-0.30, "m", "greatest z (NED) of the payload's centre in a plan", lt=0.0)
-    barrier_rates: tuple[float, ...] = setting(
-        (5.0,), "1/s", "rates of the exponential barrier, real and positive, one for each degree", gt=0.0
-    )
-    margin: float = setting(0.5, "m", "clearance to keep between hull and obstacles", ge=0.0)
+    barrier_rates: tuple[float, ...] = derived((5.0,))
+    """Rates of the exponential barrier (1/s), one for each degree: ``avoidance.barrier_rates``."""
+    margin: float = derived(0.5)
+    """Clearance to keep between hull and obstacles (m): ``avoidance.margin``."""
     tracking: float = setting(0.10, "m", "bound on the payload's deviation from the plan, added to the margin", ge=0.0)
     uav_tracking: float = setting(0.02, "m", "what the rotor discs may deviate beyond that", ge=0.0)
     slack_linear: float = setting(1000.0, "", "linear cost of a barrier's slack", gt=0.0)

@@ -1,0 +1,42 @@
+"""The tables of the system file by sub-package: each assembles the settings that the sub-package declares."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from idc_controller.control.settings import MpcSettings
+from idc_controller.estimation.settings import EstimatorSettings, InnovationMonitorSettings, WindSettings
+from idc_controller.guidance.settings import NavigatorSettings, ProgressSettings
+from idc_controller.safety.settings import FilterSettings, PlannerSettings
+
+
+@dataclass(frozen=True)
+class EstimationConfig:
+    """Estimator, wind estimate and the monitor of its innovations."""
+
+    estimator: EstimatorSettings = field(default_factory=EstimatorSettings)
+    wind: WindSettings = field(default_factory=WindSettings)
+    innovation_monitor: InnovationMonitorSettings = field(default_factory=InnovationMonitorSettings)
+
+
+@dataclass(frozen=True)
+class GuidanceConfig:
+    """Progress along the mission, and detours."""
+
+    progress: ProgressSettings = field(default_factory=ProgressSettings)
+    navigator: NavigatorSettings = field(default_factory=NavigatorSettings)
+
+
+@dataclass(frozen=True)
+class SafetyConfig:
+    """The planner of the safety filter, and when it acts."""
+
+    planner: PlannerSettings = field(default_factory=PlannerSettings)
+    filter: FilterSettings = field(default_factory=FilterSettings)
+
+
+@dataclass(frozen=True)
+class ControlConfig:
+    """The model predictive controller, beside table ``controller``."""
+
+    mpc: MpcSettings = field(default_factory=MpcSettings)
