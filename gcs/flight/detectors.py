@@ -27,7 +27,6 @@ from idc_controller.estimation.settings import InnovationMonitorSettings
 
 Array = NDArray[np.float64]
 
-FORCE_LIMIT = float(chi2.isf(InnovationMonitorSettings().false_alarm, 3))
 """Of the disturbance force on the payload, squared by its own covariance."""
 
 
@@ -295,8 +294,10 @@ class MessageEvents:
 class Innovations:
     """Innovation tests of all channels, and resets of the covariance."""
 
-    def __init__(self, gate_probability: float, settings: MonitorSettings) -> None:
-        self._tests = InnovationMonitor(gate_probability)
+    def __init__(
+        self, gate_probability: float, settings: MonitorSettings, innovations: InnovationMonitorSettings
+    ) -> None:
+        self._tests = InnovationMonitor(gate_probability, innovations)
         self._resets = EventCounter(settings.event_window)
         self._count = settings.event_count
 
@@ -351,8 +352,9 @@ def estimator_health(seen: Observation) -> None:
 class ModelMismatch:
     """Noise and forces that differ from the model."""
 
-    def __init__(self, settings: MonitorSettings) -> None:
+    def __init__(self, settings: MonitorSettings, innovations: InnovationMonitorSettings) -> None:
         self._noise_factor = settings.noise_factor
+        self._force_limit = float(chi2.isf(innovations.false_alarm, 3))
 
     def __call__(self, seen: Observation) -> None:
         """See the class."""
@@ -366,7 +368,7 @@ class ModelMismatch:
             seen.raise_alarm("payload", MonitorAlarm.PROCESS_NOISE)
         n, force = len(estimate.x), estimate.force
         covariance = estimate.covariance[n : n + 3, n : n + 3]
-        if float(force @ np.linalg.solve(covariance, force)) > FORCE_LIMIT:
+        if float(force @ np.linalg.solve(covariance, force)) > self._force_limit:
             text = " ".join(f"{f:.1f}" for f in force) + " N north east down"
             seen.raise_alarm("payload", MonitorAlarm.DISTURBANCE_FORCE, text)
 
@@ -401,14 +403,14 @@ class ManoeuvreDetector:
 
 def detectors(flight: Flight, settings: MonitorSettings) -> tuple[Detector, ...]:
     """Return the detectors of a flight, in the order in which they run."""
-    rates = flight.mission.system.rates
+    rates, innovations = flight.mission.system.rates, flight.mission.system.estimation.innovation_monitor
     return (
         TelemetryTimeout(settings.missed_samples / rates.telemetry),
         range_sensors,
         LinkTiming(settings, 1.0 / rates.control),
         estimator_health,
-        Innovations(flight.estimator.settings.gate_probability, settings),
-        ModelMismatch(settings),
+        Innovations(flight.estimator.settings.gate_probability, settings, innovations),
+        ModelMismatch(settings, innovations),
         MessageEvents(settings),
         obstacles,
     )

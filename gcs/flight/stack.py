@@ -93,7 +93,7 @@ def controller(
         model,
         ModelPredictiveController(model, settings),
         safety,
-        ControllerSettings(period=period, horizon=config.controller.horizon),
+        ControllerSettings(period=period, horizon=config.controller.horizon, wind=config.estimation.wind),
         stopwatch,
         guidance,
     )

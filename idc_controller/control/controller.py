@@ -17,6 +17,7 @@ from idc_controller.control.force_components import setpoints_from_force_compone
 from idc_controller.control.ground_controller import StandingTracker
 from idc_controller.control.tracker import Tracker
 from idc_controller.estimation.estimate import Estimate
+from idc_controller.estimation.settings import WindSettings
 from idc_controller.estimation.wind import WindEstimator
 from idc_controller.guidance.progress import Guidance
 from idc_controller.model.drag import Air
@@ -50,6 +51,7 @@ class ControllerSettings:
     """An error of the payload's position is answered as if it were at most this (m)."""
     velocity_error_limit: float = 0.6
     """The same of its velocity (m/s)."""
+    wind: WindSettings = WindSettings()
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +106,9 @@ class IntegratedDecisionController:
         self._stopwatch = stopwatch
         self._weight = self.parameters.m_0 * self.parameters.g
         self.load = Load(self.parameters.m_0, np.zeros(3), np.zeros((self.parameters.number_of_uavs, 3)))
-        self.wind = WindEstimator(self.parameters.payload_size, settings.period, settings.drag_limit * self._weight)
+        self.wind = WindEstimator(
+            self.parameters.payload_size, settings.period, settings.drag_limit * self._weight, settings.wind
+        )
         self._times = settings.period * np.append(np.arange(settings.horizon + 1), 0.5)
 
     def reference(self, mission: PayloadTrajectory) -> Reference:
