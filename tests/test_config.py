@@ -11,6 +11,9 @@ from gcs.config import SystemConfig, UnusableFile, read_system
 from gcs.config.schema import ListedSetting, listed_settings
 from gcs.config.settings_page import settings_page
 from gcs.errors import UnusableInput
+from gcs.flight import stack
+from idc_controller.control.mpc import ModelPredictiveController
+from idc_controller.geometry.obstacles import StandingObstacles
 
 REPOSITORY = Path(__file__).parents[1]
 EXAMPLE = REPOSITORY / "missions" / "system.toml"
@@ -44,6 +47,26 @@ def test_partial_file_has_defaults_for_what_it_omits(tmp_path: Path) -> None:
     assert replace(config, controller=default.controller) == default
 
 
+def test_settings_of_the_file_reach_estimator_guidance_filter_and_controller(tmp_path: Path) -> None:
+    path = tmp_path / "system.toml"
+    path.write_text(
+        "[estimation.estimator]\nhistory = 0.7\n[estimation.wind]\nmemory = 7.0\n"
+        "[safety.planner]\njerk = 0.003\n[safety.filter]\nwatch = 3.0\n[control.mpc]\nthrust_min = 2.0\n"
+        "[avoidance]\nmargin = 0.6\n"
+    )
+    config = read_system(path)
+    model = stack.linear_model(config)
+    safety = stack.avoidance(config, model, StandingObstacles([]))
+    controller = stack.controller(
+        config, model, safety, lambda: 0.0, stack.guidance(config, model, StandingObstacles([]))
+    )
+    assert stack.estimator(config, model).settings.history == 0.7
+    assert controller.wind.settings.memory == 7.0
+    assert (safety.settings.jerk, safety.settings.margin, safety.filter_settings.watch) == (0.003, 0.6, 3.0)
+    assert isinstance(controller.tracker, ModelPredictiveController)
+    assert controller.tracker.settings.thrust_min == 2.0
+
+
 def test_system_is_read_back_from_its_own_tables(tmp_path: Path) -> None:
     path = tmp_path / "system.toml"
     config = read_system(changed(tmp_path, "link_length = 3.2", "link_length = 3.1"))
@@ -74,7 +97,7 @@ def declared_number(default: object) -> object:
     return default[0] if isinstance(default, tuple) else default
 
 
-def test_parameters_are_the_papers() -> None:
+def test_default_parameters_are_those_of_the_paper() -> None:
     parameters = read_system().parameters()
     assert parameters.number_of_uavs == 4
     assert parameters.m_0 == 3.1
@@ -96,7 +119,7 @@ def test_with_vehicles_refuses_what_cannot_hover() -> None:
         read_system().with_vehicles(2)
 
 
-def test_explicit_layout(tmp_path: Path) -> None:
+def test_attachments_replace_the_polygon(tmp_path: Path) -> None:
     layout = "attachments = [[0.5, 0.0, -0.25], [-0.5, 0.5, -0.25], [-0.5, -0.5, -0.25]]"
     config = read_system(changed(tmp_path, "vehicles = 4", f"vehicles = 3\n{layout}"))
     np.testing.assert_allclose(config.parameters().p[0], [0.5, 0.0, -0.25])
@@ -105,13 +128,13 @@ def test_explicit_layout(tmp_path: Path) -> None:
         config.with_vehicles(4)
 
 
-def test_world_differs_from_belief(tmp_path: Path) -> None:
+def test_payload_mass_factor_changes_the_world_only(tmp_path: Path) -> None:
     config = read_system(changed(tmp_path, "payload_mass_factor = 1.0", "payload_mass_factor = 1.1"))
     assert config.parameters().m_0 == 3.1
     assert config.true_parameters().m_0 == pytest.approx(3.41)
 
 
-def test_noise_may_be_off(tmp_path: Path) -> None:
+def test_noise_of_zero_is_accepted(tmp_path: Path) -> None:
     assert read_system(changed(tmp_path, "position = 0.02", "position = 0")).sensors.position == 0.0
 
 
@@ -142,7 +165,7 @@ def test_noise_may_be_off(tmp_path: Path) -> None:
         ("[controller.weights]", "[controller.weight]", "[controller.weights]", "controller.weight: unknown key"),
     ],
 )
-def test_refused_with_line_and_key(tmp_path: Path, old: str, new: str, at: str, reason: str) -> None:
+def test_wrong_file_is_refused_with_line_and_key(tmp_path: Path, old: str, new: str, at: str, reason: str) -> None:
     path = changed(tmp_path, old, new)
     with pytest.raises(UnusableFile) as caught:
         read_system(path)
@@ -168,21 +191,21 @@ def test_file_with_several_errors_reports_every_reason(tmp_path: Path) -> None:
         (b"# " + b"x" * 9_000_000, "larger than"),
     ],
 )
-def test_unreadable(tmp_path: Path, content: bytes, reason: str) -> None:
+def test_unreadable_file_is_refused(tmp_path: Path, content: bytes, reason: str) -> None:
     path = tmp_path / "system.toml"
     path.write_bytes(content)
     with pytest.raises(UnusableFile, match=reason):
         read_system(path)
 
 
-def test_no_such_file(tmp_path: Path) -> None:
+def test_missing_file_is_refused(tmp_path: Path) -> None:
     with pytest.raises(UnusableFile, match="cannot be read: No such file"):
         read_system(tmp_path / "none.toml")
     with pytest.raises(UnusableFile, match="is a folder"):
         read_system(tmp_path)
 
 
-def test_frozen() -> None:
+def test_system_is_frozen() -> None:
     config = read_system()
     with pytest.raises(AttributeError):
         config.team.vehicles = 5  # type: ignore[misc]

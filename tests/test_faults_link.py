@@ -10,14 +10,14 @@ from fault_injection import codec_frames, fault, injected, position, sent
 from gcs.mavlink.codec import Codec
 
 
-def test_loss_is_as_frequent_as_asked_for_and_independent():
+def test_packet_loss_has_its_probability_independently():
     arrived = [n for n, *_ in sent(injected(fault("packet_loss", probability=0.3)), 10_000)]
     assert len(arrived) == pytest.approx(7000, abs=4 * math.sqrt(10_000 * 0.3 * 0.7))
     both = sum(1 for a, b in itertools.pairwise(arrived) if b - a == 1)
     assert both == pytest.approx(4900, abs=200)
 
 
-def test_bursts_have_their_lengths():
+def test_burst_loss_has_its_mean_lengths():
     arrived = [n for n, *_ in sent(injected(fault("burst_loss", burst=0.5, gap=2.0)), 50_000, gap=0.01)]
     bursts = [b - a - 1 for a, b in itertools.pairwise(arrived) if b - a > 1]
     assert len(bursts) == pytest.approx(200, abs=50)
@@ -52,7 +52,7 @@ def test_duplication_doubles_some():
     assert len(twice) == pytest.approx(500, abs=80)
 
 
-def test_corruption_changes_as_many_bytes_as_asked_for():
+def test_corruption_changes_the_given_number_of_bytes():
     arrived = sent(injected(fault("corruption", probability=0.5, bytes=3)), 1000)
     pairs = [(data, n.to_bytes(4, "little") * 10) for n, _, _, data in arrived]
     changed = [sum(a != b for a, b in zip(data, sent_data, strict=True)) for data, sent_data in pairs]
@@ -60,7 +60,7 @@ def test_corruption_changes_as_many_bytes_as_asked_for():
     assert changed.count(3) == pytest.approx(500, abs=65)
 
 
-def test_a_bad_checksum_spoils_every_frame_and_nothing_but_checksums():
+def test_bad_checksum_changes_every_checksum_and_nothing_else():
     good = codec_frames(position(1), position(2))
     arrived = sent(injected(fault("bad_checksum", probability=1.0)), 50, message=lambda i: good)
     for *_, data in arrived:
@@ -70,14 +70,14 @@ def test_a_bad_checksum_spoils_every_frame_and_nothing_but_checksums():
         assert sum(a != b for a, b in zip(data, good, strict=True)) == 2
 
 
-def test_truncation_cuts_off():
+def test_truncation_shortens_datagrams():
     arrived = sent(injected(fault("truncation", probability=0.5)), 1000)
     cut = [data for *_, data in arrived if len(data) < 40]
     assert len(arrived) == 1000 and len(cut) == pytest.approx(500, abs=65)
     assert min(map(len, cut)) < 5 and max(map(len, cut)) == 39 and all(cut)
 
 
-def test_a_bandwidth_cap_queues_and_then_loses():
+def test_bandwidth_cap_queues_then_loses():
     arrived = sent(injected(fault("bandwidth_cap", rate=1000.0, queue=400)), 500, gap=0.02)  # 2000 bytes/s wanted
     assert [n for n, *_ in arrived] == sorted(n for n, *_ in arrived)
     assert len(arrived) * 40 == pytest.approx(10_400, abs=100)
@@ -86,7 +86,7 @@ def test_a_bandwidth_cap_queues_and_then_loses():
     assert all(arrival - begin == pytest.approx(0.04) for _, begin, arrival, _ in slow)
 
 
-def test_a_stall_holds_everything_back_and_lets_it_go_at_once_in_order():
+def test_stall_delays_all_and_releases_all_in_order():
     arrived = sent(injected(fault("stall", start=1.0, duration=1.0)), 200)
     assert [n for n, *_ in arrived] == list(range(200))
     held = [arrival for _, begin, arrival, _ in arrived if 1.0 <= round(begin, 6) < 2.0]
@@ -94,6 +94,6 @@ def test_a_stall_holds_everything_back_and_lets_it_go_at_once_in_order():
     assert all(arrival == begin for _, begin, arrival, _ in arrived if not 0.99 < begin < 1.99)
 
 
-def test_flapping_goes_down_and_up():
+def test_flapping_link_loses_while_down():
     up = {n for n, *_ in sent(injected(fault("flapping", down=0.2, up=0.3)), 100, gap=0.05)}
     assert up == {i for i in range(100) if i % 10 >= 4}

@@ -47,7 +47,7 @@ def fault(kind, *lines):
     return "\n".join(["[[fault]]", f'kind = "{kind}"', "start = 1.0", *lines]) + "\n"
 
 
-def test_a_fault_is_read_and_told(tmp_path):
+def test_fault_is_read_and_described(tmp_path):
     mission = read_mission(mission_of(tmp_path, GOOD + fault("latency", "delay = 0.06")))
     noise, latency = mission.faults
     assert (noise.every, noise.times, noise.vehicles) == (3.0, 2, (1, 3))
@@ -100,7 +100,7 @@ def test_a_fault_is_read_and_told(tmp_path):
         (GOOD + fault("stall", "duration = 1", "probability = 1"), "probability", "fault[2].probability: unknown key"),
     ],
 )  # fmt: skip
-def test_what_cannot_be_is_refused_with_its_line(tmp_path, capsys, faults, at, reason):
+def test_impossible_fault_is_refused_with_its_line(tmp_path, capsys, faults, at, reason):
     path = mission_of(tmp_path, faults)
     line = BEGIN.count("\n") + faults[: faults.rindex(at)].count("\n") + 1
     assert main(["check", str(path)]) == 2
@@ -140,11 +140,11 @@ def test_every_kind_is_listed_with_its_parameters(capsys, monkeypatch):
             assert parameter.description, (kind.name, parameter.name)
 
 
-def test_the_documentation_holds_the_present_table():
+def test_documentation_holds_the_table_of_kinds():
     assert kinds_markdown() in (ROOT / "docs" / "faults.md").read_text(encoding="utf-8")
 
 
-def test_what_never_came_is_said():
+def test_fault_that_never_began_is_noted():
     entry = {
         "number": 1, "kind": "stall", "line": 7, "start": 9.0, "occurrences": 0, "seen": 0, "disturbed": 0,
     }  # fmt: skip

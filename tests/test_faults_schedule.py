@@ -14,7 +14,7 @@ RANDOM = (
 )  # fmt: skip
 
 
-def test_nothing_happens_before_take_off_and_outside_of_the_times():
+def test_fault_is_inactive_before_take_off_and_outside_its_times():
     disturbed = FaultInjector([fault("partition", 1.0, 0.5, every=2.0, times=2)], 1, SYSTEM)
     assert disturbed.from_vehicle(1, [(b"x", "a")], 100.0) == [(b"x", "a")]
     disturbed.took_off(TAKE_OFF)
@@ -27,7 +27,7 @@ def test_nothing_happens_before_take_off_and_outside_of_the_times():
     assert faults_record(disturbed, TAKE_OFF + 0.9)["faults"][0]["occurrences"] == 0
 
 
-def test_a_fault_is_of_its_vehicles_and_of_its_direction():
+def test_fault_disturbs_its_vehicles_in_its_direction_only():
     disturbed = injected(fault("partition", vehicles=(2, 3), direction="command"))
     for vehicle, way in itertools.product((1, 2, 3, 4), ("telemetry", "command")):
         arrived = sent(disturbed, 5, vehicle=vehicle, way=way)
@@ -60,6 +60,6 @@ def test_faults_act_one_after_the_other_in_the_missions_order():
     assert set(range(100)) - {n for n, *_ in delayed} == set(range(45, 70))  # lost when they come to it
 
 
-def test_whatever_is_combined_can_be_told_in_32_bits():
+def test_combined_faults_stay_within_32_bit_floats():
     huge = [fault("scale", channel="position", factor=1e3) for _ in range(30)]
     assert max(map(abs, reported(injected(*huge), 1.0).position.position)) <= 1e30

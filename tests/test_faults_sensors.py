@@ -9,7 +9,7 @@ from fault_injection import STILL, TAKE_OFF, at, fault, injected
 from vehicle_sim.world.range_sensor import Detection, RangeSample
 
 
-def test_lost_sensors():
+def test_lost_sensors_are_missing_from_telemetry_or_on_board():
     blind = injected(fault("position_lost", 1.0))
     first = blind.own_sample(1, at(1.0))
     moved = blind.own_sample(1, at(2.0)._replace(position=(9.0, 9.0, 9.0), rates=(1.0, 1.0, 1.0)))
@@ -34,7 +34,7 @@ def test_lost_sensors():
     assert dark.range_sample(1, scan) is scan
 
 
-def test_a_glitching_and_a_drifting_position():
+def test_position_glitches_and_drifts():
     glitch = injected(fault("position_glitch", size=3.0, rate=0.5, hold=0.2))
     seen = np.array([glitch.own_sample(1, at(i * 0.01)).position for i in range(20_000)]) - STILL.position
     away = np.hypot(seen[:, 0], seen[:, 1]) > 0.0

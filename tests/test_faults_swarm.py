@@ -77,7 +77,7 @@ def test_the_same_seed_and_faults_give_the_same_truth_to_the_byte(tmp_path):
     assert not fault_notes(tmp_path / "a")
 
 
-def test_a_fault_that_never_came_is_on_record(tmp_path):
+def test_fault_that_never_began_is_on_record(tmp_path):
     _, injector, swarm = lifted(fault("packet_loss", 1000.0, probability=1.0), fault("partition", 0.5), until=3.0)
     record_faults(tmp_path, injector, swarm.time)
     (note,) = fault_notes(tmp_path)
@@ -116,7 +116,7 @@ def test_lost_sensors_clocks_and_half_rate_on_the_wire():
     assert len(late) == pytest.approx(SYSTEM.rates.telemetry / 2 * flown, abs=2)
 
 
-def test_latency_is_what_the_ground_sees():
+def test_latency_fault_is_the_latency_the_ground_measures():
     ground, _, swarm = lifted(fault("latency", 0.5, delay=0.06, direction="telemetry"))
     begin = swarm.take_off_time + 0.5
     delays = [now - stamp * 1e-3 for stamp, now in ground.stamps[1] if now > begin + 0.07]
@@ -140,7 +140,7 @@ def test_gusts_have_their_deviation_and_correlation_time():
     assert later == pytest.approx(np.full(3, math.exp(-1.0)), abs=0.1)
 
 
-def test_drag_is_quadratic_against_what_a_body_shows_to_the_wind():
+def test_drag_is_quadratic_in_the_area_across_the_wind():
     def forces(velocity, now=10.0):
         with World(SYSTEM.true_parameters()) as world:
             return WorldFaults([active(fault("wind", velocity=velocity))]).act(world, now)
@@ -158,7 +158,7 @@ def test_drag_is_quadratic_against_what_a_body_shows_to_the_wind():
         assert WorldFaults([active(fault("wind", 5.0, velocity=[3.0, 0.0, 0.0]))]).act(world, 1.0) is None
 
 
-def test_the_wind_blows_the_load_away(tmp_path):
+def test_wind_displaces_the_load(tmp_path):
     ends = []
     for name, faults in (("still", ()), ("windy", (fault("wind", velocity=[0.0, 5.0, 0.0]),))):
         (tmp_path / name).mkdir()

@@ -29,7 +29,7 @@ def test_half_rate_is_an_even_share_of_measurements_and_all_of_the_rest(share, k
     assert decoder.bad_frames == 0
 
 
-def test_a_hanging_ground_still_beats():
+def test_ground_hang_passes_heartbeats_only():
     beat = codec_frames(mavlink.MAVLink_heartbeat_message(6, 8, 0, 0, 0, 3))
     disturbed = injected(fault("ground_hang", start=0.1))
     arrived = sent(disturbed, 10, way="command", message=lambda i: beat + codec_frames(position(i)))
@@ -38,7 +38,7 @@ def test_a_hanging_ground_still_beats():
     assert len(sent(disturbed, 10, way="telemetry")) == 10
 
 
-def test_clocks_run_away_step_and_overflow():
+def test_clock_faults_skew_step_and_overflow():
     skew = injected(fault("clock_skew", 1.0, 2.0, rate=0.01, vehicles=(1,)))
     errors = [round(skew.clock(1, TAKE_OFF + t) - TAKE_OFF - t, 9) for t in (0.5, 1.0, 2.0, 3.0, 9.0)]
     assert errors == [0, 0, 0.01, 0.02, 0.02]
@@ -50,7 +50,7 @@ def test_clocks_run_away_step_and_overflow():
     assert stamps == [3900, 2**32 - 2000, 2**32 - 10, 10]
 
 
-def test_stale_stamps_are_on_everything_that_is_told_but_not_on_what_is_flown_by():
+def test_stale_stamps_are_in_telemetry_but_not_on_board():
     disturbed = injected(fault("stale_stamps", age=0.5, vehicles=(1,)))
     reported = disturbed.reported_sample(1, at(1.0))
     assert reported.attitude.time == reported.position.time == TAKE_OFF + 0.5

@@ -39,7 +39,7 @@ def test_spikes_are_single_samples_of_the_right_size_and_number():
 
 
 @pytest.mark.parametrize("value", ["nan", "inf", "-inf"])
-def test_not_a_number(value):
+def test_not_a_number_is_reported(value):
     velocity = reported(injected(fault("not_a_number", channel="velocity", value=value)), 0.0).position.velocity
     assert [repr(v) for v in velocity] == [value] * 3
     attitude = reported(injected(fault("not_a_number", channel="attitude", value=value)), 0.0).attitude
@@ -58,7 +58,7 @@ def test_noise_adds_up_to_the_factor():
     assert not np.any(positions(injected(fault("noise", channel="position", factor=1.0)), 5))
 
 
-def test_intermittent_values_stick_for_random_times():
+def test_intermittent_values_are_stuck_for_random_times():
     disturbed = injected(fault("intermittent", channel="velocity", good=1.0, stuck=0.5))
     seen = [reported(disturbed, i * 0.01, velocity=(i, i, i)).position.velocity[0] for i in range(60_000)]
     stuck = np.diff(seen) == 0
@@ -75,7 +75,7 @@ def test_attitude_is_disturbed_as_a_rotation():
     assert back == pytest.approx((math.cos(0.1), -math.sin(0.1), 0.0, 0.0))
 
 
-def test_only_what_is_told_is_wrong_unless_the_source_is():
+def test_value_fault_is_in_telemetry_only_unless_at_source():
     outside = injected(fault("bias", channel="position", amount=1.0))
     assert outside.own_sample(1, at(1.0)) == at(1.0)
     assert outside.reported_sample(1, at(1.0)).attitude == at(1.0)  # of the position alone
@@ -84,7 +84,7 @@ def test_only_what_is_told_is_wrong_unless_the_source_is():
     assert inside.reported_sample(1, at(1.0)).position == at(1.0)  # is given what the autopilot has
 
 
-def test_the_payload_unit_is_wrong_for_all_alike_or_for_one_relay():
+def test_payload_fault_is_in_all_relays_or_in_one():
     unit = injected(fault("noise", channel="payload_position", at_source=True))
     sample = at(1.0)
     relayed = {unit.payload_sample(i, sample).position for i in (1, 2, 3, 4)}
@@ -108,7 +108,7 @@ def test_points_of_obstacles_are_a_channel():
     assert [d.position_in_body[:2] for d in later] == [(4, 0), (4, 1), (4, 2)]
 
 
-def test_two_vehicles_tell_each_others_data():
+def test_swapped_vehicles_report_each_others_data():
     disturbed = injected(fault("swapped_vehicles", vehicles=(1,), other=2))
     samples = {i: at(1.0)._replace(position=(float(i), 0.0, 0.0)) for i in (1, 2, 3)}
     for _ in range(2):

@@ -47,7 +47,7 @@ def test_fenced_delivery() -> None:
     assert isinstance(circle.shape, Pole) and circle.shape.radius == 2.0 and circle.known
     assert isinstance(polygon.shape, Wall) and polygon.shape.size[:2] == pytest.approx((3.0, 5.0), abs=0.01)
     assert mission.boundary is not None and len(mission.boundary) == 4
-    across = [note for note in mission.notes if "leads across fence" in note]
+    across = [note for note in mission.notes if "crosses fence" in note]
     assert len(across) == len(mission.notes) == 2
 
 

@@ -24,7 +24,7 @@ _STRICT = ConfigDict(extra="forbid", allow_inf_nan=False, protected_namespaces=(
 
 @dataclasses.dataclass(frozen=True)
 class ListedSetting:
-    """One setting with where it stands in the system file."""
+    """One setting with its table and key in the system file."""
 
     table: str
     key: str

@@ -39,7 +39,7 @@ def strict(cls: type[T]) -> type[T]:
 
 @dataclass(frozen=True)
 class TomlFile:
-    """A parsed TOML file that can say on which line a key stands."""
+    """A parsed TOML file that knows the line of every key."""
 
     path: Path
     data: dict[str, Any]
@@ -64,7 +64,7 @@ class TomlFile:
         """
         data = self.data if data is None else data
         try:
-            # By way of JSON: strict types, yet arrays become tuples and tables dataclasses. Dates, which JSON
+            # Through JSON: strict types, yet arrays become tuples and tables dataclasses. Dates, which JSON
             # does not have, become text and are refused as such.
             return adapter.validate_json(json.dumps(data, default=str), strict=True)
         except ValidationError as error:
@@ -88,7 +88,7 @@ class TomlFile:
                 key.append(part)  # otherwise it is a name of pydantic's own: the tag of a union, "key", ...
         kind, context = error["type"], error.get("ctx", {})
         reason = _REASONS.get(kind, error["msg"])
-        if kind.startswith("union_tag"):  # the key that tells which of several tables this is
+        if kind.startswith("union_tag"):  # the key that distinguishes several kinds of table
             key.append(str(context["discriminator"]).strip("'"))
         if kind == "union_tag_invalid":
             reason = f"'{context['tag']}' is none of {context['expected_tags']}"
@@ -114,7 +114,7 @@ def read_toml(path: Path) -> TomlFile:
 
 
 def _lines_of_keys(text: str) -> dict[Key, int]:
-    """Line of every header and key, by a scan that is content with the way people write TOML."""
+    """Return the line of every header and key, by a scan of what TOML files usually look like."""
     lines: dict[Key, int] = {}
     table: Key = ()
     counts: dict[Key, int] = {}

@@ -1,4 +1,4 @@
-"""The kinds of fault and their parameters: what a mission may ask for. The simulator has what they do."""
+"""The kinds of fault and their parameters: what a mission may name. The simulator has their effects."""
 
 from gcs.faults.kind import Direction, Kind
 from gcs.faults.kinds import KINDS, read_settings, settings_adapter

@@ -63,5 +63,5 @@ def kind(
 
 
 def parameter(description: str, unit: str = "", **bounds: Any) -> Any:
-    """What stands in the annotation of a parameter: for people, in which unit, and pydantic's bounds (ge, le, ...)."""
+    """Return the annotation of a parameter: description, unit, and pydantic's bounds (ge, le, ...)."""
     return Field(description=description, json_schema_extra={"unit": unit}, **bounds)

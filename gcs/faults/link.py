@@ -1,4 +1,4 @@
-"""Faults of the links: what happens to datagrams on their way."""
+"""Faults of the links: what happens to datagrams on a link."""
 
 from __future__ import annotations
 
@@ -49,10 +49,10 @@ class Jitter:
 @kind("reordering", "link", direction="both")
 @dataclass(frozen=True)
 class Reordering:
-    """Some datagrams are held back, so that later ones overtake them."""
+    """Some datagrams are delayed, so that later ones overtake them."""
 
     probability: _Chance
-    delay: Annotated[float, parameter("how long one is held back", "s", gt=0.0, le=_Delay)] = 0.05
+    delay: Annotated[float, parameter("of such a datagram", "s", gt=0.0, le=_Delay)] = 0.05
 
 
 @kind("duplication", "link", direction="both")
@@ -101,13 +101,13 @@ class BandwidthCap:
 @kind("partition", "link", direction="both")
 @dataclass(frozen=True)
 class Partition:
-    """Nothing passes: both ways, or one way as the direction says."""
+    """Nothing passes, in both directions or in one."""
 
 
 @kind("stall", "link", direction="both", bounded=True)
 @dataclass(frozen=True)
 class Stall:
-    """Nothing passes for the duration; then everything that was held back comes at once."""
+    """Nothing passes for the duration; then all delayed datagrams arrive at once."""
 
 
 @kind("flapping", "link", direction="both")

@@ -56,7 +56,7 @@ def kinds_list() -> RenderableType:
             items += [Text(), Text(family, style="bold underline")]
             if family == "values":
                 items += [Text(), Text("all that have a channel", style="italic"), _indented(_shared(), width)]
-        items += [Text(), Text(kind.name, style="bold cyan"), Padding(Text(_told(kind)), (0, 0, 0, 2))]
+        items += [Text(), Text(kind.name, style="bold cyan"), Padding(Text(_summary(kind)), (0, 0, 0, 2))]
         items += [_indented(own, width)] if (own := _own(kind)) else []
     notes = Text(
         "Every fault has kind and start (s after take-off begins: when the first vehicle lifts off); it may have "
@@ -77,8 +77,8 @@ def kinds_markdown() -> str:
             if family == "values":
                 lines += ["All but `swapped_vehicles` have:", "", *(f"- {_sentence(p)}" for p in _shared()), ""]
             lines += ["| kind | what it does | parameters |", "|---|---|---|"]
-        told = "<br>".join(_sentence(p) for p in _own(kind)) or "none of its own"
-        lines.append(f"| `{kind.name}` | {_told(kind)} | {told} |")
+        own = "<br>".join(_sentence(p) for p in _own(kind)) or "none of its own"
+        lines.append(f"| `{kind.name}` | {_summary(kind)} | {own} |")
     return "\n".join(lines).strip() + "\n"
 
 
@@ -111,7 +111,7 @@ def _sentence(p: Parameter) -> str:
     return f"`{p.name}` ({_about(p)}): {p.description}"
 
 
-def _told(kind: Kind) -> str:
+def _summary(kind: Kind) -> str:
     remarks = []
     if kind.direction is not None:
         remarks.append(f"Direction: {kind.direction}, if none is given.")

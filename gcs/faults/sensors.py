@@ -1,4 +1,4 @@
-"""Faults of the sensors: what is no longer measured, or measured wrongly, on board."""
+"""Faults of the sensors: a measurement on board is lost or wrong."""
 
 from __future__ import annotations
 
@@ -8,24 +8,24 @@ from typing import Annotated
 from gcs.faults.kind import kind, parameter
 
 _Vector = tuple[float, float, float]
-_Blind = Annotated[
+_Onboard = Annotated[
     bool,
-    parameter("true: the vehicle itself is blind, too, and has to do with the others; false: it has a second one"),
+    parameter("true: lost on board, too, where the other sensors must do; false: only in the telemetry"),
 ]
 
 
 @kind("position_lost", "sensors")
 @dataclass(frozen=True)
 class PositionLost:
-    """Position and velocity are no longer measured, nor told."""
+    """Position and velocity are no longer measured or reported."""
 
-    onboard: _Blind = True
+    onboard: _Onboard = True
 
 
 @kind("position_glitch", "sensors")
 @dataclass(frozen=True)
 class PositionGlitch:
-    """The measured position jumps away and back, level, in random directions; the vehicle believes it."""
+    """The measured position jumps away and back, level, in random directions, and the vehicle flies by it."""
 
     size: Annotated[float, parameter("how far", "m", gt=0.0, le=1e5)]
     rate: Annotated[float, parameter("how often, on average", "1/s", gt=0.0, le=100.0)] = 0.5
@@ -35,7 +35,7 @@ class PositionGlitch:
 @kind("position_drift", "sensors")
 @dataclass(frozen=True)
 class PositionDrift:
-    """The measured position drifts away, the velocity does not; the vehicle believes it."""
+    """The measured position drifts away, the velocity does not, and the vehicle flies by it."""
 
     velocity: Annotated[_Vector, parameter("of the drift, north-east-down", "m/s")]
 
@@ -43,17 +43,17 @@ class PositionDrift:
 @kind("attitude_lost", "sensors")
 @dataclass(frozen=True)
 class AttitudeLost:
-    """The attitude is no longer told, nor the rates, which share its message."""
+    """The attitude is no longer reported, nor the rates, which share its message."""
 
-    onboard: _Blind = False
+    onboard: _Onboard = False
 
 
 @kind("rates_lost", "sensors")
 @dataclass(frozen=True)
 class RatesLost:
-    """The rates are told as NaN, which is MAVLink's way to say that they are not known."""
+    """The rates are reported as NaN, MAVLink's unknown value."""
 
-    onboard: _Blind = False
+    onboard: _Onboard = False
 
 
 @kind("payload_unit_lost", "sensors")
@@ -65,4 +65,4 @@ class PayloadUnitLost:
 @kind("obstacle_sensing_lost", "sensors")
 @dataclass(frozen=True)
 class ObstacleSensingLost:
-    """The vehicles no longer see obstacles."""
+    """The vehicles no longer detect obstacles."""

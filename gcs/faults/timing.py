@@ -35,7 +35,7 @@ class ClockStep:
 @kind("stale_stamps", "timing")
 @dataclass(frozen=True)
 class StaleStamps:
-    """Measurements are told with the stamps of an earlier time."""
+    """Measurements are reported with the stamps of an earlier time."""
 
     age: Annotated[float, parameter("how much earlier", "s", gt=0.0, le=1e3)]
 

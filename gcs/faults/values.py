@@ -1,4 +1,4 @@
-"""Faults of values: what is told of a measured channel is not what it is.
+"""Faults of values: a measured channel is reported wrongly.
 
 The channels' units: position m and velocity m/s in the world (north-east-down); attitude as the rotation vector from
 world to body, rad; rates rad/s in the body frame; obstacles: the places of the points, m in the body frame.
@@ -27,7 +27,7 @@ _AtSource = Annotated[
     bool,
     parameter(
         "true: the sensor itself is wrong, so that the vehicle flies by it, or all pass on the same of the payload; "
-        "false: only what is told"
+        "false: only its telemetry"
     ),
 ]
 _Amount = 1e5
@@ -82,7 +82,7 @@ class Stuck(ValueFault):
 @kind("spikes", "values", check=unit_is_whole)
 @dataclass(frozen=True, kw_only=True)
 class Spikes(ValueFault):
-    """Single samples are off by an amount, up or down, each axis on its own."""
+    """Single samples are off by an amount, up or down, each axis independently."""
 
     probability: Annotated[float, parameter("of a sample", ge=0.0, le=1.0)]
     amount: Annotated[float, parameter("size of a spike", "channel's", gt=0.0, le=_Amount)]
@@ -114,7 +114,7 @@ class FlippedSign(ValueFault):
 @kind("swapped_frame", "values", check=unit_is_whole)
 @dataclass(frozen=True, kw_only=True)
 class SwappedFrame(ValueFault):
-    """Values are in another frame: x and y exchanged, z the other way (east-north-up for north-east-down)."""
+    """Values are in another frame: x and y exchanged, z reversed (east-north-up for north-east-down)."""
 
 
 @kind("noise", "values", check=unit_is_whole)
@@ -128,7 +128,7 @@ class Noise(ValueFault):
 @kind("intermittent", "values", check=unit_is_whole)
 @dataclass(frozen=True, kw_only=True)
 class Intermittent(ValueFault):
-    """Values stick and come back, by turns of random lengths; good first."""
+    """Values are stuck and true in turn, for random times; true first."""
 
     good: Annotated[float, parameter("mean time of true values", "s", gt=0.0, le=1e4)] = 1.0
     stuck: Annotated[float, parameter("mean time of the last value", "s", gt=0.0, le=1e4)] = 0.5
@@ -147,6 +147,6 @@ def _other_vehicle(settings: SwappedVehicles, system: SystemConfig, vehicles: Ve
 @kind("swapped_vehicles", "values", check=_other_vehicle)
 @dataclass(frozen=True)
 class SwappedVehicles:
-    """Two vehicles tell each other's attitude, rates, position and velocity for their own."""
+    """Two vehicles report each other's attitude, rates, position and velocity as their own."""
 
     other: Annotated[int, parameter("system id of the one that swaps with the one in `vehicles`", ge=1, le=254)]

@@ -1,4 +1,4 @@
-"""Mission files: read, checked and told, from three formats into one :class:`Mission`."""
+"""Mission files: read, checked and described, from three formats into one :class:`Mission`."""
 
 from gcs.mission.describe import describe
 from gcs.mission.model import (

@@ -96,8 +96,8 @@ def _told(leg: Leg) -> str:
         case FlyTo(hold=hold):
             return ("spline to" if leg.spline else "fly to") + (f", hold {hold:g} s" if hold else "")
         case Circle(turns=turns, radius=radius):
-            way = "clockwise" if leg.clockwise else "counter-clockwise"
-            return f"circle {turns:g} x {radius:g} m {way}"
+            sense = "clockwise" if leg.clockwise else "counter-clockwise"
+            return f"circle {turns:g} x {radius:g} m {sense}"
         case HoldForever():
             return "hold until stopped"
     return "land"
@@ -149,8 +149,8 @@ def _fault(fault: Fault) -> str:
     if kind.direction is not None:
         direction = fault.direction or kind.direction
         text += ", both directions" if direction == "both" else f", {direction}"
-    told = ", ".join(f"{key} = {value}" for key, value in fault.settings.items())
-    return text + (f": {told}" if told else "")
+    settings = ", ".join(f"{key} = {value}" for key, value in fault.settings.items())
+    return text + (f": {settings}" if settings else "")
 
 
 def _limits(limits: Limits | None) -> Iterable[str]:

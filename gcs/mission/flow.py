@@ -154,7 +154,7 @@ def _places(leg: Leg) -> list[Position]:
 
 def _ways_across_fence(legs: list[Leg], fence: Fence) -> Iterator[str]:
     """Straight ways that cross the fence, though they end on its right side; each item once."""
-    told = set[tuple[str, str]]()
+    reported = set[tuple[str, str]]()
     start: Position = (0.0, 0.0, 0.0)
     for leg in legs:
         end = leg.end(start) if isinstance(leg, Circle) else leg.position
@@ -168,9 +168,9 @@ def _ways_across_fence(legs: list[Leg], fence: Fence) -> Iterator[str]:
                 if low < _top(obstacle) and obstacle.shape.plan_view.is_crossed(here, there):
                     crossed.append(obstacle.name)
         for name in crossed:
-            if (leg.source, name) not in told:
-                told.add((leg.source, name))
-                yield f"{leg.source}: the straight way there leads across {name}"
+            if (leg.source, name) not in reported:
+                reported.add((leg.source, name))
+                yield f"{leg.source}: the straight path there crosses {name}"
         start = end
 
 

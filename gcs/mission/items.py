@@ -96,7 +96,7 @@ LEFT_OUT = frozenset(
         # other devices on board
         "DO_SET_SERVO", "DO_REPEAT_SERVO", "DO_SET_RELAY", "DO_REPEAT_RELAY", "DO_SET_ACTUATOR", "DO_GRIPPER",
         "DO_WINCH", "ILLUMINATOR_ON_OFF", "DO_ILLUMINATOR_CONFIGURE", "LOGGING_START", "LOGGING_STOP",
-        # marks in the file that ask for no action
+        # marks in the file, without an action
         "DO_LAND_START", "DO_RETURN_PATH_START",
     )
 )  # fmt: skip

@@ -1,4 +1,4 @@
-"""What a mission is, once read: a reference, what stands in its way, what goes wrong, what it is held to."""
+"""A mission as read: reference, obstacles, faults and limits."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from gcs.mission.route import Route
 from idc_controller.geometry.shape import Shape
 
 RESTING_ALTITUDE = 0.30
-"""Height of the payload's centre above home when it stands on the pad (m); nothing is flown below."""
+"""Height of the payload's centre above home when it is on the pad (m); nothing is flown below."""
 
 Name = Annotated[str, Field(min_length=1, max_length=200)]
 
 
 @dataclass(frozen=True)
 class Home:
-    """Where the pad stands: latitude and longitude (deg), altitude above mean sea level (m)."""
+    """Position of the pad: latitude and longitude (deg), altitude above mean sea level (m)."""
 
     latitude: float
     longitude: float
@@ -141,7 +141,7 @@ class Fault:
 
     ``vehicles`` None: all of them. ``duration`` None: to the end. ``every``: it comes again at this period, ``times``
     times in all (None: without end). ``direction`` None: the kind's own. ``settings`` are the kind's parameters as
-    written (:mod:`gcs.faults` has the kinds); ``line`` is where the fault stands in the mission file.
+    written (:mod:`gcs.faults` has the kinds); ``line`` is that of the fault in the mission file.
     """
 
     kind: Name

@@ -51,7 +51,7 @@ def key_of(part: ShapeField[Any]) -> str:
 
 
 def _is_angle(part: ShapeField[Any]) -> bool:
-    return part.metadata["unit"] == "rad"
+    return bool(part.metadata["unit"] == "rad")
 
 
 def keys_of(obstacle: Obstacle) -> dict[str, Any]:

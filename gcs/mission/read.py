@@ -18,7 +18,7 @@ _SUFFIXES = {".waypoints": "wpl", ".txt": "wpl", ".plan": "plan", ".json": "plan
 
 
 def read_mission(path: Path | str, config_path: Path | str | None = None) -> Mission:
-    """Read a mission: ``.toml``, ``QGC WPL 110`` or QGroundControl ``.plan``, told apart by their content.
+    """Read a mission: ``.toml``, ``QGC WPL 110`` or QGroundControl ``.plan``, recognised by their content.
 
     The system comes from ``config_path``, else from the file that the mission names, else from ``system.toml`` beside
     the mission, else the default system.
@@ -40,7 +40,7 @@ def read_mission(path: Path | str, config_path: Path | str | None = None) -> Mis
 
 
 def mission_format(path: Path, text: str) -> str:
-    """``wpl``, ``plan`` or ``toml``: by content where it tells, else by suffix."""
+    """``wpl``, ``plan`` or ``toml``: by content where possible, else by suffix."""
     first = next((line for line in map(str.strip, text.splitlines()) if line and not line.startswith("#")), "")
     if first.startswith("QGC"):
         return "wpl"
@@ -99,7 +99,7 @@ def _system(mission: Path, named: str | None, config: Path | None) -> SystemConf
 
 
 def system_path(mission: Path, named: str | None = None, config: Path | None = None) -> Path | None:
-    """The system file by which ``mission``, which may have ``named`` one, is flown; None: the default system."""
+    """Return the system file by which ``mission``, which may have ``named`` one, is flown; None: the default system."""
     if config is not None:
         return config
     beside = mission.parent / (named or "system.toml")

@@ -1,7 +1,7 @@
-"""A route: a small programme of steps, run leg by leg.
+"""A route: a small program of steps, run leg by leg.
 
-Jumps make a route a programme rather than a list: it may be endless, and where "here" is depends on the way that led
-there. :meth:`Route.legs` runs it lazily.
+Jumps make a route a program rather than a list: it may be endless, and a position that is not given depends on the
+steps before. :meth:`Route.legs` runs it lazily.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class TakeOff:
 class FlyTo:
     """Straight to ``position`` (NED, m) at ``speed`` (m/s); there hold for ``hold`` seconds (0: fly on).
 
-    ``spline``: the file asks for a smooth curve through this point.
+    ``spline``: the file wants a smooth curve through this point.
     """
 
     position: Position
@@ -54,7 +54,7 @@ class Circle:
     source: str
 
     def end(self, start: Position) -> Position:
-        """Where the circle ends that begins at ``start``."""
+        """Return the end of the circle that begins at ``start``."""
         angle = math.atan2(start[1] - self.centre[1], start[0] - self.centre[0])
         angle += math.fmod(self.turns, 1.0) * math.tau * (1.0 if self.clockwise else -1.0)
         north, east, down = self.centre
@@ -93,7 +93,7 @@ class Place:
 
 @dataclass(frozen=True)
 class Step:
-    """One step of the programme; ``source`` names the line or item it comes from."""
+    """One step of the program; ``source`` names the line or item it comes from."""
 
     source: str
 
@@ -166,7 +166,7 @@ class Jump(Step):
 
 
 class RouteError(Exception):
-    """A step that cannot be flown where the programme meets it: ``source`` and the reason."""
+    """A step that cannot be flown where the program meets it: ``source`` and the reason."""
 
     def __init__(self, source: str, reason: str) -> None:
         super().__init__(reason)
@@ -183,7 +183,7 @@ class Route:
     resting_altitude: float
 
     def legs(self) -> Iterator[Leg]:
-        """The legs in the order of flight, made as they are asked for: a route may be endless.
+        """Yield the legs in the order of flight, lazily: a route may be endless.
 
         The first is a :class:`TakeOff`; the last, if there is one, a :class:`Land` or :class:`HoldForever`. A route
         without a landing ends with one at home. Jumps keep their count for the whole flight.
@@ -213,7 +213,7 @@ class Route:
 
 
 class _Flight:
-    """Where a route's programme stands: position, speed, whether it flies."""
+    """State of a route that is run: position, speed, whether it flies."""
 
     def __init__(self, route: Route) -> None:
         self.route = route
@@ -225,13 +225,13 @@ class _Flight:
         self.ended = False
 
     def airborne(self, source: str) -> Position:
-        """The present position; an error on the pad."""
+        """Return the present position; an error on the pad."""
         if self.altitude is None:
             raise RouteError(source, "the payload is still on the pad, and no altitude is given to take off to")
         return (*self.horizontal, -self.altitude)
 
     def fly(self, step: Step) -> Iterator[Leg]:
-        """The legs of one step."""
+        """Yield the legs of one step."""
         source = step.source
         match step:
             case Speed(speed=speed):

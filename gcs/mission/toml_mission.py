@@ -95,7 +95,7 @@ def read_mission_file(path: Path) -> tuple[TomlFile, MissionFile]:
     if isinstance(faults, list):
         data = {**data, "fault": [_known_keys(fault) for fault in faults]}
     mission = file.validated(_adapter(), data)
-    if isinstance(faults, list):  # the kinds' own keys, and where the fault stands
+    if isinstance(faults, list):  # the kinds' own keys, and the line of the fault
         mission = replace(
             mission,
             fault=tuple(
@@ -167,10 +167,10 @@ def _parameter_problems(file: TomlFile, index: int, fault: Fault) -> Sequence[st
 
 
 def read_fault(file: TomlFile, index: int, table: Mapping[str, Any]) -> Fault:
-    """A fault from ``table``, which stands for the file's fault ``index`` (from 0).
+    """A fault from ``table``, which is the file's fault ``index`` (from 0).
 
     Raises :class:`UnusableFile` for unknown kinds and keys and for wrong values; whether the fault agrees with itself
-    and with a system, :func:`gcs.mission.faults.fault_problems` tells.
+    and with a system, :func:`gcs.mission.faults.fault_problems` checks.
     """
     fault = file.validated(_fault_adapter(), _known_keys(table), ("fault", index))
     fault = replace(fault, settings=_kinds_keys(table), line=file.line(("fault", index)))
@@ -209,8 +209,8 @@ def _disagreements(file: TomlFile, mission: MissionFile) -> list[str]:
             problems.append(file.problem(("obstacle", i, "motion"), reason))
         if isinstance(motion, WaypointsMotion):
             points = motion.points
-            way = [*points, points[0]] if motion.repeat else points
-            if any(a == b for a, b in pairwise(way)):
+            path = [*points, points[0]] if motion.repeat else points
+            if any(a == b for a, b in pairwise(path)):
                 reason = "two points after one another are the same"
                 problems.append(file.problem(("obstacle", i, "motion"), reason))
     return problems

@@ -21,7 +21,7 @@ from gcs.record.summary import payload_angles
 
 Array = NDArray[np.float64]
 
-# The palette of Okabe and Ito: told apart by colour-blind readers, too.
+# The palette of Okabe and Ito: distinct for colour-blind readers, too.
 FLOWN, LIMIT, OBSTACLE = "#0072B2", "#D55E00", "#CC79A7"
 SERIES = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#8C6D1F", "#000000")
 # Broad and pale, below what was flown: both stay visible where they agree.

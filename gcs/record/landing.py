@@ -1,4 +1,4 @@
-"""How the payload came to the ground: how fast it touched, whether it stands there upright, what was hit before."""
+"""Landing figures: touchdown speed, whether the payload is upright on the ground, contacts before."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ UPRIGHT_DEG = 15.0
 TOUCHDOWN_SPEED = 1.0
 """m/s: a payload that touches the ground faster was dropped, not set down."""
 
-# The pad about home, which the payload stands on before take-off: as the simulated world builds it.
+# The pad about home, on which the payload is before take-off: as the simulated world builds it.
 PAD_THICKNESS = 0.05  # m
 PAD_MARGIN = 0.25  # m, by which it is larger than the payload on every side
 
@@ -30,11 +30,11 @@ _STOPPED = 0.5  # N of a UAV's thrust
 
 
 def landing_figures(run: RunData) -> dict[str, Any] | None:
-    """The ``landing`` entry of the summary, from the truth; None without one.
+    """Return the ``landing`` entry of the summary, from the truth; None without one.
 
     ``touchdown_s``: when the payload touched the ground for good (s, the clock of the tables). ``speed_mps`` and
     ``sinking_mps``: its largest speed, and the largest of its speed downwards, wherever it touched after take-off
-    (m/s; 0 if it never left the ground). ``tilt_deg``: its angle to upright at the end (deg). ``on_ground``: it stands
+    (m/s; 0 if it never left the ground). ``tilt_deg``: its angle to upright at the end (deg). ``on_ground``: it rests
     on ground or pad at the end, at rest, all rotors stopped. ``contacts_before``: how often a pair of parts began to
     touch until then. What never happened is None.
     """
@@ -70,7 +70,7 @@ def landing_figures(run: RunData) -> dict[str, Any] | None:
 
 
 def is_set_down(landing: Mapping[str, Any]) -> bool:
-    """Whether the payload was set down safely, by the figures of :func:`landing_figures`."""
+    """Return whether the payload was set down safely, by the figures of :func:`landing_figures`."""
     speed = landing["speed_mps"]
     return bool(
         landing["on_ground"]
@@ -81,12 +81,12 @@ def is_set_down(landing: Mapping[str, Any]) -> bool:
 
 
 def onsets(touching_pairs: Array) -> int:
-    """How often a pair began to touch; a touch that lasts counts once."""
+    """Return how often a pair began to touch; a lasting touch counts once."""
     return int(np.clip(np.diff(touching_pairs, prepend=0.0), 0.0, None).sum())
 
 
 def _height(run: RunData, rotation: Array) -> Array:
-    """Least distance of the payload to the ground and to the pad (T,) (m)."""
+    """Return the least distance of the payload to the ground and to the pad (T,) (m)."""
     size = run.payload_size
     corners = np.array(list(product((-0.5, 0.5), repeat=3))) * size
     height = np.min(-run.payload_position[:, None, 2] - rotation[:, 2] @ corners.T, axis=1)

@@ -1,4 +1,4 @@
-"""When the vehicles stopped flying what the ground sent: from ``modes.csv`` of a run folder."""
+"""When the vehicles left OFFBOARD: from ``modes.csv`` of a run folder."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ OFFBOARD = "OFFBOARD"
 
 
 def stops_after(run_dir: Path | str, since: float) -> dict[int, float]:
-    """When each vehicle first left OFFBOARD, or its failsafe took over, from ``since`` on (s), by system id.
+    """Return when each vehicle first left OFFBOARD, or its failsafe took over, from ``since`` on (s), by system id.
 
     Without those that did not, and empty without the file. Raises :class:`gcs.errors.UnusableInput` for a damaged one.
     """

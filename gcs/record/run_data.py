@@ -64,7 +64,7 @@ class RunData:
     @property
     def number_of_uavs(self) -> int:
         """Number of UAVs on record, N; 0 for an estimate."""
-        return self.uav_position.shape[1]
+        return int(self.uav_position.shape[1])
 
     @property
     def reference_position(self) -> Array:
@@ -194,7 +194,7 @@ def _obstacles(path: Path, time: Array) -> tuple[ObstacleTrack, ...]:
             x, y, z, radius, size_x, size_y, size_z, yaw = map(float, cells)
         except ValueError:
             raise UnusableInput(f"{path}, line {line}: a value is not a number") from None
-        # Two obstacles of one name are told apart by their order at that moment.
+        # Two obstacles of one name are distinguished by their order at that moment.
         key = (name, seen[moment, name])
         seen[moment, name] += 1
         if key not in tracks:

@@ -123,7 +123,7 @@ def write_json(path: Path | str, content: object) -> Path:
 
 
 def versions() -> dict[str, str]:
-    """Versions of Python, of this package and of every package that it asks for at run time."""
+    """Return the versions of Python, of this package and of its dependencies at run time."""
     found = {"python": platform.python_version()}
     try:
         found[_DISTRIBUTION] = metadata.version(_DISTRIBUTION)

@@ -1,4 +1,4 @@
-"""How close a flight came to what its safety rests on: tracking errors against the bounds in the margins, slacks."""
+"""Safety figures of a flight: tracking errors against the bounds in the margins, slacks, detours."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ from typing import Any
 
 import numpy as np
 
+from gcs.record.path_return import return_times
 from gcs.record.run_data import RunData, Table
 from gcs.record.tables import PLAN_COLUMNS, read_table
-from gcs.record.way_back import ways_back
 
 GRAVITY = 9.81  # m/s2
 
 
 def safety_figures(run: RunData) -> dict[str, Any] | None:
-    """The ``safety`` entry of the summary; None where nothing was planned.
+    """Return the ``safety`` entry of the summary; None where nothing was planned.
 
     Tracking errors are those of the true state (of the estimate where there is no truth) against the plan in force,
-    away from take-off and landing; UAVs against where the plan's links would have them (m).
+    away from take-off and landing; UAVs against their positions by the plan's links (m).
     """
     path = Path(run.folder) / "plan.csv"
     if not path.exists():
@@ -54,7 +54,7 @@ def safety_figures(run: RunData) -> dict[str, Any] | None:
         "uav_tracking_max_m": uav,
         "uav_tracking_bound_m": _bound(plan["uav_bound_m"]),
         "slack_max_m": float(plan["slack_m"].max()),
-        "way_back_max_s": max((after for _, after in ways_back(run, _room(run, plan))), default=None),
+        "way_back_max_s": max((after for _, after in return_times(run, _clearance(run, plan))), default=None),
         "detours": int(plan["detours"].max()),
         "clock_rate_min": float(plan["clock_rate"].min()),
     }
@@ -65,7 +65,7 @@ def _bound(values: Any) -> float | None:
     return float(known[0]) if len(known) else None
 
 
-def _room(run: RunData, plan: Table) -> float:
+def _clearance(run: RunData, plan: Table) -> float:
     margin = run.manifest.get("system", {}).get("avoidance", {}).get("margin", 0.5)
     return float(margin) + (_bound(plan["payload_bound_m"]) or 0.0)
 

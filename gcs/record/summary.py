@@ -1,4 +1,4 @@
-"""``summary.json``: the figures by which a flight is judged, computed after it from its records."""
+"""``summary.json``: the figures of a flight, computed after it from its records."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ def summarise(
     limits: Mapping[str, float | None] | None = None,
     obstacles: bool | None = None,
 ) -> dict[str, Any]:
-    """The content of ``summary.json``, from the truth in ``run_dir`` or, where there is none, the estimate.
+    """Return the content of ``summary.json``, from the truth in ``run_dir`` or, where there is none, the estimate.
 
-    How the flight ended is the caller's to say. ``limits`` is the mission's table of that name: ``settle`` (s) and
+    The caller says how the flight ended. ``limits`` is the mission's table of that name: ``settle`` (s) and
     any of :data:`LIMITS` (m, deg, m/s), None for no limit. A limit is held when its figure is known and within it, a
     clearance also when there is no obstacle (``obstacles`` says whether the mission has any; None: as on record).
-    Figures that the records cannot tell are None. Raises :class:`UnusableInput` like :func:`read_run`, and
+    Figures that the records do not contain are None. Raises :class:`UnusableInput` like :func:`read_run`, and
     ``ValueError`` for an unknown outcome or limit.
     """
     if outcome not in OUTCOMES:
@@ -62,7 +62,7 @@ def summarise(
         "uav_separation": separation,
         "touchdown_speed": None if landing is None else landing["speed_mps"],
     }
-    return _rounded(
+    return _rounded_table(
         {
             "completed": completed,
             "outcome": outcome,
@@ -92,12 +92,12 @@ def write_summary(run_dir: Path | str, summary: Mapping[str, Any]) -> Path:
 
 
 def within_limits(summary: Mapping[str, Any]) -> bool:
-    """Whether every limit of a summary was held."""
+    """Return whether every limit of a summary was held."""
     return all(held for _, _, held in summary["limits"].values())
 
 
 def position_rmse(run: RunData, settle: float) -> dict[str, float | None]:
-    """Root-mean-square position error (m), by axis and of all three together.
+    """Return the root-mean-square position error (m), by axis and of all three together.
 
     Counted from ``settle`` seconds after the reference begins; None where no row is left.
     """
@@ -113,12 +113,12 @@ def position_rmse(run: RunData, settle: float) -> dict[str, float | None]:
 
 
 def payload_angles(run: RunData) -> Array:
-    """Roll, pitch and yaw of the payload (T, 3) (deg)."""
+    """Return roll, pitch and yaw of the payload (T, 3) (deg)."""
     return np.rad2deg(euler_from_quaternion(run.payload_quaternion))
 
 
 def payload_tilt_max(run: RunData) -> dict[str, float | None]:
-    """Largest magnitude of the payload's roll, pitch and yaw (deg) from take-off to landing.
+    """Return the largest magnitude of the payload's roll, pitch and yaw (deg) from take-off to landing.
 
     That is: from the first to the last row with thrust; every row when thrust is not on record. None without
     a row.
@@ -167,9 +167,13 @@ def _held(name: str, figure: float | None, limit: float, obstacles: bool) -> boo
     return figure >= limit if name in ("clearance", "uav_separation") else figure <= limit
 
 
+def _rounded_table(table: dict[str, Any]) -> dict[str, Any]:
+    return {key: _rounded(item) for key, item in table.items()}
+
+
 def _rounded(value: Any) -> Any:
     if isinstance(value, dict):
-        return {key: _rounded(item) for key, item in value.items()}
+        return _rounded_table(value)
     if isinstance(value, list):
         return [_rounded(item) for item in value]
     if isinstance(value, float):

@@ -39,7 +39,7 @@ def summary_table(summary: Mapping[str, Any], run_dir: Path | str, pictures: Seq
     row("position error, RMS", _number(rmse["total"], 3, "m"), "position_rmse", "<=", "m")
     if rmse["total"] is not None:
         row("  north / east / down", " / ".join(_number(rmse[axis], 3) for axis in "xyz") + " m")
-    # One limit holds for all three angles: it stands beside the largest.
+    # One limit holds for all three angles: it is shown beside the largest.
     largest = max((angle for angle in tilt.values() if angle is not None), default=None)
     row("payload angle, largest", _number(largest, 1, "deg"), "payload_tilt_deg", "<=", "deg")
     angles = " / ".join(_number(tilt[axis], 1) for axis in ("roll", "pitch", "yaw"))
@@ -59,7 +59,7 @@ def summary_table(summary: Mapping[str, Any], run_dir: Path | str, pictures: Seq
         row("off the plan, payload / UAVs, largest", f"{errors} m (margins allow {bounds} m)")
         row("barrier missed by at most", _number(safety["slack_max_m"], 3, "m"))
         if safety["way_back_max_s"] is not None:
-            row("back on the way after it was free", _number(safety["way_back_max_s"], 1, "s"))
+            row("return to the reference once it was free", _number(safety["way_back_max_s"], 1, "s"))
     if solver["infeasible_steps"]:
         row("steps without a feasible solution", str(solver["infeasible_steps"]))
 

@@ -22,7 +22,7 @@ PAYLOAD_COLUMNS = (
     "payload_wx_radps", "payload_wy_radps", "payload_wz_radps",
 )  # fmt: skip
 REFERENCE_COLUMNS = ("time_s", "x_m", "y_m", "z_m", "vx_mps", "vy_mps", "vz_mps")
-# What the ground believes: the payload's state and the disturbance force on it, as estimated.
+# The estimate: the payload's state and the disturbance force on it, as estimated.
 ESTIMATE_COLUMNS = ("time_s", *PAYLOAD_COLUMNS, "disturbance_x_n", "disturbance_y_n", "disturbance_z_n")
 # Wall-clock times stand in this table only, so that every other one repeats to the byte.
 STEP_COLUMNS = (
@@ -36,7 +36,7 @@ PLAN_COLUMNS = (
 OBSTACLE_COLUMNS = (
     "time_s", "name", "shape", "x_m", "y_m", "z_m", "radius_m", "size_x_m", "size_y_m", "size_z_m", "yaw_rad",
 )  # fmt: skip
-# The obstacles that are followed by the vehicles' sensors, as the ground believes them to be; columns as above.
+# The obstacles tracked by the vehicles' sensors, as estimated; columns as above.
 OBSTACLE_ESTIMATE_COLUMNS = (
     "time_s", "name", "kind", "x_m", "y_m", "z_m", "vx_mps", "vy_mps", "vz_mps", "radius_m",
     "size_x_m", "size_y_m", "size_z_m", "yaw_rad", "growth_m",

@@ -12,7 +12,7 @@ from gcs.mission import Fault
 from vehicle_sim.faults.schedule import Schedule
 
 _STREAM = 2_000_003  # separates these generators from the sensors'
-WORLD = 0  # stands for the vehicle where a fault is not of one
+WORLD = 0  # in place of a vehicle, of faults that disturb none
 
 
 @dataclass

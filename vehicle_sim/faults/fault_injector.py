@@ -94,8 +94,8 @@ class FaultInjector(FaultInterface):
 
     def reported_sample(self, vehicle: int, sample: Measurement | None) -> Told:
         """Return what the vehicle reports."""
-        told = Told(sample, sample)
-        return told if sample is None else self._through(REPORTED, vehicle, sample.time, told)
+        report = Told(sample, sample)
+        return report if sample is None else self._through(REPORTED, vehicle, sample.time, report)
 
     def payload_sample(self, vehicle: int, sample: Measurement) -> Measurement | None:
         """Return what the vehicle relays."""

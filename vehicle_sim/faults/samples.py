@@ -30,9 +30,9 @@ class SampleImpairment:
         """Return what the vehicle's autopilot gets."""
         return sample
 
-    def reported(self, vehicle: int, told: Told, moment: Moment) -> Told:
+    def reported(self, vehicle: int, report: Told, moment: Moment) -> Told:
         """Return what the vehicle reports of itself."""
-        return told
+        return report
 
     def payload(self, vehicle: int, sample: Measurement, moment: Moment) -> Measurement | None:
         """Return what the vehicle relays of the payload's navigation unit."""

@@ -37,9 +37,9 @@ class PositionLost(_Lost):
         last = self.last(sample, moment)
         return sample._replace(position=last.position, velocity=last.velocity)
 
-    def reported(self, vehicle: int, told: Told, moment: Moment) -> Told:
+    def reported(self, vehicle: int, report: Told, moment: Moment) -> Told:
         """Return the report without it."""
-        return told._replace(position=None)
+        return report._replace(position=None)
 
 
 class AttitudeLost(_Lost):
@@ -49,9 +49,9 @@ class AttitudeLost(_Lost):
         """Return the sample with the last measured values."""
         return sample._replace(attitude=self.last(sample, moment).attitude)
 
-    def reported(self, vehicle: int, told: Told, moment: Moment) -> Told:
+    def reported(self, vehicle: int, report: Told, moment: Moment) -> Told:
         """Return the report without it."""
-        return told._replace(attitude=None)
+        return report._replace(attitude=None)
 
 
 class RatesLost(_Lost):
@@ -61,10 +61,10 @@ class RatesLost(_Lost):
         """Return the sample with the last measured rates."""
         return sample._replace(rates=self.last(sample, moment).rates)
 
-    def reported(self, vehicle: int, told: Told, moment: Moment) -> Told:
+    def reported(self, vehicle: int, report: Told, moment: Moment) -> Told:
         """Return the report with rates of NaN: MAVLink's unknown value."""
-        attitude = told.attitude
-        return told if attitude is None else told._replace(attitude=attitude._replace(rates=(math.nan,) * 3))
+        attitude = report.attitude
+        return report if attitude is None else report._replace(attitude=attitude._replace(rates=(math.nan,) * 3))
 
 
 class PositionGlitch(SampleImpairment):

@@ -107,9 +107,9 @@ class StaleStamps(SampleImpairment):
 
     acts_on = frozenset({REPORTED, PAYLOAD, SCAN})
 
-    def reported(self, vehicle: int, told: Told, moment: Moment) -> Told:
+    def reported(self, vehicle: int, report: Told, moment: Moment) -> Told:
         """Return the report with earlier stamps."""
-        attitude, position = told
+        attitude, position = report
         old_attitude = None if attitude is None else self._aged(attitude)
         return Told(
             old_attitude,

@@ -117,15 +117,15 @@ class ValueImpairment(SampleImpairment):
         """Return the disturbed measurement."""
         return self._changed(sample, moment)
 
-    def reported(self, vehicle: int, told: Told, moment: Moment) -> Told:
+    def reported(self, vehicle: int, report: Told, moment: Moment) -> Told:
         """Return the report, disturbed in the message that carries the channel."""
         if self._channel in ("position", "velocity"):
-            before = told.position
+            before = report.position
             after = None if before is None else self._changed(before, moment)
-            return told if after is before else told._replace(position=after)
-        before = told.attitude
+            return report if after is before else report._replace(position=after)
+        before = report.attitude
         after = None if before is None else self._changed(before, moment)
-        return told if after is before else told._replace(attitude=after)
+        return report if after is before else report._replace(attitude=after)
 
     def payload(self, vehicle: int, sample: Measurement, moment: Moment) -> Measurement:
         """Return the disturbed sample; the same for all relays of it, if the fault is in the unit."""
@@ -162,10 +162,10 @@ class SwappedVehicles(SampleImpairment):
         vehicle = fault.vehicles[0]
         return dict.fromkeys((vehicle, fault.settings.other), cls(fault, vehicle, system))
 
-    def reported(self, vehicle: int, told: Told, moment: Moment) -> Told:
+    def reported(self, vehicle: int, report: Told, moment: Moment) -> Told:
         """Return the other vehicle's report."""
-        self._latest[vehicle] = told
-        return self._latest.get(self._other[vehicle], told)
+        self._latest[vehicle] = report
+        return self._latest.get(self._other[vehicle], report)
 
 
 SAMPLE_IMPAIRMENTS: dict[type, type[SampleImpairment]] = {

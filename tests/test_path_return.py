@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from gcs.record.path_return import return_times
 from gcs.record.run_data import read_run
 from gcs.record.tables import REFERENCE_COLUMNS, TableWriter
-from gcs.record.way_back import ways_back
 from idc_controller.geometry.sphere import Sphere
 from vehicle_sim.world.obstacle_bodies import Obstacle
 from vehicle_sim.world.truth_log import TruthLog
@@ -28,18 +28,18 @@ def flown(folder, back_at, until=20.0):
     return read_run(folder)
 
 
-def test_the_way_is_free_when_the_formation_would_pass_and_the_payload_is_back_later(tmp_path):
-    ((free, after),) = ways_back(flown(tmp_path / "run", back_at=14.0), room=0.6)
+def test_return_time_counts_from_the_reference_being_free_until_the_payload_is_back(tmp_path):
+    ((free, after),) = return_times(flown(tmp_path / "run", back_at=14.0), clearance=0.6)
     # The discs' rim is 0.8 m behind the payload, and 0.6 m behind the sphere's far side at 10.5 m: 1.9 m past it.
     assert free == pytest.approx(10.5 + 0.6 + 0.8, abs=0.25)
     assert free + after == pytest.approx(14.0, abs=0.021)
 
 
-def test_one_that_never_comes_back_counts_until_the_end(tmp_path):
-    ((free, after),) = ways_back(flown(tmp_path / "run", back_at=99.0), room=0.6)
+def test_return_time_lasts_to_the_end_of_a_payload_that_never_returns(tmp_path):
+    ((free, after),) = return_times(flown(tmp_path / "run", back_at=99.0), clearance=0.6)
     assert free + after == pytest.approx(20.0)
 
 
-def test_without_an_obstacle_in_the_way_there_is_no_way_back(tmp_path):
+def test_return_times_are_empty_without_an_obstacle_on_the_reference(tmp_path):
     run = flown(tmp_path / "run", back_at=6.0, until=8.0)
-    assert ways_back(run, room=0.6) == []
+    assert return_times(run, clearance=0.6) == []

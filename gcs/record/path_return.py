@@ -1,4 +1,4 @@
-"""How soon the payload is back on the mission's way once an obstacle has cleared it."""
+"""How soon the payload is back on the reference once an obstacle has cleared it."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ BACK = 0.1  # m from the reference
 EVERY = 5  # rows of the reference: ten times a second
 
 
-def ways_back(run: RunData, room: float) -> list[tuple[float, float]]:
-    """When the way became free (s), and how long from then on (s) until the payload was within :data:`BACK` of it.
+def return_times(run: RunData, clearance: float) -> list[tuple[float, float]]:
+    """Return when the reference became free (s), and how long after that (s) the payload was within :data:`BACK` of it.
 
-    The way is free while the formation, level and with its links upright, would keep ``room`` (m) to all obstacles on
-    the reference. Where it did not come back, until the end.
+    The reference is free while the formation on it, level and with its links upright, keeps ``clearance`` (m) to all
+    obstacles. Where the payload did not come back, the time to the end.
     """
     if run.reference is None or not run.obstacles or not run.number_of_uavs or not len(run.time):
         return []
@@ -35,7 +35,7 @@ def ways_back(run: RunData, room: float) -> list[tuple[float, float]]:
         uav_quaternion=np.tile(level, (len(time), len(upright), 1)),
         obstacles=tuple(replace(track, position=_at(time, run.time, track.position)) for track in run.obstacles),
     )
-    free = np.nan_to_num(planned.clearance(), nan=np.inf).min(axis=1) >= room
+    free = np.nan_to_num(planned.clearance(), nan=np.inf).min(axis=1) >= clearance
     at, error = position_error(run)
     near = at[np.linalg.norm(error, axis=1) <= BACK]
     cleared = time[1:][free[1:] & ~free[:-1]]
