@@ -60,7 +60,7 @@ def test_ways_across_the_fence_are_noted(tmp_path: Path) -> None:
     behind = row(16, north=60.0)
     for fence in ({"geoFence__circles": [CIRCLE]}, {"geoFence__polygons": [area(5)]}):
         notes = read(tmp_path, plan(TAKE_OFF, behind, row(177, 2, -1), **fence)).notes
-        assert [n for n in notes if n.startswith("item 2") and "leads across fence" in n]
+        assert [n for n in notes if n.startswith("item 2") and "crosses fence" in n]
         assert not read(tmp_path, plan(TAKE_OFF, A, RETURN, **fence)).notes
 
 
