@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from idc_controller.rotations import quaternion_product
-from vehicle_sim.autopilot.navigation import FROZEN_AFTER, Navigation
+from vehicle_sim.autopilot.navigation import Navigation
+from vehicle_sim.autopilot.settings import NavigationSettings
 from vehicle_sim.world.sensors import Measurement
 
 STEP, LAG, NOISE = 0.004, 0.05, math.radians(0.2)
@@ -44,13 +45,13 @@ def angle(a, b):
 
 def flown(wrong, duration=4.0, healthy=0.5):
     """[(believed, body's attitude, body's rates)] of samples of which ``wrong(sample)`` is off after a while."""
-    body, navigation, found = Turning(), Navigation(LAG), []
+    body, navigation, found = Turning(), Navigation(LAG, NavigationSettings()), []
     while body.time < duration:
         body.step()
         sample = body.sample()
-        known = navigation.update(sample if body.time < healthy else wrong(sample), tuple(body.asked))
+        known = navigation.update(sample if body.time < healthy else wrong(sample), tuple(body.asked), body.time)
         if body.time > healthy + 0.1:
-            found.append((known, body.attitude, body.rates, navigation.told))
+            found.append((known, body.attitude, body.rates, navigation.reported))
     return found
 
 
@@ -65,11 +66,11 @@ def frozen(channel):
 
 
 def test_sound_samples_are_taken_as_they_are():
-    navigation, body = Navigation(LAG), Turning()
+    navigation, body = Navigation(LAG, NavigationSettings()), Turning()
     for _ in range(10):
         body.step()
         sample = body.sample()
-        assert navigation.update(sample, (0.0, 0.0, 0.0)) == sample == navigation.told
+        assert navigation.update(sample, (0.0, 0.0, 0.0), sample.time) == sample == navigation.reported
 
 
 @pytest.mark.parametrize("wrong", [lambda s: s._replace(rates=NAN), frozen("rates")])
@@ -99,23 +100,23 @@ def test_position_and_velocity_stay_what_they_were():
 
 
 def test_a_sensor_that_comes_back_is_believed_again():
-    body, navigation = Turning(), Navigation(LAG)
+    body, navigation = Turning(), Navigation(LAG, NavigationSettings())
     for k in range(200):
         body.step()
         sample = body.sample(**({"rates": NAN} if 50 <= k < 150 else {}))
-        known = navigation.update(sample, tuple(body.asked))
-    assert known == sample == navigation.told
+        known = navigation.update(sample, tuple(body.asked), body.time)
+    assert known == sample == navigation.reported
 
 
 def test_before_the_first_sound_sample_nothing_is_known():
-    navigation = Navigation(LAG)
-    assert navigation.update(Turning().sample(rates=NAN), (0.0, 0.0, 0.0)) is None
-    assert navigation.told is None
+    navigation = Navigation(LAG, NavigationSettings())
+    assert navigation.update(Turning().sample(rates=NAN), (0.0, 0.0, 0.0), 0.0) is None
+    assert navigation.reported is None
 
 
 def test_a_body_at_rest_without_noise_is_not_taken_for_a_broken_sensor():
     rest = Measurement(0.0, (1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, -0.5), (0.0, 0.0, 0.0))
-    navigation = Navigation(LAG)
-    for k in range(3 * FROZEN_AFTER):
+    navigation = Navigation(LAG, NavigationSettings())
+    for k in range(3 * NavigationSettings.stuck_after):
         sample = rest._replace(time=k * STEP)
-        assert navigation.update(sample, (0.0, 0.0, 0.0)) == sample == navigation.told
+        assert navigation.update(sample, (0.0, 0.0, 0.0), sample.time) == sample == navigation.reported

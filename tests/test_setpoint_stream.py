@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from idc_controller.rotations import quaternion_from_euler
-from vehicle_sim.autopilot.setpoint_stream import HELD_FOR, MEAN_OVER, SetpointStream
+from vehicle_sim.autopilot.setpoint_stream import SetpointStream
 from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
+from vehicle_sim.autopilot.settings import SetpointSettings
 
 PERIOD = 0.05
 
@@ -23,21 +24,21 @@ def pitch_of(setpoint):
 
 
 def stream_of(setpoints):
-    stream = SetpointStream()
+    stream = SetpointStream(SetpointSettings())
     for k, setpoint in enumerate(setpoints):
         stream.add(setpoint, k * PERIOD)
     return stream, (len(setpoints) - 1) * PERIOD
 
 
 def test_before_the_first_there_is_none():
-    stream = SetpointStream()
+    stream = SetpointStream(SetpointSettings())
     assert stream.at(1.0) is None
     assert stream.last_time == -math.inf
 
 
 def test_the_last_one_is_flown_as_it_is_while_others_follow():
     stream, last = stream_of([pitched(0.0), pitched(0.3)])
-    for since in (0.0, PERIOD, HELD_FOR - 1e-6):
+    for since in (0.0, PERIOD, SetpointSettings.hold - 1e-6):
         assert pitch_of(stream.at(last + since)) == pytest.approx(0.3)
 
 
@@ -47,8 +48,8 @@ def test_in_a_gap_the_mean_of_the_last_ones_is_flown(sign):
     stream, last = stream_of(
         [pitched(a, t, sign if k % 2 else 1.0) for k, (a, t) in enumerate(zip(angles, thrusts, strict=True))]
     )
-    flown = stream.at(last + HELD_FOR + 0.001)
-    kept = round(MEAN_OVER / PERIOD) + 1
+    flown = stream.at(last + SetpointSettings.hold + 0.001)
+    kept = round(SetpointSettings.mean_over / PERIOD) + 1
     assert pitch_of(flown) == pytest.approx(np.mean(angles[-kept:]), abs=1e-3)
     assert flown.thrust == pytest.approx(np.mean(thrusts[-kept:]))
     assert sum(v * v for v in flown.attitude) == pytest.approx(1.0)
@@ -60,7 +61,7 @@ def test_the_next_one_ends_the_gap():
     stream.at(last + 0.3)
     stream.add(pitched(-0.1), last + 0.3)
     assert pitch_of(stream.at(last + 0.3)) == pytest.approx(-0.1)
-    assert pitch_of(stream.at(last + 0.3 + HELD_FOR + 0.001)) == pytest.approx(-0.1)
+    assert pitch_of(stream.at(last + 0.3 + SetpointSettings.hold + 0.001)) == pytest.approx(-0.1)
 
 
 def test_rates_or_a_thrust_to_be_kept_have_no_mean():

@@ -21,7 +21,7 @@ from vehicle_bench import (
 
 from gcs.mavlink import px4
 from gcs.mavlink.codec import Codec
-from vehicle_sim.autopilot.parameter_table import SETPOINT_LOSS
+from vehicle_sim.autopilot.settings import FailsafeSettings
 from vehicle_sim.mavlink.settings import VehicleLinkSettings
 
 
@@ -38,7 +38,7 @@ def test_no_stranger_commands_a_controlled_vehicle(flying: Bench) -> None:
     flying.vehicle.step(flying.body.measure(), flying.now)
     assert flying.vehicle.autopilot.armed and flying.vehicle.autopilot.mode == px4.MODE_OFFBOARD
     assert flying.vehicle.autopilot.attitude_target[2] == pytest.approx(HOVER)
-    assert flying.vehicle.parameters["COM_OF_LOSS_T"] == pytest.approx(SETPOINT_LOSS)
+    assert flying.vehicle.parameters["COM_OF_LOSS_T"] == pytest.approx(FailsafeSettings.setpoint_loss)
     assert flying.result(command(512, mavlink.MAVLINK_MSG_ID_HOME_POSITION), STRANGER) == ACCEPTED
 
 
@@ -64,7 +64,7 @@ def test_who_asks_for_too_much_at_once_does_not_get_it(flying: Bench) -> None:
 
 def test_another_ground_may_take_over_once_the_stream_is_silent(flying: Bench) -> None:
     flying.streaming = {(STRANGER, 42): attitude_target(thrust=HOVER)}
-    flying.run(SETPOINT_LOSS - 0.08)
+    flying.run(FailsafeSettings.setpoint_loss - 0.08)
     assert flying.result(OFFBOARD, STRANGER, 42) == DENIED
     flying.run(0.3)
     assert flying.vehicle.autopilot.failsafe  # its set-points do not fly the vehicle by themselves
@@ -114,7 +114,7 @@ def test_mutated_datagrams_neither_raise_nor_command(flying: Bench) -> None:
     assert vehicle.autopilot.armed and vehicle.autopilot.mode == px4.MODE_OFFBOARD
     assert vehicle.autopilot.changes == before
     assert vehicle.autopilot.attitude_target[2] == pytest.approx(HOVER)
-    assert vehicle.parameters["COM_OF_LOSS_T"] == pytest.approx(SETPOINT_LOSS)
+    assert vehicle.parameters["COM_OF_LOSS_T"] == pytest.approx(FailsafeSettings.setpoint_loss)
 
 
 def test_every_message_with_random_contents_from_a_stranger_is_survived_and_changes_nothing(flying: Bench) -> None:
@@ -130,4 +130,6 @@ def test_every_message_with_random_contents_from_a_stranger_is_survived_and_chan
         vehicle.step(flying.body.measure(), flying.now)
         vehicle.datagrams_to_send(flying.now)
     assert vehicle.autopilot.changes == before
-    assert vehicle.autopilot.armed and vehicle.parameters["COM_OF_LOSS_T"] == pytest.approx(SETPOINT_LOSS)
+    assert vehicle.autopilot.armed and vehicle.parameters["COM_OF_LOSS_T"] == pytest.approx(
+        FailsafeSettings.setpoint_loss
+    )

@@ -12,6 +12,7 @@ from gcs.mavlink.address import Address
 from gcs.mission import Home as MissionHome
 from gcs.mission import Obstacle
 from vehicle_sim.autopilot.airframe import Airframe
+from vehicle_sim.autopilot.settings import AutopilotSettings, FailsafeSettings
 from vehicle_sim.faults.interface import FaultInterface
 from vehicle_sim.mavlink.geodesy import Home
 from vehicle_sim.mavlink.vehicle import Vehicle
@@ -82,11 +83,12 @@ class Swarm:
             for i in range(system.number_of_uavs)
         ]
         where = Home() if home is None else Home(home.latitude, home.longitude, home.altitude)
+        settings = AutopilotSettings(failsafe=FailsafeSettings(setpoint_loss=config.flight.failsafe.telemetry_timeout))
         self.vehicles = tuple(
             Vehicle(
                 i, airframe, onboard_rate=rates.onboard, telemetry_rate=rates.telemetry, home=where,
                 ground_address=ground_address, clock=partial(self._faults.clock, i),
-                setpoint_loss=config.flight.failsafe.telemetry_timeout,
+                autopilot_settings=settings,
             )
             for i, airframe in enumerate(airframes, start=1)
         )  # fmt: skip
@@ -222,7 +224,7 @@ class Swarm:
             )
             vehicle.relay(faults.payload_sample(vehicle.system_id, payload_sample))
             self._commands[i] = vehicle.step(faults.own_sample(vehicle.system_id, sample), now)
-            vehicle.report(faults.reported_sample(vehicle.system_id, vehicle.autopilot.told_measurement))
+            vehicle.report(faults.reported_sample(vehicle.system_id, vehicle.autopilot.reported_measurement))
             if self._truth is not None and vehicle.autopilot.changes != self._changes[i]:
                 self._record_mode(i, now)
 

@@ -7,11 +7,11 @@ import sys
 from gcs.errors import GcsError
 from idc_controller.errors import IdcError
 from vehicle_sim.app.arguments import parse
+from vehicle_sim.app.ending import INTERRUPTED
 from vehicle_sim.world.engine_messages import greeting_of_engine_dropped
 from vehicle_sim.world.errors import SimulationError
 
 UNUSABLE_INPUT = 2
-INTERRUPTED = 130
 
 
 def main(argv: list[str] | None = None) -> int:

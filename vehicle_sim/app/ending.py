@@ -14,13 +14,16 @@ from typing import Protocol
 INTERRUPTED = 130
 """Exit status after Ctrl-C."""
 
+LANDING_TIME = 120.0
+"""Simulated seconds that vehicles without a ground get to land."""
+
 
 class _HasFileno(Protocol):
     def fileno(self) -> int: ...
 
 
 class Ending:
-    """Says when to end, and waits for datagrams in such a way that the end is not missed.
+    """Says when to end, and waits for datagrams so that the end is not missed.
 
     ``requested``: end now, with the exit status ``status``. ``parent_gone``: let the vehicles land, then end.
     ``has_parent``: another process owns this one and is gone when ``parent``, a pipe from it, is at its end.

@@ -9,8 +9,7 @@ from collections.abc import Iterator
 from gcs.mavlink.address import Address
 from gcs.mavlink.lockstep import Done, Tick, decode_done
 from gcs.mavlink.udp import arrived
-from vehicle_sim.app.ending import Ending
-from vehicle_sim.app.landing import LANDING_TIME
+from vehicle_sim.app.ending import LANDING_TIME, Ending
 from vehicle_sim.app.sockets import SwarmSockets
 from vehicle_sim.swarm import Swarm
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
-from vehicle_sim.app.ending import Ending
-from vehicle_sim.app.landing import LANDING_TIME
+from vehicle_sim.app.ending import LANDING_TIME, Ending
 from vehicle_sim.app.sockets import SwarmSockets
 from vehicle_sim.swarm import Swarm
 

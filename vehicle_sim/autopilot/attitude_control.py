@@ -15,7 +15,7 @@ class AttitudeController:
     """torque = J (kp e - kd (omega - omega_setpoint)), the e of two attitudes being their angle for small angles.
 
     e = 2 sign(w) (x, y, z) of the rotation from the attitude to the set-point, in the body frame: the shorter way
-    round, whichever sign either quaternion has. ``asked``: the acceleration in brackets, as it was last (rad/s2).
+    round, whichever sign either quaternion has. ``commanded``: the acceleration in brackets, as it was last (rad/s2).
     """
 
     def __init__(self, inertia: Sequence[Sequence[float]], kp: float, kd: float) -> None:
@@ -28,7 +28,7 @@ class AttitudeController:
         )  # fmt: skip
         self._two_kp = 2.0 * kp
         self._kd = kd
-        self.asked: Vector = NO_RATES
+        self.commanded: Vector = NO_RATES
 
     def torque(
         self, attitude: Quaternion, rates: Vector, setpoint: Quaternion | None, setpoint_rates: Vector
@@ -46,7 +46,7 @@ class AttitudeController:
             x += self._two_kp * e_x
             y += self._two_kp * e_y
             z += self._two_kp * e_z
-        self.asked = x, y, z
+        self.commanded = x, y, z
         j_xx, j_yy, j_zz, j_xy, j_xz, j_yz = self._j
         return (
             j_xx * x + j_xy * y + j_xz * z,

@@ -1,8 +1,8 @@
-"""What a vehicle does on its own: brake along its velocity, hold position and altitude, descend.
+"""HOLD and LAND: brake along the velocity, hold position and altitude, descend.
 
-It must do the same as its neighbours, who hang on the same payload and whom it does not hear. So all follow the stop
-plan that came with the last set-point, which the ground made for all of them from one moment; a vehicle whose ground
-sends none makes its own from its state at the moment of the loss.
+A vehicle must do the same as its neighbours, which carry the same payload and from which it receives nothing. So all
+follow the stop plan that came with the last set-point, which the ground made for all of them from one moment; a vehicle
+without one plans from its state at the moment of the loss.
 """
 
 from __future__ import annotations
@@ -17,21 +17,10 @@ from scipy.interpolate import BPoly
 
 from idc_controller.rotations_float import Quaternion, Vector, attitude_of_force
 from idc_controller.trajectory.stop_plan import BRAKING_LIMIT, BRAKING_TIME
+from vehicle_sim.autopilot.settings import HoldSettings
 from vehicle_sim.world.sensors import Measurement
 
-# Horizontal gains 1/s2, 1/s, 1/s3; vertical gains 1/s2, 1/s. There is no vertical integral: four altitudes
-# over-constrain a rigid payload, and integrals would load one link against another.
-HORIZONTAL_KP = 0.8
-HORIZONTAL_KD = 1.5
-HORIZONTAL_KI = 0.1
-INTEGRAL_LIMIT = 2.5  # m/s2
-VERTICAL_KP = 3.2
-VERTICAL_KD = 4.5
-TILT_LIMIT = 0.35  # horizontal acceleration, in g
-VERTICAL_LIMIT = 0.35  # vertical acceleration, in g
-
-DESCENT_RAMP = 1.0  # s to reach the descent speed
-STILL: Vector = (0.0, 0.0, 0.0)
+AT_REST: Vector = (0.0, 0.0, 0.0)
 
 
 class PlannedState(NamedTuple):
@@ -47,7 +36,7 @@ class HoldPlan:
     """To rest along a Bezier curve of degree 4, then down from ``descent_start`` on.
 
     ``control_points``: five, in the world (NED, m), passed from ``start`` on in ``duration`` (times in s); ``yaw`` in
-    rad, ``descent_speed`` in m/s, ``descent_start`` infinite for a plan that stays.
+    rad, ``descent_speed`` in m/s, reached in ``descent_ramp`` (s), ``descent_start`` infinite for a plan that stays.
     """
 
     start: float
@@ -55,14 +44,16 @@ class HoldPlan:
     control_points: tuple[Vector, ...]
     yaw: float
     descent_start: float = math.inf
-    descent_speed: float = 0.5
+    descent_speed: float = HoldSettings.land_speed
+    descent_ramp: float = HoldSettings.descent_ramp
 
     @classmethod
     def braking(
         cls, start: float, position: Vector, velocity: Vector, yaw: float,
-        descent_start: float = math.inf, descent_speed: float = 0.5,
+        descent_start: float = math.inf, descent_speed: float = HoldSettings.land_speed,
+        descent_ramp: float = HoldSettings.descent_ramp,
     ) -> HoldPlan:  # fmt: skip
-        """From an own state to rest along the own horizontal velocity, as 1 - 3 s^2 + 2 s^3 of it.
+        """From the vehicle's state to rest along its horizontal velocity, as 1 - 3 s^2 + 2 s^3 of it.
 
         The altitude is that of the start: a vertical velocity is not braked along, because four noisy integrals of it
         would part.
@@ -72,7 +63,7 @@ class HoldPlan:
         x, y, z = position
         quarter = (x + duration * v_x / 4, y + duration * v_y / 4, z)
         end = (x + duration * v_x / 2, y + duration * v_y / 2, z)
-        return cls(start, duration, (position, quarter, end, end, end), yaw, descent_start, descent_speed)
+        return cls(start, duration, (position, quarter, end, end, end), yaw, descent_start, descent_speed, descent_ramp)
 
     def at(self, now: float) -> PlannedState:
         """The planned state at a time (s)."""
@@ -80,13 +71,13 @@ class HoldPlan:
         (x, y, z), (v_x, v_y, v_z), (a_x, a_y, a_z) = (curve(t).tolist() for curve in self._curves)
         descending = now - self.descent_start
         if descending > 0.0:
-            rate = self.descent_speed / DESCENT_RAMP
-            if descending < DESCENT_RAMP:
+            rate = self.descent_speed / self.descent_ramp
+            if descending < self.descent_ramp:
                 sinking, down = rate * descending, 0.5 * rate * descending**2
                 a_z += rate
             else:
                 sinking = self.descent_speed
-                down = self.descent_speed * (descending - 0.5 * DESCENT_RAMP)
+                down = self.descent_speed * (descending - 0.5 * self.descent_ramp)
             z += down
             v_z += sinking
         return PlannedState((x, y, z), (v_x, v_y, v_z), (a_x, a_y, a_z))
@@ -101,6 +92,10 @@ class HoldPlan:
         """Whether the descent has begun."""
         return now > self.descent_start
 
+    def is_at_descent_speed(self, now: float) -> bool:
+        """Whether the descent has reached its speed."""
+        return now - self.descent_start > self.descent_ramp
+
 
 class HoldController:
     """Follows a plan: from what is measured to an attitude and a thrust.
@@ -109,54 +104,58 @@ class HoldController:
     share.
     """
 
-    def __init__(self, plan: HoldPlan, hover_thrust: float, thrust_min: float, g: float) -> None:
+    def __init__(
+        self, plan: HoldPlan, hover_thrust: float, thrust_min: float, g: float, settings: HoldSettings
+    ) -> None:
         """``hover_thrust`` and the least thrust while in the air in N, ``g`` in m/s2."""
         self.plan = plan
         self._hover_thrust = hover_thrust
         self._thrust_min = thrust_min
         self._g = g
+        self._settings = settings
         self._integral_x = 0.0
         self._integral_y = 0.0
         self._last_time = plan.start
-        self._stands: Vector | None = None
+        self._supported_at: Vector | None = None
 
-    def command(self, measured: Measurement, now: float, standing: bool = False) -> tuple[Quaternion, float]:
+    def command(self, measured: Measurement, now: float, supported: bool = False) -> tuple[Quaternion, float]:
         """Attitude set-point (unit quaternion body to world) and thrust (N).
 
-        ``standing``: the payload stands on the ground. The vehicle then carries itself alone, where it is: what it has
-        learned to hold the payload against the wind would drive it aside, and its link over.
+        ``supported``: the payload stands on the ground. The vehicle then carries its own weight only, where it is: the
+        integral that held the payload against the wind would drive it aside, and tip its link over.
         """
+        gains = self._settings
         x, y, z = measured.position
-        if standing:
-            self._stands = self._stands or measured.position
-            position, velocity, acceleration = PlannedState(self._stands, STILL, STILL)
+        if supported:
+            self._supported_at = self._supported_at or measured.position
+            position, velocity, acceleration = PlannedState(self._supported_at, AT_REST, AT_REST)
             carried = self._thrust_min
         else:
-            self._stands = None
+            self._supported_at = None
             position, velocity, acceleration = self.plan.at(now)
             carried = self._hover_thrust
         v_x, v_y, v_z = measured.velocity
         error_x, error_y = position[0] - x, position[1] - y
         step = min(max(now - self._last_time, 0.0), 0.1)
         self._last_time = now
-        i_x = self._integral_x + HORIZONTAL_KI * error_x * step
-        i_y = self._integral_y + HORIZONTAL_KI * error_y * step
+        i_x = self._integral_x + gains.horizontal_ki * error_x * step
+        i_y = self._integral_y + gains.horizontal_ki * error_y * step
         size = math.hypot(i_x, i_y)
-        if size > INTEGRAL_LIMIT:
-            i_x, i_y = i_x * INTEGRAL_LIMIT / size, i_y * INTEGRAL_LIMIT / size
-        if standing:
+        if size > gains.integral_max:
+            i_x, i_y = i_x * gains.integral_max / size, i_y * gains.integral_max / size
+        if supported:
             i_x = i_y = 0.0
         else:
             self._integral_x, self._integral_y = i_x, i_y
 
-        a_x = acceleration[0] + HORIZONTAL_KP * error_x + HORIZONTAL_KD * (velocity[0] - v_x) + i_x
-        a_y = acceleration[1] + HORIZONTAL_KP * error_y + HORIZONTAL_KD * (velocity[1] - v_y) + i_y
+        a_x = acceleration[0] + gains.horizontal_kp * error_x + gains.horizontal_kd * (velocity[0] - v_x) + i_x
+        a_y = acceleration[1] + gains.horizontal_kp * error_y + gains.horizontal_kd * (velocity[1] - v_y) + i_y
         g = self._g
         size = math.hypot(a_x, a_y)
-        if size > TILT_LIMIT * g:
-            a_x, a_y = a_x * TILT_LIMIT * g / size, a_y * TILT_LIMIT * g / size
-        a_z = acceleration[2] + VERTICAL_KP * (position[2] - z) + VERTICAL_KD * (velocity[2] - v_z)
-        a_z = min(max(a_z, -VERTICAL_LIMIT * g), VERTICAL_LIMIT * g)
+        if size > gains.horizontal_max * g:
+            a_x, a_y = a_x * gains.horizontal_max * g / size, a_y * gains.horizontal_max * g / size
+        a_z = acceleration[2] + gains.vertical_kp * (position[2] - z) + gains.vertical_kd * (velocity[2] - v_z)
+        a_z = min(max(a_z, -gains.vertical_max * g), gains.vertical_max * g)
 
         up = g - a_z
         thrust = carried / g * math.sqrt(a_x * a_x + a_y * a_y + up * up)

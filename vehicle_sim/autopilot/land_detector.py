@@ -1,19 +1,11 @@
-"""Whether a vehicle stands or flies, and what thrust keeps it up: learned from its own motion and thrust."""
+"""Whether a vehicle is on the ground or flies, and its hover thrust: learned from its own motion and thrust."""
 
 from __future__ import annotations
 
 import math
 
+from vehicle_sim.autopilot.settings import LandDetectorSettings
 from vehicle_sim.world.sensors import Measurement
-
-LIFTED = 0.15  # m above where it was armed
-STILL = 0.1  # m/s, vertical
-STILL_TIME = 0.5  # s
-TOUCHED_THRUST = 0.85  # of the hover thrust: the ground carries the rest
-TOUCHED_SINKING = 0.25  # m/s, half of a descent: over a payload that stands a vehicle may still sink aside
-VELOCITY_FILTER = 0.2  # s
-ALTITUDE_FILTER = 0.1  # s
-HOVER_FILTER = 2.0  # s
 
 
 class LandDetector:
@@ -22,8 +14,9 @@ class LandDetector:
     ``in_air``; ``hover_thrust`` (N): the vertical thrust it flew with, low-passed, None before the first flight.
     """
 
-    def __init__(self, weight: float, thrust_max: float) -> None:
+    def __init__(self, weight: float, thrust_max: float, settings: LandDetectorSettings) -> None:
         """``weight`` of the vehicle alone and its largest thrust (N)."""
+        self._settings = settings
         self._weight = weight
         self._thrust_max = thrust_max
         self._altitude: float | None = None
@@ -60,29 +53,29 @@ class LandDetector:
         if self._altitude is None:
             self._altitude = z
             return
-        self._altitude += (z - self._altitude) * step / (ALTITUDE_FILTER + step)
-        self._velocity += (v_z - self._velocity) * step / (VELOCITY_FILTER + step)
+        self._altitude += (z - self._altitude) * step / (self._settings.altitude_filter + step)
+        self._velocity += (v_z - self._velocity) * step / (self._settings.velocity_filter + step)
         _, x, y, _ = measured.attitude
         lift = thrust * (1.0 - 2.0 * (x * x + y * y))
         lift = min(max(lift, self._weight), self._thrust_max)
 
         if not self.in_air:
-            if self._ground is not None and self._ground - self._altitude > LIFTED:
+            if self._ground is not None and self._ground - self._altitude > self._settings.lifted:
                 self.in_air = True
                 self.hover_thrust = lift
             return
         if self.hover_thrust is None or learn:
             hover = lift if self.hover_thrust is None else self.hover_thrust
-            self.hover_thrust = hover + (lift - hover) * step / (HOVER_FILTER + step)
+            self.hover_thrust = hover + (lift - hover) * step / (self._settings.hover_filter + step)
         hover = self.hover_thrust or lift
-        still = abs(self._velocity) < STILL
-        if not still or thrust > 0.5 * (self._weight + hover):
+        slow = abs(self._velocity) < self._settings.vertical_speed_max
+        if not slow or thrust > 0.5 * (self._weight + hover):
             self._light_since = now
-        if self._velocity > TOUCHED_SINKING or thrust > TOUCHED_THRUST * hover:
+        if self._velocity > self._settings.touchdown_sinking or thrust > self._settings.touchdown_thrust * hover:
             self._touching_since = now
         self._light_since = min(self._light_since, now)
         self._touching_since = min(self._touching_since, now)
         self.touching = self._touching_since < now
-        self.touched_down = now - self._touching_since >= STILL_TIME
-        if now - self._light_since >= STILL_TIME:
+        self.touched_down = now - self._touching_since >= self._settings.time
+        if now - self._light_since >= self._settings.time:
             self.start()

@@ -1,28 +1,29 @@
-"""What a vehicle knows of itself while a sensor on board fails."""
+"""A vehicle's estimate of its own state, also while a sensor on board fails."""
 
 from __future__ import annotations
 
 import math
 
 from idc_controller.rotations_float import Quaternion, Vector, half_rotation, turned
+from vehicle_sim.autopilot.settings import NavigationSettings
 from vehicle_sim.world.sensors import Measurement
-
-FROZEN_AFTER = 3  # samples the same to the digit: no sensor's noise repeats itself
-RATES_BANDWIDTH = 30.0  # rad/s, of rates by the attitude: above that of the attitude loop
-_STEP_MAX = 0.05  # s between samples; after longer ones the rates begin anew
 
 
 class Navigation:
-    """Goes by the sensors, and for one that gives no numbers, or always the same, by the others.
+    """Takes the sensors' samples, and for a sensor that is stuck or gives no numbers, an estimate from the others.
 
     The attitude then goes on with the rates; the rates are those that explain the attitude and the torque, by an
     observer of second order; position and velocity stay what they were. A vehicle needs its rates hundreds of times a
     second: with old ones it turns over.
+
+    ``measured_at`` (s): when a usable sample came last.
     """
 
-    def __init__(self, motor_lag: float) -> None:
-        """``motor_lag`` (s): time constant with which torques follow what is asked for."""
+    def __init__(self, motor_lag: float, settings: NavigationSettings) -> None:
+        """``motor_lag`` (s): time constant with which torques follow their commands."""
         self._motor_lag = motor_lag
+        self._settings = settings
+        self.measured_at = -math.inf
         self._known: Measurement | None = None
         self._raw: Measurement | None = None
         self._repeated = {"attitude": 0, "rates": 0}
@@ -30,17 +31,28 @@ class Navigation:
         self._has_rates = True
 
     @property
-    def told(self) -> Measurement | None:
-        """What to tell others: rates that were not measured are NaN, which is MAVLink's way to say so."""
+    def estimate(self) -> Measurement | None:
+        """The state to fly by; None before the first usable sample."""
+        return self._known
+
+    def is_valid(self, now: float) -> bool:
+        """Whether usable samples come."""
+        return now - self.measured_at <= self._settings.timeout
+
+    @property
+    def reported(self) -> Measurement | None:
+        """What to send of it: rates that were not measured are NaN, as MAVLink has it."""
         if self._known is None or self._has_rates:
             return self._known
         return self._known._replace(rates=(math.nan, math.nan, math.nan))
 
-    def update(self, sample: Measurement, asked: Vector) -> Measurement | None:
-        """What to fly by after a ``sample``; None before the first whose numbers all are.
+    def update(self, sample: Measurement, commanded: Vector, now: float) -> Measurement | None:
+        """Return the estimate after a ``sample`` that came at ``now`` (s); None before the first usable one.
 
-        ``asked``: the angular acceleration for which the torque was last set (rad/s2).
+        ``commanded``: the angular acceleration for which the torque was last set (rad/s2).
         """
+        if sample.is_usable():
+            self.measured_at = now
         known = self._known
         if known is None:
             if not sample.is_usable():
@@ -58,7 +70,7 @@ class Navigation:
         if has_rates:
             rates = sample.rates
         elif has_attitude:
-            rates = self._rates_of(sample.attitude, step, asked)
+            rates = self._rates_of(sample.attitude, step, commanded)
         else:
             rates = (0.0, 0.0, 0.0)
         if has_rates or not has_attitude:
@@ -76,23 +88,23 @@ class Navigation:
         # A vehicle at rest in a world without noise has rates of exactly zero.
         repeats = self._raw is not None and getattr(self._raw, channel) == value and any(value)
         self._repeated[channel] = self._repeated[channel] + 1 if repeats else 0
-        return _are_numbers(value) and self._repeated[channel] < FROZEN_AFTER
+        return _are_numbers(value) and self._repeated[channel] < self._settings.stuck_after
 
-    def _rates_of(self, attitude: Quaternion, step: float, asked: Vector) -> Vector:
+    def _rates_of(self, attitude: Quaternion, step: float, commanded: Vector) -> Vector:
         """Body rates (rad/s) by an observer that follows the ``attitude``, ``step`` (s) after the last one."""
         assert self._known is not None
-        if self._observed is None or not 0.0 < step < _STEP_MAX:
-            self._observed = self._known.attitude, self._known.rates, asked
+        if self._observed is None or not 0.0 < step < self._settings.gap_max:
+            self._observed = self._known.attitude, self._known.rates, commanded
         guess, rates, turning = self._observed
         guess = turned(guess, rates, step)
         off = tuple(2.0 * x for x in half_rotation(guess, attitude))
         share = 1.0 - math.exp(-step / self._motor_lag)
-        a, b, c = (now + share * (then - now) for now, then in zip(turning, asked, strict=True))
+        a, b, c = (now + share * (then - now) for now, then in zip(turning, commanded, strict=True))
         p, q, r = (
-            rate + step * (acceleration + RATES_BANDWIDTH**2 * x)
+            rate + step * (acceleration + self._settings.rates_bandwidth**2 * x)
             for rate, acceleration, x in zip(rates, (a, b, c), off, strict=True)
         )
-        i, j, k = (2.0 * RATES_BANDWIDTH * x for x in off)
+        i, j, k = (2.0 * self._settings.rates_bandwidth * x for x in off)
         self._observed = turned(guess, (i, j, k), step), (p, q, r), (a, b, c)
         return p, q, r
 

@@ -8,16 +8,13 @@ from dataclasses import dataclass
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
-from gcs.config.flight_settings import DEFAULTS
 from gcs.mavlink import px4
 from vehicle_sim.autopilot.airframe import Airframe
+from vehicle_sim.autopilot.settings import AutopilotSettings
 from vehicle_sim.world.errors import SimulationError
 
 REAL: int = mavlink.MAV_PARAM_TYPE_REAL32
 INTEGER: int = mavlink.MAV_PARAM_TYPE_INT32
-
-SETPOINT_LOSS = DEFAULTS.failsafe.telemetry_timeout
-"""s without set-points until a vehicle stops, where the system file says nothing else."""
 
 
 class ParameterRefusalError(SimulationError):
@@ -82,9 +79,11 @@ class ParameterTable:
 
 
 def vehicle_parameters(
-    airframe: Airframe, system_id: int, onboard_rate: int, setpoint_loss: float = SETPOINT_LOSS
+    airframe: Airframe, system_id: int, onboard_rate: int, settings: AutopilotSettings | None = None
 ) -> ParameterTable:
     """The parameters of one vehicle with their defaults; ``onboard_rate`` of the attitude loop in Hz."""
+    settings = settings or AutopilotSettings()
+    failsafe = settings.failsafe
     return ParameterTable(
         [
             Parameter(px4.PARAM_THRUST_MAX, airframe.rotors.thrust_max),
@@ -100,17 +99,17 @@ def vehicle_parameters(
             Parameter("CAL_GYRO0_ID", 1, INTEGER),
             Parameter("CAL_ACC0_ID", 1, INTEGER),
             Parameter("CAL_MAG0_ID", 1, INTEGER),
-            Parameter(px4.PARAM_SETPOINT_LOSS, setpoint_loss, limits=(0.1, 60.0)),
-            Parameter(px4.PARAM_LAND_DELAY, 5.0, limits=(0.0, 3600.0)),
-            Parameter(px4.PARAM_LINK_LOSS, 10, INTEGER, limits=(5, 300)),
-            Parameter(px4.PARAM_LAND_SPEED, 0.5, limits=(0.1, 1.0)),
-            Parameter(px4.PARAM_TAKEOFF_ALTITUDE, 2.5, limits=(0.0, 80.0)),
+            Parameter(px4.PARAM_SETPOINT_LOSS, failsafe.setpoint_loss, limits=(0.1, 60.0)),
+            Parameter(px4.PARAM_LAND_DELAY, failsafe.land_delay, limits=(0.0, 3600.0)),
+            Parameter(px4.PARAM_LINK_LOSS, failsafe.link_loss, INTEGER, limits=(5, 300)),
+            Parameter(px4.PARAM_LAND_SPEED, settings.hold.land_speed, limits=(0.1, 1.0)),
+            Parameter(px4.PARAM_TAKEOFF_ALTITUDE, settings.takeoff_altitude, limits=(0.0, 80.0)),
         ]
     )
 
 
 def _float32(value: float) -> float:
-    number = struct.unpack("<f", struct.pack("<f", value))[0]
+    number: float = struct.unpack("<f", struct.pack("<f", value))[0]
     if not math.isfinite(number):
         raise SimulationError(f"{value} cannot be a parameter")
     return number

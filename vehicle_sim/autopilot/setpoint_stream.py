@@ -7,19 +7,18 @@ from collections import deque
 
 from idc_controller.rotations_float import mean_attitude
 from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
-
-HELD_FOR = 0.1  # s: longer than set-points are usually apart
-MEAN_OVER = 0.2  # s
+from vehicle_sim.autopilot.settings import SetpointSettings
 
 
 class SetpointStream:
     """The set-points of the ground in control. Times in s.
 
-    A ground that corrects what it sees with every set-point means each for a moment only: held through a gap, the
-    last of them alone would go on correcting what is over. So the mean of the last ones is flown in a gap.
+    A ground that corrects an error with every set-point means each for a moment only: held through a gap, the last of
+    them would go on correcting an error that is over. So the mean of the last ones is flown in a gap.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, settings: SetpointSettings) -> None:
+        self._settings = settings
         self._recent: deque[tuple[float, AttitudeSetpoint]] = deque()
         self._mean: AttitudeSetpoint | None = None
 
@@ -32,7 +31,7 @@ class SetpointStream:
         """One has come."""
         recent = self._recent
         recent.append((now, setpoint))
-        while now - recent[0][0] > MEAN_OVER:
+        while now - recent[0][0] > self._settings.mean_over:
             recent.popleft()
         self._mean = None
 
@@ -41,7 +40,7 @@ class SetpointStream:
         if not self._recent:
             return None
         time, last = self._recent[-1]
-        if now - time <= HELD_FOR:
+        if now - time <= self._settings.hold:
             return last
         if self._mean is None:
             self._mean = _mean([setpoint for _, setpoint in self._recent])

@@ -1,4 +1,4 @@
-"""What the ground asks for, read from messages: set-points and stop plans, or the reason why they cannot be flown."""
+"""Set-points and stop plans read from messages, or the reason why they cannot be flown."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import NamedTuple
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from idc_controller.rotations_float import Quaternion, Vector
+from vehicle_sim.autopilot.settings import SetpointSettings
 from vehicle_sim.world.errors import SimulationError
 
 _IGNORE_RATE = (
@@ -20,17 +21,14 @@ _IGNORE_ATTITUDE = mavlink.ATTITUDE_TARGET_TYPEMASK_ATTITUDE_IGNORE
 # Bit 32, THRUST_BODY_SET, is not among them: rotors of this kind cannot push sideways.
 _KNOWN_BITS = sum(_IGNORE_RATE) | _IGNORE_THRUST | _IGNORE_ATTITUDE
 
-RATE_LIMIT = 20.0  # rad/s; no set-point of a sane ground asks for more
-NORM_TOLERANCE = 0.1  # of a quaternion's norm; float32 alone stays within 1e-6
 THRUST_TOLERANCE = 1e-4
+_DEFAULT = SetpointSettings()
 
-
-STOP_DURATION_MAX = 60.0  # s
 STOP_POINTS = 5  # control points of a quartic
 
 
 class SetpointError(SimulationError):
-    """A set-point that makes no sense; ``str`` says which field."""
+    """A set-point that cannot be flown; ``str`` says which field, its value and the limit."""
 
 
 class AttitudeSetpoint(NamedTuple):
@@ -47,12 +45,14 @@ class AttitudeSetpoint(NamedTuple):
     time_boot_ms: int
 
 
-def read_setpoint(message: mavlink.MAVLink_set_attitude_target_message) -> AttitudeSetpoint:
+def read_setpoint(
+    message: mavlink.MAVLink_set_attitude_target_message, limits: SetpointSettings = _DEFAULT
+) -> AttitudeSetpoint:
     """The set-point in a SET_ATTITUDE_TARGET message. Raises :class:`SetpointError`.
 
     The type mask's bits as MAVLink defines them. Without an attitude all three rates must be given.
     """
-    mask = message.type_mask
+    mask, rate_max = message.type_mask, limits.rate_max
     if mask & ~_KNOWN_BITS:
         raise SetpointError(f"type_mask {mask} has bits that cannot be flown")
     rates = (
@@ -61,14 +61,14 @@ def read_setpoint(message: mavlink.MAVLink_set_attitude_target_message) -> Attit
         0.0 if mask & _IGNORE_RATE[2] else message.body_yaw_rate,
     )
     # Comparisons are written so that NaN fails them.
-    if not (abs(rates[0]) <= RATE_LIMIT and abs(rates[1]) <= RATE_LIMIT and abs(rates[2]) <= RATE_LIMIT):
-        raise SetpointError(f"body rates {rates} are outside +-{RATE_LIMIT} rad/s")
+    if not (abs(rates[0]) <= rate_max and abs(rates[1]) <= rate_max and abs(rates[2]) <= rate_max):
+        raise SetpointError(f"body rates {rates} are outside +-{rate_max} rad/s")
 
     attitude: Quaternion | None = None
     if not mask & _IGNORE_ATTITUDE:
         w, x, y, z = message.q
         norm = math.sqrt(w * w + x * x + y * y + z * z)
-        if not abs(norm - 1.0) <= NORM_TOLERANCE:
+        if not abs(norm - 1.0) <= limits.quaternion_norm_error_max:
             raise SetpointError(f"quaternion {message.q} has the norm {norm}")
         attitude = (w / norm, x / norm, y / norm, z / norm)
     elif mask & sum(_IGNORE_RATE):
@@ -95,7 +95,9 @@ class StopPlan(NamedTuple):
     yaw: float
 
 
-def read_stop_plan(message: mavlink.MAVLink_trajectory_representation_bezier_message) -> StopPlan:
+def read_stop_plan(
+    message: mavlink.MAVLink_trajectory_representation_bezier_message, limits: SetpointSettings = _DEFAULT
+) -> StopPlan:
     """The plan in a TRAJECTORY_REPRESENTATION_BEZIER of one segment. Raises :class:`SetpointError`."""
     if message.valid_points != STOP_POINTS:
         raise SetpointError(f"a stop plan has {STOP_POINTS} control points, not {message.valid_points}")
@@ -103,8 +105,8 @@ def read_stop_plan(message: mavlink.MAVLink_trajectory_representation_bezier_mes
     if not all(math.isfinite(value) for point in points for value in point):
         raise SetpointError("a control point is not finite")
     duration, yaw = message.delta[0], message.pos_yaw[0]
-    if not 0.0 < duration <= STOP_DURATION_MAX:
-        raise SetpointError(f"delta {duration} is outside 0 .. {STOP_DURATION_MAX} s")
+    if not 0.0 < duration <= limits.stop_duration_max:
+        raise SetpointError(f"delta {duration} is outside 0 .. {limits.stop_duration_max} s")
     if not math.isfinite(yaw):
         raise SetpointError("pos_yaw is not finite")
     return StopPlan(message.time_usec * 1e-6, duration, points, yaw)

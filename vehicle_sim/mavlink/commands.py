@@ -8,7 +8,8 @@ from collections.abc import Callable
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink import px4
-from vehicle_sim.autopilot.autopilot import ACCEPTED, Answer, Autopilot
+from vehicle_sim.autopilot.answer import ACCEPTED, Answer
+from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.mavlink.control_owner import ControlOwner, Sender
 from vehicle_sim.mavlink.dispatcher import Dispatcher, Request
 from vehicle_sim.mavlink.peer import Peer

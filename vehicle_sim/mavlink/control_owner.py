@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from gcs.mavlink.address import Address
-from vehicle_sim.autopilot.autopilot import Answer, Autopilot, rejected_for_now
+from vehicle_sim.autopilot.answer import Answer, rejected_for_now
+from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
 from vehicle_sim.mavlink.settings import VehicleLinkSettings
 

@@ -38,7 +38,7 @@ class SetpointServer:
             self.refused += 1
             return
         try:
-            setpoint = read_setpoint(message)
+            setpoint = read_setpoint(message, self._autopilot.settings.setpoints)
         except SetpointError:
             self.refused += 1
             return
@@ -51,11 +51,11 @@ class SetpointServer:
         if self._owner.in_control(now) != request.sender:
             return
         try:
-            plan = read_stop_plan(message)
+            plan = read_stop_plan(message, self._autopilot.settings.setpoints)
         except SetpointError:
             self.refused += 1
             return
         start = plan.start - (self._clock(now) - now)
         # The ground estimates this clock from stamps of 32 bits, which may have begun anew since.
         start += round((now - start) / STAMP_WRAP) * STAMP_WRAP
-        self._autopilot.stop_plan = plan._replace(start=start)
+        self._autopilot.take_stop_plan(plan._replace(start=start))

@@ -256,12 +256,12 @@ class Telemetry:
     @property
     def _own_attitude(self) -> Measurement | None:
         """The sample whose attitude and rates are sent."""
-        return self._autopilot.told_measurement if self.reported is None else self.reported.attitude
+        return self._autopilot.reported_measurement if self.reported is None else self.reported.attitude
 
     @property
     def _own_position(self) -> Measurement | None:
         """The sample whose position and velocity are sent."""
-        return self._autopilot.told_measurement if self.reported is None else self.reported.position
+        return self._autopilot.reported_measurement if self.reported is None else self.reported.position
 
     @property
     def _own_state(self) -> Measurement | None:

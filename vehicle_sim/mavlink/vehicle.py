@@ -13,7 +13,8 @@ from gcs.mavlink.codec import Codec
 from gcs.mavlink.messages import BROADCAST
 from vehicle_sim.autopilot.airframe import Airframe
 from vehicle_sim.autopilot.autopilot import Autopilot
-from vehicle_sim.autopilot.parameter_table import SETPOINT_LOSS, vehicle_parameters
+from vehicle_sim.autopilot.parameter_table import vehicle_parameters
+from vehicle_sim.autopilot.settings import AutopilotSettings
 from vehicle_sim.mavlink.commands import CommandServer
 from vehicle_sim.mavlink.control_owner import ControlOwner
 from vehicle_sim.mavlink.dispatcher import Dispatcher, Request
@@ -51,9 +52,9 @@ class Vehicle:
         ground_address: Address | None = None,
         boot_time: float = 0.0,
         clock: Callable[[float], float] = float,
+        autopilot_settings: AutopilotSettings | None = None,
         link_settings: VehicleLinkSettings | None = None,
         stream_intervals: StreamIntervals | None = None,
-        setpoint_loss: float = SETPOINT_LOSS,
     ) -> None:
         """``system_id`` 1 .. 255; rates in Hz; ``boot_time`` (s) is the zero of every ``time_boot_ms``.
 
@@ -62,8 +63,8 @@ class Vehicle:
         settings = link_settings or VehicleLinkSettings()
         intervals = default_intervals(stream_intervals or StreamIntervals(), 1.0 / telemetry_rate)
         self.system_id = system_id
-        self.parameters = vehicle_parameters(airframe, system_id, round(onboard_rate), setpoint_loss)
-        self.autopilot = Autopilot(airframe, self.parameters)
+        self.parameters = vehicle_parameters(airframe, system_id, round(onboard_rate), autopilot_settings)
+        self.autopilot = Autopilot(airframe, self.parameters, autopilot_settings)
         self.telemetry = Telemetry(system_id, self.autopilot, home or Home(), boot_time, clock)
         self._decoder = Codec(system_id, px4.AUTOPILOT_COMPONENT)
         self._peers = Peers(lambda address: Peer(address, system_id, intervals, settings), ground_address, settings)
@@ -131,7 +132,7 @@ class Vehicle:
     def datagrams_to_send(self, now: float) -> list[tuple[bytes, Address]]:
         """All that is due at ``now`` (s), each with its address."""
         self._latest = max(self._latest, now)
-        if self.autopilot.changes != self._sent_changes or self.autopilot.notices:
+        if self.autopilot.changes != self._sent_changes or self.autopilot.has_notices():
             self._send_changes()
         return self._peers.datagrams_to_send(self.telemetry, now)
 
@@ -145,6 +146,5 @@ class Vehicle:
     def _send_changes(self) -> None:
         self._sent_changes = self.autopilot.changes
         self._peers.repeat(mavlink.MAVLINK_MSG_ID_HEARTBEAT, mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE)
-        notices, self.autopilot.notices = self.autopilot.notices, []
-        for text in notices:
+        for text in self.autopilot.take_notices():
             self._peers.send_statustext(text)

@@ -1,0 +1,27 @@
+"""What a command to the autopilot is answered with."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import pymavlink.dialects.v20.ardupilotmega as mavlink
+
+
+class Answer(NamedTuple):
+    """A command's outcome: a MAV_RESULT, and for people the reason of a refusal."""
+
+    result: int
+    text: str = ""
+
+
+ACCEPTED = Answer(mavlink.MAV_RESULT_ACCEPTED)
+
+
+def denied(text: str) -> Answer:
+    """A command that the vehicle does not obey."""
+    return Answer(mavlink.MAV_RESULT_DENIED, text)
+
+
+def rejected_for_now(text: str) -> Answer:
+    """A command that may succeed later."""
+    return Answer(mavlink.MAV_RESULT_TEMPORARILY_REJECTED, text)

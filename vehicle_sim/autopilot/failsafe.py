@@ -1,0 +1,96 @@
+"""A vehicle's failsafes: condition, parameter, action, as one table; ``docs/architecture.md`` mirrors it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from gcs.mavlink import px4
+from vehicle_sim.autopilot.flight_state import FlightState
+
+
+@dataclass(frozen=True)
+class Failsafe:
+    """What happens when a condition holds; in flight the vehicle is then in failsafe, until a ground commands it."""
+
+    name: str
+    parameter: str
+    """The PX4 parameter that decides when."""
+    condition: Callable[[FlightState, float], bool]
+    action: Callable[[FlightState, float], None]
+    notice: str
+    """Text for people; empty: none."""
+
+
+def check_failsafes(state: FlightState, now: float) -> None:
+    """Take the action of the first failsafe whose condition holds."""
+    for failsafe in FAILSAFES:
+        if failsafe.condition(state, now):
+            failsafe.action(state, now)
+            if failsafe.notice:
+                state.notices.append(failsafe.notice)
+            return
+
+
+def _setpoints_lost(state: FlightState, now: float) -> bool:
+    return state.mode == px4.MODE_OFFBOARD and not state.failsafe and not state.has_fresh_setpoints(now)
+
+
+def _setpoints_lost_in_flight(state: FlightState, now: float) -> bool:
+    return _setpoints_lost(state, now) and state.armed and state.is_up
+
+
+def _setpoints_lost_armed(state: FlightState, now: float) -> bool:
+    return _setpoints_lost(state, now) and state.armed
+
+
+def _data_link_lost(state: FlightState, now: float) -> bool:
+    return (
+        state.mode == px4.MODE_HOLD
+        and state.hold is not None
+        and not state.is_descending
+        and now - state.link_time > state.parameters[px4.PARAM_LINK_LOSS]
+    )
+
+
+def _hold_then_land(state: FlightState, now: float) -> None:
+    state.failsafe = True
+    state.begin_hold(now, descent_start=now + state.parameters[px4.PARAM_LAND_DELAY])
+
+
+def _disarm(state: FlightState, now: float) -> None:
+    state.stop()
+
+
+def _land(state: FlightState, now: float) -> None:
+    if state.armed and state.land.in_air:
+        state.begin_descent(now)
+    elif state.armed:
+        state.stop()
+    state.failsafe = True
+
+
+FAILSAFES = (
+    Failsafe(
+        "offboard_loss",
+        px4.PARAM_SETPOINT_LOSS,
+        _setpoints_lost_in_flight,
+        _hold_then_land,
+        "Set-points lost: braking and holding",
+    ),
+    Failsafe(
+        "offboard_loss_on_ground",
+        px4.PARAM_SETPOINT_LOSS,
+        _setpoints_lost_armed,
+        _disarm,
+        "Set-points lost on the ground: disarmed",
+    ),
+    Failsafe("offboard_loss_disarmed", px4.PARAM_SETPOINT_LOSS, _setpoints_lost, _disarm, ""),
+    Failsafe(
+        "data_link_loss",
+        px4.PARAM_LINK_LOSS,
+        _data_link_lost,
+        _land,
+        "No ground station: descending",
+    ),
+)

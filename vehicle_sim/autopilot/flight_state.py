@@ -1,0 +1,130 @@
+"""The state of a vehicle's flight, and the transitions that modes, failsafes and arming share."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+
+from gcs.mavlink import px4
+from idc_controller.rotations_float import euler_of
+from vehicle_sim.autopilot.actuation import Actuation
+from vehicle_sim.autopilot.airframe import Airframe
+from vehicle_sim.autopilot.hold_control import HoldController, HoldPlan
+from vehicle_sim.autopilot.land_detector import LandDetector
+from vehicle_sim.autopilot.navigation import Navigation
+from vehicle_sim.autopilot.parameter_table import ParameterTable
+from vehicle_sim.autopilot.setpoint_stream import SetpointStream
+from vehicle_sim.autopilot.setpoints import StopPlan
+from vehicle_sim.autopilot.settings import AutopilotSettings
+from vehicle_sim.world.sensors import Measurement
+
+TIME_TOLERANCE = 1e-6  # s: sums of steps are not exact
+
+
+@dataclass(eq=False)
+class FlightState:
+    """One vehicle's flight.
+
+    More than a dozen attributes, because it is what all parts of the autopilot share: six parts that hold a state of
+    their own, and the state of the flight itself.
+    """
+
+    airframe: Airframe
+    parameters: ParameterTable
+    settings: AutopilotSettings
+    navigation: Navigation
+    land: LandDetector
+    actuation: Actuation
+    setpoints: SetpointStream
+    mode: int = px4.MODE_HOLD
+    """The custom mode that was commanded."""
+    armed: bool = False
+    failsafe: bool = False
+    """Whether it flies otherwise than commanded."""
+    hold: HoldController | None = None
+    """How it brakes, holds and descends; None: it does not."""
+    stop_plan: StopPlan | None = None
+    """The newest of the ground in control."""
+    link_time: float = -math.inf
+    """When a message of any ground came last (s)."""
+    now: float = -math.inf
+    """Of the last step (s)."""
+    notices: list[str] = field(default_factory=list)
+    """Texts for people, not sent yet."""
+
+    @property
+    def flown_mode(self) -> int:
+        """The custom mode that is flown, which in a failsafe is not the one that was commanded."""
+        if not self.failsafe:
+            return self.mode
+        return px4.MODE_LAND if self.is_descending else px4.MODE_HOLD
+
+    @property
+    def setpoint_loss_time(self) -> float:
+        """Seconds without set-points until the vehicle brakes and holds."""
+        return self.parameters[px4.PARAM_SETPOINT_LOSS]
+
+    def has_fresh_setpoints(self, now: float) -> bool:
+        """Whether the set-points of OFFBOARD have not stopped."""
+        return now - self.setpoints.last_time < self.setpoint_loss_time - TIME_TOLERANCE
+
+    @property
+    def is_descending(self) -> bool:
+        """Whether it follows a plan to the ground."""
+        return self.hold is not None and self.hold.plan.is_descending(self.now)
+
+    @property
+    def is_up(self) -> bool:
+        """Whether it is off the ground, or upright on its link only because its rotors turn."""
+        supported = self.settings.land_detector.supported_thrust * (self.airframe.mass * self.airframe.g)
+        return self.land.in_air or self.actuation.thrust > supported
+
+    def is_supported(self, now: float) -> bool:
+        """Whether it would sink, but the payload under it stands on the ground."""
+        sinks = self.hold is not None and self.hold.plan.is_at_descent_speed(now)
+        return sinks and self.land.touching
+
+    def begin_hold(self, now: float, descent_start: float) -> None:
+        """Brake and hold by the ground's stop plan, or by one of its own; descend at ``descent_start`` (s)."""
+        measured = self.navigation.estimate
+        if measured is None:
+            return
+        descent = descent_start, self.parameters[px4.PARAM_LAND_SPEED], self.settings.hold.descent_ramp
+        plan = self._plan_of_ground(measured, now, descent) or HoldPlan.braking(
+            now, measured.position, measured.velocity, euler_of(measured.attitude)[2], *descent
+        )
+        thrust, weight = self.actuation.thrust, self.airframe.mass * self.airframe.g
+        if not self.land.in_air:
+            self.land.lift(thrust)
+        hover = self.land.hover_thrust or max(thrust, weight)
+        self.hold = HoldController(plan, hover, weight, self.airframe.g, self.settings.hold)
+
+    def begin_descent(self, now: float) -> None:
+        """Descend from where it is."""
+        if self.hold is None:
+            self.begin_hold(now, descent_start=now)
+        elif not self.is_descending:
+            self.hold.plan = replace(self.hold.plan, descent_start=now)
+        self.mode = px4.MODE_LAND
+        self.failsafe = False
+
+    def stop(self) -> None:
+        """Rotors off. The vehicle is then in HOLD, and any ground may begin anew."""
+        self.armed = False
+        self.failsafe = False
+        self.hold = None
+        self.setpoints.clear()
+        self.stop_plan = None
+        self.actuation.stop(self.now)
+        self.mode = px4.MODE_HOLD
+        self.land.start()
+
+    def _plan_of_ground(
+        self, measured: Measurement, now: float, descent: tuple[float, float, float]
+    ) -> HoldPlan | None:
+        """The ground's stop plan with a ``descent`` (start, speed, ramp), if it is recent and near."""
+        sent, limits = self.stop_plan, self.settings.failsafe
+        if sent is None or not -self.setpoint_loss_time <= now - sent.start <= limits.stop_plan_age:
+            return None
+        plan = HoldPlan(sent.start, sent.duration, sent.control_points, sent.yaw, *descent)
+        return plan if math.dist(plan.at(now).position, measured.position) <= limits.stop_plan_distance else None

@@ -1,0 +1,82 @@
+"""PX4's modes: how each is entered, or why it is not. What OFFBOARD flies is in :mod:`.autopilot`, HOLD and LAND in
+:mod:`.hold_control`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+from gcs.mavlink import px4
+from vehicle_sim.autopilot.answer import ACCEPTED, Answer, denied, rejected_for_now
+from vehicle_sim.autopilot.flight_state import FlightState
+from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
+
+
+def enter_mode(state: FlightState, custom_mode: int, now: float) -> Answer:
+    """Enter any mode but OFFBOARD, which needs set-points; see :func:`enter_offboard`."""
+    enter = _ENTRY.get(custom_mode)
+    if enter is None:
+        return denied(f"{px4.mode_name(custom_mode)} denied: no such mode")
+    return enter(state, custom_mode, now)
+
+
+def enter_offboard(state: FlightState, setpoint: AttitudeSetpoint, received: float, now: float) -> Answer:
+    """Fly the set-points of a ground, the last of which was ``received`` (s) a moment ago."""
+    if state.land.in_air and not state.navigation.is_valid(now):
+        return rejected_for_now("OFFBOARD denied: no navigation data")
+    state.mode = px4.MODE_OFFBOARD
+    state.failsafe = False
+    state.hold = None
+    state.setpoints.clear()
+    state.setpoints.add(setpoint, received)
+    return ACCEPTED
+
+
+def _hold(state: FlightState, custom_mode: int, now: float) -> Answer:
+    """Commanded again, or while it brakes in a failsafe, it goes on with its plan: its neighbours do."""
+    keeps = state.hold is not None and not state.is_descending
+    state.mode = px4.MODE_HOLD
+    state.failsafe = False
+    if keeps and state.hold is not None:
+        state.hold.plan = replace(state.hold.plan, descent_start=math.inf)
+    else:
+        state.hold = None
+        if state.armed and state.is_up:
+            state.begin_hold(now, descent_start=math.inf)
+    return ACCEPTED
+
+
+def _land(state: FlightState, custom_mode: int, now: float) -> Answer:
+    if not state.armed:
+        return rejected_for_now("AUTO.LAND denied: not flying")
+    if state.land.in_air:
+        state.begin_descent(now)
+    else:
+        state.stop()
+    return ACCEPTED
+
+
+def _manual(state: FlightState, custom_mode: int, now: float) -> Answer:
+    if state.armed:
+        return denied(f"{px4.mode_name(custom_mode)} denied: no manual control")
+    state.mode = custom_mode
+    return ACCEPTED
+
+
+def _team_only(state: FlightState, custom_mode: int, now: float) -> Answer:
+    name = px4.mode_name(custom_mode)
+    return denied(f"{name} denied: one vehicle alone would tip the payload; fly together in OFFBOARD")
+
+
+_ENTRY: dict[int, Callable[[FlightState, int, float], Answer]] = {
+    px4.MODE_HOLD: _hold,
+    px4.MODE_LAND: _land,
+    px4.MODE_MANUAL: _manual,
+    px4.MODE_ALTCTL: _manual,
+    px4.MODE_POSCTL: _manual,
+    px4.MODE_TAKEOFF: _team_only,
+    px4.MODE_MISSION: _team_only,
+    px4.MODE_RETURN: _team_only,
+}

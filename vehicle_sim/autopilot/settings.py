@@ -1,0 +1,120 @@
+"""Settings of a vehicle's autopilot."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from gcs.config.flight_settings import DEFAULTS
+from idc_controller.settings import setting
+
+
+@dataclass(frozen=True)
+class ArmingSettings:
+    """Limits of the prearm checks."""
+
+    tilt_max_deg: float = setting(
+        60.0, "deg", "tilt above which the vehicle is taken to lie on its side", gt=0.0, lt=180.0
+    )
+    speed_max: float = setting(1.0, "m/s", "speed above which the vehicle is not armed", gt=0.0)
+    rate_max: float = setting(2.0, "rad/s", "body rate above which the vehicle is not armed", gt=0.0)
+
+
+@dataclass(frozen=True)
+class FailsafeSettings:
+    """Defaults of the failsafe parameters, which the ground may set, and what a failsafe follows."""
+
+    setpoint_loss: float = setting(
+        DEFAULTS.failsafe.telemetry_timeout,
+        "s",
+        "COM_OF_LOSS_T: without set-points in OFFBOARD until the vehicle brakes and holds",
+        ge=0.1,
+        le=60.0,
+    )
+    land_delay: float = setting(5.0, "s", "CLFT_LAND_DELAY: from that hold to the descent", ge=0.0, le=3600.0)
+    link_loss: int = setting(
+        10, "s", "COM_DL_LOSS_T: without a message of any ground until a holding vehicle descends", ge=5, le=300
+    )
+    stop_plan_age: float = setting(2.0, "s", "since its start in which the ground's stop plan may be begun", gt=0.0)
+    stop_plan_distance: float = setting(
+        2.0, "m", "from the stop plan within which it is followed: farther away it does not fit the vehicle", gt=0.0
+    )
+
+
+@dataclass(frozen=True)
+class NavigationSettings:
+    """How the vehicle's own state is estimated while a sensor on board fails."""
+
+    timeout: float = setting(0.2, "s", "without a usable sample until the navigation counts as failed", gt=0.0)
+    stuck_after: int = setting(3, "", "samples equal to the digit after which a sensor counts as stuck", ge=1)
+    rates_bandwidth: float = setting(
+        30.0, "rad/s", "bandwidth of body rates estimated from the attitude: above that of the attitude loop", gt=0.0
+    )
+    gap_max: float = setting(0.05, "s", "between samples; after a longer gap that estimate begins anew", gt=0.0)
+
+
+@dataclass(frozen=True)
+class SetpointSettings:
+    """What is flown of the ground's set-points, and which are refused."""
+
+    hold: float = setting(
+        0.1, "s", "the last set-point is flown; then the mean of the last: longer than set-points are apart", gt=0.0
+    )
+    mean_over: float = setting(0.2, "s", "set-points that the mean is taken of", gt=0.0)
+    rate_max: float = setting(20.0, "rad/s", "largest body rate of a set-point", gt=0.0)
+    quaternion_norm_error_max: float = setting(0.1, "", "deviation of a set-point quaternion's norm from 1", gt=0.0)
+    stop_duration_max: float = setting(60.0, "s", "longest stop plan", gt=0.0)
+
+
+@dataclass(frozen=True)
+class HoldSettings:
+    """Gains and limits of HOLD and LAND.
+
+    There is no vertical integral: four altitudes over-constrain a rigid payload, and integrals would load one link
+    against another.
+    """
+
+    horizontal_kp: float = setting(0.8, "1/s2", "horizontal position gain", gt=0.0)
+    horizontal_kd: float = setting(1.5, "1/s", "horizontal velocity gain", gt=0.0)
+    horizontal_ki: float = setting(0.1, "1/s3", "horizontal integral gain", ge=0.0)
+    integral_max: float = setting(2.5, "m/s2", "largest integral part", ge=0.0)
+    vertical_kp: float = setting(3.2, "1/s2", "altitude gain", gt=0.0)
+    vertical_kd: float = setting(4.5, "1/s", "vertical velocity gain", gt=0.0)
+    horizontal_max: float = setting(0.35, "g", "largest horizontal acceleration", gt=0.0)
+    vertical_max: float = setting(0.35, "g", "largest vertical acceleration", gt=0.0)
+    descent_ramp: float = setting(1.0, "s", "until a descent has reached its speed", gt=0.0)
+    land_speed: float = setting(0.5, "m/s", "MPC_LAND_SPEED: speed of the descent", ge=0.1, le=1.0)
+
+
+@dataclass(frozen=True)
+class LandDetectorSettings:
+    """What tells a vehicle in the air from one on the ground."""
+
+    lifted: float = setting(0.15, "m", "above where it was armed: the vehicle is in the air", gt=0.0)
+    vertical_speed_max: float = setting(0.1, "m/s", "vertical speed of a vehicle on the ground", gt=0.0)
+    time: float = setting(0.5, "s", "for which a condition of the ground must last", gt=0.0)
+    touchdown_thrust: float = setting(
+        0.85, "", "share of the hover thrust below which the ground carries the rest", gt=0.0, lt=1.0
+    )
+    touchdown_sinking: float = setting(
+        0.25, "m/s", "sinking below which a descent is stopped: half of its speed, for vehicles may still sink aside",
+        gt=0.0,
+    )  # fmt: skip
+    velocity_filter: float = setting(0.2, "s", "time constant of the vertical speed", gt=0.0)
+    altitude_filter: float = setting(0.1, "s", "time constant of the altitude", gt=0.0)
+    hover_filter: float = setting(2.0, "s", "time constant of the hover thrust", gt=0.0)
+    supported_thrust: float = setting(
+        0.9, "", "share of the own weight below which something else supports the vehicle", gt=0.0, le=1.0
+    )
+
+
+@dataclass(frozen=True)
+class AutopilotSettings:
+    """All settings of one autopilot."""
+
+    failsafe: FailsafeSettings = field(default_factory=FailsafeSettings)
+    arming: ArmingSettings = field(default_factory=ArmingSettings)
+    navigation: NavigationSettings = field(default_factory=NavigationSettings)
+    setpoints: SetpointSettings = field(default_factory=SetpointSettings)
+    hold: HoldSettings = field(default_factory=HoldSettings)
+    land_detector: LandDetectorSettings = field(default_factory=LandDetectorSettings)
+    takeoff_altitude: float = setting(2.5, "m", "MIS_TAKEOFF_ALT, shown to the ground; AUTO.TAKEOFF is denied", ge=0.0)
