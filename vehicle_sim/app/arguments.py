@@ -12,6 +12,7 @@ from typing import NoReturn
 from rich_argparse import RawDescriptionRichHelpFormatter
 
 from gcs.app.arguments import number, whole_number
+from gcs.app.logs import add_log_arguments
 from gcs.errors import UnusableInput
 
 BASE_PORT = 14540
@@ -79,8 +80,11 @@ def parse(argv: list[str] | None) -> argparse.Namespace:
         help="real time times X (default: 1)")  # fmt: skip
     add("--gui", action="store_true", help="show the world in a window")
     add("--with-parent", action="store_true", help=argparse.SUPPRESS)
+    add_log_arguments(parser)
     add("--version", action="version", version=f"vehicle-sim {_version()}")
     options = parser.parse_args(argv)
+    if options.with_parent:  # which logs what it learns of the vehicles itself
+        options.quiet += 1
     if options.lockstep and options.speed is not None:
         parser.error("--speed: lockstep has no speed of its own, it is as fast as it can be")
     if options.lockstep and options.ground_port:

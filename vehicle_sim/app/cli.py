@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 
+from gcs.app.logs import logging_to
 from gcs.errors import GcsError
 from idc_controller.errors import IdcError
 from vehicle_sim.app.arguments import parse
@@ -21,7 +22,8 @@ def main(argv: list[str] | None = None) -> int:
         options = parse(arguments)
         with greeting_of_engine_dropped():
             from vehicle_sim.app.launch import launch
-        return launch(options, arguments)
+        with logging_to(options):
+            return launch(options, arguments)
     except (GcsError, SimulationError, IdcError) as error:
         print(f"vehicle-sim: {error}", file=sys.stderr)
         return UNUSABLE_INPUT

@@ -11,6 +11,7 @@ from gcs.mavlink.lockstep import Done, Tick, decode_done
 from gcs.mavlink.udp import arrived
 from vehicle_sim.app.ending import LANDING_TIME, Ending
 from vehicle_sim.app.sockets import SwarmSockets
+from vehicle_sim.app.swarm_log import LOG, SwarmLog
 from vehicle_sim.swarm import Swarm
 
 ANSWER_TIME = 5.0  # s of wall time for the ground to answer a tick
@@ -38,6 +39,7 @@ class LockstepDriver:
         self._time_us = round(swarm.time * 1e6)
         self._serial = 0
         self._joining: Address | None = None
+        self._log = SwarmLog(swarm)
 
     def run(self) -> None:
         """Returns when the end is requested, or when the parent is gone and the vehicles have landed.
@@ -50,6 +52,7 @@ class LockstepDriver:
             if ground is None:
                 return
             self._serve(ground)
+            LOG.info("%.2f s: the ground station has left", self._swarm.time)
             self._let_land()
             if ending.has_parent:
                 return
@@ -62,6 +65,7 @@ class LockstepDriver:
                 pass
             if self._joining is not None:
                 ground, self._joining = self._joining, None
+                LOG.info("%.2f s: ground station at %s:%d joins", self._swarm.time, *ground)
                 return ground
             ending.wait([self._clock], None)
         return None
@@ -133,6 +137,7 @@ class LockstepDriver:
     def _send(self) -> None:
         now = self._time_us / 1e6
         self._swarm.advance_to(now)
+        self._log.update()
         for vehicle, datagram, address in self._swarm.datagrams_to_send(now):
             self._sockets.send(vehicle, datagram, address)
 

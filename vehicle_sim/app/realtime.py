@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 from vehicle_sim.app.ending import LANDING_TIME, Ending
 from vehicle_sim.app.sockets import SwarmSockets
+from vehicle_sim.app.swarm_log import SwarmLog
 from vehicle_sim.swarm import Swarm
 
 STRIDE = 0.005  # s of simulated time between looks at the clock when nothing else is due
@@ -62,6 +63,7 @@ class RealTimeDriver:
         self._ending = ending
         self._speed = speed
         self._wall = wall
+        self._log = SwarmLog(swarm)
 
     def run(self) -> None:
         """Returns when the end is requested, or when the parent is gone and the vehicles have landed."""
@@ -93,5 +95,6 @@ class RealTimeDriver:
 
     def _send(self, now: float) -> None:
         self._swarm.advance_to(now)
+        self._log.update()
         for vehicle, datagram, address in self._swarm.datagrams_to_send(now):
             self._sockets.send(vehicle, datagram, address)
