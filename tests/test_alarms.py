@@ -10,7 +10,8 @@ from gcs.campaign.faults.detection import detection, first_start
 from gcs.config.flight_settings import DEFAULTS
 from gcs.flight.alarms import AlarmLog
 from gcs.flight.detectors import EventCounter, MonitorAlarm
-from gcs.mavlink.link_statistics import PATIENCE, LinkStatistics
+from gcs.mavlink.link_statistics import LinkStatistics
+from gcs.mavlink.settings import LinkSettings
 from gcs.mission.model import Fault
 from gcs.mission.read import read_mission
 from gcs.record.tables import ALARM_COLUMNS, read_text_table
@@ -47,8 +48,8 @@ def told(numbers, interval=0.01):
     link = LinkStatistics()
     for k, number in enumerate(numbers):
         link.message(number % 256, interval * k)
-    link.settle(interval * len(numbers) + 2.0 * PATIENCE)
-    return link.lost, link.overtaken, link.twice
+    link.settle(interval * len(numbers) + 2.0 * LinkSettings.reordering_time)
+    return link.lost, link.reordered, link.duplicated
 
 
 @pytest.mark.parametrize(

@@ -11,12 +11,12 @@ from gcs.mavlink.vehicle_link import VehicleLink
 def test_a_clock_that_is_set_back_is_followed_at_once_and_late_datagrams_are_not_taken_for_it():
     clock = RemoteClock()
     for k in range(50):
-        clock.stamped(10.0 + 0.04 * k, 0.04 * k + (0.05 if k % 7 == 0 else 0.0), in_order=True)
+        clock.add_stamp(10.0 + 0.04 * k, 0.04 * k + (0.05 if k % 7 == 0 else 0.0), in_order=True)
     assert clock.offset == pytest.approx(10.0) and clock.set_back == 0.0
-    clock.stamped(10.0 + 0.04 * 48, 2.0, in_order=False)  # overtaken
+    clock.add_stamp(10.0 + 0.04 * 48, 2.0, in_order=False)  # overtaken
     assert clock.offset == pytest.approx(10.0) and clock.set_back == 0.0
     for k in range(50, 60):
-        clock.stamped(9.8 + 0.04 * k, 0.04 * k, in_order=True)
+        clock.add_stamp(9.8 + 0.04 * k, 0.04 * k, in_order=True)
         assert clock.offset == pytest.approx(9.8) and clock.set_back == pytest.approx(0.2)
 
 
@@ -24,21 +24,21 @@ def test_a_clock_that_is_set_back_is_followed_at_once_and_late_datagrams_are_not
 def test_a_clock_that_is_set_is_told_from_one_whose_datagrams_are_late(step):
     clock = RemoteClock()
     for k in range(100):
-        clock.stamped(10.0 + 0.04 * k, 0.04 * k + (0.05 if k % 7 == 0 else 0.0), in_order=True)
-    assert clock.jumped < 0.1  # when it was heard first
+        clock.add_stamp(10.0 + 0.04 * k, 0.04 * k + (0.05 if k % 7 == 0 else 0.0), in_order=True)
+    assert clock.jumped_at < 0.1  # when it was heard first
     for k in range(100, 150):
-        clock.stamped(10.0 + step + 0.04 * k, 0.04 * k, in_order=True)
-    assert clock.jumped == pytest.approx(4.0)
+        clock.add_stamp(10.0 + step + 0.04 * k, 0.04 * k, in_order=True)
+    assert clock.jumped_at == pytest.approx(4.0)
 
 
 def test_stamps_of_setpoints_do_not_go_back_with_the_clock():
     link = VehicleLink(1, None)
     before = []
     for k in range(10):
-        link.clock.stamped(10.0 + 0.05 * k, 0.05 * k, in_order=True)
+        link.clock.add_stamp(10.0 + 0.05 * k, 0.05 * k, in_order=True)
         before.append(link.stamp(0.05 * k))
     assert before == pytest.approx([10.0 + 0.05 * k for k in range(10)])
-    link.clock.stamped(10.1, 0.5, in_order=True)
+    link.clock.add_stamp(10.1, 0.5, in_order=True)
     after = [link.stamp(0.5 + 0.05 * k) for k in range(20)]
     assert after[0] > before[-1]
     assert all(b > a for a, b in pairwise(after))
@@ -47,10 +47,10 @@ def test_stamps_of_setpoints_do_not_go_back_with_the_clock():
 
 def asked_and_answered(clock, trips, until):
     """Round trips that take ``trips(asked)`` (s), asked for every 0.1 s; the answers until then, in their order."""
-    answers = sorted((0.1 * k + trips(0.1 * k), clock.ask(0.1 * k)) for k in range(round(until / 0.1)))
+    answers = sorted((0.1 * k + trips(0.1 * k), clock.request(0.1 * k)) for k in range(round(until / 0.1)))
     for arrival, ts1 in answers:
         if arrival <= until:
-            clock.answered(ts1, arrival)
+            clock.add_answer(ts1, arrival)
     return clock
 
 

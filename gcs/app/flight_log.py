@@ -42,12 +42,12 @@ class _LinkLog:
         self._link = link
         self._mode = (-1, False)
         self._address = link.address
-        self._jumped = link.clock.jumped
+        self._jumped = link.clock.jumped_at
         self._counts = _counts(link)
 
     def update(self, time: float) -> None:
         link, clock = self._link, self._link.clock
-        if not math.isfinite(link.heard):
+        if not math.isfinite(link.received_at):
             return
         who = f"{time:.2f} s: vehicle {link.system_id}"
         if (link.custom_mode, link.armed) != self._mode:
@@ -57,8 +57,8 @@ class _LinkLog:
         if link.address != self._address:
             self._address = link.address
             LOG.info("%s: connected from %s", who, link.address)
-        if clock.jumped != self._jumped:
-            self._jumped = clock.jumped
+        if clock.jumped_at != self._jumped:
+            self._jumped = clock.jumped_at
             LOG.debug("%s: clock jumped, offset %.3f s", who, clock.offset)
         if LOG.isEnabledFor(logging.DEBUG) and (counts := _counts(link)) != self._counts:
             for name, count in counts.items():
@@ -71,8 +71,8 @@ def _counts(link: VehicleLink) -> dict[str, int]:
     found = link.statistics
     return {
         "losses": found.lost,
-        "out of order": found.overtaken,
-        "duplicates": found.twice,
+        "out of order": found.reordered,
+        "duplicates": found.duplicated,
         "damaged datagrams": found.damaged,
         "lost set-points": link.lost_setpoints,
     }

@@ -19,7 +19,7 @@ from gcs.config.flight_settings import MonitorSettings
 from gcs.flight.alarms import AlarmCode, AlarmLog, Severity
 from gcs.flight.control_loop import StepRecord
 from gcs.flight.flight import Flight
-from gcs.mavlink.id_check import Identities
+from gcs.mavlink.id_check import SystemIdCheck
 from gcs.mavlink.vehicle_link import VehicleLink
 from idc_controller.estimation.health.innovation_monitor import Finding, InnovationMonitor
 from idc_controller.estimation.measurements import PAYLOAD, Position
@@ -160,7 +160,7 @@ class Observation:
     time: float
     now: float
     flight: Flight
-    identities: Identities
+    id_check: SystemIdCheck
     log: AlarmLog
     record: StepRecord | None
     in_air: bool
@@ -222,8 +222,8 @@ class TelemetryTimeout:
         """See the class."""
         if not seen.in_air:
             return
-        heard = {seen.name(i): link.whole_telemetry_heard for i, link in enumerate(seen.links)}
-        heard["payload"] = max(link.payload_heard for link in seen.links)
+        heard = {seen.name(i): link.complete_telemetry_received_at for i, link in enumerate(seen.links)}
+        heard["payload"] = max(link.payload_received_at for link in seen.links)
         for name, last in heard.items():
             gap = max(seen.now - last, last - self._last.get(name, last))
             if gap > self._timeout:
@@ -276,8 +276,8 @@ class MessageEvents:
             statistics.settle(seen.now)
             for source, code, events, total in (
                 (name, MonitorAlarm.MESSAGES_LOST, self._events, statistics.lost),
-                (name, MonitorAlarm.MESSAGES_REORDERED, self._events, statistics.overtaken),
-                (name, MonitorAlarm.MESSAGES_DUPLICATED, self._events, statistics.twice),
+                (name, MonitorAlarm.MESSAGES_REORDERED, self._events, statistics.reordered),
+                (name, MonitorAlarm.MESSAGES_DUPLICATED, self._events, statistics.duplicated),
                 (name, MonitorAlarm.MESSAGES_CORRUPTED, self._events, statistics.damaged),
                 (name, MonitorAlarm.VALUES_NOT_FINITE, self._events, statistics.not_finite),
                 ("payload", MonitorAlarm.VALUES_NOT_FINITE, self._events, statistics.payload_not_finite),
@@ -326,7 +326,7 @@ _OF_FINDING = {
 def range_sensors(seen: Observation) -> None:
     """Range sensors that vehicles report as failed."""
     for i, link in enumerate(seen.links):
-        if not link.sees:
+        if not link.obstacle_sensing_valid:
             seen.raise_alarm(seen.name(i), MonitorAlarm.RANGE_SENSOR_FAILED)
 
 
@@ -335,7 +335,7 @@ def estimator_health(seen: Observation) -> None:
     if not seen.clear:
         return
     health = seen.flight.estimator.health
-    for sender, other in seen.identities.mixed_up.items():
+    for sender, other in seen.id_check.swapped.items():
         seen.raise_alarm(seen.name(sender), MonitorAlarm.ID_SWAP, f"sends the data of {seen.name(other)}")
     for channel in health.stuck_channels:
         seen.raise_alarm(seen.name(channel.source), MonitorAlarm.STUCK_SENSOR, channel.name)

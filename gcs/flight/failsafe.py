@@ -188,7 +188,7 @@ def _states_unknown(system: System, moment: Moment) -> Trigger | None:
 
 def _all_telemetry_lost(system: System, moment: Moment) -> Trigger | None:
     timeout = system.settings.telemetry_timeout
-    if any(moment.now - link.telemetry_heard <= timeout for link in system.team.links):
+    if any(moment.now - link.telemetry_received_at <= timeout for link in system.team.links):
         return None
     return Trigger(f"no vehicle sends telemetry for {timeout:g} s", cut_off=timeout)
 
@@ -196,7 +196,7 @@ def _all_telemetry_lost(system: System, moment: Moment) -> Trigger | None:
 def _telemetry_lost(system: System, moment: Moment) -> Trigger | None:
     timeout = system.settings.telemetry_timeout
     for i, link in enumerate(system.team.links):
-        if (age := moment.now - link.telemetry_heard) > timeout:
+        if (age := moment.now - link.telemetry_received_at) > timeout:
             return Trigger(f"vehicle {link.system_id} sends no telemetry for {timeout:g} s", i, age)
     return None
 
@@ -226,7 +226,7 @@ def _offboard_left(system: System, moment: Moment) -> Trigger | None:
 def _telemetry_incomplete(system: System, moment: Moment) -> Trigger | None:
     # The estimator can do without the attitude or the position of one vehicle, but not of several.
     links, timeout = system.team.links, system.settings.telemetry_timeout
-    partial = [link for link in links if moment.now - link.whole_telemetry_heard > timeout]
+    partial = [link for link in links if moment.now - link.complete_telemetry_received_at > timeout]
     if len(partial) < 2:
         return None
     return Trigger(f"vehicles {_names(partial)} do not send all telemetry for {timeout:g} s", len(links))
@@ -236,7 +236,7 @@ def _data_link_lost(system: System, moment: Moment) -> Trigger | None:
     # Vehicles that send nothing may still receive: a pending descent is commanded first.
     if getattr(moment.sequence, "descent_pending", False):
         return None
-    latest, timeout = max(link.heard for link in system.team.links), system.settings.data_link_timeout
+    latest, timeout = max(link.received_at for link in system.team.links), system.settings.data_link_timeout
     lost = math.isfinite(latest) and moment.now - latest > timeout
     return Trigger(f"no message of any vehicle for {timeout:g} s") if lost else None
 

@@ -23,7 +23,7 @@ from gcs.flight.telemetry_router import TelemetryRouter, whole_ms
 from gcs.mavlink import px4
 from gcs.mavlink.address import Address
 from gcs.mavlink.codec import Codec, gather
-from gcs.mavlink.id_check import Identities
+from gcs.mavlink.id_check import SystemIdCheck
 from gcs.mavlink.messages import Message
 from gcs.mavlink.setpoints import attitude_target, stop_plan_message
 from gcs.mavlink.vehicle_link import VehicleLink
@@ -62,11 +62,11 @@ class GroundStation:
         timing = settings.timing
         self.flight = flight
         self._recorder = recorder
-        self._identities = Identities(len(flight.team.links))
-        self._monitor = FlightMonitor(flight, self._identities, flight.failsafes.alarms, settings.monitor)
+        self._id_check = SystemIdCheck(len(flight.team.links))
+        self._monitor = FlightMonitor(flight, self._id_check, flight.failsafes.alarms, settings.monitor)
         self._codec = Codec(GROUND_SYSTEM, GROUND_COMPONENT)
         self._clock = TeamClock(timing)
-        self.router = TelemetryRouter(self._codec, flight, self._clock, self._identities, timing)
+        self.router = TelemetryRouter(self._codec, flight, self._clock, self._id_check, timing)
         self._schedule = SetpointSchedule(timing)
         self._control = StepTimer(1.0 / flight.mission.system.rates.control)
         self._heartbeat = IntervalTimer(timing.heartbeat_interval)
@@ -100,7 +100,7 @@ class GroundStation:
                 queue.append(_heartbeat())
         if self._timesync.is_due(now):
             for link, queue in zip(self.links, messages, strict=True):
-                queue.append(mavlink.MAVLink_timesync_message(0, link.clock.ask(now)))
+                queue.append(mavlink.MAVLink_timesync_message(0, link.clock.request(now)))
         self._stepped = self._control.is_due(now)
         if self.flight.check_links(self._clock.time(now), now):
             # The stop plan goes out before the command to stop, or vehicles stop by another one.
@@ -162,7 +162,9 @@ class GroundStation:
         obstacle_map, estimator = self.flight.system.obstacle_map, self.flight.estimator
         if obstacle_map is None:
             return
-        obstacle_map.set_failed_sensors({i for i, link in enumerate(self.links) if not link.sees}, time)
+        obstacle_map.set_failed_sensors(
+            {i for i, link in enumerate(self.links) if not link.obstacle_sensing_valid}, time
+        )
         noise = math.sqrt(estimator.health.adaptation.measurement_scale)
         obstacle_map.update(time, noise, estimator.unusable_poses(Position), estimator.unusable_poses(Attitude))
         self._recorder.obstacles(obstacle_map, time)
@@ -170,7 +172,7 @@ class GroundStation:
     def _compare(self, record: StepRecord) -> None:
         """Compare estimated vehicle states with what each system id sends; place the detections by them."""
         estimated = self.flight.estimator.vehicles(record.estimate)
-        self._identities.compare(estimated)
+        self._id_check.compare(estimated)
         if (obstacle_map := self.flight.system.obstacle_map) is not None:
             for sample in estimated:
                 obstacle_map.add_estimated_pose(sample)

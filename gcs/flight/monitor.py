@@ -8,16 +8,16 @@ from gcs.flight.control_loop import StepRecord
 from gcs.flight.detectors import ManoeuvreDetector, Observation, detectors
 from gcs.flight.flight import Flight
 from gcs.flight.phase import IN_AIR
-from gcs.mavlink.id_check import Identities
+from gcs.mavlink.id_check import SystemIdCheck
 
 
 class FlightMonitor:
     """Call :meth:`step` once a control step, after the flight's own; times are the team's (s)."""
 
     def __init__(
-        self, flight: Flight, identities: Identities, log: AlarmLog, settings: MonitorSettings = DEFAULTS.monitor
+        self, flight: Flight, id_check: SystemIdCheck, log: AlarmLog, settings: MonitorSettings = DEFAULTS.monitor
     ) -> None:
-        self._flight, self._identities, self._log = flight, identities, log
+        self._flight, self._id_check, self._log = flight, id_check, log
         self._detectors = detectors(flight, settings)
         self._manoeuvre = ManoeuvreDetector(settings)
 
@@ -29,6 +29,6 @@ class FlightMonitor:
         steady = True
         if clear and record is not None:
             steady = self._manoeuvre.is_steady(time, record.decision.u[: 2 * len(flight.team.links)])
-        seen = Observation(time, now, flight, self._identities, self._log, record, in_air, clear, steady)
+        seen = Observation(time, now, flight, self._id_check, self._log, record, in_air, clear, steady)
         for detector in self._detectors:
             detector(seen)

@@ -79,14 +79,14 @@ class Preflight:
 
     def _missing(self, link: VehicleLink, now: float) -> str:
         timeout = self._settings.failsafe.telemetry_timeout
-        if now - link.heard > timeout:
+        if now - link.received_at > timeout:
             if link.address is None:
                 return "has not called in"
-            other = "" if link.found_instead is None else f": vehicle {link.found_instead} does"
+            other = "" if link.other_system_id is None else f": vehicle {link.other_system_id} does"
             return f"does not answer at {link.address[0]}:{link.address[1]}{other}"
-        if now - link.whole_telemetry_heard > timeout:
+        if now - link.complete_telemetry_received_at > timeout:
             return "sends no attitude and position"
-        if now - link.payload_heard > timeout:
+        if now - link.payload_received_at > timeout:
             return "relays no payload navigation data"
         if absent := [name for name in NEEDED_PARAMETERS if name not in link.parameters]:
             return "does not send " + ", ".join(absent)

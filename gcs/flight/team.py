@@ -58,7 +58,7 @@ class Team:
 
     def reachable_are_disarmed(self, now: float, timeout: float) -> bool:
         """Return whether every vehicle with telemetry newer than ``timeout`` (s), and at least one, is disarmed."""
-        reachable = [link for link in self.links if now - link.telemetry_heard <= timeout]
+        reachable = [link for link in self.links if now - link.telemetry_received_at <= timeout]
         return bool(reachable) and not any(link.armed for link in reachable)
 
 

@@ -13,7 +13,7 @@ from gcs.flight.team_clock import TeamClock
 from gcs.mavlink import px4
 from gcs.mavlink.address import Address
 from gcs.mavlink.codec import Codec
-from gcs.mavlink.id_check import Identities
+from gcs.mavlink.id_check import SystemIdCheck
 from gcs.mavlink.messages import Received
 from gcs.mavlink.telemetry import detection, measurement, setpoint_flown
 from gcs.mavlink.vehicle_link import VehicleLink
@@ -35,10 +35,10 @@ class TelemetryRouter:
         codec: Codec,
         flight: Flight,
         clock: TeamClock,
-        identities: Identities,
+        id_check: SystemIdCheck,
         settings: TimingSettings = DEFAULTS.timing,
     ) -> None:
-        self._codec, self._flight, self._clock, self._identities = codec, flight, clock, identities
+        self._codec, self._flight, self._clock, self._id_check = codec, flight, clock, id_check
         self._clock_settled = settings.clock_settled
         self._links = flight.team.links
         self._by_address: dict[tuple[Address, int], int] = {
@@ -86,7 +86,7 @@ class TelemetryRouter:
                 self._by_address[sender, system_id] = i
                 return i
             if link.address == sender:
-                link.found_instead = system_id
+                link.other_system_id = system_id
         return None
 
     def _route(self, received: Received, index: int, latest: float, now: float) -> float:
@@ -107,7 +107,7 @@ class TelemetryRouter:
         elif isinstance(message, mavlink.MAVLink_obstacle_distance_3d_message):
             obstacle_map = self._flight.system.obstacle_map
             # Detections from before a clock jump have the stamp of another pose.
-            if obstacle_map is not None and now - link.clock.jumped > self._clock_settled:
+            if obstacle_map is not None and now - link.clock.jumped_at > self._clock_settled:
                 obstacle_map.add_detection(detection(message), index, time)
         else:
             self._add_measurement(received, index, time)
@@ -123,18 +123,18 @@ class TelemetryRouter:
         # Its stamp is that of the moment at which it began to act.
         until = min(max(time, latest), self._clock.time(now))
         flight = self._flight
-        confirmation = flight.confirm_setpoint(index, time, until, setpoint, link.clock.spread, link.longest_way)
+        confirmation = flight.confirm_setpoint(index, time, until, setpoint, link.clock.spread, link.latency_max)
         if confirmation is not None:
-            link.confirmed(confirmation)
+            link.confirm_setpoint(confirmation)
 
     def _add_measurement(self, received: Received, index: int, time: float) -> None:
         obstacle_map = self._flight.system.obstacle_map
-        sample = measurement(received, self._identities.whose(index), time)
+        sample = measurement(received, self._id_check.vehicle_of(index), time)
         if sample is None or not (sample.has_pose and sample.has_motion):
-            self._links[index].statistics.unusable(received.component)
+            self._links[index].statistics.add_not_finite(received.component)
         if sample is None:
             return
-        self._identities.told(sample)
+        self._id_check.add(sample)
         used = self._flight.add_measurement(sample)
         if obstacle_map is not None and used is not None:
             obstacle_map.add_measured_pose(used)

@@ -1,4 +1,4 @@
-"""Connection URLs: where a vehicle listens, or where the ground listens for vehicles that offer themselves."""
+"""Connection URLs: where a vehicle listens, or where the ground listens for vehicles."""
 
 from __future__ import annotations
 

@@ -87,7 +87,7 @@ class Codec:
                 self.skipped_bytes += 1
                 continue
             if number not in _KNOWN:
-                # Its checksum cannot be verified. Believe its length only if that leads to a frame or the end.
+                # Its checksum cannot be verified. Accept its length only if that leads to a frame or the end.
                 if following == end or datagram[following] in (_V1, _V2):
                     self.unknown_messages += 1
                     position = following

@@ -1,7 +1,7 @@
-"""Whose data a vehicle tells: two may be mixed up, by their ids, their cables or a router between.
+"""Detection of swapped system ids: by configuration, cabling or a router, two vehicles may send as each other.
 
-What a mixed-up vehicle tells is plausible in itself, and a loop that is closed over it pushes both vehicles the wrong
-way. Its positions give it away: they are another's, and that one's are its own.
+Their telemetry is plausible in itself, and a loop that is closed over it pushes both vehicles in the wrong direction.
+Their positions show it: each is at the other's estimate.
 """
 
 from __future__ import annotations
@@ -11,55 +11,54 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from gcs.mavlink.settings import IdCheckSettings
 from idc_controller.estimation.measurements import PAYLOAD, Measurement, Position
 
-NEARER = 2.0
-"""So many times nearer to another's place than to its own are positions that are another's."""
-STEPS = 3
-"""Control steps for which it must be so."""
 
-
-class Identities:
+class SystemIdCheck:
     """Of N vehicles' telemetry. Vehicles are 0 .. N-1."""
 
-    def __init__(self, number_of_uavs: int) -> None:
-        self._whose = list(range(number_of_uavs))
+    def __init__(self, number_of_uavs: int, settings: IdCheckSettings | None = None) -> None:
+        self._settings = settings or IdCheckSettings()
+        self._vehicle_of = list(range(number_of_uavs))
         self._positions: dict[int, NDArray[np.float64]] = {}
         self._suspected: dict[int, int] = {}
         self._steps = 0
 
-    def whose(self, teller: int) -> int:
-        """The vehicle whose data ``teller`` tells."""
-        return self._whose[teller]
+    def vehicle_of(self, sender: int) -> int:
+        """Return the vehicle that sends as ``sender``."""
+        return self._vehicle_of[sender]
 
     @property
-    def mixed_up(self) -> dict[int, int]:
-        """Those who tell another's data, and whose."""
-        return {teller: whose for teller, whose in enumerate(self._whose) if whose != teller}
+    def swapped(self) -> dict[int, int]:
+        """Senders that are another vehicle, and which."""
+        return {sender: vehicle for sender, vehicle in enumerate(self._vehicle_of) if vehicle != sender}
 
-    def told(self, sample: Measurement) -> None:
-        """What has come in as of the vehicle that is its source."""
+    def add(self, sample: Measurement) -> None:
+        """A sample that was received as of the vehicle that is its source."""
         if isinstance(sample, Position) and sample.source != PAYLOAD and sample.has_pose:
             self._positions[sample.source] = sample.position
 
     def compare(self, estimated: Sequence[Measurement]) -> None:
-        """What was told since the last time with where the vehicles are estimated to be; once a control step."""
+        """Compare the samples since the last time with the vehicles' estimates; once a control step."""
         places = np.array([sample.position for sample in estimated if isinstance(sample, Position)])
-        found = _mixed_up(self._positions, places)
+        found = _swapped(self._positions, places, self._settings.distance_ratio)
         self._positions = {}
         self._steps = self._steps + 1 if found and found == self._suspected else int(bool(found))
         self._suspected = found
-        if self._steps >= STEPS:
-            self._whose = [found.get(whose, whose) for whose in self._whose]
+        if self._steps >= self._settings.steps:
+            self._vehicle_of = [found.get(vehicle, vehicle) for vehicle in self._vehicle_of]
             self._suspected, self._steps = {}, 0
 
 
-def _mixed_up(positions: dict[int, NDArray[np.float64]], places: NDArray[np.float64]) -> dict[int, int]:
-    """Vehicles whose ``positions`` are at each other's ``places`` (N, 3), and at whose; otherwise none."""
+def _swapped(
+    positions: dict[int, NDArray[np.float64]], places: NDArray[np.float64], distance_ratio: float
+) -> dict[int, int]:
+    """Return vehicles whose ``positions`` are at each other's ``places`` (N, 3), and at which; otherwise none."""
     at = {}
     for vehicle, position in positions.items():
         away = np.linalg.norm(places - position, axis=1)
         nearest = int(away.argmin())
-        if away[nearest] * NEARER < away[vehicle]:
+        if away[nearest] * distance_ratio < away[vehicle]:
             at[vehicle] = nearest
     return at if set(at) == set(at.values()) else {}

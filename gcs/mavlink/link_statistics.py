@@ -1,28 +1,29 @@
-"""What the sequence numbers of a link's messages tell: lost, out of order, twice."""
+"""Statistics of a link by sequence numbers: messages lost, reordered, duplicated."""
 
 from __future__ import annotations
 
 from collections import deque
 
 from gcs.mavlink import px4
+from gcs.mavlink.settings import LinkSettings
 
 NUMBERS = 256
 REMEMBERED = 96
-"""Numbers that are told from new ones; less than half of all, so that behind and ahead are not mixed up."""
-PATIENCE = 0.2
-"""So long a message may be overtaken by later ones before it counts as lost (s)."""
+"""Numbers known as received; less than half of all, so that behind and ahead are not confused."""
 
 
 class LinkStatistics:
     """Counts of one link, each since the beginning.
 
-    A gap in the numbers counts once, however many are missing: what was lost together is one loss.
+    A gap in the numbers counts once, however many are missing: simultaneous losses are one.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, reordering_time: float = LinkSettings.reordering_time) -> None:
+        """``reordering_time`` (s): a gap that is older is a loss."""
+        self._reordering_time = reordering_time
         self.lost = 0
-        self.overtaken = 0
-        self.twice = 0
+        self.reordered = 0
+        self.duplicated = 0
         self.damaged = 0
         """Datagrams with frames that could not be read: checksum, length, contents."""
         self.not_finite = 0
@@ -33,7 +34,7 @@ class LinkStatistics:
         self._seen: deque[int] = deque(maxlen=REMEMBERED)
         self._gaps: deque[tuple[float, set[int]]] = deque()
 
-    def unusable(self, component: int) -> None:
+    def add_not_finite(self, component: int) -> None:
         """A measurement of this component could not be used."""
         self.not_finite += component == px4.AUTOPILOT_COMPONENT
         self.payload_not_finite += component == px4.PAYLOAD_UNIT_COMPONENT
@@ -50,14 +51,14 @@ class LinkStatistics:
             self._seen.append(number)
             return True
         if any(number in missing for _, missing in self._gaps):
-            self.overtaken += 1
+            self.reordered += 1
             for _, missing in self._gaps:
                 missing.discard(number)
         elif number in self._seen:
-            self.twice += 1
+            self.duplicated += 1
         return False
 
     def settle(self, now: float) -> None:
         """Gaps that are not filled by ``now`` (s) are losses."""
-        while self._gaps and now - self._gaps[0][0] > PATIENCE:
+        while self._gaps and now - self._gaps[0][0] > self._reordering_time:
             self.lost += bool(self._gaps.popleft()[1])

@@ -1,7 +1,7 @@
 """MAVLink messages as types: the classes that pymavlink generates, each with who sent it and to whom.
 
-A message is told by its class (``isinstance``), so that its fields have types. The classes are those of ArduPilot's
-dialect, which holds the common one; a class of another dialect is another class.
+A message is recognised by its class (``isinstance``), so that its fields have types. The classes are those of
+ArduPilot's dialect, which holds the common one; a class of another dialect is another class.
 """
 
 from __future__ import annotations

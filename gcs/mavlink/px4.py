@@ -102,7 +102,7 @@ def parameter_to_wire(value: float, parameter_type: int) -> float:
     """The float that carries a parameter: integers keep their bytes, they are not converted.
 
     Raises ``ValueError`` for a value that does not fit its type, and for the few integers (about -4 to -8 million)
-    whose bytes are a signalling NaN that a float conversion on the way would change.
+    whose bytes are a signalling NaN that a float conversion would change.
     """
     if parameter_type == mavlink.MAV_PARAM_TYPE_REAL32:
         return float(value)
@@ -115,7 +115,7 @@ def parameter_to_wire(value: float, parameter_type: int) -> float:
         raise ValueError(f"{value} does not fit parameter type {parameter_type}: {error}") from None
     wire: float = struct.unpack("<f", data)[0]
     if struct.pack("<f", wire) != data:
-        raise ValueError(f"{value} does not survive the way through a float")
+        raise ValueError(f"{value} does not survive the conversion to a float")
     return wire
 
 

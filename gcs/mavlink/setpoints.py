@@ -1,4 +1,4 @@
-"""Set-points: a decision of the controller becomes a SET_ATTITUDE_TARGET for each vehicle, and with it a stop plan."""
+"""Set-points: the controller's output as a SET_ATTITUDE_TARGET for each vehicle, and with it a stop plan."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def stop_plan_message(
 ) -> mavlink.MAVLink_trajectory_representation_bezier_message:
     """TRAJECTORY_REPRESENTATION_BEZIER from a vehicle's ``boot_time`` (s) on, to rest in ``duration`` (s).
 
-    ``control_points``: (5, 3) of its way (m, NED); heading north.
+    ``control_points``: (5, 3) of its path (m, NED); heading north.
     """
     x, y, z = zip(*control_points, strict=True)
     points = len(x)

@@ -17,22 +17,22 @@ Array = NDArray[np.float64]
 
 
 def setpoint_flown(message: mavlink.MAVLink_attitude_target_message, thrust_max: float) -> Array | None:
-    """Tilt of the thrust (north, east) and thrust (N), (3,), in an ATTITUDE_TARGET; None: it tells neither.
+    """Tilt of the thrust (north, east) and thrust (N), (3,), in an ATTITUDE_TARGET; None: it has neither.
 
     ``thrust_max`` (N) is what the vehicle means by thrust 1.
     """
     if message.type_mask & mavlink.ATTITUDE_TARGET_TYPEMASK_ATTITUDE_IGNORE:
         return None
     w, x, y, z = message.q
-    told = (-2.0 * (x * z + w * y), -2.0 * (y * z - w * x), message.thrust * thrust_max)
-    return np.array(told) if math.isfinite(sum(told)) else None
+    flown = (-2.0 * (x * z + w * y), -2.0 * (y * z - w * x), message.thrust * thrust_max)
+    return np.array(flown) if math.isfinite(sum(flown)) else None
 
 
 def measurement(received: Received, uav: int, time: float) -> Measurement | None:
     """The measurement in a message of UAV ``uav`` (0 .. N-1), true at ``time`` (s, team time).
 
     None for messages that measure nothing and for values that cannot be measurements (not finite, no rotation). Where
-    only the pose or only the motion cannot be one, that part is nan: an unknown rate is told so in MAVLink.
+    only the pose or only the motion cannot be one, that part is nan, as MAVLink has it for an unknown rate.
     The payload's navigation unit is a component of its own, relayed by every vehicle.
     """
     message, component = received.message, received.component
@@ -47,11 +47,11 @@ def measurement(received: Received, uav: int, time: float) -> Measurement | None
         rates = (message.rollspeed, message.pitchspeed, message.yawspeed)
         norm = math.sqrt(sum(c * c for c in quaternion))
         attitude = Attitude(time, source, np.array(quaternion) / (norm or 1.0), np.array(rates))
-        return _sound(attitude, 0.9 < norm < 1.1, math.isfinite(sum(rates)))
+        return _usable(attitude, 0.9 < norm < 1.1, math.isfinite(sum(rates)))
     if isinstance(message, mavlink.MAVLink_local_position_ned_message):
         position, velocity = (message.x, message.y, message.z), (message.vx, message.vy, message.vz)
-        told = Position(time, source, np.array(position), np.array(velocity))
-        return _sound(told, math.isfinite(sum(position)), math.isfinite(sum(velocity)))
+        sample = Position(time, source, np.array(position), np.array(velocity))
+        return _usable(sample, math.isfinite(sum(position)), math.isfinite(sum(velocity)))
     return None
 
 
@@ -62,8 +62,8 @@ def detection(message: mavlink.MAVLink_obstacle_distance_3d_message) -> Detectio
     return Detection(message.time_boot_ms, message.obstacle_id, point, message.max_distance)
 
 
-def _sound(told: Measurement, pose: bool, motion: bool) -> Measurement | None:
-    """As far as its ``pose`` and its ``motion`` can be measurements."""
+def _usable(sample: Measurement, pose: bool, motion: bool) -> Measurement | None:
+    """Return a sample without the part, ``pose`` or ``motion``, that cannot be a measurement."""
     if pose and motion:
-        return told
-    return told.without(not pose, not motion) if pose or motion else None
+        return sample
+    return sample.without(not pose, not motion) if pose or motion else None

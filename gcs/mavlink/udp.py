@@ -1,4 +1,4 @@
-"""What both ends of the wire need of UDP sockets."""
+"""Reading UDP sockets, for both ends of the wire."""
 
 from __future__ import annotations
 
@@ -7,15 +7,15 @@ from collections.abc import Iterator
 
 from gcs.mavlink.address import Address
 
-RECEIVE_BUFFER = 4 << 20  # bytes asked for: a whole team's telemetry while the ground thinks; the system may give less
+RECEIVE_BUFFER = 4 << 20  # bytes requested: a whole team's telemetry during a control step; the system may give less
 DATAGRAM_MAX = 65535
 DATAGRAMS_AT_ONCE = 4096
 
 
 def arrived(endpoint: socket.socket) -> Iterator[tuple[bytes, Address]]:
-    """What a non-blocking socket holds, in order; no more than DATAGRAMS_AT_ONCE.
+    """Datagrams that a non-blocking socket holds, in order; no more than DATAGRAMS_AT_ONCE.
 
-    Whoever sends faster than they are read must not keep the reader from everything else.
+    A sender that is faster than the reader must not keep it from everything else.
     """
     for _ in range(DATAGRAMS_AT_ONCE):
         try:

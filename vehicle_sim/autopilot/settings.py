@@ -26,7 +26,7 @@ class FailsafeSettings:
     setpoint_loss: float = setting(
         DEFAULTS.failsafe.telemetry_timeout,
         "s",
-        "COM_OF_LOSS_T: without set-points in OFFBOARD until the vehicle brakes and holds",
+        "COM_OF_LOSS_T: without set-points in OFFBOARD until it brakes and holds",
         ge=0.1,
         le=60.0,
     )
