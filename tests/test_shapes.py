@@ -1,5 +1,8 @@
 """Every shape of the registry: its methods agree with each other and with the distance library's geometry."""
 
+import dataclasses
+import json
+
 import coal
 import numpy as np
 import pytest
@@ -7,12 +10,19 @@ import shapely
 
 from idc_controller.errors import ShapeError
 from idc_controller.geometry.box import Wall
+from idc_controller.geometry.capsule import Capsule
 from idc_controller.geometry.distance import Bodies
+from idc_controller.geometry.mesh import Mesh, MeshHull
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.shapes import SHAPES, shape_class
 from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.tilted_box import Box
 
-EXAMPLES = [Sphere(0.6), Pole(0.3, 4.0), Wall((0.4, 3.0, 2.0), 0.4)]
+ROCK = MeshHull("rock.stl", ((-1.0, -0.6, 0.5), (0.9, -0.7, 0.5), (1.0, 0.8, 0.5), (-0.8, 0.7, 0.4), (0.1, 0.0, -0.5)))
+EXAMPLES = [
+    Sphere(0.6), Pole(0.3, 4.0), Wall((0.4, 3.0, 2.0), 0.4), Capsule(0.3, 1.5, roll=0.4, pitch=-0.7, yaw=2.0),
+    Box((0.5, 1.0, 2.0), roll=0.3, pitch=0.5, yaw=-1.0), Mesh(ROCK, scale=1.2, roll=0.1, pitch=0.5, yaw=1.0),
+]  # fmt: skip
 HERE = np.array([1.0, -2.0, -4.0])
 
 
@@ -21,7 +31,7 @@ def test_every_registered_shape_has_an_example():
 
 
 def test_unknown_shape_is_refused():
-    with pytest.raises(ShapeError, match="shape is 'cone', expected one of sphere, pole, wall"):
+    with pytest.raises(ShapeError, match="shape is 'cone', expected one of sphere, pole, wall, capsule, box, mesh"):
         shape_class("cone")
 
 
@@ -112,8 +122,13 @@ def test_quaternion_is_the_rotation(shape):
     np.testing.assert_allclose(rotation_from_quaternion(np.array(shape.quaternion)), shape.rotation, atol=1e-12)
 
 
-def test_columns_give_the_shape_back(shape):
-    assert type(shape).from_columns(shape.columns) == shape
+def test_columns_or_fields_give_the_shape_back(shape):
+    if shape.in_columns:
+        assert type(shape).from_columns(shape.columns) == shape
+    else:
+        with pytest.raises(ShapeError, match="needs the run's obstacle_shapes"):
+            type(shape).from_columns(shape.columns)
+    assert type(shape).from_fields(json.loads(json.dumps(dataclasses.asdict(shape)))) == shape
 
 
 def test_shape_without_extent_is_refused():

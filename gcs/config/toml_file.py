@@ -66,7 +66,9 @@ class TomlFile:
         try:
             # Through JSON: strict types, yet arrays become tuples and tables dataclasses. Dates, which JSON
             # does not have, become text and are refused as such.
-            return adapter.validate_json(json.dumps(data, default=str), strict=True)
+            return adapter.validate_json(
+                json.dumps(data, default=str), strict=True, context={"folder": self.path.parent}
+            )
         except ValidationError as error:
             found = error.errors(include_url=False)
         except (ValueError, RecursionError) as error:
@@ -92,6 +94,8 @@ class TomlFile:
             key.append(str(context["discriminator"]).strip("'"))
         if kind == "union_tag_invalid":
             reason = f"'{context['tag']}' is none of {context['expected_tags']}"
+        elif kind == "value_error":
+            reason = str(context["error"])
         elif kind == "too_short":
             reason = f"needs at least {context['min_length']}"
         elif kind == "missing" and key and isinstance(key[-1], int):

@@ -5,21 +5,57 @@ from __future__ import annotations
 import math
 from dataclasses import Field as ShapeField
 from dataclasses import dataclass, field, fields, make_dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Union
 
-from pydantic import AfterValidator, Field
+import numpy as np
+from pydantic import AfterValidator, Field, ValidationInfo
 
+from gcs.config.mesh_file import UnusableMesh, read_mesh
 from gcs.config.tables import Vector
 from gcs.config.toml_file import Positive, strict
 from gcs.mission.model import Motion, Name, Obstacle
+from idc_controller.geometry.mesh import MeshHull
 from idc_controller.geometry.shape import Shape
 from idc_controller.geometry.shapes import SHAPES
+
+CONVEX = 0.95
+"""Share of its hull that a mesh must fill; with less the hull would take too much of the free space."""
+MOST_CORNERS = 2000
+
+
+def read_hull(path: Path) -> MeshHull:
+    """Return the convex hull of the mesh in a file. Raises :class:`UnusableMesh`, too, for one that is concave."""
+    mesh = read_mesh(path)
+    hull = mesh.convex_hull
+    share = mesh.volume / hull.volume
+    if share < CONVEX:
+        raise UnusableMesh(
+            f"'{path.name}' is concave: it fills {100.0 * share:.0f} % of its convex hull "
+            f"(limit {100.0 * CONVEX:.0f} %); cut it into convex parts, each a file and an obstacle of its own"
+        )
+    if len(hull.vertices) > MOST_CORNERS:
+        raise UnusableMesh(
+            f"the hull of '{path.name}' has {len(hull.vertices)} corners (limit {MOST_CORNERS}); simplify it"
+        )
+    corners = np.array(hull.vertices) - mesh.bounds.mean(axis=0)
+    return MeshHull(path.name, tuple((float(x), float(y), float(z)) for x, y, z in corners))
+
+
+def _hull_beside(name: str, info: ValidationInfo) -> MeshHull:
+    """Return the hull of a mesh file beside the file that names it."""
+    try:
+        return read_hull(Path((info.context or {}).get("folder", "")) / name)
+    except UnusableMesh as error:
+        raise ValueError(error) from error
+
 
 _TYPES: dict[tuple[str, str], Any] = {
     # of a shape's field, by unit and annotation
     ("m", "float"): Positive,
     ("m", "Vector"): tuple[Positive, Positive, Positive],
     ("rad", "float"): float,
+    ("file", "MeshHull"): Annotated[str, Field(min_length=1), AfterValidator(_hull_beside)],
 }
 
 
@@ -35,12 +71,12 @@ class _ObstacleTable:
 
 def _table(kind: str, shape: type[Shape]) -> Any:
     """Return the dataclass that a table of this shape is read into."""
-    own = [
-        (key_of(part), _TYPES[part.metadata["unit"], str(part.type)], *([field(default=0.0)] * _is_angle(part)))
+    own: list[tuple[str, Any, Any]] = [
+        (key_of(part), _TYPES[part.metadata["unit"], str(part.type)], field(default=part.default))
         for part in fields(shape)
     ]
     place = tuple[float, float] if shape.is_grounded else Vector
-    entries = [("position", place), *own, ("shape", Literal[kind])]
+    entries: list[Any] = [("position", place), *own, ("shape", Literal[kind])]
     cls = make_dataclass(f"{shape.__name__}Table", entries, bases=(_ObstacleTable,), frozen=True, kw_only=True)
     return strict(cls)
 
@@ -62,7 +98,9 @@ def keys_of(obstacle: Obstacle) -> dict[str, Any]:
     for part in fields(shape):
         value = getattr(shape, part.name)
         # What was written in degrees comes back as it was written.
-        keys[key_of(part)] = round(math.degrees(value), 9) if _is_angle(part) else value
+        if _is_angle(part):
+            value = round(math.degrees(value), 9)
+        keys[key_of(part)] = value.name if isinstance(value, MeshHull) else value
     keys["known"] = obstacle.known
     return keys if obstacle.motion is None else {**keys, "motion": obstacle.motion}
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from gcs.errors import UnusableInput
 from gcs.record.clearance import ObstacleTrack, clearance_over_time
+from gcs.record.obstacle_shapes import read_shape
 from gcs.record.run_folder import MANIFEST
 from gcs.record.tables import (
     ESTIMATE_COLUMNS,
@@ -24,9 +25,7 @@ from gcs.record.tables import (
     read_text_table,
     truth_columns,
 )
-from idc_controller.errors import ShapeError
 from idc_controller.geometry.shape import Columns, Shape
-from idc_controller.geometry.shapes import shape_class
 
 Array = NDArray[np.float64]
 Table = dict[str, Array]
@@ -199,17 +198,10 @@ def _obstacles(path: Path, time: Array) -> tuple[ObstacleTrack, ...]:
         seen[moment, name] += 1
         if key not in tracks:
             tracks[key] = np.full((len(time), 3), np.nan)
-            shapes[key] = _shape(name, shape, Columns(radius, (size_x, size_y, size_z), yaw))
+            shapes[key] = read_shape(path.parent, name, shape, Columns(radius, (size_x, size_y, size_z), yaw))
         if at in row_of_time:
             tracks[key][row_of_time[at]] = (x, y, z)
     return tuple(ObstacleTrack(key[0], shapes[key], track) for key, track in tracks.items())
-
-
-def _shape(name: str, kind: str, columns: Columns) -> Shape:
-    try:
-        return shape_class(kind).from_columns(columns)
-    except ShapeError as error:
-        raise UnusableInput(f"obstacle {name}: {error}") from error
 
 
 def _json(path: Path) -> Mapping[str, Any]:

@@ -113,7 +113,7 @@ class Wall(Shape):
         cosine, sine = math.cos(self.yaw), math.sin(self.yaw)
         a, b, c = sensor
         local = (cosine * a + sine * b, cosine * b - sine * a, c)
-        points = visible_points_of_box(self.size, local, reach)
+        points = _visible_points(self.size, local, reach)
         return [(cosine * u - sine * v, sine * u + cosine * v, w) for u, v, w in points]
 
 
@@ -124,7 +124,7 @@ def distance_of_gaps(a: Array, b: Array, c: Array) -> Array:
     return np.asarray(np.sqrt(a * a + b * b + c * c) + inside)
 
 
-def visible_points_of_box(size: Vector, sensor: Vector, reach: float) -> list[Vector]:
+def _visible_points(size: Vector, sensor: Vector, reach: float) -> list[Vector]:
     """Points of a box about its centre, in its own frame, that a ``sensor`` there hits."""
     s, halves = sensor, (size[0] / 2.0, size[1] / 2.0, size[2] / 2.0)
     visible = [k for k in range(3) if abs(s[k]) > halves[k]]

@@ -95,6 +95,8 @@ class Shape(ABC):
     """Axes (0 or 1) on which the surface is one radius from the centre; None: it is not round about any centre."""
     is_upright: ClassVar[bool] = False
     """Whether obstacles of this kind are tall enough that those far off are told by their plan view alone."""
+    in_columns: ClassVar[bool] = True
+    """Whether :attr:`columns` hold all of the shape; otherwise a run has it in ``obstacle_shapes.json``."""
     is_grounded: ClassVar[bool] = False
     """Whether it stands on the ground, so that its place is (north, east)."""
 
@@ -125,6 +127,11 @@ class Shape(ABC):
     @abstractmethod
     def columns(self) -> Columns:
         """The shape as the tables hold it."""
+
+    @classmethod
+    def from_fields(cls, values: Mapping[str, Any]) -> Self:
+        """Return the shape whose fields have these values, as :func:`dataclasses.asdict` and JSON give them."""
+        return cls(**{key: tuple(value) if isinstance(value, list) else value for key, value in values.items()})
 
     @classmethod
     @abstractmethod

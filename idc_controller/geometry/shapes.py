@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from idc_controller.errors import ShapeError
 from idc_controller.geometry.box import Wall
+from idc_controller.geometry.capsule import Capsule
+from idc_controller.geometry.mesh import Mesh
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.shape import Shape
 from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.tilted_box import Box
 
-SHAPES: dict[str, type[Shape]] = {shape.kind: shape for shape in (Sphere, Pole, Wall)}
+SHAPES: dict[str, type[Shape]] = {shape.kind: shape for shape in (Sphere, Pole, Wall, Capsule, Box, Mesh)}
 
 
 def shape_class(kind: str) -> type[Shape]:

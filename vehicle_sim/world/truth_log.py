@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from gcs.record.obstacle_shapes import write_shapes
 from gcs.record.run_folder import make_folder
 from gcs.record.tables import MODE_COLUMNS, OBSTACLE_COLUMNS, TableWriter, truth_columns
 
@@ -59,6 +60,7 @@ class TruthLog:
             return
         if self._obstacles is None:
             self._obstacles = TableWriter(self._run_dir / "obstacles.csv", OBSTACLE_COLUMNS)
+            write_shapes(self._run_dir, {obstacle.name: obstacle.shape for obstacle in obstacles})
         for obstacle in obstacles:
             shape = obstacle.shape
             numbers = (*obstacle.position_in_world, shape.columns.radius, *shape.columns.size, shape.columns.yaw)

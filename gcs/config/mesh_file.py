@@ -1,0 +1,49 @@
+"""Meshes of STL, OBJ and PLY files: read and checked by trimesh."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import trimesh
+
+FORMATS = (".stl", ".obj", ".ply")
+LARGEST_FILE = 20e6  # bytes
+THINNEST = 1e-3
+"""Least edge of the bounding box over its largest."""
+
+
+class UnusableMesh(Exception):
+    """A mesh that cannot be read, or that encloses no volume."""
+
+
+def read_mesh(path: Path) -> trimesh.Trimesh:
+    """Return the closed surface that a file holds. Raises :class:`UnusableMesh`."""
+    name = path.name
+    if path.suffix.lower() not in FORMATS:
+        raise UnusableMesh(f"'{name}' is none of {', '.join(FORMATS)}")
+    try:
+        size = path.stat().st_size
+        if size > LARGEST_FILE:
+            raise UnusableMesh(f"'{name}' has {size / 1e6:.0f} MB (limit {LARGEST_FILE / 1e6:.0f} MB)")
+        mesh = trimesh.load(path, file_type=path.suffix.lower().lstrip("."), force="mesh", process=True)
+    except UnusableMesh:
+        raise
+    except OSError as error:
+        raise UnusableMesh(f"cannot read '{name}': {error.strerror or error}") from error
+    except Exception as error:  # whatever the parsers raise on damaged files
+        raise UnusableMesh(f"'{name}' is no mesh: {str(error).splitlines()[0] if str(error) else error!r}") from error
+    if not isinstance(mesh, trimesh.Trimesh) or not len(mesh.faces):
+        raise UnusableMesh(f"'{name}' has no faces")
+    mesh.merge_vertices()
+    if not np.isfinite(mesh.vertices).all():
+        raise UnusableMesh(f"'{name}' has vertices that are not finite")
+    extents = np.ptp(mesh.vertices, axis=0)
+    if extents.min() <= THINNEST * extents.max():
+        edges = " x ".join(f"{edge:.3g}" for edge in extents)
+        raise UnusableMesh(f"'{name}' is flat: its bounding box is {edges}")
+    if not mesh.is_watertight:
+        raise UnusableMesh(f"'{name}' is not watertight: its surface has holes; close it")
+    if mesh.volume < 0.0:
+        mesh.invert()
+    return mesh

@@ -1,0 +1,171 @@
+"""Shapes in any attitude: the convex hull of corners, rounded by a radius, turned by roll, pitch and yaw."""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import ClassVar, Self
+
+import coal
+import numpy as np
+import shapely
+import trimesh
+
+from idc_controller.errors import ShapeError
+from idc_controller.geometry.shape import ANGLE, Array, Columns, PlanView, Shape, UprightBounds, Vector
+from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
+
+_HEADINGS = np.radians(np.arange(0.0, 90.0, 5.0))
+"""Of the upright box that is to hold a body: the smallest plan view is taken."""
+_MOST_POINTS = 9
+"""That a range sensor hits on one body."""
+_GRAZING = 0.05
+"""Least cosine of the angle of incidence at which a range sensor gets an answer."""
+
+
+@dataclass(frozen=True)
+class OrientedShape(Shape):
+    """A convex body turned by ``yaw`` (rad, from north towards east), then ``pitch`` (nose up), then ``roll``."""
+
+    roll: float = field(default=0.0, kw_only=True, metadata=ANGLE)
+    pitch: float = field(default=0.0, kw_only=True, metadata=ANGLE)
+    yaw: float = field(default=0.0, kw_only=True, metadata=ANGLE)
+
+    in_columns: ClassVar[bool] = False
+
+    @property
+    @abstractmethod
+    def corners(self) -> Array:
+        """Points (n, 3) in the shape's own frame whose hull, rounded by :attr:`rounding`, is the body (m)."""
+
+    @property
+    def rounding(self) -> float:
+        """Radius by which the hull of the corners is rounded (m)."""
+        return 0.0
+
+    @property
+    def attitude(self) -> str:
+        """Its angles in words, empty if there are none."""
+        angles = {name: math.degrees(getattr(self, name)) for name in ("roll", "pitch", "yaw")}
+        return "".join(f", {name} {angle:.1f} deg" for name, angle in angles.items() if angle)
+
+    def surface_samples(self) -> tuple[Array, Array]:
+        """Return points all over the surface (n, 3) and its outward normals there (n, 3), in the shape's own frame."""
+        weights = np.array([[1, 1, 1], [4, 1, 1], [1, 4, 1], [1, 1, 4], [1, 1, 0], [0, 1, 1], [1, 0, 1],
+                            [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float)  # fmt: skip
+        weights /= weights.sum(axis=1, keepdims=True)
+        points = np.einsum("wk,fkx->fwx", weights, self._hull.triangles)
+        normals = np.repeat(np.array(self._hull.face_normals), len(weights), axis=0)
+        return points.reshape(-1, 3), normals
+
+    @cached_property
+    def rotation(self) -> Array:
+        """Shape frame to world (3, 3)."""
+        return rotation_from_quaternion(np.array(self.quaternion))
+
+    @cached_property
+    def quaternion(self) -> tuple[float, float, float, float]:
+        """Shape frame to world, w first."""
+        w, x, y, z = quaternion_from_euler(self.roll, self.pitch, self.yaw).tolist()
+        return w, x, y, z
+
+    @cached_property
+    def columns(self) -> Columns:
+        """Rounding radius, edges of the box along north, east and down about the centre that holds it, no yaw."""
+        x, y, z = (2.0 * (np.abs(self._in_world).max(axis=0) + self.rounding)).tolist()
+        return Columns(self.rounding, (x, y, z), 0.0)
+
+    @classmethod
+    def from_columns(cls, columns: Columns) -> Self:
+        """Raise :class:`ShapeError`: the columns do not hold the attitude."""
+        raise ShapeError(f"a {cls.kind} needs the run's obstacle_shapes.json")
+
+    def support(self, directions: Array) -> Array:
+        """Largest ``direction . y`` over the body about its centre, for unit ``directions`` (..., 3) -> (...)."""
+        return np.asarray((directions @ self._in_world.T).max(axis=-1) + self.rounding)
+
+    @classmethod
+    def distances(cls, shapes: Sequence[Self], offsets: Array) -> Array:
+        """Signed distance (m) of points (B, n, 3), relative to each body's centre, to B bodies of this kind (B, n)."""
+        return np.stack(
+            [shape.distance(points @ shape.rotation) for shape, points in zip(shapes, offsets, strict=True)]
+        )
+
+    @abstractmethod
+    def distance(self, points: Array) -> Array:
+        """Signed distance (n,) (m) of ``points`` (n, 3) in the shape's own frame."""
+
+    @cached_property
+    def reach(self) -> float:
+        """Radius of the ball about the centre that holds the body (m)."""
+        return float(np.linalg.norm(self.corners, axis=1).max()) + self.rounding
+
+    @cached_property
+    def horizontal_reach(self) -> float:
+        """Radius of the upright cylinder about the centre that holds the body (m)."""
+        return float(np.hypot(self._in_world[:, 0], self._in_world[:, 1]).max()) + self.rounding
+
+    @cached_property
+    def upright_bounds(self) -> UprightBounds:
+        """The rounded upright box about the centre that holds the body, of the heading with the smallest plan view."""
+        x, y, z = self._in_world.T
+        headings = np.append(_HEADINGS, self.yaw)
+        along = np.abs(np.outer(np.cos(headings), x) + np.outer(np.sin(headings), y)).max(axis=1)
+        across = np.abs(np.outer(np.cos(headings), y) - np.outer(np.sin(headings), x)).max(axis=1)
+        best = int(np.argmin((along + self.rounding) * (across + self.rounding)))
+        return UprightBounds(
+            float(along[best]), float(across[best]), float(np.abs(z).max()), 0.0, self.rounding,
+            math.cos(headings[best]), math.sin(headings[best]),
+        )  # fmt: skip
+
+    @property
+    def plan_view(self) -> PlanView:
+        """The hull of the corners, rounded."""
+        return PlanView(shapely.MultiPoint(self._in_world[:, :2]).convex_hull, self.rounding)
+
+    def visible_points(self, sensor: Vector, reach: float, turn: float) -> list[Vector]:
+        """Points of the surface that a range sensor hits: the nearest, then those that lie farthest apart."""
+        place = np.array(sensor)
+        nearest = self._nearest(place)
+        if nearest is None or math.dist(nearest, sensor) > reach:
+            return []
+        points, normals = self._samples
+        rays = place - points
+        ranges = np.linalg.norm(rays, axis=1)
+        is_hit = (np.einsum("ij,ij->i", rays, normals) > _GRAZING * ranges) & (ranges <= reach)
+        points = points[is_hit]
+        chosen = [np.array(nearest)]
+        apart = np.linalg.norm(points - chosen[0], axis=1)
+        while len(chosen) < _MOST_POINTS and len(points) and apart.max() > 0.05 * self.reach:
+            chosen.append(points[int(np.argmax(apart))])
+            apart = np.minimum(apart, np.linalg.norm(points - chosen[-1], axis=1))
+        return [(float(x), float(y), float(z)) for x, y, z in chosen]
+
+    def _nearest(self, place: Array) -> Vector | None:
+        """Point of the surface about the centre that is nearest to ``place`` (3,); None: it lies inside."""
+        result = coal.DistanceResult()
+        distance = coal.distance(
+            self.geometry(), coal.Transform3s(self.rotation, np.zeros(3)), coal.Sphere(1e-6),
+            coal.Transform3s(np.eye(3), place), coal.DistanceRequest(), result,
+        )  # fmt: skip
+        if distance <= 0.0:
+            return None
+        x, y, z = np.array(result.getNearestPoint1()).tolist()
+        return x, y, z
+
+    @cached_property
+    def _hull(self) -> trimesh.Trimesh:
+        return trimesh.convex.convex_hull(self.corners)
+
+    @cached_property
+    def _in_world(self) -> Array:
+        """The corners about the centre in the axes of the world (n, 3)."""
+        return self.corners @ self.rotation.T
+
+    @cached_property
+    def _samples(self) -> tuple[Array, Array]:
+        points, normals = self.surface_samples()
+        return points @ self.rotation.T, normals @ self.rotation.T
