@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
@@ -26,7 +27,8 @@ def read_mesh(path: Path) -> trimesh.Trimesh:
         size = path.stat().st_size
         if size > LARGEST_FILE:
             raise UnusableMesh(f"'{name}' has {size / 1e6:.0f} MB (limit {LARGEST_FILE / 1e6:.0f} MB)")
-        mesh = trimesh.load(path, file_type=path.suffix.lower().lstrip("."), force="mesh", process=True)
+        data, kind = BytesIO(path.read_bytes()), path.suffix.lower().lstrip(".")
+        mesh = trimesh.load(data, file_type=kind, force="mesh", process=True)
     except UnusableMesh:
         raise
     except OSError as error:

@@ -58,6 +58,8 @@ class ObstacleBodies:
         if obstacle.name in self._obstacles:
             raise SimulationError(f"obstacle {obstacle.name}: the name is taken")
         primitive, dimensions = obstacle.shape.collision()
+        if "vertices" in dimensions:
+            dimensions = {"vertices": [flipped(vertex) for vertex in dimensions["vertices"]]}
         collision = pybullet.createCollisionShape(
             getattr(pybullet, f"GEOM_{primitive.upper()}"), **dimensions, physicsClientId=self._client
         )
