@@ -7,6 +7,7 @@ import sys
 import numpy as np
 import pytest
 from flight_in_process import system_file, truth_of
+from mission_files import MISSIONS
 from programs import ENVIRONMENT
 
 pytestmark = pytest.mark.slow
@@ -56,6 +57,40 @@ return_home = false
 name = "{obstacle}"
 {shape}
 known = true
+"""
+
+TILTED = """
+[mission]
+name = "tilted shapes"
+system = "system.toml"
+seed = 2
+
+[reference]
+kind = "lissajous"
+amplitude = [6.0, 3.0]
+angular_frequency = 0.5
+altitude = 5.0
+duration = 14.0
+
+[[obstacle]]
+name = "beam"
+shape = "box"
+size = [0.4, 3.0, 0.4]
+position = [-6.0, 0.0, -5.5]
+roll_deg = 35.0
+yaw_deg = 20.0
+known = true
+
+[[obstacle]]
+name = "drum"
+shape = "capsule"
+radius = 0.35
+length = 1.2
+position = [6.0, 0.0, -5.5]
+roll_deg = 60.0
+yaw_deg = 40.0
+known = false
+motion = { kind = "harmonic", amplitude = [0.0, 1.0, 0.0], angular_frequency = 0.6 }
 """
 
 LIMITS = """
@@ -134,3 +169,22 @@ def test_range_sensors_that_all_go_wrong_alike_end_the_flight_safely(tmp_path, f
     assert code == 1 and summary["outcome"] == "aborted"
     assert reason in said
     assert summary["landing"]["on_ground"]
+
+
+def test_flight_keeps_clear_of_rock_that_is_not_on_the_map(tmp_path):
+    command = [sys.executable, "-m", "gcs", "fly", str(MISSIONS / "unknown_rock.toml"), "--json", "--no-pictures"]
+    done = subprocess.run(
+        [*command, "--run-dir", str(tmp_path / "run")], capture_output=True, text=True, timeout=500, env=ENVIRONMENT
+    )
+    summary = json.loads(done.stdout)
+    assert done.returncode == 0, done.stderr
+    assert summary["contacts"] == 0
+    assert summary["clearance_min_m"] >= 0.3
+    # Without avoidance the formation would fly into it.
+    assert summary["position_rmse_m"]["total"] > 0.1
+
+
+def test_flight_keeps_clear_of_tilted_box_on_the_map_and_of_unknown_moving_capsule(tmp_path):
+    code, summary, said = flown(tmp_path, TILTED)
+    assert code == 0, said
+    check_safe(summary)

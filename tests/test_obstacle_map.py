@@ -10,6 +10,8 @@ from obstacle_scene import (
     HERE,
     MOTIONS,
     NOISE,
+    REACH,
+    SENSORS,
     Scene,
     map_of,
     messages_of,
@@ -25,10 +27,15 @@ from gcs.mission import HarmonicMotion, Obstacle
 from gcs.mission.read import read_mission
 from idc_controller.estimation.measurements import Attitude, Position
 from idc_controller.geometry.box import Wall
+from idc_controller.geometry.capsule import Capsule
+from idc_controller.geometry.distance import Bodies
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.tilted_box import Box
+from idc_controller.perception.obstacle_map import ObstacleMap
 from idc_controller.perception.scan_assembly import Cluster
 from vehicle_sim.swarm import Swarm
+from vehicle_sim.world.obstacle_bodies import Obstacle as WorldObstacle
 
 
 def places(obstacle_map, time):
@@ -328,3 +335,25 @@ def test_new_track_begins_with_scatter_of_earlier_ones():
         scatter.append([track.filter.scatter**0.5 for track in m.tracks])
     assert len(scatter[29]) == 1 and scatter[29][0] > 3 * NOISE
     assert min(next(both for both in scatter if len(both) == 2)) > 3 * NOISE
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [
+        Capsule(0.3, 1.5, roll=1.0, yaw=0.5), Box((0.4, 3.0, 0.4), roll=0.6, yaw=0.3),
+        Box((1.0, 1.0, 1.0), roll=0.6, pitch=0.5),
+    ],
+    ids=["capsule", "beam", "cube"],
+)  # fmt: skip
+def test_unknown_shape_that_no_surface_fits_is_covered_by_what_is_predicted(shape):
+    scene, obstacle = Scene(1), WorldObstacle("x", shape, (0.0, 0.0, -6.0))
+    obstacle_map = ObstacleMap([], SENSORS, REACH)
+    for step in range(60):
+        time = 0.1 * step
+        scene.feed(obstacle_map, time, np.array([time - 9.0, 0.5, -6.0]), [obstacle])
+        obstacle_map.update(time)
+    [found] = obstacle_map.predict(np.array([6.0]))
+    points, normals = shape.surface_samples()
+    visible = (points @ shape.rotation.T)[(normals @ shape.rotation.T)[:, 0] < 0.0] + [0.0, 0.0, -6.0]
+    outside = Bodies([found.shape]).distance(visible, found.positions[:1])[0] - found.growth[0]
+    assert outside.max() < 0.2

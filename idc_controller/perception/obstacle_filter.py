@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from idc_controller.geometry.box import Wall
+from idc_controller.geometry.distance import Bodies
 from idc_controller.geometry.shape import Shape
 from idc_controller.perception.manoeuvre import ManoeuvreDetector
 from idc_controller.perception.motion_imm import MotionImm, MotionModels
@@ -22,6 +23,8 @@ Array = NDArray[np.float64]
 Surface = RoundSurface | FlatSurface | KnownSurface
 
 KINDS = ("sphere", "pole", "wall")
+_OUTERMOST = 1.5  # standard deviations by which noise alone puts the outermost of some points outside
+_UNCOVERED_LEAST, _UNCOVERED_SMOOTHING = 0.15, 0.2  # m: from here on an obstacle is none of the shapes
 
 
 class ObstacleFilter:
@@ -50,6 +53,8 @@ class ObstacleFilter:
         self._known = known
         self._scores: dict[str, float] = {}
         self._scatter = scatter
+        self._uncovered = 0.0
+        """How far points stand out of the fitted shape, which is then not the obstacle's (m)."""
         self._surface = surface_of(known.kind if known else "sphere", known)
         if known is None and scatter == 0.0 and len(first.points) >= self.settings.points_min:
             # Before the kind is chosen: with much scatter a wall would fit anything.
@@ -128,10 +133,18 @@ class ObstacleFilter:
         self.frames += 1
         if self._known is None and len(points.points) >= self.settings.points_min:
             self._note(self.kind, fit.score)
+            self._learn_uncovered(points, fit)
             if self.frames <= s.every_frame_until or self.frames % s.every_frames == 0 or fit.score > s.retry_score:
                 self._consider_kinds(points, fit)
             elif self._scatter > 0.0:
                 self._learn_scatter(fit.unexplained)
+
+    def _learn_uncovered(self, points: SurfacePoints, fit: Fit) -> None:
+        """Follow how far the outermost points of a frame lie outside of the fitted shape, beyond their noise."""
+        distance = Bodies([self.shape]).distance(points.points, (fit.position + self._surface.offset)[None])[0]
+        noise = np.sqrt(points.noise**2 + float(points.pose_variance.mean()) + points.scatter)
+        outside = max(float(distance.max()) - _OUTERMOST * noise, 0.0)
+        self._uncovered += _UNCOVERED_SMOOTHING * (outside - self._uncovered)
 
     def _compare_predictions(self) -> None:
         """Compare an earlier prediction with the state now, and predict anew."""
@@ -149,7 +162,10 @@ class ObstacleFilter:
         variance += self._manoeuvre.variance(np.maximum(np.asarray(times) - self._imm.time, 0.0))
         # Where points scatter, its motion is estimated late.
         limit = self._manoeuvre.growth_limit(np.sqrt(self._scatter))
-        return mean + self._surface.offset, np.minimum(np.sqrt(variance), limit)
+        growth = np.minimum(np.sqrt(variance), limit)
+        if self._uncovered > _UNCOVERED_LEAST:
+            growth = growth + self._uncovered
+        return mean + self._surface.offset, growth
 
     def _note(self, kind: str, score: float) -> None:
         old = self._scores.get(kind)
