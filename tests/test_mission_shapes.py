@@ -14,7 +14,7 @@ from mission_files import MISSIONS, TOML, read, refusal, told
 from paper_system import system
 from programs import ENVIRONMENT
 
-from gcs.campaign.courses.text import mission_text
+from gcs.campaign.toml_text import mission_text
 from gcs.errors import UnusableInput
 from gcs.mission import Obstacle
 from gcs.mission.model import Limits
