@@ -7,7 +7,8 @@ from gcs.config import read_system
 from idc_controller.geometry.obstacles import PredictedObstacle, StandingObstacles
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
-from idc_controller.guidance.resting_place import CLEAR, RestingPlace
+from idc_controller.guidance.resting_place import RestingPlace
+from idc_controller.guidance.settings import RestingPlaceSettings
 from idc_controller.trajectory.stop_plan import Braking
 
 PARAMETERS = read_system().parameters()
@@ -90,4 +91,4 @@ def test_where_nothing_is_clear_the_best_is_taken():
         return np.hypot(*(rest_of(braking) - places)[:, :2].T).min() - 0.2 - WIDTH
 
     chosen = room(RestingPlace(PARAMETERS, everywhere)(0.0, STATE))
-    assert room(USUAL) - 0.2 < chosen < CLEAR
+    assert room(USUAL) - 0.2 < chosen < RestingPlaceSettings().clearance

@@ -8,7 +8,8 @@ from gcs.config import read_system
 from idc_controller.model.linear import StateLayout
 from idc_controller.trajectory.flatness import Load, flat_reference
 from idc_controller.trajectory.lissajous import LissajousCurve, LissajousTrajectory
-from idc_controller.trajectory.stop_plan import BRAKING_LIMIT, Braking, stop_plan
+from idc_controller.trajectory.settings import BrakingSettings
+from idc_controller.trajectory.stop_plan import Braking, stop_plan
 from idc_controller.trajectory.trajectory import Limits
 
 PARAMETERS = read_system().parameters()
@@ -49,7 +50,9 @@ def test_a_fast_team_takes_longer():
     before, after = uav_positions(curve, [time - 0.01, time + 0.01]).mean(axis=1)
     speed = np.linalg.norm(after - before) / 0.02
     assert speed > 6.0
-    assert stop_plan(PARAMETERS, flat, time).duration == pytest.approx(1.5 * speed / BRAKING_LIMIT, rel=1e-4)
+    assert stop_plan(PARAMETERS, flat, time).duration == pytest.approx(
+        1.5 * speed / BrakingSettings().deceleration, rel=1e-4
+    )
 
 
 @pytest.mark.parametrize("time", [11.0, 13.7, 18.2])

@@ -38,7 +38,6 @@ from gcs.record.recorder import FlightRecorder
 from gcs.record.run_folder import open_run_folder, write_manifest
 from gcs.record.summary import summarise, within_limits, write_summary
 from idc_controller.guidance.progress import Guidance
-from idc_controller.guidance.resting_place import RestingPlace
 from idc_controller.paper.printed_filter import PrintedFilter
 from idc_controller.safety.filter_protocol import NoObstacles, SafetyFilter
 
@@ -203,7 +202,7 @@ def ground_station(
         safety = PrintedFilter(model, obstacle_map, config.avoidance.margin)
     control = ControlLoop(
         stack.estimator(config, model), stack.controller(config, model, safety, stopwatch, guidance), stopwatch,
-        brake=RestingPlace(model.parameters, obstacle_map),
+        brake=stack.resting_place(config, model, obstacle_map),
     )  # fmt: skip
     alarms = AlarmLog(recorder.alarm, config.flight.monitor)
     flight = Flight(mission, Team(links, model.parameters), control, alarms, obstacle_map)

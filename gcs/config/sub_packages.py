@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from idc_controller.control.settings import MpcSettings
 from idc_controller.estimation.settings import EstimatorSettings, InnovationMonitorSettings, WindSettings
-from idc_controller.guidance.settings import NavigatorSettings, ProgressSettings
+from idc_controller.guidance.settings import NavigatorSettings, ProgressSettings, RestingPlaceSettings
 from idc_controller.safety.settings import FilterSettings, PlannerSettings
 
 
@@ -25,6 +25,7 @@ class GuidanceConfig:
 
     progress: ProgressSettings = field(default_factory=ProgressSettings)
     navigator: NavigatorSettings = field(default_factory=NavigatorSettings)
+    resting_place: RestingPlaceSettings = field(default_factory=RestingPlaceSettings)
 
 
 @dataclass(frozen=True)

@@ -18,11 +18,13 @@ from idc_controller.estimation.measurements import MeasurementNoise
 from idc_controller.geometry.obstacles import ObstacleSource
 from idc_controller.guidance.navigator import Navigator
 from idc_controller.guidance.progress import AdaptiveGuidance, Guidance
+from idc_controller.guidance.resting_place import RestingPlace
 from idc_controller.model.linear import LinearModel
 from idc_controller.perception.obstacle_map import ObstacleMap
 from idc_controller.perception.scan_assembly import SensorModel
 from idc_controller.safety.filter_protocol import SafetyFilter
 from idc_controller.safety.safety_filter import AvoidanceFilter
+from idc_controller.trajectory.settings import BrakingSettings
 from idc_controller.trajectory.trajectory import Limits
 
 
@@ -55,18 +57,33 @@ def obstacle_map(mission: Mission) -> ObstacleMap:
 def avoidance(config: SystemConfig, model: LinearModel, obstacles: ObstacleSource) -> AvoidanceFilter:
     """The safety filter that keeps ``obstacles`` out of the hull."""
     planner = replace(
-        config.safety.planner, margin=config.avoidance.margin, barrier_rates=config.avoidance.barrier_rates
+        config.safety.planner,
+        limits=motion_limits(config),
+        margin=config.avoidance.margin,
+        barrier_rates=config.avoidance.barrier_rates,
     )
     return AvoidanceFilter(model.parameters, planner, obstacles, config.safety.filter)
 
 
 def guidance(config: SystemConfig, model: LinearModel, obstacles: ObstacleSource) -> AdaptiveGuidance:
     """The guidance that waits for the payload, and leads round ``obstacles``."""
-    motion, stages = config.motion, config.safety.planner.chain.times
-    limits = Limits(motion.speed, motion.acceleration, motion.jerk, motion.snap)
-    settings = replace(config.guidance.navigator, limits=limits, margin=config.avoidance.margin)
+    stages = config.safety.planner.chain.times
+    settings = replace(config.guidance.navigator, limits=motion_limits(config), margin=config.avoidance.margin)
     navigator = Navigator(model.parameters, settings, obstacles, stages)
     return AdaptiveGuidance(navigator, config.guidance.progress, stages, model.parameters.m_0 * model.parameters.g)
+
+
+def resting_place(config: SystemConfig, model: LinearModel, obstacles: ObstacleSource) -> RestingPlace:
+    """The choice of where a team without set-points comes to rest, clear of ``obstacles``."""
+    settings = replace(config.guidance.resting_place, margin=config.avoidance.margin)
+    braking = BrakingSettings(deceleration=settings.deceleration_share * config.motion.acceleration)
+    return RestingPlace(model.parameters, obstacles, settings, braking)
+
+
+def motion_limits(config: SystemConfig) -> Limits:
+    """The limits of the motion between waypoints."""
+    motion = config.motion
+    return Limits(motion.speed, motion.acceleration, motion.jerk, motion.snap)
 
 
 def controller(
@@ -86,7 +103,6 @@ def controller(
         constraint_stages=tuple(range(1, config.controller.horizon + 1, 3)),
         payload_tilt_limit=float(np.radians(config.controller.payload_tilt_limit_deg)),
         uav_tilt_limit=float(np.radians(config.controller.uav_tilt_limit_deg)),
-        lowest_payload=-config.payload.size[2] / 2.0,
         weights=config.controller.weights,
     )
     return IntegratedDecisionController(

@@ -34,7 +34,7 @@ class ModelPredictiveController:
         self.R = input_weight(settings.weights, self.layout)
         self.Q_f = solve_discrete_are(self.A, self.B, self.Q, self.R)
         self._input_limits = InputLimits(model, settings)
-        self._state_constraints = state_constraints(model, settings)
+        self.state_constraints = state_constraints(model, settings)
         self._condense()
 
     def track(self, error: Array, reference: FlatReference) -> TrackingOutput:
@@ -74,9 +74,9 @@ class ModelPredictiveController:
             gradient += H[k].T @ weight @ F[k]
 
         # Input bounds of every move are hard; the states' bounds are soft.
-        rows = np.vstack([constraint.G for constraint in self._state_constraints])
+        rows = np.vstack([constraint.G for constraint in self.state_constraints])
         G = np.vstack([np.kron(np.eye(moves), self._input_limits.G), *(rows @ H[k] for k in s.constraint_stages)])
-        slack_of_constraint = _numbered([constraint.slack for constraint in self._state_constraints])
+        slack_of_constraint = _numbered([constraint.slack for constraint in self.state_constraints])
         slack_of_row = np.concatenate(
             [np.full(2 * moves * m, -1), np.tile(slack_of_constraint, len(s.constraint_stages))]
         )
@@ -91,7 +91,7 @@ class ModelPredictiveController:
         """Return h of the QP: of the inputs of every move, then of the states at every constrained stage."""
         stages = list(self.settings.constraint_stages)
         inputs = self._input_limits.h(reference.u[self._first_stage_of_move])
-        states = np.concatenate([constraint.h(reference, stages) for constraint in self._state_constraints], axis=1)
+        states = np.concatenate([constraint.h(reference, stages) for constraint in self.state_constraints], axis=1)
         return np.concatenate([inputs.ravel(), states.ravel() - self._free_response @ error])
 
 

@@ -53,9 +53,9 @@ class MpcSettings:
     thrust_share_max: float = setting(
         0.95, "", "largest thrust set-point, as a share of the largest thrust", gt=0, le=1
     )
-    lowest_payload: float = derived(-0.25)
-    """Greatest z (m, NED) of the payload's centre, which is on the ground there: by ``payload.size``."""
-    uav_separation: float = setting(0.77, "m", "least distance between neighbouring UAVs", gt=0.0)
+    separation_share: float = setting(
+        0.425, "", "part of the gap between neighbouring rotor discs in hover that has to stay open", ge=0.0, le=1.0
+    )
     slack_linear: float = setting(1e3, "", "linear cost of exceeding a limit of the state", gt=0.0)
     slack_quadratic: float = setting(1e4, "", "quadratic cost of exceeding a limit of the state", gt=0.0)
     weights: MpcWeights = derived(MpcWeights())

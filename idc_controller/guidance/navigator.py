@@ -39,6 +39,8 @@ class Navigator:
         self.formation = BoundingCylinder.of(parameters, settings.link_tilt)
         self.settings, self.obstacles = settings, obstacles
         self._stages = stages
+        self.lowest = self.formation.below + settings.ground_clearance
+        """Lowest altitude of the payload's centre on a detour (m)."""
         self._detour: WaypointTrajectory | None = None
         self._resume = 0.0
         self._held_since: float | None = None
@@ -143,13 +145,13 @@ class Navigator:
         goals = [int(free[0]), int(free[min(8, len(free) - 1)])] if len(free) else [len(path) - 1]
         for goal in goals:
             detour = find_detour(
-                bodies, position, path[goal], self.formation, keep, lowest=s.lowest, highest=highest,
+                bodies, position, path[goal], self.formation, keep, lowest=self.lowest, highest=highest,
                 growth=growth, names=names,
             )  # fmt: skip
             if detour.waypoints is not None:
                 return detour.waypoints, float(ahead[goal])
         # By its surface: a long wall's centre may be far.
-        room = FreeSpace(bodies, self.formation, keep, s.lowest, highest, growth=growth)
+        room = FreeSpace(bodies, self.formation, keep, self.lowest, highest, growth=growth)
         self.reason = "there is no way on"
         if bodies:
             self.reason = f"the way on is blocked by {names[int(np.argmin(room.clearance(position[None])[0]))]}"

@@ -54,5 +54,32 @@ class NavigatorSettings:
     look_ahead: float = setting(60.0, "s", "how far along the mission its continuation is searched", gt=0.0)
     sample: float = setting(0.25, "s", "spacing of that search", gt=0.0)
     behind: float = setting(6.0, "s", "how far back a waypoint may lie that was not reached", ge=0.0)
-    lowest: float = setting(0.35, "m", "lowest altitude of the payload's centre on a detour", gt=0.0)
+    ground_clearance: float = setting(0.10, "m", "least height of the payload's underside on a detour", ge=0.0)
     climb: float = setting(8.0, "m", "how far above the mission a detour may lead", ge=0.0)
+
+
+@dataclass(frozen=True)
+class RestingPlaceSettings:
+    """Where a team without set-points may come to rest; the defaults of the obstacles' growth are those of the map."""
+
+    margin: float = derived(0.5)
+    """Clearance to keep between hull and obstacles (m): ``avoidance.margin``."""
+    drift: float = setting(0.3, "m", "more than the margin: vehicles without set-points deviate from the plan", ge=0.0)
+    look_ahead: float = setting(10.0, "s", "how far ahead obstacles are predicted", gt=0.0)
+    samples: int = setting(21, "", "moments within that", ge=2)
+    growth_max: float = setting(0.5, "m", "largest growth of an uncertain obstacle that counts", ge=0.0)
+    durations: tuple[float, ...] = setting((0.7, 1.3, 1.6, 2.0), "", "braking times tried, over the usual one", gt=0.0)
+    aside: tuple[float, ...] = setting(
+        (0.8, 1.6, 2.4), "m", "distances tried from where the motion alone would lead", gt=0.0
+    )
+    bearings: int = setting(8, "", "directions in which these are tried", ge=1)
+    deceleration_share: float = setting(
+        4.0 / 3.0, "", "deceleration of the stop over the acceleration between waypoints", gt=0.0
+    )
+    cost: float = setting(0.1, "", "clearance (m) for which a metre aside is too much", ge=0.0)
+    duration_cost: float = setting(2.0, "m", "what a doubled or spared braking time counts as, in metres aside", ge=0.0)
+
+    @property
+    def clearance(self) -> float:
+        """From the formation's upright hull to any obstacle, by the plan (m)."""
+        return self.margin + self.drift

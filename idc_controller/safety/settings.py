@@ -4,9 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from idc_controller.errors import ParameterError
 from idc_controller.settings import derived, setting
 from idc_controller.trajectory.integrator_chain import Chain
+from idc_controller.trajectory.trajectory import Limits
+
+Array = NDArray[np.float64]
 
 Triple = tuple[float, float, float]
 
@@ -24,9 +30,15 @@ class PlannerSettings:
     crackle: float = setting(
         0.0002, "", "weight of the change of snap from stage to stage: the UAVs' tilt rates follow it", ge=0.0
     )
-    acceleration_limit: Triple = setting((3.0, 3.0, 2.7), "m/s2", "largest acceleration of a plan, x, y, z", gt=0.0)
-    snap_limit: Triple = setting((6.0, 6.0, 10.0), "m/s4", "largest snap of a plan, x, y, z", gt=0.0)
-    lowest: float = setting(-0.30, "m", "greatest z (NED) of the payload's centre in a plan", lt=0.0)
+    limits: Limits = derived(Limits(1.5, 1.5, 2.0, 6.0))
+    """Of the motion between waypoints, from which the plan's follow: table ``motion``."""
+    acceleration_share: Triple = setting(
+        (2.0, 2.0, 1.8), "", "largest acceleration of a plan over that between waypoints, x, y, z", gt=0.0
+    )
+    snap_share: Triple = setting(
+        (1.0, 1.0, 5.0 / 3.0), "", "largest snap of a plan over that between waypoints, x, y, z", gt=0.0
+    )
+    ground_clearance: float = setting(0.05, "m", "least height of the payload's underside in a plan", ge=0.0)
     barrier_rates: tuple[float, ...] = derived((5.0,))
     """Rates of the exponential barrier (1/s), one for each degree: ``avoidance.barrier_rates``."""
     margin: float = derived(0.5)
@@ -46,6 +58,16 @@ class PlannerSettings:
         3000.0, "", "linear cost of exceeding the plan's limits: beyond them it cannot be tracked", gt=0.0
     )
     limit_slack_quadratic: float = setting(1000.0, "", "quadratic cost of exceeding the plan's limits", gt=0.0)
+
+    @property
+    def acceleration_limit(self) -> Array:
+        """Largest acceleration of a plan, x, y, z (m/s2)."""
+        return np.array(self.acceleration_share) * self.limits.acceleration
+
+    @property
+    def snap_limit(self) -> Array:
+        """Largest snap of a plan, x, y, z (m/s4)."""
+        return np.array(self.snap_share) * self.limits.snap
 
     def __post_init__(self) -> None:
         if any(not rate > 0.0 for rate in self.barrier_rates):

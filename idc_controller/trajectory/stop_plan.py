@@ -21,11 +21,9 @@ from scipy.interpolate import BPoly
 from idc_controller.model.linear import E3, StateLayout
 from idc_controller.parameters import SystemParameters
 from idc_controller.trajectory.flatness import FlatReference
+from idc_controller.trajectory.settings import BrakingSettings
 
 Array = NDArray[np.float64]
-
-BRAKING_TIME = 4.0  # s
-BRAKING_LIMIT = 2.0  # m/s2; a faster team takes longer to stop
 
 # Control points of the quartic from (position, T velocity, T^2 acceleration) at its start.
 _CONTROL_POINTS = np.array(
@@ -46,10 +44,12 @@ class Braking(NamedTuple):
     """Of the usual time."""
     aside: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """Where to rest, beside where the motion alone would lead (m). The acceleration then jumps at the start."""
+    settings: BrakingSettings = BrakingSettings()
 
     def duration(self, velocity: Array) -> float:
         """From a ``velocity`` (3,) (m/s) to rest (s)."""
-        return self.share * max(BRAKING_TIME, 1.5 * float(np.linalg.norm(velocity)) / BRAKING_LIMIT)
+        speed = float(np.linalg.norm(velocity))
+        return self.share * max(self.settings.time, 1.5 * speed / self.settings.deceleration)
 
     def control_points(self, state: Array, duration: float) -> Array:
         """Of the way from a ``state`` (..., 3, 3) of position, velocity and acceleration: (..., 5, 3) (m)."""

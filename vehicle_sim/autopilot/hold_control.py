@@ -16,11 +16,12 @@ import numpy as np
 from scipy.interpolate import BPoly
 
 from idc_controller.rotations_float import Quaternion, Vector, attitude_of_force
-from idc_controller.trajectory.stop_plan import BRAKING_LIMIT, BRAKING_TIME
+from idc_controller.trajectory.settings import BrakingSettings
 from vehicle_sim.autopilot.settings import HoldSettings
 from vehicle_sim.world.sensors import Measurement
 
 AT_REST: Vector = (0.0, 0.0, 0.0)
+BRAKING = BrakingSettings()
 
 
 class PlannedState(NamedTuple):
@@ -59,7 +60,7 @@ class HoldPlan:
         would part.
         """
         v_x, v_y, _ = velocity
-        duration = max(BRAKING_TIME, 1.5 * math.hypot(v_x, v_y) / BRAKING_LIMIT)
+        duration = max(BRAKING.time, 1.5 * math.hypot(v_x, v_y) / BRAKING.deceleration)
         x, y, z = position
         quarter = (x + duration * v_x / 4, y + duration * v_y / 4, z)
         end = (x + duration * v_x / 2, y + duration * v_y / 2, z)

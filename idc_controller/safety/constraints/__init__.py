@@ -17,5 +17,5 @@ def planner_constraints(barrier: ExponentialBarrier, settings: PlannerSettings) 
     return (
         barrier,
         AccelerationBounds(settings, limits),
-        LowestAltitude(settings, limits),
+        LowestAltitude(barrier.formation, settings, limits),
     )

@@ -30,7 +30,7 @@ class AccelerationBounds:
         self.penalty = penalty
         self._stages = limited_stages(settings.chain)
         limits = settings.acceleration_limit
-        self._limits = np.array([*limits, min(limits[:2]), min(limits[:2])])
+        self._limits = np.array([*limits, limits[:2].min(), limits[:2].min()])
         along = np.einsum("da,kz->dkaz", DIRECTIONS, settings.chain.response[1][self._stages, 2])
         self._G = np.stack([along, -along], axis=1).reshape(-1, 3 * settings.chain.knots)
 

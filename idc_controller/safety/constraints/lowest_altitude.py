@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from idc_controller.geometry.formation import Formation
 from idc_controller.safety.constraints.acceleration_bounds import limited_stages
 from idc_controller.safety.constraints.constraint import Penalty, PlanningStep
 from idc_controller.safety.settings import PlannerSettings
@@ -15,9 +16,11 @@ Array = NDArray[np.float64]
 class LowestAltitude:
     """Rows on the height of the payload's centre; the reference's own height is always allowed."""
 
-    def __init__(self, settings: PlannerSettings, penalty: Penalty) -> None:
+    def __init__(self, formation: Formation, settings: PlannerSettings, penalty: Penalty) -> None:
         self.penalty = penalty
-        self._lowest = settings.lowest
+        underside = float(formation.box_support(np.array([[0.0, 0.0, 1.0]]))[0])
+        self.lowest = -(underside + settings.ground_clearance)
+        """Greatest z (NED) of the payload's centre (m)."""
         self._stages = limited_stages(settings.chain)
         knots = settings.chain.knots
         self._G = np.zeros((len(self._stages), 3 * knots))
@@ -26,7 +29,7 @@ class LowestAltitude:
     def rows(self, step: PlanningStep) -> tuple[Array, Array]:
         """Return G (m, 3 knots) and h (m,) (m)."""
         z = step.reference[0, self._stages, 2]
-        return self._G, np.maximum(self._lowest, z) - z - step.free[self._stages, 0, 2]
+        return self._G, np.maximum(self.lowest, z) - z - step.free[self._stages, 0, 2]
 
     def slack_shares(self, step: PlanningStep) -> Array:
         """Return S (m, 1): one slack for all."""

@@ -1,0 +1,90 @@
+"""Numbers that follow from a key of the system file: the key is changed and the behaviour follows."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gcs.config import read_system
+from gcs.flight import stack
+from idc_controller.geometry.obstacles import StandingObstacles
+from idc_controller.geometry.sphere import Sphere
+from idc_controller.model.linear import LinearModel
+from idc_controller.safety.settings import PlannerSettings
+
+NOTHING = StandingObstacles([])
+STATE = np.array([[0.0, 0.0, -5.0], [2.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
+
+
+def system(**tables):
+    """The default system with keys of its tables changed."""
+    config = read_system()
+    return replace(config, **{name: replace(getattr(config, name), **keys) for name, keys in tables.items()})
+
+
+def built(make, config, obstacles=NOTHING):
+    return make(config, LinearModel(config.parameters()), obstacles)
+
+
+@pytest.mark.parametrize("height", [0.5, 1.0])
+def test_plan_keeps_payload_above_ground_whatever_its_height(height):
+    config = system(payload={"size": (1.0, 1.0, height)})
+    planner = built(stack.avoidance, config).planner
+    chain = planner.settings.chain
+    # Sinking towards a reference that is just above the ground.
+    reference, start = np.zeros((5, chain.stages + 1, 3)), np.zeros((5, 3))
+    reference[0, :, 2] = -height / 2.0 - 0.06
+    start[:2, 2] = -1.5, 1.2
+    free = planner.free(start)
+    plan = planner.solve(start, reference, [], reference[2])
+    underside = [(reference[0] + p.deviation[:, 0])[:, 2].max() + height / 2.0 for p in (free, plan)]
+    assert underside[0] > 0.0
+    assert underside[1] < 0.0
+
+
+def test_detours_are_searched_above_ground_whatever_the_height_of_the_payload():
+    lowest = [
+        built(stack.guidance, system(payload={"size": (1.0, 1.0, height)})).navigator.lowest for height in (0.5, 1.0)
+    ]
+    assert lowest == pytest.approx([0.35, 0.6])
+
+
+def test_stop_without_setpoints_keeps_farther_off_with_a_larger_margin():
+    place = np.array([4.0, 2.4, -5.0])
+    obstacles = StandingObstacles([("beside", Sphere(0.5), place)])
+    distances = []
+    for margin in (0.5, 1.2):
+        choice = built(stack.resting_place, system(avoidance={"margin": margin}), obstacles)(0.0, STATE)
+        rest = choice.way(STATE)(choice.duration(STATE[1]))
+        distances.append(np.linalg.norm(rest - place))
+    assert distances[1] > distances[0] + 0.3
+
+
+@pytest.mark.parametrize(("spacing", "limit"), [(1.0, 0.77), (1.4, 0.94)])
+def test_separation_limit_follows_spacing_of_the_team(spacing, limit):
+    config = system(team={"spacing": spacing})
+    model = LinearModel(config.parameters())
+    tracker = stack.controller(config, model, None, lambda: 0.0).tracker
+    separation = tracker.state_constraints[-1]
+    assert separation.distance == pytest.approx(limit)
+    assert separation.h(None, [1]) == pytest.approx(np.full((1, 4), spacing - limit))
+
+
+def test_limits_of_plans_follow_limits_of_motion():
+    planner = built(stack.avoidance, system(motion={"acceleration": 0.6, "snap": 3.0})).planner
+    chain = planner.settings.chain
+    reference, start = np.zeros((5, chain.stages + 1, 3)), np.zeros((5, 3))
+    reference[0, :, 2], start[0] = -5.0, [3.0, 0.0, 0.0]
+    plan = planner.solve(start, reference, [], np.zeros((chain.stages + 1, 3)))
+    limited = np.arange(3, chain.stages + 1, 3)
+    assert np.abs(plan.deviation[limited, 2, 0]).max() <= 1.2 + 1e-6
+    assert np.abs(plan.deviation[1:, 4, 0]).max() <= 3.0 + 1e-6
+    assert np.abs(PlannerSettings().acceleration_limit).max() == 3.0
+
+
+def test_stop_without_setpoints_takes_longer_with_a_smaller_acceleration():
+    durations = [
+        built(stack.resting_place, system(motion={"acceleration": a}))(0.0, STATE).duration(np.array([3.0, 0.0, 0.0]))
+        for a in (1.5, 0.5)
+    ]
+    assert durations == pytest.approx([4.0, 1.5 * 3.0 / (4.0 / 3.0 * 0.5)])
