@@ -77,7 +77,7 @@ class SystemParameters:
         hover = self.hover_thrust
         if np.any(hover <= 0.0) or np.any(hover >= self.thrust_max):
             raise ParameterError(
-                f"hover asks for {np.round(hover, 1).tolist()} N a UAV; it must lie in 0 .. {self.thrust_max} N"
+                f"hover needs {np.round(hover, 1).tolist()} N a UAV; it must lie in 0 .. {self.thrust_max} N"
             )
 
     @property
@@ -96,7 +96,7 @@ class SystemParameters:
 
         The least-norm solution of force and moment balance; 1/N each for a symmetric layout.
         """
-        return np.linalg.pinv(self._moment_balance()) @ np.array([1.0, 0.0, 0.0])
+        return np.asarray(np.linalg.pinv(self._moment_balance()) @ np.array([1.0, 0.0, 0.0]))
 
     @cached_property
     def hover_thrust(self) -> Array:
@@ -120,6 +120,6 @@ def polygon_attachments(number_of_uavs: int, side: float, height: float) -> Arra
     -0.25 these are the corners of the paper's Table I, in its order.
     """
     radius = side / (2.0 * np.sin(np.pi / number_of_uavs))
-    # UAV 1 stands front right; the rest follow against the sense of the yaw angle, as in Table I.
+    # UAV 1 is front right; the rest follow against the sense of the yaw angle, as in Table I.
     angle = np.pi / number_of_uavs - 2.0 * np.pi * np.arange(number_of_uavs) / number_of_uavs
     return np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.full(number_of_uavs, height)]).round(12)

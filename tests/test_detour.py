@@ -119,7 +119,7 @@ def test_a_closed_box_cannot_be_reached():
     box = [wall(16.0, 0.0, 0.3, 8.0), wall(24.0, 0.0, 0.3, 8.0), wall(20.0, 4.0, 8.0, 0.3), wall(20.0, -4.0, 8.0, 0.3)]
     detour = way(box)
     assert detour.waypoints is None and detour.length == math.inf
-    assert detour.reason == "every way from start to goal is closed or too narrow for the formation"
+    assert detour.reason == "every path from start to goal is closed or too narrow for the formation"
     # From above it can.
     assert way(box, highest=20.0).waypoints is not None
 

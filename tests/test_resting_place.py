@@ -15,7 +15,7 @@ PARAMETERS = read_system().parameters()
 #: Position, velocity, acceleration: 2 m/s north at 5 m.
 STATE = np.array([[0.0, 0.0, -5.0], [2.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
 USUAL = Braking()
-REST = USUAL.way(STATE)(USUAL.duration(STATE[1]))
+REST = USUAL.path(STATE)(USUAL.duration(STATE[1]))
 WIDTH = 0.95  # m, more than the formation's half width
 
 
@@ -36,11 +36,11 @@ class Swinging:
 
 
 def rest_of(braking):
-    return braking.way(STATE)(braking.duration(STATE[1]))
+    return braking.path(STATE)(braking.duration(STATE[1]))
 
 
 def test_the_usual_way_takes_over_the_motion_and_ends_at_rest():
-    way = USUAL.way(STATE)
+    way = USUAL.path(STATE)
     assert [way.derivative(k)(0.0) for k in (1, 2)] == [pytest.approx(STATE[1]), pytest.approx(STATE[2])]
     assert way.derivative()(way.x[-1]) == pytest.approx(np.zeros(3))
 

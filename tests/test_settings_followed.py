@@ -55,7 +55,7 @@ def test_stop_without_setpoints_keeps_farther_off_with_a_larger_margin():
     distances = []
     for margin in (0.5, 1.2):
         choice = built(stack.resting_place, system(avoidance={"margin": margin}), obstacles)(0.0, STATE)
-        rest = choice.way(STATE)(choice.duration(STATE[1]))
+        rest = choice.path(STATE)(choice.duration(STATE[1]))
         distances.append(np.linalg.norm(rest - place))
     assert distances[1] > distances[0] + 0.3
 

@@ -5,17 +5,17 @@ import pytest
 from scipy.linalg import expm
 
 from gcs.config import read_system
-from idc_controller.control.ground_controller import StandingTracker, standing_dynamics
+from idc_controller.control.ground_controller import GroundController, pendulum_dynamics
 from idc_controller.model.linear import LinearModel
 
 PERIOD = 0.05
 MODEL = LinearModel(read_system().parameters())
-GAINS = StandingTracker(MODEL, PERIOD).gains
+GAINS = GroundController(MODEL, PERIOD).gains
 
 
 def slowest(gain, share, late):
     """Spectral radius of one axis at a ``share`` of the hover thrust, its set-points ``late`` periods."""
-    A, B = standing_dynamics(MODEL, 0, share)
+    A, B = pendulum_dynamics(MODEL, 0, share)
     block = np.zeros((6, 6))
     block[:5, :5], block[:5, 5:] = A, B
     step = expm(block * PERIOD)

@@ -67,10 +67,10 @@ def test_where_the_team_rests_is_told_though_its_payload_swings(time):
         return Braking(1.3, (0.8, 0.0, 0.0))
 
     plan = stop_plan(PARAMETERS, flat, time, choose=choose)
-    foreseen = Braking(1.3, (0.8, 0.0, 0.0)).way(told[0])(plan.duration)
+    foreseen = Braking(1.3, (0.8, 0.0, 0.0)).path(told[0])(plan.duration)
     hangs = plan.control_points[:, -1] - PARAMETERS.p + PARAMETERS.l[:, None] * [0.0, 0.0, 1.0]
     assert hangs == pytest.approx(np.tile(foreseen, (PARAMETERS.number_of_uavs, 1)), abs=1e-6)
-    own = Braking(1.3, (0.8, 0.0, 0.0)).way(flat.payload[:3, 0])(plan.duration)
+    own = Braking(1.3, (0.8, 0.0, 0.0)).path(flat.payload[:3, 0])(plan.duration)
     assert np.linalg.norm(own - foreseen) > 1.0
 
 

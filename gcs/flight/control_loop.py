@@ -73,7 +73,7 @@ class ControlLoop:
     def decide(self, estimate: Estimate, trajectory: Trajectory, *, on_ground: bool, learn_load: bool) -> StepRecord:
         """Return the decision on an ``estimate`` of this step."""
         begin = self._stopwatch()
-        decision = self.controller.decide(estimate, trajectory, standing=on_ground, learn_load=learn_load)
+        decision = self.controller.decide(estimate, trajectory, on_ground=on_ground, learn_load=learn_load)
         return StepRecord(estimate, decision, self._estimator_time, self._stopwatch() - begin)
 
     def send(self, record: StepRecord, effective: float, leaves: Array) -> None:

@@ -12,7 +12,7 @@ from gcs.config import MotionConfig
 from gcs.mission.model import Lissajous, Mission
 from gcs.mission.route import Circle, FlyTo, HoldForever, Land, Leg, Speed, TakeOff
 from idc_controller.trajectory import paths
-from idc_controller.trajectory.cached import RememberedTrajectory
+from idc_controller.trajectory.cached import CachedTrajectory
 from idc_controller.trajectory.lissajous import LissajousCurve, LissajousTrajectory
 from idc_controller.trajectory.trajectory import Limits, Trajectory
 from idc_controller.trajectory.waypoints import WaypointTrajectory
@@ -42,7 +42,7 @@ class MissionTrajectory:
         up = WaypointTrajectory(position, climb, self._vertical_limits(), start=start)
         self._climb: Trajectory | None = up
         along = up.then(lambda time, here: self._flown(mission, legs, time, here))
-        self._trajectory: Trajectory = RememberedTrajectory(along.then(self._land))
+        self._trajectory: Trajectory = CachedTrajectory(along.then(self._land))
         self._braking = False
 
     @property
@@ -86,7 +86,7 @@ class MissionTrajectory:
             return
         self._braking = True
         self._climb = None
-        self._trajectory = RememberedTrajectory(followed.stop(time).then(self._land))
+        self._trajectory = CachedTrajectory(followed.stop(time).then(self._land))
 
     def _split(self, mission: Mission, position: Array) -> tuple[list[paths.Leg], Iterator[Leg]]:
         """Return the climb, and the legs that follow it."""

@@ -1,7 +1,7 @@
 """The Integrated Decision Controller: reference and estimate in, set-points out (fig:schCont).
 
-Two seams keep it open. Any :class:`~idc_controller.control.tracker.Tracker` can stand in the MPC's place. A
-:class:`~idc_controller.safety.filter_protocol.SafetyFilter` stands between the mission's trajectory and the tracker,
+Two interfaces keep it open. Any :class:`~idc_controller.control.tracker.Tracker` can take the MPC's place. A
+:class:`~idc_controller.safety.filter_protocol.SafetyFilter` is between the guidance's reference and the tracker,
 and deflects it to keep obstacles out of the hull.
 """
 
@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from idc_controller.control.force_components import setpoints_from_force_components, state_in_force_components
-from idc_controller.control.ground_controller import StandingTracker
+from idc_controller.control.ground_controller import GroundController
 from idc_controller.control.tracker import Tracker
 from idc_controller.estimation.estimate import Estimate
 from idc_controller.estimation.settings import WindSettings
@@ -46,7 +46,7 @@ class ControllerSettings:
     drag_limit: float = 0.65
     """The same where wind explains the force: of drag, and of drag and steady force together."""
     upright_time_constant: float = 0.5
-    """With which links come upright over a payload that stands on the ground (s)."""
+    """With which links come upright over a payload on the ground (s)."""
     position_error_limit: float = 0.3
     """An error of the payload's position is answered as if it were at most this (m)."""
     velocity_error_limit: float = 0.6
@@ -101,7 +101,7 @@ class IntegratedDecisionController:
         self.layout = model.layout
         self.tracker, self.safety, self.settings = tracker, safety, settings
         self.guidance = guidance or Guidance()
-        self._standing = StandingTracker(model, settings.period)
+        self._ground_controller = GroundController(model, settings.period)
         self._tracked: PayloadTrajectory | None = None
         self._stopwatch = stopwatch
         self._weight = self.parameters.m_0 * self.parameters.g
@@ -120,22 +120,22 @@ class IntegratedDecisionController:
         estimate: Estimate,
         mission: Trajectory,
         *,
-        standing: bool = False,
+        on_ground: bool = False,
         learn_load: bool = True,
     ) -> Decision:
         """Set-points that act from ``estimate.time`` on for one period.
 
-        ``standing``: the payload stands on the ground. ``learn_load`` is off while the ground may carry part of it.
+        ``on_ground``: the payload is on the ground. ``learn_load`` is off while the ground may carry part of it.
         """
         begin = self._stopwatch()
         trajectory: PayloadTrajectory = mission
-        if not standing:
+        if not on_ground:
             trajectory = self.safety.filter(estimate.time, self.guidance.reference(estimate.time, mission), estimate)
             self.guidance.observe(trajectory, self.safety.report.lag, self.safety.report.deviation, self.load.air)
-        self._tracked = None if standing else trajectory
+        self._tracked = None if on_ground else trajectory
         planned = self._stopwatch()
-        if standing:
-            self._let_go()
+        if on_ground:
+            self._release()
         elif learn_load:
             self._learn(estimate)
         reference = Reference(self.parameters, trajectory, self.load)
@@ -150,10 +150,10 @@ class IntegratedDecisionController:
         error[self.layout.r_0] = _limited(error[self.layout.r_0], s.position_error_limit)
         error[self.layout.v_0] = _limited(error[self.layout.v_0], s.velocity_error_limit)
         ready = self._stopwatch()
-        output = (self._standing if standing else self.tracker).track(error, stages)
+        output = (self._ground_controller if on_ground else self.tracker).track(error, stages)
         tracked = self._stopwatch()
         u = setpoints_from_force_components(output.delta_u, flat.u[-1], self.layout, hover)
-        if not standing:
+        if not on_ground:
             u = self.safety.correct(estimate.time, u, estimate)
         n = u[self.layout.n_setpoint].reshape(-1, 2)
         upward = np.sqrt(np.maximum(1.0 - np.sum(n**2, axis=1), 0.0))
@@ -173,7 +173,7 @@ class IntegratedDecisionController:
             detours=self.guidance.detours,
         )
 
-    def _let_go(self) -> None:
+    def _release(self) -> None:
         """The ground holds the payload: links that lean against the wind come upright."""
         share = self.settings.period / self.settings.upright_time_constant
         drag, uav_drag = _drag(self.load.air, np.zeros(3))
@@ -189,7 +189,7 @@ class IntegratedDecisionController:
         self.wind.learn(estimate.force, np.median(estimate.uav_force, axis=0), velocity)
         drag, uav_drag = _drag(self.wind.air, velocity)
         uav_limit = self.settings.force_limit * float(self.parameters.m.min()) * self.parameters.g
-        # What is believed of the wind changes what is left over, not the whole.
+        # The estimate of the wind changes what is left over, not the whole.
         force, uav_force = force - drag, uav_force - uav_drag
         limit = self._weight * (self.settings.force_limit if self.wind.air is None else self.settings.drag_limit)
         force = force + share * (_limited(estimate.force, limit) - drag - force)

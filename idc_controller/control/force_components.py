@@ -35,7 +35,7 @@ def setpoints_from_force_components(delta: Array, u_reference: Array, layout: St
     f = u_reference[layout.f_setpoint]
     lateral = f[:, None] * n + hover[:, None] * delta[layout.n_setpoint].reshape(N, 2)
     upward = f * _cosine(n) + delta[layout.f_setpoint]
-    upward = np.maximum(upward, 0.05 * hover)  # the force points up whatever is asked
+    upward = np.maximum(upward, 0.05 * hover)  # the force points up whatever is commanded
     thrust = np.sqrt(np.sum(lateral**2, axis=-1) + upward**2)
     return np.concatenate([(lateral / thrust[:, None]).ravel(), thrust])
 
@@ -50,4 +50,4 @@ def inputs_in_force_components(u: Array, layout: StateLayout, hover: Array) -> A
 
 
 def _cosine(n: Array) -> Array:
-    return np.sqrt(np.maximum(1.0 - np.sum(n**2, axis=-1), 1e-3))
+    return np.asarray(np.sqrt(np.maximum(1.0 - np.sum(n**2, axis=-1), 1e-3)))

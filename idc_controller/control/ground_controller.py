@@ -1,4 +1,4 @@
-"""Keeps the UAVs upright over a payload that stands on the ground, while the thrust grows or fades.
+"""Keeps the UAVs upright over a payload on the ground, while the thrust grows or fades.
 
 The ground holds the payload, so the model of flight does not apply: each UAV is a pendulum above its attachment point,
 
@@ -28,14 +28,14 @@ _Q = np.diag([100.0, 80.0, 1.0, 0.1, 0.0])
 _R = np.array([[200.0]])
 
 
-class StandingTracker:
+class GroundController:
     """A tracker for the time on the ground; see :class:`~idc_controller.control.tracker.Tracker`."""
 
     def __init__(self, model: LinearModel, period: float) -> None:
         """``period`` is the control period (s)."""
         self.layout = model.layout
         self.gains = np.array(
-            [standing_gain(model, i, DESIGN_SHARE, period) for i in range(model.layout.number_of_uavs)]
+            [pendulum_gain(model, i, DESIGN_SHARE, period) for i in range(model.layout.number_of_uavs)]
         )
 
     def track(self, error: Array, reference: FlatReference) -> TrackingOutput:
@@ -47,7 +47,7 @@ class StandingTracker:
         return TrackingOutput(np.concatenate([tilt.ravel(), np.zeros(layout.number_of_uavs)]))
 
 
-def standing_dynamics(model: LinearModel, uav: int, share: float) -> tuple[Array, Array]:
+def pendulum_dynamics(model: LinearModel, uav: int, share: float) -> tuple[Array, Array]:
     """Continuous ``A`` (5, 5), ``B`` (5, 1) of (s, s', n, n', n'') of one axis at ``share`` of the hover thrust."""
     p = model.parameters
     f, weight, ml = share * p.hover_thrust[uav], p.m[uav] * p.g, p.m[uav] * p.l[uav]
@@ -59,9 +59,9 @@ def standing_dynamics(model: LinearModel, uav: int, share: float) -> tuple[Array
     return A, np.array([[0.0], [0.0], [0.0], [0.0], [kp / T_m]])
 
 
-def standing_gain(model: LinearModel, uav: int, share: float, period: float) -> Array:
+def pendulum_gain(model: LinearModel, uav: int, share: float, period: float) -> Array:
     """Regulator gain (5,) for one axis of one UAV."""
-    A, B = standing_dynamics(model, uav, share)
+    A, B = pendulum_dynamics(model, uav, share)
     block = np.zeros((6, 6))
     block[:5, :5], block[:5, 5:] = A, B
     step = expm(block * period)

@@ -1,4 +1,4 @@
-"""The seam of the tracking controller: any tracker can stand in the MPC's place, as the paper promises."""
+"""The interface of a tracking controller: any tracker can take the MPC's place."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class TrackingOutput:
-    """What a tracker asks of the vehicles."""
+    """Set-points of a tracker, and how they came about."""
 
     delta_u: Array
     """Set-points less the reference's, in force components (3 N,): :mod:`idc_controller.control.force_components`."""

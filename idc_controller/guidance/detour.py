@@ -1,6 +1,6 @@
-"""A way round what is in the way: a polyline on which the whole formation keeps its distance, or why there is none.
+"""Detours: a polyline on which the whole formation keeps its distance from obstacles, or why there is none.
 
-A shortest path on a grid chooses the way round (over, left, right, between), from all there are; visibility then
+A shortest path on a grid chooses the side (over, left, right, between), from all there are; visibility then
 straightens it to few waypoints. The grid's edges are proven, not sampled: the distance to a convex body is convex
 along an edge, so ends that keep r = sqrt(margin^2 + (edge/2)^2) keep the margin in between.
 """
@@ -18,9 +18,10 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
 from idc_controller.errors import TrajectoryError
-from idc_controller.geometry.free_space import BoundingCylinder, FreeSpace, first_conflict
+from idc_controller.geometry.formation import BoundingCylinder
+from idc_controller.geometry.free_space import FreeSpace, first_conflict
 from idc_controller.geometry.shape import Shape
-from idc_controller.guidance.straighten import straightened, ways_out
+from idc_controller.guidance.straighten import free_segments_from, straightened
 from idc_controller.trajectory.trajectory import point
 
 __all__ = ["BoundingCylinder", "Detour", "FreeSpace", "find_detour", "first_conflict"]
@@ -32,15 +33,15 @@ Box = tuple[Array, Array]
 SPACING = 0.5
 """m between the nodes of the grid."""
 FINE_SPACING = 0.25
-"""m horizontally where the coarse grid finds no way: gaps some 0.3 m wider than they must be are found."""
+"""m horizontally where the coarse grid finds no path: gaps some 0.3 m wider than they must be are found."""
 MOST_NODES = 160_000
 AROUND = 4.0
 """m of region beyond start, goal and the obstacles about them."""
 REGION_MOST = 80.0
 """m, the largest edge of a region that is chosen here."""
 LEAVE_WITHIN = 3.0
-"""m, how far a start too near an obstacle may be from room."""
-_LONGER = (2.0, 6.0, math.inf)  # m than the straight way: how long a way to look for first, then, and at last
+"""m, how far a start too near an obstacle may be from free space."""
+_LONGER = (2.0, 6.0, math.inf)  # m than the straight line: limit of a path's length in three searches
 
 _HALF = [(i, j, k) for i in (-1, 0, 1) for j in (-1, 0, 1) for k in (-1, 0, 1) if (i, j, k) > (0, 0, 0)]
 _DIRECTIONS = np.array([*_HALF, *[(-i, -j, -k) for i, j, k in _HALF]])
@@ -48,7 +49,7 @@ _DIRECTIONS = np.array([*_HALF, *[(-i, -j, -k) for i, j, k in _HALF]])
 
 @dataclass(frozen=True, eq=False)
 class Detour:
-    """A way from start to goal, or the reason why there is none."""
+    """A path from start to goal, or the reason why there is none."""
 
     waypoints: Array | None
     """(M, 3) NED (m), start and goal included."""
@@ -56,7 +57,7 @@ class Detour:
 
     @property
     def length(self) -> float:
-        """Length of the way (m); inf where there is none."""
+        """Length of the path (m); inf where there is none."""
         if self.waypoints is None:
             return math.inf
         return float(np.linalg.norm(np.diff(self.waypoints, axis=0), axis=1).sum())
@@ -76,11 +77,11 @@ def find_detour(
     names: Sequence[str] | None = None,
     climb_cost: float = 1.0,
 ) -> Detour:
-    """The shortest way for the formation from ``start`` to ``goal`` (3,), NED positions of the payload's centre (m).
+    """Return the shortest path for the formation from ``start`` to ``goal`` (3,), NED (m).
 
-    The straight way if it is free; otherwise over, under, left or right of what is in the way. Straight lines
+    The straight line if it is free; otherwise over, under, left or right of the obstacles on it. Straight lines
     between the waypoints keep ``margin`` (m); whoever flies round their corners adds what is cut off there. A
-    start nearer to an obstacle than that is left on a way that does not come nearer. Deterministic.
+    start nearer to an obstacle than that is left on a path that does not come nearer. Deterministic.
 
     Args:
         obstacles, growth: (shape, centre (3,)) and by how much each is taken larger (m); moving ones as they
@@ -94,49 +95,49 @@ def find_detour(
         TrajectoryError: what is given has no meaning.
     """
     begin, end = point(start, "start"), point(goal, "goal")
-    room = FreeSpace(obstacles, formation, margin, lowest, highest, growth)
+    space = FreeSpace(obstacles, formation, margin, lowest, highest, growth)
     called = list(names) if names is not None else [f"{s.kind} {i}" for i, (s, _) in enumerate(obstacles, start=1)]
-    if (reason := _refused(room, end, "goal", called)) is not None:
+    if (reason := _refused(space, end, "goal", called)) is not None:
         return Detour(None, reason)
-    if ways_out(room, begin, end[None])[0]:
+    if free_segments_from(space, begin, end[None])[0]:
         return Detour(np.array([begin, end]))
-    box = _region(room, begin, end) if region is None else _box(region, room)
+    box = _region(space, begin, end) if region is None else _box(region, space)
     coarser = max(1.0, (float(np.prod((box[1] - box[0]) / SPACING + 1.0)) / MOST_NODES) ** (1.0 / 3.0))
     reason = ""
     for spacing in ((SPACING, SPACING, SPACING), (FINE_SPACING, FINE_SPACING, SPACING)):
-        grid = _Grid(room, box, coarser * np.array(spacing), begin, end)
-        nodes, reason = grid.way(climb_cost)
+        grid = _Grid(space, box, coarser * np.array(spacing), begin, end)
+        nodes, reason = grid.path(climb_cost)
         if nodes is not None:
-            return Detour(straightened(room, nodes, climb_cost))
-    if not room.is_free(begin[None])[0]:
-        reason = (_refused(room, begin, "start", called) or reason) + ", and there is no way out of there"
+            return Detour(straightened(space, nodes, climb_cost))
+    if not space.is_free(begin[None])[0]:
+        reason = (_refused(space, begin, "start", called) or reason) + ", and no path leads out of there"
     return Detour(None, reason)
 
 
-def _refused(room: FreeSpace, place: Array, what: str, names: Sequence[str]) -> str | None:
+def _refused(space: FreeSpace, place: Array, what: str, names: Sequence[str]) -> str | None:
     """Why the formation cannot be at ``place``; None: it can."""
     altitude = -place[2]
-    if not room.lowest - 1e-6 <= altitude <= room.highest + 1e-6:
-        return f"the {what}, {altitude:.2f} m high, is not within {room.lowest:g} to {room.highest:g} m"
-    if len(room.centres):
-        clearance = room.clearance(place[None])[0]
+    if not space.lowest - 1e-6 <= altitude <= space.highest + 1e-6:
+        return f"the {what}, {altitude:.2f} m high, is not within {space.lowest:g} to {space.highest:g} m"
+    if len(space.centres):
+        clearance = space.clearance(place[None])[0]
         nearest = int(np.argmin(clearance))
         if clearance[nearest] <= 0.0:
             return f"the formation at the {what} would meet {names[nearest]}"
-        if clearance[nearest] < room.margin - 1e-6:
+        if clearance[nearest] < space.margin - 1e-6:
             return (
                 f"the formation at the {what} would be {clearance[nearest]:.2f} m from {names[nearest]}, "
-                f"less than the margin of {room.margin:g} m"
+                f"less than the margin of {space.margin:g} m"
             )
     return None
 
 
-def _region(room: FreeSpace, start: Array, goal: Array) -> Box:
-    """A box about start and goal that holds the obstacles in between, and a way round them."""
-    keep = room.formation.radius + room.margin + AROUND
+def _region(space: FreeSpace, start: Array, goal: Array) -> Box:
+    """A box about start and goal that holds the obstacles in between, and a path round them."""
+    keep = space.formation.radius + space.margin + AROUND
     low, high = np.minimum(start, goal)[:2] - keep, np.maximum(start, goal)[:2] + keep
-    lows = room.centres[:, :2] - (room.lateral_reach + keep)[:, None]
-    highs = room.centres[:, :2] + (room.lateral_reach + keep)[:, None]
+    lows = space.centres[:, :2] - (space.lateral_reach + keep)[:, None]
+    highs = space.centres[:, :2] + (space.lateral_reach + keep)[:, None]
     inside = np.zeros(len(lows), dtype=bool)
     while True:  # obstacles that reach into the region widen it, and so may bring in others
         reach_in = np.all((highs - AROUND > low) & (lows + AROUND < high), axis=1)
@@ -148,16 +149,16 @@ def _region(room: FreeSpace, start: Array, goal: Array) -> Box:
     most = np.maximum(REGION_MOST / 2.0, np.abs(goal - start)[:2] / 2.0 + keep)
     low, high = np.maximum(low, middle - most), np.minimum(high, middle + most)
     top = max(-start[2], -goal[2]) + 1.0
-    if len(room.centres):  # nothing is gained higher than above all obstacles
-        tops = room.vertical_reach - room.centres[:, 2]
-        top = max(top, float(tops.max()) + room.margin + room.formation.below + 1.0)
-    return np.array([*low, -min(top, room.highest)]), np.array([*high, -room.lowest])
+    if len(space.centres):  # nothing is gained higher than above all obstacles
+        tops = space.vertical_reach - space.centres[:, 2]
+        top = max(top, float(tops.max()) + space.margin + space.formation.below + 1.0)
+    return np.array([*low, -min(top, space.highest)]), np.array([*high, -space.lowest])
 
 
-def _box(region: tuple[ArrayLike, ArrayLike], room: FreeSpace) -> Box:
+def _box(region: tuple[ArrayLike, ArrayLike], space: FreeSpace) -> Box:
     corners = np.array([point(corner, "corner of the region") for corner in region])
     low, high = corners.min(axis=0), corners.max(axis=0)
-    low[2], high[2] = max(low[2], -room.highest), min(high[2], -room.lowest)
+    low[2], high[2] = max(low[2], -space.highest), min(high[2], -space.lowest)
     if np.any(high < low):
         raise TrajectoryError("the region has no volume between the lowest and the highest altitude")
     return low, high
@@ -166,8 +167,8 @@ def _box(region: tuple[ArrayLike, ArrayLike], room: FreeSpace) -> Box:
 class _Grid:
     """A lattice over a box, with the first node of every axis placed such that the start is a node."""
 
-    def __init__(self, room: FreeSpace, box: Box, spacing: Array, start: Array, goal: Array) -> None:
-        self._room, self._spacing = room, spacing
+    def __init__(self, space: FreeSpace, box: Box, spacing: Array, start: Array, goal: Array) -> None:
+        self._space, self._spacing = space, spacing
         self._start, self._goal = start, goal
         # Nodes and the middles between them, numbered together: nodes have even numbers.
         low = np.floor((box[0] - start) / spacing + 1e-9)
@@ -175,45 +176,45 @@ class _Grid:
         low[2], high[2] = np.ceil((box[0] - start) / spacing - 1e-9)[2], np.floor((box[1] - start) / spacing + 1e-9)[2]
         axes = [s + h * np.arange(2 * a, 2 * b + 1) / 2.0 for s, h, a, b in zip(start, spacing, low, high, strict=True)]
         edge = float(np.linalg.norm(spacing)) / 2.0
-        needed = math.hypot(room.margin, edge / 2.0) - room.margin
+        needed = math.hypot(space.margin, edge / 2.0) - space.margin
         # A frame of nodes that are not free: no neighbour is ever outside.
-        self._free = np.pad(room.free_lattice(axes[0], axes[1], axes[2], needed), 2)
+        self._free = np.pad(space.free_lattice(axes[0], axes[1], axes[2], needed), 2)
         self._axes = axes
 
-    def way(self, climb_cost: float) -> tuple[Array | None, str]:
-        """Points (M, 3) of the shortest way from start to goal, or None and why."""
+    def path(self, climb_cost: float) -> tuple[Array | None, str]:
+        """Points (M, 3) of the shortest path from start to goal, or None and why."""
         nodes = np.argwhere(self._free[2:-2:2, 2:-2:2, 2:-2:2])
         places = np.column_stack([axis[2 * index] for axis, index in zip(self._axes, nodes.T, strict=True)])
         scale = np.array([1.0, 1.0, climb_cost])
         starts, goals = self._entries(places, self._start), self._entries(places, self._goal)
         if len(starts) == 0:
-            return None, "there is no room about the start"
+            return None, "there is no free space about the start"
         if len(goals) == 0:
-            return None, "there is no room about the goal"
+            return None, "there is no free space about the goal"
         parts, _ = label(self._free[2:-2:2, 2:-2:2, 2:-2:2], np.ones((3, 3, 3)))
         part = parts[tuple(nodes.T)]
         if not np.isin(part[goals], part[starts]).any():
-            return None, "every way from start to goal is closed or too narrow for the formation"
+            return None, "every path from start to goal is closed or too narrow for the formation"
         reachable = np.isin(part, part[starts])
         to_goal = np.linalg.norm((places - self._goal) * scale, axis=1)
         from_start = np.linalg.norm((places - self._start) * scale, axis=1)
         straight = float(np.linalg.norm((self._goal - self._start) * scale))
         for longer in _LONGER:
-            # No way that is at most so much longer leaves this ellipsoid.
+            # No path that is at most so much longer leaves this ellipsoid.
             chosen = np.flatnonzero(reachable & (to_goal + from_start <= straight + longer))
             found = self._search(nodes, places, chosen, starts, goals, scale, longer)
             if found is not None:
                 return np.vstack([self._start, places[found], self._goal]), ""
-        return None, "every way from start to goal is closed or too narrow for the formation"
+        return None, "every path from start to goal is closed or too narrow for the formation"
 
     def _entries(self, places: Array, place: Array) -> NDArray[np.intp]:
-        """Indices of the nodes next to ``place`` to which, or from which, there is a way."""
+        """Indices of the nodes next to ``place`` to which, or from which, there is a path."""
         distance = np.linalg.norm(places - place, axis=1)
         for within in (1.8 * float(self._spacing.max()), LEAVE_WITHIN):
             near = np.flatnonzero(distance <= within)
             if len(near) > 400:
                 near = near[np.argsort(distance[near], kind="stable")[:400]]
-            near = near[ways_out(self._room, place, places[near])]
+            near = near[free_segments_from(self._space, place, places[near])]
             if len(near):
                 break
         return near
@@ -228,7 +229,7 @@ class _Grid:
         scale: Array,
         longer: float,
     ) -> NDArray[np.intp] | None:
-        """Indices of the nodes on the shortest way among the ``chosen`` ones; None: there is none."""
+        """Indices of the nodes on the shortest path among the ``chosen`` ones; None: there is none."""
         count = len(chosen)
         strides = np.array([self._free.shape[1] * self._free.shape[2], self._free.shape[2], 1])
         flat, free = (2 * nodes[chosen] + 2) @ strides, self._free.ravel()
@@ -238,7 +239,7 @@ class _Grid:
         neighbours = number[flat[:, None] + 2 * steps]
         edges = (neighbours >= 0) & free[flat[:, None] + steps]
         # Each edge costs its length less what it gains on the goal: Dijkstra then searches as A* does, and what
-        # it counts is how much longer than straight the way is.
+        # it counts is how much longer than straight the path is.
         to_goal = np.linalg.norm((places[chosen] - self._goal) * scale, axis=1)
         straight = float(np.linalg.norm((self._goal - self._start) * scale))
         lengths = np.linalg.norm(_DIRECTIONS * self._spacing * scale, axis=1)
@@ -262,7 +263,7 @@ class _Grid:
         distance, before = dijkstra(graph, indices=count, return_predecessors=True, limit=limit)
         if not np.isfinite(distance[count + 1]):
             return None
-        way = [int(before[count + 1])]
-        while way[-1] != count:
-            way.append(int(before[way[-1]]))
-        return chosen[np.array(way[-2::-1], dtype=np.intp)]
+        path = [int(before[count + 1])]
+        while path[-1] != count:
+            path.append(int(before[path[-1]]))
+        return chosen[np.array(path[-2::-1], dtype=np.intp)]

@@ -10,7 +10,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from idc_controller.geometry.free_space import BoundingCylinder, FreeSpace, first_conflict
+from idc_controller.geometry.formation import BoundingCylinder
+from idc_controller.geometry.free_space import FreeSpace, first_conflict
 from idc_controller.geometry.obstacles import ObstacleSource, PredictedObstacle
 from idc_controller.guidance.detour import find_detour
 from idc_controller.guidance.settings import NavigatorSettings
@@ -151,10 +152,10 @@ class Navigator:
             if detour.waypoints is not None:
                 return detour.waypoints, float(ahead[goal])
         # By its surface: a long wall's centre may be far.
-        room = FreeSpace(bodies, self.formation, keep, self.lowest, highest, growth=growth)
+        space = FreeSpace(bodies, self.formation, keep, self.lowest, highest, growth=growth)
         self.reason = "there is no way on"
         if bodies:
-            self.reason = f"the way on is blocked by {names[int(np.argmin(room.clearance(position[None])[0]))]}"
+            self.reason = f"the way on is blocked by {names[int(np.argmin(space.clearance(position[None])[0]))]}"
         if detour.reason.startswith("the formation at the goal"):
             self.reason += f": {detour.reason}"
         return None

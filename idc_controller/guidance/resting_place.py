@@ -22,7 +22,7 @@ from idc_controller.trajectory.stop_plan import Braking
 Array = NDArray[np.float64]
 
 _AXIS = 9
-"""Points on the formation's upright axis on its way."""
+"""Points on the formation's upright axis on its path."""
 _STEP = 0.4  # m, between points below the place of rest
 
 
@@ -79,16 +79,16 @@ class RestingPlace:
 
     def _clearance(self, near: _Near, state: Array, choice: Braking) -> float:
         """Least distance (m) of the formation's upright hull on its path to rest, and down from there."""
-        way = choice.way(state)
+        path = choice.path(state)
         elapsed = np.linspace(0.0, self.settings.look_ahead, self.settings.samples)
-        centres = way(np.minimum(elapsed, way.x[-1]))
+        centres = path(np.minimum(elapsed, path.x[-1]))
         axis = np.zeros((_AXIS, 3))
         axis[:, 2] = np.linspace(-self._top, self._bottom, _AXIS)
-        on_way = near.at_their_time(centres[:, None, :] + axis)
+        on_path = near.at_their_time(centres[:, None, :] + axis)
         rest = centres[-1]
         heights = np.arange(min(rest[2] - self._top, 0.0), 0.0, _STEP)
         below = np.column_stack([np.tile(rest[:2], (len(heights), 1)), heights])
-        return min(on_way, near.at_any_time(below)) - self._radius
+        return min(on_path, near.at_any_time(below)) - self._radius
 
 
 class _Near:

@@ -41,7 +41,7 @@ class Air:
     def on_uav(self, velocity: Array) -> Array:
         """The same on a UAV."""
         u = self.wind - velocity
-        return self.uav * np.linalg.norm(u, axis=-1, keepdims=True) * u
+        return np.asarray(self.uav * np.linalg.norm(u, axis=-1, keepdims=True) * u)
 
     def on_payload_along(self, derivatives: Array) -> Array:
         """Force and its first two derivatives (3, K, 3) along ``derivatives`` (4 or more, K, 3): position to jerk."""
@@ -84,4 +84,4 @@ def _fading(square: Array, limit: float) -> tuple[Array, Array, Array]:
 
 
 def _dot(a: Array, b: Array) -> Array:
-    return np.sum(a * b, axis=-1, keepdims=True)
+    return np.asarray(np.sum(a * b, axis=-1, keepdims=True))

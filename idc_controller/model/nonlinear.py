@@ -258,4 +258,4 @@ def _solve(A: Array, b: Array) -> Array:
 
 
 def _unit(v: Array) -> Array:
-    return v / np.linalg.norm(v, axis=-1, keepdims=True)
+    return np.asarray(v / np.linalg.norm(v, axis=-1, keepdims=True))

@@ -2,7 +2,7 @@
 
 It is built on the minimal state, since on the paper's own the Riccati equation for Q_f has no stabilising solution.
 State constraints hold from stage 1 on and softly: stage 0, which the paper constrains, is what it is. A step whose
-printed programme would have had no solution is marked. The paper gives no weights; it says that position and attitude
+printed QP would have had no solution is marked. The paper gives no weights; it says that position and attitude
 of the payload weigh most, links and UAVs a little less, and yaw much.
 """
 
@@ -57,7 +57,7 @@ class Weights:
 
 @dataclass(frozen=True)
 class Settings:
-    """Of the paper where it tells; its input bounds are not told."""
+    """Of the paper where it states them; it does not state its input bounds."""
 
     period: float = 0.05
     horizon: int = 20
@@ -73,7 +73,7 @@ class Settings:
 
 @dataclass(frozen=True, eq=False)
 class Move:
-    """The first input ``delta_u`` (4 N,) from the reference's, and what became of the programme."""
+    """The first input ``delta_u`` (4 N,) from the reference's, and the outcome of the QP."""
 
     delta_u: Array
     infeasible_as_printed: bool
@@ -125,10 +125,10 @@ class ThrustTorqueMpc:
         ``state`` (N_p + 1, n): the state then, in deviations from hover, on which the constraints are.
         """
         gradient = self._gradient @ free[1:].ravel()
-        room = np.array([self.settings.tilt_limit] * 6 + [0.0]) - state @ self._rows.T
+        bounds = np.array([self.settings.tilt_limit] * 6 + [0.0]) - state @ self._rows.T
         upper, lower = self.upper - u_reference, u_reference - self.lower
-        h = np.concatenate([upper.ravel(), lower.ravel(), room[1:].ravel()])
-        beyond_now = bool(np.any(room[0] < -1e-9))
+        h = np.concatenate([upper.ravel(), lower.ravel(), bounds[1:].ravel()])
+        beyond_now = bool(np.any(bounds[0] < -1e-9))
         try:
             moves = self._qp.solve(gradient, h).x
         except SolverError:

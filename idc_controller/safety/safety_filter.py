@@ -97,7 +97,7 @@ class AvoidanceFilter:
         planner = self.planner
         free = planner.free(start) if start.any() else None
         if free is not None and not planner.is_within_limits(free, ahead):
-            # Far from the reference the way back must be no wilder than the way off it.
+            # Far from the reference the return must be no faster than the departure from it.
             free = planner.solve(start, ahead, [], ahead[2]) or free
         position, acceleration = _absolute(ahead, free)
         near = self._near(position, acceleration, obstacles)

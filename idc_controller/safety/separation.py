@@ -45,7 +45,7 @@ def separations(
     points = formation.hull_points(acceleration)
     centre = (points.max(axis=1) + points.min(axis=1)) / 2.0
     about = points - centre[:, None]
-    # Most obstacles are far at all stages: a ball about the hull, for upright ones a cylinder, tells.
+    # Most obstacles are far at all stages: a ball about the hull, for upright ones a cylinder, shows it.
     upright = np.array([obstacle.shape.is_upright for obstacle in obstacles])
     offsets = np.stack([obstacle.positions for obstacle in obstacles]) - position
     directions = offsets - centre

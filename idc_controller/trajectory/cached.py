@@ -1,4 +1,4 @@
-"""A trajectory that computes no time twice: horizons that overlap ask for the same times step after step."""
+"""A cached trajectory that computes no time twice: overlapping horizons need the same times step after step."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ TICKS = 1e8  # per second: times closer than one are the same
 CAPACITY = 4000  # times; the oldest half goes when there are more
 
 
-class RememberedTrajectory(Trajectory):
-    """Another trajectory, which must not change its mind about what it has told once."""
+class CachedTrajectory(Trajectory):
+    """Another trajectory, which must not change at times that were evaluated."""
 
     def __init__(self, trajectory: Trajectory) -> None:
         self._trajectory = trajectory
-        self._told: dict[int, Array] = {}
+        self._cache: dict[int, Array] = {}
 
     @property
     def start(self) -> float:
@@ -33,17 +33,17 @@ class RememberedTrajectory(Trajectory):
         times = checked_times(times, order)
         if len(times) == 0:
             return np.zeros((order + 1, 0, 3))
-        told = self._told
+        cache = self._cache
         ticks = np.rint(times * TICKS).astype(np.int64).tolist()
-        new = [i for i, tick in enumerate(ticks) if tick not in told]
+        new = [i for i, tick in enumerate(ticks) if tick not in cache]
         if new:
-            if len(told) > CAPACITY:
-                for tick in list(told)[: CAPACITY // 2]:
-                    del told[tick]
-                new = [i for i, tick in enumerate(ticks) if tick not in told]
+            if len(cache) > CAPACITY:
+                for tick in list(cache)[: CAPACITY // 2]:
+                    del cache[tick]
+                new = [i for i, tick in enumerate(ticks) if tick not in cache]
             fresh = self._trajectory.derivatives(times[new], 4).transpose(1, 0, 2)
-            told.update((ticks[i], row) for i, row in zip(new, fresh, strict=True))
-        return np.array([told[tick] for tick in ticks])[:, : order + 1].transpose(1, 0, 2)
+            cache.update((ticks[i], row) for i, row in zip(new, fresh, strict=True))
+        return np.array([cache[tick] for tick in ticks])[:, : order + 1].transpose(1, 0, 2)
 
     def waypoints(self, begin: float, end: float) -> Array:
         """See ``Trajectory.waypoints``."""

@@ -32,7 +32,7 @@ STENCIL = 0.05
 
 
 class PayloadTrajectory(Protocol):
-    """Anything that tells the payload's position and its derivatives up to snap."""
+    """Anything that has the payload's position and its derivatives up to snap."""
 
     def derivatives(self, times: Array, order: int = 4) -> Array:
         """Position, velocity, ... at ``times`` (K,) -> (order + 1, K, 3), NED, SI."""
@@ -54,7 +54,7 @@ class FlatForces:
     force: Array
     """Thrust vectors of the UAVs (K, N, 3) (N)."""
     on_payload: Array
-    """What the load's force on the payload is believed to be (K, 3) (N)."""
+    """Estimated force of the load on the payload (K, 3) (N)."""
     on_uavs: Array
     """The same on each of the UAVs (K, N, 3) (N)."""
 
@@ -79,7 +79,7 @@ class FlatReference:
 
 @dataclass(frozen=True, eq=False)
 class Load:
-    """What is believed of the payload, its mass (kg) and a steady ``force`` on it (3,), and of the wind.
+    """Estimates of the payload, its mass (kg) and a steady ``force`` on it (3,), and of the wind.
 
     ``uav_force``: level force on each of the UAVs (N, 3), or one that is the same for all (3,). Forces in N, NED.
     ``air``: its drag comes on top of the steady forces and changes with the velocity; None: there is none.
@@ -128,7 +128,7 @@ def flat_reference(
     K, N = len(times), parameters.number_of_uavs
     stencil = np.arange(-2, 3) * STENCIL
     grid = (np.asarray(times)[:, None] + stencil).ravel()
-    # A horizon with the stencil's spacing asks for most times five times over.
+    # A horizon with the stencil's spacing needs most times five times over.
     _, chosen, back = np.unique(np.round(grid, 9), return_index=True, return_inverse=True)
     derivatives = trajectory.derivatives(grid[chosen])
     forces = flat_forces(parameters, derivatives, load)
@@ -173,8 +173,8 @@ def _tensions(parameters: SystemParameters, q: Array, total: Array) -> Array:
     wanted = np.zeros((len(q), 3, 1))
     wanted[:, 0, 0] = total
     transposed = balance.transpose(0, 2, 1)
-    return (transposed @ np.linalg.solve(balance @ transposed, wanted))[..., 0]
+    return np.asarray((transposed @ np.linalg.solve(balance @ transposed, wanted))[..., 0])
 
 
 def _dot(a: Array, b: Array) -> Array:
-    return np.einsum("...i,...i->...", a, b)[..., None]
+    return np.asarray(np.einsum("...i,...i->...", a, b)[..., None])

@@ -86,7 +86,7 @@ class LissajousTrajectory(Trajectory):
         _check_full_rate(curve, rate, limits)
         still = np.zeros(4)
         cruise = np.array([rate, 0.0, 0.0, 0.0])
-        # A little gentler at first, so that there is always a way to stop while it gathers speed.
+        # A little gentler at first, so that it can always stop while it gathers speed.
         up, phase = _shortest_ramp(curve, _gentler(curve, rate, limits), 0.0, still, cruise)
         down, _ = _shortest_ramp(curve, limits, phase + rate * duration, cruise, still)
         self.full_rate = (start + up, start + up + duration)
@@ -95,7 +95,7 @@ class LissajousTrajectory(Trajectory):
         self._set_phase(_phase(knots, [still, cruise, cruise, still], 0.0))
 
     def _set_phase(self, phase: PPoly) -> None:
-        # Phase and four derivatives as one polynomial with values (5,): asked at once.
+        # Phase and four derivatives as one polynomial with values (5,): evaluated at once.
         coefficients = np.zeros((*phase.c.shape, 5))
         for d in range(5):
             derivative = phase.derivative(d) if d else phase
@@ -118,7 +118,7 @@ class LissajousTrajectory(Trajectory):
         """Phase and its derivatives at times (K,), s: (order + 1, K), rad / s^d."""
         times = checked_times(times, order)
         inside = np.clip(times, self._start, self._end)
-        result = self._phase(inside).T[: order + 1]
+        result: Array = self._phase(inside).T[: order + 1]
         result[1:, (times <= self._start) | (times >= self._end)] = 0.0
         return result
 
@@ -167,7 +167,7 @@ class LissajousTrajectory(Trajectory):
 
 
 class _Stopped(LissajousTrajectory):
-    """On its way to rest."""
+    """Coming to rest."""
 
     def __init__(self, stopped: LissajousTrajectory, phase: PPoly) -> None:
         self.curve, self.limits, self.full_rate = stopped.curve, stopped.limits, stopped.full_rate

@@ -1,4 +1,4 @@
-"""The reference that estimator and controller share: a trajectory, and what is believed of the load on it."""
+"""The reference that estimator and controller share: a trajectory, and the estimated load on it."""
 
 from __future__ import annotations
 

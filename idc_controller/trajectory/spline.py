@@ -21,7 +21,7 @@ DEGREE = 5
 SUPPORT = DEGREE + 1
 """Intervals over which one control point acts."""
 LONGEST_STOP = 100
-"""Intervals within which ``stop`` looks for a way to slow down."""
+"""Intervals within which ``stop`` looks for a deceleration."""
 DELAYS = (0, 1, 2, 4, 6, 9, 12, 16)
 """Intervals for which ``stop`` may wait: in a corner the limits may be used up already."""
 
@@ -64,7 +64,7 @@ def evaluate(control_points: Array, interval: float, arguments: Array, order: in
     base = chosen[:, -1]
     weights = (fraction[:, None] ** np.arange(SUPPORT)) @ _basis(interval, order)
     # Relative to one of the points: rest is then exactly rest.
-    result = weights.reshape(len(cell), order + 1, SUPPORT) @ (chosen - base[:, None])
+    result: Array = weights.reshape(len(cell), order + 1, SUPPORT) @ (chosen - base[:, None])
     result[:, 0] += base
     return result.transpose(1, 0, 2)
 
@@ -134,7 +134,7 @@ class SplineTrajectory(Trajectory):
 def _slowed_to_rest(points: Array, last: int, interval: float, limits: Limits) -> Array:
     """Control points that agree up to index ``last``, then run on along the same curve ever more slowly.
 
-    The ways to slow down (begin later, take longer) are tried by the number of points they need; what there
+    The decelerations (begin later, take longer) are tried by the number of points they need; what there
     is already, which comes to rest as well, is the last resort.
     """
     if last >= len(points) - 1:

@@ -1,11 +1,11 @@
-"""The stop plan: how every UAV comes to rest, together with the others, when it hears no more.
+"""The stop plan: how every UAV comes to rest, together with the others, when it receives no set-points.
 
 All of them start from one moment of one reference and take the same time, so the payload stays level without a word
 between them. Along each axis the position is the quartic that takes over position, velocity and acceleration and ends
 without velocity and acceleration; a quartic is a Bezier curve of five control points, as many as fit into a message.
 
 In wind the team is not where the reference has it. The plan starts where the team is: all of it is moved alike, so
-that nobody is torn towards a place that the payload was meant to have.
+that no UAV is biased towards a place that the payload was meant to have.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _CONTROL_POINTS = np.array(
 
 
 class Braking(NamedTuple):
-    """How to come to rest, if not in the usual way."""
+    """How to come to rest; by default in the usual time, where the motion leads."""
 
     share: float = 1.0
     """Of the usual time."""
@@ -52,12 +52,12 @@ class Braking(NamedTuple):
         return self.share * max(self.settings.time, 1.5 * speed / self.settings.deceleration)
 
     def control_points(self, state: Array, duration: float) -> Array:
-        """Of the way from a ``state`` (..., 3, 3) of position, velocity and acceleration: (..., 5, 3) (m)."""
+        """Of the path from a ``state`` (..., 3, 3) of position, velocity and acceleration: (..., 5, 3) (m)."""
         points = _CONTROL_POINTS @ (state * np.array([1.0, duration, duration**2])[:, None])
         points[..., 2:, :] += np.array(self.aside)
         return np.asarray(points)
 
-    def way(self, state: Array) -> BPoly:
+    def path(self, state: Array) -> BPoly:
         """From ``state`` (3, 3) on, over the time since then (s)."""
         duration = self.duration(state[1])
         return BPoly(self.control_points(state, duration)[:, None, :], [0.0, duration])

@@ -75,7 +75,7 @@ class Trajectory(ABC):
         """
 
     def waypoints(self, begin: float, end: float) -> Array:
-        """Where it passes the points that it was asked to pass between two times (s): (M, 3), m, NED."""
+        """Where it passes its waypoints between two times (s): (M, 3), m, NED."""
         return np.empty((0, 3))
 
     def position(self, time: float) -> Array:
@@ -87,7 +87,7 @@ class Trajectory(ABC):
 
         Args:
             follow: called once with this one's end (s) and last position (3,) as soon as the end is known
-                and something beyond it is asked for; returns a trajectory that starts there, not earlier.
+                and something beyond it is evaluated; returns a trajectory that starts there, not earlier.
         """
         return SequenceTrajectory(self, follow)
 
@@ -147,7 +147,7 @@ class SequenceTrajectory(Trajectory):
         times = checked_times(times, order)
         if len(times) and times.min() > self._first.end:
             return self._next().derivatives(times, order)
-        # Asked first: a lazy trajectory learns of its end while it looks ahead.
+        # Evaluated first: a lazy trajectory learns of its end while it looks ahead.
         result = self._first.derivatives(np.minimum(times, self._first.end), order)
         later = times > self._first.end
         if later.any():

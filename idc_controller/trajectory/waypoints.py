@@ -34,7 +34,7 @@ class _Corner:
 
 
 class WaypointTrajectory(Trajectory):
-    """From rest at a start point along legs, to rest at the last one; reads legs only as far as asked.
+    """From rest at a start point along legs, to rest at the last one; reads legs only as far as needed.
 
     Args:
         start_position: (3,), m, NED.
@@ -43,11 +43,11 @@ class WaypointTrajectory(Trajectory):
             legs ask for makes corners and stops slower than they need to be.
         start: s, when the motion begins.
         corner: m, the farthest a waypoint without hold may be passed from. With hold: within 1 mm.
-        kept: s (may be ``inf``) before the earliest time of a call that may still be asked for later.
+        kept: s (may be ``inf``) before the earliest time of a call that may still be evaluated later.
 
     Raises:
         TrajectoryError: not finite or not positive. Also raised by ``derivatives`` for times no longer kept,
-            and for endless legs that stand still.
+            and for endless legs without motion.
     """
 
     def __init__(
@@ -243,7 +243,7 @@ class WaypointTrajectory(Trajectory):
             number = math.ceil(path.length / (speed * h))
             if path.is_straight and number >= reach:
                 return speed  # start and stop do not meet: the filter is made for that
-            # Of a long circle the beginning and the end tell all.
+            # Of a long circle the beginning and the end suffice.
             inner = np.arange(min(number, 4 * reach) if path.is_uniform else number)
             for offset in {0, number - len(inner)}:
                 numbers = np.concatenate([np.zeros(reach), inner + offset, np.full(reach, number)])
