@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from idc_controller.control.settings import MpcSettings
+from idc_controller.control.settings import ControllerSettings, GroundControlSettings, MpcSettings
 from idc_controller.estimation.settings import EstimatorSettings, InnovationMonitorSettings, WindSettings
 from idc_controller.guidance.settings import NavigatorSettings, ProgressSettings, RestingPlaceSettings
 from idc_controller.safety.settings import FilterSettings, PlannerSettings
@@ -38,6 +38,8 @@ class SafetyConfig:
 
 @dataclass(frozen=True)
 class ControlConfig:
-    """The model predictive controller, beside table ``controller``."""
+    """The controller beside table ``controller``: adaptation to the load, model predictive control, on the ground."""
 
+    controller: ControllerSettings = field(default_factory=ControllerSettings)
     mpc: MpcSettings = field(default_factory=MpcSettings)
+    ground: GroundControlSettings = field(default_factory=GroundControlSettings)

@@ -11,7 +11,7 @@ import numpy as np
 from gcs.config import SystemConfig
 from gcs.mission.known_obstacles import map_of
 from gcs.mission.model import Mission
-from idc_controller.control.controller import ControllerSettings, IntegratedDecisionController
+from idc_controller.control.controller import IntegratedDecisionController
 from idc_controller.control.mpc import ModelPredictiveController
 from idc_controller.estimation.estimator import Estimator
 from idc_controller.estimation.measurements import MeasurementNoise
@@ -109,7 +109,13 @@ def controller(
         model,
         ModelPredictiveController(model, settings),
         safety,
-        ControllerSettings(period=period, horizon=config.controller.horizon, wind=config.estimation.wind),
+        replace(
+            config.control.controller,
+            period=period,
+            horizon=config.controller.horizon,
+            wind=config.estimation.wind,
+            ground=config.control.ground,
+        ),
         stopwatch,
         guidance,
     )

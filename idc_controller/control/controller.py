@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from idc_controller.control.force_components import setpoints_from_force_components, state_in_force_components
 from idc_controller.control.ground_controller import GroundController
+from idc_controller.control.settings import ControllerSettings
 from idc_controller.control.tracker import Tracker
 from idc_controller.estimation.estimate import Estimate
-from idc_controller.estimation.settings import WindSettings
 from idc_controller.estimation.wind import WindEstimator
 from idc_controller.guidance.progress import Guidance
 from idc_controller.model.drag import Air
@@ -29,29 +29,6 @@ from idc_controller.trajectory.reference import Reference
 from idc_controller.trajectory.trajectory import Trajectory
 
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class ControllerSettings:
-    """How fast the load is learnt and how far an error is answered at once."""
-
-    period: float = 0.05
-    """Control period (s)."""
-    horizon: int = 20
-    """Stages over which the tracker wants the reference."""
-    load_time_constant: float = 0.5
-    """With which the reference follows the estimated load (s): it must be slower than the estimate itself."""
-    force_limit: float = 0.4
-    """Largest steady force that the reference leans against, as a share of the payload's weight."""
-    drag_limit: float = 0.65
-    """The same where wind explains the force: of drag, and of drag and steady force together."""
-    upright_time_constant: float = 0.5
-    """With which links come upright over a payload on the ground (s)."""
-    position_error_limit: float = 0.3
-    """An error of the payload's position is answered as if it were at most this (m)."""
-    velocity_error_limit: float = 0.6
-    """The same of its velocity (m/s)."""
-    wind: WindSettings = WindSettings()
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +78,7 @@ class IntegratedDecisionController:
         self.layout = model.layout
         self.tracker, self.safety, self.settings = tracker, safety, settings
         self.guidance = guidance or Guidance()
-        self._ground_controller = GroundController(model, settings.period)
+        self._ground_controller = GroundController(model, settings.period, settings.ground)
         self._tracked: PayloadTrajectory | None = None
         self._stopwatch = stopwatch
         self._weight = self.parameters.m_0 * self.parameters.g
@@ -195,7 +172,8 @@ class IntegratedDecisionController:
         force = force + share * (_limited(estimate.force, limit) - drag - force)
         on_uavs = np.array([_limited(force_i, uav_limit) for force_i in estimate.uav_force])
         uav_force = uav_force + share * (on_uavs - uav_drag - uav_force)
-        mass = float(np.clip(mass, 0.5 * self.parameters.m_0, 2.0 * self.parameters.m_0))
+        least, most = self.settings.mass_share
+        mass = float(np.clip(mass, least * self.parameters.m_0, most * self.parameters.m_0))
         self.load = Load(mass, force, uav_force, self.wind.air)
 
 

@@ -14,29 +14,23 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import expm, solve_discrete_are
 
+from idc_controller.control.settings import GroundControlSettings
 from idc_controller.control.tracker import TrackingOutput
 from idc_controller.model.linear import LinearModel
 from idc_controller.trajectory.flatness import FlatReference
 
 Array = NDArray[np.float64]
 
-DESIGN_SHARE = 0.8
-"""Share of the hover thrust for which the gain is designed."""
-# Weights on link tilt, its rate, UAV tilt, its rate, its acceleration; and on the tilt set-point.
-_Q = np.diag([100.0, 80.0, 1.0, 0.1, 0.0])
-# Cheap tilts would wait for no telemetry: this gain bears a loop that is 0.2 s late.
-_R = np.array([[200.0]])
-
 
 class GroundController:
     """A tracker for the time on the ground; see :class:`~idc_controller.control.tracker.Tracker`."""
 
-    def __init__(self, model: LinearModel, period: float) -> None:
+    def __init__(
+        self, model: LinearModel, period: float, settings: GroundControlSettings = GroundControlSettings()
+    ) -> None:
         """``period`` is the control period (s)."""
         self.layout = model.layout
-        self.gains = np.array(
-            [pendulum_gain(model, i, DESIGN_SHARE, period) for i in range(model.layout.number_of_uavs)]
-        )
+        self.gains = np.array([pendulum_gain(model, i, period, settings) for i in range(model.layout.number_of_uavs)])
 
     def track(self, error: Array, reference: FlatReference) -> TrackingOutput:
         """Tilt set-points from the UAVs' own errors; thrusts as the reference has them."""
@@ -59,12 +53,13 @@ def pendulum_dynamics(model: LinearModel, uav: int, share: float) -> tuple[Array
     return A, np.array([[0.0], [0.0], [0.0], [0.0], [kp / T_m]])
 
 
-def pendulum_gain(model: LinearModel, uav: int, share: float, period: float) -> Array:
-    """Regulator gain (5,) for one axis of one UAV."""
-    A, B = pendulum_dynamics(model, uav, share)
+def pendulum_gain(model: LinearModel, uav: int, period: float, settings: GroundControlSettings) -> Array:
+    """Return the regulator gain (5,) for one axis of one UAV."""
+    A, B = pendulum_dynamics(model, uav, settings.design_share)
+    Q, R = np.diag(settings.state), np.array([[settings.setpoint]])
     block = np.zeros((6, 6))
     block[:5, :5], block[:5, 5:] = A, B
     step = expm(block * period)
     A_k, B_k = step[:5, :5], step[:5, 5:]
-    P = solve_discrete_are(A_k, B_k, _Q, _R)
-    return np.asarray(np.linalg.solve(_R + B_k.T @ P @ B_k, B_k.T @ P @ A_k)[0])
+    P = solve_discrete_are(A_k, B_k, Q, R)
+    return np.asarray(np.linalg.solve(R + B_k.T @ P @ B_k, B_k.T @ P @ A_k)[0])

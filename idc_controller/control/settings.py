@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from idc_controller.errors import ParameterError
+from idc_controller.estimation.settings import WindSettings
 from idc_controller.settings import derived, setting
 
 Triple = tuple[float, float, float]
@@ -66,3 +67,49 @@ class MpcSettings:
             raise ParameterError(f"moves {self.moves} do not sum to the horizon of {self.horizon} stages")
         if not all(1 <= k <= self.horizon for k in self.constraint_stages):
             raise ParameterError(f"constraint stages {self.constraint_stages} leave 1 .. {self.horizon}")
+
+
+@dataclass(frozen=True)
+class GroundControlSettings:
+    """Regulator that keeps the UAVs upright over a payload on the ground."""
+
+    design_share: float = setting(0.8, "", "thrust for which the gain is designed, over hover thrust", gt=0.0)
+    state: tuple[float, float, float, float, float] = setting(
+        (100.0, 80.0, 1.0, 0.1, 0.0), "", "weights of link tilt, its rate, UAV tilt, its rate, its acceleration", ge=0.0
+    )
+    setpoint: float = setting(
+        200.0, "", "weight of the tilt set-point: a lower one needs telemetry that is less than 0.2 s late", gt=0.0
+    )
+
+
+@dataclass(frozen=True)
+class ControllerSettings:
+    """How fast the load is learnt and how far an error is answered at once."""
+
+    period: float = derived(0.05)
+    """Control period (s): of ``rates.control``."""
+    horizon: int = derived(20)
+    """Stages over which the tracker needs the reference: ``controller.horizon``."""
+    wind: WindSettings = derived(WindSettings())
+    """Table ``estimation.wind``."""
+    ground: GroundControlSettings = derived(GroundControlSettings())
+    """Table ``control.ground``."""
+    load_time_constant: float = setting(
+        0.5, "s", "with which the reference follows the estimated load: slower than the estimate itself", gt=0.0
+    )
+    mass_share: tuple[float, float] = setting(
+        (0.5, 2.0), "", "least and largest payload mass that is learnt, over that of the system file", gt=0.0
+    )
+    force_limit: float = setting(
+        0.4, "", "largest disturbance force that the reference leans against, over the payload's weight", ge=0.0
+    )
+    drag_limit: float = setting(
+        0.65, "", "the same where wind explains the force: of drag, and of drag and disturbance force together", ge=0.0
+    )
+    upright_time_constant: float = setting(
+        0.5, "s", "with which links come upright over a payload on the ground", gt=0.0
+    )
+    position_error_limit: float = setting(
+        0.3, "m", "a position error of the payload is answered as if it were at most this", gt=0.0
+    )
+    velocity_error_limit: float = setting(0.6, "m/s", "the same of its velocity", gt=0.0)

@@ -23,9 +23,9 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from avoidance_scene import STEP, avoidance, estimate_at, pole, sphere, straight
 from paper_system import system
 
-from idc_controller.control.controller import ControllerSettings, IntegratedDecisionController
+from idc_controller.control.controller import IntegratedDecisionController
 from idc_controller.control.mpc import ModelPredictiveController
-from idc_controller.control.settings import MpcSettings
+from idc_controller.control.settings import ControllerSettings, MpcSettings
 from idc_controller.model.linear import LinearModel
 
 OBSTACLES = (2, 10, 50, 200)
