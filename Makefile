@@ -16,7 +16,7 @@ help:
 	@echo "make golden       compare short flights, to the byte, with tests/golden/checksums.json"
 	@echo "make golden-renew write these checksums anew"
 	@echo "make benchmark    the measurements of speed"
-	@echo "make docs         write docs/settings.md from the declared settings"
+	@echo "make docs         write docs/settings.md and docs/failsafes.md from their declarations"
 	@echo "make install      only install, into $(VENV)"
 	@echo "make clean        remove $(VENV) and the caches"
 
@@ -46,6 +46,7 @@ benchmark: $(INSTALLED)
 
 docs: $(INSTALLED)
 	$(VENV)/bin/python -m gcs.config.settings_page > docs/settings.md
+	$(VENV)/bin/python -m gcs.flight.listing > docs/failsafes.md
 
 install: $(INSTALLED)
 
