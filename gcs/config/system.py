@@ -35,6 +35,7 @@ from gcs.config.toml_file import TomlFile, read_toml
 from gcs.errors import UnusableInput
 from idc_controller.errors import ParameterError
 from idc_controller.parameters import SystemParameters, polygon_attachments
+from idc_controller.perception.settings import PerceptionSettings
 
 
 @dataclass(frozen=True)
@@ -53,6 +54,7 @@ class SystemConfig:
     avoidance: AvoidanceConfig = field(default_factory=AvoidanceConfig)
     flight: FlightSettings = field(default_factory=FlightSettings)
     estimation: EstimationConfig = field(default_factory=EstimationConfig)
+    perception: PerceptionSettings = field(default_factory=PerceptionSettings)
     guidance: GuidanceConfig = field(default_factory=GuidanceConfig)
     safety: SafetyConfig = field(default_factory=SafetyConfig)
     control: ControlConfig = field(default_factory=ControlConfig)

@@ -51,7 +51,7 @@ def obstacle_map(mission: Mission) -> ObstacleMap:
     """The obstacle map of a mission, for the sensors of its system file."""
     config = mission.system
     sensors = SensorModel(config.range_sensor.noise, config.sensors.position, math.radians(config.sensors.attitude_deg))
-    return ObstacleMap(map_of(mission), sensors, config.range_sensor.range)
+    return ObstacleMap(map_of(mission), sensors, config.range_sensor.range, config.perception)
 
 
 def avoidance(config: SystemConfig, model: LinearModel, obstacles: ObstacleSource) -> AvoidanceFilter:
