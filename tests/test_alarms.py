@@ -80,13 +80,13 @@ def test_detection_counts_from_the_first_fault_of_the_case(tmp_path):
     assert first_start(tmp_path) == 5.0
     assert first_start(tmp_path, 3) == 7.0
     found = detection(tmp_path, 3)
-    assert (found.after, found.told, found.false) == (0.5, "measurements_rejected, vehicle 2", 1)
+    assert (found.after, found.alarm, found.false) == (0.5, "measurements_rejected, vehicle 2", 1)
 
 
 def test_detection_without_faults_or_records(tmp_path):
     assert detection(tmp_path, 1).false is None
     write_records(tmp_path, [4.0], [None])
-    assert detection(tmp_path, 1) == replace(detection(tmp_path, 1), after=None, told="", false=1)
+    assert detection(tmp_path, 1) == replace(detection(tmp_path, 1), after=None, alarm="", false=1)
     (tmp_path / "faults.json").unlink()
     assert detection(tmp_path, 0).false == 1
 

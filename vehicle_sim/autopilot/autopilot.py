@@ -152,7 +152,7 @@ class Autopilot:
         state = self._state
         if state.armed:
             return ACCEPTED
-        problem = arming_problem(state, now)
+        problem = self.arming_problem(now)
         if problem is not None and (not force or not state.navigation.is_valid(now)):
             return rejected_for_now(f"Arming denied: {problem}")
         state.armed = True
