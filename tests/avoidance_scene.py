@@ -101,7 +101,7 @@ def estimate_at(time, position, size=56):
 
 
 def straight(length, speed=1.5, altitude=5.0, start=0.0):
-    """A way north, from rest to rest."""
+    """A path north, from rest to rest."""
     legs = [Leg(np.array([length, 0.0, -altitude]), speed)]
     return WaypointTrajectory([0.0, 0.0, -altitude], legs, Limits(speed, 1.5, 2.0, 6.0), start=start)
 

@@ -41,9 +41,9 @@ def at(time):
     return STILL._replace(time=TAKE_OFF + time)
 
 
-def sent(disturbed, count, gap=0.02, vehicle=1, message=lambda i: i.to_bytes(4, "little") * 10, way="telemetry"):
+def sent(disturbed, count, gap=0.02, vehicle=1, message=lambda i: i.to_bytes(4, "little") * 10, direction="telemetry"):
     """(serial, sent at, arrived at, bytes) of what arrives of ``count`` datagrams, s after take-off."""
-    cross = disturbed.from_vehicle if way == "telemetry" else disturbed.to_vehicle
+    cross = disturbed.from_vehicle if direction == "telemetry" else disturbed.to_vehicle
     serials, arrived = {}, []
     due = [TAKE_OFF + i * gap for i in range(count)]
     i = 0

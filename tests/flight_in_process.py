@@ -83,7 +83,7 @@ NO_NOISE = {
 
 
 def noiseless(mission):
-    """The mission in a world whose sensors are perfect."""
+    """The mission in a world with sensors without noise."""
     sensors = mission.system.sensors
     names = ("position", "attitude_deg", "uav_velocity", "uav_rates", "payload_velocity", "payload_rates")
     return replace(mission, system=replace(mission.system, sensors=replace(sensors, **dict.fromkeys(names, 0.0))))
@@ -103,8 +103,8 @@ def copied_mission(folder, name, **changes):
     return Path(shutil.copy(MISSIONS / name, folder))
 
 
-class Rehearsal:
-    """One flight. ``on_exchange(rehearsal)`` is called after every exchange and may do what it likes."""
+class InProcessFlight:
+    """One flight. ``on_exchange(flight)`` is called after every exchange and may do what it likes."""
 
     def __init__(self, mission, folder, *, seed=None, world=None, faults=None, controller="idc"):
         """``mission``: a path or a Mission; ``world``: the system file's config of the world when it differs."""
@@ -124,8 +124,8 @@ class Rehearsal:
         self.flight = self.station.flight
         self.now = 0.0
 
-    def fly(self, on_exchange=lambda rehearsal: None, until=LONGEST, stop=lambda: False):
-        """To the flight's end, to ``until`` (s), or until ``stop()`` says so."""
+    def fly(self, on_exchange=lambda in_process: None, until=LONGEST, stop=lambda: False):
+        """Fly to the end of the flight, to ``until`` (s), or until ``stop()`` is true."""
         swarm, station = self.swarm, self.station
         while not station.ended and self.now <= until and not stop():
             swarm.advance_to(self.now)
@@ -140,8 +140,8 @@ class Rehearsal:
         assert self.now <= LONGEST, "the flight does not end"
         return self
 
-    def leave_alone(self, duration=120.0):
-        """The world goes on without a ground until all is at rest."""
+    def run_without_ground(self, duration=120.0):
+        """Advance the world without a ground until all is at rest (at most ``duration``, s); return whether it is."""
         end = self.now + duration
         while not self.swarm.at_rest and self.now < end:
             self.now += 0.1
@@ -160,7 +160,7 @@ class Rehearsal:
         self.close()
 
     def summary(self):
-        """Closes the records and sums them up as the command does."""
+        """Close the records and return their summary as the command does."""
         self.close()
         limits = self.mission.limits
         return summarise(
@@ -172,13 +172,13 @@ class Rehearsal:
 
 def flown(mission, folder, **options):
     """The summary of a flight to its end."""
-    with Rehearsal(mission, folder, **options) as rehearsal:
-        rehearsal.fly()
-        return rehearsal.summary()
+    with InProcessFlight(mission, folder, **options) as in_process:
+        in_process.fly()
+        return in_process.summary()
 
 
 def check_within_limits(summary, rmse=0.03):
-    """What every flight is held to."""
+    """Assert the limits of every flight."""
     assert summary["completed"], summary
     assert summary["position_rmse_m"]["total"] <= rmse, summary
     assert max(summary["payload_tilt_max_deg"].values()) <= 5.0, summary

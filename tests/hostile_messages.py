@@ -1,4 +1,4 @@
-"""Well-formed messages that nobody but the ground in control, or the vehicle itself, may send."""
+"""Well-formed messages that only the ground in control, or the vehicle itself, may send."""
 
 import math
 

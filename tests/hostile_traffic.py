@@ -33,7 +33,7 @@ def with_random_contents(kind, contents, target_system, writer):
 
 
 class Traffic(FaultInterface):
-    """Lets everything through, and remembers the last genuine datagrams each way of one vehicle."""
+    """Lets everything through, and remembers the last genuine datagrams of one vehicle in each direction."""
 
     def __init__(self, vehicle):
         self._vehicle = vehicle

@@ -103,7 +103,7 @@ def refusal(tmp_path: Path, content: str | bytes | dict[str, Any], name: str = "
     return caught.value.reasons
 
 
-def told(mission: Mission) -> str:
+def description_of(mission: Mission) -> str:
     console = Console(width=200)
     with console.capture() as capture:
         console.print(describe(mission))

@@ -115,12 +115,12 @@ MOTIONS = {
 
 
 def random_motion(seed, duration=12.0, speed=2.0, acceleration=2.0):
-    """A course with accelerations drawn anew every 0.7 s or so, speed limited: in no model of the estimator."""
+    """A motion with accelerations drawn anew every 0.7 s or so, speed limited: in no model of the estimator."""
     rng = np.random.default_rng([seed, 11])
     dt = 0.01
     v, p = rng.normal(0.0, 0.7, 3), np.zeros(3)
     a, left = np.zeros(3), 0.0
-    course = []
+    trajectory = []
     for _ in range(int(duration / dt) + 200):
         if left <= 0.0:
             a, left = rng.normal(0.0, acceleration, 3) - 0.15 * p, rng.exponential(0.7)
@@ -128,9 +128,9 @@ def random_motion(seed, duration=12.0, speed=2.0, acceleration=2.0):
         v *= min(1.0, speed / np.linalg.norm(v))
         p = p + v * dt
         left -= dt
-        course.append(p)
-    course = np.array(course)
-    return lambda t: course[min(max(round(t / dt), 0), len(course) - 1)]
+        trajectory.append(p)
+    trajectory = np.array(trajectory)
+    return lambda t: trajectory[min(max(round(t / dt), 0), len(trajectory) - 1)]
 
 
 def stop_and_go(t):

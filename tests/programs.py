@@ -62,12 +62,12 @@ def swarm_process(*arguments):
 
 def addresses_of(process):
     """What it prints until it is ready: {"clock" or "vehicle 1" ...: url}."""
-    told = {}
+    urls = {}
     for line in process.stdout:
         if line.strip() == "ready":
-            return told
+            return urls
         who, _, url = line.strip().partition(": ")
-        told[who] = url
+        urls[who] = url
     raise AssertionError(process.stderr.read())
 
 
@@ -81,19 +81,19 @@ def free_port():
 
 @contextlib.contextmanager
 def process(*arguments):
-    """A vehicle-sim of its own, with the addresses that it tells: (process, clock or None, vehicles)."""
+    """A vehicle-sim of its own, with the addresses that it prints: (process, clock or None, vehicles)."""
     command = [sys.executable, "-m", "vehicle_sim", *map(str, arguments)]
     pipe = subprocess.PIPE
     with subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=pipe, text=True, env=ENVIRONMENT) as started:
         try:
-            told = []
+            announced = []
             for line in started.stdout:
                 if line == "ready\n":
                     break
-                told.append(re.fullmatch(r"(clock|vehicle \d): udp://([\d.]+):(\d+)\n", line).groups())
+                announced.append(re.fullmatch(r"(clock|vehicle \d): udp://([\d.]+):(\d+)\n", line).groups())
             else:
                 raise AssertionError(started.stderr.read())
-            addresses = {who: (host, int(port)) for who, host, port in told}
+            addresses = {who: (host, int(port)) for who, host, port in announced}
             clock = addresses.pop("clock", None)
             assert [*addresses] == [f"vehicle {i}" for i in range(1, len(addresses) + 1)]
             yield started, clock, list(addresses.values())

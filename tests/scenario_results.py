@@ -1,4 +1,4 @@
-"""Results of obstacle scenarios that nobody has flown."""
+"""Synthetic results of obstacle scenarios."""
 
 from gcs.campaign.result import Result
 

@@ -1,4 +1,4 @@
-"""A ground station of a few lines for the swarm's tests: arms all, lifts the payload open loop, then falls silent."""
+"""A ground station of a few lines for the swarm's tests: arms all, lifts the payload open loop, then stops sending."""
 
 import math
 import socket
@@ -16,7 +16,7 @@ UP = (0.0, 0.0, -1.0)
 
 
 class ScriptedGround:
-    """Sans-I/O like the real one. ``silent`` once the payload has risen by ``lift`` (m)."""
+    """Sans-I/O like the real one. ``finished`` once the payload has risen by ``lift`` (m)."""
 
     def __init__(self, addresses, hover_thrust, thrust_max, lift=0.6, excess=1.03):
         self.addresses = dict(enumerate(addresses, start=1))
@@ -25,7 +25,7 @@ class ScriptedGround:
         self.top = excess * hover_thrust
         self.thrust_max = thrust_max
         self.altitude_to_reach = lift + 0.30
-        self.silent = False
+        self.finished = False
         self.commanded = False
         self.next = 0.0
         self.messages = []
@@ -37,15 +37,15 @@ class ScriptedGround:
             if message.get_type() != "LOCAL_POSITION_NED":
                 continue
             if message.get_srcComponent() == px4.PAYLOAD_UNIT_COMPONENT:
-                self.silent |= -message.z > self.altitude_to_reach
+                self.finished |= -message.z > self.altitude_to_reach
             else:
                 self.stamps.setdefault(message.get_srcSystem(), []).append((message.time_boot_ms, now))
 
     def next_timer(self):
-        return None if self.silent else self.next
+        return None if self.finished else self.next
 
     def datagrams_to_send(self, now):
-        if self.silent or now + 1e-6 < self.next:
+        if self.finished or now + 1e-6 < self.next:
             return []
         self.next = (math.floor((now + 1e-6) / INTERVAL) + 1) * INTERVAL
         thrust = self.top * min(max((now - 0.6) / 2.0, 0.0), 1.0)

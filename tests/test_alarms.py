@@ -4,7 +4,7 @@ import json
 from dataclasses import replace
 
 import pytest
-from flight_in_process import HOP, Rehearsal, system_file
+from flight_in_process import HOP, InProcessFlight, system_file
 
 from gcs.campaign.faults.detection import detection, first_start
 from gcs.config.flight_settings import DEFAULTS
@@ -44,7 +44,7 @@ def test_event_counter_forgets_events_after_its_window():
     assert events.recent(9.0) == {}
 
 
-def told(numbers, interval=0.01):
+def event_counts(numbers, interval=0.01):
     link = LinkStatistics()
     for k, number in enumerate(numbers):
         link.message(number % 256, interval * k)
@@ -64,8 +64,8 @@ def told(numbers, interval=0.01):
         ([250, 255, 254, 256, 257], (1, 1, 0)),
     ],
 )
-def test_sequence_numbers_tell_what_became_of_messages(numbers, counts):
-    assert told(numbers) == counts
+def test_lost_and_reordered_messages_follow_from_sequence_numbers(numbers, counts):
+    assert event_counts(numbers) == counts
 
 
 def write_records(folder, rows, starts):
@@ -99,7 +99,7 @@ def hop(folder, *faults):
 
 
 def test_flight_without_a_fault_raises_no_alarm(tmp_path):
-    with Rehearsal(hop(tmp_path), tmp_path / "run", seed=51) as flight:
+    with InProcessFlight(hop(tmp_path), tmp_path / "run", seed=51) as flight:
         flight.fly()
         assert flight.flight.completed
         assert flight.flight.failsafes.alarms.alarms == []
@@ -110,7 +110,7 @@ def test_biased_position_raises_an_alarm_of_its_vehicle_at_once(tmp_path):
     fault = Fault("bias", 3.0, vehicles=(3,), settings={"channel": "position", "amount": 0.3, "axes": ["x"]})
     mission = hop(tmp_path, fault)
     injector = FaultInjector(mission.faults, 52, mission.system)
-    with Rehearsal(mission, tmp_path / "run", seed=52, faults=injector) as flight:
+    with InProcessFlight(mission, tmp_path / "run", seed=52, faults=injector) as flight:
         flight.fly()
     begin = injector.faults[0].schedule.take_off + fault.start
     rows = read_text_table(tmp_path / "run" / "alarms.csv")
@@ -126,7 +126,7 @@ def test_flapping_link_raises_telemetry_timeout_at_any_phase(tmp_path, start):
     fault = Fault("flapping", start, vehicles=(2,), settings={"down": 0.2, "up": 1.0})
     mission = hop(tmp_path, fault)
     injector = FaultInjector(mission.faults, 53, mission.system)
-    with Rehearsal(mission, tmp_path / "run", seed=53, faults=injector) as flight:
+    with InProcessFlight(mission, tmp_path / "run", seed=53, faults=injector) as flight:
         flight.fly()
     begin = injector.faults[0].schedule.take_off + start
     rows = read_text_table(tmp_path / "run" / "alarms.csv")

@@ -102,7 +102,7 @@ def violations(package, path, source):
 
 
 @pytest.mark.parametrize("package", sorted(FORBIDDEN))
-def test_imports_run_one_way(package):
+def test_packages_import_in_one_direction(package):
     files = sorted((ROOT / package).rglob("*.py"))
     assert files
     found = [
@@ -131,7 +131,7 @@ def test_pybullet_is_imported_by_the_simulator_only():
         "import importlib\nimportlib.import_module('vehicle_sim.world.world')",
     ],
 )
-def test_the_check_can_fail(source):
+def test_check_detects_forbidden_import(source):
     assert violations("gcs", "x.py", source)
 
 

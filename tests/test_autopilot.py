@@ -77,7 +77,7 @@ def flying() -> Flight:
 
 
 @pytest.mark.parametrize("axis", [0, 1])
-def test_loop_is_the_linear_model_that_the_ground_uses(axis: int) -> None:
+def test_attitude_loop_agrees_with_linear_model_of_the_ground(axis: int) -> None:
     """tilt'' = a; T_m a' = kp (set-point - tilt) - kd tilt' - a, with commands held for 4 ms.
 
     Exact steps of the linear model, so that any hidden delay of the loop shows; without the hold, the plain model
@@ -117,7 +117,7 @@ def test_large_turns_with_negative_quaternions_settle(flying: Flight) -> None:
     assert abs(flying.body.attitude @ target) > math.cos(0.005)
 
 
-def test_rates_alone_are_followed(flying: Flight) -> None:
+def test_setpoint_of_rates_only_is_followed(flying: Flight) -> None:
     flying.target = AttitudeSetpoint(None, (0.0, 0.0, 0.4), flying.hover, 0)
     flying.run(1.0)
     assert flying.body.rates == pytest.approx([0.0, 0.0, 0.4], abs=0.01)
@@ -126,7 +126,7 @@ def test_rates_alone_are_followed(flying: Flight) -> None:
 # Arming and modes
 
 
-def test_nothing_arms_without_measurements_or_lying_down_or_moving() -> None:
+def test_arming_is_refused_without_measurements_or_tilted_or_moving() -> None:
     pilot = autopilot()
     assert pilot.arm(0.0).result == mavlink.MAV_RESULT_TEMPORARILY_REJECTED
     assert "navigation" in pilot.arm(0.0, force=True).text
@@ -141,7 +141,7 @@ def test_nothing_arms_without_measurements_or_lying_down_or_moving() -> None:
     assert pilot.arm(2.0).result == mavlink.MAV_RESULT_ACCEPTED
 
 
-def test_armed_on_the_ground_it_waits_with_stopped_rotors() -> None:
+def test_rotors_are_stopped_when_armed_on_the_ground() -> None:
     pilot = autopilot()
     pilot.step(STANDING, 0.0)
     pilot.arm(0.0)
@@ -183,7 +183,7 @@ def fly_forward(flight: Flight, speed: float) -> None:
     flight.run(0.5)
 
 
-def test_lost_setpoints_are_answered_within_half_a_second_by_braking_and_holding(flying: Flight) -> None:
+def test_setpoint_loss_starts_braking_within_half_a_second_then_hold(flying: Flight) -> None:
     fly_forward(flying, 2.0)
     flying.run(0.05 - flying.body.now % 0.05)
     altitude, speed, start = flying.body.position[2], flying.body.velocity[0], flying.body.position[0]
@@ -200,7 +200,7 @@ def test_lost_setpoints_are_answered_within_half_a_second_by_braking_and_holding
     assert flying.pilot.mode == px4.MODE_HOLD
 
 
-def test_after_a_further_time_it_descends_gently_and_disarms_on_the_ground(flying: Flight) -> None:
+def test_setpoint_loss_ends_in_gentle_descent_and_disarming(flying: Flight) -> None:
     flying.ground_is_there = False
     fastest = 0.0
     while flying.pilot.armed:
@@ -214,7 +214,7 @@ def test_after_a_further_time_it_descends_gently_and_disarms_on_the_ground(flyin
     assert not flying.pilot.failsafe and not flying.pilot.in_air
 
 
-def test_holding_and_landing_stand_noise() -> None:
+def test_hold_and_landing_complete_with_noise() -> None:
     flight = Flight(noise=SensorNoise(0.02, math.radians(0.2), 0.02, 0.005))
     flight.take_off()
     flight.ground_is_there = False
@@ -227,7 +227,7 @@ def test_holding_and_landing_stand_noise() -> None:
     assert not flight.pilot.armed and flight.body.position[2] == 0.0
 
 
-def test_setpoints_that_come_back_end_the_failsafe(flying: Flight) -> None:
+def test_resumed_setpoints_end_the_failsafe(flying: Flight) -> None:
     flying.ground_is_there = False
     flying.run(1.0)
     assert flying.pilot.failsafe
@@ -239,7 +239,7 @@ def test_setpoints_that_come_back_end_the_failsafe(flying: Flight) -> None:
     assert not flying.pilot.failsafe and flying.pilot.mode == px4.MODE_OFFBOARD
 
 
-def test_loss_on_the_ground_disarms() -> None:
+def test_setpoint_loss_on_the_ground_disarms() -> None:
     flight = Flight()
     flight.run(0.02)
     flight.pilot.enter_offboard(flight.target, 0.0, flight.body.now)
@@ -252,7 +252,7 @@ def test_loss_on_the_ground_disarms() -> None:
     assert not flight.pilot.armed
 
 
-def test_loss_while_it_balances_on_its_link_holds_before_it_disarms() -> None:
+def test_setpoint_loss_of_vehicle_supported_by_its_link_holds_before_disarming() -> None:
     flight = Flight()
     flight.run(0.02)
     flight.pilot.enter_offboard(flight.target, 0.0, flight.body.now)
@@ -269,7 +269,7 @@ def test_loss_while_it_balances_on_its_link_holds_before_it_disarms() -> None:
     assert not flight.pilot.armed and not flight.pilot.in_air
 
 
-def test_a_hold_that_is_asked_for_as_it_lifts_the_load_keeps_the_thrust() -> None:
+def test_hold_commanded_during_lift_off_keeps_thrust() -> None:
     flight = Flight()
     flight.run(0.02)
     flight.pilot.enter_offboard(flight.target, 0.0, flight.body.now)
@@ -283,7 +283,7 @@ def test_a_hold_that_is_asked_for_as_it_lifts_the_load_keeps_the_thrust() -> Non
     assert flight.pilot.attitude_target[2] == pytest.approx(0.8 * flight.hover, rel=0.1)
 
 
-def test_one_sensor_that_fails_does_not_blind_the_others(flying: Flight) -> None:
+def test_failure_of_one_sensor_leaves_others_valid(flying: Flight) -> None:
     measure, known = flying.body.measure, flying.body.position[0]
     flying.body.measure = lambda: measure()._replace(position=(math.nan, 0.0, 0.0))
     flying.target = setpoint(tuple(quaternion_from_euler(0.1, 0.0, 0.0)), thrust=flying.hover)
@@ -294,7 +294,7 @@ def test_one_sensor_that_fails_does_not_blind_the_others(flying: Flight) -> None
     assert not flying.pilot.is_navigating(flying.body.now)
 
 
-def test_an_attitude_that_is_lost_on_board_goes_on_with_the_rates(flying: Flight) -> None:
+def test_attitude_is_integrated_from_rates_when_lost_on_board(flying: Flight) -> None:
     measure = flying.body.measure
     flying.body.measure = lambda: measure()._replace(attitude=(math.nan,) * 4)
     for roll in (0.1, -0.1, 0.05):
@@ -303,7 +303,7 @@ def test_an_attitude_that_is_lost_on_board_goes_on_with_the_rates(flying: Flight
         assert euler_from_quaternion(flying.body.attitude)[0] == pytest.approx(roll, abs=0.03)
 
 
-def test_commanded_hold_stays_while_a_ground_is_there_and_lands_when_none_is(flying: Flight) -> None:
+def test_commanded_hold_lasts_while_ground_is_connected_then_lands(flying: Flight) -> None:
     assert flying.pilot.enter_mode(px4.MODE_HOLD, flying.body.now).text == ""
     flying.run(12.0)
     assert flying.pilot.mode == px4.MODE_HOLD and not flying.pilot.failsafe
@@ -312,7 +312,7 @@ def test_commanded_hold_stays_while_a_ground_is_there_and_lands_when_none_is(fly
     assert flying.pilot.mode == px4.MODE_LAND and flying.pilot.failsafe
 
 
-def test_a_hold_that_is_asked_for_in_a_failsafe_does_not_descend(flying: Flight) -> None:
+def test_hold_commanded_in_failsafe_does_not_descend(flying: Flight) -> None:
     flying.ground_is_there = False
     flying.run(2.0)
     flying.pilot.enter_mode(px4.MODE_HOLD, flying.body.now)
@@ -322,7 +322,7 @@ def test_a_hold_that_is_asked_for_in_a_failsafe_does_not_descend(flying: Flight)
     assert flying.body.position[2] == pytest.approx(height, abs=0.1)
 
 
-def test_landing_by_setpoints_is_noticed(flying: Flight) -> None:
+def test_landing_by_setpoints_is_detected(flying: Flight) -> None:
     flying.target = setpoint(thrust=flying.hover * 0.99)
     while flying.body.position[2] < 0.0:
         flying.run(0.1)

@@ -71,7 +71,7 @@ def test_garbage_bad_checksums_and_cut_frames_do_not_hide_what_follows() -> None
     assert codec.bad_frames >= 1 and codec.skipped_bytes > 0 and codec.decoded == 2
 
 
-def test_a_datagram_of_bad_frames_alone_is_given_up() -> None:
+def test_datagram_of_bad_frames_only_is_discarded() -> None:
     codec = Codec(2, 1)
     assert codec.decode(b"\xfe" * 65507) == []
     assert codec.bad_frames == BAD_FRAMES_MAX
@@ -79,7 +79,7 @@ def test_a_datagram_of_bad_frames_alone_is_given_up() -> None:
     assert len(codec.decode(Codec(1, 1).encode(command()))) == 1
 
 
-def test_a_cut_datagram_does_not_poison_the_next() -> None:
+def test_truncated_datagram_does_not_affect_the_next() -> None:
     codec = Codec(2, 1)
     good = Codec(1, 1).encode(command())
     for length in range(len(good)):
@@ -87,7 +87,7 @@ def test_a_cut_datagram_does_not_poison_the_next() -> None:
         assert len(codec.decode(good)) == 1
 
 
-def test_a_wrong_length_byte_does_not_swallow_the_next_frame() -> None:
+def test_wrong_length_byte_does_not_hide_next_frame() -> None:
     good = Codec(1, 1).encode(command())
     wrong = bytearray(good)
     wrong[1] = 60
@@ -149,7 +149,7 @@ def test_custom_modes() -> None:
 
 
 @given(st.integers(-4_000_000, 2**31 - 1).filter(lambda i: not 0x7F800001 <= i <= 0x7FBFFFFF))
-def test_integer_parameters_travel_byte_wise(value: int) -> None:
+def test_integer_parameters_are_encoded_byte_wise(value: int) -> None:
     kind = mavlink.MAV_PARAM_TYPE_INT32
     codec = Codec(1, 1)
     sent = mavlink.MAVLink_param_value_message(b"X", px4.parameter_to_wire(value, kind), kind, 1, 0)

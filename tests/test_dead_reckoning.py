@@ -87,7 +87,7 @@ def spikes(p, v, rng):
     ],
     ids=["sound", "noise times 5", "spikes", "two of four", "the payload unit, too", "unknown"],
 )
-def test_sound_or_noisy_positions_are_consistent(spoil, seed):
+def test_valid_or_noisy_positions_are_consistent(spoil, seed):
     assert inconsistent_after(30.0, spoil, seed) is None
 
 
@@ -101,7 +101,7 @@ def test_sound_or_noisy_positions_are_consistent(spoil, seed):
     ],
     ids=["velocity biased", "velocity drifts", "bias"],
 )
-def test_payload_position_is_inconsistent_when_its_unit_alone_is_wrong(change, seed):
+def test_payload_position_is_inconsistent_when_only_its_unit_is_biased(change, seed):
     def spoil(source, elapsed, p, v, rng):
         return change(elapsed, p, v) if source == PAYLOAD else (p, v)
 

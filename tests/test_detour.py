@@ -61,11 +61,11 @@ def side(detour):
     return detour.waypoints[np.argmax(np.abs(detour.waypoints[:, 1])), 1]
 
 
-def test_nothing_in_the_way_is_the_straight_way():
+def test_detour_without_obstacles_is_straight():
     assert way([pole(10.0, 6.0)]).waypoints.tolist() == [list(START), list(GOAL)]
 
 
-def test_over_a_low_wall_that_is_wide():
+def test_detour_leads_over_wide_low_wall():
     detour = way([wall(10.0, 0.0, 0.3, 30.0, height=6.0)])
     assert detour.waypoints is not None
     top = -detour.waypoints[:, 2].min()
@@ -74,7 +74,7 @@ def test_over_a_low_wall_that_is_wide():
     assert len(detour.waypoints) <= 4
 
 
-def test_round_a_high_wall_on_its_shorter_side():
+def test_detour_leads_round_shorter_side_of_high_wall():
     left, right = way([wall(10.0, 2.0, 0.3, 8.0)]), way([wall(10.0, -2.0, 0.3, 8.0)])
     assert side(left) < -2.0 - 1.1 - MARGIN + 1e-6 and side(right) > 2.0 + 1.1 + MARGIN - 1e-6
     assert left.length == pytest.approx(right.length, rel=0.02)
@@ -82,14 +82,14 @@ def test_round_a_high_wall_on_its_shorter_side():
     assert shortest - 0.05 < left.length < 1.03 * shortest + 0.3
 
 
-def test_under_a_sphere_far_above_and_over_one_below():
+def test_detour_leads_under_high_sphere_and_over_low_sphere():
     """Only the height band of the formation matters: payload's bottom to discs' top."""
     assert len(way([sphere(10.0, 0.0, -5.0 - 3.75 - 0.5 - 0.51)]).waypoints) == 2
     assert len(way([sphere(10.0, 0.0, -5.0 + 0.25 + 0.5 + 0.51)]).waypoints) == 2
     assert len(way([sphere(10.0, 0.0, -5.0 - 3.75 - 0.5 - 0.45)]).waypoints) > 2
 
 
-def test_between_two_poles_with_a_wide_gap():
+def test_detour_leads_through_wide_gap_of_poles():
     half = 0.3 + 1.1 + MARGIN + 0.2
     closed = wall(10.0, 3.0 - half - 6.5, 0.3, 12.0)
     detour = way([pole(10.0, 3.0 - half), pole(10.0, 3.0 + half), closed])
@@ -97,13 +97,13 @@ def test_between_two_poles_with_a_wide_gap():
     assert 3.0 - 0.21 < at_poles < 3.0 + 0.21
 
 
-def test_not_between_two_poles_with_a_narrow_gap():
+def test_detour_leads_round_narrow_gap_of_poles():
     half = 0.3 + 1.1 + MARGIN - 0.1
     detour = way([pole(10.0, -half), pole(10.0, half)])
     assert abs(np.interp(10.0, detour.waypoints[:, 0], detour.waypoints[:, 1])) > half
 
 
-def test_a_gap_that_the_coarse_grid_misses():
+def test_gap_missed_by_coarse_grid_is_found():
     """0.34 m wider than it must be, in a wall across the whole region of the search."""
     half = 1.1 + MARGIN + 0.17
     walls = [wall(10.0, 0.75 - half - 10.0, 0.3, 20.0), wall(10.0, 0.75 + half + 10.0, 0.3, 20.0)]
@@ -115,7 +115,7 @@ def test_a_gap_that_the_coarse_grid_misses():
     assert "too narrow" in way(narrow, region=region).reason
 
 
-def test_a_closed_box_cannot_be_reached():
+def test_goal_in_closed_box_is_unreachable():
     box = [wall(16.0, 0.0, 0.3, 8.0), wall(24.0, 0.0, 0.3, 8.0), wall(20.0, 4.0, 8.0, 0.3), wall(20.0, -4.0, 8.0, 0.3)]
     detour = way(box)
     assert detour.waypoints is None and detour.length == math.inf
@@ -133,14 +133,14 @@ def test_a_closed_box_cannot_be_reached():
         (sphere(9.0, 9.0, -5.0), {"goal": (20.0, 0.0, -13.0)}, "the goal, 13.00 m high, is not within 0.5 to 12 m"),
     ],
 )
-def test_a_goal_that_cannot_be(obstacle, others, reason):
+def test_goal_inside_obstacle_is_unreachable(obstacle, others, reason):
     detour = find_detour([obstacle], **({"start": START, "goal": GOAL, "formation": FORMATION, "margin": MARGIN,
                                           "highest": 12.0, "names": ["the ball"]} | others))  # fmt: skip
     assert detour.waypoints is None
     assert reason in detour.reason
 
 
-def test_altitudes_are_kept():
+def test_detour_keeps_altitude_limits():
     low_wall = [wall(10.0, 0.0, 0.3, 12.0, height=6.0)]
     assert -way(low_wall).waypoints[:, 2].min() > 6.0
     round_it = way(low_wall, highest=6.5)
@@ -149,7 +149,7 @@ def test_altitudes_are_kept():
     assert abs(side(round_it)) > 6.0
 
 
-def test_a_start_too_near_is_left_without_coming_nearer():
+def test_distance_does_not_decrease_from_start_within_margin():
     ball = sphere(1.9, 0.0, -5.0)
     detour = find_detour([ball], START, GOAL, FORMATION, MARGIN, highest=12.0)
     assert detour.waypoints is not None
@@ -161,7 +161,7 @@ def test_a_start_too_near_is_left_without_coming_nearer():
     assert clearance_by_coal([ball], rest) >= MARGIN - 2e-3
 
 
-def test_a_moving_obstacle_counts_with_its_growth():
+def test_moving_obstacle_is_grown_by_its_uncertainty():
     ball = sphere(10.0, 2.0, -5.0)
     assert len(find_detour([ball], START, GOAL, FORMATION, 0.3).waypoints) == 2
     grown = find_detour([ball], START, GOAL, FORMATION, 0.3, growth=[0.5])
@@ -169,7 +169,7 @@ def test_a_moving_obstacle_counts_with_its_growth():
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_random_courses_keep_the_margin_and_repeat(seed):
+def test_detours_of_random_scenarios_keep_margin_and_repeat(seed):
     rng = np.random.default_rng(seed)
     obstacles = []
     for i in range(12):
@@ -184,7 +184,7 @@ def test_random_courses_keep_the_margin_and_repeat(seed):
     assert np.array_equal(detour.waypoints, again.waypoints)
 
 
-def test_clearance_is_the_library_s():
+def test_clearance_equals_that_of_collision_library():
     rng = np.random.default_rng(5)
     shapes = [Sphere(0.7), Pole(0.4, 5.0), Wall(size=(3.0, 0.5, 2.0), yaw=0.7)]
     obstacles = [(shape, rng.uniform(-3.0, 3.0, 3)) for shape in shapes]
@@ -196,7 +196,7 @@ def test_clearance_is_the_library_s():
             assert (distance if distance > 0 else 0.0) == pytest.approx(max(expected, 0.0), abs=1e-3)
 
 
-def test_first_conflict():
+def test_first_conflict_of_path_is_found():
     times = np.linspace(0.0, 6.0, 61)
     positions = np.column_stack([2.0 * times, np.zeros(61), np.full(61, -5.0)])
     shape = Sphere(0.5)
@@ -225,7 +225,7 @@ def parameters():
     return linear_model(read_system(None)).parameters
 
 
-def test_what_has_no_meaning_is_refused():
+def test_search_refuses_invalid_arguments():
     for wrong in (
         lambda: BoundingCylinder(-1.0, 1.0, 1.0),
         lambda: way([], margin=-0.1),

@@ -169,7 +169,7 @@ def test_estimator_rejects_outliers(offset):
     assert np.all(np.abs(estimate.x - sound.x) < 3.0 * sigma)
 
 
-def spoilt(s, **parts):
+def corrupted(s, **parts):
     """Measurements of one moment, of which the position of UAV 1 is ``parts``."""
     return [replace(m, **parts) if m.source == 1 and isinstance(m, Position) else m for m in s]
 
@@ -181,7 +181,7 @@ def spoilt(s, **parts):
 )
 def test_estimator_uses_velocity_when_position_is_unusable(position):
     moments = samples_of(2.0)
-    _, estimate, innovations = run([spoilt(s, position=position(k)) for k, s in enumerate(moments)])
+    _, estimate, innovations = run([corrupted(s, position=position(k)) for k, s in enumerate(moments)])
     _, without, _ = run([[m for m in s if m.source != 1 or not isinstance(m, Position)] for s in moments])
     sigma, without_sigma = (np.sqrt(np.diag(e.covariance))[LAYOUT.s_dot][2:4] for e in (estimate, without))
     assert np.all(sigma < 0.7 * without_sigma)
@@ -193,7 +193,7 @@ def test_estimator_uses_velocity_when_position_is_unusable(position):
 
 def test_estimator_uses_position_when_velocity_is_missing():
     moments = samples_of(2.0)
-    _, estimate, _ = run([spoilt(s, velocity=np.full(3, np.nan)) for s in moments])
+    _, estimate, _ = run([corrupted(s, velocity=np.full(3, np.nan)) for s in moments])
     _, without, _ = run([[m for m in s if m.source != 1 or not isinstance(m, Position)] for s in moments])
     sigma, without_sigma = (np.sqrt(np.diag(e.covariance))[LAYOUT.s][2:4] for e in (estimate, without))
     assert np.all(sigma < 0.7 * without_sigma)
@@ -206,7 +206,7 @@ def test_estimator_uses_position_when_velocity_is_missing():
 @pytest.mark.parametrize("of_payload", [False, True])
 def test_estimator_isolates_worse_fitting_part_of_inconsistent_group(of_payload, position, velocity, isolated):
     north, begin = np.array([1.0, 0.0, 0.0]), 2.0
-    spoilt = [
+    corrupted = [
         [
             replace(
                 m,
@@ -219,7 +219,7 @@ def test_estimator_isolates_worse_fitting_part_of_inconsistent_group(of_payload,
         ]
         for moment in samples_of(8.0)
     ]
-    estimator, estimate, _ = run(spoilt)
+    estimator, estimate, _ = run(corrupted)
     assert estimator.health.isolated_groups == {SensorGroup(of_payload, Position): isolated}
     assert estimator.unusable_poses(Position) == (set() if of_payload else {0, 1, 2, 3})
     error = np.abs(estimate.x - REFERENCE.at(np.zeros(1)).x[0])

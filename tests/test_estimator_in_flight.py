@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from estimator_truth import known_to_the_world, true_state
-from flight_in_process import MISSIONS, Rehearsal, noiseless, short_figure
+from flight_in_process import MISSIONS, InProcessFlight, noiseless, short_figure
 from scipy.stats import chi2
 
 from gcs.config import read_system
@@ -18,7 +18,7 @@ MODEL = LinearModel(read_system(MISSIONS / "system.toml").parameters())
 P, LAYOUT = MODEL.parameters, MODEL.layout
 
 
-class Watched(Rehearsal):
+class Watched(InProcessFlight):
     """A flight that compares every estimate with the world at the moment it is for."""
 
     def __init__(self, *arguments, force=None, from_time=np.inf, **options):

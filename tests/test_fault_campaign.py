@@ -171,25 +171,25 @@ def test_campaign_killed_twice_completes_without_flying_twice(tmp_path):
     path, out = campaign_file(tmp_path, REAL), tmp_path / "out"
     (tmp_path / "hop.toml").write_text(HOP)
     command = [sys.executable, "-m", "gcs", "faults", str(path), "--out", str(out), "--jobs", "2", "--keep", "all"]
-    told, kept = [], {}
+    reported, kept = [], {}
     for ended in (1, 2):
         with subprocess.Popen(
             command, stdout=subprocess.PIPE, text=True, env={**os.environ, "PYTHONUNBUFFERED": "1"}
         ) as cut:
-            told += [cut.stdout.readline().partition(":")[0] for _ in range(ended)]  # a line a flight
+            reported += [cut.stdout.readline().partition(":")[0] for _ in range(ended)]  # a line a flight
             cut.send_signal(signal.SIGKILL)
             cut.wait(60)
         results = {result.stem: result.stat().st_mtime_ns for result in (out / "results").glob("*.json")}
-        assert kept.items() <= results.items() and set(told) <= set(results) and len(results) < 6
+        assert kept.items() <= results.items() and set(reported) <= set(results) and len(results) < 6
         kept = results
     again = subprocess.run(command, capture_output=True, text=True, timeout=300)
     assert again.returncode == 0, again.stdout + again.stderr
     assert "6 of 6 flights within their limits" in again.stdout
     frame = pandas.read_parquet(out / "results.parquet")
     assert frame["number"].tolist() == [1, 2, 3, 4, 5, 6] and (frame["notes"] == "").all()
-    told += [line.partition(":")[0] for line in again.stdout.splitlines() if line.startswith("loss-")]
-    # One that had ended when the campaign was killed, but not been told yet, is not told later.
-    assert len(told) == len(set(told)) >= 4 and set(told) <= set(frame["name"])
+    reported += [line.partition(":")[0] for line in again.stdout.splitlines() if line.startswith("loss-")]
+    # One that had ended when the campaign was killed, but had not been reported yet, is not reported later.
+    assert len(reported) == len(set(reported)) >= 4 and set(reported) <= set(frame["name"])
     results = {result.stem: result.stat().st_mtime_ns for result in (out / "results").glob("*.json")}
     assert kept.items() <= results.items() and set(results) == set(frame["name"])
     names = {entry.name for entry in (out / "flights").iterdir()}

@@ -1,4 +1,4 @@
-"""Faults in mission files: strict reading, telling, listing."""
+"""Faults in mission files: strict reading, description, listing."""
 
 import dataclasses
 from pathlib import Path

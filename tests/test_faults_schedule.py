@@ -29,22 +29,24 @@ def test_fault_is_inactive_before_take_off_and_outside_its_times():
 
 def test_fault_disturbs_its_vehicles_in_its_direction_only():
     disturbed = injected(fault("partition", vehicles=(2, 3), direction="command"))
-    for vehicle, way in itertools.product((1, 2, 3, 4), ("telemetry", "command")):
-        arrived = sent(disturbed, 5, vehicle=vehicle, way=way)
-        assert len(arrived) == (0 if way == "command" and vehicle in (2, 3) else 5)
-    assert not sent(injected(fault("partition")), 5, vehicle=4, way="telemetry")
-    assert len(sent(injected(fault("low_rate")), 5, way="command", message=lambda i: codec_frames(position(i)))) == 5
+    for vehicle, direction in itertools.product((1, 2, 3, 4), ("telemetry", "command")):
+        arrived = sent(disturbed, 5, vehicle=vehicle, direction=direction)
+        assert len(arrived) == (0 if direction == "command" and vehicle in (2, 3) else 5)
+    assert not sent(injected(fault("partition")), 5, vehicle=4, direction="telemetry")
+    assert (
+        len(sent(injected(fault("low_rate")), 5, direction="command", message=lambda i: codec_frames(position(i)))) == 5
+    )
 
 
 @pytest.mark.parametrize("kind", [k.name for k in KINDS.values() if k.family in ("link", "timing")])
 def test_every_fault_of_datagrams_repeats_and_depends_on_seed_number_vehicle_and_direction(kind):
-    def run(seed=1, before=0, vehicle=1, way="telemetry"):
+    def run(seed=1, before=0, vehicle=1, direction="telemetry"):
         disturbed = injected(*[fault("jitter", 1e6)] * before, fault(kind, duration=5.0), seed=seed)
-        return sent(disturbed, 300, vehicle=vehicle, way=way, message=lambda i: codec_frames(position(i)))
+        return sent(disturbed, 300, vehicle=vehicle, direction=direction, message=lambda i: codec_frames(position(i)))
 
     assert run() == run()
     random = kind in RANDOM
-    others = [run(seed=2), run(before=1), run(vehicle=2), run(way="command")]
+    others = [run(seed=2), run(before=1), run(vehicle=2), run(direction="command")]
     if random:
         assert all(other != run() for other in others)
         assert len({str(other) for other in others}) == 4
@@ -52,7 +54,7 @@ def test_every_fault_of_datagrams_repeats_and_depends_on_seed_number_vehicle_and
         assert others[0] == run()
 
 
-def test_faults_act_one_after_the_other_in_the_missions_order():
+def test_faults_act_in_sequence_in_order_of_mission():
     bias, scale = (fault(kind, channel="velocity", axes=["x"]) for kind in ("bias", "scale"))
     assert reported(injected(bias, scale), 1.0).position.velocity[0] == pytest.approx((0.1 + 0.5) * 1.1)
     assert reported(injected(scale, bias), 1.0).position.velocity[0] == pytest.approx(0.1 * 1.1 + 0.5)

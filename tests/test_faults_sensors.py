@@ -10,11 +10,11 @@ from vehicle_sim.world.range_sensor import Detection, RangeSample
 
 
 def test_lost_sensors_are_missing_from_telemetry_or_on_board():
-    blind = injected(fault("position_lost", 1.0))
-    first = blind.own_sample(1, at(1.0))
-    moved = blind.own_sample(1, at(2.0)._replace(position=(9.0, 9.0, 9.0), rates=(1.0, 1.0, 1.0)))
+    without_position = injected(fault("position_lost", 1.0))
+    first = without_position.own_sample(1, at(1.0))
+    moved = without_position.own_sample(1, at(2.0)._replace(position=(9.0, 9.0, 9.0), rates=(1.0, 1.0, 1.0)))
     assert (moved.position, moved.velocity, moved.rates) == (first.position, first.velocity, (1.0, 1.0, 1.0))
-    assert blind.reported_sample(1, moved) == (moved, None)
+    assert without_position.reported_sample(1, moved) == (moved, None)
     assert injected(fault("position_lost", onboard=False)).own_sample(1, at(1.0)) == at(1.0)
 
     assert injected(fault("attitude_lost")).reported_sample(1, at(1.0)) == (None, at(1.0))
@@ -36,10 +36,10 @@ def test_lost_sensors_are_missing_from_telemetry_or_on_board():
 
 def test_position_glitches_and_drifts():
     glitch = injected(fault("position_glitch", size=3.0, rate=0.5, hold=0.2))
-    seen = np.array([glitch.own_sample(1, at(i * 0.01)).position for i in range(20_000)]) - STILL.position
-    away = np.hypot(seen[:, 0], seen[:, 1]) > 0.0
-    assert np.hypot(*seen[away, :2].T) == pytest.approx(np.full(away.sum(), 3.0))
-    assert not np.any(seen[:, 2])
+    reported = np.array([glitch.own_sample(1, at(i * 0.01)).position for i in range(20_000)]) - STILL.position
+    away = np.hypot(reported[:, 0], reported[:, 1]) > 0.0
+    assert np.hypot(*reported[away, :2].T) == pytest.approx(np.full(away.sum(), 3.0))
+    assert not np.any(reported[:, 2])
     assert away.mean() == pytest.approx(0.2 / 2.2, abs=0.03)
     drift = injected(fault("position_drift", start=1.0, velocity=[0.1, -0.2, 0.0]))
     assert drift.own_sample(1, at(6.0)).position == pytest.approx((1.5, 1.0, -5.0))

@@ -84,7 +84,7 @@ def test_fault_that_never_began_is_on_record(tmp_path):
     assert "fault 1, packet_loss" in note and "never came" in note
 
 
-def test_a_nan_goes_over_the_wire_and_whole_numbers_are_not_sent():
+def test_nan_is_sent_in_floats_and_omitted_from_integer_messages():
     ground, *_ = lifted(
         fault("not_a_number", channel="position", vehicles=(2,)),
         fault("not_a_number", channel="attitude", value="inf", vehicles=(3,)),
@@ -168,7 +168,7 @@ def test_wind_displaces_the_load(tmp_path):
     assert abs(ends[0]) < 0.05 and ends[1] > 0.3
 
 
-def test_a_changed_load_moves_like_a_load_of_that_mass_and_changes_back():
+def test_changed_payload_mass_acts_on_motion_and_is_restored():
     def flown(parameters, faults, steps):
         with World(parameters) as world:
             worlds = WorldFaults([active(entry) for entry in faults])
@@ -186,7 +186,7 @@ def test_a_changed_load_moves_like_a_load_of_that_mass_and_changes_back():
     assert flown(true, (fault("payload_mass", 0.5, 0.1, change=-0.5),), 100) == flown(true, (), 100)
 
 
-def test_vehicle_sim_writes_what_its_faults_did(tmp_path):
+def test_vehicle_sim_records_effects_of_faults(tmp_path):
     mission = tmp_path / "mission.toml"
     mission.write_text(
         '[mission]\nname = "m"\n[reference]\nkind = "waypoints"\npoints = [[0, 0, -2]]\n'

@@ -32,10 +32,10 @@ def test_half_rate_is_an_even_share_of_measurements_and_all_of_the_rest(share, k
 def test_ground_hang_passes_heartbeats_only():
     beat = codec_frames(mavlink.MAVLink_heartbeat_message(6, 8, 0, 0, 0, 3))
     disturbed = injected(fault("ground_hang", start=0.1))
-    arrived = sent(disturbed, 10, way="command", message=lambda i: beat + codec_frames(position(i)))
+    arrived = sent(disturbed, 10, direction="command", message=lambda i: beat + codec_frames(position(i)))
     assert [len(Codec(1, 1).decode(data)) for *_, data in arrived] == [2] * 5 + [1] * 5
     assert all(data.startswith(beat) for *_, data in arrived)
-    assert len(sent(disturbed, 10, way="telemetry")) == 10
+    assert len(sent(disturbed, 10, direction="telemetry")) == 10
 
 
 def test_clock_faults_skew_step_and_overflow():

@@ -26,8 +26,8 @@ def test_bias_drift_scale_sign_frame_and_quantisation():
 
 def test_stuck_values_stay_and_begin_anew_each_time():
     disturbed = injected(fault("stuck", 1.0, 1.0, every=2.0, channel="velocity"))
-    seen = [reported(disturbed, t / 2, velocity=(t, t, t)).position.velocity[0] for t in range(10)]
-    assert seen == [0, 1, 2, 2, 4, 5, 6, 6, 8, 9]
+    reported_values = [reported(disturbed, t / 2, velocity=(t, t, t)).position.velocity[0] for t in range(10)]
+    assert reported_values == [0, 1, 2, 2, 4, 5, 6, 6, 8, 9]
 
 
 def test_spikes_are_single_samples_of_the_right_size_and_number():
@@ -39,15 +39,15 @@ def test_spikes_are_single_samples_of_the_right_size_and_number():
 
 
 @pytest.mark.parametrize("value", ["nan", "inf", "-inf"])
-def test_not_a_number_is_reported(value):
+def test_nan_is_reported(value):
     velocity = reported(injected(fault("not_a_number", channel="velocity", value=value)), 0.0).position.velocity
     assert [repr(v) for v in velocity] == [value] * 3
     attitude = reported(injected(fault("not_a_number", channel="attitude", value=value)), 0.0).attitude
     assert not any(math.isfinite(q) for q in attitude.attitude) and attitude.rates == STILL.rates
     half = injected(fault("not_a_number", channel="velocity", axes=["y"], probability=0.5))
-    seen = [reported(half, i * 0.01).position.velocity for i in range(1000)]
-    assert sum(v[1] != v[1] for v in seen) == pytest.approx(500, abs=65)
-    assert all(v[0] == 0.1 for v in seen)
+    reported_values = [reported(half, i * 0.01).position.velocity for i in range(1000)]
+    assert sum(v[1] != v[1] for v in reported_values) == pytest.approx(500, abs=65)
+    assert all(v[0] == 0.1 for v in reported_values)
 
 
 def test_noise_adds_up_to_the_factor():
@@ -60,10 +60,10 @@ def test_noise_adds_up_to_the_factor():
 
 def test_intermittent_values_are_stuck_for_random_times():
     disturbed = injected(fault("intermittent", channel="velocity", good=1.0, stuck=0.5))
-    seen = [reported(disturbed, i * 0.01, velocity=(i, i, i)).position.velocity[0] for i in range(60_000)]
-    stuck = np.diff(seen) == 0
+    reported_values = [reported(disturbed, i * 0.01, velocity=(i, i, i)).position.velocity[0] for i in range(60_000)]
+    stuck = np.diff(reported_values) == 0
     assert stuck.mean() == pytest.approx(1 / 3, abs=0.06)
-    assert seen[0] == 0 and max(np.array(range(60_000)) - seen) > 50
+    assert reported_values[0] == 0 and max(np.array(range(60_000)) - reported_values) > 50
 
 
 def test_attitude_is_disturbed_as_a_rotation():
@@ -112,8 +112,8 @@ def test_swapped_vehicles_report_each_others_data():
     disturbed = injected(fault("swapped_vehicles", vehicles=(1,), other=2))
     samples = {i: at(1.0)._replace(position=(float(i), 0.0, 0.0)) for i in (1, 2, 3)}
     for _ in range(2):
-        seen = [disturbed.reported_sample(i, samples[i]).position.position[0] for i in (1, 2, 3)]
-    assert seen == [2.0, 1.0, 3.0]
+        reported_values = [disturbed.reported_sample(i, samples[i]).position.position[0] for i in (1, 2, 3)]
+    assert reported_values == [2.0, 1.0, 3.0]
 
 
 VALUE_KINDS = [k.name for k in KINDS.values() if k.family == "values" and k.name != "swapped_vehicles"]
@@ -125,20 +125,20 @@ def test_every_value_fault_acts_on_every_channel_and_repeats(kind, channel):
     def run(seed=1):
         more = {"good": 0.05} if kind == "intermittent" else {}
         disturbed = injected(fault(kind, channel=channel, **more), seed=seed)
-        seen = []
+        reported_values = []
         for i in range(100):
             sample = at(i * 0.02)._replace(
                 position=(0.3 + i, 2.0, -5.0), velocity=(0.1 + i, 0.2, 0.3), rates=(0.01 * i, 0.02, 0.03),
                 attitude=(math.cos(0.01 * i), math.sin(0.01 * i), 0.0, 0.0),
             )  # fmt: skip
             scan = RangeSample(sample.time, 9.0, (Detection(0, (1.3 + 0.01 * i, 2.0, 3.0)),))
-            seen += [
+            reported_values += [
                 disturbed.reported_sample(1, sample),
                 disturbed.payload_sample(1, sample),
                 disturbed.range_sample(1, scan),
             ]
         assert disturbed.faults[0].disturbed > 0
-        return repr(seen)
+        return repr(reported_values)
 
     assert run() == run()
     if kind in ("spikes", "noise", "intermittent"):

@@ -57,7 +57,7 @@ def test_the_reference_solves_the_nonlinear_dynamics_exactly(p, load, own):
         assert np.allclose(second.Omega_dot, np.cross(q, q_ddot), atol=1e-9)
 
 
-def test_links_and_uavs_move_as_their_derivatives_say():
+def test_links_and_uavs_move_by_their_derivatives():
     p, layout, h = CONFIG.parameters(), StateLayout(4), 1e-4
     load = Load(p.m_0, np.zeros(3))
     before, flat, after = (flat_reference(p, Wave(), TIMES + d, load) for d in (-h, 0.0, h))
@@ -85,7 +85,7 @@ def test_set_points_invert_the_attitude_loop_and_the_motor_lag():
     assert np.allclose(flat.x[:, layout.f] + p.motor_time_constant * f_dot, flat.u[:, layout.f_setpoint], atol=1e-3)
 
 
-def test_uavs_stand_on_their_links():
+def test_uav_positions_follow_from_links():
     p = CONFIG.parameters()
     flat = flat_reference(p, Wave(), TIMES, Load(p.m_0, np.zeros(3)))
     for k in range(len(TIMES)):
@@ -97,7 +97,7 @@ def test_uavs_stand_on_their_links():
         assert np.allclose(uav_positions(p, state), expected)
 
 
-def test_the_payload_feels_no_moment():
+def test_payload_has_zero_moment():
     p = replace(CONFIG.parameters(), p=UNSYMMETRIC)
     flat = flat_reference(p, Wave(), TIMES, Load(p.m_0, np.zeros(3)))
     for q, tension in zip(flat.links.q, flat.links.tension, strict=True):

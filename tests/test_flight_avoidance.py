@@ -120,16 +120,16 @@ def check_safe(summary):
     assert summary["uav_separation_min_m"] >= 0.75
 
 
-def test_figure_with_a_known_sphere_and_one_seen_only_by_the_vehicles(tmp_path):
+def test_figure_keeps_clear_of_mapped_sphere_and_of_detected_sphere(tmp_path):
     code, summary, said = flown(tmp_path, FIGURE)
     check_safe(summary)
     assert summary["outcome"] == "completed", said
     assert code == 0, said
-    # Both were in the way: the mission's own path leads within the margin of them.
+    # Both were on the path: the mission's own path leads within the margin of them.
     assert summary["position_rmse_m"]["total"] > 0.1
 
 
-def test_pole_on_a_straight_way(tmp_path):
+def test_pole_on_straight_path_is_avoided(tmp_path):
     shape = 'shape = "pole"\nposition = [7.0, 0.0]\nradius = 0.3\nheight = 12.0'
     code, summary, said = flown(tmp_path, STRAIGHT.format(name="pole", obstacle="mast", shape=shape))
     check_safe(summary)
@@ -139,7 +139,7 @@ def test_pole_on_a_straight_way(tmp_path):
     assert np.abs(truth["payload_y_m"]).max() > 1.0
 
 
-def test_closed_way_is_given_up_safely(tmp_path):
+def test_blocked_path_ends_in_safe_stop(tmp_path):
     shape = 'shape = "wall"\nposition = [8.0, 60.0, -20.0]\nsize = [0.3, 300.0, 40.0]'
     code, summary, said = flown(tmp_path, STRAIGHT.format(name="closed", obstacle="the great wall", shape=shape))
     check_safe(summary)
@@ -160,7 +160,7 @@ def test_closed_way_is_given_up_safely(tmp_path):
         ('kind = "stuck"', "is impossible"),
     ],
 )
-def test_range_sensors_that_all_go_wrong_alike_end_the_flight_safely(tmp_path, fault, reason):
+def test_flight_ends_safely_when_all_range_sensors_fail_alike(tmp_path, fault, reason):
     shape = 'shape = "pole"\nposition = [7.0, 0.0]\nradius = 0.3\nheight = 12.0'
     mission = STRAIGHT.format(name="pole", obstacle="mast", shape=shape)
     wrong = f'\n[[fault]]\nchannel = "obstacles"\nstart = 6.0\n{fault}\n'

@@ -44,26 +44,26 @@ def test_the_same_seed_gives_the_same_truth_to_the_byte_and_another_does_not(fig
     assert first != (folder / "other" / "truth.csv").read_bytes()
 
 
-def test_the_short_figure_covers_the_whole_curve(figure):
+def test_short_figure_covers_whole_curve(figure):
     truth = truth_of(figure[0] / "run")
     assert truth["payload_x_m"].max() > 5.5
     assert truth["payload_x_m"].min() < -1.0
     assert np.abs(truth["payload_y_m"]).max() > 2.7
 
 
-def test_without_noise_it_is_closer_still(tmp_path):
+def test_tracking_error_is_smaller_without_noise(tmp_path):
     summary = flown(noiseless(read_mission(short_figure(tmp_path))), tmp_path / "run")
     check_within_limits(summary)
     assert summary["position_rmse_m"]["total"] <= 0.02
 
 
 @pytest.mark.parametrize("vehicles", [3, 5, 6, 8])
-def test_other_teams_fly_it_too(tmp_path, vehicles):
+def test_figure_eight_is_flown_by_other_team_sizes(tmp_path, vehicles):
     summary = flown(read_mission(short_figure(tmp_path, duration=8.0, vehicles=vehicles)), tmp_path / "run", seed=11)
     check_within_limits(summary)
 
 
-def test_an_unsymmetric_layout_flies_it_too(tmp_path):
+def test_figure_eight_is_flown_with_asymmetric_attachments(tmp_path):
     attachments = "[[0.5, 0.45, -0.25], [0.45, -0.5, -0.25], [-0.5, -0.4, -0.25], [-0.4, 0.5, -0.25]]"
     mission = read_mission(short_figure(tmp_path, duration=8.0, attachments=attachments))
     assert mission.system.team.attachments is not None
@@ -76,13 +76,13 @@ def test_an_unsymmetric_layout_flies_it_too(tmp_path):
 
 
 @pytest.mark.parametrize("factor", [0.9, 1.1])
-def test_the_payload_may_weigh_a_tenth_more_or_less_than_believed(tmp_path, factor):
+def test_figure_eight_is_flown_with_ten_percent_payload_mass_error(tmp_path, factor):
     mission = short_figure(tmp_path, duration=12.0, payload_mass_factor=str(factor))
     summary = flown(read_mission(mission), tmp_path / "run", seed=21)
     check_within_limits(summary, rmse=0.035)
 
 
-def test_hover_holds_its_place(tmp_path):
+def test_hover_keeps_its_position(tmp_path):
     folder = copied_mission(tmp_path, "hover.toml")
     summary = flown(read_mission(folder), tmp_path / "run", seed=5)
     check_within_limits(summary)
@@ -123,7 +123,7 @@ def test_every_waypoint_is_passed_and_every_hold_held(tmp_path, name):
 # Two programs
 
 
-def test_two_programs_with_two_beliefs_of_the_mass_in_lockstep(tmp_path):
+def test_two_programs_with_different_payload_masses_fly_in_lockstep(tmp_path):
     ground = short_figure(tmp_path, duration=12.0)
     heavy = tmp_path / "heavy"
     heavy.mkdir()
@@ -131,8 +131,8 @@ def test_two_programs_with_two_beliefs_of_the_mass_in_lockstep(tmp_path):
     base = free_port()
     swarm = swarm_process("--lockstep", "--mission", heavier, "--run-dir", tmp_path / "world", "--base-port", base)
     try:
-        told = addresses_of(swarm)
-        urls = [told[f"vehicle {i}"] for i in (1, 2, 3, 4)]
+        addresses = addresses_of(swarm)
+        urls = [addresses[f"vehicle {i}"] for i in (1, 2, 3, 4)]
         code, summary = gcs_fly(ground, tmp_path / "run", "--connect", *urls)
         assert code == 0, summary
     finally:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from flight_in_process import Rehearsal, short_figure, truth_of
+from flight_in_process import InProcessFlight, short_figure, truth_of
 from programs import PATIENCE, GcsProcess, addresses_of, free_port, swarm_process
 from pymavlink import mavutil
 
@@ -91,13 +91,15 @@ def test_vehicles_hold_then_land_when_the_ground_is_killed(tmp_path):
     options = ("--lockstep", "--mission", mission, "--run-dir", tmp_path / "world", "--base-port", free_port())
     swarm = swarm_process(*options)
     try:
-        told = addresses_of(swarm)
-        gcs = GcsProcess(mission, tmp_path / "run", "--connect", *(told[f"vehicle {i}"] for i in (1, 2, 3, 4)))
+        addresses = addresses_of(swarm)
+        gcs = GcsProcess(mission, tmp_path / "run", "--connect", *(addresses[f"vehicle {i}"] for i in (1, 2, 3, 4)))
         gcs.until_phase("hold")
         gcs.process.kill()
         gcs.process.communicate()
         # A second ground that joins is served when the vehicles have landed: the sign that they have.
-        again = GcsProcess(mission, tmp_path / "second", "--connect", *(told[f"vehicle {i}"] for i in (1, 2, 3, 4)))
+        again = GcsProcess(
+            mission, tmp_path / "second", "--connect", *(addresses[f"vehicle {i}"] for i in (1, 2, 3, 4))
+        )
         again.until_phase("check")
         again.process.kill()
         again.process.communicate()
@@ -160,7 +162,7 @@ class Cut(FaultInterface):
 
 
 def test_vehicle_that_never_answers_is_refused(tmp_path):
-    with Rehearsal(short_figure(tmp_path), tmp_path / "run", faults=Cut(3, 0.0)) as flight:
+    with InProcessFlight(short_figure(tmp_path), tmp_path / "run", faults=Cut(3, 0.0)) as flight:
         flight.fly()
         assert flight.flight.reason == "vehicle 3 does not answer at 127.0.0.1:14542"
         assert not flight.flight.completed
@@ -168,7 +170,7 @@ def test_vehicle_that_never_answers_is_refused(tmp_path):
 
 
 def test_vehicle_at_the_address_of_another_is_refused(tmp_path):
-    with Rehearsal(short_figure(tmp_path), tmp_path / "run") as flight:
+    with InProcessFlight(short_figure(tmp_path), tmp_path / "run") as flight:
         first, second, *_ = flight.station.links
         first.address, second.address = second.address, first.address
         flight.station.router._by_address = {
@@ -179,7 +181,7 @@ def test_vehicle_at_the_address_of_another_is_refused(tmp_path):
 
 
 def test_vehicle_that_refuses_to_arm_disarms_all(tmp_path):
-    with Rehearsal(short_figure(tmp_path), tmp_path / "run") as flight:
+    with InProcessFlight(short_figure(tmp_path), tmp_path / "run") as flight:
         flight.fly(stop=lambda: flight.flight.phase.value == "arm")
         autopilot = flight.swarm.vehicles[1].autopilot
         autopilot.arming_problem = lambda now: "the compass is upside down"
@@ -190,7 +192,7 @@ def test_vehicle_that_refuses_to_arm_disarms_all(tmp_path):
 
 
 def test_vehicle_that_is_armed_already_is_refused(tmp_path):
-    with Rehearsal(short_figure(tmp_path), tmp_path / "run") as flight:
+    with InProcessFlight(short_figure(tmp_path), tmp_path / "run") as flight:
         flight.swarm.advance_to(0.1)
         flight.swarm.vehicles[2].autopilot.arm(0.1)
         flight.fly()
@@ -198,7 +200,7 @@ def test_vehicle_that_is_armed_already_is_refused(tmp_path):
 
 
 def test_vehicle_with_another_parameter_is_refused(tmp_path):
-    with Rehearsal(short_figure(tmp_path), tmp_path / "run") as flight:
+    with InProcessFlight(short_figure(tmp_path), tmp_path / "run") as flight:
         flight.swarm.vehicles[0].parameters.by_name(px4.PARAM_THRUST_MAX).value = 20.0
         flight.fly()
         assert flight.flight.reason == "vehicle 1 has CLFT_THRUST_MAX = 20, the system file says 30"
@@ -211,7 +213,7 @@ def test_vehicle_with_another_parameter_is_refused(tmp_path):
         (True, False, "sends no telemetry"),
         (False, True, "has left OFFBOARD for AUTO.LOITER (Set-points lost"),
     ],
-    ids=["both ways", "telemetry", "commands"],
+    ids=["both directions", "telemetry", "commands"],
 )
 def test_link_loss_of_one_vehicle_lands_all_of_them(tmp_path, telemetry, commands, reason):
     cut, followed = Cut(2, 16.4, telemetry, commands), {}
@@ -221,22 +223,22 @@ def test_link_loss_of_one_vehicle_lands_all_of_them(tmp_path, telemetry, command
             if (plan := vehicle.autopilot.hold_plan) is not None:
                 followed.setdefault(vehicle.system_id, plan.start)
 
-    with Rehearsal(short_figure(tmp_path, duration=20.0), tmp_path / "run", seed=1200, faults=cut) as flight:
+    with InProcessFlight(short_figure(tmp_path, duration=20.0), tmp_path / "run", seed=1200, faults=cut) as flight:
         flight.fly(plans_followed)
         assert f"vehicle 2 {reason}" in flight.flight.reason
-        assert flight.leave_alone()
+        assert flight.run_without_ground()
         summary = flight.summary()
     assert not summary["completed"]
     stops = stops_after(tmp_path / "run", 16.4)
     assert len(stops) == 4 and max(stops.values()) - min(stops.values()) < 0.055
     assert len(followed) == 4 and max(followed.values()) - min(followed.values()) < 0.055
-    # A vehicle that does not hear stops by itself and tells it; one that is not heard is missed at a control step.
+    # A vehicle without commands stops and reports it; one without telemetry is detected at a control step.
     assert max(stops.values()) - 16.4 <= (0.515 if telemetry else 0.485)
     check_set_down(tmp_path / "run", summary)
 
 
-class Deaf(FaultInterface):
-    """From ``at`` (s) on the ground hears nothing, while it is heard."""
+class TelemetryLoss(FaultInterface):
+    """Loss of telemetry from ``at`` (s) on; commands still arrive."""
 
     def __init__(self, at):
         self.at = at
@@ -252,20 +254,20 @@ def test_descent_is_commanded_when_only_telemetry_is_lost(tmp_path):
         modes.append({vehicle.autopilot.mode for vehicle in flight.swarm.vehicles})
 
     mission = short_figure(tmp_path, duration=20.0)
-    with Rehearsal(mission, tmp_path / "run", seed=1201, faults=Deaf(16.4)) as flight:
+    with InProcessFlight(mission, tmp_path / "run", seed=1201, faults=TelemetryLoss(16.4)) as flight:
         flight.fly(look)
         assert "no vehicle sends telemetry" in flight.flight.reason
         assert modes[-1] == {px4.MODE_LAND}
-        assert flight.leave_alone()
+        assert flight.run_without_ground()
         summary = flight.summary()
     check_set_down(tmp_path / "run", summary)
 
 
 def test_touchdown_is_not_detected_high_above_the_ground(tmp_path):
     """Above its reference and still, as wind may hold it: no touch-down, and the vehicles are left to land at last."""
-    with Rehearsal(short_figure(tmp_path, duration=2.0, altitude=1.5), tmp_path / "run") as rehearsal:
-        rehearsal.fly(stop=lambda: rehearsal.flight.phase is Phase.LAND)
-        flight = rehearsal.flight
+    with InProcessFlight(short_figure(tmp_path, duration=2.0, altitude=1.5), tmp_path / "run") as in_process:
+        in_process.fly(stop=lambda: in_process.flight.phase is Phase.LAND)
+        flight = in_process.flight
         true = flight.estimator.estimate
 
         def still_at(height):
@@ -278,25 +280,25 @@ def test_touchdown_is_not_detected_high_above_the_ground(tmp_path):
             return estimate
 
         reference = flight.controller.reference(flight.mission_trajectory.trajectory)
-        high, low = (still_at(height)(rehearsal.now, reference) for height in (5.0, 0.3))
-        descent = RestTrajectory(np.array([0.0, 0.0, -1.5]), rehearsal.now - 20.0)
-        assert not flight.payload.has_touched_down(rehearsal.now, descent, high)
-        assert flight.payload.has_touched_down(rehearsal.now, descent, low)
-        assert not flight.payload.is_descent_stalled(rehearsal.now, descent, low)
+        high, low = (still_at(height)(in_process.now, reference) for height in (5.0, 0.3))
+        descent = RestTrajectory(np.array([0.0, 0.0, -1.5]), in_process.now - 20.0)
+        assert not flight.payload.has_touched_down(in_process.now, descent, high)
+        assert flight.payload.has_touched_down(in_process.now, descent, low)
+        assert not flight.payload.is_descent_stalled(in_process.now, descent, low)
         flight.mission_trajectory._trajectory = descent
         flight.estimator.estimate = still_at(5.0)
-        rehearsal.fly()
+        in_process.fly()
         assert flight.reason == "the payload does not descend"
-        assert rehearsal.leave_alone()
-        summary = rehearsal.summary()
+        assert in_process.run_without_ground()
+        summary = in_process.summary()
     assert is_set_down(summary["landing"])
 
 
 @pytest.mark.parametrize("moment", [13.3, 17.8])
 def test_vehicles_without_ground_stop_simultaneously_and_set_the_payload_down(tmp_path, moment):
-    with Rehearsal(short_figure(tmp_path, duration=20.0), tmp_path / "run", seed=1201) as flight:
+    with InProcessFlight(short_figure(tmp_path, duration=20.0), tmp_path / "run", seed=1201) as flight:
         flight.fly(until=moment)
-        assert flight.leave_alone()
+        assert flight.run_without_ground()
         summary = flight.summary()
     check_set_down(tmp_path / "run", summary)
 
@@ -317,10 +319,10 @@ start = 0.0
 velocity = [{velocity[0]}, {velocity[1]}, 0.0]
 gust = 0.5
 """)
-    with Rehearsal(mission, tmp_path / "run", seed=seed) as flight:
+    with InProcessFlight(mission, tmp_path / "run", seed=seed) as flight:
         flight.fly()
         assert "no vehicle sends telemetry" in flight.flight.reason
-        assert flight.leave_alone()
+        assert flight.run_without_ground()
         summary = flight.summary()
     assert is_set_down(summary["landing"]), summary["landing"]
     assert summary["contacts"] == 0
@@ -334,14 +336,14 @@ gust = 0.5
 def test_partition_is_to_the_vehicles_as_a_killed_ground(tmp_path):
     start, truths = 8.0007, []
     mission = short_figure(tmp_path, duration=4.0, altitude=1.5)
-    with Rehearsal(mission, tmp_path / "killed", seed=4) as flight:
+    with InProcessFlight(mission, tmp_path / "killed", seed=4) as flight:
         flight.fly(stop=lambda: flight.swarm.take_off_time is not None)
         flight.fly(until=flight.swarm.take_off_time + start)
-        assert flight.leave_alone()
+        assert flight.run_without_ground()
     mission.write_text(f'{mission.read_text()}\n[[fault]]\nkind = "partition"\nstart = {start}\n')
-    with Rehearsal(mission, tmp_path / "parted", seed=4) as flight:
+    with InProcessFlight(mission, tmp_path / "parted", seed=4) as flight:
         flight.fly()
-        assert flight.leave_alone()
+        assert flight.run_without_ground()
     for name in ("killed", "parted"):
         truths.append((tmp_path / name / "truth.csv").read_text().splitlines())
     rows = min(map(len, truths))

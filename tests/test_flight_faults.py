@@ -14,7 +14,7 @@ pytestmark = pytest.mark.slow
 
 pytest_plugins = ["gcs.campaign.pytest_plugin"]
 
-START = 13.0  # s after take-off: on the way
+START = 13.0  # s after take-off: on the figure
 LIMITS = {"position_rmse": 0.15, "settle": 0.0, "payload_tilt_deg": 4.0, "uav_separation": 0.75}
 
 
@@ -48,15 +48,15 @@ FAULTS = {
 
 
 @pytest.mark.parametrize("name", FAULTS)
-def test_the_mission_is_flown_to_its_end(name, fly_with_faults, tmp_path):
+def test_flight_with_faults_completes_within_limits(name, fly_with_faults, tmp_path):
     mission = short_figure(tmp_path, duration=12.0)
     flight = fly_with_faults(mission, FAULTS[name], limits=LIMITS, seed=31)
     assert flight.within_limits, flight.failures
     assert flight.summary["contacts"] == 0
 
 
-def test_that_an_attitude_on_board_is_wrong_is_learnt(fly_with_faults, tmp_path):
-    """The vehicle pulls aside until the force that this is has been learnt, and then no more."""
+def test_bias_of_attitude_on_board_is_compensated(fly_with_faults, tmp_path):
+    """The disturbance force is estimated, then the vehicle deviates no more."""
     wrong = of_one(Bias(amount=0.05, channel="attitude", at_source=True))
     flight = fly_with_faults(short_figure(tmp_path, duration=20.0), wrong, limits={"uav_separation": 0.7}, seed=34)
     assert flight.within_limits, flight.failures
@@ -66,8 +66,8 @@ def test_that_an_attitude_on_board_is_wrong_is_learnt(fly_with_faults, tmp_path)
     assert run.uav_separation()[run.time > START + 10.0].min() > 0.93
 
 
-def test_wind_is_foreseen_along_the_way(fly_with_faults, tmp_path):
-    """Half a minute for it to be learnt, then the drag of 3 m/s against the payload's own motion costs little."""
+def test_wind_drag_is_compensated_along_trajectory(fly_with_faults, tmp_path):
+    """After half a minute of estimation the drag of 3 m/s against the payload's own motion costs little."""
     limits = {"position_rmse": 0.3, "settle": 15.0, "payload_tilt_deg": 4.0, "uav_separation": 0.75}
     wind = [fault(Wind(velocity=(2.1, -2.1, 0.0), gust=0.3), start=2.0)]
     flight = fly_with_faults(short_figure(tmp_path, duration=25.0), wind, limits=limits, seed=32)
@@ -75,7 +75,7 @@ def test_wind_is_foreseen_along_the_way(fly_with_faults, tmp_path):
     assert flight.summary["contacts"] == 0
 
 
-def test_a_way_that_gets_longer_and_longer_ends_in_a_common_stop(fly_with_faults, tmp_path):
+def test_growing_link_latency_ends_in_simultaneous_stop(fly_with_faults, tmp_path):
     """A link that carries less than is sent: what was sent last comes later and later."""
     cap = [fault(BandwidthCap(rate=5000.0), start=START, vehicles=[2])]
     summary = fly_with_faults(short_figure(tmp_path, duration=12.0), cap, seed=33).summary
@@ -85,8 +85,8 @@ def test_a_way_that_gets_longer_and_longer_ends_in_a_common_stop(fly_with_faults
 
 
 @pytest.mark.parametrize("start", [1.3, 1.45, 1.6])
-def test_the_ground_is_lost_as_the_payload_leaves_the_pad_in_wind(start, fly_with_faults, tmp_path):
-    """Links lean before vehicles have risen: they fly all the same, and do not take themselves to stand."""
+def test_vehicles_hold_when_links_are_lost_at_lift_off_in_wind(start, fly_with_faults, tmp_path):
+    """Links lean before lift-off: the vehicles hold and do not detect that they are on ground."""
     faults = [
         fault(Wind(velocity=(2.8, -2.8, 0.0), gust=0.5), start=0.0),
         fault(Partition(), start=start, direction="both"),

@@ -89,13 +89,13 @@ def mission(tmp_path):
     return read_mission(short_figure(tmp_path, duration=6.0, altitude=1.5))
 
 
-def test_it_is_flown_on_time(mission, tmp_path):
+def test_real_time_flight_is_on_time(mission, tmp_path):
     flight = fly_in_real_time(mission, tmp_path / "run")
     check_flown(flight, tmp_path / "run", rmse=0.03)
 
 
 @pytest.mark.parametrize(("stalled", "duration"), [(GROUND, 0.4), (WORLD, 0.4)])
-def test_a_busy_machine_is_borne(mission, tmp_path, stalled, duration):
+def test_real_time_flight_completes_on_busy_machine(mission, tmp_path, stalled, duration):
     # Without the processor again and again, at moments that fit no other period.
     stalls = [(stalled, 2.0 + 2.37 * i, duration) for i in range(40)]
     flight = fly_in_real_time(mission, tmp_path / "run", stalls)

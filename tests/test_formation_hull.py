@@ -51,22 +51,22 @@ def least_distance(first, second):
 
 
 @pytest.mark.parametrize("n", TEAMS)
-def test_uavs_stand_where_flatness_says(n):
+def test_uav_offsets_agree_with_flatness(n):
     parameters, formation = system(n), Formation(system(n))
     a = accelerations(np.random.default_rng(n))
     derivatives = np.zeros((5, len(a), 3))
     derivatives[2] = a
     q = flat_forces(parameters, derivatives, Load(parameters.m_0, np.zeros(3))).q
     exact = parameters.p - parameters.l[:, None] * q[:, None]
-    told = formation.uav_offsets(a)
+    computed = formation.uav_offsets(a)
     tilt = np.hypot(a[:, 0], a[:, 1]) / (parameters.g - a[:, 2])
-    error = np.abs(told - exact)
+    error = np.abs(computed - exact)
     l = parameters.l.max()
     # Tangent for sine sideways, and the link's full length for its height.
     assert np.all(error[..., :2].max(axis=(1, 2)) <= 0.5 * l * tilt**3 + 1e-12)
     assert np.all(error[..., 2].max(axis=1) <= 0.5 * l * tilt**2 + 1e-12)
     assert np.all(error[0] < 1e-12)
-    assert error.max() > 1e-3  # the accelerations are large enough to tell
+    assert error.max() > 1e-3  # the accelerations are large enough to distinguish them
 
 
 @pytest.mark.parametrize("n", TEAMS)
@@ -78,14 +78,14 @@ def test_at_rest_hull_is_the_exact_one_to_within_the_rims_polygons(n):
     directions = rng.normal(size=(200, 3))
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
     excess = (exact @ directions.T).max(axis=0) - (points @ directions.T).max(axis=0)
-    # The rims are coarse only as far as the plan's extra room for the discs covers it, for up to six UAVs.
+    # The rims are coarse only as far as the clearance of the plan for the discs covers it, for up to six UAVs.
     assert excess.max() < (0.05 if n <= 6 else 0.1)
     assert excess.min() > -1e-3
 
 
 @pytest.mark.parametrize("n", TEAMS)
 def test_discs_and_box_supports_bound_the_exact_hull(n):
-    """What the planner's rows are made of never tells less than is there, but for the links' own second order."""
+    """What the planner's rows are made of is never below the true extent, but for the links' own second order."""
     parameters, formation = system(n), Formation(system(n))
     rng = np.random.default_rng(10 + n)
     a = accelerations(rng, 60)
@@ -96,14 +96,14 @@ def test_discs_and_box_supports_bound_the_exact_hull(n):
     normals[::2, 2] = 0.0
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     lever = formation.levers(a)[:, 0]
-    told = np.maximum(
+    computed = np.maximum(
         formation.box_support(normals),
         formation.disc_support(normals, a) + lever * np.sum(normals[:, :2] * a[:, :2], axis=1),
     )
     true = np.einsum("kpi,ki->kp", exact, normals).max(axis=1)
     tilt = np.hypot(a[:, 0], a[:, 1]) / (parameters.g - a[:, 2])
     allowed = 0.5 * parameters.l.max() * (tilt**3 + tilt**2 * np.abs(normals[:, 2]))
-    assert np.all(told >= true - allowed - 1e-9)
+    assert np.all(computed >= true - allowed - 1e-9)
 
 
 @pytest.mark.parametrize("n", TEAMS)
@@ -128,7 +128,7 @@ def test_distance_and_plane_are_those_of_the_convex_hulls(n, shape):
             continue
         apart += 1
         assert found.distance[k] == pytest.approx(expected, abs=2e-3)
-        # A plane with this much room between the bodies proves that they are no nearer.
+        # A plane with this clearance between the bodies proves that they are no nearer.
         normal = found.normals[k]
         assert np.linalg.norm(normal) == pytest.approx(1.0)
         gap = normal @ centre[k] - shape.support(-normal) - (points[k] @ normal).max()
@@ -136,7 +136,7 @@ def test_distance_and_plane_are_those_of_the_convex_hulls(n, shape):
     assert apart >= 3
 
 
-def test_only_what_is_near_takes_part():
+def test_only_near_obstacles_are_active():
     formation = Formation(system())
     shape = Sphere(0.5)
     K = 5
@@ -149,13 +149,13 @@ def test_only_what_is_near_takes_part():
     )  # fmt: skip
     found = separations(formation, position, np.zeros((K, 3)), [near, far, grown], 2.5)
     assert [s.obstacle.name for s in found] == ["near", "grown"]
-    # Stages that are far are told as no nearer than they are looked at.
+    # The distance of far stages is not below the limit of evaluation.
     assert found[0].distance[0] >= 2.5
     assert found[0].clearance == pytest.approx(found[0].distance.min())
     assert found[1].clearance == pytest.approx(found[1].distance.min() - 3.0)
 
 
-def test_overlap_is_negative():
+def test_distance_of_overlap_is_negative():
     formation = Formation(system())
     inside = PredictedObstacle("in", Sphere(0.5), np.array([[0.0, 0.0, -6.0]]), np.zeros(1))
     (found,) = separations(formation, np.array([[0.0, 0.0, -5.0]]), np.zeros((1, 3)), [inside], 2.5)

@@ -22,7 +22,7 @@ def station(tmp_path):
         )
 
 
-def tell(station, message, system=1, address=None, now=0.0):
+def send(station, message, system=1, address=None, now=0.0):
     station.receive(Codec(system, 1).encode(message), address or address_of(system), now)
 
 
@@ -31,21 +31,21 @@ def tell(station, message, system=1, address=None, now=0.0):
     [
         ((42, 190), CommandState.PENDING),
         ((GROUND_SYSTEM, GROUND_COMPONENT), CommandState.REFUSED),
-        ((0, 0), CommandState.REFUSED),  # as autopilots answer that do not tell
+        ((0, 0), CommandState.REFUSED),  # as autopilots answer without target ids
     ],
 )
 def test_acknowledgement_to_another_system_is_ignored(station, target, state):
     command = station.links[0].command(ARM, 1.0)
-    tell(station, mavlink.MAVLink_command_ack_message(ARM, mavlink.MAV_RESULT_DENIED, 0, 0, *target))
+    send(station, mavlink.MAVLink_command_ack_message(ARM, mavlink.MAV_RESULT_DENIED, 0, 0, *target))
     assert command.state is state
 
 
 def test_acknowledgement_from_another_sender_is_ignored(station):
     command = station.links[0].command(ARM, 1.0)
     answer = mavlink.MAVLink_command_ack_message(ARM, mavlink.MAV_RESULT_DENIED)
-    tell(station, answer, system=1, address=address_of(2))
-    tell(station, answer, system=2, address=address_of(1))
-    tell(station, answer, system=1, address=("10.0.0.66", 14540))
+    send(station, answer, system=1, address=address_of(2))
+    send(station, answer, system=2, address=address_of(1))
+    send(station, answer, system=1, address=("10.0.0.66", 14540))
     assert command.state is CommandState.PENDING
     assert station.router.refused == 3
 
@@ -55,10 +55,10 @@ def test_timesync_answer_counts_once_and_only_to_an_own_request(station):
     sent = [m for m, address in station.datagrams_to_send(1.0) if address == address_of(1)]
     [request] = [m for data in sent for m, *_ in Codec(2, 1).decode(data) if m.get_type() == "TIMESYNC"]
     for ts1 in (0, 1, 900_000_000, -(2**63)):
-        tell(station, mavlink.MAVLink_timesync_message(5, ts1), now=1.02)
+        send(station, mavlink.MAVLink_timesync_message(5, ts1), now=1.02)
     assert clock.delay == 0.0
-    tell(station, mavlink.MAVLink_timesync_message(5, request.ts1), now=1.04)
+    send(station, mavlink.MAVLink_timesync_message(5, request.ts1), now=1.04)
     assert clock.delay == pytest.approx(0.02)
     for _ in range(50):
-        tell(station, mavlink.MAVLink_timesync_message(5, request.ts1), now=1.9)
+        send(station, mavlink.MAVLink_timesync_message(5, request.ts1), now=1.9)
     assert clock.delay == pytest.approx(0.02)

@@ -4,7 +4,7 @@ from random import Random
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 import pytest
-from flight_in_process import GROUND, Rehearsal, address_of, check_within_limits, short_figure
+from flight_in_process import GROUND, InProcessFlight, address_of, check_within_limits, short_figure
 from hostile_messages import hostile_to_ground, hostile_to_vehicle
 from hostile_traffic import HostileTraffic, Traffic, with_random_contents
 
@@ -50,16 +50,16 @@ class Storm:
         )
         self._last = -1.0
 
-    def __call__(self, rehearsal):
-        now = rehearsal.now
-        if rehearsal.flight.phase not in IN_AIR or now <= self._last:
+    def __call__(self, in_process):
+        now = in_process.now
+        if in_process.flight.phase not in IN_AIR or now <= self._last:
             return
         self._last = now
-        vehicle = rehearsal.swarm.vehicles[VEHICLE - 1]
+        vehicle = in_process.swarm.vehicles[VEHICLE - 1]
         before = state(vehicle)
         for _ in range(min(-(-DATAGRAMS // EXCHANGES), self.left)):
             vehicle.receive(*self._to_vehicle.draw(), now)
-            rehearsal.station.receive(*self._to_ground.draw(), now)
+            in_process.station.receive(*self._to_ground.draw(), now)
             self.left -= 1
         assert state(vehicle) == before
         assert vehicle.autopilot.armed
@@ -67,7 +67,7 @@ class Storm:
 
 
 def state(vehicle):
-    """All of a vehicle that somebody could want to change."""
+    """State of a vehicle that hostile commands could change."""
     autopilot, table = vehicle.autopilot, vehicle.parameters
     return (
         autopilot.changes, autopilot.armed, autopilot.mode, autopilot.failsafe, autopilot._state.stop_plan,
@@ -75,13 +75,13 @@ def state(vehicle):
     )  # fmt: skip
 
 
-def test_hostile_datagrams_change_nothing_of_a_flight(tmp_path):
+def test_hostile_datagrams_leave_flight_unchanged(tmp_path):
     mission = short_figure(tmp_path, duration=6.0)
-    with Rehearsal(mission, tmp_path / "calm", seed=3) as calm:
+    with InProcessFlight(mission, tmp_path / "calm", seed=3) as calm:
         calm.fly()
         check_within_limits(calm.summary())
     storm = Storm(seed=5)
-    with Rehearsal(mission, tmp_path / "storm", seed=3, faults=storm.traffic) as flight:
+    with InProcessFlight(mission, tmp_path / "storm", seed=3, faults=storm.traffic) as flight:
         flight.fly(storm)
         check_within_limits(flight.summary())
     assert storm.left == 0
@@ -91,11 +91,11 @@ def test_hostile_datagrams_change_nothing_of_a_flight(tmp_path):
         assert (tmp_path / "storm" / name).read_bytes() == (tmp_path / "calm" / name).read_bytes()
 
 
-def test_the_ground_survives_any_message_of_the_dialect(tmp_path):
-    """Every message, well formed, with whatever its fields may hold, from a vehicle that it believes."""
+def test_ground_tolerates_any_message_of_the_dialect(tmp_path):
+    """Every message, well formed, with whatever its fields may hold, with the ids and address of a vehicle."""
     random = Random(4)
     writer = mavlink.MAVLink(None, VEHICLE, 1)
-    with Rehearsal(short_figure(tmp_path), tmp_path / "run") as flight:
+    with InProcessFlight(short_figure(tmp_path), tmp_path / "run") as flight:
         flight.fly(stop=lambda: flight.flight.phase.value == "fly")
         for kind in mavlink.mavlink_map.values():
             for _ in range(5):

@@ -26,7 +26,7 @@ def findings(samples, *, changed=lambda k, i, white: white, rejected=lambda k: (
     return found
 
 
-def test_monitor_has_no_finding_for_sound_innovations_and_single_rejections():
+def test_monitor_has_no_finding_for_consistent_innovations_and_single_rejections():
     single = [((0, Position),) if k % 15 == 0 else () for k in range(5000)]
     assert findings(5000, rejected=lambda k: single[k]) == {}
 

@@ -131,7 +131,7 @@ def test_discretisation_is_exact_and_composes(model):
     assert np.allclose(B_d50, A_30 @ B_d20 + B_d30)
 
 
-def test_the_attitude_loop_and_the_motors_are_in_the_model():
+def test_model_contains_attitude_loop_and_motor_lag():
     model = LinearModel(CONFIG.parameters())
     p, layout = model.parameters, model.layout
     x = np.zeros(layout.size)

@@ -47,7 +47,7 @@ def read_or_refuse(path: Path, content: bytes) -> None:
 @pytest.mark.parametrize("name", ["square.waypoints", "delivery.plan", "figure_eight.toml", "hover.toml"])
 @FUZZ
 @given(data=st.data())
-def test_mutated_bytes(tmp_path: Path, name: str, data: st.DataObject) -> None:
+def test_mutated_bytes_are_read_or_refused(tmp_path: Path, name: str, data: st.DataObject) -> None:
     content = bytearray((MISSIONS / name).read_bytes())
     for _ in range(data.draw(st.integers(1, 4))):
         start = data.draw(st.integers(0, len(content)))
@@ -59,7 +59,7 @@ def test_mutated_bytes(tmp_path: Path, name: str, data: st.DataObject) -> None:
 
 @FUZZ
 @given(rows=st.lists(st.tuples(*[numbers] * 10), max_size=8))
-def test_wpl_of_any_numbers(tmp_path: Path, rows: list[tuple[float, ...]]) -> None:
+def test_wpl_of_any_numbers_is_read_or_refused(tmp_path: Path, rows: list[tuple[float, ...]]) -> None:
     lines = ["QGC WPL 110", "0 1 0 16 0 0 0 0 47.397742 8.545594 488 1"]
     lines += [f"{i} 0 {' '.join(map(repr, row[:9]))} 1" for i, row in enumerate(rows, start=1)]
     read_or_refuse(tmp_path / "fuzz.waypoints", "\n".join(lines).encode())
@@ -67,7 +67,7 @@ def test_wpl_of_any_numbers(tmp_path: Path, rows: list[tuple[float, ...]]) -> No
 
 @FUZZ
 @given(data=st.data())
-def test_wpl_of_known_commands(tmp_path: Path, data: st.DataObject) -> None:
+def test_wpl_of_known_commands_is_read_or_refused(tmp_path: Path, data: st.DataObject) -> None:
     """Mostly well-formed, so that routes, jumps and loops are reached."""
     commands = st.sampled_from([16, 16, 16, 17, 18, 19, 20, 21, 22, 82, 93, 177, 177, 178, 600, 601])
     rows = data.draw(st.lists(commands, max_size=10))
@@ -89,7 +89,7 @@ def places(value: Any, path: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
 
 @FUZZ
 @given(data=st.data())
-def test_plan_with_anything_anywhere(tmp_path: Path, data: st.DataObject) -> None:
+def test_plan_with_any_values_is_read_or_refused(tmp_path: Path, data: st.DataObject) -> None:
     document = json.loads((MISSIONS / "delivery.plan").read_text())
     document["geoFence"]["circles"] = [
         {"circle": {"center": [47.3977, 8.5459], "radius": 3.0}, "inclusion": False, "version": 1}
@@ -108,7 +108,7 @@ def test_plan_with_anything_anywhere(tmp_path: Path, data: st.DataObject) -> Non
 
 @FUZZ
 @given(text=st.binary(max_size=60))
-def test_any_system_file(tmp_path: Path, text: bytes) -> None:
+def test_any_system_file_is_read_or_refused(tmp_path: Path, text: bytes) -> None:
     path = tmp_path / "system.toml"
     path.write_bytes(text)
     with pytest.raises(UnusableFile):

@@ -53,12 +53,12 @@ def test_plain_mission(tmp_path: Path) -> None:
     ],
     ids=["spaces", "mixed", "CRLF", "BOM", "no last newline", "blank lines", "comments", "inline comment", "header"],
 )
-def test_writings_of_the_same_wpl(tmp_path: Path, change: Any) -> None:
+def test_variants_of_wpl_text_are_read_alike(tmp_path: Path, change: Any) -> None:
     text = wpl(TAKE_OFF, A, RETURN)
     assert shape(read(tmp_path, change(text))) == shape(read(tmp_path, text))
 
 
-def test_formats_agree(tmp_path: Path) -> None:
+def test_wpl_and_plan_formats_agree(tmp_path: Path) -> None:
     rows = [
         TAKE_OFF,
         row(178, 1, 2.5, -1, alt=0),
@@ -77,18 +77,18 @@ def test_formats_agree(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["mission.waypoints", "mission.txt", "mission.plan", "mission", "mission.toml"])
-def test_format_by_content(tmp_path: Path, name: str) -> None:
+def test_format_is_detected_by_content(tmp_path: Path, name: str) -> None:
     assert len(legs(read(tmp_path, wpl(TAKE_OFF, A, RETURN), name))) == 4
     assert len(legs(read(tmp_path, json.dumps(plan(TAKE_OFF, A, RETURN)), name))) == 4
 
 
 @pytest.mark.parametrize(("frame", "alt"), [(0, 495.0), (5, 495.0), (3, 7.0), (6, 7.0), (10, 7.0), (11, 7.0)])
-def test_frames(tmp_path: Path, frame: int, alt: float) -> None:
+def test_coordinate_frames_are_converted(tmp_path: Path, frame: int, alt: float) -> None:
     mission = read(tmp_path, wpl(TAKE_OFF, row(16, north=10.0, alt=alt, frame=frame), RETURN))
     assert shape(mission)[1][3] == -7.0
 
 
-def test_here_and_not_given(tmp_path: Path) -> None:
+def test_unset_coordinates_are_the_current_position(tmp_path: Path) -> None:
     document = plan(TAKE_OFF, A, row(19, 4, alt=0), row(16, alt=8), RETURN)
     document["mission"]["items"][2]["params"] = [4, None, None, None, None, None, None]
     mission = read(tmp_path, document)
@@ -104,7 +104,7 @@ def test_take_off_flies_to_its_place_and_lands_at_the_landing_waypoint(tmp_path:
     ]  # fmt: skip
 
 
-def test_no_take_off_and_no_landing_in_the_file(tmp_path: Path) -> None:
+def test_take_off_and_landing_are_added_when_missing(tmp_path: Path) -> None:
     mission = read(tmp_path, wpl(A))
     assert [s[:4] for s in shape(mission)] == [
         ("TakeOff", 0.0, 0.0, -5.0), ("FlyTo", 10.0, 0.0, -5.0), ("FlyTo", 0.0, 0.0, -5.0), ("Land", 0.0, 0.0, -0.3),
@@ -157,7 +157,7 @@ def test_autocontinue_off_holds(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("command", [80, 181, 183, 189, 195, 197, 200, 201, 203, 205, 206, 211, 530, 1000, 2000, 2500])
-def test_devices_are_listed_as_left_out(tmp_path: Path, command: int) -> None:
+def test_device_commands_are_listed_as_unsupported(tmp_path: Path, command: int) -> None:
     mission = read(tmp_path, wpl(TAKE_OFF, row(command, 1, frame=2, alt=0), A, RETURN))
     assert shape(mission) == shape(read(tmp_path, wpl(TAKE_OFF, A, RETURN)))
     assert [note for note in mission.notes if "row 2" in note and "left out" in note]

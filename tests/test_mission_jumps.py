@@ -24,10 +24,10 @@ def test_endless_jump_is_lazy(tmp_path: Path) -> None:
     assert any("row 5" in note and "never reached" in note for note in mission.notes)
 
 
-def test_jump_goes_by_file_index_past_items_left_out(tmp_path: Path) -> None:
+def test_jump_uses_file_index_past_unsupported_items(tmp_path: Path) -> None:
     camera = row(2000, frame=2, alt=0)
     assert north(read(tmp_path, wpl(camera, TAKE_OFF, camera, A, B, row(177, 5, 1), RETURN))) == [10, 20, 20, 0]
-    # To an item that is left out: on with the next.
+    # To an unsupported item: continue with the next.
     assert north(read(tmp_path, wpl(TAKE_OFF, A, camera, B, row(177, 3, 1), RETURN))) == [10, 20, 20, 0]
 
 
@@ -54,7 +54,7 @@ def test_jump_forward(tmp_path: Path) -> None:
     assert any("row 3" in note and "never reached" in note for note in mission.notes)
 
 
-def test_a_lap_that_goes_nowhere_is_a_hold(tmp_path: Path) -> None:
+def test_lap_without_motion_is_a_hold(tmp_path: Path) -> None:
     found = legs(read(tmp_path, wpl(TAKE_OFF, A, row(177, 2, -1))), 1000)
     assert isinstance(found[-1], HoldForever) and len(found) < 6
     assert isinstance(legs(read(tmp_path, wpl(TAKE_OFF, A, row(177, 2, 1_000_000_000))), 1000)[-1], Land)

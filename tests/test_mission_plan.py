@@ -33,7 +33,7 @@ def test_survey_is_flown_by_its_stored_items(tmp_path: Path) -> None:
     assert north(read(tmp_path, plan(mission__items=[corridor]))) == [10, 20, 0]
 
 
-def test_fence(tmp_path: Path) -> None:
+def test_fence_of_plan_is_read(tmp_path: Path) -> None:
     triangle = area(5)
     del triangle["polygon"][0]
     document = plan(
@@ -56,7 +56,7 @@ def test_fence(tmp_path: Path) -> None:
     assert mission.boundary is not None and mission.boundary[0] == pytest.approx((100.0, 70.0), abs=0.5)
 
 
-def test_ways_across_the_fence_are_noted(tmp_path: Path) -> None:
+def test_legs_across_the_fence_are_noted(tmp_path: Path) -> None:
     behind = row(16, north=60.0)
     for fence in ({"geoFence__circles": [CIRCLE]}, {"geoFence__polygons": [area(5)]}):
         notes = read(tmp_path, plan(TAKE_OFF, behind, row(177, 2, -1), **fence)).notes
@@ -64,7 +64,7 @@ def test_ways_across_the_fence_are_noted(tmp_path: Path) -> None:
         assert not read(tmp_path, plan(TAKE_OFF, A, RETURN, **fence)).notes
 
 
-def test_walls_stand_inside_their_polygon(tmp_path: Path) -> None:
+def test_walls_are_inside_their_polygon(tmp_path: Path) -> None:
     for turn in (1, -1):  # either sense
         kite = area(5)
         kite["polygon"] = [*kite["polygon"], [HOME[0] + 28 / DEGREE, HOME[1] + 15 / DEGREE]][::turn]
@@ -77,6 +77,6 @@ def test_walls_stand_inside_their_polygon(tmp_path: Path) -> None:
             pytest.fail("no northern edge")
 
 
-def test_rally_points_are_left_out(tmp_path: Path) -> None:
+def test_rally_points_are_noted_as_unsupported(tmp_path: Path) -> None:
     mission = read(tmp_path, plan(TAKE_OFF, A, RETURN, rallyPoints__points=[[47, 8, 1]]))
     assert mission.notes[0].startswith("rallyPoints: 1 left out")

@@ -180,21 +180,21 @@ def test_plan_refused(tmp_path: Path, document: dict[str, Any], where: str, reas
         ("hello", "line 1: not valid JSON"),
     ],
 )
-def test_malformed_json(tmp_path: Path, text: str, reason: str) -> None:
+def test_malformed_json_is_refused(tmp_path: Path, text: str, reason: str) -> None:
     assert any(reason in r for r in refusal(tmp_path, text, "mission.plan"))
 
 
-def test_every_reason_is_collected(tmp_path: Path) -> None:
+def test_mission_with_several_errors_reports_every_reason(tmp_path: Path) -> None:
     bad = wpl(TAKE_OFF, row(16, north=10.0, alt=-1.0), row(31), row(177, 9, 1))
     assert len(refusal(tmp_path, bad)) == 3
     assert len(refusal(tmp_path, plan(TAKE_OFF, A, version=7, mission__version=7))) == 2
 
 
-def test_too_many_rows(tmp_path: Path) -> None:
+def test_mission_with_too_many_rows_is_refused(tmp_path: Path) -> None:
     assert any("more than 10000 rows" in r for r in refusal(tmp_path, wpl(*[A] * 10_005)))
 
 
-def test_not_a_mission(tmp_path: Path) -> None:
+def test_file_of_other_content_is_refused(tmp_path: Path) -> None:
     assert "neither QGC WPL" in refusal(tmp_path, "hello world\n", "mission.doc")[0]
     assert "not UTF-8" in refusal(tmp_path, b"QGC WPL 110\n\xff\xfe", "mission.txt")[0]
     with pytest.raises(UnusableFile, match="No such file"):

@@ -10,7 +10,7 @@ import numpy as np
 import pybullet
 import pytest
 import trimesh
-from mission_files import MISSIONS, TOML, read, refusal, told
+from mission_files import MISSIONS, TOML, description_of, read, refusal
 from paper_system import system
 from programs import ENVIRONMENT
 
@@ -79,7 +79,7 @@ def test_mission_reads_shapes_in_any_attitude(mission):
     assert beam.shape == Box((3.0, 0.2, 0.3), **angles) and not beam.known and beam.motion is not None
     np.testing.assert_allclose(np.ptp(rock.shape.corners, axis=0), [1.0, 0.5, 1.5])
     np.testing.assert_allclose(rock.shape.corners.min(axis=0), -rock.shape.corners.max(axis=0))
-    text = told(mission)
+    text = description_of(mission)
     assert "capsule 'drum' at [1.0, 2.0, -3.0], radius 0.4 m, 1.5 m between its round ends, pitch 90.0 deg" in text
     assert (
         "box 'beam' at [1.0, 2.0, -3.0], 3 x 0.2 x 0.3 m, roll 10.0 deg, pitch 20.0 deg, yaw 30.0 deg, not on" in text

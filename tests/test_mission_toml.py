@@ -98,7 +98,7 @@ def test_speed_of_toml_is_capped(tmp_path: Path) -> None:
     assert mission.notes == ("reference.speed: 20 m/s capped to speed_max, 3 m/s",)
 
 
-def test_which_system_file(tmp_path: Path) -> None:
+def test_system_file_of_mission_is_read(tmp_path: Path) -> None:
     text = (MISSIONS / "system.toml").read_text()
     assert read(tmp_path, wpl(A)).system.payload.mass == 3.1  # packaged
     (tmp_path / "system.toml").write_text(text.replace("mass = 3.1", "mass = 3.2"))
@@ -111,7 +111,7 @@ def test_which_system_file(tmp_path: Path) -> None:
     assert read_mission(path, tmp_path / "system.toml").system.payload.mass == 3.2  # named on the command line
 
 
-def test_points_that_end_where_they_end(tmp_path: Path) -> None:
+def test_mission_ends_at_last_point(tmp_path: Path) -> None:
     there = POINTS.replace("speed = 2", "speed = 2\nreturn_home = false")
     assert shape(read(tmp_path, there, "mission.toml"))[-2:] == [
         ("FlyTo", 4.0, 5.0, -6.0, 4.0, 2.0),
@@ -124,7 +124,7 @@ def test_points_that_end_where_they_end(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("name", "use"), [("many_hops.toml", "gcs faults flies it"), ("system.toml", "--config")])
-def test_another_file_is_told_what_it_is_for(name: str, use: str) -> None:
+def test_unusable_file_is_refused_with_its_purpose(name: str, use: str) -> None:
     with pytest.raises(UnusableFile) as refused:
         read_mission(MISSIONS / name)
     assert len(refused.value.reasons) == 1 and use in refused.value.reasons[0]

@@ -48,7 +48,7 @@ def error_of(**parts):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("vehicles", [3, 4, 6])
-def test_without_active_constraints_it_is_the_linear_quadratic_regulator(vehicles):
+def test_mpc_without_active_constraints_is_the_linear_quadratic_regulator(vehicles):
     model = LinearModel(CONFIG.with_vehicles(vehicles).parameters())
     free = MpcSettings(moves=(1,) * 20)
     mpc = ModelPredictiveController(model, free)
@@ -104,7 +104,7 @@ def reference_solution(mpc, error, stages):
     ],
     ids=["tilted", "tilting", "high", "far"],
 )  # fmt: skip
-def test_with_active_constraints_it_agrees_with_another_solver(parts):
+def test_mpc_with_active_constraints_agrees_with_reference_solver(parts):
     error = error_of(**parts)
     output = DEFAULT.track(error, STAGES)
     assert output.iterations > 0
@@ -173,7 +173,7 @@ def test_qp_refuses_values_that_are_not_finite(where):
     assert qp.solve(-2.0 * good, good).x == pytest.approx([1.0, 1.0], abs=1e-5)
 
 
-def test_hard_rows_that_contradict_each_other_raise():
+def test_contradictory_hard_rows_raise():
     qp = ParametricQp(
         np.eye(2), np.array([[1.0, 0.0], [-1.0, 0.0]]), np.array([-1, -1]), slack_linear=1.0, slack_quadratic=1.0
     )
@@ -182,7 +182,7 @@ def test_hard_rows_that_contradict_each_other_raise():
     assert qp.solve(np.zeros(2), np.array([-1.0, 2.0])).x == pytest.approx([-1.0, 0.0], abs=1e-5)
 
 
-def test_a_soft_row_is_kept_exactly_where_it_can_be_and_exceeded_where_not():
+def test_soft_row_is_kept_exactly_when_feasible_and_exceeded_otherwise():
     G = np.array([[1.0, 0.0], [-1.0, 0.0], [1.0, 0.0]])
     qp = ParametricQp(np.eye(2), G, np.array([-1, -1, 0]), slack_linear=100.0, slack_quadratic=1.0)
     kept = qp.solve(np.array([-5.0, 0.0]), np.array([10.0, 10.0, 2.0]))
@@ -191,7 +191,7 @@ def test_a_soft_row_is_kept_exactly_where_it_can_be_and_exceeded_where_not():
     assert exceeded.x == pytest.approx([3.0, 0.0], abs=2e-3)
 
 
-def test_a_warm_start_helps_and_changes_nothing():
+def test_warm_start_saves_iterations_with_equal_solution():
     error = error_of(Theta=(np.radians(4.5), 0.0, 0.0), omega=(0.4, 0.0, 0.0))
     cold = ModelPredictiveController(MODEL, DEFAULT.settings)
     first = cold.track(error, STAGES)
@@ -219,7 +219,7 @@ def test_moves_sum_to_any_horizon(horizon):
     assert sum(moves(horizon)) == horizon
 
 
-def test_settings_that_disagree_are_refused():
+def test_inconsistent_settings_are_refused():
     with pytest.raises(ParameterError, match="do not sum"):
         MpcSettings(moves=(1, 1))
     with pytest.raises(ParameterError, match="constraint stages"):

@@ -1,4 +1,4 @@
-"""What a vehicle flies by while a sensor on board fails: attitude and rates of a body that turns."""
+"""State estimate on board while a sensor fails: attitude and rates of a turning body."""
 
 import math
 
@@ -15,17 +15,17 @@ NAN = (math.nan,) * 3
 
 
 class Turning:
-    """A body whose angular acceleration follows what is asked with the motors' lag; (attitude, rates, asked)."""
+    """A body whose angular acceleration follows the command with motor lag; (attitude, rates, commanded)."""
 
     def __init__(self, seed=0, noise=NOISE):
         self.rng, self.noise = np.random.default_rng(seed), noise
         self.time, self.attitude = 0.0, np.array([1.0, 0.0, 0.0, 0.0])
-        self.rates, self.acceleration, self.asked = np.zeros(3), np.zeros(3), np.zeros(3)
+        self.rates, self.acceleration, self.commanded = np.zeros(3), np.zeros(3), np.zeros(3)
 
     def step(self):
         self.time += STEP
-        self.asked = 6.0 * np.array([math.sin(7.0 * self.time), math.cos(5.0 * self.time), 0.2])
-        self.acceleration += (1.0 - math.exp(-STEP / LAG)) * (self.asked - self.acceleration)
+        self.commanded = 6.0 * np.array([math.sin(7.0 * self.time), math.cos(5.0 * self.time), 0.2])
+        self.acceleration += (1.0 - math.exp(-STEP / LAG)) * (self.commanded - self.acceleration)
         self.rates = self.rates + STEP * (self.acceleration - 0.5 * self.rates)
         self.attitude = quaternion_product(self.attitude, np.append(1.0, 0.5 * STEP * self.rates))
         self.attitude /= np.linalg.norm(self.attitude)
@@ -44,18 +44,20 @@ def angle(a, b):
 
 
 def flown(wrong, duration=4.0, healthy=0.5):
-    """[(believed, body's attitude, body's rates)] of samples of which ``wrong(sample)`` is off after a while."""
+    """[(estimated, true attitude, true rates, reported)] of samples of which ``wrong(sample)`` is off after a while."""
     body, navigation, found = Turning(), Navigation(LAG, NavigationSettings()), []
     while body.time < duration:
         body.step()
         sample = body.sample()
-        known = navigation.update(sample if body.time < healthy else wrong(sample), tuple(body.asked), body.time)
+        estimated = navigation.update(
+            sample if body.time < healthy else wrong(sample), tuple(body.commanded), body.time
+        )
         if body.time > healthy + 0.1:
-            found.append((known, body.attitude, body.rates, navigation.reported))
+            found.append((estimated, body.attitude, body.rates, navigation.reported))
     return found
 
 
-def frozen(channel):
+def stuck(channel):
     first = []
 
     def wrong(sample):
@@ -65,7 +67,7 @@ def frozen(channel):
     return wrong
 
 
-def test_sound_samples_are_taken_as_they_are():
+def test_valid_samples_are_used_unchanged():
     navigation, body = Navigation(LAG, NavigationSettings()), Turning()
     for _ in range(10):
         body.step()
@@ -73,48 +75,48 @@ def test_sound_samples_are_taken_as_they_are():
         assert navigation.update(sample, (0.0, 0.0, 0.0), sample.time) == sample == navigation.reported
 
 
-@pytest.mark.parametrize("wrong", [lambda s: s._replace(rates=NAN), frozen("rates")])
-def test_without_rates_those_are_flown_by_that_explain_the_attitude(wrong):
+@pytest.mark.parametrize("wrong", [lambda s: s._replace(rates=NAN), stuck("rates")])
+def test_rates_are_estimated_from_attitude_when_rates_are_lost(wrong):
     found = flown(wrong)
-    off = [np.linalg.norm(np.subtract(known.rates, rates)) for known, _, rates, _ in found]
+    off = [np.linalg.norm(np.subtract(estimated.rates, rates)) for estimated, _, rates, _ in found]
     assert np.sqrt(np.mean(np.square(off))) < 0.1
     assert max(np.linalg.norm(rates) for _, _, rates, _ in found) > 0.5
-    assert all(math.isnan(told.rates[0]) and math.isfinite(told.attitude[0]) for *_, told in found)
+    assert all(math.isnan(reported.rates[0]) and math.isfinite(reported.attitude[0]) for *_, reported in found)
 
 
-@pytest.mark.parametrize("wrong", [lambda s: s._replace(attitude=(math.nan,) * 4), frozen("attitude")])
-def test_without_attitude_it_goes_on_with_the_rates(wrong):
-    assert max(angle(known.attitude, attitude) for known, attitude, _, _ in flown(wrong, duration=2.0)) < 0.03
+@pytest.mark.parametrize("wrong", [lambda s: s._replace(attitude=(math.nan,) * 4), stuck("attitude")])
+def test_attitude_is_integrated_from_rates_when_attitude_is_lost(wrong):
+    assert max(angle(estimated.attitude, attitude) for estimated, attitude, _, _ in flown(wrong, duration=2.0)) < 0.03
 
 
-def test_without_either_it_takes_itself_to_stay_as_it_is():
-    known = [k for k, *_ in flown(lambda s: s._replace(attitude=(math.nan,) * 4, rates=NAN))]
-    assert {k.attitude for k in known} == {known[0].attitude}
-    assert {k.rates for k in known} == {(0.0, 0.0, 0.0)}
+def test_attitude_is_constant_when_attitude_and_rates_are_lost():
+    estimated = [k for k, *_ in flown(lambda s: s._replace(attitude=(math.nan,) * 4, rates=NAN))]
+    assert {k.attitude for k in estimated} == {estimated[0].attitude}
+    assert {k.rates for k in estimated} == {(0.0, 0.0, 0.0)}
 
 
-def test_position_and_velocity_stay_what_they_were():
-    known = [k for k, *_ in flown(lambda s: s._replace(position=NAN, velocity=(math.inf,) * 3))]
-    assert len({k.position for k in known}) == len({k.velocity for k in known}) == 1
-    assert math.isfinite(sum(known[0].position) + sum(known[0].velocity))
+def test_last_valid_position_and_velocity_are_kept_when_lost():
+    estimated = [k for k, *_ in flown(lambda s: s._replace(position=NAN, velocity=(math.inf,) * 3))]
+    assert len({k.position for k in estimated}) == len({k.velocity for k in estimated}) == 1
+    assert math.isfinite(sum(estimated[0].position) + sum(estimated[0].velocity))
 
 
-def test_a_sensor_that_comes_back_is_believed_again():
+def test_recovered_rates_are_used_again():
     body, navigation = Turning(), Navigation(LAG, NavigationSettings())
     for k in range(200):
         body.step()
         sample = body.sample(**({"rates": NAN} if 50 <= k < 150 else {}))
-        known = navigation.update(sample, tuple(body.asked), body.time)
-    assert known == sample == navigation.reported
+        estimated = navigation.update(sample, tuple(body.commanded), body.time)
+    assert estimated == sample == navigation.reported
 
 
-def test_before_the_first_sound_sample_nothing_is_known():
+def test_navigation_has_no_state_before_first_valid_sample():
     navigation = Navigation(LAG, NavigationSettings())
     assert navigation.update(Turning().sample(rates=NAN), (0.0, 0.0, 0.0), 0.0) is None
     assert navigation.reported is None
 
 
-def test_a_body_at_rest_without_noise_is_not_taken_for_a_broken_sensor():
+def test_constant_samples_without_noise_are_not_stuck():
     rest = Measurement(0.0, (1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, -0.5), (0.0, 0.0, 0.0))
     navigation = Navigation(LAG, NavigationSettings())
     for k in range(3 * NavigationSettings.stuck_after):

@@ -1,4 +1,4 @@
-"""When a detour is searched, where it leads, and what is said when there is none."""
+"""When a detour is searched, its path, and the reason reported when there is none."""
 
 import numpy as np
 import pytest
@@ -51,7 +51,7 @@ def held_up(navigator, obstacles, seconds, rate=0.3, progress=5.0, begin=0.0, mi
     return progress, searches
 
 
-def test_mission_is_followed_while_it_goes_on(navigator):
+def test_mission_is_followed_while_progress_continues(navigator):
     mission = straight(18.0)
     progress, searches = held_up(navigator, [ACROSS], 5.0, rate=0.9, mission=mission)
     assert not searches
@@ -61,7 +61,7 @@ def test_mission_is_followed_while_it_goes_on(navigator):
     assert navigator.blocked(5.0) == ""
 
 
-def test_it_is_patient(navigator):
+def test_detour_is_searched_only_after_patience_has_elapsed(navigator):
     settings = navigator.settings
     held_up(navigator, [ACROSS], settings.patience - 0.1)
     assert navigator.detours == 0
@@ -74,7 +74,7 @@ def test_it_is_patient(navigator):
 
 
 @pytest.mark.parametrize("obstacles", [[ACROSS], [pole("p", 10.0, 0.0)], [pole("a", 10.0, -1.0), pole("b", 10.0, 1.0)]])
-def test_way_round_keeps_its_distance_and_leads_back_to_the_mission(navigator, obstacles):
+def test_detour_keeps_margin_and_returns_to_mission(navigator, obstacles):
     mission = straight(18.0)
     progress, _ = held_up(navigator, obstacles, 0.6, mission=mission)
     detour = navigator.followed(mission)
@@ -87,14 +87,14 @@ def test_way_round_keeps_its_distance_and_leads_back_to_the_mission(navigator, o
     assert resume > 5.0
     path = detour.derivatives(np.linspace(0.0, detour.end, 300), 0)[0]
     s = navigator.settings
-    # Corners are cut by 0.1 m; the rest of the spare room is left.
+    # Corners are cut by 0.1 m; the rest of the margin remains.
     assert first_conflict(path, now(*obstacles), formation(), s.margin + s.spare - 0.12) is None
     # Beyond where it leads the mission is free.
     beyond = mission.derivatives(np.linspace(resume, mission.end, 50), 0)[0]
     assert first_conflict(beyond, now(*obstacles), formation(), s.margin) is None
 
 
-def test_behind_it_the_mission_is_taken_up_again(navigator):
+def test_mission_is_resumed_at_end_of_detour(navigator):
     mission = straight(18.0)
     held_up(navigator, [ACROSS], 0.6, mission=mission)
     detour, resume = navigator.followed(mission), navigator.mission_progress(0.0)
@@ -106,7 +106,7 @@ def test_behind_it_the_mission_is_taken_up_again(navigator):
     assert navigator.mission_progress(resume + 0.5) == resume + 0.5
 
 
-def test_closed_way_is_said_after_a_while_and_names_what_closes_it(navigator):
+def test_blocked_path_is_reported_with_blocking_obstacle_after_timeout(navigator):
     settings = navigator.settings
     # The bystander is nearer than the wall's centre, but not than the wall.
     obstacles = [pole("bystander", 6.5, 30.0), wall("the long wall", 10.0, 100.0, (0.3, 600.0, 60.0))]
@@ -124,7 +124,7 @@ def test_closed_way_is_said_after_a_while_and_names_what_closes_it(navigator):
     assert "the long wall" in navigator.blocked(since + settings.give_up)
 
 
-def test_what_opens_is_passed_and_no_longer_complained_of(navigator):
+def test_detour_is_flown_and_reason_cleared_when_path_opens(navigator):
     held_up(navigator, [CLOSED], 3.0)
     assert navigator.reason
     held_up(navigator, [ACROSS], 9.0, begin=3.05)
@@ -133,14 +133,14 @@ def test_what_opens_is_passed_and_no_longer_complained_of(navigator):
     assert navigator.blocked(100.0) == ""
 
 
-def test_going_on_clears_the_reason(navigator):
+def test_reason_is_cleared_when_progress_resumes(navigator):
     held_up(navigator, [CLOSED], 3.0)
     navigator.watch(3.1, 5.0, 1.0, straight(18.0), TRACKED)
     assert navigator.reason == ""
     assert navigator.blocked(100.0) == ""
 
 
-def test_a_waypoint_inside_an_obstacle_is_named(navigator):
+def test_waypoint_inside_obstacle_is_named_in_reason(navigator):
     mission = straight(10.0)
     held_up(navigator, [wall("block", 10.0, 0.0, (3.0, 3.0, 8.0))], 3.0, mission=mission)
     assert navigator.detours == 0
@@ -148,7 +148,7 @@ def test_a_waypoint_inside_an_obstacle_is_named(navigator):
     assert "10.0 m north" in navigator.reason
 
 
-def test_forgetting_drops_the_way_round(navigator):
+def test_reset_discards_detour(navigator):
     mission = straight(18.0)
     held_up(navigator, [ACROSS], 0.6, mission=mission)
     navigator.reset()

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from flight_in_process import Rehearsal, check_within_limits, short_figure
+from flight_in_process import InProcessFlight, check_within_limits, short_figure
 
 from gcs.mission.read import read_mission
 from idc_controller.estimation.health.noise_adaptation import NoiseAdaptation
@@ -15,7 +15,7 @@ SIZES = np.full(10, 5)
 PAYLOAD_ROWS = np.arange(50) < 10
 
 
-def learnt(innovations):
+def adapted(innovations):
     adaptation = NoiseAdaptation()
     for k, normalised in enumerate(innovations):
         mean_squares = np.add.reduceat(normalised**2, np.arange(0, 50, 5)) / SIZES
@@ -23,15 +23,15 @@ def learnt(innovations):
     return adaptation
 
 
-def test_scales_stay_one_for_sound_innovations():
+def test_scales_stay_one_for_consistent_innovations():
     random = np.random.default_rng(1)
     for _ in range(20):
-        adaptation = learnt(random.standard_normal((500, 50)))
+        adaptation = adapted(random.standard_normal((500, 50)))
         assert (adaptation.measurement_scale, adaptation.level) == (1.0, 0)
 
 
 def test_measurement_scale_grows_for_large_uncorrelated_innovations():
-    adaptation = learnt(3.0 * np.random.default_rng(2).standard_normal((100, 50)))
+    adaptation = adapted(3.0 * np.random.default_rng(2).standard_normal((100, 50)))
     assert adaptation.measurement_scale > 50.0
     assert adaptation.level == 0
 
@@ -40,7 +40,7 @@ def test_measurement_scale_grows_for_large_uncorrelated_innovations():
 def test_process_level_rises_for_correlated_innovations(of_payload):
     random = np.random.default_rng(3)
     pushed = np.where(of_payload == PAYLOAD_ROWS, 1.0, 0.0)
-    adaptation = learnt(random.standard_normal((200, 50)) + pushed)
+    adaptation = adapted(random.standard_normal((200, 50)) + pushed)
     assert adaptation.level == NoiseAdaptationSettings().process_levels
     assert adaptation.measurement_scale == 1.0
 
@@ -49,7 +49,7 @@ def test_scales_return_to_one_after_disturbance():
     random = np.random.default_rng(4)
     calm = 0.3 * random.standard_normal((500, 50))
     pushed, noisy = random.standard_normal((200, 50)) + 1.0, 5.0 * random.standard_normal((100, 50))
-    adaptation = learnt([*pushed, *noisy, *calm])
+    adaptation = adapted([*pushed, *noisy, *calm])
     assert (adaptation.measurement_scale, adaptation.level) == (1.0, 0)
 
 
@@ -65,7 +65,7 @@ def test_flight_stays_within_limits_with_five_times_noise_on_every_channel(tmp_p
     mission = with_faults(
         tmp_path, *(f'kind = "noise"\nchannel = "{c}"\nfactor = 5.0\nstart = 5.0' for c in every)
     )  # fmt: skip
-    with Rehearsal(mission, tmp_path / "run", seed=41) as flight:
+    with InProcessFlight(mission, tmp_path / "run", seed=41) as flight:
         flight.fly()
         assert flight.flight.estimator.health.adaptation.measurement_scale > 5.0
         check_within_limits(flight.summary(), rmse=0.1)
@@ -73,7 +73,7 @@ def test_flight_stays_within_limits_with_five_times_noise_on_every_channel(tmp_p
 
 def test_flight_completes_in_gusty_wind(tmp_path):
     wind = 'kind = "wind"\nvelocity = [2.0, 2.0, 0.0]\ngust = 0.6\nstart = 5.0'
-    with Rehearsal(with_faults(tmp_path, wind), tmp_path / "run", seed=42) as flight:
+    with InProcessFlight(with_faults(tmp_path, wind), tmp_path / "run", seed=42) as flight:
         flight.fly()
         summary = flight.summary()
     assert summary["completed"]
@@ -84,7 +84,7 @@ def test_flight_completes_in_gusty_wind(tmp_path):
 
 def test_flight_stays_within_limits_with_a_third_of_datagrams_lost(tmp_path):
     mission = with_faults(tmp_path, 'kind = "packet_loss"\nprobability = 0.3\nstart = 0.0')
-    with Rehearsal(mission, tmp_path / "run", seed=43) as flight:
+    with InProcessFlight(mission, tmp_path / "run", seed=43) as flight:
         flight.fly()
         assert min(link.copies for link in flight.station.links) > 1
         check_within_limits(flight.summary())

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from flight_in_process import Rehearsal, short_figure
+from flight_in_process import InProcessFlight, short_figure
 from obstacle_scene import (
     HERE,
     MOTIONS,
@@ -65,7 +65,7 @@ def test_map_has_one_track_for_each_obstacle_of_four_vehicles():
     counts = []
     m = map_of()
     run(m, four, 6.0, each=lambda t: counts.append(len(m.predict(np.array([t])))))
-    assert counts[0] == 4  # four vehicles see each at once
+    assert counts[0] == 4  # four vehicles detect each at once
     assert set(counts) == {4}
     for place in FOUR.values():
         _, error = nearest(m, 5.95, place(5.95))
@@ -205,7 +205,7 @@ def test_no_track_is_deleted_when_telemetry_of_all_vehicles_times_out():
     assert len(m.predict(np.array([3.0]))) == 1
 
 
-def test_standing_obstacles_of_the_map_are_predicted_from_the_start_and_begin_no_tracks():
+def test_static_obstacles_of_the_map_are_predicted_from_the_start_and_begin_no_tracks():
     known = (
         Obstacle("ball", (5.0, 0.0, -6.0), Sphere(0.5)), Obstacle("mast", (0.0, 6.0, -6.0), Pole(0.3, 12.0)),
         Obstacle("house", (-6.0, 0.0, -4.0), Wall((0.3, 5.0, 8.0), np.radians(12.0))),
@@ -297,7 +297,7 @@ def test_map_in_flight_has_the_obstacles_the_vehicles_detect(tmp_path):
         Obstacle("known", (-5.0, 0.0, -3.0), Sphere(0.4)),
     )  # fmt: skip
     mission = replace(mission, obstacles=obstacles)
-    with Rehearsal(mission, tmp_path / "run") as flight:
+    with InProcessFlight(mission, tmp_path / "run") as flight:
         obstacle_map = stack.obstacle_map(mission)
         failsafes = flight.flight.failsafes
         failsafes.system = replace(failsafes.system, obstacle_map=obstacle_map)
@@ -345,7 +345,7 @@ def test_new_track_begins_with_scatter_of_earlier_ones():
     ],
     ids=["capsule", "beam", "cube"],
 )  # fmt: skip
-def test_unknown_shape_that_no_surface_fits_is_covered_by_what_is_predicted(shape):
+def test_prediction_covers_unknown_shape_that_no_surface_fits(shape):
     scene, obstacle = Scene(1), WorldObstacle("x", shape, (0.0, 0.0, -6.0))
     obstacle_map = ObstacleMap([], SENSORS, REACH)
     for step in range(60):

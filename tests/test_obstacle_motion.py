@@ -27,13 +27,13 @@ def at(motion, *times):
     return np.array([displacement(time) for time in times])
 
 
-def test_harmonic_and_linear():
+def test_harmonic_and_linear_motion():
     swing = HarmonicMotion((1.5, 0.0, -0.5), 2.0, 0.3)
     np.testing.assert_allclose(at(swing, 0.7)[0], np.sin(1.7) * np.array([1.5, 0.0, -0.5]))
     np.testing.assert_allclose(at(LinearMotion((0.5, -1.0, 0.0)), 0.0, 4.0), [[0, 0, 0], [2, -4, 0]])
 
 
-def test_circle():
+def test_circular_motion():
     quarter = at(CircleMotion(2.0, 0.5, math.pi / 2), 0.0, math.pi)
     np.testing.assert_allclose(quarter, [[0, 2, 0], [-2, 0, 0]], atol=1e-12)
     back = at(CircleMotion(2.0, 0.5, math.pi / 2, clockwise=False), math.pi)
@@ -71,7 +71,7 @@ def test_waypoints_with_an_acceleration(speed, acceleration):
         assert np.sum(np.linalg.norm(positions - point, axis=1) < 1e-9) >= 0.49e3
 
 
-def test_random_walk_is_what_its_seed_says():
+def test_random_walk_is_determined_by_its_seed():
     motion = RandomWalkMotion(7, (0.8, 0.5, 0.0), 1.5)
     times = np.arange(0.0, 400.0, 0.01)
     positions = at(motion, *times)
@@ -98,7 +98,7 @@ class _World:
         self.places[name] = place
 
 
-def test_the_world_has_them_where_they_are():
+def test_obstacles_of_world_follow_their_motion():
     world = _World()
     motions = [CircleMotion(1.0, 1.0), WaypointsMotion(SQUARE, 1.0), RandomWalkMotion(3, (1.0, 1.0, 1.0), 1.0)]
     obstacles = [Obstacle(str(i), (5.0, i, -4.0), Sphere(0.5), motion=motion) for i, motion in enumerate(motions)]
@@ -137,7 +137,7 @@ def mission(folder, shape, motion):
     ],
 )
 @pytest.mark.parametrize("shape", ["sphere", "pole"])
-def test_read(tmp_path, shape, motion, expected):
+def test_motions_are_read_from_mission(tmp_path, shape, motion, expected):
     assert read_mission(mission(tmp_path, shape, motion)).obstacles[0].motion == expected
 
 
@@ -161,7 +161,7 @@ def test_read(tmp_path, shape, motion, expected):
         ("pole", '{ kind = "waypoints", points = [[0, 0, 0], [1, 0, -1]], speed = 1.0 }', "no vertical motion"),
     ],
 )
-def test_refused(tmp_path, shape, motion, reason):
+def test_invalid_motions_are_refused(tmp_path, shape, motion, reason):
     path = mission(tmp_path, shape, motion)
     with pytest.raises(UnusableFile) as refusal:
         read_mission(path)

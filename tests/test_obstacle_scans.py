@@ -95,15 +95,15 @@ def with_invalid_sensors(kind):
     """Yield a map whose vehicles detect an obstacle for a second and whose sensors are invalid from then on."""
     m, scene, here = map_of(), Scene(0), [sphere((5.0, 0.0, -6.0))]
     run(m, lambda t: here, 1.0, scene=scene)
-    frozen = [messages_of(scan) for _, _, _, scan in scene.look(1.0, HERE, here)]
+    stuck = [messages_of(scan) for _, _, _, scan in scene.look(1.0, HERE, here)]
     for k in range(20, 80):
         t = k / 20
         scene.feed(m, t, HERE, [])
         if kind == "broken":
             m.set_failed_sensors({0, 1, 2, 3}, t)
         elif k % 2 == 0:
-            for uav, messages in enumerate(frozen):
-                # How many points there are, and under which number, may still follow what is in sight.
+            for uav, messages in enumerate(stuck):
+                # How many points there are, and under which number, may still follow what is in field of view.
                 for message in messages[: 3 + k // 2 % 4] if kind == "frozen values" else messages:
                     message.obstacle_id += kind == "frozen values"
                     message.time_boot_ms = round(t * 1e3)
@@ -147,7 +147,7 @@ def test_track_deleted_before_sensing_loss_is_restored():
         m.set_failed_sensors({0, 1, 2, 3}, k / 20)
         m.update(k / 20)
     assert m.sensing_lost
-    for k in range(75, 135):  # and is kept, although they tell that they work again
+    for k in range(75, 135):  # and is kept, although they report valid health again
         scene.feed(m, k / 20, HERE, [])
         m.set_failed_sensors(set(), k / 20)
         m.update(k / 20)

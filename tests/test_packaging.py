@@ -1,4 +1,4 @@
-"""What a newcomer installs: every package that is imported is asked for, and none that is not."""
+"""Dependencies: every imported package is declared, and no other."""
 
 import re
 import sys
@@ -20,7 +20,7 @@ def names(requirements):
     return {normal(re.match(r"[\w.-]+", requirement)[0]) for requirement in requirements}
 
 
-def test_what_is_imported_is_what_is_asked_for():
+def test_imported_packages_are_the_declared_dependencies():
     modules = {
         name
         for package in PACKAGES
@@ -33,7 +33,7 @@ def test_what_is_imported_is_what_is_asked_for():
     assert {normal(module) for module in foreign} == names(PROJECT["dependencies"])
 
 
-def test_all_of_it_is_pinned():
+def test_all_dependencies_are_pinned():
     lines = (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
     pins = [line for line in lines if line and not line.startswith("#")]
     assert all(re.fullmatch(r"[\w.-]+==[\w.]+", pin) for pin in pins)

@@ -96,7 +96,7 @@ def test_the_nonlinear_reading_is_exact_in_the_thrusts():
     np.testing.assert_allclose(hover[0], 0.0, atol=1e-12)
 
 
-def test_the_condition_wants_the_best_input_not_the_worst():
+def test_condition_is_on_the_best_input_not_the_worst():
     """eq:cond_hx with inf_u fails even far away from an obstacle that is no danger; with sup_u it holds."""
     _, G = linear_acceleration(system())
     far = Encounter(np.array([0, 0, -8.0]), np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3), 1.0, np.ones(3))
@@ -105,7 +105,7 @@ def test_the_condition_wants_the_best_input_not_the_worst():
     assert min(values) < 0.0 < max(values)
 
 
-def test_negative_poles_do_not_suffice():
+def test_negative_poles_are_insufficient():
     """h'' = -K (h, h') keeps h >= 0 for real poles from within the nested sets, not for complex ones."""
 
     def least(K, h, h_dot):
@@ -129,7 +129,7 @@ def test_printed_list_of_lie_derivatives_contradicts_itself():
     assert nonzero in zero_as_printed
 
 
-def test_filter_lets_everything_through_that_keeps_the_rows():
+def test_filter_leaves_feasible_inputs_unchanged():
     rng = np.random.default_rng(3)
     u, lower, upper = rng.normal(size=16), np.full(16, -5.0), np.full(16, 5.0)
     rows = rng.normal(size=(2, 16))
@@ -149,7 +149,7 @@ def test_filter_lets_everything_through_that_keeps_the_rows():
     assert np.all(np.abs(none.delta_u) <= 5.0 + 1e-9)
 
 
-def test_unconstrained_the_mpc_is_the_regulator(mpc):
+def test_unconstrained_mpc_equals_the_regulator(mpc):
     s = mpc.settings
     Q, R = s.weights.state(4), s.weights.inputs(4)
     X = solve_discrete_are(mpc.A, mpc.B, Q, R)
@@ -211,7 +211,7 @@ def test_printed_reference_jumps_at_its_start():
     np.testing.assert_allclose((at_rest[1] - at_rest[0])[:2] / 1e-4, [3.0, -3.0], rtol=1e-3)
 
 
-def test_spheres_meet_the_payload_where_the_paper_says():
+def test_spheres_meet_the_payload_at_positions_of_the_paper():
     shaped = shaped_figure(4.0)
     np.testing.assert_allclose(shaped.trajectory.position(shaped.meets), [6.0, 0.0, -5.0], atol=1e-3)
     for meets in (np.pi, shaped.meets):

@@ -111,13 +111,13 @@ def test_printed_P_is_not_symmetric_and_gives_other_accelerations():
     assert np.abs(wrong - right).max() > 0.5
 
 
-def test_moment_equation_needs_the_cross_product():
+def test_moment_equation_requires_cross_product():
     parameters, state, inputs, _, _ = random_case(4, 2)
     assert printed.moment_residual(parameters, state, inputs, printed=False) < 1e-10
     assert printed.moment_residual(parameters, state, inputs, printed=True) > 0.1
 
 
-def test_link_equation_needs_its_own_rate():
+def test_link_equation_requires_link_rate():
     """With hat(omega_0) Omega, Omega any one rate, the equations of all links could not hold at once."""
     parameters, state, inputs, _, _ = random_case(4, 3)
     second = accelerations(parameters, state, inputs)
@@ -184,7 +184,7 @@ def test_minimal_form_is_the_full_one_on_its_manifold(n):
     assert np.linalg.matrix_rank(T) == 12 + 10 * n
 
 
-def test_riccati_has_no_answer_on_the_full_state():
+def test_riccati_equation_has_no_solution_on_full_state():
     parameters = system()
     A, B = discretised(*linearised(parameters), 0.05)
     lost = uncontrollable_modes(A, B)

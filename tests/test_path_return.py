@@ -1,4 +1,4 @@
-"""How soon a payload that went round an obstacle is back, on a run whose times can be written down by hand."""
+"""Time until the payload is back on the reference after an obstacle, on a synthetic run with known times."""
 
 import numpy as np
 import pytest

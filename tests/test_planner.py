@@ -109,9 +109,9 @@ def test_barrier_limits_how_fast_an_obstacle_is_approached(rates):
     position = mission[0] + plan.deviation[:, 0]
     n, lever = near[0].normals, planner.formation.levers(about)[:, 0]
     change = plan.deviation[:, 2] + mission[2] - about
-    rooms = planner.barrier.values(near[0], position, about)
-    rooms[1] -= lever * np.sum(n[:, :2] * change[:, :2], axis=1)
-    for h in rooms:
+    barrier_values = planner.barrier.values(near[0], position, about)
+    barrier_values[1] -= lever * np.sum(n[:, :2] * change[:, :2], axis=1)
+    for h in barrier_values:
         assert (planner.barrier.operator @ h).min() > -1e-6
         assert h.min() > -1e-6
     # The mission itself would break them.
@@ -200,13 +200,13 @@ def test_free_plan_is_the_linear_quadratic_optimum(planner):
     assert plan.slack == 0.0
 
 
-def test_nothing_to_do_is_done(planner):
+def test_plan_is_zero_without_deviation_and_obstacles(planner):
     free = planner.free(np.zeros((5, 3)))
     assert not free.knots.any()
     assert free.cost == 0.0
 
 
-def test_free_plan_comes_back(planner):
+def test_free_plan_returns_to_mission(planner):
     start = np.zeros((5, 3))
     start[0] = [1.0, -0.5, 0.7]
     free = planner.free(start)
@@ -216,13 +216,13 @@ def test_free_plan_comes_back(planner):
 # Slacks and limits
 
 
-def test_slack_is_zero_when_the_rows_can_be_kept(planner):
+def test_slack_is_zero_when_rows_are_feasible(planner):
     obstacle = standing(Sphere(0.5), [4.0, 0.3, -7.0])
     plan, _, _ = solved(planner, np.zeros((5, 3)), cruising(1.0), [obstacle])
     assert plan.slack == pytest.approx(0.0, abs=1e-7)
 
 
-def test_slack_says_by_how_much_safety_is_missed(planner):
+def test_slack_equals_violation_of_infeasible_rows(planner):
     # It begins 0.2 m from the surface: 0.33 m of margin and tracking cannot be had at the first stages.
     position = np.array([0.0, 0.0, -5.0])
     surface = position + np.array([0.5 + 0.2 + 0.5, 0.0, 0.0])
@@ -237,11 +237,11 @@ def test_slack_says_by_how_much_safety_is_missed(planner):
     assert plan.cost > SETTINGS.slack_linear * plan.slack * 0.9
 
 
-def test_one_obstacle_that_cannot_be_kept_off_does_not_excuse_another(planner):
+def test_infeasible_row_of_one_obstacle_does_not_relax_another(planner):
     near = standing(Sphere(0.5), [1.2, 0.0, -5.0], name="near")
     ahead = standing(Sphere(0.5), [-4.5, 0.4, -6.5], name="other")
-    alone, _, _ = solved(planner, np.zeros((5, 3)), cruising(-1.5), [near])
-    assert alone.slack > 0.01
+    single, _, _ = solved(planner, np.zeros((5, 3)), cruising(-1.5), [near])
+    assert single.slack > 0.01
     _, planes, about = solved(planner, np.zeros((5, 3)), cruising(-1.5), [near, ahead])
     both = planner.solve(np.zeros((5, 3)), cruising(-1.5), planes, about)
     other = next(s for s in planes if s.obstacle.name == "other")
@@ -249,7 +249,7 @@ def test_one_obstacle_that_cannot_be_kept_off_does_not_excuse_another(planner):
     assert planner.barrier.values(other, position, both.deviation[:, 2])[0].min() > -1e-6
 
 
-def test_growth_of_what_is_not_known_is_kept_off_as_well(planner):
+def test_margin_includes_growth_of_uncertainty(planner):
     sure, unsure = (standing(Sphere(0.5), [3.5, 0.0, -7.4], growth) for growth in (0.0, 0.3))
     heights = []
     for obstacle in (sure, unsure):
@@ -260,7 +260,7 @@ def test_growth_of_what_is_not_known_is_kept_off_as_well(planner):
 
 
 @pytest.mark.parametrize("start", [[3.0, 0.0, 0.0], [0.0, -4.0, 0.0], [2.0, 2.0, 3.0], [0.0, 0.0, -3.0]])
-def test_far_from_the_mission_the_limits_hold(planner, start):
+def test_limits_hold_far_from_the_mission(planner, start):
     y = np.zeros((5, 3))
     y[0] = start
     mission = cruising(0.0)
@@ -279,7 +279,7 @@ def test_limits_never_forbid_the_mission_itself(planner):
     assert plan.cost == pytest.approx(0.0, abs=1e-6)
 
 
-def test_mission_near_the_ground_is_not_led_into_it(planner):
+def test_plan_stays_above_ground_with_mission_near_it(planner):
     mission = cruising(1.0, altitude=1.2)
     above = standing(Wall(size=(0.5, 40.0, 2.0)), [3.0, 0.0, -6.2])
     plan, _, _ = solved(planner, np.zeros((5, 3)), mission, [above])
@@ -287,7 +287,7 @@ def test_mission_near_the_ground_is_not_led_into_it(planner):
     assert np.all(mission[0, limited, 2] + plan.deviation[limited, 0, 2] <= LOWEST + 0.02)
 
 
-def test_other_chains_do_as_well():
+def test_plan_is_feasible_with_other_integrator_chains():
     chain = Chain(0.2, (1, 1, 2, 3, 4))
     planner = Planner(Formation(system(6)), PlannerSettings(chain=chain, barrier_rates=(3.0, 3.0)))
     mission = cruising(1.0, stages=chain.stages, period=chain.period)

@@ -48,7 +48,7 @@ def test_a_tenth_of_all_datagrams_may_be_lost(fly_with_faults, hop):
 
 
 def test_a_failed_test_keeps_its_flight(pytester, hop):
-    """The test of somebody else, in another folder; its flight is flown, and is not within its limits."""
+    """A test of another project, in another folder; its flight is flown, and is not within its limits."""
     pytester.makepyfile(f"""
         def test_flies(fly_with_faults):
             faults = [dict(kind="packet_loss", start=2.0, probability=0.05)]
@@ -95,8 +95,8 @@ def test_faults_in_every_form(fly_with_faults, hop, flown):
     assert [flight.seed for flight in flights] == [5, 6] and all(flight.within_limits for flight in flights)
     (first, options), (second, _) = flown
     assert options == ("--controller", "mpc") and (first.seed, second.seed) == (5, 6)
-    told = [(f.kind, f.start, f.duration, f.vehicles, f.direction) for f in first.faults]
-    assert told == [
+    expected = [(f.kind, f.start, f.duration, f.vehicles, f.direction) for f in first.faults]
+    assert expected == [
         ("packet_loss", 0.0, None, None, None), ("bias", 1.0, 2.0, (2,), None),
         ("partition", 3.0, None, None, "command"), ("latency", 1.5, None, None, None),
     ]  # fmt: skip
@@ -104,7 +104,7 @@ def test_faults_in_every_form(fly_with_faults, hop, flown):
 
 
 @pytest.mark.parametrize(
-    ("arguments", "told"),
+    ("arguments", "expected"),
     [
         ({"faults": [{"kind": "packet_los", "start": 1.0}]}, "there is no kind 'packet_los'"),
         ({"faults": [Fault("packet_loss", 1.0)]}, "probability: missing key"),
@@ -113,25 +113,25 @@ def test_faults_in_every_form(fly_with_faults, hop, flown):
         ({"config": "no.toml"}, "no.toml: cannot be read"),
     ],
 )
-def test_what_cannot_be_flown_is_told(arguments, told, fly_with_faults, hop, flown):
-    with pytest.raises(UnusableInput, match=told):
+def test_unusable_input_is_reported(arguments, expected, fly_with_faults, hop, flown):
+    with pytest.raises(UnusableInput, match=expected):
         fly_with_faults(hop, **arguments)
     assert flown == []
 
 
-def test_a_flight_that_did_not_end_is_an_error(fly_with_faults, hop, monkeypatch):
+def test_unfinished_flight_is_an_error(fly_with_faults, hop, monkeypatch):
     monkeypatch.setattr(testing, "fly_process", lambda *_: FlownProcess(-9, {}, "no memory", 1.0))
     with pytest.raises(GcsError, match="not flown: no memory"):
         fly_with_faults(hop)
     assert "gcs fly" in fly_with_faults.log[0]
 
 
-def test_what_is_not_a_fault():
+def test_invalid_fault_is_refused():
     with pytest.raises(TypeError, match="not the parameters of a kind"):
         fault(3)
 
 
-def test_what_passed_is_removed(pytester, hop, flown):
+def test_records_of_passed_test_are_removed(pytester, hop, flown):
     pytester.makepyfile("""
         import pytest
 

@@ -1,4 +1,4 @@
-"""The vehicles' range sensors: geometry, noise, repeatability, and the way onto the wire."""
+"""The vehicles' range sensors: geometry, noise, repeatability, and messages."""
 
 import math
 from dataclasses import replace
@@ -47,14 +47,14 @@ def test_points_lie_on_the_visible_side_within_range_and_the_first_is_the_neares
     centre = np.array([obstacle.position_in_world])
     body = body_of(obstacle)
     rng = np.random.default_rng(3)
-    seen = 0
+    detected = 0
     for place in places(rng):
         distance = float(body.distance(np.array([place]), centre)[0, 0])
         points = visible_points(obstacle, place, REACH, rng.uniform())
         if distance <= 0.0 or distance > REACH:
             assert points == []
             continue
-        seen += 1
+        detected += 1
         points = np.array(points)
         on_surface = np.abs(body.distance(points, centre)[0])
         # Points on a pole's end lie within its rim.
@@ -63,10 +63,10 @@ def test_points_lie_on_the_visible_side_within_range_and_the_first_is_the_neares
         assert ranges.max() <= REACH + 1e-6
         assert ranges[0] == pytest.approx(distance, abs=1e-6)
         assert ranges[0] == pytest.approx(ranges.min(), abs=1e-6)
-        for share in np.linspace(0.02, 0.98, 25):  # nothing of the obstacle itself in the way
+        for share in np.linspace(0.02, 0.98, 25):  # not occluded by the obstacle itself
             between = np.array(place) + share * (points - place)
             assert body.distance(between, centre)[0].min() > -1e-6
-    assert seen > 20
+    assert detected > 20
 
 
 def test_ends_are_hit_when_they_are_in_range():
@@ -110,14 +110,14 @@ def test_seed_and_vehicle_decide_the_noise():
 OBSTACLES_AROUND = [sphere((5.0, 0.0, -6.0), name="a"), pole((0.0, 6.0), name="b")]
 
 
-def test_numbers_are_the_vehicles_own_and_new_after_an_absence():
+def test_detection_numbers_are_per_vehicle_and_new_after_absence():
     sensor = RangeSensor(REACH, 0.05, 1, 1)
     first, second = sphere((9.0, 0.0, -6.0), name="first"), sphere((0.0, 9.0, -6.0), name="second")
 
     def numbers(position):
         return {d.obstacle_id for d in sensor.scan(0.0, position, LEVEL, [first, second]).detections}
 
-    assert numbers((0.0, 6.0, -6.0)) == {0}  # the second of the mission is the first that is seen
+    assert numbers((0.0, 6.0, -6.0)) == {0}  # the second of the mission is the first that is detected
     assert numbers((2.0, 2.0, -6.0)) == {0, 1}
     assert numbers((-20.0, 0.0, -6.0)) == set()
     assert numbers((2.0, 2.0, -6.0)) == {2, 3}
@@ -134,7 +134,7 @@ def test_numbers_are_the_vehicles_own_and_new_after_an_absence():
         ("noise = 0.05 ", "nose = 0.05 ", "range_sensor.nose: unknown key"),
     ],
 )
-def test_the_system_file_is_read_strictly(tmp_path, old, new, reason):
+def test_sensor_keys_of_system_file_are_read_strictly(tmp_path, old, new, reason):
     text = (MISSIONS / "system.toml").read_text()
     assert text.count(old) == 1
     path = tmp_path / "system.toml"
@@ -163,7 +163,7 @@ def detections(seed=1, obstacles=MISSION, faults=None, until=1.5, config=CONFIG)
     return ground
 
 
-def test_a_swarm_sends_what_it_sees():
+def test_swarm_sends_detected_obstacles():
     ground = detections()
     messages = ground.of_type("OBSTACLE_DISTANCE_3D")
     for vehicle in (1, 2, 3, 4):
@@ -181,7 +181,7 @@ def test_a_swarm_sends_what_it_sees():
             assert math.hypot(m.x, m.y, m.z) < 10.5
 
 
-def test_without_obstacles_there_is_nothing_to_send():
+def test_swarm_without_obstacles_sends_no_detections():
     assert detections(obstacles=()).of_type("OBSTACLE_DISTANCE_3D") == []
 
 
@@ -193,7 +193,7 @@ def test_equal_seeds_send_equal_messages():
     assert points(3) != points(4)
 
 
-def test_what_is_sent_does_not_tell_names_shapes_or_who_is_known():
+def test_detections_are_independent_of_names_shapes_and_map():
     def renamed(known):
         return tuple(replace(o, name=f"obstacle {i}", known=known) for i, o in enumerate(MISSION))
 
@@ -203,19 +203,19 @@ def test_what_is_sent_does_not_tell_names_shapes_or_who_is_known():
     assert points(renamed(True)) == points(renamed(False)) == points(MISSION)
 
 
-def test_a_passage_may_hold_scans_back():
-    class Blind(FaultInterface):
+def test_fault_injector_may_suppress_scans():
+    class SensorLoss(FaultInterface):
         def range_sample(self, vehicle, sample):
             return None if vehicle == 2 else sample._replace(detections=sample.detections[:1])
 
-    ground = detections(faults=Blind(), until=0.6)
+    ground = detections(faults=SensorLoss(), until=0.6)
     assert ground.of_type("OBSTACLE_DISTANCE_3D", 2) == []
     own = ground.of_type("OBSTACLE_DISTANCE_3D", 1)
     assert own
     assert len({m.time_boot_ms for m in own}) == len(own)
 
 
-def test_another_rate_and_range():
+def test_detections_follow_rate_and_range_of_system_file():
     config = replace(CONFIG, range_sensor=replace(CONFIG.range_sensor, rate=5, range=5.0))
     ground = detections(config=config)
     assert ground.of_type("OBSTACLE_DISTANCE_3D") == []  # all are further away, but for the wall's distance of 5.35 m
@@ -224,7 +224,7 @@ def test_another_rate_and_range():
     assert {b - a for a, b in pairwise(stamps)} == {200}
 
 
-def test_bytes_are_the_dialects():
+def test_detections_are_encoded_by_the_dialect():
     codec = Codec(3, 1)
     message = mavlink.MAVLink_obstacle_distance_3d_message(
         1234, mavlink.MAV_DISTANCE_SENSOR_LASER, mavlink.MAV_FRAME_BODY_FRD, 7, 1.5, -2.0, 0.25, 0.0625, 10.0

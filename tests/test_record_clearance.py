@@ -49,11 +49,11 @@ def test_the_bound_is_stated_below_a_millimetre() -> None:
         ((4.5, 4.5, -1.25), 4.0 * np.sqrt(2.0) - 0.3 - 0.5),  # diagonal: the rim, not a corner
     ],
 )
-def test_sphere(position, expected) -> None:
+def test_clearance_of_sphere(position, expected) -> None:
     assert clearance(sphere(position)) == pytest.approx(expected, abs=BOUND)
 
 
-def test_sphere_beside_the_slanted_side() -> None:
+def test_clearance_of_sphere_beside_slanted_side() -> None:
     # The side rises from the floor's edge (0.5, 0.25) to the rims at (0.8, -1.25), in x and z.
     normal = np.array([1.5, 0.3]) / np.hypot(1.5, 0.3)
     middle_of_side = np.array([0.65, -0.5])
@@ -91,11 +91,11 @@ def test_a_tilted_disc_reaches_less_far() -> None:
 
 
 @pytest.mark.parametrize("position", [(0.0, 0.0, 0.0), (0.9, 0.9, -1.25), (0.0, 0.0, -0.9)])
-def test_meeting_is_zero(position) -> None:
+def test_clearance_of_overlap_is_zero(position) -> None:
     assert clearance(sphere(position)) == 0.0
 
 
-def test_turning_and_moving_everything_changes_nothing() -> None:
+def test_clearance_is_invariant_under_rigid_motion() -> None:
     rng = np.random.default_rng(5)
     for _ in range(20):
         position = rng.normal(size=3)
@@ -108,7 +108,7 @@ def test_turning_and_moving_everything_changes_nothing() -> None:
         assert clearance(moved, rotation, shift, rotation) == pytest.approx(still, abs=1e-5)
 
 
-def test_random_hulls_against_separating_planes() -> None:
+def test_clearance_of_random_hulls_agrees_with_separating_planes() -> None:
     """The distance to a sphere is the largest gap over all directions, with the discs' exact support."""
     rng = np.random.default_rng(11)
     for _ in range(10):
@@ -142,7 +142,7 @@ def test_size_and_radius_given() -> None:
     assert got[0] == pytest.approx([4 - 1 - 0.5, 9 - 1.0 - 0.5], abs=rim_error(0.5) + 1e-5)
 
 
-def test_what_is_not_on_record_is_nan() -> None:
+def test_clearance_without_record_is_nan() -> None:
     track = ObstacleTrack("s", Sphere(0.5), np.array([[0.0, 0.0, 3.0], [np.nan] * 3]))
     states = [np.repeat(a[None], 2, axis=0) for a in (np.zeros(3), LEVEL, UAVS, np.array([LEVEL] * 4))]
     got = clearance_over_time(*states, [track])

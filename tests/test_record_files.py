@@ -61,7 +61,7 @@ def _open_many(parent: Path, queue) -> None:
         queue.put(open_run_folder("hover", parent=parent).name)
 
 
-def test_flights_side_by_side_get_folders_of_their_own(tmp_path) -> None:
+def test_parallel_flights_get_separate_folders(tmp_path) -> None:
     context = multiprocessing.get_context("fork")
     queue = context.SimpleQueue()
     processes = [context.Process(target=_open_many, args=(tmp_path, queue)) for _ in range(4)]
@@ -147,7 +147,7 @@ def test_versions_are_those_in_use() -> None:
     assert versions()["numpy"] == np.__version__
 
 
-def test_json_of_odds_and_ends() -> None:
+def test_json_of_uncommon_types_is_written() -> None:
     assert to_json({1: {3, 1, 2}, "p": Path("a/b"), "t": (True, None, -math.inf), "c": 1j}) == {
         "1": [1, 2, 3], "p": "a/b", "t": [True, None, "-inf"], "c": "1j",
     }  # fmt: skip
@@ -171,7 +171,7 @@ def test_numbers_read_back_to_the_bit(tmp_path) -> None:
     assert np.array_equal(np.column_stack(list(columns.values())), rows)
 
 
-def test_bytes_are_those_expected_whatever_the_number_type(tmp_path) -> None:
+def test_csv_bytes_are_independent_of_number_type(tmp_path) -> None:
     with TableWriter(tmp_path / "a.csv", ("a", "b", "c", "d")) as table:
         table.write([0.1, 2, True, float("nan")])
         table.write([np.float64(0.1), np.int32(2), np.bool_(True), np.float64("nan")])
@@ -212,14 +212,14 @@ def test_absent_folder_is_refused(tmp_path) -> None:
 class FullDisk:
     """Takes so many bytes, then fails as a full disk does: some of the record is written, the rest is not."""
 
-    def __init__(self, file, room: int) -> None:
-        self._file, self._room, self.closed = file, room, False
+    def __init__(self, file, capacity: int) -> None:
+        self._file, self._capacity, self.closed = file, capacity, False
 
     def write(self, data) -> int:
-        if self._room == 0:
+        if self._capacity == 0:
             raise OSError(28, "No space left on device")
-        taken = bytes(data[: self._room])
-        self._room -= len(taken)
+        taken = bytes(data[: self._capacity])
+        self._capacity -= len(taken)
         return self._file.write(taken)
 
     def close(self) -> None:
@@ -229,7 +229,7 @@ class FullDisk:
 
 def test_full_disk_leaves_whole_records_and_no_exception(tmp_path) -> None:
     file = AppendOnlyFile(tmp_path / "a")
-    file._file = FullDisk(file._file, room=8)
+    file._file = FullDisk(file._file, capacity=8)
     for _ in range(3):
         file.append(b"12345\n")
     assert isinstance(file.error, OSError)
@@ -237,7 +237,7 @@ def test_full_disk_leaves_whole_records_and_no_exception(tmp_path) -> None:
     assert (tmp_path / "a").read_bytes() == b"12345\n"
 
 
-def test_a_cut_off_last_line_is_left_out(tmp_path) -> None:
+def test_truncated_last_line_is_skipped(tmp_path) -> None:
     (tmp_path / "a.csv").write_text("time_s,x\n0.0,1.0\n0.1,2.0\n0.2,3")
     assert read_table(tmp_path / "a.csv")["x"].tolist() == [1.0, 2.0]
     (tmp_path / "a.csv").write_text("time_s,x\n")
@@ -321,7 +321,7 @@ def test_bytes_are_stamp_and_frame(tmp_path) -> None:
     assert (tmp_path / "a.tlog").read_bytes() == (tmp_path / "b.tlog").read_bytes()
 
 
-def test_a_cut_off_last_record_costs_only_itself(tmp_path) -> None:
+def test_truncated_last_record_is_skipped(tmp_path) -> None:
     path = tmp_path / "telemetry.tlog"
     with TelemetryLog(path, start_epoch=1.7e9) as log:
         for i, frame in enumerate(frames(5)):
@@ -344,7 +344,7 @@ def test_signed_frames_are_kept_whole(tmp_path) -> None:
     assert list(frames_in(signed + plain)) == [signed, plain]
 
 
-def test_what_is_no_frame_is_left_out() -> None:
+def test_bytes_outside_frames_are_skipped() -> None:
     a, b = frames(2)
     assert list(frames_in(b"")) == []
     assert list(frames_in(b"hello")) == []

@@ -47,7 +47,7 @@ def figures(tmp_path, rows, contacts=()):
     return landing_figures(read_run(write_flight(tmp_path / "run", rows, contacts)))
 
 
-def test_set_down(tmp_path):
+def test_payload_on_pad_is_set_down(tmp_path):
     rows = flight(v_x=0.3, speed=0.4)
     found = figures(tmp_path, rows)
     assert is_set_down(found)
@@ -72,11 +72,11 @@ def test_set_down(tmp_path):
     ],
     ids=["fast", "sideways", "side", "back", "air", "rotors", "contact", "bounce"],
 )
-def test_not_set_down(tmp_path, rows, contacts):
+def test_unsafe_landing_is_not_set_down(tmp_path, rows, contacts):
     assert not is_set_down(figures(tmp_path, rows, contacts))
 
 
-def test_on_the_pad_on_its_edge_and_never_in_the_air(tmp_path):
+def test_payload_that_never_left_the_pad_is_on_pad(tmp_path):
     assert figures(tmp_path / "a", flight(north=0.4, floor=PAD))["on_ground"]
     assert not figures(tmp_path / "b", flight(north=3.0, floor=PAD))["on_ground"]
     # No corner touches, but the pad's edge does: half of the payload is beside it.
@@ -87,12 +87,12 @@ def test_on_the_pad_on_its_edge_and_never_in_the_air(tmp_path):
     assert is_set_down(stayed) and stayed["speed_mps"] == 0.0 and stayed["touchdown_s"] is None
 
 
-def test_a_touch_after_the_touch_down_is_no_contact_before(tmp_path):
+def test_contact_after_touchdown_is_not_counted_before(tmp_path):
     rows = flight()
     assert figures(tmp_path, rows, (len(rows) - 3,))["contacts_before"] == 0
 
 
-def test_the_pad_is_that_of_the_world():
+def test_pad_is_that_of_the_world():
     assert (landings.PAD_THICKNESS, landings.PAD_MARGIN) == (world.PAD_THICKNESS, world.PAD_MARGIN)
 
 
@@ -100,12 +100,12 @@ def test_the_pad_is_that_of_the_world():
     ("rows", "landed", "completed", "outcome"),
     [
         (flight(), True, True, "completed"),
-        (flight(), False, False, "aborted"),  # out of the ground's sight
+        (flight(), False, False, "aborted"),  # beyond the telemetry of the ground
         (flight(speed=1.5), True, False, "failed"),
         (flight(roll=80.0, floor=-0.58), True, True, "failed"),
     ],
 )
-def test_the_truth_decides_how_a_flight_ended(tmp_path, rows, landed, completed, outcome):
+def test_landing_outcome_follows_from_truth(tmp_path, rows, landed, completed, outcome):
     system_file(tmp_path)
     path = tmp_path / "hop.toml"
     path.write_text(HOP + "\n[limits]\ntouchdown_speed = 0.9\n")
@@ -118,7 +118,7 @@ def test_the_truth_decides_how_a_flight_ended(tmp_path, rows, landed, completed,
     assert summary["limits"]["touchdown_speed"][2] == (outcome != "failed")
 
 
-def test_when_the_vehicles_stopped(tmp_path):
+def test_stop_times_of_vehicles_are_reported(tmp_path):
     assert stops_after(tmp_path, 0.0) == {}
     with TruthLog(tmp_path, 1) as log:
         for time, vehicle, mode in (

@@ -78,7 +78,7 @@ def run(tmp_path) -> Path:
     return folder
 
 
-def test_summary_by_hand(run) -> None:
+def test_summary_agrees_with_values_computed_by_hand(run) -> None:
     summary = summarise(run, **FLOWN, limits={"settle": 2.0})
     assert summary == {
         "completed": True,
@@ -121,7 +121,7 @@ def test_error_counts_from_settle_on_and_within_the_reference_only(tmp_path) -> 
     assert nothing_left["limits"]["position_rmse"] == [None, 1.0, False]
 
 
-def test_limits(run) -> None:
+def test_summary_lists_violated_limits(run) -> None:
     limits = {"position_rmse": 0.06, "payload_tilt_deg": 2.9, "clearance": 0.3, "uav_separation": 0.7}
     assert summarise(run, **FLOWN, limits=dict.fromkeys(limits))["limits"] == {}
     summary = summarise(run, **FLOWN, limits={"settle": 2.0, **limits})
@@ -195,7 +195,7 @@ def test_tilt_counts_between_take_off_and_landing(tmp_path) -> None:
     assert summarise(folder, **FLOWN)["payload_tilt_max_deg"]["roll"] == pytest.approx(2.0)
 
 
-def test_without_truth_the_estimate_serves(tmp_path) -> None:
+def test_summary_uses_estimate_without_truth(tmp_path) -> None:
     folder = open_run_folder("hover", tmp_path / "run")
     with TableWriter(folder / "estimate.csv", ESTIMATE_COLUMNS) as table:
         for k in range(101):
@@ -210,7 +210,7 @@ def test_without_truth_the_estimate_serves(tmp_path) -> None:
     assert {path.name for path in report(folder)} == {"position.png", "payload_angles.png", "top_view.png"}
 
 
-def test_a_flight_that_never_began_still_has_a_summary(tmp_path) -> None:
+def test_flight_without_take_off_has_a_summary(tmp_path) -> None:
     folder = open_run_folder("hover", tmp_path / "run")
     failed = {**FLOWN, "completed": False, "outcome": "failed", "real_time_factor": None}
     summary = summarise(folder, **failed, limits={"payload_tilt_deg": 5.0})
@@ -235,7 +235,7 @@ def printed(summary, folder, pictures=()) -> str:
     return console.export_text()
 
 
-def test_table_says_what_was_held_and_where_the_records_are(run) -> None:
+def test_table_lists_limits_and_folder_of_records(run) -> None:
     limits = {"position_rmse": 0.06, "payload_tilt_deg": 2.9}
     text = printed(summarise(run, **FLOWN, limits={"settle": 2.0, **limits}), run, [run / "top_view.png"])
     assert "Flight completed, OUTSIDE its limits: 10.0 s, 5.5 times real time" in text
@@ -249,14 +249,14 @@ def test_table_says_what_was_held_and_where_the_records_are(run) -> None:
 # --- truth log ----------------------------------------------------------------------------------------------------
 
 
-def test_same_states_give_the_same_bytes(tmp_path) -> None:
+def test_equal_states_give_equal_bytes(tmp_path) -> None:
     for name in ("a", "b"):
         write_truth(tmp_path / name, obstacles=sphere_ahead)
     for name in ("truth.csv", "obstacles.csv"):
         assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
 
 
-def test_truth_rows_stand_in_the_order_of_the_contract(tmp_path) -> None:
+def test_truth_columns_are_in_order_of_the_contract(tmp_path) -> None:
     with TruthLog(tmp_path / "new", 2) as log:
         uavs = (
             UavState((10, 11, 12), (0, 1, 0, 0), (0, 0, 0), (0, 0, 0), 16, True),
@@ -304,7 +304,7 @@ def test_report_draws_every_picture_again_and_again(run) -> None:
         assert all(path.parent == run and path.read_bytes().startswith(PNG) for path in pictures)
 
 
-def test_a_killed_run_is_drawn_as_far_as_it_goes(tmp_path) -> None:
+def test_killed_run_is_drawn_to_its_last_record(tmp_path) -> None:
     folder = open_run_folder("hover", tmp_path / "run")  # the manifest is still empty
     write_truth(folder, rows=30, obstacles=lambda time: (Obstacle("b", Sphere(0.5), (time, 9.0, -5.0)),))
     for name, cut in (("truth.csv", 5), ("obstacles.csv", 200)):
@@ -316,7 +316,7 @@ def test_a_killed_run_is_drawn_as_far_as_it_goes(tmp_path) -> None:
     assert len(report(folder)) == 5
 
 
-def test_what_is_no_run_is_refused(tmp_path) -> None:
+def test_folder_without_records_is_refused(tmp_path) -> None:
     with pytest.raises(UnusableInput, match="absent: is not a folder"):
         report(tmp_path / "absent")
     with pytest.raises(UnusableInput, match=r"is not a run folder: it holds no manifest\.json"):

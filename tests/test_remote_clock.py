@@ -1,4 +1,4 @@
-"""A vehicle's clock as the ground knows it, and the stamps of what is sent to it."""
+"""Estimate of a vehicle's clock on the ground, and stamps of what is sent to the vehicle."""
 
 from itertools import pairwise
 
@@ -8,7 +8,7 @@ from gcs.mavlink.clock import RemoteClock
 from gcs.mavlink.vehicle_link import VehicleLink
 
 
-def test_a_clock_that_is_set_back_is_followed_at_once_and_late_datagrams_are_not_taken_for_it():
+def test_clock_set_back_is_followed_at_once_and_late_datagram_is_no_step():
     clock = RemoteClock()
     for k in range(50):
         clock.add_stamp(10.0 + 0.04 * k, 0.04 * k + (0.05 if k % 7 == 0 else 0.0), in_order=True)
@@ -21,17 +21,17 @@ def test_a_clock_that_is_set_back_is_followed_at_once_and_late_datagrams_are_not
 
 
 @pytest.mark.parametrize("step", [0.1, -0.1])
-def test_a_clock_that_is_set_is_told_from_one_whose_datagrams_are_late(step):
+def test_clock_step_is_distinguished_from_late_datagrams(step):
     clock = RemoteClock()
     for k in range(100):
         clock.add_stamp(10.0 + 0.04 * k, 0.04 * k + (0.05 if k % 7 == 0 else 0.0), in_order=True)
-    assert clock.jumped_at < 0.1  # when it was heard first
+    assert clock.jumped_at < 0.1  # at its first datagram
     for k in range(100, 150):
         clock.add_stamp(10.0 + step + 0.04 * k, 0.04 * k, in_order=True)
     assert clock.jumped_at == pytest.approx(4.0)
 
 
-def test_stamps_of_setpoints_do_not_go_back_with_the_clock():
+def test_setpoint_stamps_stay_monotonic_after_clock_step():
     link = VehicleLink(1, None)
     before = []
     for k in range(10):
@@ -45,8 +45,8 @@ def test_stamps_of_setpoints_do_not_go_back_with_the_clock():
     assert after[-1] == pytest.approx(0.5 + 0.05 * 19 + 9.6)
 
 
-def asked_and_answered(clock, trips, until):
-    """Round trips that take ``trips(asked)`` (s), asked for every 0.1 s; the answers until then, in their order."""
+def clock_after_round_trips(clock, trips, until):
+    """Clock after round trips of ``trips(sent)`` (s) begun every 0.1 s, with the answers until ``until`` in order."""
     answers = sorted((0.1 * k + trips(0.1 * k), clock.request(0.1 * k)) for k in range(round(until / 0.1)))
     for arrival, ts1 in answers:
         if arrival <= until:
@@ -54,12 +54,14 @@ def asked_and_answered(clock, trips, until):
     return clock
 
 
-def test_a_way_that_gets_longer_and_longer_is_told_soon():
-    clock = asked_and_answered(RemoteClock(), lambda asked: 2.0 * max(asked - 1.0, 0.0), until=2.0)
+def test_growing_link_latency_is_detected_before_answers_arrive():
+    clock = clock_after_round_trips(RemoteClock(), lambda sent: 2.0 * max(sent - 1.0, 0.0), until=2.0)
     assert clock.least_delay(0.3, 2.0) > 0.11 > clock.delay
     assert RemoteClock().least_delay(0.3, 2.0) == 0.0
 
 
-def test_nothing_for_a_moment_and_then_all_at_once_is_no_longer_way():
-    clock = asked_and_answered(RemoteClock(), lambda asked: max(1.45 - asked, 0.0) if asked > 1.0 else 0.0, until=1.47)
+def test_stalled_answers_released_together_are_no_link_latency():
+    clock = clock_after_round_trips(
+        RemoteClock(), lambda sent: max(1.45 - sent, 0.0) if sent > 1.0 else 0.0, until=1.47
+    )
     assert clock.least_delay(0.3, 1.47) == 0.0

@@ -53,14 +53,14 @@ def compare(got, expected, path=""):
         assert got == expected, path
 
 
-def test_numbers_of_the_model_are_what_the_model_says(quoted):
+def test_quoted_numbers_of_model_agree_with_model(quoted):
     compare(rounded(model_numbers()), quoted["model"])
 
 
 @pytest.mark.parametrize(
     ("section", "name"), [("tracking", "outputs"), ("mass", "printed_2.7"), ("margin", "printed_1")]
 )
-def test_numbers_of_simulations_are_what_they_come_to(quoted, section, name):
+def test_quoted_numbers_of_simulations_agree_with_simulations(quoted, section, name):
     case = plan(quick=False).cases[section, name]
     got = simulate(case).numbers()
     got.pop("effort_change_percent", None)
@@ -68,7 +68,7 @@ def test_numbers_of_simulations_are_what_they_come_to(quoted, section, name):
     compare(rounded(got), expected)
 
 
-def test_full_plan_has_what_the_text_quotes(quoted):
+def test_full_plan_has_all_quoted_numbers(quoted):
     whole = plan(quick=False)
     for section, name in whole.cases:
         assert name in quoted[section], (section, name)
@@ -82,7 +82,7 @@ def test_full_plan_has_what_the_text_quotes(quoted):
             assert quick.cases[key] == whole.cases[key]
 
 
-def test_text_without_a_number_says_so():
+def test_missing_number_in_text_is_reported():
     text = paper_text({"model": {"state": 60}})
     assert "= 60 for N = 4" in text
     assert ABSENT in text
@@ -134,7 +134,7 @@ def test_folder_that_is_not_empty_is_refused(tmp_path, capsys):
     assert "is a file" in capsys.readouterr().err
 
 
-def test_missions_that_are_not_there_are_refused_before_anything_starts(tmp_path, capsys):
+def test_missing_missions_are_refused_before_start(tmp_path, capsys):
     out = tmp_path / "out"
     assert main(["reproduce", "--missions", str(tmp_path), "--out", str(out)]) == 2
     assert "pole_course.toml" in capsys.readouterr().err
@@ -172,14 +172,14 @@ def recorded(folder, tilt_deg, contacts):
     )  # fmt: skip
 
 
-def test_flights_are_told_until_the_first_contact(tmp_path):
+def test_flight_numbers_cover_time_to_first_contact(tmp_path):
     tilt, contacts = np.zeros(60), np.zeros(60)
     tilt[20], tilt[57:], contacts[56:] = 7.0, 80.0, 1
     run = recorded(tmp_path, tilt, contacts)
-    told = flight_numbers(run.summary, run)
-    assert told["first_contact_s"] == pytest.approx(5.6)
-    assert told["touched_first"] == "ball"
-    assert told["tilt_max_before_contact_deg"] == pytest.approx(7.0)
+    quoted_values = flight_numbers(run.summary, run)
+    assert quoted_values["first_contact_s"] == pytest.approx(5.6)
+    assert quoted_values["touched_first"] == "ball"
+    assert quoted_values["tilt_max_before_contact_deg"] == pytest.approx(7.0)
     contacts[10] = 1  # far from everything
     early = flight_numbers(run.summary, recorded(tmp_path, tilt, contacts))
     assert early["touched_first"] == "one UAV another"

@@ -1,4 +1,4 @@
-"""Where a team that hears no more comes to rest: clear of what is known, and the usual way wherever that is."""
+"""Resting place of the team after link loss: clear of known obstacles, default braking wherever that is clear."""
 
 import numpy as np
 import pytest
@@ -39,10 +39,10 @@ def rest_of(braking):
     return braking.path(STATE)(braking.duration(STATE[1]))
 
 
-def test_the_usual_way_takes_over_the_motion_and_ends_at_rest():
-    way = USUAL.path(STATE)
-    assert [way.derivative(k)(0.0) for k in (1, 2)] == [pytest.approx(STATE[1]), pytest.approx(STATE[2])]
-    assert way.derivative()(way.x[-1]) == pytest.approx(np.zeros(3))
+def test_default_braking_path_starts_with_current_motion_and_ends_at_rest():
+    braking_path = USUAL.path(STATE)
+    assert [braking_path.derivative(k)(0.0) for k in (1, 2)] == [pytest.approx(STATE[1]), pytest.approx(STATE[2])]
+    assert braking_path.derivative()(braking_path.x[-1]) == pytest.approx(np.zeros(3))
 
 
 @pytest.mark.parametrize(
@@ -50,27 +50,27 @@ def test_the_usual_way_takes_over_the_motion_and_ends_at_rest():
     [StandingObstacles([]), sphere((REST[0], 6.0, -5.0)), sphere((-4.0, 0.0, -5.0)), sphere((REST[0], 0.0, -11.0))],
     ids=["none", "aside", "behind", "above"],
 )
-def test_where_it_is_clear_nothing_changes(obstacles):
+def test_default_braking_is_used_where_it_is_clear(obstacles):
     assert RestingPlace(PARAMETERS, obstacles)(0.0, STATE) == USUAL
 
 
 @pytest.mark.parametrize("height", [1.0, 2.5, 5.0])
 @pytest.mark.parametrize("beside", [(0.0, 0.0), (0.6, 0.0), (0.0, -0.8)])
-def test_it_neither_rests_at_an_obstacle_nor_comes_down_on_one(beside, height):
+def test_resting_place_and_descent_keep_clear_of_obstacle(beside, height):
     place = np.array([REST[0] + beside[0], REST[1] + beside[1], -height])
     rest = rest_of(RestingPlace(PARAMETERS, sphere(place))(0.0, STATE))
     assert np.hypot(*(rest - place)[:2]) - 0.5 - WIDTH > 0.6
     assert np.hypot(*(REST - place)[:2]) - 0.5 - WIDTH < 0.6
 
 
-def test_it_does_not_rest_where_an_obstacle_swings_by():
+def test_resting_place_keeps_clear_of_swinging_obstacle():
     obstacle = Swinging((REST[0], 2.0, -5.0), 2.0)
     rest = rest_of(RestingPlace(PARAMETERS, obstacle)(0.0, STATE))
     places = obstacle.predict(np.linspace(0.0, 20.0, 400))[0].positions
     assert np.hypot(*(places - rest)[:, :2].T).min() - 0.5 - WIDTH > 0.6
 
 
-def test_it_keeps_to_what_it_chose_while_that_is_clear():
+def test_chosen_braking_is_kept_while_clear():
     chosen = RestingPlace(PARAMETERS, sphere(REST))
     first = chosen(0.0, STATE)
     assert first != USUAL
@@ -80,15 +80,15 @@ def test_it_keeps_to_what_it_chose_while_that_is_clear():
         assert chosen(0.05 * k, moved) == first
 
 
-def test_where_nothing_is_clear_the_best_is_taken():
+def test_braking_with_most_clearance_is_chosen_when_none_is_clear():
     everywhere = StandingObstacles(
         [(f"{x} {y}", Pole(0.2, 10.0), np.array([x, y, -5.0]))
          for x in np.arange(-1.0, 12.0, 2.2) for y in np.arange(-5.5, 6.0, 2.2)]
     )  # fmt: skip
 
-    def room(braking):
+    def clearance_at_rest(braking):
         places = np.array([obstacle.positions[0] for obstacle in everywhere.predict(np.zeros(1))])
         return np.hypot(*(rest_of(braking) - places)[:, :2].T).min() - 0.2 - WIDTH
 
-    chosen = room(RestingPlace(PARAMETERS, everywhere)(0.0, STATE))
-    assert room(USUAL) - 0.2 < chosen < RestingPlaceSettings().clearance
+    chosen = clearance_at_rest(RestingPlace(PARAMETERS, everywhere)(0.0, STATE))
+    assert clearance_at_rest(USUAL) - 0.2 < chosen < RestingPlaceSettings().clearance

@@ -60,7 +60,7 @@ def test_yaw_never_costs_roll_or_pitch_and_is_the_largest_that_fits(
         assert min(min(forces), 7.5 - max(forces)) == pytest.approx(0.0, abs=1e-9)
 
 
-def test_rotors_follow_exactly_whatever_the_step() -> None:
+def test_rotor_lag_is_exact_at_any_step() -> None:
     command = (700.0, 400.0, 900.0, 0.0)
 
     def motion(t: float, state: np.ndarray) -> np.ndarray:
@@ -76,14 +76,14 @@ def test_rotors_follow_exactly_whatever_the_step() -> None:
         assert impulse == pytest.approx(exact[4:], abs=1e-8)
 
 
-def test_commands_beyond_the_largest_speed_are_cut() -> None:
+def test_commands_above_largest_speed_are_clipped() -> None:
     rotors = Rotors(GEOMETRY, 0.05, 0.002)
     for _ in range(1000):
         thrust, *_ = rotors.advance((5000.0,) * 4)
     assert thrust == pytest.approx(30.0)
 
 
-def test_meaningless_parameters_are_refused() -> None:
+def test_invalid_parameters_are_refused() -> None:
     with pytest.raises(SimulationError, match="arm_length"):
         RotorGeometry(30.0, 1000.0, 0.0, 0.016)
     with pytest.raises(SimulationError, match="motor_time_constant"):

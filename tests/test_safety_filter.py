@@ -37,7 +37,7 @@ def check_smooth(flown, crackle=150.0):
     assert np.linalg.norm(path[2, :, :2], axis=1).max() <= SETTINGS.acceleration_limit[0] + 0.3
     assert np.abs(path[2, :, 2]).max() <= SETTINGS.acceleration_limit[2] + 0.1
     assert np.abs(np.diff(path[4], axis=0)).max() < crackle * STEP
-    # What is told of the derivatives is what the position does.
+    # The derivatives agree with differences of the position.
     np.testing.assert_allclose((path[0, 2:] - path[0, :-2]) / (2 * STEP), path[1, 1:-1], atol=0.02)
 
 
@@ -59,12 +59,12 @@ CROSSING = {
 
 
 @pytest.mark.parametrize("name", CROSSING)
-def test_obstacle_is_avoided_and_the_mission_goes_on(name):
+def test_obstacle_is_avoided_and_mission_completed(name):
     flown = fly(avoidance(CROSSING[name]), straight(16.0), 40.0)
     assert min(flown.clearance().values()) >= MARGIN - TOLERANCE
     check_arrived(flown)
     check_smooth(flown)
-    # Plans ask for room at the same moments, so none has to give way to the one before it.
+    # Plans are made at the same times, so none is constrained by the one before it.
     assert max(r.slack for r in flown.reports) < 1e-6
     assert not any(r.infeasible for r in flown.reports)
     assert any(r.active for r in flown.reports)
@@ -81,8 +81,8 @@ ROUND = {
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ROUND)
-def test_what_stops_it_is_flown_round(name):
-    """No deadlock: the clock slows, a way round is found, and the clock runs at its own rate again."""
+def test_blocking_obstacle_is_passed_by_detour(name):
+    """No deadlock: the progress rate falls, a detour is found, and the progress rate returns to 1."""
     obstacles, speed = ROUND[name]
     flown = fly(avoidance(obstacles, speed=speed), straight(16.0, speed), 60.0)
     assert min(flown.clearance().values()) >= MARGIN - TOLERANCE
@@ -95,7 +95,7 @@ def test_what_stops_it_is_flown_round(name):
     assert flown.avoidance.guidance.blocked(flown.times[-1]) == ""
 
 
-def test_gap_wide_enough_is_flown_through():
+def test_wide_gap_is_flown_through():
     flown = fly(avoidance([pole("a", 9.0, -2.2), pole("b", 9.0, 2.2)]), straight(16.0), 40.0)
     clearance = flown.clearance()
     assert min(clearance.values()) >= MARGIN - TOLERANCE
@@ -105,7 +105,7 @@ def test_gap_wide_enough_is_flown_through():
     assert flown.avoidance.guidance.detours == 0
 
 
-def test_closed_way_ends_in_a_safe_stop_and_a_reason():
+def test_blocked_path_ends_in_safe_stop_with_reason():
     flown = fly(avoidance([wall("the wall", 9.0, 0.0, (0.3, 300.0, 40.0))]), straight(14.0), 26.5)
     assert min(flown.clearance().values()) >= MARGIN - TOLERANCE
     assert np.isnan(flown.ends_at)
@@ -116,7 +116,7 @@ def test_closed_way_ends_in_a_safe_stop_and_a_reason():
     check_smooth(flown)
 
 
-def test_a_plan_stays_for_the_length_of_a_stage():
+def test_plan_is_kept_for_length_of_a_stage():
     scene, mission = [sphere("s", (3.0, 0.0, -5.0))], straight(16.0)
     avoided = avoidance(scene)
     shapes = []
@@ -133,7 +133,7 @@ def test_a_plan_stays_for_the_length_of_a_stage():
     assert not np.array_equal(new.derivatives(ahead), shapes[3].derivatives(ahead))
 
 
-def test_wide_awake_but_idle_where_nothing_is_near():
+def test_filter_is_inactive_without_near_obstacles():
     mission = straight(16.0)
     flown = fly(avoidance([sphere("s", (8.0, 12.0, -5.0))]), mission, 30.0)
     np.testing.assert_array_equal(flown.path, mission.derivatives(np.array(flown.times)))
@@ -157,8 +157,8 @@ def test_deviation_returns_to_exactly_zero():
     assert off.max() > 0.5
 
 
-def test_clock_slows_with_lag_and_recovers():
-    """What is in the way goes away later: the mission waits for the payload."""
+def test_progress_rate_falls_with_lag_and_recovers():
+    """The obstacle on the path disappears later: progress waits for the payload."""
 
     def curtain(times):
         return np.where((times < 14.0)[:, None], [[9.0, 0.0, -10.0]], [[9.0, 0.0, 60.0]])
@@ -179,25 +179,25 @@ def test_clock_slows_with_lag_and_recovers():
     check_smooth(flown)
 
 
-def test_the_past_is_told_as_it_was_tracked():
-    """Late measurements are compared with what was tracked then, not with the newest plan's idea of it."""
-    avoided, told = avoidance([sphere("s", (8.0, 0.0, -5.0))]), {}
+def test_past_reference_is_the_tracked_one():
+    """Late measurements are compared with the plan tracked then, not with the newest plan."""
+    avoided, tracked_past = avoidance([sphere("s", (8.0, 0.0, -5.0))]), {}
 
     def watch(flown, time):
-        told[round(flown.times[-1], 6)] = flown.derivatives[-1]
+        tracked_past[round(flown.times[-1], 6)] = flown.derivatives[-1]
         if time > 6.0 and round(time / STEP) % 20 == 0:
             trajectory = avoided.step(time, flown.mission, estimate_at(time, flown.derivatives[-1][0]))
             past = time - STEP * np.arange(1, 20)
-            expected = np.stack([told[round(t, 6)] for t in past], axis=1)
+            expected = np.stack([tracked_past[round(t, 6)] for t in past], axis=1)
             np.testing.assert_allclose(trajectory.derivatives(past), expected, atol=1e-9)
 
     fly(avoided, straight(16.0), 9.0, watch)
 
 
-def test_a_payload_that_is_off_the_plan_keeps_the_plan_farther_from_what_is_near():
+def test_tracking_error_of_payload_increases_distance_of_plan():
     avoided, mission = avoidance([sphere("beside", (1.0, -2.3, -5.0))]), straight(16.0)
     avoided.step(0.0, mission, estimate_at(0.0, mission.position(0.0)))
-    # Within what tracking does it is left alone.
+    # Within tracking errors it is unchanged.
     near = mission.position(STEP) + np.array([0.0, 0.1, 0.0])
     trajectory = avoided.step(STEP, mission, estimate_at(STEP, near))
     np.testing.assert_array_equal(trajectory.derivatives(np.array([STEP]))[0], mission.derivatives(np.array([STEP]))[0])
@@ -211,7 +211,7 @@ def test_a_payload_that_is_off_the_plan_keeps_the_plan_farther_from_what_is_near
     assert (trajectory.derivatives(ahead) - mission.derivatives(ahead))[0, 0, 1] > 0.03
 
 
-def test_with_nothing_near_a_push_leaves_the_mission_as_it_is():
+def test_disturbance_leaves_mission_unchanged_without_near_obstacles():
     avoided, mission = avoidance([sphere("far", (50.0, 50.0, -5.0))]), straight(16.0)
     for k in range(40):
         pushed = mission.position(k * STEP) + np.array([0.0, 1.0, 0.0])
@@ -222,8 +222,8 @@ def test_with_nothing_near_a_push_leaves_the_mission_as_it_is():
 
 
 @pytest.mark.parametrize("when", [4.0, 6.5, 12.0])
-def test_breaking_off_stops_safely_and_smoothly(when):
-    """On the way, while it is bent, and beside the obstacle: what follows is a rest near by."""
+def test_abort_stops_safely_and_smoothly(when):
+    """On the path, while it is deflected, and beside the obstacle: a rest near by follows."""
     avoided = avoidance([sphere("s", (9.0, 0.0, -5.0)), pole("p", 13.0, 0.5)])
     mission = straight(18.0)
     flown = fly(avoided, mission, when, until_end=False)
@@ -254,7 +254,7 @@ def test_breaking_off_stops_safely_and_smoothly(when):
         assert min(clearance_of(hull[k], shape, place) for k in range(0, path.shape[1], 4)) > MARGIN - 0.05
 
 
-def test_it_holds_off_what_comes_while_at_rest():
+def test_team_at_rest_evades_approaching_obstacle():
     avoided = avoidance([sphere("m", (6.0, 0.2, -5.0), (-0.8, 0.0, 0.0))])
     rest = RestTrajectory([0.0, 0.0, -5.0], 0.0)
     flown = fly(avoided, rest, 16.0, until_end=False)
@@ -263,7 +263,7 @@ def test_it_holds_off_what_comes_while_at_rest():
 
 
 @pytest.mark.parametrize("margin", [0.25, 0.75, 1.0])
-def test_margin_is_kept_as_asked(margin):
+def test_commanded_margin_is_kept(margin):
     flown = fly(avoidance([sphere("s", (9.0, 0.2, -5.2))], margin=margin), straight(16.0), 40.0)
     least = flown.clearance()["s"]
     assert margin - TOLERANCE <= least <= margin + 0.35
@@ -271,20 +271,20 @@ def test_margin_is_kept_as_asked(margin):
 
 
 @pytest.mark.parametrize("n", [3, 6, 8])
-def test_any_number_of_uavs(n):
+def test_obstacles_are_avoided_with_any_number_of_uavs(n):
     flown = fly(avoidance([sphere("s", (9.0, 0.2, -5.0)), pole("p", 13.0, 3.2)], n=n), straight(17.0), 50.0)
     # The polygons of the rims leave out a little of the discs.
     assert min(flown.clearance().values()) >= MARGIN - TOLERANCE - (0.03 if n > 6 else 0.0)
     check_arrived(flown)
 
 
-def test_the_correction_of_setpoints_is_none():
+def test_filter_leaves_setpoints_unchanged():
     u = np.arange(12.0)
     assert avoidance([]).safety.correct(0.0, u, estimate_at(0.0, np.zeros(3))) is u
 
 
 def random_scene(rng):
-    """Obstacles about a way of 20 m, none where it begins or ends; moving ones slow enough to be seen coming."""
+    """Obstacles about a path of 20 m, none at its ends; moving ones slow enough to be detected in time."""
     obstacles = []
     for i in range(rng.integers(1, 4)):
         north, east = rng.uniform(5.5, 14.0), rng.uniform(-2.5, 2.5)
@@ -324,7 +324,7 @@ def test_random_scene_is_never_entered(seed):
         check_arrived(flown, 0.05)
 
 
-def test_scene_is_flown_the_same_every_time():
+def test_equal_scenes_give_equal_flights():
     paths = []
     for _ in range(2):
         obstacles = random_scene(np.random.default_rng([3, 5]))
@@ -332,7 +332,7 @@ def test_scene_is_flown_the_same_every_time():
     np.testing.assert_array_equal(paths[0], paths[1])
 
 
-def test_scene_knows_its_names():
+def test_scene_predicts_positions_at_several_times():
     """Of the tests' own making: obstacles at several moments."""
-    (told,) = Scene([swinging("s", (1.0, 2.0, 3.0), (0.5, 0.0, 0.0))]).predict(np.array([0.0, np.pi / 2]))
-    np.testing.assert_allclose(told.positions, [[1.0, 2.0, 3.0], [1.5, 2.0, 3.0]])
+    (predicted,) = Scene([swinging("s", (1.0, 2.0, 3.0), (0.5, 0.0, 0.0))]).predict(np.array([0.0, np.pi / 2]))
+    np.testing.assert_allclose(predicted.positions, [[1.0, 2.0, 3.0], [1.5, 2.0, 3.0]])

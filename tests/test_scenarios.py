@@ -53,11 +53,11 @@ def test_generated_scenario_can_be_flown(kind, number, tmp_path):
     mission = read(generate(11, number, kind), tmp_path)
     schedule = Schedule(mission)
     assert mission.obstacles and mission.limits.clearance == 0.3 and mission.limits.payload_tilt_deg == 6.0
-    way = np.linalg.norm(np.diff(schedule.positions, axis=0), axis=1).sum()
+    path_length = np.linalg.norm(np.diff(schedule.positions, axis=0), axis=1).sum()
     if isinstance(mission.reference, Lissajous):
         assert kind in ("spheres", "moving")
     else:
-        assert 15.0 < way < 30.0 + 6.0
+        assert 15.0 < path_length < 30.0 + 6.0
         assert 1.0 <= mission.reference.speed <= 1.5
         assert np.linalg.norm(schedule.goal[:2]) > 12.0
     standing = [o for o in mission.obstacles if o.motion is None]
@@ -65,7 +65,7 @@ def test_generated_scenario_can_be_flown(kind, number, tmp_path):
     for end in (schedule.positions[0], schedule.goal):  # clear by 3 m
         column = np.array([[*end[:2], z] for z in np.arange(schedule.goal[2], 0.0, 0.5)])
         assert first_conflict(column, [standing_there(o) for o in standing], FORMATION, 3.0) is None
-    if kind != "moving":  # something is in the way
+    if kind != "moving":  # an obstacle is on the path
         obstacles = [standing_there(o) for o in standing] + [moving_there(o, schedule) for o in moving]
         assert first_conflict(schedule.positions, obstacles, FORMATION, 1.0) is not None
     for obstacle in moving:
@@ -192,7 +192,7 @@ def test_flight_on_time_passes(campaign):
     assert result.replay == f"gcs fly {plan.mission} --controller mpc"
 
 
-def test_delay_and_missed_goal_are_judged(campaign):
+def test_delay_and_missed_goal_fail(campaign):
     late, short = campaign.plans
     record(campaign, late, late=3.0)
     assert campaign.result_of(late, FlownProcess(0, SUMMARY, "", 1.0)).delay_s == pytest.approx(3.0, abs=0.05)
@@ -231,7 +231,7 @@ def test_flight_that_could_not_start_fails_with_its_reason(campaign, monkeypatch
     assert "invalid choice" in result.reason
 
 
-def test_flight_ends_when_stop_is_set(campaign):
+def test_flight_ends_when_stop_event_is_set(campaign):
     stop = threading.Event()
     stop.set()
     assert campaign.fly_one(campaign.plans[0], stop) is None

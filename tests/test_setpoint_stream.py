@@ -1,4 +1,4 @@
-"""What a vehicle flies while no set-point comes."""
+"""Set-point in force on board while no set-point arrives."""
 
 import math
 
@@ -30,20 +30,20 @@ def stream_of(setpoints):
     return stream, (len(setpoints) - 1) * PERIOD
 
 
-def test_before_the_first_there_is_none():
+def test_stream_has_no_setpoint_before_first_one():
     stream = SetpointStream(SetpointSettings())
     assert stream.at(1.0) is None
     assert stream.last_time == -math.inf
 
 
-def test_the_last_one_is_flown_as_it_is_while_others_follow():
+def test_last_setpoint_is_used_unchanged_without_gap():
     stream, last = stream_of([pitched(0.0), pitched(0.3)])
     for since in (0.0, PERIOD, SetpointSettings.hold - 1e-6):
         assert pitch_of(stream.at(last + since)) == pytest.approx(0.3)
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_in_a_gap_the_mean_of_the_last_ones_is_flown(sign):
+def test_mean_of_last_setpoints_is_used_in_a_gap(sign):
     angles, thrusts = [0.9, -0.04, 0.02, -0.02, 0.04, 0.2], [0.9, 0.4, 0.5, 0.4, 0.5, 0.7]
     stream, last = stream_of(
         [pitched(a, t, sign if k % 2 else 1.0) for k, (a, t) in enumerate(zip(angles, thrusts, strict=True))]
@@ -56,7 +56,7 @@ def test_in_a_gap_the_mean_of_the_last_ones_is_flown(sign):
     assert stream.at(last + 0.4) is flown
 
 
-def test_the_next_one_ends_the_gap():
+def test_next_setpoint_ends_the_gap():
     stream, last = stream_of([pitched(0.1), pitched(0.2)])
     stream.at(last + 0.3)
     stream.add(pitched(-0.1), last + 0.3)
@@ -64,7 +64,7 @@ def test_the_next_one_ends_the_gap():
     assert pitch_of(stream.at(last + 0.3 + SetpointSettings.hold + 0.001)) == pytest.approx(-0.1)
 
 
-def test_rates_or_a_thrust_to_be_kept_have_no_mean():
+def test_setpoints_of_rates_or_kept_thrust_are_not_averaged():
     rates = AttitudeSetpoint(None, (0.1, 0.0, 0.0), 0.5, 0)
     stream, last = stream_of([pitched(0.1), rates])
     assert stream.at(last + 0.3) is rates
@@ -73,7 +73,7 @@ def test_rates_or_a_thrust_to_be_kept_have_no_mean():
     assert stream.at(last + 0.3) is kept
 
 
-def test_cleared_it_has_forgotten_all():
+def test_cleared_stream_has_no_setpoint():
     stream, last = stream_of([pitched(0.1)])
     stream.clear()
     assert stream.at(last) is None

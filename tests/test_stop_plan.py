@@ -24,25 +24,25 @@ def uav_positions(curve, times):
 
 
 @pytest.mark.parametrize("time", [11.0, 13.7, 18.2])
-def test_it_takes_over_position_velocity_and_acceleration_and_ends_at_rest(time):
+def test_stop_plan_starts_with_current_motion_and_ends_at_rest(time):
     curve = LissajousTrajectory(LissajousCurve((6.0, 3.0), -2.5), 0.5, 40.0, LIMITS, start=10.0)
     flat = flat_reference(PARAMETERS, curve, np.array([time]), LOAD)
     plan = stop_plan(PARAMETERS, flat, time)
     h = 0.01
     before, here, after = uav_positions(curve, [time - h, time, time + h])
     for i, points in enumerate(plan.control_points):
-        way = BPoly(points[:, None, :], [0.0, plan.duration])
-        assert way(0.0) == pytest.approx(here[i], abs=1e-9)
-        assert way.derivative()(0.0) == pytest.approx((after[i] - before[i]) / (2 * h), abs=2e-3)
-        assert way.derivative(2)(0.0) == pytest.approx((after[i] - 2 * here[i] + before[i]) / h**2, abs=5e-3)
-        assert way.derivative()(plan.duration) == pytest.approx(0.0, abs=1e-9)
-        assert way.derivative(2)(plan.duration) == pytest.approx(0.0, abs=1e-9)
+        path = BPoly(points[:, None, :], [0.0, plan.duration])
+        assert path(0.0) == pytest.approx(here[i], abs=1e-9)
+        assert path.derivative()(0.0) == pytest.approx((after[i] - before[i]) / (2 * h), abs=2e-3)
+        assert path.derivative(2)(0.0) == pytest.approx((after[i] - 2 * here[i] + before[i]) / h**2, abs=5e-3)
+        assert path.derivative()(plan.duration) == pytest.approx(0.0, abs=1e-9)
+        assert path.derivative(2)(plan.duration) == pytest.approx(0.0, abs=1e-9)
     # All of them are moved alike, so the payload stays level.
     places = plan.control_points[:, -1] - plan.control_points[0, -1]
     assert places == pytest.approx(PARAMETERS.p - PARAMETERS.p[0], abs=1e-6)
 
 
-def test_a_fast_team_takes_longer():
+def test_stop_plan_takes_longer_at_higher_speed():
     curve = LissajousTrajectory(LissajousCurve((60.0, 3.0), -2.5), 0.2, 40.0, LIMITS, start=10.0)
     times = np.linspace(10.0, 50.0, 401)
     time = times[np.argmax(np.linalg.norm(curve.derivatives(times, 1)[1], axis=1))]
@@ -56,25 +56,25 @@ def test_a_fast_team_takes_longer():
 
 
 @pytest.mark.parametrize("time", [11.0, 13.7, 18.2])
-def test_where_the_team_rests_is_told_though_its_payload_swings(time):
-    """What is asked how to brake sees where the payload will hang, which is not where its own motion would lead."""
+def test_resting_place_is_predicted_with_swinging_payload(time):
+    """The braking function receives the predicted position of the payload, not its own motion."""
     curve = LissajousTrajectory(LissajousCurve((6.0, 3.0), -2.5), 0.6, 40.0, LIMITS, start=10.0)
     flat = flat_reference(PARAMETERS, curve, np.array([time]), LOAD)
-    told = []
+    states = []
 
     def choose(when, state):
-        told.append(state)
+        states.append(state)
         return Braking(1.3, (0.8, 0.0, 0.0))
 
     plan = stop_plan(PARAMETERS, flat, time, choose=choose)
-    foreseen = Braking(1.3, (0.8, 0.0, 0.0)).path(told[0])(plan.duration)
+    predicted = Braking(1.3, (0.8, 0.0, 0.0)).path(states[0])(plan.duration)
     hangs = plan.control_points[:, -1] - PARAMETERS.p + PARAMETERS.l[:, None] * [0.0, 0.0, 1.0]
-    assert hangs == pytest.approx(np.tile(foreseen, (PARAMETERS.number_of_uavs, 1)), abs=1e-6)
+    assert hangs == pytest.approx(np.tile(predicted, (PARAMETERS.number_of_uavs, 1)), abs=1e-6)
     own = Braking(1.3, (0.8, 0.0, 0.0)).path(flat.payload[:3, 0])(plan.duration)
-    assert np.linalg.norm(own - foreseen) > 1.0
+    assert np.linalg.norm(own - predicted) > 1.0
 
 
-def test_it_starts_where_the_team_is_and_moves_all_of_it_alike():
+def test_stop_plan_starts_at_current_positions_and_translates_all_uavs_alike():
     curve = LissajousTrajectory(LissajousCurve((6.0, 3.0), -2.5), 0.5, 40.0, LIMITS, start=10.0)
     flat = flat_reference(PARAMETERS, curve, np.array([13.7]), LOAD)
     layout = StateLayout(PARAMETERS.number_of_uavs)
@@ -87,9 +87,9 @@ def test_it_starts_where_the_team_is_and_moves_all_of_it_alike():
     moved = plan.control_points - usual.control_points
     link = PARAMETERS.l[0]
     assert moved[:, 0] == pytest.approx(np.tile([1.5 - link * (0.1 + 0.05 / 4), -0.8, 0.2], (4, 1)))
-    way = BPoly(plan.control_points[0][:, None, :], [0.0, plan.duration])
+    path = BPoly(plan.control_points[0][:, None, :], [0.0, plan.duration])
     before = BPoly(usual.control_points[0][:, None, :], [0.0, usual.duration])
-    assert way.derivative()(0.0) - before.derivative()(0.0) == pytest.approx([0.3, 0.0, 0.0], abs=1e-9)
+    assert path.derivative()(0.0) - before.derivative()(0.0) == pytest.approx([0.3, 0.0, 0.0], abs=1e-9)
     places = plan.control_points[:, -1] - plan.control_points[0, -1]
     assert places == pytest.approx(PARAMETERS.p - PARAMETERS.p[0], abs=1e-6)
     # What is not known is not reckoned with.

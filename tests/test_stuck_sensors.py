@@ -13,7 +13,7 @@ UNIT = np.array([1.0, 0.0, 0.0, 0.0])
 @pytest.mark.parametrize("source", [PAYLOAD, 2])
 @pytest.mark.parametrize("part", [0, 1])
 @pytest.mark.parametrize("kind", [Position, Attitude])
-def test_stuck_part_is_detected_alone(source, part, kind):
+def test_only_the_stuck_channel_is_detected(source, part, kind):
     random, sensors = np.random.default_rng(1), StuckSensors(NOISE)
 
     def sample(k):

@@ -56,7 +56,7 @@ def flown(monkeypatch):
 # The system file
 
 
-def test_a_system_file_with_other_values_is_the_same_otherwise(tmp_path):
+def test_changed_system_file_differs_in_given_values_only(tmp_path):
     changes = {"avoidance.margin": 0.25, "sensors.payload_rates": 0.1, "avoidance.barrier_rates": [6.0, 6.0]}
     path = tmp_path / "system.toml"
     path.write_text(system_text(changes))
@@ -66,7 +66,7 @@ def test_a_system_file_with_other_values_is_the_same_otherwise(tmp_path):
     assert dataclasses.replace(config, sensors=default.sensors, avoidance=default.avoidance) == default
 
 
-def test_a_key_that_the_system_file_does_not_have_is_refused():
+def test_unknown_key_of_system_file_is_refused():
     with pytest.raises(KeyError):
         system_text({"avoidance.margins": 0.25})
 
@@ -148,7 +148,7 @@ def test_study_without_its_missions_is_refused(tmp_path):
 # Results
 
 
-def test_results_of_an_earlier_version_are_read(tmp_path, flown):
+def test_results_of_earlier_version_are_read(tmp_path, flown):
     campaign = campaign_of("mass", tmp_path, quick=True)
     campaign.fly(nothing, nothing)
     path = campaign.result_path(campaign.plans[0])

@@ -36,12 +36,12 @@ def ground_of(config, **settings):
 
 
 def flight(folder, config=CONFIG, seed=1, obstacles=(), **settings):
-    """Up, then left alone until all is at rest: (swarm's vehicles, ground, rows of truth.csv)."""
+    """Lift-off, then link loss until all is at rest: (swarm's vehicles, ground, rows of truth.csv)."""
     ground = ground_of(config)
     with Swarm(config, seed=seed, obstacles=obstacles, **settings) as swarm:
         swarm.record(TruthLog(folder, config.team.vehicles))
-        exchange(swarm, ground, 10.0, lambda: ground.silent)
-        assert ground.silent
+        exchange(swarm, ground, 10.0, lambda: ground.finished)
+        assert ground.finished
         left = swarm.time
         assert not swarm.at_rest
         exchange(swarm, ground, left + 30.0, lambda: swarm.at_rest)
@@ -64,7 +64,7 @@ def flown(tmp_path_factory):
 
 
 @pytest.mark.slow
-def test_vehicles_left_alone_hold_then_land(flown):
+def test_vehicles_hold_then_land_after_link_loss(flown):
     _, vehicles, ground, truth, _ = flown
     assert not any(vehicle.autopilot.armed for vehicle in vehicles)
     altitude = np.array([-float(row["payload_z_m"]) for row in truth])
@@ -76,19 +76,19 @@ def test_vehicles_left_alone_hold_then_land(flown):
     assert "Touch-down" in texts
 
 
-def test_the_payload_stays_level_and_nothing_touches(flown):
+def test_payload_stays_level_without_contacts(flown):
     _, _, _, truth, _ = flown
     assert {row["contacts"] for row in truth} == {"0"}
     tilt = max(2.0 * math.hypot(float(row["payload_qx"]), float(row["payload_qy"])) for row in truth)
     assert tilt < math.radians(5.0)
 
 
-def test_truth_stands_on_a_grid_of_20_ms_from_zero(flown):
+def test_truth_rows_are_on_a_grid_of_20_ms_from_zero(flown):
     _, _, _, truth, _ = flown
     assert [row["time_s"] for row in truth] == [repr(k / 50) for k in range(len(truth))]
 
 
-def test_obstacles_stand_until_take_off_and_move_from_then(flown):
+def test_obstacles_start_moving_at_take_off(flown):
     folder, _, _, truth, take_off = flown
     obstacles = rows(folder / "obstacles.csv")
     assert [row["time_s"] for row in obstacles[::3]] == [row["time_s"] for row in truth]
@@ -106,7 +106,7 @@ def test_obstacles_stand_until_take_off_and_move_from_then(flown):
         assert float(row["yaw_rad"]) == pytest.approx(math.radians(30.0))
 
 
-def test_telemetry_carries_what_is_measured_when_it_is_sent(flown):
+def test_telemetry_carries_newest_sample(flown):
     _, _, ground, _, _ = flown
     assert sorted(ground.stamps) == [1, 2, 3, 4]
     for stamps in ground.stamps.values():
@@ -128,7 +128,7 @@ def test_every_vehicle_relays_the_payload_unit(flown):
         assert len({(x, z) for _, x, z in of}) == 1
 
 
-def test_noise_has_the_size_that_the_system_file_says(flown):
+def test_noise_has_standard_deviation_of_system_file(flown):
     _, _, ground, truth, _ = flown
     true = {round(float(row["time_s"]) * 1e3): row for row in truth}
     uav, payload = [], []
@@ -148,7 +148,7 @@ def test_noise_has_the_size_that_the_system_file_says(flown):
 
 
 @pytest.mark.slow
-def test_the_same_seed_repeats_to_the_byte_and_another_does_not(flown, tmp_path):
+def test_flight_repeats_to_the_byte_with_same_seed_only(flown, tmp_path):
     folder = flown[0]
     flight(tmp_path / "again", obstacles=OBSTACLES)
     flight(tmp_path / "other", obstacles=OBSTACLES, seed=2)
@@ -159,12 +159,12 @@ def test_the_same_seed_repeats_to_the_byte_and_another_does_not(flown, tmp_path)
 
 @pytest.mark.slow
 @pytest.mark.parametrize("vehicles", [3, 6])
-def test_other_teams_fly_and_land(tmp_path, vehicles):
+def test_teams_of_other_sizes_fly_and_land(tmp_path, vehicles):
     _, _, truth, _ = flight(tmp_path, CONFIG.with_vehicles(vehicles))
     assert {row["contacts"] for row in truth} == {"0"}
 
 
-def test_the_true_payload_may_weigh_more_than_anybody_knows():
+def test_payload_mass_of_world_differs_from_nominal():
     heavier = replace(CONFIG, world=replace(CONFIG.world, payload_mass_factor=1.1))
     with Swarm(heavier, seed=1) as swarm:
         assert swarm.world.parameters.m_0 == pytest.approx(1.1 * CONFIG.payload.mass)
@@ -176,11 +176,11 @@ def test_contacts_between_two_rows_are_counted_in_the_second(tmp_path):
     ground = ground_of(CONFIG)
     with Swarm(CONFIG, seed=1, obstacles=(ball,)) as swarm:
         swarm.record(TruthLog(tmp_path, 4))
-        exchange(swarm, ground, 3.0, lambda: ground.silent)
+        exchange(swarm, ground, 3.0, lambda: ground.finished)
     assert max(int(row["contacts"]) for row in rows(tmp_path / "truth.csv")) > 0
 
 
-def test_home_is_the_missions():
+def test_home_is_that_of_the_mission():
     with Swarm(CONFIG, seed=1, home=Home(-33.5, 151.25, 12.0), ground_address=GROUND) as swarm:
         ground = ground_of(CONFIG)
         exchange(swarm, ground, 2.5)
@@ -188,7 +188,7 @@ def test_home_is_the_missions():
         assert (message.latitude, message.longitude, message.altitude) == (-335000000, 1512500000, 12000)
 
 
-def test_vehicles_offer_themselves_to_a_ground_that_never_spoke():
+def test_vehicles_send_heartbeats_to_ground_address_before_contact():
     with Swarm(CONFIG, seed=1, ground_address=GROUND) as swarm:
         sent = swarm.datagrams_to_send(0.0)
         assert [(i, address) for i, _, address in sent] == [(i, GROUND) for i in (1, 2, 3, 4)]
@@ -198,13 +198,13 @@ def test_vehicles_offer_themselves_to_a_ground_that_never_spoke():
         assert swarm.next_timer() == pytest.approx(1.0)
 
 
-def test_without_anybody_to_talk_to_there_is_no_timer():
+def test_swarm_without_peer_has_no_timer():
     with Swarm(CONFIG, seed=1) as swarm:
         assert swarm.next_timer() is None
         assert swarm.at_rest
 
 
-def test_time_goes_on_in_whole_physics_steps():
+def test_time_advances_in_whole_physics_steps():
     with Swarm(CONFIG, seed=1) as swarm:
         swarm.advance_to(0.0131)
         assert swarm.time == 0.012
@@ -223,7 +223,7 @@ def test_truth_is_written_50_times_a_second_or_more_at_any_physics_rate(tmp_path
     assert [row["time_s"] for row in rows(tmp_path / "truth.csv")] == [repr(k * 10 / 520) for k in range(53)]
 
 
-def test_a_passage_stands_between_samples_and_vehicles_and_between_vehicles_and_wire():
+def test_fault_injector_acts_on_samples_and_datagrams():
     class Disturbed(FaultInterface):
         def own_sample(self, vehicle, sample):
             return None if vehicle == 2 else sample
@@ -238,12 +238,12 @@ def test_a_passage_stands_between_samples_and_vehicles_and_between_vehicles_and_
         ground = ground_of(CONFIG)
         exchange(swarm, ground, 0.25)
         assert swarm.vehicles[1].autopilot.measurement is None
-        heard = {i: len([m for m in ground.messages if m.get_srcSystem() == i]) for i in (1, 2, 3, 4)}
-        assert heard[1] > heard[2] > heard[3] == 1  # everything, all but samples, a heartbeat
-        assert heard[4] == 0
+        received = {i: len([m for m in ground.messages if m.get_srcSystem() == i]) for i in (1, 2, 3, 4)}
+        assert received[1] > received[2] > received[3] == 1  # everything, all but samples, a heartbeat
+        assert received[4] == 0
 
 
-def test_nothing_is_left_of_a_swarm_that_cannot_be():
+def test_failed_construction_of_swarm_closes_world():
     with pytest.raises(UnsupportedWorld):
         Swarm(CONFIG.with_vehicles(16), seed=1)
     twice = (Obstacle("a", (0.0, 0.0, -9.0), Sphere(0.5)), Obstacle("a", (0.0, 5.0, -9.0), Sphere(0.5)))

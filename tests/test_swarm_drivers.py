@@ -54,7 +54,7 @@ def fly_and_leave(clock, vehicles, end):
     """A ground that flies until the payload is up and then ends in the way that ``end`` does."""
     client = LockstepClient(scripted_ground(vehicles), clock)
     client.join()
-    client.run(lambda: client.ground.silent)
+    client.run(lambda: client.ground.finished)
     end(client)
     client.close()
     return client
@@ -67,7 +67,7 @@ def check_landed(truth):
     assert {row["contacts"] for row in truth} == {"0"}
 
 
-def test_two_swarms_side_by_side_fly_alike_and_land_without_their_ground(tmp_path):
+def test_parallel_swarms_of_equal_seed_fly_alike_and_land_after_link_loss(tmp_path):
     def started(name, seed):
         arguments = ("--lockstep", "--base-port", 0, "--with-parent", "--run-dir", tmp_path / name, "--seed", seed)
         return process(*arguments)
@@ -99,7 +99,7 @@ def test_two_swarms_side_by_side_fly_alike_and_land_without_their_ground(tmp_pat
     assert truths[0] != truths[2]
 
 
-def test_time_stands_still_until_a_ground_joins(lockstep):
+def test_lockstep_time_starts_when_a_ground_joins(lockstep):
     swarm, sockets, _, _ = lockstep
     client = client_of(sockets)
     client.join()
@@ -109,11 +109,11 @@ def test_time_stands_still_until_a_ground_joins(lockstep):
     client.close()
 
 
-def test_after_one_ground_has_left_another_may_join(lockstep):
+def test_second_ground_may_join_after_first_has_left(lockstep):
     swarm, sockets, _, _ = lockstep
     first = client_of(sockets)
     first.join()
-    first.run(lambda: first.ground.silent)
+    first.run(lambda: first.ground.finished)
     first.leave()
     first.close()
 
@@ -129,11 +129,11 @@ def test_after_one_ground_has_left_another_may_join(lockstep):
     second.close()
 
 
-def test_a_ground_that_stops_answering_is_given_up(lockstep):
+def test_ground_that_stops_answering_times_out(lockstep):
     swarm, sockets, _, _ = lockstep
     first = client_of(sockets, lift=0.3)
     first.join()
-    first.run(lambda: first.ground.silent)  # the last tick stays without an answer
+    first.run(lambda: first.ground.finished)  # the last tick stays without an answer
 
     second = client_of(sockets)
     second.join()
@@ -144,7 +144,7 @@ def test_a_ground_that_stops_answering_is_given_up(lockstep):
     second.close()
 
 
-def test_only_the_ground_that_joined_moves_the_clock(lockstep):
+def test_only_the_joined_ground_advances_lockstep_time(lockstep):
     swarm, sockets, _, _ = lockstep
     client = client_of(sockets)
     client.join()
@@ -162,7 +162,7 @@ def test_only_the_ground_that_joined_moves_the_clock(lockstep):
     client.close()
 
 
-def test_what_vehicles_answer_comes_at_the_same_time(lockstep):
+def test_answers_of_vehicles_arrive_at_the_same_time(lockstep):
     _, sockets, _, _ = lockstep
     client = client_of(sockets)
     client.join()
@@ -180,11 +180,11 @@ def test_what_vehicles_answer_comes_at_the_same_time(lockstep):
     client.close()
 
 
-def test_a_request_to_end_ends_it_at_once(lockstep):
+def test_end_request_ends_simulation_at_once(lockstep):
     _, sockets, ending, thread = lockstep
     client = client_of(sockets)
     client.join()
-    client.run(lambda: client.ground.silent)  # in the air, an answer awaited
+    client.run(lambda: client.ground.finished)  # in the air, an answer awaited
     ending.request()
     thread.join(PATIENCE)
     assert not thread.is_alive()
@@ -221,14 +221,14 @@ def test_real_time_follows_the_clock_at_the_speed(speed):
         assert swarm.time == pytest.approx(0.5 * speed, abs=0.01 * max(1.0, speed))
 
 
-def test_after_a_stall_time_goes_on_from_where_it_was():
+def test_real_time_resumes_without_jump_after_stall():
     wall = Wall(stop_at=0.5, stalls=(0.2, 0.3))
     with Swarm(CONFIG, seed=1) as swarm, SwarmSockets("127.0.0.1", 0, 4, with_clock=False) as sockets:
         RealTimeDriver(swarm, sockets, wall, 1.0, wall).run()
         assert 0.48 < swarm.time < 0.5 + 2 * LAG_MAX + 0.02
 
 
-def test_the_clock_stands_back_from_what_cannot_be_followed():
+def test_real_time_clock_limits_its_lag():
     now = [100.0]
     clock = RealTimeClock(5.0, 2.0, lambda: now[0])
     assert clock.now() == 5.0
@@ -269,7 +269,7 @@ def test_real_time_over_udp_sends_each_sample_when_it_is_due():
             assert len(of_one) >= 0.95 * CONFIG.rates.telemetry
 
 
-def test_in_real_time_vehicles_land_when_the_parent_is_gone(tmp_path):
+def test_real_time_vehicles_land_when_parent_process_ends(tmp_path):
     arguments = ("--base-port", 0, "--ground-port", 0, "--with-parent", "--speed", 20, "--run-dir", tmp_path / "run")
     with process(*arguments) as (running, clock, vehicles):
         assert clock is None
@@ -279,7 +279,7 @@ def test_in_real_time_vehicles_land_when_the_parent_is_gone(tmp_path):
     assert rows(tmp_path / "run" / "truth.csv")[0]["time_s"] == "0.0"
 
 
-def test_sockets_open_all_or_none():
+def test_sockets_are_opened_all_or_none():
     with SwarmSockets("127.0.0.1", 0, 4, with_clock=True) as sockets:
         taken = sockets.vehicles[0].getsockname()[1]
         with pytest.raises(SimulationError, match="Address already in use"):
@@ -292,12 +292,12 @@ def test_sockets_open_all_or_none():
 
 
 @pytest.mark.parametrize(("base_port", "with_clock"), [(65533, False), (1, True), (70000, False)])
-def test_ports_that_do_not_exist(base_port, with_clock):
+def test_invalid_ports_are_refused(base_port, with_clock):
     with pytest.raises(SimulationError, match="do not exist"):
         SwarmSockets("127.0.0.1", base_port, 4, with_clock)
 
 
-def test_a_datagram_that_cannot_be_sent_is_lost():
+def test_oversized_datagram_is_lost_without_error():
     with SwarmSockets("127.0.0.1", 0, 1, with_clock=False) as sockets:
         sockets.send(1, b"x" * 70_000, sockets.vehicles[0].getsockname())
         assert list(sockets.received()) == []

@@ -21,7 +21,7 @@ def assert_on_curve(position):
     assert np.all(position[:, 2] == -5.0)
 
 
-def test_flies_the_papers_curve_at_the_full_rate_for_the_duration(eight):
+def test_curve_of_the_paper_is_flown_at_full_rate_for_the_duration(eight):
     begin, end = eight.full_rate
     assert end - begin == pytest.approx(40.0)
     times = np.linspace(begin, end, 100)
@@ -32,7 +32,7 @@ def test_flies_the_papers_curve_at_the_full_rate_for_the_duration(eight):
     assert np.allclose(eight.derivatives(times, 0)[0], expected, atol=1e-12)
 
 
-def test_from_rest_to_rest_on_the_curve_within_limits(eight):
+def test_curve_is_flown_from_rest_to_rest_within_limits(eight):
     times = np.arange(eight.start - 1, eight.end + 1, 0.003)
     derivatives = eight.derivatives(times)
     assert_on_curve(derivatives[0])
@@ -89,6 +89,6 @@ def test_centre_and_other_amplitudes():
         lambda: LissajousTrajectory(CURVE, 0.5, 10.0, Limits(2.0, 3.6, 5.0, 6.0)),
     ],
 )
-def test_nonsense_is_refused(bad):
+def test_trajectory_refuses_invalid_arguments(bad):
     with pytest.raises(TrajectoryError):
         bad()

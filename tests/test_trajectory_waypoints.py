@@ -152,7 +152,7 @@ def test_snap_is_continuous():
     assert np.abs(step).max() < 1e-4
 
 
-def test_straight_on_is_flown_at_constant_speed():
+def test_straight_leg_is_flown_at_constant_speed():
     # Unequal legs, two of them shorter than the smoothing reaches.
     legs = [Leg([x, 0, -5], 1.5) for x in (7.0, 7.9, 8.3, 20.0, 30.0)]
     trajectory = planned(legs)
@@ -178,7 +178,7 @@ def test_corner_is_flown_through_not_stopped_at():
     assert np.linalg.norm(derivatives[0] - [10, 0, -5], axis=1).min() <= 0.2
 
 
-def test_never_outside_the_legs():
+def test_trajectory_stays_on_the_legs():
     points = [[4, 0, -0.2], [4, 4, -0.2], [0, 0, 0]]
     _, derivatives = sampled(planned([Leg(p, 1.5) for p in points], [0, 0, -0.2]))
     assert derivatives[0, :, 2].max() <= 1e-12
@@ -209,7 +209,7 @@ def test_circle_keeps_its_radius_and_direction_and_slows_down_where_it_is_tight(
     assert arm.min() > 0.15
 
 
-def test_endless_mission_is_read_only_as_far_as_asked_and_the_past_is_dropped():
+def test_endless_mission_is_read_only_to_evaluated_time_and_past_is_dropped():
     read = 0
 
     def legs():
@@ -234,7 +234,7 @@ def test_endless_mission_is_read_only_as_far_as_asked_and_the_past_is_dropped():
     assert stopped.end < 2006.0
 
 
-def test_planning_ahead_in_steps_gives_what_planning_at_once_gives():
+def test_planning_in_steps_equals_planning_at_once():
     legs = [Leg(p, 1.5) for p in ([5, 0, -5], [5, 1, -5], [0, 1, -5], [0, 0.5, -5.2], [8, 8, -8])]
     at_once = planned(legs)
     stepwise = WaypointTrajectory(HIGH, iter(legs), LIMITS)
@@ -297,7 +297,7 @@ def test_stop_is_prompt():
         lambda: RestTrajectory(HIGH, 2.0, 1.0),
     ],
 )
-def test_nonsense_is_refused(bad):
+def test_trajectory_refuses_invalid_arguments(bad):
     with pytest.raises(TrajectoryError):
         bad()
 

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 from gcs.mavlink.udp import DATAGRAMS_AT_ONCE, arrived
 
 
-def test_what_has_arrived_comes_in_order() -> None:
+def test_datagrams_are_read_in_order_of_arrival() -> None:
     with (
         socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as here,
         socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as there,
@@ -19,7 +19,7 @@ def test_what_has_arrived_comes_in_order() -> None:
         assert list(arrived(here)) == []
 
 
-def test_a_flood_does_not_keep_the_reader() -> None:
+def test_read_is_bounded_under_flood() -> None:
     numbers = count()
     endless = SimpleNamespace(recvfrom=lambda size: (next(numbers), ("10.0.0.66", 1)))
     assert [datagram for datagram, _ in arrived(endless)] == list(range(DATAGRAMS_AT_ONCE))

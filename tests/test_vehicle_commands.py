@@ -24,8 +24,8 @@ from vehicle_bench import (
 from gcs.mavlink import px4
 
 
-def test_arm_and_offboard_sequence(bench: Bench) -> None:
-    [ack] = [m for m in bench.ask(OFFBOARD) if m.get_type() == "COMMAND_ACK"]
+def test_vehicle_arms_and_enters_offboard_in_sequence(bench: Bench) -> None:
+    [ack] = [m for m in bench.request(OFFBOARD) if m.get_type() == "COMMAND_ACK"]
     assert ack.result == REJECTED
     assert "no set-points" in bench.got("STATUSTEXT")[-1].text
     bench.streaming[GROUND, 255] = attitude_target(thrust=0.0)
@@ -33,7 +33,7 @@ def test_arm_and_offboard_sequence(bench: Bench) -> None:
     assert bench.got("SYS_STATUS")[-1].onboard_control_sensors_health & mavlink.MAV_SYS_STATUS_PREARM_CHECK
     assert bench.result(OFFBOARD) == ACCEPTED
     bench.run(0.01)
-    beat = bench.got("HEARTBEAT")[-1]  # told at once, not with the next second
+    beat = bench.got("HEARTBEAT")[-1]  # sent at once, not with the next second
     assert beat.custom_mode == px4.MODE_OFFBOARD and not beat.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED
     assert (beat.type, beat.autopilot) == (mavlink.MAV_TYPE_QUADROTOR, mavlink.MAV_AUTOPILOT_PX4)
     assert bench.result(ARM) == ACCEPTED
@@ -48,7 +48,7 @@ def test_disarming_in_the_air_is_refused(flying: Bench) -> None:
     assert flying.result(command(400, 0, px4.FORCE_ARM_DISARM)) == ACCEPTED
 
 
-def test_setpoint_loss_is_told(flying: Bench) -> None:
+def test_setpoint_loss_is_reported(flying: Bench) -> None:
     flying.streaming.clear()
     flying.run(0.55)
     beat = flying.got("HEARTBEAT")[-1]
@@ -81,7 +81,7 @@ def test_setpoint_loss_is_told(flying: Bench) -> None:
         (command(300), UNSUPPORTED),
     ],
 )
-def test_commands_are_answered(bench: Bench, message: Any, result: int) -> None:
+def test_commands_are_acknowledged(bench: Bench, message: Any, result: int) -> None:
     assert bench.result(message) == result
 
 
@@ -95,11 +95,11 @@ def test_commands_as_command_int_and_mode_as_set_mode(bench: Bench) -> None:
 
 @pytest.mark.parametrize("target", [(2, 1), (1, 25), (7, 0)])
 def test_commands_to_others_are_not_answered(bench: Bench, target: tuple[int, int]) -> None:
-    assert bench.ask(command(400, 1, system=target[0], component=target[1])) == []
+    assert bench.request(command(400, 1, system=target[0], component=target[1])) == []
     assert not bench.vehicle.autopilot.armed
 
 
-def test_its_own_words_coming_back_are_ignored(bench: Bench) -> None:
+def test_looped_back_own_messages_are_ignored(bench: Bench) -> None:
     bench.send(ARM, GROUND, system=1)
     assert not bench.vehicle.autopilot.armed
 
@@ -120,9 +120,9 @@ def test_message_requests_and_intervals(bench: Bench) -> None:
     assert len(bench.got("ATTITUDE")) in (10, 11)
 
 
-def test_timesync_and_ping_are_answered_to_the_asker(bench: Bench) -> None:
-    [answer] = bench.ask(mavlink.MAVLink_timesync_message(0, 123456789))
+def test_timesync_and_ping_are_answered_to_the_sender(bench: Bench) -> None:
+    [answer] = bench.request(mavlink.MAVLink_timesync_message(0, 123456789))
     assert answer.ts1 == 123456789 and answer.tc1 == round(bench.now * 1e9)
-    assert bench.ask(mavlink.MAVLink_timesync_message(5, 6)) == []
-    [answer] = bench.ask(mavlink.MAVLink_ping_message(77, 8, 0, 0))
+    assert bench.request(mavlink.MAVLink_timesync_message(5, 6)) == []
+    [answer] = bench.request(mavlink.MAVLink_ping_message(77, 8, 0, 0))
     assert (answer.time_usec, answer.seq, answer.target_system, answer.target_component) == (77, 8, 255, 190)

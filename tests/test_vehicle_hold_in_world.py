@@ -73,8 +73,8 @@ def test_payload_is_braked_held_and_set_down(velocity: tuple[float, float]) -> N
             world.step([wrench[0] for wrench in wrenches], [wrench[1:] for wrench in wrenches])
         assert world.touching_ground()
         # Flown to the loss (0.8 s), unnoticed (0.5 s), and half of the braking time (4 s).
-        way = math.hypot(*velocity) * (0.8 + 0.5 + 2.0)
-        assert math.hypot(*world.state().payload_position_in_world[:2]) < way + 0.5
+        braking_distance = math.hypot(*velocity) * (0.8 + 0.5 + 2.0)
+        assert math.hypot(*world.state().payload_position_in_world[:2]) < braking_distance + 0.5
     assert not any(pilot.armed for pilot in pilots)
     assert {px4.MODE_OFFBOARD, px4.MODE_HOLD, px4.MODE_LAND} <= modes
     assert math.degrees(max(tilts)) < 9.0

@@ -31,11 +31,11 @@ def test_parameter_list_is_complete_and_byte_wise(bench: Bench) -> None:
 
 
 def test_parameters_are_read_by_name_and_by_index(bench: Bench) -> None:
-    ask = mavlink.MAVLink_param_request_read_message
-    assert value_of(bench.ask(ask(1, 1, b"MIS_TAKEOFF_ALT", -1))) == {"MIS_TAKEOFF_ALT": 2.5}
-    [first] = bench.ask(ask(1, 1, b"", 0))
+    read_request = mavlink.MAVLink_param_request_read_message
+    assert value_of(bench.request(read_request(1, 1, b"MIS_TAKEOFF_ALT", -1))) == {"MIS_TAKEOFF_ALT": 2.5}
+    [first] = bench.request(read_request(1, 1, b"", 0))
     assert first.param_index == 0
-    assert bench.ask(ask(1, 1, b"NO_SUCH", -1)) == [] and bench.ask(ask(1, 1, b"", 999)) == []
+    assert bench.request(read_request(1, 1, b"NO_SUCH", -1)) == [] and bench.request(read_request(1, 1, b"", 999)) == []
 
 
 @pytest.mark.parametrize(
@@ -53,6 +53,6 @@ def test_parameters_are_read_by_name_and_by_index(bench: Bench) -> None:
 def test_parameters_are_set_or_the_kept_value_is_answered(
     bench: Bench, name: str, value: float, kind: int, stored: Any
 ) -> None:
-    answer = value_of(bench.ask(mavlink.MAVLink_param_set_message(1, 1, name.encode(), value, kind)))
+    answer = value_of(bench.request(mavlink.MAVLink_param_set_message(1, 1, name.encode(), value, kind)))
     assert answer == {name: stored}
     assert bench.vehicle.parameters[name] == stored

@@ -39,7 +39,7 @@ from gcs.mavlink.setpoints import stop_plan_message
         attitude_target(mask=32 | 7),
     ],
 )
-def test_insane_setpoints_do_not_count(flying: Bench, message: Any) -> None:
+def test_invalid_setpoints_are_ignored(flying: Bench, message: Any) -> None:
     flying.streaming[GROUND, 255] = message
     flying.run(0.3)
     assert flying.vehicle.refused_setpoints >= 5
@@ -58,7 +58,7 @@ def test_insane_setpoints_do_not_count(flying: Bench, message: Any) -> None:
         (attitude_target(mask=7, rates=(math.nan, math.inf, 1e9), thrust=0.3), ((1, 0, 0, 0), (0, 0, 0), 0.3)),
     ],
 )
-def test_type_masks(flying: Bench, message: Any, target: Any) -> None:
+def test_type_masks_of_setpoints_are_followed(flying: Bench, message: Any, target: Any) -> None:
     flying.send(message)
     flying.body.command = flying.vehicle.step(flying.body.measure(), flying.now)
     attitude, rates, thrust = flying.vehicle.autopilot.attitude_target
@@ -66,7 +66,7 @@ def test_type_masks(flying: Bench, message: Any, target: Any) -> None:
     assert rates == pytest.approx(target[1], abs=1e-6) and thrust == pytest.approx(target[2], abs=1e-6)
 
 
-def test_setpoints_overtaken_on_the_way_are_dropped_but_not_those_of_a_new_clock(flying: Bench) -> None:
+def test_reordered_setpoints_are_dropped_but_not_after_clock_step(flying: Bench) -> None:
     def thrust_after(stamp: int, thrust: float) -> float:
         flying.send(attitude_target(stamp=stamp, thrust=thrust))
         flying.vehicle.step(flying.body.measure(), flying.now)
@@ -91,8 +91,8 @@ def stop_plan(flying: Bench, start: float, x: float = 0.0, duration: float = 4.0
 
 
 @pytest.mark.parametrize("wrapped", [0.0, 2**32 * 1e-3])
-def test_without_setpoints_it_follows_the_plan_that_came_with_the_last_one(flying: Bench, wrapped: float) -> None:
-    """The ground knows the vehicle's clock by stamps of 32 bits of milliseconds."""
+def test_vehicle_follows_last_stop_plan_without_setpoints(flying: Bench, wrapped: float) -> None:
+    """The ground estimates the vehicle clock from stamps of 32 bits of milliseconds."""
     x = flying.body.position[0]
     flying.send(stop_plan(flying, flying.now + wrapped, x=3.0))
     flying.streaming.clear()
@@ -114,7 +114,7 @@ def test_without_setpoints_it_follows_the_plan_that_came_with_the_last_one(flyin
         (-9.0, {}),
     ],
 )
-def test_a_plan_of_another_time_or_place_or_none_is_not_followed(flying: Bench, late: float, changes: Any) -> None:
+def test_inconsistent_or_missing_stop_plan_is_not_followed(flying: Bench, late: float, changes: Any) -> None:
     x = flying.body.position[0]
     flying.send(stop_plan(flying, flying.now - late, x=3.0, **changes))
     flying.streaming.clear()
@@ -123,7 +123,7 @@ def test_a_plan_of_another_time_or_place_or_none_is_not_followed(flying: Bench, 
     assert flying.body.position[0] - x == pytest.approx(0.0, abs=0.3)
 
 
-def test_a_strangers_plan_is_not_followed(flying: Bench) -> None:
+def test_stop_plan_of_foreign_system_is_not_followed(flying: Bench) -> None:
     x = flying.body.position[0]
     flying.send(stop_plan(flying, flying.now, x=3.0), STRANGER)
     flying.streaming.clear()
@@ -131,7 +131,7 @@ def test_a_strangers_plan_is_not_followed(flying: Bench) -> None:
     assert flying.body.position[0] - x == pytest.approx(0.0, abs=0.3)
 
 
-def test_a_hold_that_is_asked_for_again_goes_on_with_its_plan(flying: Bench) -> None:
+def test_repeated_hold_command_continues_stop_plan(flying: Bench) -> None:
     x = flying.body.position[0]
     flying.send(stop_plan(flying, flying.now, x=3.0))
     flying.streaming.clear()

@@ -1,4 +1,4 @@
-"""The command vehicle-sim: what it refuses, what it tells, how it ends."""
+"""The command vehicle-sim: refused arguments, output, end of the process."""
 
 import json
 import signal
@@ -75,18 +75,18 @@ def somewhere_else(tmp_path, monkeypatch):
         ("--faster", "unrecognized arguments: --faster"),
     ],
 )
-def test_what_cannot_be_used_is_refused_in_one_line(arguments, reason, tmp_path, capfd):
+def test_unusable_argument_is_refused_in_one_line(arguments, reason, tmp_path, capfd):
     before = sorted(path.name for path in tmp_path.rglob("*"))
     assert main(arguments.split()) == 2
-    told = capfd.readouterr()
-    assert told.out == ""
-    assert told.err.startswith("vehicle-sim: ")
-    assert told.err.count("\n") == 1
-    assert reason in told.err
+    output = capfd.readouterr()
+    assert output.out == ""
+    assert output.err.startswith("vehicle-sim: ")
+    assert output.err.count("\n") == 1
+    assert reason in output.err
     assert sorted(path.name for path in tmp_path.rglob("*")) == before
 
 
-def test_a_taken_port_starts_nothing(tmp_path, capfd):
+def test_occupied_port_is_refused_before_start(tmp_path, capfd):
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
         other.bind(("127.0.0.1", 0))
         port = other.getsockname()[1]
@@ -95,21 +95,21 @@ def test_a_taken_port_starts_nothing(tmp_path, capfd):
     assert not (tmp_path / "run").exists()
 
 
-def test_help_tells_the_whole_story(capfd):
+def test_help_lists_all_options_and_examples(capfd):
     with pytest.raises(SystemExit) as ended:
         main(["--help"])
     assert ended.value.code == 0
-    told = capfd.readouterr().out
+    output = capfd.readouterr().out
     for option in OPTIONS:
-        assert f"--{option}" in told
-    assert "--with-parent" not in told
-    assert "Examples:" in told
+        assert f"--{option}" in output
+    assert "--with-parent" not in output
+    assert "Examples:" in output
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 0)])
 @pytest.mark.parametrize("pace", ["--lockstep", "--realtime"])
-def test_signals_end_it_with_its_records_closed(tmp_path, number, status, pace):
+def test_signal_ends_simulation_with_closed_records(tmp_path, number, status, pace):
     arguments = ("--mission", "mission.toml", "--base-port", 0, "--run-dir", "run", pace)
     with process(*arguments, *(("--ground-port", 0) if pace == "--realtime" else ())) as (running, clock, vehicles):
         assert (clock is not None) == (pace == "--lockstep")
@@ -127,18 +127,18 @@ def test_signals_end_it_with_its_records_closed(tmp_path, number, status, pace):
     assert manifest["command"][:3] == ["vehicle-sim", "--mission", "mission.toml"]
 
 
-def test_vehicles_offer_themselves_at_the_ground_port():
+def test_vehicles_send_heartbeats_to_the_ground_port():
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as ground:
         ground.bind(("127.0.0.1", 0))
         ground.settimeout(PATIENCE)
         arguments = ("--base-port", 0, "--ground-port", ground.getsockname()[1], "--vehicles", 3, "--seed", 4)
         with process(*arguments) as (running, _, vehicles):
             codec = Codec(255, mavlink.MAV_COMP_ID_MISSIONPLANNER)
-            heard = {}
-            while len(heard) < 3:
+            received = {}
+            while len(received) < 3:
                 datagram, sender = ground.recvfrom(65535)
-                heard[sender] = codec.decode(datagram)[0].system
-            assert heard == {address: i for i, address in enumerate(vehicles, start=1)}
+                received[sender] = codec.decode(datagram)[0].system
+            assert received == {address: i for i, address in enumerate(vehicles, start=1)}
             running.send_signal(signal.SIGTERM)
             assert running.wait(PATIENCE) == 0
 
@@ -153,7 +153,7 @@ def test_the_folder_of_a_parent_keeps_its_manifest(tmp_path):
     assert (tmp_path / "run" / "truth.csv").exists()
 
 
-def test_ctrl_c_at_the_terminal_is_left_to_the_parent(tmp_path):
+def test_ctrl_c_at_the_terminal_is_handled_by_the_parent(tmp_path):
     with process("--base-port", 0, "--lockstep", "--with-parent") as (running, _, _):
         running.send_signal(signal.SIGINT)
         running.stdin.close()

@@ -18,7 +18,7 @@ from vehicle_sim.world.range_sensor import RangeSample
 from vehicle_sim.world.sensors import Measurement
 
 
-def test_it_says_nothing_to_nobody_and_offers_itself_to_the_ground_address_with_heartbeats() -> None:
+def test_vehicle_without_peer_sends_only_heartbeats_to_ground_address() -> None:
     assert Bench().vehicle.next_timer() is None
     bench = Bench(ground_address=GROUND)
     assert bench.vehicle.next_timer() is not None
@@ -30,7 +30,7 @@ def test_it_says_nothing_to_nobody_and_offers_itself_to_the_ground_address_with_
     assert bench.got("ATTITUDE_QUATERNION")
 
 
-def test_streams_come_at_their_rates_with_the_stamp_of_the_sample(bench: Bench) -> None:
+def test_streams_have_their_rates_and_stamps_of_samples(bench: Bench) -> None:
     bench.run(0.01)
     bench.inbox.clear()
     bench.datagrams.clear()
@@ -64,12 +64,12 @@ def test_the_payload_unit_is_relayed_as_a_component_with_its_own_stamp(bench: Be
     before = len(bench.got("ATTITUDE_QUATERNION", component=25))
     bench.body.tick += 10
     bench.collect()
-    assert len(bench.got("ATTITUDE_QUATERNION", component=25)) == before  # the same sample is told once
+    assert len(bench.got("ATTITUDE_QUATERNION", component=25)) == before  # the same sample is sent once
 
 
 def test_sequence_numbers_have_no_gaps_on_any_link(bench: Bench) -> None:
     bench.send(mavlink.MAVLink_heartbeat_message(6, 8, 0, 0, 0, 3), STRANGER)
-    bench.ask(mavlink.MAVLink_param_request_list_message(1, 1), STRANGER)
+    bench.request(mavlink.MAVLink_param_request_list_message(1, 1), STRANGER)
     bench.run(1.0)
     for address in (GROUND, STRANGER):
         for component in (1, 25):
@@ -87,7 +87,7 @@ def test_positions_on_the_globe_are_those_of_the_local_frame(bench: Bench) -> No
     assert message.alt - home.altitude == pytest.approx(message.relative_alt, abs=2)
 
 
-def test_next_timer_is_when_there_is_something_to_send(bench: Bench) -> None:
+def test_next_timer_is_time_of_next_message(bench: Bench) -> None:
     bench.collect()
     due = bench.vehicle.next_timer()
     assert due is not None and bench.now < due <= bench.now + 0.02
@@ -96,7 +96,7 @@ def test_next_timer_is_when_there_is_something_to_send(bench: Bench) -> None:
     assert bench.vehicle.next_timer() < due
 
 
-def test_silent_peers_are_forgotten_and_their_number_is_bounded(bench: Bench) -> None:
+def test_peers_time_out_and_their_number_is_bounded(bench: Bench) -> None:
     for port in range(50):
         bench.send(mavlink.MAVLink_heartbeat_message(6, 8, 0, 0, 0, 3), ("10.0.0.1", port))
     bench.run(1.0)
@@ -126,13 +126,13 @@ def test_lost_samples_stop_the_telemetry_and_the_health_bits(bench: Bench) -> No
     assert bench.result(ARM) == REJECTED
 
 
-def test_a_range_sensor_that_breaks_is_told_at_once(bench: Bench) -> None:
+def test_failed_range_sensor_is_reported_at_once(bench: Bench) -> None:
     def works() -> list[bool]:
         bit = mavlink.MAV_SYS_STATUS_SENSOR_PROXIMITY
-        told = bench.got("SYS_STATUS")
+        statuses = bench.got("SYS_STATUS")
         bench.inbox.clear()
-        assert all(message.onboard_control_sensors_present & bit for message in told)
-        return [bool(message.onboard_control_sensors_health & bit) for message in told]
+        assert all(message.onboard_control_sensors_present & bit for message in statuses)
+        return [bool(message.onboard_control_sensors_health & bit) for message in statuses]
 
     bench.run(0.1)
     assert not bench.got("SYS_STATUS")[-1].onboard_control_sensors_present & mavlink.MAV_SYS_STATUS_SENSOR_PROXIMITY

@@ -22,7 +22,7 @@ def eight(times):
     return np.stack([x, y, np.zeros_like(x)], axis=2)
 
 
-def learnt(force_at, times=TIMES, noise=0.05, seed=5):
+def estimated_wind(force_at, times=TIMES, noise=0.05, seed=5):
     """Return the estimated air after a figure eight; ``force_at`` (velocity) -> force on payload and on each UAV."""
     estimator, generator = WindEstimator(SIZE, PERIOD, LIMIT), np.random.default_rng(seed)
     for velocity in eight(times)[1]:
@@ -32,7 +32,7 @@ def learnt(force_at, times=TIMES, noise=0.05, seed=5):
 
 
 @pytest.mark.parametrize("limit", [np.inf, 12.0], ids=["plain", "fading"])
-def test_drag_rates_are_its_derivatives(limit):
+def test_drag_rates_are_derivatives_of_drag(limit):
     air, h = Air(np.array([2.0, 1.0, 0.2]), box_coefficients(SIZE), 0.02, limit), 1e-4
     force, rate, acceleration = air.on_payload_along(eight(TIMES))
     before, after = (air.on_payload_along(eight(TIMES + d)) for d in (-h, h))
@@ -46,7 +46,7 @@ def test_drag_rates_are_its_derivatives(limit):
 @pytest.mark.parametrize("factor", [0.7, 1.0, 1.4])
 def test_steady_wind_and_drag_factor_are_estimated(wind, factor):
     true = Air(np.array([*wind, 0.0]), factor * box_coefficients(SIZE), 0.018)
-    air = learnt(lambda velocity: (true.on_payload(velocity), true.on_uav(velocity)))
+    air = estimated_wind(lambda velocity: (true.on_payload(velocity), true.on_uav(velocity)))
     assert air.wind == pytest.approx(true.wind, abs=0.3)
     for velocity in ([0.0, 0.0, 0.0], [3.0, 2.0, 0.0], [-3.0, 2.0, 0.0], [-2.0, -3.0, 0.0]):
         expected = true.on_payload(np.array(velocity))
@@ -55,15 +55,15 @@ def test_steady_wind_and_drag_factor_are_estimated(wind, factor):
 
 
 def test_no_wind_without_force():
-    assert learnt(lambda _: (np.zeros(3), np.zeros(3))) is None
+    assert estimated_wind(lambda _: (np.zeros(3), np.zeros(3))) is None
 
 
 def test_no_wind_for_force_independent_of_velocity():
-    assert learnt(lambda _: (np.array([0.0, 8.0, 0.0]), np.zeros(3))) is None
+    assert estimated_wind(lambda _: (np.array([0.0, 8.0, 0.0]), np.zeros(3))) is None
 
 
 def test_no_wind_for_force_along_velocity():
-    assert learnt(lambda velocity: (1.5 * velocity, np.zeros(3))) is None
+    assert estimated_wind(lambda velocity: (1.5 * velocity, np.zeros(3))) is None
 
 
 def test_wind_estimate_ends_after_wind():

@@ -36,7 +36,7 @@ def test_uav_driven_into_a_sphere_counts_as_contact():
         assert not world.touching_ground()
 
 
-def test_a_link_meets_a_pole_and_a_wall_stops_the_payload():
+def test_link_contacts_pole_and_wall_stops_payload():
     parameters = system(4)
     with World(parameters) as world:
         world.place(hover_state(parameters, (0, 0, -6.0)))
@@ -114,7 +114,7 @@ def test_toppled_system_on_the_ground_counts():
         (("taken", Sphere(1.0), (0, 0, 0)), "taken"),
     ],
 )
-def test_obstacles_without_a_meaning_are_refused(arguments, reason):
+def test_invalid_obstacles_are_refused(arguments, reason):
     with World(system(4)) as world:
         world.add_obstacle("taken", Sphere(1.0), (9, 9, -9))
         with pytest.raises(SimulationError, match=reason):

@@ -193,7 +193,7 @@ def random_state(n, seed):
 
 
 @pytest.mark.parametrize("n", [3, 4, 8, MAX_VEHICLES])
-def test_any_state_is_placed_read_and_moved_on_rightly(n):
+def test_any_state_is_set_read_and_propagated_exactly(n):
     parameters, state = system(n), random_state(n, n)
     rng = np.random.default_rng(100 + n)
     f, tau, F, F_0 = rng.uniform(5, 10, n), rng.normal(size=(n, 3)), rng.normal(size=(n, 3)), rng.normal(size=3)
@@ -223,7 +223,7 @@ def test_any_state_is_placed_read_and_moved_on_rightly(n):
     assert uav_array(after, "thrust").tolist() == f.tolist()
 
 
-def test_a_world_that_the_engine_computes_wrongly_is_refused():
+def test_parameters_that_engine_cannot_simulate_are_refused():
     assert MAX_VEHICLES >= 8
     with pytest.raises(UnsupportedWorld, match=f"{MAX_VEHICLES + 1} vehicles"):
         World(system(MAX_VEHICLES + 1))
@@ -235,7 +235,7 @@ def test_a_world_that_the_engine_computes_wrongly_is_refused():
         World(replace(system(), J_0=np.diag([0.1, 0.1, 0.55])))
 
 
-def test_a_body_thrown_in_the_air_keeps_its_velocity_and_every_rate():
+def test_free_body_keeps_velocity_and_angular_rates():
     """No damping, no joint motor, no limit: without forces nothing changes but by gravity."""
     parameters = system(4)
     spin = np.array([0.0, 0.0, 150.0])

@@ -15,7 +15,7 @@ from vehicle_sim.world.world import World
 
 
 @pytest.mark.parametrize("parameters", [system(3), system(4), system(8), unequal()], ids=["3", "4", "8", "unequal"])
-def test_standing_on_the_pad_nothing_moves(parameters):
+def test_system_on_the_pad_does_not_move(parameters):
     with World(parameters) as world:
         before = world.state()
         after = run(world, 2.0, [0.0] * parameters.number_of_uavs)
@@ -38,7 +38,7 @@ def test_at_the_start_links_are_upright_on_the_attachment_points():
         np.testing.assert_allclose(uav_array(world.state(), "position_in_world"), expected, atol=1e-12)
 
 
-def test_each_cradle_lets_go_when_its_uav_lifts_more_than_itself():
+def test_each_cradle_releases_when_thrust_exceeds_weight_of_its_uav():
     parameters = system(4)
     weight = float(parameters.m[0] * parameters.g)
     with World(parameters) as world:
@@ -68,7 +68,7 @@ def land(world, offset=0.0):
     return run(world, 2.0, [0.0] * 4)
 
 
-def test_landed_uavs_are_caught_where_they_stand_and_can_take_off_again():
+def test_landed_uavs_are_held_by_cradles_and_take_off_again():
     parameters = system(4)
     with World(parameters) as world:
         state = land(world)
@@ -84,7 +84,7 @@ def test_landed_uavs_are_caught_where_they_stand_and_can_take_off_again():
         assert not world.touching_ground()
 
 
-def test_landing_beside_the_pad_stands_on_the_ground():
+def test_payload_landed_beside_the_pad_rests_on_the_ground():
     with World(system(4)) as world:
         state = land(world, offset=5.0)
         assert state.payload_position_in_world == pytest.approx((5.0, 0, STANDING_ON_GROUND), abs=2e-3)
@@ -93,7 +93,7 @@ def test_landing_beside_the_pad_stands_on_the_ground():
         assert world.contacts() == 0
 
 
-def test_a_payload_that_hangs_on_some_cradles_stands_for_the_others():
+def test_payload_hanging_on_some_cradles_is_on_ground_for_the_others():
     with World(system()) as world:
         world._cradles.release(3)
         world.touching_ground = lambda: False
@@ -101,7 +101,7 @@ def test_a_payload_that_hangs_on_some_cradles_stands_for_the_others():
         assert uav_array(world.state(), "cradled").all()
 
 
-def test_wind_does_not_move_what_stands_in_its_cradles():
+def test_wind_does_not_move_uavs_in_cradles():
     with World(system()) as world:
         for _ in range(500):
             world.step([0.0] * 4, [(0.0, 0.0, 0.0)] * 4, (20.0, 0.0, 0.0), [(1.0, 0.0, 0.0)] * 4)
@@ -111,7 +111,7 @@ def test_wind_does_not_move_what_stands_in_its_cradles():
         assert world.state().uavs[0].velocity_in_world[1] > 0.1
 
 
-def test_no_cradle_catches_in_the_air():
+def test_no_cradle_closes_in_the_air():
     with World(system(4)) as world:
         world.place(hover_state(system(4), (0, 0, -1.5)))
         state = run(world, 0.05, [0.0] * 4)

@@ -55,7 +55,7 @@ class Bench:
         codec = self.codecs.setdefault((sender, system), Codec(system, 190))
         self.vehicle.receive(codec.encode(message), sender, self.now)
 
-    def ask(self, message: Any, sender: Any = GROUND, system: int = 255) -> list[Any]:
+    def request(self, message: Any, sender: Any = GROUND, system: int = 255) -> list[Any]:
         """Send, and return what came back to that address at once, apart from what streams anyway."""
         self.collect()
         before = len(self.inbox.setdefault(sender, []))
@@ -66,7 +66,7 @@ class Bench:
         return [m for m in new if m.get_type() not in streamed] if len(new) < 30 else new[-1:]
 
     def result(self, message: Any, sender: Any = GROUND, system: int = 255) -> int:
-        [ack] = [m for m in self.ask(message, sender, system) if m.get_type() == "COMMAND_ACK"]
+        [ack] = [m for m in self.request(message, sender, system) if m.get_type() == "COMMAND_ACK"]
         assert ack.command == message.command and ack.target_system == system
         return ack.result
 

@@ -34,7 +34,7 @@ FAR = 1e20
 
 
 def field(count):
-    """``count`` obstacles: a sphere and a pole on the way, the rest about it, thinner further off."""
+    """``count`` obstacles: a sphere and a pole on the path, the rest about it, thinner further off."""
     rng = np.random.default_rng(count)
     obstacles = [sphere("s0", (8.0, 0.2, -5.0)), pole("p0", 14.0, 2.6)]
     while len(obstacles) < count:

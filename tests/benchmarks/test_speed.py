@@ -91,7 +91,7 @@ def seconds_of(function, repetitions):
     return statistics.median(times)
 
 
-def test_parts_side_by_side():
+def test_steps_in_parallel():
     """What a part costs against a yardstick of the same machine: ratios travel between machines, times do not."""
     A = np.random.default_rng(1).standard_normal((60, 60))
     yardstick = seconds_of(lambda: np.linalg.solve(A, A), 300)

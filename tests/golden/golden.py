@@ -7,7 +7,7 @@ A refactoring that is meant to change no behaviour changes no checksum:
   python tests/golden/golden.py --renew          write the checksums anew, on purpose
 
 The checksums hold for the versions that `checksums.json` names, and for one kind of processor. `telemetry.tlog` is
-compared twice: whole, and with the texts of its STATUSTEXT messages left out, so that a reworded message can be told
+compared twice: whole, and with the texts of its STATUSTEXT messages left out, so that a reworded message can be distinguished
 from another flight.
 """
 
@@ -29,7 +29,7 @@ HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent))
 
 import pymavlink.dialects.v20.common as mavlink  # noqa: E402
-from flight_in_process import Rehearsal  # noqa: E402
+from flight_in_process import InProcessFlight  # noqa: E402
 from threadpoolctl import threadpool_limits  # noqa: E402
 
 from gcs.flight.failsafe import Failsafe  # noqa: E402
@@ -50,10 +50,10 @@ class Golden:
     mission: Path
     tables: str = ""
     seed: int = 1
-    on_exchange: Callable[[Rehearsal], None] = lambda flight: None
+    on_exchange: Callable[[InProcessFlight], None] = lambda flight: None
 
 
-def interrupt_at_8_seconds(flight: Rehearsal) -> None:
+def interrupt_at_8_seconds(flight: InProcessFlight) -> None:
     """Break the flight off as Ctrl-C does."""
     if flight.now >= 8.0:
         flight.station.raise_failsafe(flight.now, Failsafe.INTERRUPTED, "interrupted")
@@ -105,7 +105,7 @@ def fly(name: str) -> tuple[str, dict[str, str]]:
             text = golden.mission.read_text(encoding="utf-8")
             text = text.replace('"../../../missions/system.toml"', json.dumps(str(system)))
             mission.write_text(text + golden.tables, encoding="utf-8")
-        with Rehearsal(mission, folder, seed=golden.seed) as flight:
+        with InProcessFlight(mission, folder, seed=golden.seed) as flight:
             flight.fly(golden.on_exchange)
         return name, checksums(folder)
 

@@ -1,4 +1,4 @@
-"""On the ground, while thrust grows or fades: the UAVs stay upright, even when the loop is late."""
+"""Ground controller while thrust spools up or down: stability with loop delay."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ def slowest(gain, share, late):
     block = np.zeros((6, 6))
     block[:5, :5], block[:5, 5:] = A, B
     step = expm(block * PERIOD)
-    loop = np.zeros((5 + late + 1, 5 + late + 1))  # the state, and set-points on their way, the oldest first
+    loop = np.zeros((5 + late + 1, 5 + late + 1))  # the state, and set-points in transit, the oldest first
     loop[:5, :5], loop[:5, 5:6] = step[:5, :5], step[:5, 5:]
     loop[5 + late, :5] = -gain
     for k in range(late):
@@ -30,5 +30,5 @@ def slowest(gain, share, late):
 
 @pytest.mark.parametrize("share", [0.55, 0.7, 0.85, 1.0])
 @pytest.mark.parametrize("late", [0, 1, 2, 3])
-def test_the_regulator_bears_a_late_loop(share, late):
+def test_ground_controller_is_stable_with_loop_delay(share, late):
     assert slowest(GAINS[0], share, late) < 0.985

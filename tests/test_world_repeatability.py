@@ -25,7 +25,7 @@ def scenario(world, look):
     return world.state()
 
 
-def test_repeats_to_the_last_bit_whoever_looks_and_whatever_runs_beside_it():
+def test_world_repeats_to_the_bit_with_reads_and_parallel_worlds():
     with World(system(4)) as first:
         one = scenario(first, look=False)
     with World(system(4)) as second, World(system(3)) as other:
@@ -34,7 +34,7 @@ def test_repeats_to_the_last_bit_whoever_looks_and_whatever_runs_beside_it():
         assert other.time == pytest.approx(0.1)
 
 
-def test_closing_twice_is_harmless():
+def test_world_may_be_closed_twice():
     world = World(system(4))
     world.close()
     world.close()

@@ -28,24 +28,24 @@ def integrated(chain, start, knots, times):
 
 
 @pytest.mark.parametrize("chain", CHAINS)
-def test_roll_out_and_evaluation_are_the_integral_of_the_snap(chain):
+def test_roll_out_and_evaluation_equal_integral_of_snap(chain):
     rng = np.random.default_rng(chain.stages)
     start, knots = rng.normal(size=(5, 3)), rng.normal(size=(chain.knots, 3)) * 3.0
     states = chain.roll_out(start, knots)
     stages = chain.period * np.arange(1, chain.stages + 1)
     between = np.sort(rng.uniform(0.0, stages[-1], 12))
-    told = chain.evaluate(states, between)
+    evaluated = chain.evaluate(states, between)
     for axis in range(3):
         np.testing.assert_allclose(
             states[1:, :4, axis], integrated(chain, start[:, axis], knots[:, axis], stages), rtol=1e-7, atol=1e-8
         )
         np.testing.assert_allclose(
-            told[:4, :, axis].T, integrated(chain, start[:, axis], knots[:, axis], between), rtol=1e-7, atol=1e-8
+            evaluated[:4, :, axis].T, integrated(chain, start[:, axis], knots[:, axis], between), rtol=1e-7, atol=1e-8
         )
 
 
 @pytest.mark.parametrize("chain", CHAINS)
-def test_snap_goes_through_its_knots_in_straight_lines(chain):
+def test_snap_is_piecewise_linear_through_knots(chain):
     rng = np.random.default_rng(1)
     start, knots = rng.normal(size=(5, 3)), rng.normal(size=(chain.knots, 3))
     states = chain.roll_out(start, knots)
@@ -70,7 +70,7 @@ def test_evaluation_is_continuous_up_to_snap():
     np.testing.assert_allclose(chain.evaluate(states, joints), states[1:-1].transpose(1, 0, 2), atol=1e-9)
 
 
-def test_each_derivative_is_that_of_the_one_before():
+def test_each_state_is_derivative_of_lower_one():
     chain = Chain()
     rng = np.random.default_rng(3)
     states = chain.roll_out(rng.normal(size=(5, 3)), rng.normal(size=(chain.knots, 3)))
@@ -81,22 +81,22 @@ def test_each_derivative_is_that_of_the_one_before():
     np.testing.assert_allclose(slope[:4], chain.evaluate(states, times)[1:], atol=1e-5)
 
 
-def test_several_roll_outs_are_evaluated_in_one_go():
+def test_stacked_roll_outs_are_evaluated_as_separate_ones():
     chain = Chain()
     rng = np.random.default_rng(4)
     plans = [chain.roll_out(rng.normal(size=(5, 3)), rng.normal(size=(chain.knots, 3))) for _ in range(3)]
     times = rng.uniform(0.0, 1.5 * chain.stages * chain.period, 30)
     which = rng.integers(0, 3, 30)
-    told = chain.evaluate(np.concatenate(plans), times, which * (chain.stages + 1))
+    evaluated = chain.evaluate(np.concatenate(plans), times, which * (chain.stages + 1))
     for i in range(3):
-        np.testing.assert_array_equal(told[:, which == i], chain.evaluate(plans[i], times[which == i]))
+        np.testing.assert_array_equal(evaluated[:, which == i], chain.evaluate(plans[i], times[which == i]))
 
 
-def test_beyond_the_last_stage_it_coasts():
+def test_chain_has_constant_velocity_beyond_last_stage():
     chain = Chain()
     states = chain.roll_out(np.ones((5, 3)), np.zeros((chain.knots, 3)))
     end = chain.stages * chain.period
-    told = chain.evaluate(states, np.array([end, end + 2.0]))
-    np.testing.assert_allclose(told[0, 1], states[-1, 0] + 2.0 * states[-1, 1])
-    np.testing.assert_allclose(told[1, 1], states[-1, 1])
-    np.testing.assert_array_equal(told[2:, 1], 0.0)
+    evaluated = chain.evaluate(states, np.array([end, end + 2.0]))
+    np.testing.assert_allclose(evaluated[0, 1], states[-1, 0] + 2.0 * states[-1, 1])
+    np.testing.assert_allclose(evaluated[1, 1], states[-1, 1])
+    np.testing.assert_array_equal(evaluated[2:, 1], 0.0)

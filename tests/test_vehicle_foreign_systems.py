@@ -25,13 +25,13 @@ from vehicle_sim.autopilot.settings import FailsafeSettings
 from vehicle_sim.mavlink.settings import VehicleLinkSettings
 
 
-def test_no_stranger_commands_a_controlled_vehicle(flying: Bench) -> None:
+def test_controlled_vehicle_refuses_commands_of_foreign_systems(flying: Bench) -> None:
     kill, land, mode = command(400, 0, px4.FORCE_ARM_DISARM), command(21), command(176, 1, 4, 6)
     for sender, system in ((STRANGER, 255), (GROUND, 42), (STRANGER, 42)):
         for message in (kill, land, mode, OFFBOARD, command(185, 1)):
             assert flying.result(message, sender, system) == DENIED
         flying.send(mavlink.MAVLink_set_mode_message(1, 1, px4.MODE_LAND), sender, system)
-        flying.ask(mavlink.MAVLink_param_set_message(1, 1, b"COM_OF_LOSS_T", 9.0, 9), sender, system)
+        flying.request(mavlink.MAVLink_param_set_message(1, 1, b"COM_OF_LOSS_T", 9.0, 9), sender, system)
         refused = flying.vehicle.refused_setpoints
         flying.send(attitude_target(thrust=0.0), sender, system)
         assert flying.vehicle.refused_setpoints == refused + 1
@@ -42,7 +42,7 @@ def test_no_stranger_commands_a_controlled_vehicle(flying: Bench) -> None:
     assert flying.result(command(512, mavlink.MAVLINK_MSG_ID_HOME_POSITION), STRANGER) == ACCEPTED
 
 
-def test_no_stranger_behind_the_grounds_address_stops_its_telemetry(flying: Bench) -> None:
+def test_foreign_system_at_ground_address_cannot_stop_telemetry(flying: Bench) -> None:
     stop = command(511, mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, -1)
     assert flying.result(stop, GROUND, 42) == DENIED
     assert flying.result(stop, STRANGER, 42) == ACCEPTED
@@ -52,7 +52,7 @@ def test_no_stranger_behind_the_grounds_address_stops_its_telemetry(flying: Benc
     assert flying.result(stop) == ACCEPTED
 
 
-def test_who_asks_for_too_much_at_once_does_not_get_it(flying: Bench) -> None:
+def test_excessive_requests_are_rate_limited(flying: Bench) -> None:
     flying.collect()
     flying.inbox.clear()
     for _ in range(1000):
@@ -62,7 +62,7 @@ def test_who_asks_for_too_much_at_once_does_not_get_it(flying: Bench) -> None:
     assert flying.result(command(512, mavlink.MAVLINK_MSG_ID_HOME_POSITION), STRANGER) == ACCEPTED
 
 
-def test_another_ground_may_take_over_once_the_stream_is_silent(flying: Bench) -> None:
+def test_second_ground_may_take_control_after_setpoint_timeout(flying: Bench) -> None:
     flying.streaming = {(STRANGER, 42): attitude_target(thrust=HOVER)}
     flying.run(FailsafeSettings.setpoint_loss - 0.08)
     assert flying.result(OFFBOARD, STRANGER, 42) == DENIED
@@ -76,7 +76,7 @@ def test_another_ground_may_take_over_once_the_stream_is_silent(flying: Bench) -
     assert flying.result(command(21), GROUND, 255) == DENIED
 
 
-def test_a_strangers_stream_before_control_does_not_fly(bench: Bench) -> None:
+def test_setpoints_of_foreign_system_are_ignored_before_control(bench: Bench) -> None:
     bench.streaming = {(STRANGER, 42): attitude_target(thrust=0.9), (GROUND, 255): attitude_target(thrust=0.1)}
     bench.run(0.3)
     assert bench.result(OFFBOARD) == ACCEPTED and bench.result(ARM) == ACCEPTED
@@ -117,7 +117,7 @@ def test_mutated_datagrams_neither_raise_nor_command(flying: Bench) -> None:
     assert vehicle.parameters["COM_OF_LOSS_T"] == pytest.approx(FailsafeSettings.setpoint_loss)
 
 
-def test_every_message_with_random_contents_from_a_stranger_is_survived_and_changes_nothing(flying: Bench) -> None:
+def test_random_messages_of_foreign_system_neither_raise_nor_change_state(flying: Bench) -> None:
     rng = np.random.default_rng(11)
     writer = mavlink.MAVLink(None, 42, 1)
     vehicle = flying.vehicle

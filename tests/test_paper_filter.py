@@ -84,7 +84,7 @@ def test_row_is_the_second_derivative_of_h(model, obstacle):
         assert bound - row @ f == pytest.approx(barrier, rel=1e-4, abs=1e-4)
 
 
-def test_thrust_says_nothing_about_a_pole(model):
+def test_row_of_pole_is_independent_of_thrust(model):
     source = Scene([pole("p", 2.0, 0.3)])
     printed = PrintedFilter(model, source, 0.5)
     estimate, layout = flying(model), model.layout
@@ -96,7 +96,7 @@ def test_thrust_says_nothing_about_a_pole(model):
     np.testing.assert_allclose(printed.correct(2.0, u, estimate), u, atol=1e-6)
 
 
-def test_it_climbs_over_a_sphere_below(model):
+def test_filter_raises_thrust_above_a_sphere(model):
     printed = PrintedFilter(model, Scene([sphere("s", (0.0, 0.0, -3.7))]), 0.5)
     estimate = flying(model, velocity=(0.0, 0.0, 0.5))
     u = printed.correct(2.0, hover(model), estimate)
@@ -105,14 +105,14 @@ def test_it_climbs_over_a_sphere_below(model):
     np.testing.assert_array_equal(u[model.layout.n_setpoint], 0.0)
 
 
-def test_far_away_it_does_nothing(model):
+def test_filter_leaves_thrusts_unchanged_far_from_obstacles(model):
     estimate = flying(model)
     u = hover(model)
     for obstacles in ([], [sphere("s", (20.0, 0.0, -5.0))]):
         np.testing.assert_allclose(PrintedFilter(model, Scene(obstacles), 0.5).correct(2.0, u, estimate), u, atol=1e-9)
 
 
-def test_rows_that_cannot_be_kept_leave_thrusts_within_their_bounds(model):
+def test_thrusts_stay_within_bounds_with_infeasible_rows(model):
     # Rushing at it from above and below at once.
     obstacles = [
         sphere("below", (0.0, 0.0, -3.7), (0.0, 0.0, -6.0)),

@@ -1,10 +1,25 @@
-"""The missions of this project, and how a mission is told to people."""
+"""The missions of this project, and the description of a mission for people."""
 
 import math
 from pathlib import Path
 
 import pytest
-from mission_files import CIRCLE, MISSIONS, RETURN, TAKE_OFF, TOML, A, B, legs, plan, read, row, shape, told, wpl
+from mission_files import (
+    CIRCLE,
+    MISSIONS,
+    RETURN,
+    TAKE_OFF,
+    TOML,
+    A,
+    B,
+    description_of,
+    legs,
+    plan,
+    read,
+    row,
+    shape,
+    wpl,
+)
 
 from gcs.mission import Lissajous, read_mission
 from gcs.mission.route import FlyTo, Land
@@ -12,19 +27,19 @@ from idc_controller.geometry.box import Wall
 from idc_controller.geometry.pole import Pole
 
 
-def test_hover() -> None:
+def test_description_of_hover() -> None:
     mission = read_mission(MISSIONS / "hover.toml")
     assert [s[:4] for s in shape(mission)] == [("TakeOff", 0, 0, -5), ("FlyTo", 0, 0, -5), ("Land", 0, 0, -0.3)]
     assert shape(mission)[1][4] == 15.0
 
 
-def test_figure_eight() -> None:
+def test_description_of_figure_eight() -> None:
     mission = read_mission(MISSIONS / "figure_eight.toml")
     assert mission.reference == Lissajous((6.0, 3.0), 0.5, 5.0, 40.0)
     assert mission.limits is not None and mission.limits.position_rmse == 0.03
 
 
-def test_square() -> None:
+def test_description_of_square() -> None:
     mission = read_mission(MISSIONS / "square.waypoints")
     lap = [(10, 0, 0), (10, 10, 3), (0, 10, 0), (0, 0, 3)]
     flown = [(round(n), round(e), hold) for kind, n, e, _, hold, _ in shape(mission)[1:-1]]
@@ -33,7 +48,7 @@ def test_square() -> None:
     assert mission.notes == ()
 
 
-def test_delivery() -> None:
+def test_description_of_delivery() -> None:
     mission = read_mission(MISSIONS / "delivery.plan")
     assert isinstance(legs(mission)[-1], Land)
     assert math.hypot(*legs(mission)[-1].position[:2]) == pytest.approx(20.0, abs=0.5)
@@ -41,7 +56,7 @@ def test_delivery() -> None:
     assert mission.notes == ()
 
 
-def test_fenced_delivery() -> None:
+def test_description_of_fenced_delivery() -> None:
     mission = read_mission(MISSIONS / "fenced_delivery.plan")
     circle, polygon = mission.obstacles
     assert isinstance(circle.shape, Pole) and circle.shape.radius == 2.0 and circle.known
@@ -52,13 +67,13 @@ def test_fenced_delivery() -> None:
 
 
 @pytest.mark.parametrize("name", ["hover.toml", "figure_eight.toml", "square.waypoints", "delivery.plan"])
-def test_described(name: str) -> None:
-    text = told(read_mission(MISSIONS / name))
+def test_description_of_mission_file(name: str) -> None:
+    text = description_of(read_mission(MISSIONS / name))
     assert "home 47.3977420, 8.5455940, 488 m" in text
     assert ("figure eight of 12 x 6 m" if name == "figure_eight.toml" else " m, about ") in text
 
 
-def test_description_tells_everything(tmp_path: Path) -> None:
+def test_description_lists_all_settings(tmp_path: Path) -> None:
     endless = plan(TAKE_OFF, A, B, row(177, 2, -1), RETURN, geoFence__circles=[CIRCLE])
     for content, name, expected in [
         (endless, "mission.plan", ["endless", "never reached", "pole 'fence circle 1'"]),
@@ -70,6 +85,6 @@ def test_description_tells_everything(tmp_path: Path) -> None:
         ),
         (TOML, "mission.toml", ["packet_loss from 20 s for 5 s, vehicles 2", "not on the map", "clearance 0.3 m"]),
     ]:
-        text = told(read(tmp_path, content, name))
+        text = description_of(read(tmp_path, content, name))
         for part in expected:
             assert part in text, part
