@@ -7,7 +7,7 @@ A refactoring that is meant to change no behaviour changes no checksum:
   python tests/golden/golden.py --renew          write the checksums anew, on purpose
 
 The checksums hold for the versions that `checksums.json` names, and for one kind of processor. `telemetry.tlog` is
-compared twice: whole, and with the texts of its STATUSTEXT messages left out, so that a reworded message can be distinguished
+compared twice: whole, and without the texts of its STATUSTEXT messages, so that a reworded message can be distinguished
 from another flight.
 """
 
