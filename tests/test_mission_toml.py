@@ -60,7 +60,7 @@ def test_toml_points(tmp_path: Path) -> None:
         (TOML, "height = 15.0", "height = nan", "height", "obstacle[2].height: "),
         (TOML, "phase = 3.14159", "fase = 3.14159", "motion", "obstacle[2].motion.fase: unknown key"),
         (TOML, "amplitude = [1.5, 0.0, 0.0]", "amplitude = [1.5, 0.0, 1.0]", "motion", "no vertical motion"),
-        (TOML, 'name = "moving"', 'name = "static"', 'name = "moving"', "'static' stands 2 times"),
+        (TOML, 'name = "moving"', 'name = "static"', 'name = "moving"', "'static' appears 2 times"),
         (TOML, 'direction = "telemetry"', 'direction = "up"', "direction", "fault[1].direction: "),
         (TOML, "vehicles = [2]", "vehicles = [5]", "vehicles", "there is no vehicle 5: the team has 4"),
         (TOML, "start = 20.0", "", "[[fault]]", "fault[1].start: missing key"),

@@ -38,7 +38,7 @@ class Swarm:
     results to the last bit on one machine.
 
     Public state, to be read only: ``time`` of the last physics step (s), ``vehicles`` (of the system ids 1 .. N, in
-    this order), ``world``, ``take_off_time`` (s; when the first cradle let go, None before).
+    this order), ``world``, ``take_off_time`` (s; first release from a cradle, None before).
     """
 
     def __init__(

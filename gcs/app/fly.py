@@ -127,7 +127,7 @@ def fly(options: FlyOptions, mission: Mission, progress: Callable[[Flight], None
         station = ground_station(mission, addresses, recorder, options.controller)
         log = FlightLog(station)
         interrupt = resources.enter_context(Interrupt())
-        gone = simulator.gone if simulator is not None else lambda: None
+        ended = simulator.end_reason if simulator is not None else lambda: None
 
         wall = time.monotonic()
 
@@ -140,10 +140,15 @@ def fly(options: FlyOptions, mission: Mission, progress: Callable[[Flight], None
 
         try:
             if options.realtime:
-                run_in_real_time(station, connection, interrupt, speed=options.speed, progress=update, gone=gone)
+                run_in_real_time(station, connection, interrupt, speed=options.speed, progress=update, end_reason=ended)
             else:
                 run_in_lockstep(
-                    station, connection, _clock_address(options, simulator), interrupt, progress=update, gone=gone
+                    station,
+                    connection,
+                    _clock_address(options, simulator),
+                    interrupt,
+                    progress=update,
+                    end_reason=ended,
                 )
         except KeyboardInterrupt:
             flight = station.flight

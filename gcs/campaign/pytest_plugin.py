@@ -1,6 +1,6 @@
 """A plugin for pytest: the fixture ``fly_with_faults``, for tests that fly missions with faults.
 
-Nothing but pytest is imported until a test asks for the fixture.
+Nothing but pytest is imported until a test requests the fixture.
 """
 
 from __future__ import annotations

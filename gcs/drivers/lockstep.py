@@ -24,11 +24,11 @@ def run_in_lockstep(
     interrupt: Interrupt,
     *,
     progress: Callable[[], None] = lambda: None,
-    gone: Callable[[], str | None] = lambda: None,
+    end_reason: Callable[[], str | None] = lambda: None,
 ) -> None:
     """Run ``station`` until its flight has ended, one exchange with the world at a time.
 
-    ``gone`` returns why the world has ended, None while it runs.
+    ``end_reason`` returns why the world has ended, None while it runs.
     """
     connection.send(Done(0, None).encode(), clock_address)
     landing = False
@@ -42,7 +42,7 @@ def run_in_lockstep(
             if ready:
                 continue
             waited += JOIN_INTERVAL
-            if (reason := gone()) is not None:
+            if (reason := end_reason()) is not None:
                 station.raise_failsafe(now, Failsafe.SIMULATION_LOST, reason)
                 break
             if waited >= TICK_TIMEOUT:

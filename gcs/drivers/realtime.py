@@ -10,7 +10,7 @@ from gcs.drivers.interrupt import Interrupt
 from gcs.flight.failsafe import Failsafe
 from gcs.flight.ground_station import GroundStation
 
-LONGEST_WAIT = 0.1  # s of wall time, so that an interrupt is seen
+LONGEST_WAIT = 0.1  # s of wall time, so that an interrupt is noticed
 
 
 def run_in_real_time(
@@ -21,11 +21,11 @@ def run_in_real_time(
     speed: float = 1.0,
     clock: Callable[[], float] = time.monotonic,
     progress: Callable[[], None] = lambda: None,
-    gone: Callable[[], str | None] = lambda: None,
+    end_reason: Callable[[], str | None] = lambda: None,
 ) -> None:
     """Run ``station`` until its flight has ended. ``speed`` is ground seconds a wall second.
 
-    ``gone`` returns why the vehicles have ended, None while they run.
+    ``end_reason`` returns why the vehicles have ended, None while they run.
     """
     start = clock()
     landing = False
@@ -34,7 +34,7 @@ def run_in_real_time(
         if interrupt.requested and not landing:
             landing = True
             station.raise_failsafe(now, Failsafe.INTERRUPTED, "interrupted")
-        if (reason := gone()) is not None:
+        if (reason := end_reason()) is not None:
             station.raise_failsafe(now, Failsafe.SIMULATION_LOST, reason)
         for datagram, sender in connection.receive():
             station.receive(datagram, sender, now)

@@ -48,7 +48,7 @@ class Simulator:
         self._process.wait()
         raise GcsError(f"vehicle-sim did not start: {error.splitlines()[-1] if error else 'no error output'}")
 
-    def gone(self) -> str | None:
+    def end_reason(self) -> str | None:
         """Return how it ended; None while it runs."""
         code = self._process.poll()
         if code is None:

@@ -76,7 +76,7 @@ def compile_route(path: Path, file: WaypointFile, motion: MotionConfig, speed: f
 
 
 def _number_items(items: tuple[MissionItem, ...], context: _Context, path: Path, problems: list[str]) -> None:
-    """Find where jumps lead: by number and by tag, each of which may stand only once."""
+    """Find where jumps lead: by number and by tag, each of which may appear only once."""
     for index, item in enumerate(items):
         kinds = [(context.index_of_number, item.number, "number")]
         if item.command == mavlink.MAV_CMD_JUMP_TAG:
@@ -86,7 +86,7 @@ def _number_items(items: tuple[MissionItem, ...], context: _Context, path: Path,
                 problems.append(f"{path}: {item.label}: {problem}")
         for table, number, name in kinds:
             if number is not None and table.setdefault(number, index) != index:
-                problems.append(f"{path}: {item.label}: {name}: {number} stands twice: jumps to it would be ambiguous")
+                problems.append(f"{path}: {item.label}: {name}: {number} appears twice: jumps to it would be ambiguous")
 
 
 def _step(item: MissionItem, context: _Context) -> Step | None:

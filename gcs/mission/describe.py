@@ -63,7 +63,7 @@ def _route(route: Route, motion: MotionConfig) -> list[RenderableType]:
             speed = f"{leg.speed:g}" if isinstance(leg, FlyTo | Circle) else ""
             place = (f"{end[0]:.2f}", f"{end[1]:.2f}", f"{-end[2]:.2f}")
             cost = (speed, f"{leg_length:.1f}", f"{leg_time:.0f}")
-            table.add_row(str(count), _told(leg), *place, *cost, escape(leg.source))
+            table.add_row(str(count), _action(leg), *place, *cost, escape(leg.source))
         start = end
     for column in table.columns[2:8]:
         column.justify = "right"
@@ -89,7 +89,7 @@ def _legs_to_tell(route: Route) -> list[Leg]:
     return legs
 
 
-def _told(leg: Leg) -> str:
+def _action(leg: Leg) -> str:
     match leg:
         case TakeOff(delay=delay):
             return f"wait {delay:g} s, take off" if delay else "take off"

@@ -1,4 +1,4 @@
-"""Where a route's programme leads: loops without a waypoint, steps never reached, legs that cannot be flown."""
+"""Control flow of a route: loops without a waypoint, steps never reached, legs that cannot be flown."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def check_flow(route: Route, fence: Fence) -> tuple[list[str], list[str]]:
         legs = list(islice(route.legs(), TRIED_LEGS))
     except RouteError as error:
         return [f"{error.source}: altitude: {error.reason}"], []
-    return list(_outside_fence(legs, fence)), [*_notes(route, flown, legs), *_ways_across_fence(legs, fence)]
+    return list(_outside_fence(legs, fence)), [*_notes(route, flown, legs), *_segments_across_fence(legs, fence)]
 
 
 def _next(steps: tuple[Step, ...], index: int, through_landing: bool) -> list[int]:
@@ -152,8 +152,8 @@ def _places(leg: Leg) -> list[Position]:
     return [(north + leg.radius * math.cos(a), east + leg.radius * math.sin(a), down) for a in angles]
 
 
-def _ways_across_fence(legs: list[Leg], fence: Fence) -> Iterator[str]:
-    """Straight ways that cross the fence, though they end on its right side; each item once."""
+def _segments_across_fence(legs: list[Leg], fence: Fence) -> Iterator[str]:
+    """Straight segments that cross the fence, though they end on its right side; each item once."""
     reported = set[tuple[str, str]]()
     start: Position = (0.0, 0.0, 0.0)
     for leg in legs:

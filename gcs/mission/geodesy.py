@@ -22,7 +22,7 @@ def north_east(latitude: float, longitude: float, home: tuple[float, float, floa
     check_latitude_longitude(latitude, longitude)
     north, east, _ = pymap3d.geodetic2ned(latitude, longitude, home[2], *home)
     distance = math.hypot(north, east)
-    # The chord alone would not see the antipodes.
+    # The chord alone does not discriminate near the antipodes.
     if distance > FARTHEST or abs(latitude - home[0]) > 1.0:
         kilometres = float(anglesep(home[1], home[0], longitude, latitude)) * 111.2
         raise ItemError("latitude, longitude", f"{kilometres:.0f} km from home (at most {FARTHEST / 1000:.0f})")

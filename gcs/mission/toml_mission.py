@@ -201,7 +201,7 @@ def _disagreements(file: TomlFile, mission: MissionFile) -> list[str]:
     names = Counter(obstacle.name for obstacle in mission.obstacle)
     for i, obstacle in enumerate(mission.obstacle):
         if names[obstacle.name] > 1:
-            reason = f"'{obstacle.name}' stands {names[obstacle.name]} times"
+            reason = f"'{obstacle.name}' appears {names[obstacle.name]} times"
             problems.append(file.problem(("obstacle", i, "name"), reason))
         shape, motion = obstacle.shape, obstacle.motion
         if shape.is_grounded and motion is not None and moves_vertically(motion):

@@ -45,7 +45,7 @@ class Control(Protocol):
     avoiding: bool
     """The last decision was changed for an obstacle."""
     infeasible_tracking: int
-    """Decisions whose programme, as printed, had no solution."""
+    """Decisions whose QP, as printed, had no solution."""
     infeasible_avoidance: int
 
     def decide(self, time: float, measured: PlantState) -> None:
@@ -57,7 +57,7 @@ class Control(Protocol):
         ...
 
     def reference(self, times: Array) -> Array:
-        """What the payload is asked to do (K, 3)."""
+        """Reference positions of the payload (K, 3)."""
         ...
 
 
@@ -82,7 +82,7 @@ class PaperControl:
         self, parameters: SystemParameters, variant: PaperVariant, figure: Trajectory | None = None,
         spheres: Sequence[Sphere] = (), margin: float = MARGIN,
     ) -> None:  # fmt: skip
-        """``figure`` is what a flat variant tracks; the others track eq:Lissajous as it stands."""
+        """``figure`` is what a flat variant tracks; the others track eq:Lissajous as printed."""
         outputs = variant.tracking == "outputs"
         weights = Weights.of_named_outputs() if outputs else Weights()
         self.variant, self.parameters, self.spheres, self.margin = variant, parameters, tuple(spheres), margin
@@ -188,9 +188,9 @@ class ProjectControl:
         estimate = Estimate(time, self._state(measured), np.zeros(3), np.zeros((N, 3)), 0.0, np.zeros((n, n)))
         decision = self._controller.decide(estimate, self._figure)
         self._directions, self._thrusts = decision.directions, decision.thrusts
-        # The plan bends a little long before and after an obstacle: counted is what can be seen.
-        bent = decision.flat.payload[0, 0] - self._figure.position(time)
-        self.avoiding = decision.safety.active and float(np.linalg.norm(bent)) > VISIBLE
+        # The plan deviates a little long before and after an obstacle: only a visible deviation counts.
+        deviation = decision.flat.payload[0, 0] - self._figure.position(time)
+        self.avoiding = decision.safety.active and float(np.linalg.norm(deviation)) > VISIBLE
         self.infeasible_tracking += decision.infeasible
         self.infeasible_avoidance += decision.safety.infeasible
 
@@ -233,7 +233,7 @@ def minimal_state(state: PlantState) -> Array:
 
 
 def formation_points(formation: Formation, plant: Plant, state: PlantState) -> Array:
-    """Points (P, 3) in the world whose hull is the formation as it stands: box and rims."""
+    """Points (P, 3) in the world whose hull is the formation in its current state: box and rims."""
     hover = formation.hull_points(np.zeros((1, 3)))[0]
     points = np.empty_like(hover)
     points[:8] = state.r_0 + hover[:8] @ rotation_from_quaternion(state.quaternion_0).T

@@ -174,8 +174,8 @@ def draw_margin(margin: Mapping[str, Any], path: Path) -> None:
 
 
 def draw_course(runs: Mapping[str, RunData], path: Path) -> None:
-    """gazObs, payTrajGaz: the obstacle course and the payload's way through it, from above and from the side."""
-    figure = new_figure("Obstacle course in PyBullet, through MAVLink", (12, 6.4))
+    """gazObs, payTrajGaz: the obstacle scenario and the payload's path through it, from above and from the side."""
+    figure = new_figure("Obstacle scenario in PyBullet, through MAVLink", (12, 6.4))
     above, side = figure.subplots(2, 1, sharex=True)
     for number, obstacle in enumerate(next(iter(runs.values())).obstacles):
         track = obstacle.position[np.all(np.isfinite(obstacle.position), axis=1)]
@@ -189,12 +189,12 @@ def draw_course(runs: Mapping[str, RunData], path: Path) -> None:
                     color=OBSTACLE, alpha=0.7 if obstacle.shape.round_axes else 0.2, label=label)  # fmt: skip
             ax.plot(track[:, 0], sign * track[:, axis], color=OBSTACLE, lw=1.0, alpha=0.6)
     for color, (name, run) in zip(SERIES, runs.items(), strict=False):
-        way, lost = _until_lost(run)
+        path_flown, lost = _until_lost(run)
         label = f"{FLOWN_BY[name]}, lost" if lost else FLOWN_BY[name]
-        for ax, height in ((above, way[:, 1]), (side, -way[:, 2])):
-            ax.plot(way[:, 0], height, color=color, lw=1.6, label=label)
+        for ax, height in ((above, path_flown[:, 1]), (side, -path_flown[:, 2])):
+            ax.plot(path_flown[:, 0], height, color=color, lw=1.6, label=label)
             if lost:
-                ax.plot(way[-1, 0], height[-1], "x", color=color, ms=10, mew=2.5)
+                ax.plot(path_flown[-1, 0], height[-1], "x", color=color, ms=10, mew=2.5)
     above.set_aspect("equal", adjustable="datalim")
     _finish(above, "", "east (m)")
     _finish(side, "north (m)", "height (m)")
@@ -202,16 +202,16 @@ def draw_course(runs: Mapping[str, RunData], path: Path) -> None:
 
 
 def draw_course_position(runs: Mapping[str, RunData], path: Path) -> None:
-    """payloadObsGaz: the payload's position and attitude over time on the course."""
-    figure = new_figure("Payload on the obstacle course", (11, 8.5))
+    """payloadObsGaz: the payload's position and attitude over time in the obstacle scenario."""
+    figure = new_figure("Payload in the obstacle scenario", (11, 8.5))
     axes = list(figure.subplots(4, 1, sharex=True))
     for color, (name, run) in zip(SERIES, runs.items(), strict=False):
-        way, lost = _until_lost(run)
-        time = run.time[: len(way)]
+        path_flown, lost = _until_lost(run)
+        time = run.time[: len(path_flown)]
         label = f"{FLOWN_BY[name]}, lost" if lost else FLOWN_BY[name]
         for i in range(3):
-            axes[i].plot(time, way[:, i], color=color, lw=1.3, label=label)
-        axes[3].plot(time, _tilt_over_time(run)[: len(way)], color=color, lw=1.1, label=label)
+            axes[i].plot(time, path_flown[:, i], color=color, lw=1.3, label=label)
+        axes[3].plot(time, _tilt_over_time(run)[: len(path_flown)], color=color, lw=1.1, label=label)
     axes[2].invert_yaxis()
     axes[3].axhline(5.0, color=LIMIT, ls="--", lw=1.0)
     for ax, label in zip(axes, ("north (m)", "east (m)", "down (m)", "tilt (deg)"), strict=True):
@@ -221,7 +221,7 @@ def draw_course_position(runs: Mapping[str, RunData], path: Path) -> None:
 
 
 def _until_lost(run: RunData) -> tuple[Array, bool]:
-    """The payload's way (K, 3) until it tips over, and whether it does: what comes then is no flight."""
+    """The payload's path (K, 3) until it tips over, and whether it does: samples after that are no flight."""
     over = np.flatnonzero(_tilt_over_time(run) > LOST_TILT)
     return (run.payload_position[: over[0] + 1], True) if len(over) else (run.payload_position, False)
 

@@ -52,11 +52,11 @@ def numbers(plan: Plan, results: Results) -> dict[str, Any]:
 
 
 def flight_numbers(summary: Mapping[str, Any], run: RunData) -> dict[str, Any]:
-    """A flight's summary, and how it went until something touched something."""
+    """A flight's summary, and its numbers until the first contact."""
     contacts = run.contacts if run.contacts is not None else np.zeros(len(run.time))
     powered = (run.thrust > 0.0).any(axis=1)
-    touched = np.flatnonzero((contacts > 0) & powered)
-    before = slice(0, touched[0] + 1 if len(touched) else len(run.time))
+    in_contact = np.flatnonzero((contacts > 0) & powered)
+    before = slice(0, in_contact[0] + 1 if len(in_contact) else len(run.time))
     nearest = run.clearance()[before]
     return {
         "outcome": summary["outcome"],
@@ -66,14 +66,14 @@ def flight_numbers(summary: Mapping[str, Any], run: RunData) -> dict[str, Any]:
         "uav_separation_min_m": summary["uav_separation_min_m"],
         "rmse_m": summary["position_rmse_m"]["total"],
         "duration_s": summary["duration_s"],
-        "first_contact_s": float(run.time[touched[0]]) if len(touched) else None,
-        "touched_first": _touched(run, nearest[-1]) if len(touched) else None,
+        "first_contact_s": float(run.time[in_contact[0]]) if len(in_contact) else None,
+        "touched_first": _touched_first(run, nearest[-1]) if len(in_contact) else None,
         "tilt_max_before_contact_deg": float(np.abs(payload_angles(run)[before, :2]).max()),
         "clearance_before_contact_m": float(np.nanmin(nearest)),
     }
 
 
-def _touched(run: RunData, clearance: Array) -> str:
+def _touched_first(run: RunData, clearance: Array) -> str:
     """What a first contact was with: an obstacle, or the vehicles among themselves."""
     return run.obstacles[int(np.argmin(clearance))].name if clearance.min() < 0.01 else "one UAV another"
 

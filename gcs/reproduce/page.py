@@ -25,8 +25,8 @@ CAPTIONS = {
     "sigmavsdev.png": "sigmavsdev: largest roll and pitch against noise.",
     "mass.png": "Mass uncertainty: control effort and tilt.",
     "margin.png": "Relative safety margin.",
-    "gazObs.png": "gazObs, payTrajGaz: the obstacle course and the payload's way, in PyBullet through MAVLink.",
-    "payloadObsGaz.png": "payloadObsGaz: the payload on the course.",
+    "gazObs.png": "gazObs, payTrajGaz: the obstacle scenario and the payload's path, in PyBullet through MAVLink.",
+    "payloadObsGaz.png": "payloadObsGaz: the payload in the obstacle scenario.",
 }
 
 
@@ -89,7 +89,7 @@ Files: <a href="paper.md">paper.md</a> (equation by equation), <a href="numbers.
 
 
 def write_numbers(path: Path, numbers: Mapping[str, Any]) -> None:
-    """Strict JSON, rounded to what is worth telling."""
+    """Strict JSON, rounded to the significant digits."""
     path.write_text(json.dumps(rounded(numbers), indent=1, allow_nan=False) + "\n", encoding="utf-8")
 
 

@@ -25,7 +25,7 @@ AMPLITUDE = (6.0, 3.0)
 RADIUS, MARGIN = 0.5, 0.5
 """m, of the spheres and around them: R_o = 1 m."""
 SWING, SWING_RATE = 1.5, 1.0
-"""m and rad/s of the moving sphere: not told by the paper."""
+"""m and rad/s of the moving sphere: not stated by the paper."""
 
 
 @cache
@@ -95,7 +95,7 @@ class Sphere:
 
 
 def two_spheres(meets: float) -> tuple[Sphere, ...]:
-    """One stands at (-6, 0, -5); one swings about (6, 0, -5) and is there, moving inwards, at ``meets`` (s)."""
+    """One rests at (-6, 0, -5); one oscillates about (6, 0, -5) and is there, moving inwards, at ``meets`` (s)."""
     phase = (np.pi - SWING_RATE * meets) % (2.0 * np.pi)
     return (Sphere("static", (-6.0, 0.0, -ALTITUDE)), Sphere("moving", (6.0, 0.0, -ALTITUDE), SWING, phase))
 

@@ -29,7 +29,7 @@ STEPS = 5
 class Case:
     """One simulation.
 
-    ``control`` is a way to read the paper or ``"project"``; ``duration`` (s) of the figure at full rate; ``sigma``
+    ``control`` is a reading of the paper or ``"project"``; ``duration`` (s) of the figure at full rate; ``sigma``
     (m/s and rad/s) of noise on the payload's velocity and rates; ``mass_factor`` of the plant's payload over the
     ``design_mass`` (kg; None: Table I).
     """
@@ -71,7 +71,7 @@ class Flown:
     """When the payload tipped over or flew away (s); None: never."""
 
     def numbers(self) -> dict[str, Any]:
-        """The figures by which it is judged; None where there is nothing to judge."""
+        """Evaluation figures of the run; None where undefined."""
         after = self.time >= self.settled
         error = (self.position - self.reference)[after]
         rmse = np.sqrt(np.mean(error**2, axis=0)) if len(error) else np.full(3, np.nan)

@@ -39,7 +39,7 @@ class Results:
 
 
 def run(plan: Plan, missions: Path, out: Path, jobs: int | None, done: Callable[[str], None]) -> Results:
-    """Everything of ``plan``; ``done`` is told each name as it ends. ``jobs`` at a time, None: one a core.
+    """Run everything of ``plan``; ``done`` is called with each name as it ends. ``jobs`` at a time, None: one a core.
 
     An interrupt ends all of it. Raises :class:`GcsError` for a flight that did not even start; one that ends badly
     is a result.

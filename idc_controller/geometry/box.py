@@ -126,20 +126,20 @@ def distance_of_gaps(a: Array, b: Array, c: Array) -> Array:
 
 def _visible_points(size: Vector, sensor: Vector, reach: float) -> list[Vector]:
     """Points of a box about its centre, in its own frame, that a ``sensor`` there hits."""
-    s, halves = sensor, (size[0] / 2.0, size[1] / 2.0, size[2] / 2.0)
-    visible = [k for k in range(3) if abs(s[k]) > halves[k]]
+    s, half_size = sensor, (size[0] / 2.0, size[1] / 2.0, size[2] / 2.0)
+    visible = [k for k in range(3) if abs(s[k]) > half_size[k]]
     if not visible:
         return []
-    nearest = _clamped(s, halves)
+    nearest = _clamped(s, half_size)
     if math.dist(nearest, s) > reach:
         return []
     # The face that shows most of itself first.
-    visible.sort(key=lambda k: -_visible_area(halves, s, k))
+    visible.sort(key=lambda k: -_visible_area(half_size, s, k))
     points = [nearest]
     for rank, axis in enumerate(visible):
         foot = list(nearest)
-        foot[axis] = math.copysign(halves[axis], s[axis])
-        corners = [_shortened(s, foot, corner, reach) for corner in _corners(halves, axis, foot[axis])]
+        foot[axis] = math.copysign(half_size[axis], s[axis])
+        corners = [_shortened(s, foot, corner, reach) for corner in _corners(half_size, axis, foot[axis])]
         if rank > 0:  # its near corners are the first face's
             corners = sorted(corners, key=lambda p: -math.dist(p, s))[:2]
         points += corners
@@ -149,21 +149,21 @@ def _visible_points(size: Vector, sensor: Vector, reach: float) -> list[Vector]:
     return points
 
 
-def _corners(halves: Vector, axis: int, level: float) -> list[Vector]:
+def _corners(half_size: Vector, axis: int, level: float) -> list[Vector]:
     """Return the corners of the face across ``axis`` at ``level``, in turn."""
     j, k = (axis + 1) % 3, (axis + 2) % 3
     corners = []
     for a, b in ((1, 1), (1, -1), (-1, -1), (-1, 1)):
         corner = [0.0, 0.0, 0.0]
-        corner[axis], corner[j], corner[k] = level, a * halves[j], b * halves[k]
+        corner[axis], corner[j], corner[k] = level, a * half_size[j], b * half_size[k]
         corners.append((corner[0], corner[1], corner[2]))
     return corners
 
 
-def _visible_area(halves: Vector, s: Vector, axis: int) -> float:
+def _visible_area(half_size: Vector, s: Vector, axis: int) -> float:
     """Area of a face times the cosine of the angle of incidence."""
     j, k = (axis + 1) % 3, (axis + 2) % 3
-    return halves[j] * halves[k] * (abs(s[axis]) - halves[axis]) / math.dist(s, (0.0, 0.0, 0.0))
+    return half_size[j] * half_size[k] * (abs(s[axis]) - half_size[axis]) / math.dist(s, (0.0, 0.0, 0.0))
 
 
 def _shortened(s: Vector, start: list[float], end: Vector, reach: float) -> Vector:
@@ -179,6 +179,6 @@ def _shortened(s: Vector, start: list[float], end: Vector, reach: float) -> Vect
     return start[0] + share * d[0], start[1] + share * d[1], start[2] + share * d[2]
 
 
-def _clamped(s: Vector, halves: Vector) -> Vector:
-    x, y, z = (min(max(value, -half), half) for value, half in zip(s, halves, strict=True))
+def _clamped(s: Vector, half_size: Vector) -> Vector:
+    x, y, z = (min(max(value, -half), half) for value, half in zip(s, half_size, strict=True))
     return x, y, z

@@ -1,6 +1,6 @@
-"""The formation's hull in flat coordinates: how payload and discs stand for a payload position and acceleration.
+"""The formation's hull in flat coordinates: poses of payload and discs for a payload position and acceleration.
 
-With the payload level and the links along g e3 - a, UAV i stands at r + p_i - l_i e3 + lever_i a_xy, lever_i = l_i / (g
+With the payload level and the links along g e3 - a, UAV i is at r + p_i - l_i e3 + lever_i a_xy, lever_i = l_i / (g
 - a_z): when the payload accelerates the hull does not just translate, it shears.
 """
 
@@ -43,7 +43,7 @@ class Formation:
         spread = np.linspace(-np.pi / 2, np.pi / 2, rim) if rim > 1 else np.zeros(1)
         angle = bearing[:, None] + spread
         self._rim = self.disc_radius * np.stack([np.cos(angle), np.sin(angle), np.zeros_like(angle)], axis=-1)
-        # The facets of the hull in hover tell the distance library which points are neighbours; the shear of an
+        # The facets of the hull in hover give the distance library the neighbours of each point; the shear of an
         # accelerated flight hardly changes them.
         points = self.hull_points(np.zeros((1, 3)))[0]
         hull = trimesh.convex.convex_hull(points)
@@ -71,7 +71,7 @@ class Formation:
         return np.concatenate([box, discs.reshape(K, -1, 3)], axis=1)
 
     def hull(self, points: Array, number: int = 0) -> coal.ShapeBase:
-        """The hull of ``points`` (P, 3) for distance queries, until the next is asked for under the same ``number``."""
+        """The hull of ``points`` (P, 3) for distance queries, until the next query under the same ``number``."""
         while number >= len(self._hulls):
             vertices = coal.StdVec_Vec3s()
             vertices.extend(list(points))

@@ -174,7 +174,7 @@ class _Bodies:
         self._turned = bool(np.any(self._sine))
 
     def chosen(self, index: NDArray[np.intp]) -> _Bodies:
-        """The bodies of these indices, as often as they stand there."""
+        """The bodies of these indices, repeated as the indices are."""
         bodies = _Bodies(())
         bodies._take(self._sizes[index])
         return bodies

@@ -99,7 +99,7 @@ class Pole(Shape):
         return PlanView(shapely.Point(0.0, 0.0), self.radius)
 
     def visible_points(self, sensor: Vector, reach: float, turn: float) -> list[Vector]:
-        """Points of the surface that a range sensor hits: the side up and down, and the end if it looks that way."""
+        """Points of the surface that a range sensor hits: the side up and down, and the end if it faces the sensor."""
         radius, half_height = self.radius, self.height / 2.0
         x, y, z = sensor
         distance = math.hypot(x, y)
@@ -123,7 +123,7 @@ class Pole(Shape):
                 return x + flat * ray[0], y + flat * ray[1], level
 
             points += [p for p in (side(0.0, 0.0), *(side(*place) for place in _SIDE)) if p is not None]
-        if abs(z) > half_height:  # the end is seen, too
+        if abs(z) > half_height:  # the end is visible, too
             end = math.copysign(half_height, z)
             inward = min(1.0, _RIM * radius / distance) if distance > 0.0 else 0.0
             ends = [(x * inward, y * inward, end)]

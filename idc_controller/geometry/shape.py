@@ -87,14 +87,14 @@ class PlanView(NamedTuple):
 
 @dataclass(frozen=True)
 class Shape(ABC):
-    """A convex body about its centre, in the attitude in which it stands."""
+    """A convex body about its centre, in its attitude."""
 
     kind: ClassVar[str]
     """The name of the shape in mission files and tables."""
     round_axes: ClassVar[Vector | None] = None
     """Axes (0 or 1) on which the surface is one radius from the centre; None: it is not round about any centre."""
     is_upright: ClassVar[bool] = False
-    """Whether obstacles of this kind are tall enough that those far off are told by their plan view alone."""
+    """Whether obstacles of this kind are tall enough that distant ones are discriminated by their plan view alone."""
     in_columns: ClassVar[bool] = True
     """Whether :attr:`columns` hold all of the shape; otherwise a run has it in ``obstacle_shapes.json``."""
     is_grounded: ClassVar[bool] = False

@@ -39,7 +39,7 @@ E3 = np.array([0.0, 0.0, 1.0])
 
 @dataclass(frozen=True)
 class StateLayout:
-    """Where each coordinate stands in the state vector (12 + 11 N) and the input vector (3 N)."""
+    """Index of each coordinate in the state vector (12 + 11 N) and the input vector (3 N)."""
 
     number_of_uavs: int
 

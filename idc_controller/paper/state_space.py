@@ -32,7 +32,7 @@ _MINIMAL = (("s", 2), ("s_dot", 2), ("Theta", 3), ("omega", 3))
 
 @dataclass(frozen=True)
 class Layout:
-    """Where each coordinate stands: ``Layout.full(N)`` or ``Layout.minimal(N)``."""
+    """Index of each coordinate: ``Layout.full(N)`` or ``Layout.minimal(N)``."""
 
     number_of_uavs: int
     parts: tuple[tuple[str, int], ...]

@@ -65,7 +65,7 @@ class Settings:
     """Of roll, pitch and yaw of the payload (rad), eq:consOsc."""
     thrust_bounds: tuple[float, float] = (0.0, 30.0)
     torque_bound: float = 2.0
-    """N m, both ways."""
+    """N m, in both directions."""
     weights: Weights = Weights()
     terminal_outputs_alone: bool = False
     """Of Q_f only the block of what the weights are on: the y of the paper's terminal cost."""

@@ -45,7 +45,7 @@ error and nothing started, 130 interrupted.
 
 class _Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
-        """One line, and no usage: ``--help`` tells the whole story."""
+        """One line, and no usage: ``--help`` prints the details."""
         raise UnusableInput(message)
 
 

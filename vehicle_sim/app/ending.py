@@ -1,4 +1,4 @@
-"""When a simulator has to end: a signal, or the process that started it is gone."""
+"""When a simulator has to end: a signal, or the process that started it has ended."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Ending:
     """Says when to end, and waits for datagrams so that the end is not missed.
 
     ``requested``: end now, with the exit status ``status``. ``parent_gone``: let the vehicles land, then end.
-    ``has_parent``: another process owns this one and is gone when ``parent``, a pipe from it, is at its end.
+    ``has_parent``: another process owns this one and has ended when ``parent``, a pipe from it, is at its end.
     """
 
     def __init__(self, parent: int | None = None) -> None:
@@ -59,7 +59,7 @@ class Ending:
             self._read_parent()
 
     def look(self) -> None:
-        """See at once whether the parent is gone."""
+        """Check at once whether the parent has ended."""
         self.wait([], 0.0)
 
     @contextlib.contextmanager

@@ -80,7 +80,7 @@ def _run(options: Namespace, arguments: list[str], started: contextlib.ExitStack
         driver = RealTimeDriver(swarm, sockets, ending, options.speed or 1.0)
     try:
         _announce(sockets, options)
-    except BrokenPipeError:  # whoever started this is gone already
+    except BrokenPipeError:  # the process that started this has ended already
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
     driver.run()
@@ -127,7 +127,7 @@ def _tell_faults(options: Namespace, injector: FaultInjector, swarm: Swarm) -> N
 
 
 def _announce(sockets: SwarmSockets, options: Namespace) -> None:
-    """Tell where everybody listens: programs read these lines, too."""
+    """Print every listening address: programs read these lines, too."""
     lines = []
     if sockets.clock is not None:
         lines.append(f"clock: {url(sockets.clock)}")

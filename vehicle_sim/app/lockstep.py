@@ -21,7 +21,7 @@ TICKS_AT_ONE_TIME = 1000
 
 
 class LockstepDriver:
-    """Runs a swarm for one ground after the other; time stands still while there is none.
+    """Runs a swarm for one ground after the other; time stops while there is none.
 
     A ground that leaves, or does not answer, leaves vehicles in the air: time then runs on without it, as fast as it
     can, until they have landed.
@@ -42,7 +42,7 @@ class LockstepDriver:
         self._log = SwarmLog(swarm)
 
     def run(self) -> None:
-        """Returns when the end is requested, or when the parent is gone and the vehicles have landed.
+        """Run until the end is requested, or when the parent has ended and the vehicles have landed.
 
         With a parent there is no second ground: it ends after the first.
         """
@@ -58,7 +58,7 @@ class LockstepDriver:
                 return
 
     def _wait_for_ground(self) -> Address | None:
-        """The ground that asked to join last; None when the end came first."""
+        """The ground of the latest join request; None when the end came first."""
         ending = self._ending
         while not ending.requested and not ending.parent_gone:
             for _ in self._from_ground(None):
@@ -84,11 +84,11 @@ class LockstepDriver:
                 self._joining = sender
 
     def _serve(self, ground: Address) -> None:
-        """Tick until the ground leaves, is silent for too long, or the end comes."""
+        """Tick until the ground leaves, does not answer for too long, or the end comes."""
         ticks_at_this_time = 0
         while True:
             self._send()
-            # Serial 0 is the ground's: it asks to join.
+            # Serial 0 is the ground's join request.
             self._serial = self._serial % 0xFFFFFFFF + 1
             with contextlib.suppress(OSError):
                 self._clock.sendto(Tick(self._serial, self._time_us).encode(), ground)

@@ -16,7 +16,7 @@ LAG_MAX = 0.4  # s; less than vehicles wait for set-points. What the world is be
 
 
 class RealTimeClock:
-    """Simulated time that follows a wall clock at a ratio, and stands back when it cannot be followed."""
+    """Simulated time that follows a wall clock at a ratio, and is set back when it cannot be followed."""
 
     def __init__(self, start: float, speed: float, wall: Callable[[], float] = time.monotonic) -> None:
         """``start`` in simulated s; ``speed`` simulated over wall time."""
@@ -47,7 +47,7 @@ class RealTimeClock:
 
 
 class RealTimeDriver:
-    """Runs a swarm until it is told to end."""
+    """Runs a swarm until the end is requested."""
 
     def __init__(
         self,
@@ -66,14 +66,14 @@ class RealTimeDriver:
         self._log = SwarmLog(swarm)
 
     def run(self) -> None:
-        """Returns when the end is requested, or when the parent is gone and the vehicles have landed."""
+        """Run until the end is requested, or when the parent has ended and the vehicles have landed."""
         swarm, sockets, ending = self._swarm, self._sockets, self._ending
         reached = swarm.time
         clock = RealTimeClock(reached, self._speed, self._wall)
         give_up: float | None = None
         while not ending.requested:
             goal = min(clock.follow(reached), reached + STRIDE_MAX)
-            # What is due on the way is sent when it is due, so that it carries what is measured then.
+            # What is due within the interval is sent when it is due, so that it carries what is measured then.
             while (due := self._next_due(reached)) <= goal and not ending.requested:
                 reached = due
                 self._send(reached)

@@ -14,7 +14,7 @@ from vehicle_sim.faults.interface import Datagram, FaultInterface, Forces
 from vehicle_sim.faults.samples import OWN, PAYLOAD, REPORTED, SCAN, SampleImpairment
 from vehicle_sim.faults.world import WorldFaults
 from vehicle_sim.world.range_sensor import RangeSample
-from vehicle_sim.world.sensors import Measurement, Told
+from vehicle_sim.world.sensors import Measurement, ReportedState
 from vehicle_sim.world.world import World
 
 _TO_VEHICLE, _FROM_VEHICLE = 1, 2
@@ -92,9 +92,9 @@ class FaultInjector(FaultInterface):
         """Return what the vehicle itself measures."""
         return self._through(OWN, vehicle, sample.time, sample)
 
-    def reported_sample(self, vehicle: int, sample: Measurement | None) -> Told:
+    def reported_sample(self, vehicle: int, sample: Measurement | None) -> ReportedState:
         """Return what the vehicle reports."""
-        report = Told(sample, sample)
+        report = ReportedState(sample, sample)
         return report if sample is None else self._through(REPORTED, vehicle, sample.time, report)
 
     def payload_sample(self, vehicle: int, sample: Measurement) -> Measurement | None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from gcs.mavlink.address import Address
 from idc_controller.rotations_float import Vector
 from vehicle_sim.world.range_sensor import RangeSample
-from vehicle_sim.world.sensors import Measurement, Told
+from vehicle_sim.world.sensors import Measurement, ReportedState
 
 if TYPE_CHECKING:
     from vehicle_sim.world.world import World
@@ -41,9 +41,9 @@ class FaultInterface:
         """Return what a vehicle's autopilot gets of its own measurement; None: nothing."""
         return sample
 
-    def reported_sample(self, vehicle: int, sample: Measurement | None) -> Told:
+    def reported_sample(self, vehicle: int, sample: Measurement | None) -> ReportedState:
         """Return what a vehicle's telemetry reports of the measurement that its autopilot flies by."""
-        return Told(sample, sample)
+        return ReportedState(sample, sample)
 
     def payload_sample(self, vehicle: int, sample: Measurement) -> Measurement | None:
         """Return what a vehicle gets to relay of the payload unit's measurement; None: nothing."""

@@ -8,7 +8,7 @@ from gcs.config import SystemConfig
 from vehicle_sim.faults.active import ActiveFault
 from vehicle_sim.faults.schedule import Moment
 from vehicle_sim.world.range_sensor import RangeSample
-from vehicle_sim.world.sensors import Measurement, Told
+from vehicle_sim.world.sensors import Measurement, ReportedState
 
 OWN, REPORTED, PAYLOAD, SCAN = "own", "reported", "payload", "scan"
 
@@ -30,7 +30,7 @@ class SampleImpairment:
         """Return what the vehicle's autopilot gets."""
         return sample
 
-    def reported(self, vehicle: int, report: Told, moment: Moment) -> Told:
+    def reported(self, vehicle: int, report: ReportedState, moment: Moment) -> ReportedState:
         """Return what the vehicle reports of itself."""
         return report
 

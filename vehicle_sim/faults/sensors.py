@@ -10,7 +10,7 @@ from vehicle_sim.faults.active import ActiveFault
 from vehicle_sim.faults.samples import OWN, PAYLOAD, REPORTED, SCAN, SampleImpairment
 from vehicle_sim.faults.schedule import Moment
 from vehicle_sim.world.range_sensor import RangeSample
-from vehicle_sim.world.sensors import Measurement, Told
+from vehicle_sim.world.sensors import Measurement, ReportedState
 
 
 class _Lost(SampleImpairment):
@@ -37,7 +37,7 @@ class PositionLost(_Lost):
         last = self.last(sample, moment)
         return sample._replace(position=last.position, velocity=last.velocity)
 
-    def reported(self, vehicle: int, report: Told, moment: Moment) -> Told:
+    def reported(self, vehicle: int, report: ReportedState, moment: Moment) -> ReportedState:
         """Return the report without it."""
         return report._replace(position=None)
 
@@ -49,7 +49,7 @@ class AttitudeLost(_Lost):
         """Return the sample with the last measured values."""
         return sample._replace(attitude=self.last(sample, moment).attitude)
 
-    def reported(self, vehicle: int, report: Told, moment: Moment) -> Told:
+    def reported(self, vehicle: int, report: ReportedState, moment: Moment) -> ReportedState:
         """Return the report without it."""
         return report._replace(attitude=None)
 
@@ -61,7 +61,7 @@ class RatesLost(_Lost):
         """Return the sample with the last measured rates."""
         return sample._replace(rates=self.last(sample, moment).rates)
 
-    def reported(self, vehicle: int, report: Told, moment: Moment) -> Told:
+    def reported(self, vehicle: int, report: ReportedState, moment: Moment) -> ReportedState:
         """Return the report with rates of NaN: MAVLink's unknown value."""
         attitude = report.attitude
         return report if attitude is None else report._replace(attitude=attitude._replace(rates=(math.nan,) * 3))

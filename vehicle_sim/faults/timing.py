@@ -13,7 +13,7 @@ from vehicle_sim.faults.interface import Datagram
 from vehicle_sim.faults.samples import PAYLOAD, REPORTED, SCAN, SampleImpairment
 from vehicle_sim.faults.schedule import Moment
 from vehicle_sim.world.range_sensor import RangeSample
-from vehicle_sim.world.sensors import Measurement, Told
+from vehicle_sim.world.sensors import Measurement, ReportedState
 
 #: Streams of measurements and of set-points: each message begins with its stamp.
 _STREAMED = frozenset(
@@ -107,11 +107,11 @@ class StaleStamps(SampleImpairment):
 
     acts_on = frozenset({REPORTED, PAYLOAD, SCAN})
 
-    def reported(self, vehicle: int, report: Told, moment: Moment) -> Told:
+    def reported(self, vehicle: int, report: ReportedState, moment: Moment) -> ReportedState:
         """Return the report with earlier stamps."""
         attitude, position = report
         old_attitude = None if attitude is None else self._aged(attitude)
-        return Told(
+        return ReportedState(
             old_attitude,
             old_attitude if position is attitude else None if position is None else self._aged(position),
         )

@@ -16,7 +16,7 @@ from vehicle_sim.faults.impairment import GilbertElliottProcess
 from vehicle_sim.faults.samples import OWN, PAYLOAD, REPORTED, SCAN, SampleImpairment
 from vehicle_sim.faults.schedule import Moment
 from vehicle_sim.world.range_sensor import RangeSample
-from vehicle_sim.world.sensors import Measurement, Told
+from vehicle_sim.world.sensors import Measurement, ReportedState
 
 LARGEST = 1e30  # finite values stay below, so that they fit a 32-bit float whatever faults are combined
 _AXES = {"x": 0, "y": 1, "z": 2}
@@ -117,7 +117,7 @@ class ValueImpairment(SampleImpairment):
         """Return the disturbed measurement."""
         return self._changed(sample, moment)
 
-    def reported(self, vehicle: int, report: Told, moment: Moment) -> Told:
+    def reported(self, vehicle: int, report: ReportedState, moment: Moment) -> ReportedState:
         """Return the report, disturbed in the message that carries the channel."""
         if self._channel in ("position", "velocity"):
             before = report.position
@@ -154,7 +154,7 @@ class SwappedVehicles(SampleImpairment):
     def __init__(self, fault: ActiveFault, vehicle: int, system: SystemConfig) -> None:
         super().__init__(fault, vehicle, system)
         self._other = {vehicle: fault.settings.other, fault.settings.other: vehicle}
-        self._latest: dict[int, Told] = {}
+        self._latest: dict[int, ReportedState] = {}
 
     @classmethod
     def of_vehicles(cls, fault: ActiveFault, system: SystemConfig) -> Mapping[int, SampleImpairment]:
@@ -162,7 +162,7 @@ class SwappedVehicles(SampleImpairment):
         vehicle = fault.vehicles[0]
         return dict.fromkeys((vehicle, fault.settings.other), cls(fault, vehicle, system))
 
-    def reported(self, vehicle: int, report: Told, moment: Moment) -> Told:
+    def reported(self, vehicle: int, report: ReportedState, moment: Moment) -> ReportedState:
         """Return the other vehicle's report."""
         self._latest[vehicle] = report
         return self._latest.get(self._other[vehicle], report)

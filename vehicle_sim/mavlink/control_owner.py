@@ -26,8 +26,8 @@ class _Stream:
 class ControlOwner:
     """Keeps each sender's stream of set-points apart, and passes on only those of the ground in control.
 
-    A ground gets control by asking for OFFBOARD while its own set-points come, and keeps it until they have been
-    silent for the loss time or the vehicle is disarmed and no longer in OFFBOARD.
+    A ground gets control by requesting OFFBOARD while its own set-points come, and keeps it until they have
+    stopped for the loss time or the vehicle is disarmed and no longer in OFFBOARD.
     """
 
     def __init__(self, autopilot: Autopilot, settings: VehicleLinkSettings) -> None:

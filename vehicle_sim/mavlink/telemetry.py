@@ -14,7 +14,7 @@ from vehicle_sim.autopilot.attitude_control import LEVEL
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.mavlink.geodesy import Home, clamp, is_finite
 from vehicle_sim.world.range_sensor import MIN_DISTANCE, RangeSample
-from vehicle_sim.world.sensors import Measurement, Told
+from vehicle_sim.world.sensors import Measurement, ReportedState
 
 _SENSORS: int = (
     mavlink.MAV_SYS_STATUS_SENSOR_3D_GYRO
@@ -53,7 +53,7 @@ class Telemetry:
         self._home = home
         self._boot_time = boot_time
         self._clock = clock
-        self.reported: Told | None = None
+        self.reported: ReportedState | None = None
         """What is sent of the vehicle's own state instead of its estimate; None: the estimate."""
         self.payload: Measurement | None = None
         self.scan: RangeSample | None = None

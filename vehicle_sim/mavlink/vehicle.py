@@ -28,7 +28,7 @@ from vehicle_sim.mavlink.settings import StreamIntervals, VehicleLinkSettings
 from vehicle_sim.mavlink.telemetry import Telemetry
 from vehicle_sim.world.range_sensor import RangeSample
 from vehicle_sim.world.rotors import Four
-from vehicle_sim.world.sensors import Measurement, Told
+from vehicle_sim.world.sensors import Measurement, ReportedState
 
 
 class Vehicle:
@@ -96,13 +96,13 @@ class Vehicle:
             self._send_changes()
         return speeds
 
-    def report(self, reported: Told) -> None:
+    def report(self, reported: ReportedState) -> None:
         """Send this from now on as the vehicle's own state, where that is not its estimate."""
         self.telemetry.reported = reported
 
     def relay(self, sample: Measurement | None) -> None:
         """Send a sample of the payload's navigation unit as it is, with its own stamp."""
-        if sample is None or sample.can_be_told():
+        if sample is None or sample.is_encodable():
             self.telemetry.payload = sample
 
     def take_scan(self, scan: RangeSample | None) -> None:

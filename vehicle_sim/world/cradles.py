@@ -54,7 +54,7 @@ class Cradles:
         self.number_held += 1
 
     def release(self, i: int) -> None:
-        """Let go of UAV ``i``."""
+        """Release UAV ``i``."""
         constraint = self._constraints[i]
         if constraint is not None:
             pybullet.removeConstraint(constraint, physicsClientId=self._client)

@@ -32,7 +32,7 @@ DISC_THICKNESS = 0.04  # m, of the UAVs' collision shape
 _LINK_INERTIA = 1e-6
 _LINK_AXIAL_INERTIA = 1e-3
 _FRICTION = 0.8  # of payload and discs
-# The engine clips joint rates at 100 rad/s unless told otherwise.
+# The engine clips joint rates at 100 rad/s by default.
 _MAX_JOINT_VELOCITY = 1e3
 
 
@@ -45,7 +45,7 @@ class Multibody(NamedTuple):
 
 
 def check_supported(parameters: SystemParameters) -> None:
-    """Raise :class:`UnsupportedWorld` where the engine would compute something else than what is asked for."""
+    """Raise :class:`UnsupportedWorld` where the engine would compute something else than requested."""
     n = parameters.number_of_uavs
     if n > MAX_VEHICLES:
         raise UnsupportedWorld(
@@ -55,7 +55,7 @@ def check_supported(parameters: SystemParameters) -> None:
         diagonal = np.diag(inertia)
         if np.any(inertia != np.diag(diagonal)):
             raise UnsupportedWorld(f"{name}: the world takes no products of inertia")
-        # A rigid body's moments of inertia obey the triangle inequality; the engine corrects others in silence.
+        # A rigid body's moments of inertia obey the triangle inequality; the engine corrects others without a message.
         if 2 * diagonal.max() > diagonal.sum() * (1 + 1e-9):
             raise UnsupportedWorld(f"{name}: no rigid body has the moments of inertia {diagonal.tolist()}")
 

@@ -1,4 +1,4 @@
-"""Obstacles in the physics engine: bodies that stand or are moved, and push but are never pushed."""
+"""Obstacles in the physics engine: bodies that are static or moved, and push but are never pushed."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from vehicle_sim.world.world_state import flipped, quaternion_to_engine
 
 @dataclass(frozen=True)
 class Obstacle:
-    """An obstacle as it stands: its shape, and its centre in the world (NED, m)."""
+    """An obstacle at one time: its shape, and its centre in the world (NED, m)."""
 
     name: str
     shape: Shape
@@ -44,7 +44,7 @@ class ObstacleBodies:
         return len(self._obstacles)
 
     def all(self) -> tuple[Obstacle, ...]:
-        """The obstacles as they stand now, in the order of their making."""
+        """The obstacles at the current time, in the order of their making."""
         return tuple(self._obstacles.values())
 
     def body(self, name: str) -> int:

@@ -1,6 +1,6 @@
 """The range sensor of a vehicle: points on the surfaces around it, gathered by obstacle, each with its own noise.
 
-It tells where points are and which of them belong together, under numbers of the vehicle's own. It does not tell
+It reports where points are and which of them belong together, under numbers of the vehicle's own. It does not report
 what an obstacle is, how large, how fast, or what it is called.
 """
 
@@ -17,7 +17,7 @@ from vehicle_sim.world.obstacle_bodies import Obstacle
 
 #: Nothing nearer is measured (m).
 MIN_DISTANCE = 0.05
-#: Generators are told apart from the navigation sensors' by this.
+#: Distinguishes these generators from the navigation sensors'.
 _STREAM = 1_000_003
 _IDS = 0xFFFE  # 0xFFFF says that an id is not known
 
@@ -51,10 +51,10 @@ class RangeSensor:
     def scan(
         self, now: float, position: Sequence[float], attitude: Quaternion, obstacles: Iterable[Obstacle]
     ) -> RangeSample:
-        """What is seen at ``now`` (s) from ``position`` (3,) (NED, m) with ``attitude`` (body to world)."""
+        """Return the scan at ``now`` (s) from ``position`` (3,) (NED, m) with ``attitude`` (body to world)."""
         s = (float(position[0]), float(position[1]), float(position[2]))
         detections: list[Detection] = []
-        seen: dict[str, int] = {}
+        detected: dict[str, int] = {}
         for obstacle in obstacles:
             if _is_beyond(obstacle, s, self._reach):
                 continue
@@ -64,7 +64,7 @@ class RangeSensor:
             number = self._ids.get(obstacle.name)
             if number is None:
                 number, self._next_id = self._next_id, (self._next_id + 1) % _IDS
-            seen[obstacle.name] = number
+            detected[obstacle.name] = number
             noise = (self._noise * self._generator.standard_normal(len(points))).tolist()
             for (x, y, z), error in zip(points, noise, strict=True):
                 ray = (x - s[0], y - s[1], z - s[2])
@@ -74,7 +74,7 @@ class RangeSensor:
                 a, b, c = into_body(attitude, ray)
                 scale = max(1.0 + error / distance, 0.0)
                 detections.append(Detection(number, (scale * a, scale * b, scale * c)))
-        self._ids = seen  # one that leaves and comes back is a new one to the vehicle
+        self._ids = detected  # one that leaves and comes back is a new one to the vehicle
         return RangeSample(now, self._reach, tuple(detections))
 
 

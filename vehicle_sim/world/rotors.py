@@ -83,22 +83,22 @@ class Mixer:
         roll, pitch, yaw = tau_x * self._per_roll_pitch, tau_y * self._per_roll_pitch, tau_z * self._per_yaw
         # Pairs on a diagonal get opposite shares of roll and pitch and the same share of yaw.
         first, third = pitch - roll, pitch + roll
-        room = level if level < top - level else top - level
+        headroom = level if level < top - level else top - level
         first_size, third_size = abs(first), abs(third)
         largest = first_size if first_size > third_size else third_size
-        if largest > room:
-            scale = room / largest
+        if largest > headroom:
+            scale = headroom / largest
             first *= scale
             third *= scale
             first_size *= scale
             third_size *= scale
         # +yaw on rotors 1 and 2 (level -+ first), -yaw on rotors 3 and 4 (level -+ third).
-        yaw_room = room - (first_size if first_size > third_size else third_size)
-        if yaw > yaw_room:
+        yaw_headroom = headroom - (first_size if first_size > third_size else third_size)
+        if yaw > yaw_headroom:
             upper, lower = top - level - first_size, level - third_size
             limit = upper if upper < lower else lower
             yaw = yaw if yaw < limit else limit
-        elif yaw < -yaw_room:
+        elif yaw < -yaw_headroom:
             upper, lower = top - level - third_size, level - first_size
             limit = upper if upper < lower else lower
             yaw = yaw if -yaw < limit else -limit

@@ -37,8 +37,8 @@ class Measurement(NamedTuple):
         total = sum(self.attitude) + sum(self.rates) + sum(self.position) + sum(self.velocity)
         return _is_number(total) and math.isfinite(self.time)
 
-    def can_be_told(self) -> bool:
-        """Whether every number fits a float of 32 bits: usable or not, NaN and infinity included."""
+    def is_encodable(self) -> bool:
+        """Return whether every number fits a float of 32 bits: usable or not, NaN and infinity included."""
         if -_FAR < sum(self.attitude) + sum(self.rates) + sum(self.position) + sum(self.velocity) < _FAR:
             return True
         numbers = (*self.attitude, *self.rates, *self.position, *self.velocity)
@@ -49,10 +49,10 @@ def _is_number(total: float) -> bool:
     return -_FAR < total < _FAR
 
 
-class Told(NamedTuple):
-    """What a vehicle tells of a measurement: attitude and rates of the one, position and velocity of the other.
+class ReportedState(NamedTuple):
+    """The state that a vehicle reports: attitude and rates of one measurement, position and velocity of another.
 
-    None: it does not tell.
+    None: not reported.
     """
 
     attitude: Measurement | None

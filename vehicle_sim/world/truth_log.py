@@ -40,7 +40,7 @@ class TruthLog:
         return [table for table in (self._truth, self._obstacles, self._modes) if table is not None]
 
     def write(self, state: WorldState, contacts: int, obstacles: Sequence[Obstacle] = ()) -> None:
-        """Append a state, and the obstacles as they stand then.
+        """Append a state, and the obstacles at that time.
 
         ``contacts`` is the number of touching pairs, pad and cradles excluded. Raises ``ValueError`` for a state of
         another number of UAVs.

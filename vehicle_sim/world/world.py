@@ -188,7 +188,7 @@ class World:
         self._obstacles.move(name, position_in_world)
 
     def obstacles(self) -> tuple[Obstacle, ...]:
-        """The obstacles as they stand now."""
+        """The obstacles at the current time."""
         return self._obstacles.all()
 
     def closest_distance(self, obstacle: str, within: float = 100.0) -> float:
@@ -252,7 +252,7 @@ class World:
     def _read(self) -> None:
         """Fetch poses and velocities from the engine.
 
-        Forward kinematics is asked for: without it links are one step behind the payload, and so are the frames in
+        Forward kinematics is requested: without it links are one step behind the payload, and so are the frames in
         which the engine takes the next forces. Hence after every step, whether anybody looks at the state or not.
         """
         body, client = self._system.body, self._client
@@ -275,8 +275,8 @@ class World:
             elif low:
                 a, b, c = link[6]
                 # A payload that has been caught by some hangs on their links as well as it stands.
-                stands = cradles.number_held > 0 or self.touching_ground()
-                if stands and cradles.wants_latch(i, upward, (a * a + b * b + c * c) ** 0.5):
+                is_supported = cradles.number_held > 0 or self.touching_ground()
+                if is_supported and cradles.wants_latch(i, upward, (a * a + b * b + c * c) ** 0.5):
                     cradles.latch(i, link[0], link[1])
 
     def _contacts_and_standing(self) -> tuple[int, bool]:

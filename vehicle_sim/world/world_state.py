@@ -1,4 +1,4 @@
-"""What the world knows of itself, north-east-down, and the way there from the engine's z-up frame.
+"""The state of the world, north-east-down, and the transformation from the engine's z-up frame.
 
 The engine's world is north-west-up and its bodies are forward-left-up. Both differ from the project's frames by half a
 turn about the first axis, so a vector and the vector part of a quaternion change the same way: (x, -y, -z).
@@ -48,7 +48,7 @@ class WorldState:
 
 
 def flipped(v: Sequence[float]) -> Vector:
-    """A vector between the engine's frames and the project's, either way."""
+    """A vector between the engine's frames and the project's, in either direction."""
     return v[0], -v[1], -v[2]
 
 

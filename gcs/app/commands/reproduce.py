@@ -82,7 +82,7 @@ def run(arguments: argparse.Namespace) -> int:
     except OSError as error:
         raise UnusableInput(f"{error.filename or out}: cannot be written: {error.strerror}") from None
     page = write_page(out, found, pictures, time.monotonic() - begin)
-    console.print(_told(found), markup=False)
+    console.print(_overview(found), markup=False)
     console.print(f"Results   {page}", markup=False)
     return DONE
 
@@ -116,9 +116,9 @@ def _draw(chosen: Plan, results: Results, found: dict[str, Any], out: Path, done
         "anim3d.gif": lambda p: animate(simulations("tracking", SHOWN), without, p, chosen.frames),
         "animObs3d.gif": lambda p: animate(simulations("avoidance", SHOWN), spheres, p, chosen.frames),
     }
-    course = {name: folder for name, folder in results.folders.items() if name.startswith("pole_course")}
-    if course:
-        runs = {name.removeprefix("pole_course_"): read_run(folder) for name, folder in course.items()}
+    poles = {name: folder for name, folder in results.folders.items() if name.startswith("pole_course")}
+    if poles:
+        runs = {name.removeprefix("pole_course_"): read_run(folder) for name, folder in poles.items()}
         drawings["gazObs.png"] = lambda p: figures.draw_course(runs, p)
         drawings["payloadObsGaz.png"] = lambda p: figures.draw_course_position(runs, p)
     for name, draw in drawings.items():
@@ -127,18 +127,18 @@ def _draw(chosen: Plan, results: Results, found: dict[str, Any], out: Path, done
     return list(drawings)
 
 
-def _told(found: dict[str, Any]) -> str:
+def _overview(found: dict[str, Any]) -> str:
     lines = []
     for section in ("tracking", "avoidance"):
         for name, n in found.get(section, {}).items():
             rmse = n["rmse_m"]["total"]
-            told = f"RMSE {'-' if rmse is None else f'{rmse:.3f}'} m, roll {n['roll_max_deg']:.1f}, "
-            told += f"pitch {n['pitch_max_deg']:.1f} deg"
+            values = f"RMSE {'-' if rmse is None else f'{rmse:.3f}'} m, roll {n['roll_max_deg']:.1f}, "
+            values += f"pitch {n['pitch_max_deg']:.1f} deg"
             if "clearance_min_m" in n:
-                told += f", clearance {n['clearance_min_m']:.2f} m"
+                values += f", clearance {n['clearance_min_m']:.2f} m"
             if n["lost_at_s"] is not None:
-                told += f", lost at {n['lost_at_s']:.2f} s"
-            lines.append(f"{section:<10} {name:<12} {told}")
+                values += f", lost at {n['lost_at_s']:.2f} s"
+            lines.append(f"{section:<10} {name:<12} {values}")
     return "\n".join(lines)
 
 

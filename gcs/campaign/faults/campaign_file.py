@@ -123,7 +123,7 @@ def _disagreements(file: TomlFile, tables: CampaignTables) -> Iterator[str]:
     for key in ("seeds", "missions"):
         for value, number in Counter(getattr(table, key) or ()).items():
             if number > 1:
-                yield file.problem(("campaign", key), f"{value} stands {number} times")
+                yield file.problem(("campaign", key), f"{value} appears {number} times")
     if not tables.fault and not table.clean:
         yield file.problem(("campaign",), "has no fault: needs [[fault]], or clean = true")
     if table.clean and any(fault.name == CLEAN for fault in tables.fault):
@@ -181,10 +181,10 @@ def _cases(file: TomlFile, tables: CampaignTables) -> tuple[tuple[Case, ...], li
                     swept.append(_swept_fault(file, i, tables.fault[i], level))
                 except UnusableFile as error:
                     problems += error.reasons
-            told = ", ".join(label(values) for i in members if (values := _at(tables.fault[i], level)))
+            severity = ", ".join(label(values) for i in members if (values := _at(tables.fault[i], level)))
             if any((case.name, case.faults) == (name, tuple(swept)) for case in cases):
-                problems.append(file.problem(("fault", members[0], "severity"), f"'{name}': {told} stands twice"))
-            cases.append(Case(name, level + 1, told, tuple(swept)))
+                problems.append(file.problem(("fault", members[0], "severity"), f"'{name}': {severity} appears twice"))
+            cases.append(Case(name, level + 1, severity, tuple(swept)))
     return tuple(cases), problems
 
 
@@ -195,7 +195,7 @@ def _swept_fault(file: TomlFile, index: int, table: SweptTable, level: int) -> S
     problems = []
     for key in values:
         if key in raw or key in ("kind", *_OWN_KEYS):
-            reason = "stands in the table, too" if key in raw and key != "kind" else "cannot be swept"
+            reason = "appears in the table, too" if key in raw and key != "kind" else "cannot be swept"
             problems.append(file.problem(("fault", index, "severity", key), f"{key} {reason}"))
     if table.start_between is not None:
         low, high = table.start_between
@@ -206,7 +206,7 @@ def _swept_fault(file: TomlFile, index: int, table: SweptTable, level: int) -> S
         values = {**values, "start": low}
     if problems:
         raise UnusableFile(problems)
-    # What is wrong with a swept value is told at the line of the list that it stands in.
+    # An error in a swept value is reported at the line of its list.
     severity = ("fault", index, "severity")
     lines: dict[Key, int] = {("fault", index, key): file.line((*severity, key)) for key in values}
     fault = read_fault(replace(file, lines={**file.lines, **lines}), index, {**raw, **values})

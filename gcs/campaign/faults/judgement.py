@@ -18,7 +18,7 @@ WITHIN, OUTSIDE, ABORTED, COLLIDED, FAILED, NOT_FLOWN = VERDICTS = (
 """How a flight ended, from good to bad: ``aborted`` is set down safely, but before its mission was done."""
 
 WITHIN_LIMITS, SAFE = REQUIREMENTS = ("within limits", "safe")
-"""What a flight passes by: completed within its limits; or set down safely in whatever way, with its limits held."""
+"""What a flight passes by: completed within its limits; or set down safely in any phase, with its limits held."""
 
 COLUMNS = (
     "number", "name", "fault", "kind", "level", "severity", "mission", "seed", "outcome", "passed", "within_limits",
@@ -29,7 +29,7 @@ COLUMNS = (
 
 
 def is_safe(result: Result) -> bool:
-    """Return whether the payload was set down without contact, in whatever way."""
+    """Return whether the payload was set down without contact, in any phase."""
     return result.outcome in (WITHIN, OUTSIDE, ABORTED) and not result.contacts
 
 

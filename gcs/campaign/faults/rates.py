@@ -20,7 +20,7 @@ CONFIDENCE = 0.95
 class Rates:
     """Of all flights with one fault at one severity: counts, and rates with the ends of their Wilson intervals.
 
-    ``safe``: set down without contact, in whatever way.
+    ``safe``: set down without contact, in any phase.
     """
 
     fault: str

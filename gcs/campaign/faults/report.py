@@ -110,9 +110,9 @@ def draw_matrix(name: str, results: Sequence[Result], folder: Path) -> Path:
     ax.spines[:].set_visible(False)
     ax.tick_params(length=0)
     ax.set_title(name, fontsize=10)
-    seen = [outcome for outcome in VERDICTS if any(result.outcome == outcome for result in results)]
+    outcomes = [outcome for outcome in VERDICTS if any(result.outcome == outcome for result in results)]
     figure.legend(
-        handles=[Patch(facecolor=COLOURS[outcome], label=outcome) for outcome in seen],
-        loc="outside lower center", ncols=min(len(seen), 3) or 1, frameon=False, fontsize=8,
+        handles=[Patch(facecolor=COLOURS[outcome], label=outcome) for outcome in outcomes],
+        loc="outside lower center", ncols=min(len(outcomes), 3) or 1, frameon=False, fontsize=8,
     )  # fmt: skip
     return save_picture(figure, folder / MATRIX, 130)

@@ -1,1 +1,1 @@
-"""Random obstacle courses."""
+"""Random obstacle scenarios."""

@@ -17,7 +17,7 @@ from idc_controller.parameters import SystemParameters
 Array = NDArray[np.float64]
 
 PAD_OFFSET = 0.003
-"""m: what navigation noise leaves between the pad and home. A figure eight begins by flying that way, at rest at both
+"""m: what navigation noise leaves between the pad and home. A figure eight begins with that distance, at rest at both
 ends, which takes seconds however short it is."""
 LAG = 0.138
 """s from a set-point of the ground to the thrust in the world: a control step, the hold of a step, the motors' lag."""

@@ -40,7 +40,7 @@ MOVING = "moving courses"
 class Variant:
     """One variant: ``changes`` to the system file by key, and the highest speed of obstacles of random scenarios (m/s).
 
-    ``value`` is where it stands on the axis of the picture; None: by its label.
+    ``value`` is its place on the axis of the picture; None: by its label.
     """
 
     label: str
@@ -158,8 +158,8 @@ class StudyFlights(PlanGenerator):
             limits = read_mission(path).limits or HELD_TO
             options += ["--seed", str(seed)]
             # A mission with a clearance limit is held to the margin, where that is what is changed.
-            asked = variant.changes.get(MARGIN, limits.clearance) if limits.clearance is not None else None
-            held_to = dataclasses.replace(limits, clearance=asked)
+            clearance = variant.changes.get(MARGIN, limits.clearance) if limits.clearance is not None else None
+            held_to = dataclasses.replace(limits, clearance=clearance)
         title = " ".join([title, variant.controller, changed, f"seed{seed}"])
         name = plain(f"{title} {digest(text, system, repr(held_to))}")
         labels = {

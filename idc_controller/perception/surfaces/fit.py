@@ -39,33 +39,33 @@ def unexplained(residual: Array, variance: Array, fitted: int) -> float:
 
 
 class EndOfSurface:
-    """How far a surface reaches in one direction, from what is seen of it frame by frame."""
+    """How far a surface reaches in one direction, from its detected points frame by frame."""
 
     def __init__(self, margin: float) -> None:
         """``margin`` (m) is added while the end itself was not in the sensors' range."""
         self._margin = margin
         self._value = -np.inf
-        self._is_seen = False
+        self._is_observed = False
 
     @property
     def outermost(self) -> float:
         """As far as the surface may be taken to reach (m)."""
-        return float(self._value if self._is_seen else self._value + self._margin)
+        return float(self._value if self._is_observed else self._value + self._margin)
 
-    def seen(self, along: Array, cut: NDArray[np.bool_]) -> None:
+    def update(self, along: Array, cut: NDArray[np.bool_]) -> None:
         """Points of one frame, by their coordinate in that direction (n,), and whether they end the sensor's range."""
         last = int(np.argmax(along))
         furthest, is_cut = float(along[last]), bool(cut[last])
         beyond = furthest - self._value
         if beyond > 0.3:
-            self._value, self._is_seen = furthest, not is_cut
+            self._value, self._is_observed = furthest, not is_cut
         elif is_cut:
-            if not self._is_seen:
+            if not self._is_observed:
                 self._value = max(self._value, furthest)
         elif beyond > -0.3:
             # Noise makes the outermost of several points a little too far out: the safe side.
-            self._value += (0.2 if self._is_seen else 1.0) * beyond
-            self._is_seen = True
+            self._value += (0.2 if self._is_observed else 1.0) * beyond
+            self._is_observed = True
         else:
             self._value += 0.15 * beyond
 

@@ -1,4 +1,4 @@
-"""Walls from surface points: a box that stands upright, with the face that is seen best in front."""
+"""Walls from surface points: a box that stands upright, with the face of the best visibility in front."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from idc_controller.perception.surfaces.points import SurfacePoints
 
 Array = NDArray[np.float64]
 
-THICKNESS = 0.4  # m, while only the front is seen
+THICKNESS = 0.4  # m, while only the front is detected
 SIDE_MARGIN = 1.0  # m, how much further an edge beyond the sensors' range is taken to be
 TOP_MARGIN = 2.0  # m
 YAW_WALK = 0.001  # rad a frame
-_DEPTH_SEEN = 0.12  # m behind the front from which points must belong to another face
+_DEPTH_OBSERVED = 0.12  # m behind the front from which points must belong to another face
 _SIDEWAYS = 0.1  # m: how firmly a wall is held to move along its normal only
 
 
@@ -35,13 +35,13 @@ class FlatSurface:
         self._yaw = known.yaw if known else 0.0
         self._yaw_variance = 0.1**2
         self._thickness = THICKNESS
-        self._thickness_is_seen = False
+        self._thickness_is_observed = False
         self._front_sigma = 0.05
         self._ends = {key: EndOfSurface(SIDE_MARGIN if key[0] == 1 else TOP_MARGIN) for key in _SIDES}
 
     @property
     def shape(self) -> Wall:
-        """As it is believed to be."""
+        """The estimated shape."""
         if self.known is not None:
             return self.known
         lo, hi = self._extent()
@@ -64,44 +64,44 @@ class FlatSurface:
         lo, hi = self._extent()
         return float(min(np.sqrt(self._yaw_variance) * (hi[1] - lo[1]) / 2.0, 0.3))
 
-    def guess(self, seen: SurfacePoints) -> Array:
+    def guess(self, scan: SurfacePoints) -> Array:
         """Orient the box by the points alone, and return a point of its front (3,); of a known one their middle."""
         if self.known is not None:
-            return np.asarray(seen.points.mean(axis=0))
-        flat = seen.points[:, :2]
+            return np.asarray(scan.points.mean(axis=0))
+        flat = scan.points[:, :2]
         i, j = _pairs(len(flat))
         along = flat[j] - flat[i]
         length = np.hypot(along[:, 0], along[:, 1])
         normal = np.stack([-along[:, 1], along[:, 0]], axis=1) / np.maximum(length, 1e-6)[:, None]
         level = np.einsum("ij,ij->i", flat[i], normal)
-        towards = normal @ seen.origins[:, :2].mean(axis=0) - level
+        towards = normal @ scan.origins[:, :2].mean(axis=0) - level
         sign = np.where(towards < 0.0, -1.0, 1.0)
         depth = sign[:, None] * (normal @ flat.T - level[:, None])
         # The upright plane through two of the points that holds most of the others and has none before it.
-        tolerance = 2.0 * np.sqrt(seen.noise**2 + seen.pose_variance.mean() + seen.scatter)
+        tolerance = 2.0 * np.sqrt(scan.noise**2 + scan.pose_variance.mean() + scan.scatter)
         votes = np.maximum(1.0 - (depth / tolerance) ** 2, 0.0).sum(axis=1) - (depth > 1.5 * tolerance).sum(axis=1)
-        votes = np.where(length > 4.0 * seen.noise, votes + 1e-3 * np.minimum(length, 5.0), votes - len(flat))
+        votes = np.where(length > 4.0 * scan.noise, votes + 1e-3 * np.minimum(length, 5.0), votes - len(flat))
         best = int(np.argmax(votes))
         normal_best = sign[best] * normal[best]
         self._yaw = float(np.arctan2(normal_best[1], normal_best[0]))
-        middle = seen.points[np.abs(depth[best]) <= tolerance].mean(axis=0)
+        middle = scan.points[np.abs(depth[best]) <= tolerance].mean(axis=0)
         middle[:2] += normal_best * (sign[best] * level[best] - middle[:2] @ normal_best)
         return middle
 
-    def fit(self, seen: SurfacePoints, predicted: Array, iterations: int = 3) -> Fit:
+    def fit(self, scan: SurfacePoints, predicted: Array, iterations: int = 3) -> Fit:
         """Where the front is in this frame; learns the box from it. ``predicted`` (3,): where it is expected."""
         if self.known is not None:
-            return self._fit_known(seen, predicted)
+            return self._fit_known(scan, predicted)
         rotation = self._rotation()
-        q = (seen.points - predicted) @ rotation
-        rays = seen.rays @ rotation
+        q = (scan.points - predicted) @ rotation
+        rays = scan.rays @ rotation
         front = np.abs(q[:, 0]) < 0.5
         shift = 0.0
-        noise = (seen.noise * rays) ** 2 + (seen.pose_variance + seen.scatter)[:, None] + 0.015**2
+        noise = (scan.noise * rays) ** 2 + (scan.pose_variance + scan.scatter)[:, None] + 0.015**2
         self._yaw_variance += YAW_WALK**2
         for _ in range(iterations):
             residual = q[:, 0] - shift
-            front = np.abs(residual) < 3.0 * np.sqrt(seen.noise**2 + seen.pose_variance + seen.scatter)
+            front = np.abs(residual) < 3.0 * np.sqrt(scan.noise**2 + scan.pose_variance + scan.scatter)
             if np.count_nonzero(front) < 3:
                 break
             weight = front / (noise[:, 0] * (1.0 + residual**2 / (9.0 * np.maximum(noise[:, 0], 0.0025))))
@@ -119,62 +119,62 @@ class FlatSurface:
             self._yaw += turn
             self._yaw_variance = max(float(covariance[1, 1]), 0.001**2)
             rotation = self._rotation()
-            q = (seen.points - predicted) @ rotation
+            q = (scan.points - predicted) @ rotation
             if abs(turn) < 2e-3:
                 break
         q[:, 0] -= shift
-        common = float(np.mean(seen.pose_variance)) / seen.sensors
-        front_variance = (seen.noise**2 + seen.scatter) / max(int(np.count_nonzero(front)), 1) + common
+        common = float(np.mean(scan.pose_variance)) / scan.sensors
+        front_variance = (scan.noise**2 + scan.scatter) / max(int(np.count_nonzero(front)), 1) + common
         for (axis, sign), end in self._ends.items():
-            end.seen(sign * q[:, axis], seen.cut)
-        self._learn_thickness(q, front, seen)
+            end.update(sign * q[:, axis], scan.cut)
+        self._learn_thickness(q, front, scan)
         position = predicted + rotation[:, 0] * shift
         variance = rotation[:, :2] ** 2 @ np.array([front_variance, _SIDEWAYS**2])
         variance[2] = _SIDEWAYS**2
-        return Fit(position, variance, *self._judged(q, noise))
+        return Fit(position, variance, *self._score(q, noise))
 
-    def _fit_known(self, seen: SurfacePoints, predicted: Array) -> Fit:
+    def _fit_known(self, scan: SurfacePoints, predicted: Array) -> Fit:
         """Only the place is to be found: every point moves the face that it lies on."""
         assert self.known is not None
         rotation = self.known.rotation
         half = np.array(self.known.size) / 2.0
-        q = (seen.points - predicted) @ rotation
+        q = (scan.points - predicted) @ rotation
         # The face that a point is nearest to, of those that look towards the sensors.
-        facing = np.sign((seen.origins - predicted) @ rotation)
+        facing = np.sign((scan.origins - predicted) @ rotation)
         residual = q - facing * half
-        beyond = np.abs((seen.origins - predicted) @ rotation) > half
+        beyond = np.abs((scan.origins - predicted) @ rotation) > half
         residual = np.where(beyond, residual, np.inf)
         face = np.argmin(np.abs(residual), axis=1)
         shift, variance = np.zeros(3), np.full(3, _SIDEWAYS**2)
         own = residual[np.arange(len(q)), face]
-        common = float(np.mean(seen.pose_variance)) / seen.sensors
+        common = float(np.mean(scan.pose_variance)) / scan.sensors
         for axis in range(3):
             of_face = own[(face == axis) & np.isfinite(own)]
             if len(of_face):
                 shift[axis] = float(np.median(of_face))
-                variance[axis] = 2.0 * (seen.noise**2 + seen.scatter) / len(of_face) + common
+                variance[axis] = 2.0 * (scan.noise**2 + scan.scatter) / len(of_face) + common
         off = np.where(np.isfinite(own), own - shift[face], 0.5)
-        own_variance = seen.noise**2 + seen.pose_variance + seen.scatter
+        own_variance = scan.noise**2 + scan.pose_variance + scan.scatter
         return Fit(
             predicted + rotation @ shift, rotation**2 @ variance,
             score(off, own_variance), unexplained(off, own_variance, fitted=1),
         )  # fmt: skip
 
-    def _learn_thickness(self, q: Array, front: NDArray[np.bool_], seen: SurfacePoints) -> None:
+    def _learn_thickness(self, q: Array, front: NDArray[np.bool_], scan: SurfacePoints) -> None:
         """From points behind the front, which lie on the top or on a side."""
-        behind = (q[:, 0] < -_DEPTH_SEEN) & ~front & ~seen.cut
+        behind = (q[:, 0] < -_DEPTH_OBSERVED) & ~front & ~scan.cut
         if np.count_nonzero(behind) == 0:
             return
         depth = float(-q[behind, 0].min())
-        if not self._thickness_is_seen or depth > self._thickness + 0.3:
-            self._thickness, self._thickness_is_seen = depth, True
+        if not self._thickness_is_observed or depth > self._thickness + 0.3:
+            self._thickness, self._thickness_is_observed = depth, True
         else:
             self._thickness += 0.2 * (depth - self._thickness) if depth > self._thickness - 0.3 else 0.0
 
-    def _judged(self, q: Array, noise: Array) -> tuple[float, float]:
+    def _score(self, q: Array, noise: Array) -> tuple[float, float]:
         """Score and what is unexplained of points (n, 3) in the box's frame, of variance ``noise`` (n, 3)."""
         lo, hi = self._extent()
-        # To the front, the sides and the top; the bottom and the back are seen by nobody who matters.
+        # To the front, the sides and the top; the bottom and the back are out of view of every vehicle that matters.
         distance = np.stack([q[:, 0], q[:, 1] - lo[1], q[:, 1] - hi[1], q[:, 2] - lo[2], q[:, 2] - hi[2]])
         variance = np.stack([noise[:, 0], noise[:, 1], noise[:, 1], noise[:, 2], noise[:, 2]])
         best = np.argmin(distance**2 / variance, axis=0)

@@ -28,23 +28,23 @@ class KnownSurface:
         self.offset = np.zeros(3)
         self._body = Bodies([known])
 
-    def guess(self, seen: SurfacePoints) -> Array:
+    def guess(self, scan: SurfacePoints) -> Array:
         """Return a first place for the centre: half the body behind the middle of the points (3,)."""
-        middle, ray = seen.points.mean(axis=0), seen.rays.mean(axis=0)
+        middle, ray = scan.points.mean(axis=0), scan.rays.mean(axis=0)
         return np.asarray(middle + self.shape.support(ray) * ray)
 
-    def fit(self, seen: SurfacePoints, predicted: Array, iterations: int = 3) -> Fit:
+    def fit(self, scan: SurfacePoints, predicted: Array, iterations: int = 3) -> Fit:
         """Return where the centre is in this frame; ``predicted`` (3,): where it is expected."""
         place = predicted.copy()
         prior = np.eye(3) / _SIDEWAYS**2
-        variance = seen.noise**2 + seen.pose_variance + seen.scatter
+        variance = scan.noise**2 + scan.pose_variance + scan.scatter
         for _ in range(iterations):
-            residual, normal = self._distance(seen.points - place)
+            residual, normal = self._distance(scan.points - place)
             weight = 1.0 / (variance * (1.0 + residual**2 / (9.0 * variance)))
             information = (normal.T * weight) @ normal + prior
             place = place + np.linalg.solve(information, (normal.T * weight) @ residual + prior @ (predicted - place))
-        residual, _ = self._distance(seen.points - place)
-        common = float(np.mean(seen.pose_variance)) / seen.sensors
+        residual, _ = self._distance(scan.points - place)
+        common = float(np.mean(scan.pose_variance)) / scan.sensors
         spread = np.diag(np.linalg.inv(information)) + common
         return Fit(place, spread, score(residual, variance), unexplained(residual, variance, fitted=3))
 

@@ -37,7 +37,7 @@ class SurfacePoints:
         return ray / np.maximum(np.sqrt(np.einsum("ij,ij->i", ray, ray)), 1e-6)[:, None]
 
     def moved(self, by: Array, time: float, variance: float) -> SurfacePoints:
-        """The same points as they would have been seen at ``time``, if the obstacle has moved by (3,) (m) until then.
+        """The same points as if measured at ``time``, the obstacle having moved by (3,) (m) until then.
 
         ``variance`` (m2) of that motion adds to the points'.
         """

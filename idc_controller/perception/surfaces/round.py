@@ -19,12 +19,12 @@ RADIUS_SIGMA_LEAST = 0.015  # m
 RADII = {"sphere": (0.1, 1.6), "pole": (0.04, 1.6)}  # m
 _CENTRE_SIGMA = 2.0  # m: how little the guess of the centre counts
 _CLOSE_ENOUGH = 0.004  # m: a smaller last step of the search changes nothing that matters
-_SCATTER_LOSS = 18.0  # by trial: by how much more the centre is off than the linear fit believes (variance)
+_SCATTER_LOSS = 18.0  # by trial: by how much more the centre is off than the linear fit's variance says
 _INSIDE = 0.1  # m: a point so far within a pole's side lies on its end
 
 
 class RoundSurface:
-    """A sphere, or a pole that stands on the ground. Its reference point is the centre, a pole's on the ground.
+    """A sphere, or a pole on the ground. Its reference point is the centre, a pole's on the ground.
 
     ``known``: the shape is given and stays as it is.
     """
@@ -40,7 +40,7 @@ class RoundSurface:
 
     @property
     def shape(self) -> Shape:
-        """As it is believed to be."""
+        """The estimated shape."""
         if self.known is not None:
             return self.known
         if self._is_pole:
@@ -57,28 +57,28 @@ class RoundSurface:
         """Standard deviation of the radius (m)."""
         return 0.0 if self.known else float(np.sqrt(self._variance))
 
-    def guess(self, seen: SurfacePoints) -> Array:
-        """A first place for the reference point: behind the nearest point, as seen by its sensor (3,)."""
-        ray = seen.points - seen.origins
+    def guess(self, scan: SurfacePoints) -> Array:
+        """A first place for the reference point: behind the nearest point, along its sensor's ray (3,)."""
+        ray = scan.points - scan.origins
         nearest = int(np.argmin(np.einsum("ij,ij->i", ray, ray)))
-        direction = seen.rays[nearest].copy()
+        direction = scan.rays[nearest].copy()
         if self._is_pole:
             direction[2] = 0.0
             direction /= max(np.hypot(direction[0], direction[1]), 1e-3)
-        return seen.points[nearest] + self._radius * direction
+        return scan.points[nearest] + self._radius * direction
 
-    def fit(self, seen: SurfacePoints, predicted: Array, iterations: int = 3) -> Fit:
+    def fit(self, scan: SurfacePoints, predicted: Array, iterations: int = 3) -> Fit:
         """Where the obstacle is in this frame; learns the shape from it. ``predicted`` (3,): where it is expected."""
         n_axes = self._axes
         prior = np.full(n_axes + 1, 1.0 / _CENTRE_SIGMA**2)
         prior[-1] = 1.0 / (self._variance + RADIUS_WALK**2)
         mean = np.append(predicted[:n_axes], self._radius)
         theta = mean.copy()
-        points, rays = seen.points[:, :n_axes], seen.rays[:, :n_axes]
+        points, rays = scan.points[:, :n_axes], scan.rays[:, :n_axes]
         low, high = RADII[self.kind]
         H = np.empty((len(points), n_axes + 1))
         for _ in range(iterations):
-            residual, normal, variance = self._residuals(points, rays, theta, seen, H[:, -1])
+            residual, normal, variance = self._residuals(points, rays, theta, scan, H[:, -1])
             weight = 1.0 / (variance * (1.0 + residual**2 / (9.0 * np.maximum(variance, 0.0025))))
             if self._is_pole:
                 weight[residual < -_INSIDE - 0.2 * theta[-1]] = 0.0
@@ -92,29 +92,29 @@ class RoundSurface:
             if abs(step).max() < _CLOSE_ENOUGH:
                 break
         covariance = np.linalg.inv(information)
-        common = float(np.mean(seen.pose_variance)) / seen.sensors
+        common = float(np.mean(scan.pose_variance)) / scan.sensors
         position = np.zeros(3)
         position[:n_axes] = theta[:n_axes]
         spread = np.full(3, 0.02**2)
         # Where points scatter by as much as the body is wide, their normals are no more than guesses.
-        guessed = 1.0 + _SCATTER_LOSS * seen.scatter / theta[-1] ** 2
+        guessed = 1.0 + _SCATTER_LOSS * scan.scatter / theta[-1] ** 2
         spread[:n_axes] = guessed * np.diag(covariance)[:n_axes] + common
-        residual, _, variance = self._residuals(points, rays, theta, seen, H[:, -1])
+        residual, _, variance = self._residuals(points, rays, theta, scan, H[:, -1])
         if self._is_pole:
             on_side = residual > -_INSIDE - 0.2 * theta[-1]
             # What lies inside the side must be the top: the highest points.
-            height = seen.points[:, 2] - seen.points[:, 2].min()
+            height = scan.points[:, 2] - scan.points[:, 2].min()
             residual = np.where(on_side, residual, np.minimum(-residual, height))
         if self.known is None:
             self._radius = float(theta[-1])
             self._variance = max(float(covariance[-1, -1]), RADIUS_SIGMA_LEAST**2)
             if self._is_pole:
-                self._top.seen(-seen.points[:, 2], seen.cut)
+                self._top.update(-scan.points[:, 2], scan.cut)
         fitted = n_axes + (self.known is None)
         return Fit(position, spread, score(residual, variance), unexplained(residual, variance, fitted))
 
     def _residuals(
-        self, points: Array, rays: Array, theta: Array, seen: SurfacePoints, of_radius: Array
+        self, points: Array, rays: Array, theta: Array, scan: SurfacePoints, of_radius: Array
     ) -> tuple[Array, Array, Array]:
         """Distance to the surface (n,), its normals (n, axes), variance of the distance (n,).
 
@@ -124,18 +124,18 @@ class RoundSurface:
         distance = np.maximum(np.sqrt(np.einsum("ij,ij->i", d, d)), 1e-3)
         normal = d / distance[:, None]
         incidence = np.einsum("ij,ij->i", normal, rays)
-        variance = (seen.noise * incidence) ** 2 + seen.pose_variance + seen.scatter + 0.015**2
+        variance = (scan.noise * incidence) ** 2 + scan.pose_variance + scan.scatter + 0.015**2
         # Scatter across the surface puts points outside of it on average, the more so the smaller it is.
-        outside = 0.5 * (self._axes - 1) * seen.scatter / theta[-1]
+        outside = 0.5 * (self._axes - 1) * scan.scatter / theta[-1]
         residual = distance - theta[-1] - outside
         of_radius[:] = -1.0
-        if seen.scatter > 0.0:
+        if scan.scatter > 0.0:
             self._behind(d, rays, theta[-1], residual, normal, of_radius)
         return residual, normal, variance
 
     @staticmethod
     def _behind(d: Array, rays: Array, radius: float, residual: Array, normal: Array, of_radius: Array) -> None:
-        """Points that seem to be on the side that no sensor sees are as far off as from the rim of the seen one.
+        """Points that seem to be on the side hidden from all sensors are as far off as from the rim of the visible one.
 
         Otherwise they would fit a body as well that is nearer by its width. Changes the last three in place.
         """
