@@ -99,8 +99,8 @@ def _bounds(setting: Setting) -> dict[str, Any]:
 
 def _bounded(hint: Any, bounds: dict[str, Any]) -> Any:
     """Return the type ``hint`` with ``bounds`` on every number in it, and tables as the types they are read by."""
-    if dataclasses.is_dataclass(hint):
-        return table_type(hint)  # type: ignore[arg-type]
+    if isinstance(hint, type) and dataclasses.is_dataclass(hint):
+        return table_type(hint)
     if hint in (int, float):
         return Annotated[hint, Field(**bounds)]
     parts = tuple(part if part is Ellipsis else _bounded(part, bounds) for part in get_args(hint))

@@ -102,13 +102,13 @@ class MonitorAlarm(AlarmCode):
     )
     CHANNEL_ISOLATED = (
         Scope.CLEAR_OF_GROUND, Severity.ERROR,
-        "a channel was rejected for half a second, and is left out until it has been accepted for 1 s",
+        "a channel was rejected for half a second, and is isolated until it has been accepted for 1 s",
         "check the sensor",
     )
     INCONSISTENT_STATE = (
         Scope.CLEAR_OF_GROUND, Severity.ERROR,
         "the positions of most vehicles do not follow from their velocities while the payload's do, or the other way "
-        "round; or an attitude does not follow from its rates: the ones or the others are left out from then on",
+        "round; or an attitude does not follow from its rates: the inconsistent ones are isolated from then on",
         "check navigation",
     )
     MEASUREMENTS_REJECTED = (
@@ -345,7 +345,7 @@ def estimator_health(seen: Observation) -> None:
     for group, (poses, _) in health.isolated_groups.items():
         names = ("positions", "velocities") if group.kind is Position else ("attitudes", "rates")
         source, owner = ("payload", "the payload") if group.of_payload else ("team", "all vehicles")
-        text = f"{names[0 if poses else 1]} of {owner} are left out"
+        text = f"{names[0 if poses else 1]} of {owner} are isolated"
         seen.raise_alarm(source, MonitorAlarm.INCONSISTENT_STATE, text)
 
 
