@@ -6,11 +6,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.errors import ParameterError
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

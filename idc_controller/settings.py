@@ -4,8 +4,6 @@ Every sub-package whose behaviour depends on numbers has a ``settings.py`` with 
 system file; ``docs/settings.md`` lists them all.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any
 

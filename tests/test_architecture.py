@@ -76,9 +76,9 @@ ALLOWED = {
     "vehicle_sim.world": "gcs.mission gcs.record idc_controller.geometry idc_controller.model",
 }
 SETTINGS = sorted((*ROOT.glob("idc_controller/*/settings.py"), *ROOT.glob("gcs/*/settings.py")))
-COMMON = {f"idc_controller.{name}" for name in ("errors", "parameters", "rotations", "rotations_float", "settings")} | {
-    "gcs.errors"
-}
+COMMON = {
+    f"idc_controller.{name}" for name in ("arrays", "errors", "parameters", "rotations", "rotations_float", "settings")
+} | {"gcs.errors"}
 """Modules beside the sub-packages that everything above them may import."""
 
 

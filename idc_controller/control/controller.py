@@ -5,14 +5,12 @@ Two interfaces keep it open. Any :class:`~idc_controller.control.tracker.Tracker
 and deflects it to keep obstacles out of the hull.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.control.force_components import setpoints_from_force_components, state_in_force_components
 from idc_controller.control.ground_controller import GroundController
 from idc_controller.control.settings import ControllerSettings
@@ -27,8 +25,6 @@ from idc_controller.safety.filter_protocol import SafetyFilter, SafetyReport
 from idc_controller.trajectory.flatness import FlatReference, Load, PayloadTrajectory
 from idc_controller.trajectory.reference import Reference
 from idc_controller.trajectory.trajectory import Trajectory
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,14 +5,10 @@ product; in F_xy / f_hover and -F_z it is linear. Errors are taken, and set-poin
 exactly.
 """
 
-from __future__ import annotations
-
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.model.linear import StateLayout
-
-Array = NDArray[np.float64]
 
 
 def state_in_force_components(x: Array, layout: StateLayout, hover: Array) -> Array:

@@ -8,18 +8,14 @@ with the link in tension as soon as the thrust f exceeds the UAV's weight. One l
 whole range of thrust; the payload's own error is left to the ground.
 """
 
-from __future__ import annotations
-
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import expm, solve_discrete_are
 
+from idc_controller.arrays import Array
 from idc_controller.control.settings import GroundControlSettings
 from idc_controller.control.tracker import TrackingOutput
 from idc_controller.model.linear import LinearModel
 from idc_controller.trajectory.flatness import FlatReference
-
-Array = NDArray[np.float64]
 
 
 class GroundController:

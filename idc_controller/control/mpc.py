@@ -5,12 +5,11 @@ taken about the exact flat reference; the model is minimal, so the Riccati equat
 constrained at stages 1 .. N_p (stage 0 cannot be changed) and softly, so that no state makes the QP infeasible.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag, solve_discrete_are
 
+from idc_controller.arrays import Array
 from idc_controller.control.constraints import state_constraints
 from idc_controller.control.constraints.input_limits import InputLimits
 from idc_controller.control.settings import MpcSettings, MpcWeights
@@ -19,8 +18,6 @@ from idc_controller.errors import SolverError
 from idc_controller.model.linear import LinearModel, StateLayout
 from idc_controller.qp.parametric import ParametricQp
 from idc_controller.trajectory.flatness import FlatReference
-
-Array = NDArray[np.float64]
 
 
 class ModelPredictiveController:

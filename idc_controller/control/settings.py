@@ -1,7 +1,5 @@
 """Settings of the tracking controllers: the MPC's horizon, limits and weights, and how the load is learnt."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

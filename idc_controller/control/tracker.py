@@ -1,16 +1,10 @@
 """The interface of a tracking controller: any tracker can take the MPC's place."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
+from idc_controller.arrays import Array
 from idc_controller.trajectory.flatness import FlatReference
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

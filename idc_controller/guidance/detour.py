@@ -5,8 +5,6 @@ straightens it to few waypoints. The grid's edges are proven, not sampled: the d
 along an edge, so ends that keep r = sqrt(margin^2 + (edge/2)^2) keep the margin in between.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,6 +15,7 @@ from scipy.ndimage import label
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
+from idc_controller.arrays import Array
 from idc_controller.errors import TrajectoryError
 from idc_controller.geometry.formation import BoundingCylinder
 from idc_controller.geometry.free_space import FreeSpace, first_conflict
@@ -26,7 +25,6 @@ from idc_controller.trajectory.trajectory import point
 
 __all__ = ["BoundingCylinder", "Detour", "FreeSpace", "find_detour", "first_conflict"]
 
-Array = NDArray[np.float64]
 Box = tuple[Array, Array]
 """Two opposite corners, NED (m)."""
 

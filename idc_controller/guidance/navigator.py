@@ -5,11 +5,9 @@ the obstacle, safe but held up. Then a detour is searched on the present map and
 again behind the obstacle. Where there is no detour the reason is kept: the flight ends for it.
 """
 
-from __future__ import annotations
-
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.geometry.formation import BoundingCylinder
 from idc_controller.geometry.free_space import FreeSpace, first_conflict
 from idc_controller.geometry.obstacles import ObstacleSource, PredictedObstacle
@@ -20,9 +18,6 @@ from idc_controller.trajectory.flatness import PayloadTrajectory
 from idc_controller.trajectory.paths import Leg
 from idc_controller.trajectory.trajectory import Trajectory
 from idc_controller.trajectory.waypoints import WaypointTrajectory
-
-Array = NDArray[np.float64]
-
 
 REJOIN = 0.3
 """s before the end of a detour, at which the mission is followed again."""

@@ -4,19 +4,15 @@ The progress is the path parameter of the mission's trajectory (s): its own time
 up. Where the payload falls behind, or the wind would take more thrust than there is, the progress rate drops below 1.
 """
 
-from __future__ import annotations
-
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.guidance.navigator import Navigator
 from idc_controller.guidance.settings import ProgressSettings
 from idc_controller.model.drag import Air
 from idc_controller.trajectory.flatness import PayloadTrajectory
 from idc_controller.trajectory.scaled import ScaledReference
 from idc_controller.trajectory.trajectory import RestTrajectory, Trajectory
-
-Array = NDArray[np.float64]
 
 
 class Guidance:

@@ -10,16 +10,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.geometry.distance import Bodies
 from idc_controller.geometry.obstacles import ObstacleSource, PredictedObstacle
 from idc_controller.guidance.settings import RestingPlaceSettings
 from idc_controller.parameters import SystemParameters
 from idc_controller.trajectory.settings import BrakingSettings
 from idc_controller.trajectory.stop_plan import Braking
-
-Array = NDArray[np.float64]
 
 _AXIS = 9
 """Points on the formation's upright axis on its path."""

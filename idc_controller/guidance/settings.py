@@ -1,7 +1,5 @@
 """Settings of the guidance: progress along the mission, and detours."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from idc_controller.settings import derived, setting

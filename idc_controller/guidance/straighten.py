@@ -1,15 +1,12 @@
 """Straightening of a path: as few waypoints as free space allows, and its corners drawn in."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
 from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.geometry.free_space import FreeSpace
-
-Array = NDArray[np.float64]
 
 WAYPOINT_COST = 0.15
 """m of path that one waypoint less is worth."""

@@ -13,21 +13,17 @@ has but the thrusts' vertical row, -1 / m_T for a symmetric layout, and all torq
 ones at the state (:func:`nonlinear_acceleration`), where a tilted link lets thrust push sideways a little.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.errors import SolverError
 from idc_controller.paper.plant import Plant, PlantState
 from idc_controller.paper.state_space import minimal
 from idc_controller.parameters import SystemParameters
 from idc_controller.qp.daqp_solver import DaqpSolver
 from idc_controller.qp.problem import QuadraticProgram
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

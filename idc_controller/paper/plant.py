@@ -13,12 +13,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.parameters import SystemParameters
 from idc_controller.rotations import hat, rotation_from_quaternion
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,15 +1,11 @@
 """The matrices P and Q exactly as the paper prints them, errors included, to measure what the errors do."""
 
-from __future__ import annotations
-
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.model.nonlinear import Inputs, SystemState, matrix_P, vector_Q
 from idc_controller.parameters import SystemParameters
 from idc_controller.rotations import hat, rotation_from_quaternion
-
-Array = NDArray[np.float64]
 
 
 def printed_state_dimension(number_of_uavs: int) -> int:

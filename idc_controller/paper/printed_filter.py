@@ -6,12 +6,10 @@ payload's lateral acceleration only through the links' tilt, so for a pole A_obs
 is kept to show what that means; the default is :class:`~idc_controller.safety.safety_filter.AvoidanceFilter`.
 """
 
-from __future__ import annotations
-
 import coal
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.errors import SolverError
 from idc_controller.estimation.estimate import Estimate
 from idc_controller.geometry.formation import Formation
@@ -20,8 +18,6 @@ from idc_controller.model.linear import LinearModel
 from idc_controller.qp.daqp_solver import DaqpSolver
 from idc_controller.qp.problem import QuadraticProgram
 from idc_controller.safety.filter_protocol import NoObstacles
-
-Array = NDArray[np.float64]
 
 DIFFERENCE = 0.05
 """s, for the obstacles' velocity and acceleration from their prediction."""

@@ -18,12 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
+from idc_controller.arrays import Array
 from idc_controller.model.linear import LinearModel
 from idc_controller.model.nonlinear import Inputs, SystemState, accelerations, thrust_forces
 from idc_controller.parameters import SystemParameters
 from idc_controller.rotations import quaternion_from_euler
-
-Array = NDArray[np.float64]
 
 _PAYLOAD = ("r_0", "v_0", "Theta_0", "omega_0")
 _FULL = (("q", 3), ("Omega", 3), ("Theta", 3), ("omega", 3))

@@ -11,15 +11,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import block_diag, solve_discrete_are
 
+from idc_controller.arrays import Array
 from idc_controller.errors import SolverError
 from idc_controller.paper.state_space import Layout, discretised, minimal
 from idc_controller.parameters import SystemParameters
 from idc_controller.qp.parametric import ParametricQp
-
-Array = NDArray[np.float64]
 
 Triple = tuple[float, float, float]
 

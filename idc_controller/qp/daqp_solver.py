@@ -1,7 +1,5 @@
 """DAQP: a dual active-set method for small dense programs, exact, without a warm start."""
 
-from __future__ import annotations
-
 import daqp
 import numpy as np
 

@@ -1,15 +1,12 @@
 """A family of quadratic programs with one H and G and many g and h, some rows softly."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
+from idc_controller.arrays import Array
 from idc_controller.qp.problem import QpSolution, QpSolver, QuadraticProgram
 from idc_controller.qp.proxqp_solver import ProxqpSolver
-
-Array = NDArray[np.float64]
 
 
 class ParametricQp:

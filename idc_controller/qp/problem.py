@@ -1,14 +1,12 @@
 """The quadratic program (QP) as every solver takes it, and what a solver returns."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from idc_controller.arrays import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,7 +1,5 @@
 """ProxQP: a proximal method with a warm start, for programs that differ only in g and h from step to step."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,15 +1,11 @@
 """Other sets of separating planes: the sides on which a conflicting obstacle may be passed."""
 
-from __future__ import annotations
-
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.geometry.obstacles import PredictedObstacle
 from idc_controller.safety.constraints.exponential_barrier import ExponentialBarrier
 from idc_controller.safety.separation import Separation
-
-Array = NDArray[np.float64]
 
 
 def alternatives(

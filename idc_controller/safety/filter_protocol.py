@@ -1,18 +1,12 @@
 """The interface of a safety filter, what it reports, and the filter of a world without obstacles."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
+from idc_controller.arrays import Array
 from idc_controller.estimation.estimate import Estimate
 from idc_controller.trajectory.flatness import PayloadTrajectory
 from idc_controller.trajectory.scaled import ScaledReference
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

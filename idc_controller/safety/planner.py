@@ -4,16 +4,14 @@ Decision variables are the knots of the snap of the payload's deviation from the
 in :mod:`idc_controller.safety.constraints`; slacks keep the QP feasible and say by how much safety would be missed.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import block_diag, solve_discrete_are
 
+from idc_controller.arrays import Array
 from idc_controller.errors import SolverError
 from idc_controller.geometry.formation import Formation
 from idc_controller.qp.daqp_solver import DaqpSolver
@@ -24,8 +22,6 @@ from idc_controller.safety.constraints.exponential_barrier import ExponentialBar
 from idc_controller.safety.constraints.snap_bounds import SnapBounds
 from idc_controller.safety.separation import Separation
 from idc_controller.safety.settings import PlannerSettings
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

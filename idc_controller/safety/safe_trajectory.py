@@ -1,17 +1,14 @@
 """The trajectory that the safety filter returns: plans one after the other, each a deviation from its reference."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.trajectory.integrator_chain import Chain
 from idc_controller.trajectory.scaled import ScaledReference
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

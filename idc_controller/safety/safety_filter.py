@@ -1,13 +1,11 @@
 """The safety filter: from a reference trajectory to one that keeps the hull clear of obstacles, step by step."""
 
-from __future__ import annotations
-
 from collections import deque
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.estimation.estimate import Estimate
 from idc_controller.geometry.formation import Formation
 from idc_controller.geometry.obstacles import ObstacleSource, PredictedObstacle
@@ -19,8 +17,6 @@ from idc_controller.safety.safe_trajectory import Piece, SafeTrajectory, evaluat
 from idc_controller.safety.separation import Separation, separations
 from idc_controller.safety.settings import FilterSettings, PlannerSettings
 from idc_controller.trajectory.scaled import ScaledReference
-
-Array = NDArray[np.float64]
 
 NEGLIGIBLE = 1e-5
 """A deviation below this, in all derivatives, is none."""

@@ -1,17 +1,13 @@
 """Where the hull and an obstacle come closest at each stage of a plan, and which plane parts them there."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import coal
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.geometry.formation import Formation
 from idc_controller.geometry.obstacles import PredictedObstacle
-
-Array = NDArray[np.float64]
 
 _IDENTITY = coal.Transform3s.Identity()
 

@@ -1,18 +1,14 @@
 """Settings of the safety filter: weights of its planner, limits of its plans, margins and barrier."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.errors import ParameterError
 from idc_controller.settings import derived, setting
 from idc_controller.trajectory.integrator_chain import Chain
 from idc_controller.trajectory.trajectory import Limits
-
-Array = NDArray[np.float64]
 
 Triple = tuple[float, float, float]
 

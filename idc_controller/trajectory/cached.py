@@ -1,11 +1,10 @@
 """A cached trajectory that computes no time twice: overlapping horizons need the same times step after step."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike
 
-from idc_controller.trajectory.trajectory import Array, Trajectory, checked_times
+from idc_controller.arrays import Array
+from idc_controller.trajectory.trajectory import Trajectory, checked_times
 
 TICKS = 1e8  # per second: times closer than one are the same
 CAPACITY = 4000  # times; the oldest half goes when there are more

@@ -17,13 +17,12 @@ from dataclasses import dataclass, field, fields
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.model.drag import Air
 from idc_controller.model.linear import StateLayout
 from idc_controller.parameters import SystemParameters
 
-Array = NDArray[np.float64]
 E3 = np.array([0.0, 0.0, 1.0])
 
 # Spacing of the samples from which derivatives of the UAVs' forces are taken (s): the trajectory is smooth up to snap

@@ -4,8 +4,6 @@ A snap that is linear between knots keeps the planned trajectory four times cont
 reference needs it: the UAVs' thrusts follow the snap directly.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property
@@ -13,7 +11,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from idc_controller.arrays import Array
 
 
 @dataclass(frozen=True)

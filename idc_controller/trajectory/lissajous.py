@@ -4,8 +4,6 @@ The curve is a fixed function of its phase, the phase a piecewise polynomial of 
 follow exactly by the chain rule: the trajectory never leaves the curve.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,8 +11,9 @@ from numpy.polynomial import Polynomial
 from numpy.typing import ArrayLike
 from scipy.interpolate import BPoly, PPoly
 
+from idc_controller.arrays import Array
 from idc_controller.errors import TrajectoryError
-from idc_controller.trajectory.trajectory import Array, Limits, Trajectory, checked_times, finite, positive
+from idc_controller.trajectory.trajectory import Limits, Trajectory, checked_times, finite, positive
 
 SHORTEST_RAMP, LONGEST_RAMP = 0.25, 60.0
 """s, between rest and the full rate."""

@@ -1,7 +1,5 @@
 """Legs as the mission gives them, and the pieces of path that they become."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
@@ -10,8 +8,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
+from idc_controller.arrays import Array
 from idc_controller.errors import TrajectoryError
-from idc_controller.trajectory.trajectory import Array, finite, point, positive
+from idc_controller.trajectory.trajectory import finite, point, positive
 
 COINCIDENT = 1e-6
 """m: points closer than this are the same point."""

@@ -1,16 +1,12 @@
 """The reference that estimator and controller share: a trajectory, and the estimated load on it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.parameters import SystemParameters
 from idc_controller.trajectory.flatness import FlatReference, Load, PayloadTrajectory, flat_reference
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

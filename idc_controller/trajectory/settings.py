@@ -1,7 +1,5 @@
 """Settings of trajectories: how a team without set-points brakes."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from idc_controller.settings import setting

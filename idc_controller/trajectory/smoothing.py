@@ -5,15 +5,14 @@ Averages stay in the convex hull, so nothing overshoots. Three boxes in the righ
 thirds of the time of the plain spline for the same snap.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 
+from idc_controller.arrays import Array
 from idc_controller.trajectory.spline import SUPPORT, evaluate
-from idc_controller.trajectory.trajectory import Array, Limits
+from idc_controller.trajectory.trajectory import Limits
 
 TURN = 2.0**0.5
 """Change of velocity, in full speeds, that holds the limits without a pause: a right angle."""

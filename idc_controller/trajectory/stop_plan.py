@@ -8,22 +8,18 @@ In wind the team is not where the reference has it. The plan starts where the te
 that no UAV is biased towards a place that the payload was meant to have.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import BPoly
 
+from idc_controller.arrays import Array
 from idc_controller.model.linear import E3, StateLayout
 from idc_controller.parameters import SystemParameters
 from idc_controller.trajectory.flatness import FlatReference
 from idc_controller.trajectory.settings import BrakingSettings
-
-Array = NDArray[np.float64]
 
 # Control points of the quartic from (position, T velocity, T^2 acceleration) at its start.
 _CONTROL_POINTS = np.array(

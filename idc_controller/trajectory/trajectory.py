@@ -8,11 +8,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, fields
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from idc_controller.arrays import Array
 from idc_controller.errors import TrajectoryError
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

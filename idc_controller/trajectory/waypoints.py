@@ -5,8 +5,6 @@ slows a corner down; each is the shortest with which the limits hold and the cor
 allowed. What is planned always ends at rest at the last waypoint read, so a long enough pause always works.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -14,11 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from idc_controller.arrays import Array
 from idc_controller.errors import TrajectoryError
 from idc_controller.trajectory.paths import Circle, Leg, Mark, Piece, pieces
 from idc_controller.trajectory.smoothing import smoothing_for
 from idc_controller.trajectory.spline import SUPPORT, SplineTrajectory, evaluate, within_limits
-from idc_controller.trajectory.trajectory import Array, Limits, Trajectory, checked_times, finite, point, positive
+from idc_controller.trajectory.trajectory import Limits, Trajectory, checked_times, finite, point, positive
 
 MOST_STANDSTILLS = 1000
 """Legs in a row that neither move nor hold: an endless mission of such legs would never give an answer."""

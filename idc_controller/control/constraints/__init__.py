@@ -1,7 +1,5 @@
 """The constraints of the MPC, one a file; :func:`state_constraints` is where a new one is registered."""
 
-from __future__ import annotations
-
 from idc_controller.control.constraints.constraint import StateConstraint
 from idc_controller.control.constraints.lowest_payload import LowestPayload
 from idc_controller.control.constraints.payload_tilt import PayloadTilt

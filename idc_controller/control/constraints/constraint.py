@@ -1,16 +1,13 @@
 """What a constraint on the state is to the MPC: rows G e <= h on the error about the reference (eq:stateCon)."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.trajectory.flatness import FlatReference
-
-Array = NDArray[np.float64]
 
 
 class StateConstraint(Protocol):

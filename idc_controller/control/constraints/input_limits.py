@@ -1,15 +1,11 @@
 """Limits of tilt and thrust set-points (eq:inpCon); hard, both ways."""
 
-from __future__ import annotations
-
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.control.force_components import inputs_in_force_components
 from idc_controller.control.settings import MpcSettings
 from idc_controller.model.linear import LinearModel
-
-Array = NDArray[np.float64]
 
 
 class InputLimits:

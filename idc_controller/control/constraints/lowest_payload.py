@@ -1,17 +1,13 @@
 """Lowest position of the payload's centre: it is on the ground there."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.control.settings import MpcSettings
 from idc_controller.model.linear import LinearModel
 from idc_controller.trajectory.flatness import FlatReference
-
-Array = NDArray[np.float64]
 
 
 class LowestPayload:

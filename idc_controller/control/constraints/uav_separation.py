@@ -1,17 +1,13 @@
 """Least distance between neighbouring UAVs, along the line between their places in hover; one slack for all."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.control.settings import MpcSettings
 from idc_controller.model.linear import LinearModel
 from idc_controller.trajectory.flatness import FlatReference
-
-Array = NDArray[np.float64]
 
 NEIGHBOURS = 1.3
 """Pairs up to this many times the least distance apart in hover are neighbours: not those across the payload."""

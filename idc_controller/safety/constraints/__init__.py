@@ -1,7 +1,5 @@
 """The constraints of the safety QP, one a file; :func:`planner_constraints` is where a new one is registered."""
 
-from __future__ import annotations
-
 from idc_controller.safety.constraints.acceleration_bounds import AccelerationBounds
 from idc_controller.safety.constraints.constraint import Constraint, Penalty
 from idc_controller.safety.constraints.exponential_barrier import ExponentialBarrier

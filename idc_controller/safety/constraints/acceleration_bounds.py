@@ -1,15 +1,12 @@
 """Bounds on the acceleration of a plan, along the axes and between north and east, both ways."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.safety.constraints.constraint import Penalty, PlanningStep
 from idc_controller.safety.settings import PlannerSettings
 from idc_controller.trajectory.integrator_chain import Chain
-
-Array = NDArray[np.float64]
 
 _DIAGONAL = np.sqrt(0.5)
 DIRECTIONS = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [_DIAGONAL, _DIAGONAL, 0], [_DIAGONAL, -_DIAGONAL, 0]])

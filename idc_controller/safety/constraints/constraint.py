@@ -1,17 +1,11 @@
 """What a constraint of the safety QP is given and what it returns."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
+from idc_controller.arrays import Array
 from idc_controller.safety.separation import Separation
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,20 +9,16 @@ the discrete form of the exponential barrier of degree m with the real poles ln(
 plain distance rows.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.geometry.formation import Formation
 from idc_controller.safety.constraints.constraint import Penalty, PlanningStep
 from idc_controller.safety.separation import Separation
 from idc_controller.safety.settings import PlannerSettings
 from idc_controller.trajectory.integrator_chain import Chain
-
-Array = NDArray[np.float64]
 
 
 class ExponentialBarrier:

@@ -1,16 +1,12 @@
 """The lowest altitude of a plan: the payload is not led into the ground."""
 
-from __future__ import annotations
-
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.geometry.formation import Formation
 from idc_controller.safety.constraints.acceleration_bounds import limited_stages
 from idc_controller.safety.constraints.constraint import Penalty, PlanningStep
 from idc_controller.safety.settings import PlannerSettings
-
-Array = NDArray[np.float64]
 
 
 class LowestAltitude:

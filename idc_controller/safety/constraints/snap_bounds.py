@@ -1,14 +1,10 @@
 """Bounds on the snap of a plan at its knots: bounds of the QP's variables themselves, so not rows, and hard."""
 
-from __future__ import annotations
-
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.safety.constraints.constraint import PlanningStep
 from idc_controller.safety.settings import PlannerSettings
-
-Array = NDArray[np.float64]
 
 
 class SnapBounds:
