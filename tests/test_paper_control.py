@@ -5,7 +5,7 @@ import pytest
 from paper_system import system
 from scipy.linalg import solve_discrete_are
 
-from gcs.reproduce.controls import PaperControl, PaperVariant, formation_points, minimal_state
+from gcs.reproduce.controls import PaperControl, PaperVariant, minimal_state
 from gcs.reproduce.scene import Sphere, printed_reference, shaped_figure, two_spheres
 from idc_controller.geometry.formation import Formation
 from idc_controller.paper.avoidance import (
@@ -221,10 +221,11 @@ def test_spheres_meet_the_payload_at_positions_of_the_paper():
         np.testing.assert_allclose(acceleration, 0.0, atol=1e-9)
 
 
-def test_formation_points_are_those_of_hover_when_hovering():
+def test_formation_in_world_is_hull_in_hover_when_hovering():
     parameters = system()
     formation, state = Formation(parameters), PlantState.hovering(parameters, np.array([1.0, 2.0, -5.0]))
-    points = formation_points(formation, Plant(parameters), state)
+    uavs = Plant(parameters).uav_positions(state)
+    points = formation.points_in_world(state.r_0, state.quaternion_0, uavs, state.quaternion)
     np.testing.assert_allclose(points, formation.hull_points(np.zeros((1, 3)))[0] + state.r_0, atol=1e-12)
 
 

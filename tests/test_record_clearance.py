@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gcs.errors import UnusableInput
-from gcs.record.clearance import ObstacleTrack, clearance_over_time, formation_points, rim_error
+from gcs.record.clearance import RIM_VERTICES, ObstacleTrack, clearance_over_time
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
@@ -15,7 +15,9 @@ from idc_controller.rotations import quaternion_from_euler, rotation_from_quater
 LEVEL = np.array([1.0, 0.0, 0.0, 0.0])
 # Payload at the origin, its UAVs 1 m above its upper corners.
 UAVS = np.array([[x, y, -1.25] for x in (-0.5, 0.5) for y in (-0.5, 0.5)])
-BOUND = rim_error(0.3) + 1e-5
+RIM_ERROR = (1.0 - np.cos(np.pi / RIM_VERTICES)) / (1.0 + np.cos(np.pi / RIM_VERTICES))
+"""Largest error by the polygons in place of discs, over the disc's radius."""
+BOUND = 0.3 * RIM_ERROR + 1e-5
 
 
 def clearance(obstacle: ObstacleTrack, rotation=LEVEL, shift=(0.0, 0.0, 0.0), uav_quaternion=LEVEL) -> float:
@@ -34,8 +36,8 @@ def sphere(position, radius=0.5) -> ObstacleTrack:
     return ObstacleTrack("s", Sphere(radius), np.array([position], dtype=float))
 
 
-def test_the_bound_is_stated_below_a_millimetre() -> None:
-    assert rim_error(0.3) < 0.2e-3
+def test_clearance_error_by_polygons_is_below_a_fifth_of_a_millimetre() -> None:
+    assert 0.3 * RIM_ERROR < 0.2e-3
 
 
 @pytest.mark.parametrize(
@@ -139,7 +141,7 @@ def test_size_and_radius_given() -> None:
         [sphere((0, 0, 4)), sphere((9, 0.5, -1.25))],
         payload_size=(1.0, 1.0, 2.0), disc_radius=0.5,
     )  # fmt: skip
-    assert got[0] == pytest.approx([4 - 1 - 0.5, 9 - 1.0 - 0.5], abs=rim_error(0.5) + 1e-5)
+    assert got[0] == pytest.approx([4 - 1 - 0.5, 9 - 1.0 - 0.5], abs=0.5 * RIM_ERROR + 1e-5)
 
 
 def test_clearance_without_record_is_nan() -> None:
@@ -150,12 +152,12 @@ def test_clearance_without_record_is_nan() -> None:
     assert np.isnan(got[1, 0])
 
 
-def test_points_lie_half_outside_half_inside_the_rim() -> None:
-    points = formation_points(np.zeros(3), LEVEL, UAVS[:1], LEVEL[None], (1.0, 1.0, 0.5), 0.3)
-    from_centre = np.linalg.norm(points[8:] - UAVS[0], axis=1)
-    between = np.linalg.norm((points[8] + points[9]) / 2.0 - UAVS[0])
-    assert from_centre == pytest.approx(0.3 + rim_error(0.3), abs=1e-12)
-    assert between == pytest.approx(0.3 - rim_error(0.3), abs=1e-12)
+def test_disc_of_clearance_lies_half_outside_half_inside_its_rim() -> None:
+    # At a corner of the polygon (north) and at the middle of an edge beside it.
+    half = np.pi / RIM_VERTICES
+    corner, edge = (clearance(sphere((0.5 + 2.0 * np.cos(a), 0.5 + 2.0 * np.sin(a), -1.25))) for a in (0.0, half))
+    assert corner == pytest.approx(2.0 - 0.5 - 0.3 * (1.0 + RIM_ERROR), abs=1e-6)
+    assert edge == pytest.approx(2.0 - 0.5 - 0.3 * (1.0 - RIM_ERROR), abs=1e-6)
 
 
 @pytest.mark.parametrize(

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from io import BytesIO
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-import trimesh
+
+if TYPE_CHECKING:
+    import trimesh
 
 FORMATS = (".stl", ".obj", ".ply")
 LARGEST_FILE = 20e6  # bytes
@@ -20,6 +23,8 @@ class UnusableMesh(Exception):
 
 def read_mesh(path: Path) -> trimesh.Trimesh:
     """Return the closed surface that a file holds. Raises :class:`UnusableMesh`."""
+    import trimesh  # half a second, spent only where there is a mesh
+
     name = path.name
     if path.suffix.lower() not in FORMATS:
         raise UnusableMesh(f"'{name}' is none of {', '.join(FORMATS)}")

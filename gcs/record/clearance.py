@@ -21,8 +21,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from gcs.errors import UnusableInput
 from idc_controller.errors import ShapeError
+from idc_controller.geometry.formation import formation_points
 from idc_controller.geometry.shape import Shape
-from idc_controller.rotations import rotation_from_quaternion
 
 Array = NDArray[np.float64]
 
@@ -49,34 +49,6 @@ class ObstacleTrack:
             raise UnusableInput(f"obstacle {self.name}: {error}") from error
 
 
-def rim_error(disc_radius: float) -> float:
-    """Largest error of a clearance (m) that comes of replacing discs by polygons."""
-    cosine = np.cos(np.pi / RIM_VERTICES)
-    return float(disc_radius * (1.0 - cosine) / (1.0 + cosine))
-
-
-def formation_points(
-    payload_position_in_world: ArrayLike,
-    payload_quaternion: ArrayLike,
-    uav_position_in_world: ArrayLike,
-    uav_quaternion: ArrayLike,
-    payload_size: ArrayLike,
-    disc_radius: float,
-) -> Array:
-    """Points whose convex hull is the formation, (8 + N :data:`RIM_VERTICES`, 3) in NED (m).
-
-    Shapes: (3,), w-first (4,), (N, 3), w-first (N, 4), (3,); quaternions rotate body to world.
-    """
-    corners = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
-    box = (corners * np.asarray(payload_size, dtype=float)) @ rotation_from_quaternion(payload_quaternion).T
-    angle = 2.0 * np.pi * np.arange(RIM_VERTICES) / RIM_VERTICES
-    rim = np.column_stack([np.cos(angle), np.sin(angle), np.zeros(RIM_VERTICES)])
-    rim *= disc_radius * 2.0 / (1.0 + np.cos(np.pi / RIM_VERTICES))
-    rotation_body_to_world = rotation_from_quaternion(uav_quaternion)
-    discs = rim @ np.swapaxes(rotation_body_to_world, -1, -2) + np.asarray(uav_position_in_world)[:, None, :]
-    return np.vstack([box + np.asarray(payload_position_in_world, dtype=float), discs.reshape(-1, 3)])
-
-
 def clearance_over_time(
     payload_position_in_world: ArrayLike,
     payload_quaternion: ArrayLike,
@@ -89,7 +61,7 @@ def clearance_over_time(
     """Distance between formation and obstacles (T, number of obstacles) (m); 0 where they meet.
 
     Shapes: (T, 3), w-first (T, 4), (T, N, 3), w-first (T, N, 4), NED, quaternions body to world. A row or an
-    obstacle position that is not finite gives NaN. The error is at most :func:`rim_error` plus 0.001 mm.
+    obstacle position that is not finite gives NaN.
     """
     payload_position = np.asarray(payload_position_in_world, dtype=float)
     payload_quaternion = np.asarray(payload_quaternion, dtype=float)
@@ -101,6 +73,11 @@ def clearance_over_time(
     request.gjk_tolerance = _DISTANCE_TOLERANCE
     request.gjk_max_iterations = 1000
     identity = coal.Transform3s.Identity()
+    corners = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+    corners *= np.asarray(payload_size, dtype=float)
+    angle = 2.0 * np.pi * np.arange(RIM_VERTICES) / RIM_VERTICES
+    rim = np.column_stack([np.cos(angle), np.sin(angle), np.zeros(RIM_VERTICES)])
+    rim *= disc_radius * 2.0 / (1.0 + np.cos(np.pi / RIM_VERTICES))
     clearance = np.full((len(payload_position), len(obstacles)), np.nan)
     for t in range(len(payload_position)):
         states = (payload_position[t], payload_quaternion[t], uav_position[t], uav_quaternion[t])
@@ -109,8 +86,7 @@ def clearance_over_time(
             continue
         # About the payload, so that the last digits do not depend on where in the world the flight is.
         from_payload = states[2] - states[0]
-        points = formation_points(np.zeros(3), states[1], from_payload, states[3], payload_size, disc_radius)
-        hull = _coal_hull(points)
+        hull = _coal_hull(formation_points(corners, rim, np.zeros(3), states[1], from_payload, states[3]))
         for j in present:
             placement = coal.Transform3s(rotations[j], obstacles[j].position[t] - states[0])
             result = coal.DistanceResult()

@@ -135,7 +135,8 @@ class PaperControl:
             a, G = self._A_v @ x, self._G
         else:
             a, G = nonlinear_acceleration(self._plant, state)
-        points = formation_points(self._formation, self._plant, state)
+        uavs = self._plant.uav_positions(state)
+        points = self._formation.points_in_world(state.r_0, state.quaternion_0, uavs, state.quaternion)
         hull = self._formation.hull(points)
         rows, bounds = [], []
         for sphere in self.spheres:
@@ -230,18 +231,6 @@ def minimal_state(state: PlantState) -> Array:
     x[layout.of_uavs("s")], x[layout.of_uavs("s_dot")] = state.q[:, :2], state.q_dot[:, :2]
     x[layout.of_uavs("Theta")], x[layout.of_uavs("omega")] = euler_from_quaternion(state.quaternion), state.omega
     return x
-
-
-def formation_points(formation: Formation, plant: Plant, state: PlantState) -> Array:
-    """Points (P, 3) in the world whose hull is the formation in its current state: box and rims."""
-    hover = formation.hull_points(np.zeros((1, 3)))[0]
-    points = np.empty_like(hover)
-    points[:8] = state.r_0 + hover[:8] @ rotation_from_quaternion(state.quaternion_0).T
-    N = len(state.q)
-    rims = hover[8:].reshape(N, -1, 3) - formation.hover_offsets[:, None]
-    turned = rims @ np.swapaxes(rotation_from_quaternion(state.quaternion), 1, 2)
-    points[8:] = (turned + plant.uav_positions(state)[:, None]).reshape(-1, 3)
-    return points
 
 
 def _flat_in_paper_inputs(parameters: SystemParameters, figure: Trajectory, times: Array) -> tuple[Array, Array]:

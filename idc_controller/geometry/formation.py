@@ -17,11 +17,33 @@ from scipy.spatial import cKDTree
 
 from idc_controller.errors import TrajectoryError
 from idc_controller.parameters import SystemParameters
+from idc_controller.rotations import rotation_from_quaternion
 
 Array = NDArray[np.float64]
 
 _LINEAR_SEARCH = 32
 """Up to so many points the distance library looks at all of them, so that their order and facets do not matter."""
+
+
+def formation_points(
+    corners: Array,
+    rims: Array,
+    payload_position_in_world: Array,
+    payload_quaternion: Array,
+    uav_position_in_world: Array,
+    uav_quaternion: Array,
+) -> Array:
+    """Return the points whose convex hull is the formation in a given state (C + N R, 3), NED (m).
+
+    Args:
+        corners: those of the payload, in its frame (C, 3) (m).
+        rims: points on the rim of a disc, in the frame of its UAV, (R, 3) or one set for each UAV (N, R, 3) (m).
+        payload_position_in_world, payload_quaternion: (3,) (m), w-first (4,), payload to world.
+        uav_position_in_world, uav_quaternion: (N, 3) (m), w-first (N, 4), body to world.
+    """
+    payload = corners @ rotation_from_quaternion(payload_quaternion).T + payload_position_in_world
+    discs = rims @ np.swapaxes(rotation_from_quaternion(uav_quaternion), -1, -2) + uav_position_in_world[:, None, :]
+    return np.vstack([payload, discs.reshape(-1, 3)])
 
 
 class Formation:
@@ -69,6 +91,10 @@ class Formation:
         K = len(acceleration)
         box = np.repeat(self._box[None], K, axis=0)
         return np.concatenate([box, discs.reshape(K, -1, 3)], axis=1)
+
+    def points_in_world(self, position: Array, quaternion: Array, uav_position: Array, uav_quaternion: Array) -> Array:
+        """Return :func:`formation_points` of this formation, rims coarsely."""
+        return formation_points(self._box, self._rim, position, quaternion, uav_position, uav_quaternion)
 
     def hull(self, points: Array, number: int = 0) -> coal.ShapeBase:
         """The hull of ``points`` (P, 3) for distance queries, until the next query under the same ``number``."""

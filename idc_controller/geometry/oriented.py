@@ -7,16 +7,18 @@ from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import ClassVar, Self
+from typing import TYPE_CHECKING, ClassVar, Self
 
 import coal
 import numpy as np
 import shapely
-import trimesh
 
 from idc_controller.errors import ShapeError
 from idc_controller.geometry.shape import ANGLE, Array, Columns, PlanView, Shape, UprightBounds, Vector
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
+
+if TYPE_CHECKING:
+    import trimesh
 
 _HEADINGS = np.radians(np.arange(0.0, 90.0, 5.0))
 """Of the upright box that is to hold a body: the smallest plan view is taken."""
@@ -158,6 +160,8 @@ class OrientedShape(Shape):
 
     @cached_property
     def _hull(self) -> trimesh.Trimesh:
+        import trimesh  # half a second, spent only where there is such a body
+
         return trimesh.convex.convex_hull(self.corners)
 
     @cached_property
