@@ -12,7 +12,7 @@ from idc_controller.trajectory.paths import Circle, Leg
 from idc_controller.trajectory.smoothing import smoothing_for
 from idc_controller.trajectory.spline import SplineTrajectory
 from idc_controller.trajectory.trajectory import Limits, RestTrajectory
-from idc_controller.trajectory.waypoints import WaypointTrajectory, fly_on
+from idc_controller.trajectory.waypoints import WaypointTrajectory
 
 LIMITS = Limits(speed=1.5, acceleration=2.0, jerk=4.0, snap=6.0)
 ORIGIN = np.zeros(3)
@@ -91,11 +91,9 @@ def test_any_mission_keeps_limits_passes_every_waypoint_and_rests_at_both_ends(m
     ends = trajectory.derivatives([trajectory.start, trajectory.end, trajectory.end + 7.0])
     assert np.all(np.abs(ends[1:]) < 1e-9)
     assert np.allclose(ends[0, 0], start, atol=1e-12)
-    assert [leg for _, leg in trajectory.passages] == list(range(len(legs)))
-    passed = np.array([time for time, _ in trajectory.passages])
+    passed = trajectory.passages
     assert np.all(np.diff(passed) >= 0.0)
-    for time, index in trajectory.passages:
-        leg = legs[index]
+    for time, leg in zip(passed, legs, strict=True):
         if isinstance(leg, Circle):
             continue
         distance = np.linalg.norm(derivatives[0] - leg.position, axis=1)
@@ -156,11 +154,11 @@ def test_straight_leg_is_flown_at_constant_speed():
     # Unequal legs, two of them shorter than the smoothing reaches.
     legs = [Leg([x, 0, -5], 1.5) for x in (7.0, 7.9, 8.3, 20.0, 30.0)]
     trajectory = planned(legs)
-    first, last = (trajectory.passages[i][0] for i in (0, 3))
+    first, last = (trajectory.passages[i] for i in (0, 3))
     speed = np.linalg.norm(trajectory.derivatives(np.linspace(first, last, 200), 1)[1], axis=1)
     assert np.allclose(speed, 1.5, atol=1e-6)
-    for time, index in trajectory.passages[:4]:
-        assert np.linalg.norm(trajectory.position(time) - legs[index].position) < 0.1
+    for time, leg in zip(trajectory.passages[:4], legs, strict=False):
+        assert np.linalg.norm(trajectory.position(time) - leg.position) < 0.1
 
 
 def test_change_of_speed_on_a_straight_line_needs_no_pause():
@@ -172,7 +170,7 @@ def test_change_of_speed_on_a_straight_line_needs_no_pause():
 
 def test_corner_is_flown_through_not_stopped_at():
     trajectory = planned([Leg([10, 0, -5], 1.5), Leg([10, 10, -5], 1.5)])
-    time, _ = trajectory.passages[0]
+    time = trajectory.passages[0]
     derivatives = trajectory.derivatives(np.linspace(time - 0.5, time + 0.5, 50))
     assert np.linalg.norm(derivatives[1], axis=1).min() > 0.2
     assert np.linalg.norm(derivatives[0] - [10, 0, -5], axis=1).min() <= 0.2
@@ -226,8 +224,8 @@ def test_endless_mission_is_read_only_to_evaluated_time_and_past_is_dropped():
         derivatives = trajectory.derivatives(now + np.arange(21) * 0.1)
         assert_within(derivatives)
     assert trajectory.end == math.inf
-    assert len(trajectory._samples) < 3000
-    assert len(trajectory._corners) < 10
+    assert len(trajectory._path._samples) < 3000
+    assert len(trajectory._open) < 10
     with pytest.raises(TrajectoryError, match="no longer kept"):
         trajectory.derivatives([10.0])
     stopped = trajectory.stop(2000.0)
@@ -253,11 +251,9 @@ def test_holding_for_ever_and_stopping_then_flying_home():
     for time in (50.0, 6.0):
         trajectory = WaypointTrajectory(HIGH, [Leg([5, 0, -5], 1.5, math.inf)], LIMITS, start=3.0)
         stopped = trajectory.stop(time)
-        home = fly_on(
-            RestTrajectory(stopped.position(time), time) if time > stopped.end else stopped,
-            [Leg(HIGH, 1.5, 1.0), Leg(ORIGIN, 0.3)],
-            LIMITS,
-        )
+        resting = RestTrajectory(stopped.position(time), time) if time > stopped.end else stopped
+        back = [Leg(HIGH, 1.5, 1.0), Leg(ORIGIN, 0.3)]
+        home = resting.then(lambda now, here, legs=back: WaypointTrajectory(here, legs, LIMITS, start=now))
         times = np.arange(time, time + 60.0, 0.02)
         derivatives = home.derivatives(times)
         assert_within(derivatives)

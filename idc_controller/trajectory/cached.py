@@ -14,13 +14,8 @@ class CachedTrajectory(Trajectory):
     """Another trajectory, which must not change at times that were evaluated."""
 
     def __init__(self, trajectory: Trajectory) -> None:
-        self._trajectory = trajectory
+        self.start, self._trajectory = trajectory.start, trajectory
         self._cache: dict[int, Array] = {}
-
-    @property
-    def start(self) -> float:
-        """See ``Trajectory.start``."""
-        return self._trajectory.start
 
     @property
     def end(self) -> float:

@@ -101,24 +101,14 @@ class LissajousTrajectory(Trajectory):
             coefficients[-len(derivative.c) :, :, d] = derivative.c
         self._phase = PPoly(coefficients, phase.x)
         self._rate = phase.derivative()
-        self._start, self._end = float(phase.x[0]), float(phase.x[-1])
-
-    @property
-    def start(self) -> float:
-        """Time at which the motion begins, s."""
-        return self._start
-
-    @property
-    def end(self) -> float:
-        """Time from which on it rests, s."""
-        return self._end
+        self.start, self._end = float(phase.x[0]), float(phase.x[-1])
 
     def phase(self, times: ArrayLike, order: int = 0) -> Array:
         """Phase and its derivatives at times (K,), s: (order + 1, K), rad / s^d."""
         times = checked_times(times, order)
-        inside = np.clip(times, self._start, self._end)
+        inside = np.clip(times, self.start, self._end)
         result: Array = self._phase(inside).T[: order + 1]
-        result[1:, (times <= self._start) | (times >= self._end)] = 0.0
+        result[1:, (times <= self.start) | (times >= self._end)] = 0.0
         return result
 
     def derivatives(self, times: ArrayLike, order: int = 4) -> Array:
@@ -127,7 +117,7 @@ class LissajousTrajectory(Trajectory):
 
     def stop(self, time: float) -> Trajectory:
         """See ``Trajectory.stop``; stays on the curve."""
-        time = max(finite(time, "time"), self._start)
+        time = max(finite(time, "time"), self.start)
         # While it gathers speed the limits may be used up: then a little later is sooner.
         later = np.arange(time + 0.5, self.full_rate[0], 0.5)
         end, best = self._end, None

@@ -2,8 +2,7 @@
 
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
-from typing import Protocol
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,6 +17,8 @@ STRAIGHT_ON = 1e-6
 """rad: a smaller turn is none, provided that it displaces the path by less than a millimetre."""
 GENTLE = 0.35
 """rad: short legs that turn less than this are flown as one curve."""
+MOST_STANDSTILLS = 1000
+"""Legs in a row that neither move nor hold: an endless mission of such legs would never give an answer."""
 MOST_JOINED = 64
 """Legs flown as one piece: bounds how far ahead an endless mission is read."""
 
@@ -70,21 +71,8 @@ def _checked_hold(hold: float) -> None:
         raise TrajectoryError(f"hold must be zero or more seconds, not {hold}")
 
 
-class Path(Protocol):
-    """A curve by its length."""
-
-    length: float
-    is_straight: bool
-    is_uniform: bool
-    """The same curvature everywhere."""
-
-    def at(self, distances: Array) -> Array:
-        """Points (K, 3), m, at distances (K,), m, from the beginning; held beyond both ends."""
-        ...
-
-
 class Polyline:
-    """Straight lines through points (M, 3), m."""
+    """Straight lines through points (M, 3), m; ``is_uniform`` is a path of the same curvature everywhere."""
 
     def __init__(self, points: Array) -> None:
         self._points = points
@@ -94,7 +82,7 @@ class Polyline:
         self.is_straight = self.is_uniform = bool(self.length - chord <= 1e-12 * self.length)
 
     def at(self, distances: Array) -> Array:
-        """See ``Path.at``."""
+        """Return points (K, 3), m, at distances (K,), m, from the beginning; held beyond both ends."""
         return np.column_stack([np.interp(distances, self._distances, axis) for axis in self._points.T])
 
 
@@ -110,33 +98,36 @@ class Arc:
         self.length = radius * abs(angle)
 
     def at(self, distances: Array) -> Array:
-        """See ``Path.at``."""
+        """See :meth:`Polyline.at`."""
         travelled = np.clip(distances, 0.0, self.length) / self._radius
         angles = self._start_angle + self._sign * travelled
         offsets = np.column_stack([np.cos(angles), np.sin(angles), np.zeros_like(angles)])
         return np.asarray(self._centre + self._radius * offsets)
 
 
-@dataclass(frozen=True)
-class Mark:
-    """A corner of a piece: ``distance`` m from its beginning, ``position`` (3,), m, and the leg it ends.
+Path = Polyline | Arc
 
-    ``leg`` is None for a corner that is no waypoint (the entry of a circle).
+
+@dataclass(frozen=True, eq=False)
+class Mark:
+    """A corner of a piece: ``distance`` m from its beginning, ``position`` (3,), m.
+
+    The entry of a circle is no waypoint.
     """
 
     distance: float
     position: Array
-    leg: int | None
+    is_waypoint: bool = True
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Piece:
-    """A path flown at one speed (m/s), then a rest (s); the last mark is its end. No path: only the rest."""
+    """A path flown at one speed (m/s), then a rest (s); the last mark is its end. Without length: only the rest."""
 
-    path: Path | None
+    path: Path
     speed: float
     hold: float
-    marks: list[Mark] = field(default_factory=list)
+    marks: list[Mark]
 
 
 def pieces(start: Array, legs: Iterable[Leg | Circle], short: float) -> Iterator[Piece]:
@@ -149,6 +140,7 @@ def pieces(start: Array, legs: Iterable[Leg | Circle], short: float) -> Iterator
     points: list[Array] = []
     marks: list[Mark] = []
     speed = length = 0.0
+    standstills = 0
 
     def joined(hold: float) -> Piece:
         nonlocal points, marks, length
@@ -156,25 +148,30 @@ def pieces(start: Array, legs: Iterable[Leg | Circle], short: float) -> Iterator
         points, marks, length = [], [], 0.0
         return piece
 
-    for index, leg in enumerate(legs):
+    for leg in legs:
         if isinstance(leg, Circle):
             if points:
                 yield joined(0.0)
-            arc, entry = _arc(leg, here)
+            standstills = 0
+            arc = _arc(leg, here)
+            entry = arc.at(np.zeros(1))[0]
             to_entry = float(np.linalg.norm(entry - here))
             if to_entry > COINCIDENT:
-                yield Piece(Polyline(np.array([here, entry])), leg.speed, 0.0, [Mark(to_entry, entry, None)])
+                yield Piece(Polyline(np.array([here, entry])), leg.speed, 0.0, [Mark(to_entry, entry, False)])
             here = arc.at(np.array([arc.length]))[0]
-            yield Piece(arc, leg.speed, leg.hold, [Mark(arc.length, here, index)])
+            yield Piece(arc, leg.speed, leg.hold, [Mark(arc.length, here)])
             continue
         if not isinstance(leg, Leg):
             raise TrajectoryError(f"a leg must be a Leg or a Circle, not {type(leg).__name__}")
         target = np.asarray(leg.position)
         step = float(np.linalg.norm(target - here))
+        standstills = standstills + 1 if step <= COINCIDENT and leg.hold == 0.0 else 0
+        if standstills > MOST_STANDSTILLS:
+            raise TrajectoryError(f"more than {MOST_STANDSTILLS} waypoints in a row at one place")
         if step <= COINCIDENT:
             if points:
                 yield joined(0.0)
-            yield Piece(None, leg.speed, leg.hold, [Mark(0.0, here, index)])
+            yield Piece(Polyline(here[None]), leg.speed, leg.hold, [Mark(0.0, here)])
             continue
         same = speed == leg.speed and len(points) <= MOST_JOINED
         if points and not (same and _joins(points, target, short)):
@@ -183,7 +180,7 @@ def pieces(start: Array, legs: Iterable[Leg | Circle], short: float) -> Iterator
             points, speed = [here], leg.speed
         points.append(target)
         length += step
-        marks.append(Mark(length, target, index))
+        marks.append(Mark(length, target))
         here = target
         if leg.hold > 0.0:
             yield joined(leg.hold)
@@ -200,10 +197,9 @@ def _joins(points: list[Array], target: Array, short: float) -> bool:
     return turn <= GENTLE and max(lengths) < short
 
 
-def _arc(circle: Circle, here: Array) -> tuple[Arc, Array]:
+def _arc(circle: Circle, here: Array) -> Arc:
     centre = np.asarray(circle.centre)
     radial = here[:2] - centre[:2]
     angle = math.atan2(radial[1], radial[0]) if np.linalg.norm(radial) > COINCIDENT else 0.0
     turned = (1.0 if circle.clockwise else -1.0) * 2.0 * math.pi * finite(circle.turns, "turns of a circle")
-    arc = Arc(centre, circle.radius, angle, turned)
-    return arc, arc.at(np.zeros(1))[0]
+    return Arc(centre, circle.radius, angle, turned)

@@ -105,20 +105,10 @@ class SplineTrajectory(Trajectory):
         self.origin = finite(origin, "origin")
         self.limits = limits
         moving = np.flatnonzero((self.control_points[1:] != self.control_points[:-1]).any(axis=1))
-        self._start, self._end = self.origin, self.origin
+        self.start = self._end = self.origin
         if len(moving):
-            self._start += (moving[0] + 1) * self.interval
+            self.start += (moving[0] + 1) * self.interval
             self._end += (moving[-1] + SUPPORT) * self.interval
-
-    @property
-    def start(self) -> float:
-        """Time at which the motion begins, s."""
-        return self._start
-
-    @property
-    def end(self) -> float:
-        """Time from which on it rests, s."""
-        return self._end
 
     def derivatives(self, times: ArrayLike, order: int = 4) -> Array:
         """See ``Trajectory.derivatives``."""

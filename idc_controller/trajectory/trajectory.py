@@ -44,15 +44,14 @@ class Trajectory(ABC):
     Before ``start`` and after ``end`` (s) it rests: position held, derivatives exactly zero.
     """
 
-    @property
-    @abstractmethod
-    def start(self) -> float:
-        """Time at which the motion begins, s."""
+    start: float
+    """Time at which the motion begins, s."""
+    _end: float
 
     @property
-    @abstractmethod
     def end(self) -> float:
         """Time from which on it rests, s; ``inf`` while that is not known."""
+        return self._end
 
     @abstractmethod
     def derivatives(self, times: ArrayLike, order: int = 4) -> Array:
@@ -96,20 +95,10 @@ class RestTrajectory(Trajectory):
 
     def __init__(self, position_in_world: ArrayLike, start: float = 0.0, end: float | None = None) -> None:
         self._position = point(position_in_world, "position")
-        self._start = finite(start, "start")
-        self._end = self._start if end is None else float(end)
-        if not self._end >= self._start:
+        self.start = finite(start, "start")
+        self._end = self.start if end is None else float(end)
+        if not self._end >= self.start:
             raise TrajectoryError(f"end {end} s lies before start {start} s")
-
-    @property
-    def start(self) -> float:
-        """Time from which on it counts, s."""
-        return self._start
-
-    @property
-    def end(self) -> float:
-        """Time at which something may follow, s (may be ``inf``)."""
-        return self._end
 
     def derivatives(self, times: ArrayLike, order: int = 4) -> Array:
         """See ``Trajectory.derivatives``."""
@@ -120,21 +109,16 @@ class RestTrajectory(Trajectory):
 
     def stop(self, time: float) -> Trajectory:
         """At rest already: ends at ``time``, s, if it would not have ended before."""
-        return RestTrajectory(self._position, self._start, min(self._end, max(self._start, time)))
+        return RestTrajectory(self._position, self.start, min(self._end, max(self.start, time)))
 
 
 class SequenceTrajectory(Trajectory):
     """One trajectory, then another that is made when the end of the first is known (``Trajectory.then``)."""
 
     def __init__(self, first: Trajectory, follow: Callable[[float, Array], Trajectory]) -> None:
-        self._first = first
-        self._follow = follow
+        self.start = first.start
+        self._first, self._follow = first, follow
         self._second: Trajectory | None = None
-
-    @property
-    def start(self) -> float:
-        """Start of the first trajectory, s."""
-        return self._first.start
 
     @property
     def end(self) -> float:
