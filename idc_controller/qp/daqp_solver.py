@@ -16,7 +16,7 @@ class DaqpSolver:
 
     def solve(self, problem: QuadraticProgram) -> QpSolution:
         """Return the minimiser of ``problem``."""
-        bounded = 0 if problem.lower is None and problem.upper is None else len(problem.g)
+        bounded = len(problem.g) if problem.is_bounded else 0
         upper = np.full(bounded + len(problem.h), UNBOUNDED)
         lower = np.full(bounded + len(problem.h), -UNBOUNDED)
         upper[bounded:] = problem.h

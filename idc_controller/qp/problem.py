@@ -8,6 +8,9 @@ from numpy.typing import NDArray
 
 from idc_controller.arrays import Array
 
+SOFT_COST = 1e6
+"""Of exceeding a soft row; DAQP's own."""
+
 
 @dataclass(frozen=True, eq=False)
 class QuadraticProgram:
@@ -26,7 +29,13 @@ class QuadraticProgram:
     upper: Array | None = None
     """(n,); inf: none."""
     soft: NDArray[np.bool_] | None = None
-    """Rows of G that may be exceeded, by as little as possible, where they cannot be kept (m,); None: no row."""
+    """Rows of G that may be exceeded where they cannot be kept (m,), by an excess e in units of the row's norm in the
+    metric of H^-1, at the cost 1/2 ``SOFT_COST`` e^2; None: no row."""
+
+    @property
+    def is_bounded(self) -> bool:
+        """Whether variables have bounds of their own."""
+        return self.lower is not None or self.upper is not None
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,67 @@
+"""Every solver takes every program of the one interface, and all of them find the same minimiser."""
+
+import numpy as np
+import pytest
+
+from idc_controller.errors import SolverError
+from idc_controller.qp.daqp_solver import DaqpSolver
+from idc_controller.qp.problem import QuadraticProgram
+from idc_controller.qp.proxqp_solver import ProxqpSolver
+
+SOLVERS = [DaqpSolver, lambda: ProxqpSolver(duality_gap=1e-6)]
+INF = np.inf
+LOWER = np.array([-0.2, -0.2, -INF, -INF, -0.3, -INF])
+UPPER = np.array([0.2, INF, 0.2, INF, 0.3, INF])
+
+
+def program(seed, lower=None, upper=None, soft=None, feasible=True):
+    """A random program of 6 variables and 8 rows; the origin keeps all rows where it is feasible."""
+    rng = np.random.default_rng(seed)
+    root = rng.normal(size=(6, 6))
+    h = rng.uniform(0.05, 0.5, 8) if feasible else -rng.uniform(0.05, 0.5, 8)
+    return QuadraticProgram(
+        root @ root.T + np.eye(6), 3.0 * rng.normal(size=6), rng.normal(size=(8, 6)), h, lower, upper, soft
+    )
+
+
+@pytest.mark.parametrize(
+    ("lower", "upper"), [(None, None), (LOWER, UPPER), (LOWER, None), (None, UPPER)], ids=["rows", "both", "low", "up"]
+)
+def test_solvers_agree_on_rows_and_bounds_of_variables(lower, upper):
+    for seed in range(20):
+        problem = program(seed, lower, upper)
+        by_daqp, by_proxqp = (solver().solve(problem).x for solver in SOLVERS)
+        assert by_proxqp == pytest.approx(by_daqp, abs=1e-5)
+        assert np.all(problem.G @ by_proxqp <= problem.h + 1e-5)
+        assert lower is None or np.all(by_proxqp >= lower - 1e-5)
+        assert upper is None or np.all(by_proxqp <= upper + 1e-5)
+
+
+@pytest.mark.parametrize("bounded", [False, True])
+def test_solvers_agree_on_soft_rows_that_cannot_be_kept(bounded):
+    lower, upper = (LOWER, UPPER) if bounded else (None, None)
+    for seed in range(20):
+        problem = program(seed, lower, upper, np.ones(8, dtype=bool), feasible=False)
+        by_daqp, by_proxqp = (solver().solve(problem).x for solver in SOLVERS)
+        assert by_proxqp == pytest.approx(by_daqp, abs=1e-4)
+
+
+def test_proxqp_agrees_from_a_warm_start_with_other_gradients_and_bounds():
+    first, warm = program(1, LOWER, UPPER), ProxqpSolver(duality_gap=1e-6)
+    for seed in range(2, 12):
+        other = program(seed)
+        problem = QuadraticProgram(first.H, other.g, first.G, other.h, 0.5 * LOWER, 0.5 * UPPER)
+        assert warm.solve(problem).x == pytest.approx(DaqpSolver().solve(problem).x, abs=1e-5)
+        # Without bounds the rows are others.
+        problem = QuadraticProgram(first.H, other.g, first.G, other.h)
+        assert warm.solve(problem).x == pytest.approx(DaqpSolver().solve(problem).x, abs=1e-5)
+
+
+@pytest.mark.parametrize("solver", [*SOLVERS, ProxqpSolver])
+@pytest.mark.parametrize(
+    ("h", "lower"), [([-1.0, -1.0], None), ([1.0, 5.0], np.array([2.0, -INF]))], ids=["rows", "bound"]
+)
+def test_solver_refuses_contradicting_constraints(solver, h, lower):
+    G = np.array([[1.0, 0.0], [-1.0, 0.0]])
+    with pytest.raises(SolverError):
+        solver().solve(QuadraticProgram(np.eye(2), np.zeros(2), G, np.array(h), lower))
