@@ -10,8 +10,10 @@ import pytest
 from gcs.config import read_system
 from gcs.config.flight_settings import DEFAULTS
 from gcs.flight.alarms import AlarmLog
+from gcs.flight.command_sequences import AutonomousLanding
+from gcs.flight.condition import Check, Moment, Reaction, System, Trigger
 from gcs.flight.detectors import MonitorAlarm
-from gcs.flight.failsafe import Check, Failsafe, FailsafeState, Moment, Reaction, System, Trigger
+from gcs.flight.failsafe import Failsafe, FailsafeState
 from gcs.flight.listing import listing
 from gcs.flight.phase import Phase
 from vehicle_sim.swarm import Swarm
@@ -91,7 +93,19 @@ def test_one_vehicle_without_attitude_is_no_failsafe():
 
 def test_first_vehicle_counts_where_reactions_are_equal():
     found, trigger = evaluated(state(link(1, offboard=False), link(2, age=0.5), link(3)))
-    assert (found, trigger.vehicle) == (Failsafe.OFFBOARD_LEFT, 0)
+    assert (found, trigger.vehicles) == (Failsafe.OFFBOARD_LEFT, (0,))
+
+
+def test_one_vehicle_counts_before_several_where_reactions_are_equal():
+    partial = [link(number, attitude_age=0.5) for number in (1, 2)]
+    found, trigger = evaluated(state(*partial))
+    assert (found, trigger.vehicles) == (Failsafe.TELEMETRY_INCOMPLETE, (0, 1))
+    flight = state(*partial, link(3, age=0.5))
+    found, trigger = evaluated(flight)
+    assert (found, trigger.vehicles) == (Failsafe.TELEMETRY_LOST, (2,))
+    flight.raise_failsafe(50.0, Phase.FLY, found, trigger)
+    flight.raise_failsafe(50.0, Phase.FLY, *evaluated(state(*partial)))
+    assert [alarm.source for alarm in flight.alarms.alarms] == ["vehicle 3", "team"]
 
 
 def test_more_severe_reaction_wins_and_a_milder_one_is_only_recorded():
@@ -128,7 +142,7 @@ def test_threshold_follows_its_setting():
 
 def test_data_link_loss_waits_for_a_pending_descent():
     flight = state(link(1, age=4.0))
-    pending = SimpleNamespace(descent_pending=True, problem="")
+    pending = AutonomousLanding(SimpleNamespace(command_all=lambda *command: None), 40.0)
     moment = Moment(Phase.AUTONOMOUS_LANDING, 50.0, 100.0, pending)
     assert flight.evaluate(Check.STEP, moment) is None
     found, _ = evaluated(flight, Check.STEP, Phase.AUTONOMOUS_LANDING)

@@ -268,7 +268,7 @@ def test_touchdown_is_not_detected_high_above_the_ground(tmp_path):
     with InProcessFlight(short_figure(tmp_path, duration=2.0, altitude=1.5), tmp_path / "run") as in_process:
         in_process.fly(stop=lambda: in_process.flight.phase is Phase.LAND)
         flight = in_process.flight
-        true = flight.estimator.estimate
+        true = flight.control.estimator.estimate
 
         def still_at(height):
             def estimate(*arguments):
@@ -279,14 +279,14 @@ def test_touchdown_is_not_detected_high_above_the_ground(tmp_path):
 
             return estimate
 
-        reference = flight.controller.reference(flight.mission_trajectory.trajectory)
+        reference = flight.control.controller.reference(flight.mission_trajectory.trajectory)
         high, low = (still_at(height)(in_process.now, reference) for height in (5.0, 0.3))
         descent = RestTrajectory(np.array([0.0, 0.0, -1.5]), in_process.now - 20.0)
-        assert not flight.payload.has_touched_down(in_process.now, descent, high)
-        assert flight.payload.has_touched_down(in_process.now, descent, low)
-        assert not flight.payload.is_descent_stalled(in_process.now, descent, low)
+        assert not flight.system.payload.has_touched_down(in_process.now, descent, high)
+        assert flight.system.payload.has_touched_down(in_process.now, descent, low)
+        assert not flight.system.payload.is_descent_stalled(in_process.now, descent, low)
         flight.mission_trajectory._trajectory = descent
-        flight.estimator.estimate = still_at(5.0)
+        flight.control.estimator.estimate = still_at(5.0)
         in_process.fly()
         assert flight.reason == "the payload does not descend"
         assert in_process.run_without_ground()

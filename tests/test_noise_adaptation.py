@@ -67,7 +67,7 @@ def test_flight_stays_within_limits_with_five_times_noise_on_every_channel(tmp_p
     )  # fmt: skip
     with InProcessFlight(mission, tmp_path / "run", seed=41) as flight:
         flight.fly()
-        assert flight.flight.estimator.health.adaptation.measurement_scale > 5.0
+        assert flight.flight.control.estimator.health.adaptation.measurement_scale > 5.0
         check_within_limits(flight.summary(), rmse=0.1)
 
 

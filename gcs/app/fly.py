@@ -23,8 +23,9 @@ from gcs.drivers.simulator import Simulator, arguments_for
 from gcs.errors import GcsError, UnusableInput
 from gcs.flight import stack
 from gcs.flight.alarms import AlarmLog
+from gcs.flight.condition import Trigger
 from gcs.flight.control_loop import ControlLoop
-from gcs.flight.failsafe import Failsafe, Trigger
+from gcs.flight.failsafe import Failsafe
 from gcs.flight.flight import Flight
 from gcs.flight.ground_station import GroundStation, Recorder
 from gcs.flight.team import Team

@@ -23,18 +23,17 @@ class Severity(IntEnum):
 
 
 class AlarmCode(Enum):
-    """Base of the enums of alarms: each member has a severity, what it means, and what to do about it.
+    """Base of the enums of alarms: each member has a severity, what to do about it, and what it means.
 
     Members are declared where the alarm is detected: :mod:`gcs.flight.detectors`, :mod:`gcs.flight.failsafe`.
     """
 
-    severity: Severity
-    meaning: str
-    action: str
+    def __init__(self, severity: Severity, action: str, meaning: str) -> None:
+        self.severity, self.action, self.meaning = severity, action, meaning
 
     @property
     def code(self) -> str:
-        """What programs read: the name in snake case."""
+        """The name in snake case, which programs read."""
         return self.name.lower()
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from abc import ABC, abstractmethod
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
@@ -11,25 +11,27 @@ from gcs.flight.team import Team
 from gcs.mavlink import px4
 
 
-class CommandSequence(Protocol):
-    """A sequence that is stepped until it is done or has failed."""
+class CommandSequence(ABC):
+    """A sequence from ``time`` (s, team) on that is stepped until it is done or has failed."""
 
-    done: bool
-    problem: str
+    done = False
+    problem = ""
     """Why it has failed; empty: it has not."""
-
-    def step(self, time: float, now: float) -> None:
-        """Go on at team ``time`` (s), ``now`` on the ground's clock."""
-        ...
-
-
-class Arming:
-    """OFFBOARD, then arm. Set-points are to be sent meanwhile, or vehicles refuse OFFBOARD."""
+    descent_pending = False
+    """True while a descent is still to be commanded."""
 
     def __init__(self, team: Team, time: float, settings: FlightSettings = DEFAULTS) -> None:
         self._team, self._since, self._settings = team, time, settings
-        self._command: int | None = None
-        self.done, self.problem = False, ""
+
+    @abstractmethod
+    def step(self, time: float, now: float) -> None:
+        """Go on at team ``time`` (s), ``now`` on the ground's clock."""
+
+
+class Arming(CommandSequence):
+    """OFFBOARD, then arm. Set-points are to be sent meanwhile, or vehicles refuse OFFBOARD."""
+
+    _command: int | None = None
 
     def step(self, time: float, now: float) -> None:
         """See :class:`CommandSequence`."""
@@ -46,40 +48,39 @@ class Arming:
             self.done = True
 
 
-class Disarming:
-    """Rotors off, by force where a vehicle refuses: payload and vehicles are on the ground whatever it estimates."""
+class Disarming(CommandSequence):
+    """Rotors off, by force where a vehicle refuses: payload and vehicles are on the ground, whatever it estimates."""
+
+    _forced = False
 
     def __init__(self, team: Team, time: float, settings: FlightSettings = DEFAULTS) -> None:
-        self._team, self._since, self._timeout = team, time, settings.failsafe.disarm_timeout
-        self._forced = False
-        self.done, self.problem = False, ""
+        super().__init__(team, time, settings)
         _arm(team, False)
 
     def step(self, time: float, now: float) -> None:
         """See :class:`CommandSequence`."""
-        team = self._team
+        team, timeout = self._team, self._settings.failsafe.disarm_timeout
         if team.answered and team.disarmed:
             self.done = True
         elif team.refusal is not None and not self._forced:
             self._forced = True
             _arm(team, False, px4.FORCE_ARM_DISARM)
-        elif team.refusal is not None or time - self._since > self._timeout:
-            self.problem = team.refusal or f"not every vehicle is disarmed after {self._timeout:g} s"
+        elif team.refusal is not None or time - self._since > timeout:
+            self.problem = team.refusal or f"not every vehicle is disarmed after {timeout:g} s"
 
 
-class AutonomousLanding:
+class AutonomousLanding(CommandSequence):
     """Hold at the end of the stop plan, then descend when a vehicle does that receives nothing."""
 
+    descent_pending = True
+
     def __init__(self, team: Team, time: float, settings: FlightSettings = DEFAULTS) -> None:
-        self._team, self._since, self._settings = team, time, settings.failsafe
-        self.descent_pending = True
-        """Whether the descent is still to be commanded."""
-        self.done, self.problem = False, ""
+        super().__init__(team, time, settings)
         _set_mode(team, px4.MainMode.AUTO, px4.AutoMode.LOITER)
 
     def step(self, time: float, now: float) -> None:
         """See :class:`CommandSequence`."""
-        s, elapsed = self._settings, time - self._since
+        s, elapsed = self._settings.failsafe, time - self._since
         if self.descent_pending and elapsed >= self._team.land_delay:
             self.descent_pending = False
             _set_mode(self._team, px4.MainMode.AUTO, px4.AutoMode.LAND)

@@ -5,7 +5,6 @@ To add one, add its code to :class:`MonitorAlarm` and a detector to :func:`detec
 
 from __future__ import annotations
 
-import math
 from collections import defaultdict, deque
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -27,8 +26,6 @@ from idc_controller.estimation.settings import InnovationMonitorSettings
 
 Array = NDArray[np.float64]
 
-"""Of the disturbance force on the payload, squared by its own covariance."""
-
 
 class Scope(Enum):
     """When a detector runs."""
@@ -43,118 +40,65 @@ class MonitorAlarm(AlarmCode):
 
     scope: Scope
 
-    def __init__(self, scope: Scope, severity: Severity, meaning: str, action: str) -> None:
-        self.scope, self.severity, self.meaning, self.action = scope, severity, meaning, action
+    def __init__(self, scope: Scope, severity: Severity, action: str, meaning: str) -> None:
+        super().__init__(severity, action, meaning)
+        self.scope = scope
 
     # fmt: off
-    TELEMETRY_TIMEOUT = (
-        Scope.IN_AIR, Severity.WARNING,
-        "{missed_samples} telemetry periods passed without attitude or position of a vehicle, or without the payload",
-        "check its link",
-    )
-    RANGE_SENSOR_FAILED = (
-        Scope.IN_AIR, Severity.WARNING, "a vehicle reports that its range sensor does not work", "check the sensor",
-    )
-    LINK_LATENCY = (
-        Scope.IN_AIR, Severity.WARNING,
-        "datagrams usually take more than {latency_periods} control periods one way (`TIMESYNC`)",
-        "check the link for congestion",
-    )
-    LINK_JITTER = (
-        Scope.IN_AIR, Severity.WARNING, "their latency varies by more than {jitter_periods} control periods",
-        "check the link for congestion",
-    )
-    CLOCK_ERROR = (
-        Scope.IN_AIR, Severity.WARNING,
-        "a vehicle's clock has moved by more than {clock_error} s within {clock_window:g} s", "check its clock",
-    )
-    MESSAGES_LOST = (
-        Scope.IN_AIR, Severity.WARNING,
-        "sequence numbers are missing, {event_count} times in {event_window:g} s", "check the link",
-    )
-    MESSAGES_REORDERED = (
-        Scope.IN_AIR, Severity.WARNING,
-        "messages were overtaken by later ones, {event_count} times in {event_window:g} s", "check the link",
-    )
-    MESSAGES_DUPLICATED = (
-        Scope.IN_AIR, Severity.WARNING,
-        "messages came twice, {event_count} times in {event_window:g} s", "look for a loop in the routing",
-    )
-    MESSAGES_CORRUPTED = (
-        Scope.IN_AIR, Severity.WARNING,
-        "datagrams could not be decoded, {event_count} in {event_window:g} s", "check the link",
-    )
-    VALUES_NOT_FINITE = (
-        Scope.IN_AIR, Severity.WARNING,
-        "measurements are not finite, {event_count} in {event_window:g} s", "check the sensors",
-    )
-    SETPOINTS_LOST = (
-        Scope.IN_AIR, Severity.WARNING,
-        "by what a vehicle reports to fly, set-points were lost, {event_count} times in {setpoint_window:g} s",
-        "check the link",
-    )
-    ID_SWAP = (
-        Scope.CLEAR_OF_GROUND, Severity.ERROR,
-        "a vehicle sends the data of another one, for which they are taken from then on", "check the system ids",
-    )
-    STUCK_SENSOR = (
-        Scope.CLEAR_OF_GROUND, Severity.ERROR, "a channel repeats one value", "check the sensor",
-    )
-    CHANNEL_ISOLATED = (
-        Scope.CLEAR_OF_GROUND, Severity.ERROR,
-        "a channel was rejected for half a second, and is isolated until it has been accepted for 1 s",
-        "check the sensor",
-    )
-    INCONSISTENT_STATE = (
-        Scope.CLEAR_OF_GROUND, Severity.ERROR,
+    TELEMETRY_TIMEOUT = (Scope.IN_AIR, Severity.WARNING, "check its link",
+        "{missed_samples} telemetry periods passed without attitude or position of a vehicle, or without the payload")
+    RANGE_SENSOR_FAILED = (Scope.IN_AIR, Severity.WARNING, "check the sensor",
+        "a vehicle reports that its range sensor does not work")
+    LINK_LATENCY = (Scope.IN_AIR, Severity.WARNING, "check the link for congestion",
+        "datagrams usually take more than {latency_periods} control periods one way (`TIMESYNC`)")
+    LINK_JITTER = (Scope.IN_AIR, Severity.WARNING, "check the link for congestion",
+        "their latency varies by more than {jitter_periods} control periods")
+    CLOCK_ERROR = (Scope.IN_AIR, Severity.WARNING, "check its clock",
+        "a vehicle's clock has moved by more than {clock_error} s within {clock_window:g} s")
+    MESSAGES_LOST = (Scope.IN_AIR, Severity.WARNING, "check the link",
+        "sequence numbers are missing, {event_count} times in {event_window:g} s")
+    MESSAGES_REORDERED = (Scope.IN_AIR, Severity.WARNING, "check the link",
+        "messages were overtaken by later ones, {event_count} times in {event_window:g} s")
+    MESSAGES_DUPLICATED = (Scope.IN_AIR, Severity.WARNING, "look for a loop in the routing",
+        "messages came twice, {event_count} times in {event_window:g} s")
+    MESSAGES_CORRUPTED = (Scope.IN_AIR, Severity.WARNING, "check the link",
+        "datagrams could not be decoded, {event_count} in {event_window:g} s")
+    VALUES_NOT_FINITE = (Scope.IN_AIR, Severity.WARNING, "check the sensors",
+        "measurements are not finite, {event_count} in {event_window:g} s")
+    SETPOINTS_LOST = (Scope.IN_AIR, Severity.WARNING, "check the link",
+        "by what a vehicle reports to fly, set-points were lost, {event_count} times in {setpoint_window:g} s")
+    ID_SWAP = (Scope.CLEAR_OF_GROUND, Severity.ERROR, "check the system ids",
+        "a vehicle sends the data of another one, for which they are taken from then on")
+    STUCK_SENSOR = (Scope.CLEAR_OF_GROUND, Severity.ERROR, "check the sensor",
+        "a channel repeats one value")
+    CHANNEL_ISOLATED = (Scope.CLEAR_OF_GROUND, Severity.ERROR, "check the sensor",
+        "a channel was rejected for half a second, and is isolated until it has been accepted for 1 s")
+    INCONSISTENT_STATE = (Scope.CLEAR_OF_GROUND, Severity.ERROR, "check navigation",
         "the positions of most vehicles do not follow from their velocities while the payload's do, or the other way "
-        "round; or an attitude does not follow from its rates: the inconsistent ones are isolated from then on",
-        "check navigation",
-    )
-    MEASUREMENTS_REJECTED = (
-        Scope.CLEAR_OF_GROUND, Severity.WARNING,
-        "three samples of a channel in 1 s failed the innovation test (eight of a UAV's attitude)", "check the sensor",
-    )
-    INNOVATION_BIAS = (
-        Scope.CLEAR_OF_GROUND, Severity.WARNING,
-        "the mean innovation of a channel over a second is not zero (p = 1e-10)", "check the sensor; look for wind",
-    )
-    INNOVATION_NOISE = (
-        Scope.CLEAR_OF_GROUND, Severity.WARNING,
-        "the mean square innovation of a channel over a second is too large (p = 1e-10)", "check the sensor",
-    )
-    SENSOR_NOISE = (
-        Scope.CLEAR_OF_GROUND, Severity.WARNING,
-        "the variances of all sensors are more than {noise_factor:g} times those of the system file",
-        "correct the system file",
-    )
-    COVARIANCE_RESET = (
-        Scope.CLEAR_OF_GROUND, Severity.WARNING,
-        "most measurements, or the payload's, rejected the prediction, {event_count} times in {event_window:g} s",
-        "look for gusts or a lost load",
-    )
-    DISTURBANCE_FORCE = (
-        Scope.CLEAR_OF_GROUND, Severity.WARNING,
-        "the force on the payload is not the model's (p = 1e-10)", "look for wind or a wrong mass",
-    )
-    PROCESS_NOISE = (
-        Scope.CLEAR_OF_GROUND, Severity.WARNING,
-        "forces change so quickly that the process noise is at its largest", "look for gusts",
-    )
-    VEHICLE_MAP_OFFSET = (
-        Scope.ALWAYS, Severity.WARNING,
-        "a vehicle detects a standing obstacle of the map more than 0.2 m from where it was, for 0.4 s",
-        "check its position and range sensor",
-    )
-    TRACK_LOST = (
-        Scope.ALWAYS, Severity.NOTICE,
-        "a tracked obstacle was not detected for 1 s although a vehicle is near", "none",
-    )
+        "round; or an attitude does not follow from its rates: the inconsistent ones are isolated from then on")
+    MEASUREMENTS_REJECTED = (Scope.CLEAR_OF_GROUND, Severity.WARNING, "check the sensor",
+        "three samples of a channel in 1 s failed the innovation test (eight of a UAV's attitude)")
+    INNOVATION_BIAS = (Scope.CLEAR_OF_GROUND, Severity.WARNING, "check the sensor; look for wind",
+        "the mean innovation of a channel over a second is not zero (p = 1e-10)")
+    INNOVATION_NOISE = (Scope.CLEAR_OF_GROUND, Severity.WARNING, "check the sensor",
+        "the mean square innovation of a channel over a second is too large (p = 1e-10)")
+    SENSOR_NOISE = (Scope.CLEAR_OF_GROUND, Severity.WARNING, "correct the system file",
+        "the variances of all sensors are more than {noise_factor:g} times those of the system file")
+    COVARIANCE_RESET = (Scope.CLEAR_OF_GROUND, Severity.WARNING, "look for gusts or a lost load",
+        "most measurements, or the payload's, rejected the prediction, {event_count} times in {event_window:g} s")
+    DISTURBANCE_FORCE = (Scope.CLEAR_OF_GROUND, Severity.WARNING, "look for wind or a wrong mass",
+        "the force on the payload is not the model's (p = 1e-10)")
+    PROCESS_NOISE = (Scope.CLEAR_OF_GROUND, Severity.WARNING, "look for gusts",
+        "forces change so quickly that the process noise is at its largest")
+    VEHICLE_MAP_OFFSET = (Scope.ALWAYS, Severity.WARNING, "check its position and range sensor",
+        "a vehicle detects a standing obstacle of the map more than 0.2 m from where it was, for 0.4 s")
+    TRACK_LOST = (Scope.ALWAYS, Severity.NOTICE, "none",
+        "a tracked obstacle was not detected for 1 s although a vehicle is near")
     # fmt: on
 
 
 @dataclass(frozen=True, eq=False)
-class Observation:
+class MonitorStep:
     """What a detector looks at in one control step: team ``time`` and ground time ``now`` (s)."""
 
     time: float
@@ -172,7 +116,7 @@ class Observation:
     @property
     def links(self) -> tuple[VehicleLink, ...]:
         """The links of all vehicles."""
-        return self.flight.team.links
+        return self.flight.system.team.links
 
     def name(self, source: int) -> str:
         """Return the name of a vehicle (0 .. N-1) or of the payload."""
@@ -185,7 +129,7 @@ class Observation:
             self.log.raise_alarm(self.time, source, code, text)
 
 
-Detector = Callable[[Observation], None]
+Detector = Callable[[MonitorStep], None]
 
 
 class EventCounter:
@@ -211,27 +155,26 @@ class EventCounter:
         return found
 
 
-class TelemetryTimeout:
-    """Telemetry that stays out, also where that was over before it could be looked at."""
+class _TelemetryTimeout:
+    """Gaps in the telemetry, also those that ended since the last step."""
 
     def __init__(self, timeout: float) -> None:
         self._timeout = timeout
         self._last: dict[str, float] = {}
 
-    def __call__(self, seen: Observation) -> None:
-        """See the class."""
-        if not seen.in_air:
+    def __call__(self, step: MonitorStep) -> None:
+        if not step.in_air:
             return
-        heard = {seen.name(i): link.complete_telemetry_received_at for i, link in enumerate(seen.links)}
-        heard["payload"] = max(link.payload_received_at for link in seen.links)
-        for name, last in heard.items():
-            gap = max(seen.now - last, last - self._last.get(name, last))
+        received_at = {step.name(i): link.complete_telemetry_received_at for i, link in enumerate(step.links)}
+        received_at["payload"] = max(link.payload_received_at for link in step.links)
+        for name, last in received_at.items():
+            gap = max(step.now - last, last - self._last.get(name, last))
             if gap > self._timeout:
-                seen.raise_alarm(name, MonitorAlarm.TELEMETRY_TIMEOUT, f"no telemetry for {gap:.2f} s")
-        self._last = heard
+                step.raise_alarm(name, MonitorAlarm.TELEMETRY_TIMEOUT, f"no telemetry for {gap:.2f} s")
+        self._last = received_at
 
 
-class LinkTiming:
+class _LinkTiming:
     """Latency, jitter and clock of each vehicle's link."""
 
     def __init__(self, settings: MonitorSettings, control_period: float) -> None:
@@ -240,27 +183,26 @@ class LinkTiming:
         self._jitter = settings.jitter_periods * control_period
         self._offsets: dict[int, deque[tuple[float, float]]] = {}
 
-    def __call__(self, seen: Observation) -> None:
-        """See the class."""
+    def __call__(self, step: MonitorStep) -> None:
         s = self._settings
-        for i, link in enumerate(seen.links):
-            name, clock = seen.name(i), link.clock
+        for i, link in enumerate(step.links):
+            name, clock = step.name(i), link.clock
             offsets = self._offsets.setdefault(i, deque())
-            offsets.append((seen.time, clock.offset))
-            while seen.time - offsets[0][0] > s.clock_window:
+            offsets.append((step.time, clock.offset))
+            while step.time - offsets[0][0] > s.clock_window:
                 offsets.popleft()
             if clock.delay > self._latency:
                 text = f"link latency is {clock.delay * 1e3:.0f} ms (limit {self._latency * 1e3:.0f} ms)"
-                seen.raise_alarm(name, MonitorAlarm.LINK_LATENCY, text)
+                step.raise_alarm(name, MonitorAlarm.LINK_LATENCY, text)
             elif clock.spread > self._jitter:
                 text = f"link latency varies by {clock.spread * 1e3:.0f} ms (limit {self._jitter * 1e3:.1f} ms)"
-                seen.raise_alarm(name, MonitorAlarm.LINK_JITTER, text)
-            elif (moved := _range(offsets)) > s.clock_error:
+                step.raise_alarm(name, MonitorAlarm.LINK_JITTER, text)
+            elif (moved := max(o for _, o in offsets) - min(o for _, o in offsets)) > s.clock_error:
                 text = f"clock moved by {moved * 1e3:.0f} ms in {s.clock_window:g} s"
-                seen.raise_alarm(name, MonitorAlarm.CLOCK_ERROR, text)
+                step.raise_alarm(name, MonitorAlarm.CLOCK_ERROR, text)
 
 
-class MessageEvents:
+class _MessageEvents:
     """Lost, reordered, duplicated, corrupted and not finite messages, and lost set-points."""
 
     def __init__(self, settings: MonitorSettings) -> None:
@@ -269,11 +211,11 @@ class MessageEvents:
         self._setpoints = EventCounter(settings.setpoint_window)
         self._totals: dict[tuple[int, str, MonitorAlarm], int] = {}
 
-    def __call__(self, seen: Observation) -> None:
-        """Counts before take-off as well, so that nothing of that is an event in the air."""
-        for i, link in enumerate(seen.links):
-            name, statistics = seen.name(i), link.statistics
-            statistics.settle(seen.now)
+    def __call__(self, step: MonitorStep) -> None:
+        # Counted before take-off as well, so that nothing of that is an event in the air.
+        for i, link in enumerate(step.links):
+            name, statistics = step.name(i), link.statistics
+            statistics.settle(step.now)
             for source, code, events, total in (
                 (name, MonitorAlarm.MESSAGES_LOST, self._events, statistics.lost),
                 (name, MonitorAlarm.MESSAGES_REORDERED, self._events, statistics.reordered),
@@ -285,13 +227,13 @@ class MessageEvents:
             ):
                 # Every vehicle relays the payload's: counted for each.
                 if (more := total - self._totals.get((i, source, code), 0)) > 0:
-                    events.add((source, code), seen.time, more)
+                    events.add((source, code), step.time, more)
                     self._totals[i, source, code] = total
         for events in (self._events, self._setpoints):
-            _raise_frequent(seen, events, self._count)
+            _raise_frequent(step, events, self._count)
 
 
-class Innovations:
+class _Innovations:
     """Innovation tests of all channels, and resets of the covariance."""
 
     def __init__(
@@ -301,19 +243,18 @@ class Innovations:
         self._resets = EventCounter(settings.event_window)
         self._count = settings.event_count
 
-    def __call__(self, seen: Observation) -> None:
-        """See the class."""
-        if seen.clear and seen.record is not None:
-            for innovation in seen.record.estimate.innovations:
+    def __call__(self, step: MonitorStep) -> None:
+        if step.clear and step.record is not None:
+            for innovation in step.record.estimate.innovations:
                 self._tests.learn(innovation.time, innovation.keys, innovation.normalised, innovation.rejected)
-                if innovation.covariance_reset and seen.steady:
+                if innovation.covariance_reset and step.steady:
                     self._resets.add(("team", MonitorAlarm.COVARIANCE_RESET), innovation.time)
-            if not seen.steady:
+            if not step.steady:
                 self._tests.forget_attitudes()
-            for (source, kind), findings in self._tests.findings(seen.time).items():
+            for (source, kind), findings in self._tests.findings(step.time).items():
                 for finding in findings:
-                    seen.raise_alarm(seen.name(source), _OF_FINDING[finding], kind.__name__.lower())
-        _raise_frequent(seen, self._resets, self._count)
+                    step.raise_alarm(step.name(source), _OF_FINDING[finding], kind.__name__.lower())
+        _raise_frequent(step, self._resets, self._count)
 
 
 _OF_FINDING = {
@@ -323,105 +264,82 @@ _OF_FINDING = {
 }
 
 
-def range_sensors(seen: Observation) -> None:
+def _range_sensors(step: MonitorStep) -> None:
     """Range sensors that vehicles report as failed."""
-    for i, link in enumerate(seen.links):
+    for i, link in enumerate(step.links):
         if not link.obstacle_sensing_valid:
-            seen.raise_alarm(seen.name(i), MonitorAlarm.RANGE_SENSOR_FAILED)
+            step.raise_alarm(step.name(i), MonitorAlarm.RANGE_SENSOR_FAILED)
 
 
-def estimator_health(seen: Observation) -> None:
+def _estimator_health(step: MonitorStep) -> None:
     """Sensors that the estimator does without, and why."""
-    if not seen.clear:
+    if not step.clear:
         return
-    health = seen.flight.estimator.health
-    for sender, other in seen.id_check.swapped.items():
-        seen.raise_alarm(seen.name(sender), MonitorAlarm.ID_SWAP, f"sends the data of {seen.name(other)}")
+    health = step.flight.control.estimator.health
+    for sender, other in step.id_check.swapped.items():
+        step.raise_alarm(step.name(sender), MonitorAlarm.ID_SWAP, f"sends the data of {step.name(other)}")
     for channel in health.stuck_channels:
-        seen.raise_alarm(seen.name(channel.source), MonitorAlarm.STUCK_SENSOR, channel.name)
+        step.raise_alarm(step.name(channel.source), MonitorAlarm.STUCK_SENSOR, channel.name)
     for channel in health.isolation.isolated:
-        if seen.steady or channel.kind is Position:
-            seen.raise_alarm(seen.name(channel.source), MonitorAlarm.CHANNEL_ISOLATED, channel.name)
+        if step.steady or channel.kind is Position:
+            step.raise_alarm(step.name(channel.source), MonitorAlarm.CHANNEL_ISOLATED, channel.name)
     for group, (poses, _) in health.isolated_groups.items():
         names = ("positions", "velocities") if group.kind is Position else ("attitudes", "rates")
         source, owner = ("payload", "the payload") if group.of_payload else ("team", "all vehicles")
         text = f"{names[0 if poses else 1]} of {owner} are isolated"
-        seen.raise_alarm(source, MonitorAlarm.INCONSISTENT_STATE, text)
+        step.raise_alarm(source, MonitorAlarm.INCONSISTENT_STATE, text)
 
 
-class ModelMismatch:
+class _ModelMismatch:
     """Noise and forces that differ from the model."""
 
     def __init__(self, settings: MonitorSettings, innovations: InnovationMonitorSettings) -> None:
         self._noise_factor = settings.noise_factor
         self._force_limit = float(chi2.isf(innovations.false_alarm, 3))
 
-    def __call__(self, seen: Observation) -> None:
-        """See the class."""
-        if not seen.clear or seen.record is None:
+    def __call__(self, step: MonitorStep) -> None:
+        if not step.clear or step.record is None:
             return
-        adaptation, estimate = seen.flight.estimator.health.adaptation, seen.record.estimate
-        if seen.steady and adaptation.measurement_scale > self._noise_factor:
+        adaptation, estimate = step.flight.control.estimator.health.adaptation, step.record.estimate
+        if step.steady and adaptation.measurement_scale > self._noise_factor:
             text = f"variances are {adaptation.measurement_scale:.1f} times those of the system file"
-            seen.raise_alarm("team", MonitorAlarm.SENSOR_NOISE, text)
-        if seen.steady and adaptation.is_at_limit:
-            seen.raise_alarm("payload", MonitorAlarm.PROCESS_NOISE)
+            step.raise_alarm("team", MonitorAlarm.SENSOR_NOISE, text)
+        if step.steady and adaptation.is_at_limit:
+            step.raise_alarm("payload", MonitorAlarm.PROCESS_NOISE)
         n, force = len(estimate.x), estimate.force
         covariance = estimate.covariance[n : n + 3, n : n + 3]
         if float(force @ np.linalg.solve(covariance, force)) > self._force_limit:
             text = " ".join(f"{f:.1f}" for f in force) + " N north east down"
-            seen.raise_alarm("payload", MonitorAlarm.DISTURBANCE_FORCE, text)
+            step.raise_alarm("payload", MonitorAlarm.DISTURBANCE_FORCE, text)
 
 
-def obstacles(seen: Observation) -> None:
+def _obstacles(step: MonitorStep) -> None:
     """Obstacles that are no longer detected, or elsewhere than on the map."""
-    if (obstacle_map := seen.flight.system.obstacle_map) is None:
+    if (obstacle_map := step.flight.system.obstacle_map) is None:
         return
     for name in obstacle_map.take_deleted_tracks():
-        seen.raise_alarm(name, MonitorAlarm.TRACK_LOST, "not detected although a vehicle is near")
+        step.raise_alarm(name, MonitorAlarm.TRACK_LOST, "not detected although a vehicle is near")
     for uav, offset in obstacle_map.map_offsets.items():
         text = f"detects obstacles {float(np.linalg.norm(offset)):.2f} m from the map"
-        seen.raise_alarm(seen.name(uav), MonitorAlarm.VEHICLE_MAP_OFFSET, text)
-
-
-class ManoeuvreDetector:
-    """Steps of the tilt set-points that the attitude loop does not follow linearly."""
-
-    def __init__(self, settings: MonitorSettings) -> None:
-        self._settings = settings
-        self._tilts: Array | None = None
-        self._steady_from = -math.inf
-
-    def is_steady(self, time: float, tilts: Array) -> bool:
-        """Return whether the tilt set-points (2 N,) (rad) have not changed hard for a while; once a control step."""
-        s = self._settings
-        if self._tilts is not None and float(np.abs(tilts - self._tilts).max()) > s.manoeuvre_tilt:
-            self._steady_from = time + s.manoeuvre_time
-        self._tilts = tilts
-        return time >= self._steady_from
+        step.raise_alarm(step.name(uav), MonitorAlarm.VEHICLE_MAP_OFFSET, text)
 
 
 def detectors(flight: Flight, settings: MonitorSettings) -> tuple[Detector, ...]:
     """Return the detectors of a flight, in the order in which they run."""
     rates, innovations = flight.mission.system.rates, flight.mission.system.estimation.innovation_monitor
     return (
-        TelemetryTimeout(settings.missed_samples / rates.telemetry),
-        range_sensors,
-        LinkTiming(settings, 1.0 / rates.control),
-        estimator_health,
-        Innovations(flight.estimator.settings.gate_probability, settings, innovations),
-        ModelMismatch(settings, innovations),
-        MessageEvents(settings),
-        obstacles,
+        _TelemetryTimeout(settings.missed_samples / rates.telemetry),
+        _range_sensors,
+        _LinkTiming(settings, 1.0 / rates.control),
+        _estimator_health,
+        _Innovations(flight.control.estimator.settings.gate_probability, settings, innovations),
+        _ModelMismatch(settings, innovations),
+        _MessageEvents(settings),
+        _obstacles,
     )
 
 
-def _range(offsets: deque[tuple[float, float]]) -> float:
-    values = [offset for _, offset in offsets]
-    return max(values) - min(values)
-
-
-def _raise_frequent(seen: Observation, events: EventCounter, count: int) -> None:
-    for (source, code), number in events.recent(seen.time).items():
+def _raise_frequent(step: MonitorStep, events: EventCounter, count: int) -> None:
+    for (source, code), number in events.recent(step.time).items():
         if number >= count:
-            seen.raise_alarm(source, code, f"{number} times")
+            step.raise_alarm(source, code, f"{number} times")

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from gcs.flight.alarms import AlarmLog
 from gcs.flight.command_sequences import Arming, AutonomousLanding, CommandSequence, Disarming
+from gcs.flight.condition import Check, Moment, Reaction, System, Trigger
 from gcs.flight.control_loop import ControlLoop, Setpoints, StepRecord
-from gcs.flight.failsafe import Check, Failsafe, FailsafeState, Moment, Reaction, System, Trigger
+from gcs.flight.failsafe import Failsafe, FailsafeState
 from gcs.flight.mission_trajectory import MissionTrajectory
 from gcs.flight.payload_monitor import PayloadMonitor
 from gcs.flight.phase import CONTROLLED, IN_AIR, Phase
@@ -19,11 +20,8 @@ from gcs.flight.preflight import Preflight
 from gcs.flight.spool import SpoolDown, spool_up_share
 from gcs.flight.team import Team
 from gcs.mission.model import Mission
-from idc_controller.control.controller import IntegratedDecisionController
 from idc_controller.estimation.estimate import Estimate
-from idc_controller.estimation.estimator import Estimator
 from idc_controller.estimation.measurements import Measurement
-from idc_controller.estimation.setpoint_history import Confirmation
 from idc_controller.perception.obstacle_map import ObstacleMap
 from idc_controller.trajectory.reference import Reference
 from idc_controller.trajectory.trajectory import RestTrajectory, Trajectory
@@ -73,42 +71,22 @@ class Flight:
 
     @property
     def system(self) -> System:
-        """The parts of the flight that failsafes and alarms look at."""
+        """The objects that the conditions of failsafes are evaluated on."""
         return self.failsafes.system
 
     @property
-    def team(self) -> Team:
-        """The vehicles."""
-        return self.system.team
-
-    @property
-    def payload(self) -> PayloadMonitor:
-        """State of the payload."""
-        return self.system.payload
-
-    @property
-    def estimator(self) -> Estimator:
-        """The estimator of the control loop."""
-        return self.control.estimator
-
-    @property
-    def controller(self) -> IntegratedDecisionController:
-        """The controller of the control loop."""
-        return self.control.controller
-
-    @property
     def ended(self) -> bool:
-        """Whether there is nothing left to do."""
+        """True if there is nothing left to do."""
         return self.phase is Phase.ENDED
 
     @property
     def landed(self) -> bool:
-        """Whether the vehicles have reported that they are disarmed after the flight."""
+        """True if the vehicles have reported that they are disarmed after the flight."""
         return self.ended and isinstance(self._sequence, Disarming | AutonomousLanding) and self._sequence.done
 
     @property
     def completed(self) -> bool:
-        """Whether the whole mission was flown and the payload set down."""
+        """True if the whole mission was flown and the payload set down."""
         return self.landed and not self.reason
 
     @property
@@ -118,13 +96,13 @@ class Flight:
 
     @property
     def expected_end(self) -> float:
-        """When the mission trajectory ends (s); inf while that is not known."""
+        """The end of the mission trajectory (s); inf while that is not known."""
         return self.mission_trajectory.trajectory.end if self.mission_trajectory is not None else math.inf
 
     def reference(self, times: Array) -> tuple[Array, Array]:
         """Return the mission's position and velocity (K, 3) of the payload at ``times`` since take-off began."""
         if self.mission_trajectory is not None:
-            progress = self.controller.guidance.progress
+            progress = self.system.guidance.progress
             return self.mission_trajectory.reference(np.array([progress(t) for t in times]))
         assert self._pad is not None
         position, velocity = self._pad.derivatives(times, 1)
@@ -135,26 +113,10 @@ class Flight:
     def add_measurement(self, measurement: Measurement) -> Measurement | None:
         """Take telemetry of a vehicle or of the payload unit; return what is used of it."""
         if self.phase in CONTROLLED:
-            return self.estimator.add(measurement)
+            return self.control.estimator.add(measurement)
         if self.phase in (Phase.CHECK, Phase.ARM):
             self.system.preflight.add(measurement)
         return measurement
-
-    def confirm_setpoint(
-        self, uav: int, since: float, until: float, setpoint: Array, spread: float, longest: float
-    ) -> Confirmation | None:
-        """Take the set-point (tilt north, tilt east, thrust in N) that a vehicle has flown from ``since`` to ``until``.
-
-        Args:
-            uav: the vehicle, 0 .. N-1.
-            since, until: s.
-            setpoint: (3,).
-            spread: jitter of the link to it (s).
-            longest: the longest that set-points can take to it (s).
-        """
-        if self.phase not in IN_AIR:
-            return None
-        return self.estimator.confirm_setpoint(uav, since, until, setpoint, spread, longest)
 
     # Failsafes
 
@@ -172,7 +134,7 @@ class Flight:
             if reaction is Reaction.AUTONOMOUS_LANDING:
                 # A vehicle that is cut off follows the last stop plan that it has received: all the others do the same.
                 self.control.choose_stop_plan(time - trigger.cut_off)
-                self._sequence = AutonomousLanding(self.team, time, self._settings)
+                self._sequence = AutonomousLanding(self.system.team, time, self._settings)
                 self.phase = Phase.AUTONOMOUS_LANDING
 
     def check_links(self, time: float, now: float) -> bool:
@@ -195,7 +157,7 @@ class Flight:
 
     def _brake_and_land(self, time: float) -> None:
         if self.mission_trajectory is not None:
-            guidance = self.controller.guidance
+            guidance = self.system.guidance
             followed, progress = guidance.stopping_trajectory(time, self.mission_trajectory.trajectory)
             self.mission_trajectory.brake_and_land(followed, progress)
             guidance.restart(time, progress)
@@ -218,7 +180,9 @@ class Flight:
         """
         self.time = time
         self._evaluate(Check.STEP, time, now)
-        idle = Setpoints.idle(self.controller.parameters.number_of_uavs)
+        if self.phase in IN_AIR:
+            self._evaluate(Check.IN_AIR, time, now)
+        idle = Setpoints.idle(self.control.controller.parameters.number_of_uavs)
         match self.phase:
             case Phase.CONNECT:
                 self._connect(time, now)
@@ -260,19 +224,19 @@ class Flight:
         preflight = self.system.preflight
         if not self._evaluate(Check.PREFLIGHT, time, now) and preflight.has_positions and preflight.is_settled(time):
             self._pad = RestTrajectory(preflight.payload, time)
-            self._sequence = Arming(self.team, time, self._settings)
+            self._sequence = Arming(self.system.team, time, self._settings)
             self.phase = Phase.ARM
 
     def _begin_spool_up(self, time: float) -> None:
         assert self._pad is not None
-        rest = Reference(self.controller.parameters, self._pad, self.controller.load)
-        self.estimator.start(time, rest.at(np.array([time])).x[0])
-        self.estimator.add_setpoint(time, None)
+        rest = Reference(self.control.controller.parameters, self._pad, self.control.controller.load)
+        self.control.estimator.start(time, rest.at(np.array([time])).x[0])
+        self.control.estimator.add_setpoint(time, None)
         self.takeoff_time = time
         self.phase = Phase.SPOOL_UP
 
     def _disarm(self, time: float) -> None:
-        self._sequence = Disarming(self.team, time, self._settings)
+        self._sequence = Disarming(self.system.team, time, self._settings)
         self.phase = Phase.DISARM
 
     def _fly(
@@ -280,13 +244,13 @@ class Flight:
     ) -> tuple[Setpoints | None, StepRecord | None]:
         trajectory = self._followed()
         if (touchdown := self._touchdown) is not None:
-            self.estimator.hold_payload(time, touchdown.trajectory.position(time), touchdown.yaw)
+            self.control.estimator.hold_payload(time, touchdown.trajectory.position(time), touchdown.yaw)
         estimate = self.control.estimate(effective, trajectory)
         in_air = self.phase in IN_AIR
         if in_air and self._evaluate(Check.ESTIMATE, time, now, estimate):
             return None, None
         record = self.control.decide(
-            estimate, trajectory, on_ground=not in_air, learn_load=self.payload.is_clear(estimate)
+            estimate, trajectory, on_ground=not in_air, learn_load=self.system.payload.is_clear(estimate)
         )
         share = self._thrust_share(time, estimate)
         if in_air:
@@ -308,13 +272,13 @@ class Flight:
             return spool_up_share(time - self.takeoff_time, self._settings.takeoff_landing)
         if self._touchdown is None:
             return 1.0
-        lean = float(np.abs(estimate.x[self.controller.layout.s]).max())
+        lean = float(np.abs(estimate.x[self.control.controller.layout.s]).max())
         return self._touchdown.spool_down.share(time, lean)
 
     def _progress(self, time: float) -> tuple[float, Trajectory]:
         """Return the progress along the mission trajectory (s), and that."""
         assert self.mission_trajectory is not None
-        return self.controller.guidance.progress(time), self.mission_trajectory.trajectory
+        return self.system.guidance.progress(time), self.mission_trajectory.trajectory
 
     def _advance(self, time: float, estimate: Estimate, share: float) -> None:
         """Go on to the next phase where this one is over."""
@@ -330,15 +294,15 @@ class Flight:
         elif self.mission_trajectory is not None:
             progress, trajectory = self._progress(time)
             self.phase = Phase(self.mission_trajectory.phase(progress))
-            if self.phase is Phase.LAND and self.payload.has_touched_down(progress, trajectory, estimate):
+            if self.phase is Phase.LAND and self.system.payload.has_touched_down(progress, trajectory, estimate):
                 self._touch_down(time, estimate)
 
     def _touch_down(self, time: float, estimate: Estimate) -> None:
-        layout = self.controller.layout
+        layout = self.control.controller.layout
         self._touchdown = Touchdown(
             RestTrajectory(estimate.x[layout.r_0], time),
             float(estimate.x[layout.Theta][2]),
             SpoolDown(time, self._settings.takeoff_landing),
         )
-        self.estimator.add_setpoint(estimate.time, None)
+        self.control.estimator.add_setpoint(estimate.time, None)
         self.phase = Phase.SPOOL_DOWN

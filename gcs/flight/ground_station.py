@@ -12,8 +12,9 @@ import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.flight.alarms import Alarm
+from gcs.flight.condition import Trigger
 from gcs.flight.control_loop import Setpoints, StepRecord
-from gcs.flight.failsafe import Failsafe, Trigger
+from gcs.flight.failsafe import Failsafe
 from gcs.flight.flight import Flight
 from gcs.flight.monitor import FlightMonitor
 from gcs.flight.phase import Phase
@@ -62,7 +63,7 @@ class GroundStation:
         timing = settings.timing
         self.flight = flight
         self._recorder = recorder
-        self._id_check = SystemIdCheck(len(flight.team.links))
+        self._id_check = SystemIdCheck(len(flight.system.team.links))
         self._monitor = FlightMonitor(flight, self._id_check, flight.failsafes.alarms, settings.monitor)
         self._codec = Codec(GROUND_SYSTEM, GROUND_COMPONENT)
         self._clock = TeamClock(timing)
@@ -76,7 +77,7 @@ class GroundStation:
     @property
     def links(self) -> tuple[VehicleLink, ...]:
         """The links of all vehicles."""
-        return self.flight.team.links
+        return self.flight.system.team.links
 
     @property
     def ended(self) -> bool:
@@ -159,7 +160,7 @@ class GroundStation:
                 queue.extend(outgoing)
 
     def _update_obstacle_map(self, time: float) -> None:
-        obstacle_map, estimator = self.flight.system.obstacle_map, self.flight.estimator
+        obstacle_map, estimator = self.flight.system.obstacle_map, self.flight.control.estimator
         if obstacle_map is None:
             return
         obstacle_map.set_failed_sensors(
@@ -171,7 +172,7 @@ class GroundStation:
 
     def _compare(self, record: StepRecord) -> None:
         """Compare estimated vehicle states with what each system id sends; place the detections by them."""
-        estimated = self.flight.estimator.vehicles(record.estimate)
+        estimated = self.flight.control.estimator.vehicles(record.estimate)
         self._id_check.compare(estimated)
         if (obstacle_map := self.flight.system.obstacle_map) is not None:
             for sample in estimated:

@@ -5,21 +5,14 @@ from __future__ import annotations
 from dataclasses import asdict
 
 from gcs.config.flight_settings import DEFAULTS, FlightSettings
+from gcs.flight.condition import Reaction
 from gcs.flight.detectors import MonitorAlarm
 from gcs.flight.failsafe import Failsafe
-
-_REACTIONS = {
-    "REFUSE": "the flight does not begin, nothing is armed",
-    "DISARM": "rotors off, on the ground",
-    "BRAKE_AND_LAND": "come to rest along the path that is followed, then land there under the ground's control",
-    "AUTONOMOUS_LANDING": "all vehicles follow the same stop plan, hold, and descend on board",
-    "END_CONTROL": "the ground stops sending; each vehicle is left to its own failsafes",
-}
 
 
 def listing(settings: FlightSettings = DEFAULTS) -> str:
     """Return the whole page, with the thresholds of ``settings``."""
-    reactions = "\n".join(f"| `{name}` | {text} |" for name, text in _REACTIONS.items())
+    reactions = "\n".join(f"| `{reaction.name}` | {reaction.meaning} |" for reaction in Reaction if reaction)
     failsafes = "\n".join(
         f"| `{row.code}` | {row.meaning.format(**asdict(settings.failsafe))} | {row.check.value} "
         f"| `{row.reaction.name}` | {row.severity.name.lower()} | {row.action} |"

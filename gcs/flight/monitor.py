@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
 from gcs.config.flight_settings import DEFAULTS, MonitorSettings
 from gcs.flight.alarms import AlarmLog
 from gcs.flight.control_loop import StepRecord
-from gcs.flight.detectors import ManoeuvreDetector, Observation, detectors
+from gcs.flight.detectors import MonitorStep, detectors
 from gcs.flight.flight import Flight
 from gcs.flight.phase import IN_AIR
 from gcs.mavlink.id_check import SystemIdCheck
@@ -17,18 +22,26 @@ class FlightMonitor:
     def __init__(
         self, flight: Flight, id_check: SystemIdCheck, log: AlarmLog, settings: MonitorSettings = DEFAULTS.monitor
     ) -> None:
-        self._flight, self._id_check, self._log = flight, id_check, log
+        self._flight, self._id_check, self._log, self._settings = flight, id_check, log, settings
         self._detectors = detectors(flight, settings)
-        self._manoeuvre = ManoeuvreDetector(settings)
+        self._tilts: NDArray[np.float64] | None = None
+        self._steady_from = -math.inf
 
     def step(self, time: float, now: float, record: StepRecord | None) -> None:
         """Raise the alarms of team ``time``, ground time ``now``; ``record``: of the flight's step, if it made one."""
         flight = self._flight
         in_air = flight.phase in IN_AIR
-        clear = in_air and record is not None and flight.payload.is_clear(record.estimate)
-        steady = True
-        if clear and record is not None:
-            steady = self._manoeuvre.is_steady(time, record.decision.u[: 2 * len(flight.team.links)])
-        seen = Observation(time, now, flight, self._id_check, self._log, record, in_air, clear, steady)
+        clear, steady = False, True
+        if in_air and record is not None and flight.system.payload.is_clear(record.estimate):
+            clear, steady = True, self._is_steady(time, record.decision.u[: 2 * len(flight.system.team.links)])
+        step = MonitorStep(time, now, flight, self._id_check, self._log, record, in_air, clear, steady)
         for detector in self._detectors:
-            detector(seen)
+            detector(step)
+
+    def _is_steady(self, time: float, tilts: NDArray[np.float64]) -> bool:
+        """Return True if no tilt set-points (2 N,) (rad) of late stepped beyond the attitude loop's linear model."""
+        s = self._settings
+        if self._tilts is not None and float(np.abs(tilts - self._tilts).max()) > s.manoeuvre_tilt:
+            self._steady_from = time + s.manoeuvre_time
+        self._tilts = tilts
+        return time >= self._steady_from

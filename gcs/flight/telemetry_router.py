@@ -8,7 +8,7 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.config.flight_settings import DEFAULTS, TimingSettings
 from gcs.flight.flight import Flight
-from gcs.flight.phase import Phase
+from gcs.flight.phase import IN_AIR, Phase
 from gcs.flight.team_clock import TeamClock
 from gcs.mavlink import px4
 from gcs.mavlink.address import Address
@@ -40,7 +40,7 @@ class TelemetryRouter:
     ) -> None:
         self._codec, self._flight, self._clock, self._id_check = codec, flight, clock, id_check
         self._clock_settled = settings.clock_settled
-        self._links = flight.team.links
+        self._links = flight.system.team.links
         self._by_address: dict[tuple[Address, int], int] = {
             (link.address, link.system_id): i for i, link in enumerate(self._links) if link.address is not None
         }
@@ -116,14 +116,15 @@ class TelemetryRouter:
     def _confirm_setpoint(
         self, message: mavlink.MAVLink_attitude_target_message, index: int, time: float, latest: float, now: float
     ) -> None:
-        link = self._links[index]
+        link, flight = self._links[index], self._flight
         setpoint = setpoint_flown(message, link.parameters.get(px4.PARAM_THRUST_MAX, math.nan))
-        if setpoint is None:
+        if setpoint is None or flight.phase not in IN_AIR:
             return
         # Its stamp is that of the moment at which it began to act.
         until = min(max(time, latest), self._clock.time(now))
-        flight = self._flight
-        confirmation = flight.confirm_setpoint(index, time, until, setpoint, link.clock.spread, link.latency_max)
+        confirmation = flight.control.estimator.confirm_setpoint(
+            index, time, until, setpoint, link.clock.spread, link.latency_max
+        )
         if confirmation is not None:
             link.confirm_setpoint(confirmation)
 

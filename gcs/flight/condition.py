@@ -1,0 +1,108 @@
+"""Conditions of failsafes: what they are evaluated on and when, what they return, and the reactions they call for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum, IntEnum
+
+from gcs.config.flight_settings import DEFAULTS, FailsafeSettings
+from gcs.flight.alarms import Severity
+from gcs.flight.command_sequences import CommandSequence
+from gcs.flight.payload_monitor import PayloadMonitor
+from gcs.flight.phase import Phase
+from gcs.flight.preflight import Preflight
+from gcs.flight.team import Team
+from idc_controller.estimation.estimate import Estimate
+from idc_controller.estimation.estimator import Estimator
+from idc_controller.guidance.progress import Guidance
+from idc_controller.perception.obstacle_map import ObstacleMap
+from idc_controller.trajectory.trajectory import Trajectory
+
+
+class Reaction(IntEnum):
+    """What the ground does, in ascending severity."""
+
+    severity: Severity
+    """Severity of the alarm, unless the failsafe has another."""
+    meaning: str
+
+    def __new__(cls, value: int, severity: Severity, meaning: str) -> Reaction:
+        """Make a member with its two attributes."""
+        reaction = int.__new__(cls, value)
+        reaction._value_, reaction.severity, reaction.meaning = value, severity, meaning
+        return reaction
+
+    # fmt: off
+    NONE = 0, Severity.NOTICE, "the flight goes on"
+    REFUSE = 1, Severity.ERROR, "the flight does not begin, nothing is armed"
+    DISARM = 2, Severity.ERROR, "rotors off, on the ground"
+    BRAKE_AND_LAND = (3, Severity.CRITICAL,
+        "come to rest along the path that is followed, then land there under the ground's control")
+    AUTONOMOUS_LANDING = 4, Severity.ALERT, "all vehicles follow the same stop plan, hold, and descend on board"
+    END_CONTROL = 5, Severity.ALERT, "the ground stops sending; each vehicle is left to its own failsafes"
+    # fmt: on
+
+    def in_phase(self, phase: Phase) -> Reaction:
+        """Return the reaction where ``phase`` allows it: on the ground there is nothing to land."""
+        if self is Reaction.END_CONTROL:
+            return self
+        if phase in (Phase.CONNECT, Phase.CHECK):
+            return Reaction.REFUSE
+        return Reaction.DISARM if phase in (Phase.ARM, Phase.SPOOL_UP) else self
+
+
+class Check(Enum):
+    """When a condition is evaluated."""
+
+    EVENT = "when it happens"
+    CONNECT = "while connecting"
+    PREFLIGHT = "before arming"
+    COMMAND = "while a command sequence is carried out"
+    LINK = "whenever the ground has received or is to send, from spool-up to touchdown"
+    STEP = "at every control step"
+    IN_AIR = "at every control step in the air"
+    ESTIMATE = "at every control step in the air, on the new estimate"
+
+
+@dataclass(frozen=True, eq=False)
+class System:
+    """The objects that conditions are evaluated on."""
+
+    team: Team
+    estimator: Estimator
+    guidance: Guidance
+    payload: PayloadMonitor
+    preflight: Preflight
+    obstacle_map: ObstacleMap | None = None
+    settings: FailsafeSettings = DEFAULTS.failsafe
+
+
+@dataclass(frozen=True, eq=False)
+class Moment:
+    """The moment of the evaluation; times in s, ``time`` the team's, ``now`` the ground's."""
+
+    phase: Phase
+    time: float
+    now: float
+    sequence: CommandSequence | None = None
+    estimate: Estimate | None = None
+    descent: tuple[float, Trajectory] | None = None
+    """Progress along the mission trajectory, and that trajectory."""
+
+
+@dataclass(frozen=True)
+class Trigger:
+    """A condition that holds."""
+
+    reason: str
+    """For people: what is wrong, the value, the limit."""
+    vehicles: tuple[int, ...] = ()
+    """Indices of the vehicles (0 .. N-1) that are its cause; empty: the whole team."""
+    cut_off: float = 0.0
+    """For how long the vehicle has most likely received nothing (s)."""
+    source: str = "team"
+    """Source of the alarm where the cause is not one vehicle."""
+
+
+Condition = Callable[[System, Moment], Trigger | None]
