@@ -173,18 +173,18 @@ SHAPES = [
 def test_physics_engine_has_the_same_geometry(shape):
     probe = Sphere(0.2)
     with World(system(4)) as world:
-        world.add_obstacle("probe", probe, (0.0, 0.0, -30.0))
-        world.add_obstacle("body", shape, (9.0, 9.0, -9.0))
+        world.obstacles.add("probe", probe, (0.0, 0.0, -30.0))
+        world.obstacles.add("body", shape, (9.0, 9.0, -9.0))
         for direction in np.random.default_rng(8).normal(size=(12, 3)):
             away = direction / np.linalg.norm(direction) * (shape.reach + 0.5)
-            world.move_obstacle("body", (1.0, -2.0, -30.0))
-            world.move_obstacle("probe", np.array([1.0, -2.0, -30.0]) + away)
+            world.obstacles.move("body", (1.0, -2.0, -30.0))
+            world.obstacles.move("probe", np.array([1.0, -2.0, -30.0]) + away)
             expected = coal.distance(
                 shape.geometry(), coal.Transform3s(shape.rotation, np.zeros(3)), coal.Sphere(0.2),
                 coal.Transform3s(np.eye(3), away), coal.DistanceRequest(), coal.DistanceResult(),
             )  # fmt: skip
             points = pybullet.getClosestPoints(
-                world._obstacles.body("body"), world._obstacles.body("probe"), 9.0, physicsClientId=world._client
+                world.obstacles.body("body"), world.obstacles.body("probe"), 9.0, physicsClientId=world._client
             )
             assert min(point[8] for point in points) == pytest.approx(expected, abs=3e-3)
 

@@ -17,7 +17,7 @@ from gcs.mission import (
     read_mission,
 )
 from idc_controller.geometry.sphere import Sphere
-from vehicle_sim.world.moving_obstacles import MovingObstacles
+from vehicle_sim.world.obstacle_bodies import MovingObstacles
 
 SQUARE = ((0.0, 0.0, 0.0), (2.0, 0.0, 0.0), (2.0, 1.0, 0.0))
 
@@ -87,26 +87,26 @@ def test_random_walk_is_determined_by_its_seed():
     assert np.abs(positions).max() < 8.0
 
 
-class _World:
+class _Bodies:
     def __init__(self):
         self.places = {}
 
-    def add_obstacle(self, name, shape, place):
+    def add(self, name, shape, place):
         self.places[name] = place
 
-    def move_obstacle(self, name, place):
+    def move(self, name, place):
         self.places[name] = place
 
 
 def test_obstacles_of_world_follow_their_motion():
-    world = _World()
+    bodies = _Bodies()
     motions = [CircleMotion(1.0, 1.0), WaypointsMotion(SQUARE, 1.0), RandomWalkMotion(3, (1.0, 1.0, 1.0), 1.0)]
     obstacles = [Obstacle(str(i), (5.0, i, -4.0), Sphere(0.5), motion=motion) for i, motion in enumerate(motions)]
-    moving = MovingObstacles(world, obstacles)
+    moving = MovingObstacles(bodies, obstacles)
     for time in (0.0, 1.25):
         moving.move(time)
         for i, motion in enumerate(motions):
-            np.testing.assert_allclose(world.places[str(i)], np.array([5.0, i, -4.0]) + mover(motion)(time))
+            np.testing.assert_allclose(bodies.places[str(i)], np.array([5.0, i, -4.0]) + mover(motion)(time))
 
 
 def mission(folder, shape, motion):

@@ -17,7 +17,7 @@ from gcs.record.modes import stops_after
 from gcs.record.run_data import read_run
 from gcs.record.run_folder import open_run_folder
 from idc_controller.rotations import quaternion_from_euler
-from vehicle_sim.world import world
+from vehicle_sim.world import ground
 from vehicle_sim.world.truth_log import TruthLog
 from vehicle_sim.world.world_state import UavState, WorldState
 
@@ -93,7 +93,7 @@ def test_contact_after_touchdown_is_not_counted_before(tmp_path):
 
 
 def test_pad_is_that_of_the_world():
-    assert (landings.PAD_THICKNESS, landings.PAD_MARGIN) == (world.PAD_THICKNESS, world.PAD_MARGIN)
+    assert (landings.PAD_THICKNESS, landings.PAD_MARGIN) == (ground.PAD_THICKNESS, ground.PAD_MARGIN)
 
 
 @pytest.mark.parametrize(

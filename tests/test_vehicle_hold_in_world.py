@@ -7,6 +7,7 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from world_runs import place
 
 from gcs.config import read_system
 from gcs.mavlink import px4
@@ -42,7 +43,7 @@ def test_payload_is_braked_held_and_set_down(velocity: tuple[float, float]) -> N
     speeds = [IDLE] * n
     tilts, separations, modes, sinking = [], [], set(), []
     with World(system, 500) as world:
-        world.place(start)
+        place(world, start)
         for tick in range(12_000):
             now, state = tick * 0.002, world.state()
             if tick % 2 == 0:

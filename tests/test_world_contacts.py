@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from paper_system import system
-from world_runs import uav_array
+from world_runs import closest_distance, place, uav_array
 
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.pole import Pole
@@ -22,15 +22,15 @@ from vehicle_sim.world.world import World
 def test_uav_driven_into_a_sphere_counts_as_contact():
     parameters = system(4)
     with World(parameters) as world:
-        world.place(hover_state(parameters, (0, 0, -10.0)))
+        place(world, hover_state(parameters, (0, 0, -10.0)))
         front_right = uav_positions(parameters, hover_state(parameters, (0, 0, -10.0)))[0]
-        world.add_obstacle("ball", Sphere(0.5), front_right + np.array([1.0, 0, 0]))
-        assert world.closest_distance("ball") == pytest.approx(0.2, abs=1e-3)
+        world.obstacles.add("ball", Sphere(0.5), front_right + np.array([1.0, 0, 0]))
+        assert closest_distance(world, "ball") == pytest.approx(0.2, abs=1e-3)
         seen = []
         lift = parameters.hover_thrust.tolist()
         for _ in range(1000):
             world.step(lift, [(0.0, 0.0, 0.0)] * 4, uav_forces=[(1.0, 0.0, 0.0)] * 4)
-            seen.append(world.contacts())
+            seen.append(world.contacts().pairs)
         assert seen[0] == 0
         assert max(seen) >= 1
         assert not world.touching_ground()
@@ -39,38 +39,38 @@ def test_uav_driven_into_a_sphere_counts_as_contact():
 def test_link_contacts_pole_and_wall_stops_payload():
     parameters = system(4)
     with World(parameters) as world:
-        world.place(hover_state(parameters, (0, 0, -6.0)))
-        world.add_obstacle("pole", Pole(0.05, 8.0), (0.6, 0.5, -4.0))
-        assert world.closest_distance("pole") == pytest.approx(0.04, abs=2e-3)
-        world.move_obstacle("pole", (0.55, 0.5, -4.0))
-        world.add_obstacle("wall", Wall((1.0, 4.0, 0.2)), (-2.5, 0, -6.0))
+        place(world, hover_state(parameters, (0, 0, -6.0)))
+        world.obstacles.add("pole", Pole(0.05, 8.0), (0.6, 0.5, -4.0))
+        assert closest_distance(world, "pole") == pytest.approx(0.04, abs=2e-3)
+        world.obstacles.move("pole", (0.55, 0.5, -4.0))
+        world.obstacles.add("wall", Wall((1.0, 4.0, 0.2)), (-2.5, 0, -6.0))
         # Payload to wall: 2.5 - 0.5 - 0.5; one turned by 90 degrees is 2 m long towards it, and they touch.
-        assert world.closest_distance("wall") == pytest.approx(1.5, abs=3e-3)
-        world.add_obstacle("turned", Wall((1.0, 4.0, 0.2), math.pi / 2), (-2.5, 0, -6.0))
-        assert world.closest_distance("turned") == pytest.approx(0.0, abs=3e-3)
-        world.move_obstacle("turned", (-40.0, 0, -6.0))
-        world.move_obstacle("wall", (-20.0, 0, -6.0))
+        assert closest_distance(world, "wall") == pytest.approx(1.5, abs=3e-3)
+        world.obstacles.add("turned", Wall((1.0, 4.0, 0.2), math.pi / 2), (-2.5, 0, -6.0))
+        assert closest_distance(world, "turned") == pytest.approx(0.0, abs=3e-3)
+        world.obstacles.move("turned", (-40.0, 0, -6.0))
+        world.obstacles.move("wall", (-20.0, 0, -6.0))
         world.step([14.0] * 4, [(0.0, 0.0, 0.0)] * 4)
-        assert world.contacts() == 1  # link 1 and the pole
-        world.move_obstacle("pole", (0.0, 0.0, -4.0))
-        world.move_obstacle("wall", (-0.99, 0, -6.0))
-        world.place(hover_state(parameters, (0, 0, -6.0)))
+        assert world.contacts().pairs == 1  # link 1 and the pole
+        world.obstacles.move("pole", (0.0, 0.0, -4.0))
+        world.obstacles.move("wall", (-0.99, 0, -6.0))
+        place(world, hover_state(parameters, (0, 0, -6.0)))
         world.step([14.0] * 4, [(0.0, 0.0, 0.0)] * 4)
-        assert world.contacts() == 2  # the payload with the pole and with the wall
-        assert world.closest_distance("pole") < 0
-        world.move_obstacle("pole", (50.0, 50.0, -4.0))
-        assert world.closest_distance("pole", within=10.0) == math.inf
-        assert [(o.name, o.shape.kind) for o in world.obstacles()][:2] == [("pole", "pole"), ("wall", "wall")]
-        assert world.obstacles()[0].position_in_world == (50.0, 50.0, -4.0)
+        assert world.contacts().pairs == 2  # the payload with the pole and with the wall
+        assert closest_distance(world, "pole") < 0
+        world.obstacles.move("pole", (50.0, 50.0, -4.0))
+        assert closest_distance(world, "pole", within=10.0) == math.inf
+        assert [(o.name, o.shape.kind) for o in world.obstacles.all()][:2] == [("pole", "pole"), ("wall", "wall")]
+        assert world.obstacles.all()[0].position_in_world == (50.0, 50.0, -4.0)
 
 
 def test_wall_yaw_turns_clockwise_seen_from_above():
     with World(system(4)) as world:
-        world.place(hover_state(system(4), (0, 0, -10.0)))
+        place(world, hover_state(system(4), (0, 0, -10.0)))
         # A long wall to the north-east, lying towards the payload only when yaw is +45 degrees (north to east).
         for name, yaw in ("towards", math.pi / 4), ("across", -math.pi / 4):
-            world.add_obstacle(name, Wall((4.0, 0.1, 0.4), yaw), (3.0, 3.0, -10.0))
-        assert world.closest_distance("towards") < world.closest_distance("across") - 1.0
+            world.obstacles.add(name, Wall((4.0, 0.1, 0.4), yaw), (3.0, 3.0, -10.0))
+        assert closest_distance(world, "towards") < closest_distance(world, "across") - 1.0
 
 
 def test_discs_that_meet_count():
@@ -79,9 +79,9 @@ def test_discs_that_meet_count():
         hover = hover_state(parameters, (0, 0, -10.0))
         tilt = np.array([0.0, 0.21 / 3.2, 0.0])
         q = hover.q + np.array([tilt, -tilt, 0 * tilt, 0 * tilt])
-        world.place(replace(hover, q=q / np.linalg.norm(q, axis=1, keepdims=True)))
+        place(world, replace(hover, q=q / np.linalg.norm(q, axis=1, keepdims=True)))
         world.step([14.0] * 4, [(0.0, 0.0, 0.0)] * 4)
-        assert world.contacts() == 1
+        assert world.contacts().pairs == 1
 
 
 def test_toppled_system_on_the_ground_counts():
@@ -89,11 +89,11 @@ def test_toppled_system_on_the_ground_counts():
     with World(parameters) as world:
         # Links on their way down when the payload reaches the ground: too fast for the cradles.
         state = hover_state(parameters, (5, 0, -0.26))
-        world.place(replace(state, Omega=np.tile([0.0, 0.5, 0.0], (4, 1))))
+        place(world, replace(state, Omega=np.tile([0.0, 0.5, 0.0], (4, 1))))
         counts, speeds = [], []
         for _ in range(2500):
             world.step([0.0] * 4, [(0.0, 0.0, 0.0)] * 4)
-            counts.append(world.contacts())
+            counts.append(world.contacts().pairs)
             speeds.append(np.abs(uav_array(world.state(), "velocity_in_world")).max())
         assert counts[0] == 0
         assert max(counts) >= 2  # discs or links on the ground
@@ -116,10 +116,10 @@ def test_toppled_system_on_the_ground_counts():
 )
 def test_invalid_obstacles_are_refused(arguments, reason):
     with World(system(4)) as world:
-        world.add_obstacle("taken", Sphere(1.0), (9, 9, -9))
+        world.obstacles.add("taken", Sphere(1.0), (9, 9, -9))
         with pytest.raises(SimulationError, match=reason):
-            world.add_obstacle(*arguments)
+            world.obstacles.add(*arguments)
         with pytest.raises(SimulationError, match="nobody"):
-            world.move_obstacle("nobody", (0, 0, 0))
+            world.obstacles.move("nobody", (0, 0, 0))
         with pytest.raises(SimulationError, match="nobody"):
-            world.closest_distance("nobody")
+            closest_distance(world, "nobody")

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from paper_system import system
-from world_runs import STANDING_ON_GROUND, STANDING_ON_PAD, angle_between, run, uav_array, unequal
+from world_runs import STANDING_ON_GROUND, STANDING_ON_PAD, angle_between, place, run, uav_array, unequal
 
 from idc_controller.model.nonlinear import (
     hover_state,
@@ -28,7 +28,7 @@ def test_system_on_the_pad_does_not_move(parameters):
         assert np.abs(uav_array(after, "velocity_in_world")).max() < 1e-3
         assert uav_array(after, "cradled").all()
         assert world.touching_ground()
-        assert world.contacts() == 0
+        assert world.contacts().pairs == 0
 
 
 def test_at_the_start_links_are_upright_on_the_attachment_points():
@@ -57,7 +57,7 @@ def land(world, offset=0.0):
     parameters = world.parameters
     height = STANDING_ON_PAD if offset == 0.0 else STANDING_ON_GROUND
     start = hover_state(parameters, (offset, 0.0, height - 0.1))
-    world.place(replace(start, r_0_dot=np.array([0.0, 0.0, 0.2])))
+    place(world, replace(start, r_0_dot=np.array([0.0, 0.0, 0.2])))
     hover = parameters.hover_thrust.tolist()
     assert not uav_array(world.state(), "cradled").any()
     while not world.touching_ground():
@@ -77,7 +77,7 @@ def test_landed_uavs_are_held_by_cradles_and_take_off_again():
         expected = uav_positions(parameters, hover_state(parameters, (0, 0, STANDING_ON_PAD)))
         np.testing.assert_allclose(uav_array(state, "position_in_world"), expected, atol=0.03)
         assert np.abs(uav_array(state, "velocity_in_world")).max() < 1e-3
-        assert world.contacts() == 0
+        assert world.contacts().pairs == 0
         state = run(world, 1.0, (1.03 * parameters.hover_thrust).tolist())
         assert not uav_array(state, "cradled").any()
         assert state.payload_position_in_world[2] < STANDING_ON_PAD - 0.05
@@ -90,7 +90,7 @@ def test_payload_landed_beside_the_pad_rests_on_the_ground():
         assert state.payload_position_in_world == pytest.approx((5.0, 0, STANDING_ON_GROUND), abs=2e-3)
         assert uav_array(state, "cradled").all()
         assert world.touching_ground()
-        assert world.contacts() == 0
+        assert world.contacts().pairs == 0
 
 
 def test_payload_hanging_on_some_cradles_is_on_ground_for_the_others():
@@ -113,7 +113,7 @@ def test_wind_does_not_move_uavs_in_cradles():
 
 def test_no_cradle_closes_in_the_air():
     with World(system(4)) as world:
-        world.place(hover_state(system(4), (0, 0, -1.5)))
+        place(world, hover_state(system(4), (0, 0, -1.5)))
         state = run(world, 0.05, [0.0] * 4)
         assert not uav_array(state, "cradled").any()
         assert state.payload_velocity_in_world[2] == pytest.approx(9.81 * 0.051, rel=1e-6)

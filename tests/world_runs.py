@@ -1,11 +1,15 @@
 """What the tests of the PyBullet world share."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
+import pybullet
 from paper_system import system
 
 from idc_controller.rotations import quaternion_product, rotation_from_quaternion
+from idc_controller.rotations_float import into_body
+from vehicle_sim.world.world_state import flipped, quaternion_to_engine
 
 STANDING_ON_PAD = -0.30
 STANDING_ON_GROUND = -0.25
@@ -37,7 +41,68 @@ def link_lengths(parameters, state):
 
 
 def run(world, seconds, thrusts, torques=None):
-    torques = torques or [(0.0, 0.0, 0.0)] * world.number_of_uavs
+    torques = torques or [(0.0, 0.0, 0.0)] * world.parameters.number_of_uavs
     for _ in range(round(seconds * world.physics_hz)):
         world.step(thrusts, torques)
     return world.state()
+
+
+def closest_distance(world, obstacle, within=100.0):
+    """Distance (m) from an obstacle's surface to payload, links and discs; negative: overlap; inf: not within."""
+    points = pybullet.getClosestPoints(
+        world._system.body, world.obstacles.body(obstacle), within, physicsClientId=world._client
+    )
+    return min((point[8] for point in points), default=math.inf)
+
+
+def place(world, state):
+    """Put the system into ``state``, cradles open: to begin in flight.
+
+    As the engine integrates, the velocities are those of half a step earlier.
+    """
+    client, system = world._client, world._system
+    R_0 = state.R_0
+    payload_quaternion = quaternion_to_engine(state.quaternion_0.tolist())
+    pybullet.resetBasePositionAndOrientation(
+        system.body, flipped(state.r_0.tolist()), payload_quaternion, physicsClientId=client
+    )
+    pybullet.resetBaseVelocity(
+        system.body, flipped(state.r_0_dot.tolist()), flipped((R_0 @ state.omega_0).tolist()),
+        physicsClientId=client,
+    )  # fmt: skip
+    for i in range(world.parameters.number_of_uavs):
+        world._cradles.release(i)
+        x, y, z = flipped((-state.q[i]).tolist())
+        # The shortest turn from straight up to the link's direction; none is unique for straight down.
+        turn = np.array([-y, x, 0.0, 1.0 + z]) if z > -1.0 + 1e-12 else np.array([1.0, 0.0, 0.0, 0.0])
+        link_in_payload = (turn / np.linalg.norm(turn)).tolist()
+        link_quaternion = _product(payload_quaternion, link_in_payload)
+        link_rates = state.Omega[i] - state.omega_0
+        uav_quaternion = quaternion_to_engine(state.quaternion[i].tolist())
+        uav_rates = state.R[i] @ state.omega[i] - R_0 @ state.Omega[i]
+        # A spherical joint's rates are those of the child against the parent, in the child's frame.
+        pybullet.resetJointStateMultiDof(
+            system.body, system.links[i], link_in_payload,
+            _rotate_back(link_in_payload, flipped(link_rates.tolist())), physicsClientId=client,
+        )  # fmt: skip
+        pybullet.resetJointStateMultiDof(
+            system.body, system.uavs[i], _product(_conjugate(link_quaternion), uav_quaternion),
+            _rotate_back(uav_quaternion, flipped(uav_rates.tolist())), physicsClientId=client,
+        )  # fmt: skip
+    world._now = world._before = world._read()
+    world._contacts = None
+
+
+def _product(a, b):
+    """Product of two x-first quaternions."""
+    x, y, z, w = quaternion_product(np.roll(a, 1), np.roll(b, 1))[[1, 2, 3, 0]].tolist()
+    return [x, y, z, w]
+
+
+def _conjugate(q):
+    return [-q[0], -q[1], -q[2], q[3]]
+
+
+def _rotate_back(q, v):
+    """``v`` in the frame of the x-first quaternion ``q``."""
+    return list(into_body((q[3], q[0], q[1], q[2]), tuple(v)))

@@ -16,7 +16,7 @@ from vehicle_sim.autopilot.settings import AutopilotSettings, FailsafeSettings
 from vehicle_sim.faults.interface import FaultInterface
 from vehicle_sim.mavlink.geodesy import Home
 from vehicle_sim.mavlink.vehicle import Vehicle
-from vehicle_sim.world.moving_obstacles import MovingObstacles
+from vehicle_sim.world.obstacle_bodies import MovingObstacles
 from vehicle_sim.world.range_sensor import RangeSensor
 from vehicle_sim.world.rotors import IDLE, Four, Rotors
 from vehicle_sim.world.sensors import PAYLOAD_UNIT, NavigationSensor, SensorNoise
@@ -57,7 +57,7 @@ class Swarm:
         rates = config.rates
         self.world = World(system, rates.physics, gui)
         try:
-            self._obstacles = MovingObstacles(self.world, obstacles)
+            self._obstacles = MovingObstacles(self.world.obstacles, obstacles)
         except BaseException:
             self.world.close()
             raise
@@ -124,7 +124,7 @@ class Swarm:
     def record(self, truth: TruthLog) -> None:
         """Write down what happens from here on, 50 times a second or more. The log is closed with the swarm."""
         self._truth = truth
-        truth.write(self.world.state(), self.world.contacts(), self.world.obstacles())
+        truth.write(self.world.state(), self.world.contacts().pairs, self.world.obstacles.all())
 
     def close(self) -> None:
         """End the world and the record; harmless when they have ended."""
@@ -192,7 +192,7 @@ class Swarm:
         self._steps += 1
         self.time = next_time
         if self._truth is not None:
-            self._contacts = max(self._contacts, world.contacts())
+            self._contacts = max(self._contacts, world.contacts().pairs)
         measures = self._steps % self._steps_per_onboard == 0
         records = self._steps % self._steps_per_row == 0 and self._truth is not None
         scans = self._scans_at_all and self._steps % self._steps_per_scan == 0
@@ -207,7 +207,7 @@ class Swarm:
         if scans:
             self._scan(state)
         if records and self._truth is not None:
-            self._truth.write(state, self._contacts, world.obstacles())
+            self._truth.write(state, self._contacts, world.obstacles.all())
             self._contacts = 0
 
     def _onboard(self, state: WorldState) -> None:
@@ -241,7 +241,7 @@ class Swarm:
         """Let every vehicle look around."""
         if not self._scans_at_all:
             return
-        obstacles = self.world.obstacles()
+        obstacles = self.world.obstacles.all()
         for sensor, vehicle, uav in zip(self._range_sensors, self.vehicles, state.uavs, strict=True):
             scan = sensor.scan(state.time, uav.position_in_world, uav.quaternion, obstacles)
             vehicle.take_scan(self._faults.range_sample(vehicle.system_id, scan))

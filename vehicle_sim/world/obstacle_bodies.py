@@ -1,13 +1,13 @@
-"""Obstacles in the physics engine: bodies that are static or moved, and push but are never pushed."""
-
-from __future__ import annotations
+"""Obstacles in the physics engine: bodies that stand or move, and push but are never pushed."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import pybullet
 
+from gcs.mission import Obstacle as MissionObstacle
+from gcs.mission import mover
 from idc_controller.errors import ShapeError
 from idc_controller.geometry.shape import Shape
 from idc_controller.rotations_float import Vector
@@ -40,43 +40,67 @@ class ObstacleBodies:
         self._obstacles: dict[str, Obstacle] = {}
         self._bodies: dict[str, int] = {}
 
-    def __len__(self) -> int:
-        return len(self._obstacles)
-
     def all(self) -> tuple[Obstacle, ...]:
-        """The obstacles at the current time, in the order of their making."""
+        """Return the obstacles at the current time, in the order in which they were added."""
         return tuple(self._obstacles.values())
 
     def body(self, name: str) -> int:
-        """The engine's handle. Raises :class:`SimulationError` for an unknown name."""
+        """Return the engine's handle. Raises :class:`SimulationError` for an unknown name."""
         if name not in self._bodies:
             raise SimulationError(f"no obstacle is called {name!r}")
         return self._bodies[name]
 
-    def add(self, obstacle: Obstacle) -> None:
-        """Raises :class:`SimulationError` if the name is taken."""
-        if obstacle.name in self._obstacles:
-            raise SimulationError(f"obstacle {obstacle.name}: the name is taken")
-        primitive, dimensions = obstacle.shape.collision()
+    def add(self, name: str, shape: Shape, position_in_world: Sequence[float]) -> None:
+        """Add an obstacle, its centre (3,) in NED (m). Raises :class:`SimulationError`."""
+        obstacle = Obstacle(name, shape, _vector(position_in_world))
+        if name in self._obstacles:
+            raise SimulationError(f"obstacle {name}: the name is taken")
+        primitive, dimensions = shape.collision()
         if "vertices" in dimensions:
             dimensions = {"vertices": [flipped(vertex) for vertex in dimensions["vertices"]]}
         collision = pybullet.createCollisionShape(
             getattr(pybullet, f"GEOM_{primitive.upper()}"), **dimensions, physicsClientId=self._client
         )
-        body = pybullet.createMultiBody(
+        self._bodies[name] = pybullet.createMultiBody(
             0.0, collision, basePosition=flipped(obstacle.position_in_world),
-            baseOrientation=quaternion_to_engine(obstacle.shape.quaternion), physicsClientId=self._client,
+            baseOrientation=quaternion_to_engine(shape.quaternion), physicsClientId=self._client,
         )  # fmt: skip
-        self._obstacles[obstacle.name] = obstacle
-        self._bodies[obstacle.name] = body
+        self._obstacles[name] = obstacle
 
     def move(self, name: str, position_in_world: Sequence[float]) -> None:
-        """Put an obstacle elsewhere: its centre (3,) NED (m)."""
+        """Put an obstacle elsewhere, its centre (3,) in NED (m); it counts from the next step on."""
         body = self.body(name)
-        x, y, z = (float(value) for value in position_in_world)
-        new = replace(self._obstacles[name], position_in_world=(x, y, z))
-        self._obstacles[name] = new
+        new = self._obstacles[name] = replace(self._obstacles[name], position_in_world=_vector(position_in_world))
         pybullet.resetBasePositionAndOrientation(
             body, flipped(new.position_in_world), quaternion_to_engine(new.shape.quaternion),
             physicsClientId=self._client,
         )  # fmt: skip
+
+
+class MovingObstacles:
+    """A mission's obstacles: added where their motions have them at time 0, and moved along them."""
+
+    def __init__(self, bodies: ObstacleBodies, obstacles: Sequence[MissionObstacle]) -> None:
+        """Raises :class:`~vehicle_sim.world.errors.SimulationError` for what the world cannot hold."""
+        self._bodies = bodies
+        self._moving: list[tuple[str, Vector, Callable[[float], Vector]]] = []
+        for obstacle in obstacles:
+            place = obstacle.position
+            if obstacle.motion is not None:
+                self._moving.append((obstacle.name, place, mover(obstacle.motion)))
+                place = _moved(place, self._moving[-1][2](0.0))
+            bodies.add(obstacle.name, obstacle.shape, place)
+
+    def move(self, time: float) -> None:
+        """Move them to where the motions have them ``time`` (s) after they began."""
+        for name, rest, displacement in self._moving:
+            self._bodies.move(name, _moved(rest, displacement(time)))
+
+
+def _moved(rest: Vector, by: Vector) -> Vector:
+    return rest[0] + by[0], rest[1] + by[1], rest[2] + by[2]
+
+
+def _vector(values: Sequence[float]) -> Vector:
+    x, y, z = values
+    return float(x), float(y), float(z)

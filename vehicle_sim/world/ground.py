@@ -1,0 +1,74 @@
+"""Ground and pad, and what touches what."""
+
+from typing import NamedTuple
+
+import numpy as np
+import pybullet
+from numpy.typing import NDArray
+
+from idc_controller.rotations_float import into_body
+from vehicle_sim.world.world_state import flipped, quaternion_from_engine
+
+PAD_THICKNESS = 0.05  # m
+PAD_MARGIN = 0.25  # m, by which the pad is larger than the payload on every side
+
+# Contact points closer than this (m) to the plane of the payload's lower face are the payload standing.
+_STANDING_DEPTH = 0.02
+
+Pose = tuple[tuple[float, float, float], tuple[float, float, float, float]]
+"""Position and x-first quaternion in the engine's frame."""
+
+
+class Contacts(NamedTuple):
+    """``pairs``: number of pairs of parts that touch; ``standing``: the payload stands on pad or ground.
+
+    The payload standing and UAVs in their cradles do not count as pairs; a part and its neighbour on the same link
+    cannot touch.
+    """
+
+    pairs: int
+    standing: bool
+
+
+class Ground:
+    """Ground and pad in one physics client."""
+
+    def __init__(self, client: int, payload_size: NDArray[np.float64]) -> None:
+        length, width, height = (float(edge) for edge in payload_size)
+        plane = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=client)
+        ground = pybullet.createMultiBody(0.0, plane, physicsClientId=client)
+        half_extents = [length / 2 + PAD_MARGIN, width / 2 + PAD_MARGIN, PAD_THICKNESS / 2]
+        box = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=half_extents, physicsClientId=client)
+        pad = pybullet.createMultiBody(0.0, box, basePosition=(0.0, 0.0, PAD_THICKNESS / 2), physicsClientId=client)
+        self._client = client
+        self._bodies = ground, pad
+        self._half_height = height / 2
+        # Above this height of its centre the payload cannot stand on anything, whatever its attitude.
+        self._standing_height = PAD_THICKNESS + float(np.linalg.norm(payload_size)) / 2 + 0.05
+
+    def is_near(self, payload: Pose) -> bool:
+        """Return True for a payload low enough to stand on pad or ground."""
+        return payload[0][2] <= self._standing_height
+
+    def contacts(self, system: int, payload: Pose) -> Contacts:
+        """Return the contacts of the last step; ``system`` is the engine's body of payload, links and UAVs."""
+        pairs: set[tuple[int, int, int, int]] = set()
+        standing = False
+        points = pybullet.getContactPoints(physicsClientId=self._client)
+        for _, body_a, body_b, link_a, link_b, on_a, on_b, _, distance, force, *_ in points:
+            if distance > 0.0 and force <= 0.0:
+                continue
+            if body_b == system and body_a != body_b:
+                body_a, body_b, link_a, link_b, on_a, on_b = body_b, body_a, link_b, link_a, on_b, on_a
+            if link_a == -1 and body_b in self._bodies and self._is_in_lower_face(payload, on_a):
+                standing = True
+            else:
+                pairs.add((body_a, link_a, body_b, link_b))
+        return Contacts(len(pairs), standing)
+
+    def _is_in_lower_face(self, payload: Pose, point: tuple[float, float, float]) -> bool:
+        """Return True for a ``point`` (engine's frame) in the payload's lower face."""
+        position, quaternion = payload
+        offset = flipped((point[0] - position[0], point[1] - position[1], point[2] - position[2]))
+        down = into_body(quaternion_from_engine(quaternion), offset)[2]
+        return down > self._half_height - _STANDING_DEPTH
