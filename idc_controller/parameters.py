@@ -9,6 +9,7 @@ import numpy as np
 
 from idc_controller.arrays import Array
 from idc_controller.errors import ParameterError
+from idc_controller.payload_hull import PayloadHull
 
 
 @dataclass(frozen=True, eq=False)
@@ -18,7 +19,7 @@ class SystemParameters:
     The attributes carry the paper's symbols:
 
     - ``m_0`` payload mass (kg), ``J_0`` its inertia about the centre of mass (3, 3) (kg m2)
-    - ``payload_size`` edge lengths of the payload box (3,) (m)
+    - ``payload`` the payload's convex hull about its centre of mass
     - ``m`` UAV masses (N,) (kg), ``J`` their inertias (N, 3, 3) (kg m2)
     - ``p`` attachment points in the payload frame (N, 3) (m)
     - ``l`` link lengths (N,) (m)
@@ -33,7 +34,7 @@ class SystemParameters:
 
     m_0: float
     J_0: Array
-    payload_size: Array
+    payload: PayloadHull
     m: Array
     J: Array
     p: Array
@@ -47,7 +48,7 @@ class SystemParameters:
 
     def __post_init__(self) -> None:
         n = len(self.m)
-        shapes = {"J_0": (3, 3), "payload_size": (3,), "m": (n,), "J": (n, 3, 3), "p": (n, 3), "l": (n,)}
+        shapes = {"J_0": (3, 3), "m": (n,), "J": (n, 3, 3), "p": (n, 3), "l": (n,)}
         for name, shape in shapes.items():
             value = np.array(getattr(self, name), dtype=float)
             if value.shape != shape:
@@ -59,7 +60,7 @@ class SystemParameters:
         if n < 3:
             raise ParameterError(f"{n} UAVs cannot hold a rigid payload level: three or more are needed")
         positive = {
-            "m_0": self.m_0, "m": self.m, "l": self.l, "payload_size": self.payload_size,
+            "m_0": self.m_0, "m": self.m, "l": self.l,
             "disc_radius": self.disc_radius, "thrust_max": self.thrust_max, "g": self.g,
             "motor_time_constant": self.motor_time_constant, "attitude_kp": self.attitude_kp,
             "attitude_kd": self.attitude_kd,

@@ -29,8 +29,7 @@ def hull_of(parameters, derivatives, rim=16):
     """Exact points of the formation (K, P, 3) for payload ``derivatives`` (5, K, 3), by flatness; discs as polygons."""
     forces = flat_forces(parameters, derivatives, Load(parameters.m_0, np.zeros(3)))
     position = derivatives[0]
-    signs = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
-    parts = [position[:, None] + signs * parameters.payload_size]
+    parts = [position[:, None] + parameters.payload.vertices]
     angles = np.linspace(0.0, 2.0 * np.pi, rim, endpoint=False)
     for i in range(parameters.number_of_uavs):
         centre = position + parameters.p[i] - parameters.l[i] * forces.q

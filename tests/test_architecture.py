@@ -77,7 +77,8 @@ ALLOWED = {
 }
 SETTINGS = sorted((*ROOT.glob("idc_controller/*/settings.py"), *ROOT.glob("gcs/*/settings.py")))
 COMMON = {
-    f"idc_controller.{name}" for name in ("arrays", "errors", "parameters", "rotations", "rotations_float", "settings")
+    f"idc_controller.{name}"
+    for name in ("arrays", "errors", "parameters", "payload_hull", "rotations", "rotations_float", "settings")
 } | {"gcs.errors"}
 """Modules beside the sub-packages that everything above them may import."""
 

@@ -84,7 +84,7 @@ def test_at_rest_hull_is_the_exact_one_to_within_the_rims_polygons(n):
 
 
 @pytest.mark.parametrize("n", TEAMS)
-def test_discs_and_box_supports_bound_the_exact_hull(n):
+def test_discs_and_payload_supports_bound_the_exact_hull(n):
     """What the planner's rows are made of is never below the true extent, but for the links' own second order."""
     parameters, formation = system(n), Formation(system(n))
     rng = np.random.default_rng(10 + n)
@@ -97,7 +97,7 @@ def test_discs_and_box_supports_bound_the_exact_hull(n):
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     lever = formation.levers(a)[:, 0]
     computed = np.maximum(
-        formation.box_support(normals),
+        formation.payload.support(normals),
         formation.disc_support(normals, a) + lever * np.sum(normals[:, :2] * a[:, :2], axis=1),
     )
     true = np.einsum("kpi,ki->kp", exact, normals).max(axis=1)

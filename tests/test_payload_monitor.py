@@ -11,7 +11,7 @@ from gcs.flight.payload_monitor import PayloadMonitor
 from idc_controller.trajectory.trajectory import RestTrajectory
 
 PARAMETERS = read_system(MISSIONS / "system.toml").parameters()
-HALF = float(PARAMETERS.payload_size[2]) / 2.0
+HALF = PARAMETERS.payload.below
 
 
 def touched(heights, velocities, below):

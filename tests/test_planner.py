@@ -22,7 +22,7 @@ from idc_controller.trajectory.integrator_chain import Chain
 
 SETTINGS = PlannerSettings()
 K = SETTINGS.chain.stages
-LOWEST = -(system().payload_size[2] / 2.0 + SETTINGS.ground_clearance)
+LOWEST = -(system().payload.below + SETTINGS.ground_clearance)
 
 
 def cruising(speed=1.5, altitude=5.0, stages=K, period=0.1):

@@ -10,6 +10,7 @@ from gcs.record.clearance import RIM_VERTICES, ObstacleTrack, clearance_over_tim
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
+from idc_controller.payload_hull import PayloadHull
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
 
 LEVEL = np.array([1.0, 0.0, 0.0, 0.0])
@@ -139,7 +140,7 @@ def test_size_and_radius_given() -> None:
     got = clearance_over_time(
         np.zeros((1, 3)), LEVEL[None], UAVS[None], np.array([[LEVEL] * 4]),
         [sphere((0, 0, 4)), sphere((9, 0.5, -1.25))],
-        payload_size=(1.0, 1.0, 2.0), disc_radius=0.5,
+        payload_vertices=PayloadHull.box((1.0, 1.0, 2.0)).vertices, disc_radius=0.5,
     )  # fmt: skip
     assert got[0] == pytest.approx([4 - 1 - 0.5, 9 - 1.0 - 0.5], abs=0.5 * RIM_ERROR + 1e-5)
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from idc_controller.estimation.wind import WindEstimator
-from idc_controller.model.drag import Air, box_coefficients
+from idc_controller.model.drag import Air, drag_coefficients
 
-SIZE = np.array([1.0, 1.0, 0.5])
+AREAS = np.array([0.5, 0.5, 1.0])
 PERIOD = 0.05
 LIMIT = 1e3
 TIMES = PERIOD * np.arange(600)
@@ -24,7 +24,7 @@ def eight(times):
 
 def estimated_wind(force_at, times=TIMES, noise=0.05, seed=5):
     """Return the estimated air after a figure eight; ``force_at`` (velocity) -> force on payload and on each UAV."""
-    estimator, generator = WindEstimator(SIZE, PERIOD, LIMIT), np.random.default_rng(seed)
+    estimator, generator = WindEstimator(AREAS, PERIOD, LIMIT), np.random.default_rng(seed)
     for velocity in eight(times)[1]:
         force, uav_force = force_at(velocity)
         estimator.learn(force + noise * generator.standard_normal(3), uav_force, velocity)
@@ -33,7 +33,7 @@ def estimated_wind(force_at, times=TIMES, noise=0.05, seed=5):
 
 @pytest.mark.parametrize("limit", [np.inf, 12.0], ids=["plain", "fading"])
 def test_drag_rates_are_derivatives_of_drag(limit):
-    air, h = Air(np.array([2.0, 1.0, 0.2]), box_coefficients(SIZE), 0.02, limit), 1e-4
+    air, h = Air(np.array([2.0, 1.0, 0.2]), drag_coefficients(AREAS), 0.02, limit), 1e-4
     force, rate, acceleration = air.on_payload_along(eight(TIMES))
     before, after = (air.on_payload_along(eight(TIMES + d)) for d in (-h, h))
     assert force == pytest.approx(air.on_payload(eight(TIMES)[1]))
@@ -45,7 +45,7 @@ def test_drag_rates_are_derivatives_of_drag(limit):
 @pytest.mark.parametrize("wind", [(2.1, 2.1), (-3.0, 0.5), (0.0, -4.0)])
 @pytest.mark.parametrize("factor", [0.7, 1.0, 1.4])
 def test_steady_wind_and_drag_factor_are_estimated(wind, factor):
-    true = Air(np.array([*wind, 0.0]), factor * box_coefficients(SIZE), 0.018)
+    true = Air(np.array([*wind, 0.0]), factor * drag_coefficients(AREAS), 0.018)
     air = estimated_wind(lambda velocity: (true.on_payload(velocity), true.on_uav(velocity)))
     assert air.wind == pytest.approx(true.wind, abs=0.3)
     for velocity in ([0.0, 0.0, 0.0], [3.0, 2.0, 0.0], [-3.0, 2.0, 0.0], [-2.0, -3.0, 0.0]):
@@ -67,8 +67,8 @@ def test_no_wind_for_force_along_velocity():
 
 
 def test_wind_estimate_ends_after_wind():
-    true = Air(np.array([2.1, 2.1, 0.0]), box_coefficients(SIZE), 0.018)
-    estimator = WindEstimator(SIZE, PERIOD, LIMIT)
+    true = Air(np.array([2.1, 2.1, 0.0]), drag_coefficients(AREAS), 0.018)
+    estimator = WindEstimator(AREAS, PERIOD, LIMIT)
     for velocity in eight(TIMES)[1]:
         estimator.learn(true.on_payload(velocity), true.on_uav(velocity), velocity)
     assert estimator.air is not None

@@ -35,6 +35,7 @@ from gcs.config.toml_file import TomlFile, read_toml
 from gcs.errors import UnusableInput
 from idc_controller.errors import ParameterError
 from idc_controller.parameters import SystemParameters, polygon_attachments
+from idc_controller.payload_hull import PayloadHull
 from idc_controller.perception.settings import PerceptionSettings
 
 
@@ -64,15 +65,15 @@ class SystemConfig:
 
         Raises :class:`idc_controller.errors.ParameterError` when it could not fly; :func:`read_system` has checked it.
         """
-        n = self.team.vehicles
+        n, hull = self.team.vehicles, PayloadHull.box(self.payload.size)
         if self.team.attachments is not None:
             p = np.array(self.team.attachments)
         else:
-            p = polygon_attachments(n, self.team.spacing, -self.payload.size[2] / 2.0)
+            p = polygon_attachments(n, self.team.spacing, -hull.above)
         return SystemParameters(
             m_0=self.payload.mass,
             J_0=np.diag(self.payload.inertia),
-            payload_size=np.array(self.payload.size),
+            payload=hull,
             m=np.full(n, self.uav.mass),
             J=np.tile(np.diag(self.uav.inertia), (n, 1, 1)),
             p=p,

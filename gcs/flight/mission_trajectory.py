@@ -34,7 +34,7 @@ class MissionTrajectory:
     ) -> None:
         self._settings = mission.system.flight.takeoff_landing
         self._motion = mission.system.motion
-        self._ground = -mission.system.payload.size[2] / 2.0
+        self._ground = -mission.system.parameters().payload.below
         self._pad = position
         self.start = start
         self._landing_from = math.inf

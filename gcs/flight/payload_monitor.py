@@ -19,7 +19,7 @@ class PayloadMonitor:
     def __init__(self, parameters: SystemParameters, settings: FlightSettings = DEFAULTS) -> None:
         self._settings = settings
         self._layout = StateLayout(parameters.number_of_uavs)
-        self._standing = -float(parameters.payload_size[2]) / 2.0
+        self._standing = -parameters.payload.below
         self._touch_steps = 0
         self._in_control = math.inf
 

@@ -1,6 +1,6 @@
 """Clearance: the distance between the flying formation and the true surface of the obstacles.
 
-The formation is the convex hull of the payload's box and of the UAVs' discs. Discs enter as regular polygons
+The formation is the convex hull of the payload and of the UAVs' discs. Discs enter as regular polygons
 of :data:`RIM_VERTICES` corners, scaled to lie as far outside the rim at their corners as they lie inside it
 between them. A convex hull never moves more than its parts do, so the clearance is wrong by at most
 
@@ -23,12 +23,15 @@ from gcs.errors import UnusableInput
 from idc_controller.errors import ShapeError
 from idc_controller.geometry.formation import formation_points
 from idc_controller.geometry.shape import Shape
+from idc_controller.payload_hull import PayloadHull
 
 Array = NDArray[np.float64]
 
 RIM_VERTICES = 64
 
 _DISTANCE_TOLERANCE = 1e-6  # m
+
+DEFAULT_PAYLOAD = PayloadHull.box((1.0, 1.0, 0.5))
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,12 +58,12 @@ def clearance_over_time(
     uav_position_in_world: ArrayLike,
     uav_quaternion: ArrayLike,
     obstacles: Sequence[ObstacleTrack],
-    payload_size: ArrayLike = (1.0, 1.0, 0.5),
+    payload_vertices: ArrayLike = DEFAULT_PAYLOAD.vertices,
     disc_radius: float = 0.3,
 ) -> Array:
     """Distance between formation and obstacles (T, number of obstacles) (m); 0 where they meet.
 
-    Shapes: (T, 3), w-first (T, 4), (T, N, 3), w-first (T, N, 4), NED, quaternions body to world. A row or an
+    Shapes: (T, 3), w-first (T, 4), (T, N, 3), w-first (T, N, 4), (V, 3), NED, quaternions body to world. A row or an
     obstacle position that is not finite gives NaN.
     """
     payload_position = np.asarray(payload_position_in_world, dtype=float)
@@ -73,8 +76,7 @@ def clearance_over_time(
     request.gjk_tolerance = _DISTANCE_TOLERANCE
     request.gjk_max_iterations = 1000
     identity = coal.Transform3s.Identity()
-    corners = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
-    corners *= np.asarray(payload_size, dtype=float)
+    corners = np.asarray(payload_vertices, dtype=float)
     angle = 2.0 * np.pi * np.arange(RIM_VERTICES) / RIM_VERTICES
     rim = np.column_stack([np.cos(angle), np.sin(angle), np.zeros(RIM_VERTICES)])
     rim *= disc_radius * 2.0 / (1.0 + np.cos(np.pi / RIM_VERTICES))

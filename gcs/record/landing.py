@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from itertools import product
 from typing import Any
 
 import coal
@@ -87,12 +86,11 @@ def onsets(touching_pairs: Array) -> int:
 
 def _height(run: RunData, rotation: Array) -> Array:
     """Return the least distance of the payload to the ground and to the pad (T,) (m)."""
-    size = run.payload_size
-    corners = np.array(list(product((-0.5, 0.5), repeat=3))) * size
-    height = np.min(-run.payload_position[:, None, 2] - rotation[:, 2] @ corners.T, axis=1)
-    pad = coal.Box(*size[:2] + 2.0 * PAD_MARGIN, PAD_THICKNESS)
-    place = coal.Transform3s(np.eye(3), np.array([0.0, 0.0, -0.5 * PAD_THICKNESS]))
-    payload, request = coal.Box(*size), coal.DistanceRequest()
+    hull = run.payload
+    height = np.min(-run.payload_position[:, None, 2] - rotation[:, 2] @ hull.vertices.T, axis=1)
+    pad = coal.Box(*np.ptp(hull.bounds, axis=0)[:2] + 2.0 * PAD_MARGIN, PAD_THICKNESS)
+    place = coal.Transform3s(np.eye(3), np.append(hull.bounds.mean(axis=0)[:2], -0.5 * PAD_THICKNESS))
+    payload, request = hull.geometry(), coal.DistanceRequest()
     for t in np.flatnonzero(height < _AIRBORNE + PAD_THICKNESS):
         pose = coal.Transform3s(rotation[t], run.payload_position[t])
         height[t] = min(height[t], coal.distance(payload, pose, pad, place, request, coal.DistanceResult()))

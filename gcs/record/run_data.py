@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcs.errors import UnusableInput
-from gcs.record.clearance import ObstacleTrack, clearance_over_time
+from gcs.record.clearance import DEFAULT_PAYLOAD, ObstacleTrack, clearance_over_time
 from gcs.record.obstacle_shapes import read_shape
 from gcs.record.run_folder import MANIFEST
 from gcs.record.tables import (
@@ -26,12 +26,12 @@ from gcs.record.tables import (
     truth_columns,
 )
 from idc_controller.geometry.shape import Columns, Shape
+from idc_controller.payload_hull import PayloadHull
 
 Array = NDArray[np.float64]
 Table = dict[str, Array]
 
 SUMMARY = "summary.json"
-_DEFAULT_PAYLOAD_SIZE = (1.0, 1.0, 0.5)  # m
 _DEFAULT_DISC_RADIUS = 0.3  # m
 
 
@@ -73,11 +73,11 @@ class RunData:
         return np.column_stack([self.reference[name] for name in REFERENCE_COLUMNS[1:4]])
 
     @property
-    def payload_size(self) -> Array:
-        """Edges of the payload's box (3,) (m)."""
+    def payload(self) -> PayloadHull:
+        """The payload's hull."""
         system = self.manifest.get("system")
         size = _find(system, "payload_size") or _find(_find(system, "payload"), "size")
-        return np.asarray(_DEFAULT_PAYLOAD_SIZE if size is None else size, dtype=float)
+        return DEFAULT_PAYLOAD if size is None else PayloadHull.box(size)
 
     def uav_separation(self) -> Array:
         """Smallest distance between the centres of two UAVs (T,) (m)."""
@@ -94,7 +94,7 @@ class RunData:
             self.uav_position,
             self.uav_quaternion,
             self.obstacles,
-            self.payload_size,
+            self.payload.vertices,
             _DEFAULT_DISC_RADIUS if radius is None else radius,
         )
 

@@ -173,7 +173,7 @@ def _run(flown: Flown, control: Control, truth: SystemParameters, end: float) ->
     tracks = [ObstacleTrack(s.name, SphereShape(RADIUS), s.motion(times)[0]) for s in flown.spheres]
     if tracks:
         flown.clearance = clearance_over_time(
-            position, quaternion, uavs, uav_quaternion, tracks, truth.payload_size, truth.disc_radius
+            position, quaternion, uavs, uav_quaternion, tracks, truth.payload.vertices, truth.disc_radius
         )
 
 

@@ -80,7 +80,7 @@ class IntegratedDecisionController:
         self._weight = self.parameters.m_0 * self.parameters.g
         self.load = Load(self.parameters.m_0, np.zeros(3), np.zeros((self.parameters.number_of_uavs, 3)))
         self.wind = WindEstimator(
-            self.parameters.payload_size, settings.period, settings.drag_limit * self._weight, settings.wind
+            self.parameters.payload.areas, settings.period, settings.drag_limit * self._weight, settings.wind
         )
         self._times = settings.period * np.append(np.arange(settings.horizon + 1), 0.5)
 

@@ -2,7 +2,7 @@
 
 In a steady wind the drag of a payload that flies curves swings by many newtons, and a filter that takes it for a force
 that drifts comes late every time. The wind itself hardly changes. Over the last seconds it is the level velocity w, and
-the drag the factor kappa of a box's (:mod:`idc_controller.model.drag`), for which
+the drag the factor kappa of a level payload's (:mod:`idc_controller.model.drag`), for which
 
     kappa drag(w - v)  explains best the estimated force F at the payload's velocity v.
 
@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from idc_controller.estimation.settings import WindSettings
-from idc_controller.model.drag import Air, box_coefficients, box_drag
+from idc_controller.model.drag import Air, drag_coefficients, payload_drag
 
 Array = NDArray[np.float64]
 
@@ -61,17 +61,17 @@ class _Sums:
 class WindEstimator:
     """Learns the wind from the estimated forces of one control step after the other."""
 
-    def __init__(self, payload_size: Array, period: float, limit: float, settings: WindSettings | None = None) -> None:
+    def __init__(self, areas: Array, period: float, limit: float, settings: WindSettings | None = None) -> None:
         """Start without wind.
 
         Args:
-            payload_size: edges of the box (3,) (m).
+            areas: of the payload's silhouettes along its axes (3,) (m2).
             period: control step (s).
             limit: largest drag that is predicted (N).
             settings: of the estimate.
         """
         self.settings = s = settings or WindSettings()
-        self._coefficients = box_coefficients(payload_size)
+        self._coefficients = drag_coefficients(areas)
         self._limit = limit
         count = round(s.speed_max / s.spacing)
         self._axis = axis = s.spacing * np.arange(-count, count + 1)
@@ -100,7 +100,7 @@ class WindEstimator:
             self.air = None
             sums.decay()
             return
-        sums.add_drag(force[:2], box_drag(self._coefficients, self._winds - velocity)[..., :2])
+        sums.add_drag(force[:2], payload_drag(self._coefficients, self._winds - velocity)[..., :2])
         prior = self._factor_prior
         factor = np.clip((sums.product + prior) / (sums.square + prior), 0.0, s.factor_max)
         cost = factor * (factor * sums.square - 2.0 * sums.product)

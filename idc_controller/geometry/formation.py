@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import product
 
 import coal
 import numpy as np
@@ -23,6 +24,8 @@ Array = NDArray[np.float64]
 
 _LINEAR_SEARCH = 32
 """Up to so many points the distance library looks at all of them, so that their order and facets do not matter."""
+_MOST_CORNERS = 16
+"""Of a payload's hull that is planned with as it is: the rest of the linear search is for the discs."""
 
 
 def formation_points(
@@ -47,20 +50,21 @@ def formation_points(
 
 
 class Formation:
-    """Payload box and UAV discs, for planning."""
+    """Payload and UAV discs, for planning."""
 
     def __init__(self, parameters: SystemParameters) -> None:
         self.g = parameters.g
-        self.half = parameters.payload_size / 2.0
+        self.payload = parameters.payload
         self.disc_radius = parameters.disc_radius
         self.lengths = parameters.l
         self.hover_offsets = parameters.p - np.outer(parameters.l, [0.0, 0.0, 1.0])
         """UAVs from the payload's centre in hover (N, 3) (m)."""
-        signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
-        self._box = signs * self.half
+        vertices, bounds = self.payload.vertices, self.payload.bounds
+        self.corners = vertices if len(vertices) <= _MOST_CORNERS else np.array(list(product(*bounds.T)))
+        """Points about the payload's centre whose hull holds the payload: of one with many corners, its box (C, 3)."""
         n = parameters.number_of_uavs
         # The rims' outward points alone can lie on the hull.
-        rim = max(1, min(6, (_LINEAR_SEARCH - 8) // n))
+        rim = max(1, min(6, (_LINEAR_SEARCH - len(self.corners)) // n))
         bearing = np.arctan2(parameters.p[:, 1], parameters.p[:, 0])
         spread = np.linspace(-np.pi / 2, np.pi / 2, rim) if rim > 1 else np.zeros(1)
         angle = bearing[:, None] + spread
@@ -89,12 +93,12 @@ class Formation:
         """Points about the payload's centre whose hull is the formation (K, P, 3) (m), rims coarsely."""
         discs = self.uav_offsets(acceleration)[:, :, None, :] + self._rim
         K = len(acceleration)
-        box = np.repeat(self._box[None], K, axis=0)
-        return np.concatenate([box, discs.reshape(K, -1, 3)], axis=1)
+        corners = np.repeat(self.corners[None], K, axis=0)
+        return np.concatenate([corners, discs.reshape(K, -1, 3)], axis=1)
 
     def points_in_world(self, position: Array, quaternion: Array, uav_position: Array, uav_quaternion: Array) -> Array:
         """Return :func:`formation_points` of this formation, rims coarsely."""
-        return formation_points(self._box, self._rim, position, quaternion, uav_position, uav_quaternion)
+        return formation_points(self.corners, self._rim, position, quaternion, uav_position, uav_quaternion)
 
     def hull(self, points: Array, number: int = 0) -> coal.ShapeBase:
         """The hull of ``points`` (P, 3) for distance queries, until the next query under the same ``number``."""
@@ -106,10 +110,6 @@ class Formation:
         hull = self._hulls[number]
         hull.points()[:] = points
         return hull
-
-    def box_support(self, normals: Array) -> Array:
-        """Largest ``n . x`` over the level payload box about its centre, for ``normals`` (K, 3) -> (K,)."""
-        return np.abs(normals) @ self.half
 
     def disc_support(self, normals: Array, acceleration: Array) -> Array:
         """Largest ``n . x`` over the discs about the payload's centre without their lever's part (K,).
@@ -143,7 +143,6 @@ class BoundingCylinder:
     def of(cls, parameters: SystemParameters, link_tilt: float = 0.0) -> BoundingCylinder:
         """Return that of the formation at rest, its links tilted together by up to ``link_tilt`` (rad)."""
         reach = np.linalg.norm(parameters.p[:, :2], axis=1) + parameters.l * math.sin(link_tilt)
-        box = float(np.hypot(*parameters.payload_size[:2])) / 2.0
         top = parameters.l - parameters.p[:, 2] + parameters.disc_radius * math.sin(link_tilt)
-        radius = max(box, float(reach.max()) + parameters.disc_radius)
-        return cls(radius, float(top.max()), float(parameters.payload_size[2]) / 2.0)
+        radius = max(parameters.payload.horizontal_reach, float(reach.max()) + parameters.disc_radius)
+        return cls(radius, float(top.max()), parameters.payload.below)

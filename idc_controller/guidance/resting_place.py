@@ -37,10 +37,9 @@ class RestingPlace:
         self.settings, self._obstacles = settings, obstacles
         self._usual = Braking(settings=braking)
         beside = np.hypot(parameters.p[:, 0], parameters.p[:, 1]) + parameters.disc_radius
-        half = parameters.payload_size / 2.0
-        self._radius = float(max(beside.max(), np.hypot(half[0], half[1])))
+        self._radius = float(max(beside.max(), parameters.payload.horizontal_reach))
         self._top = float((parameters.l - parameters.p[:, 2]).max())
-        self._bottom = float(half[2])
+        self._bottom = parameters.payload.below
         self._last = self._usual
 
     def __call__(self, time: float, state: Array) -> Braking:

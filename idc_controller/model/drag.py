@@ -1,7 +1,8 @@
 """Drag of moving air on payload and UAVs: along the air's velocity against the body, and quadratic in it.
 
-The payload is a level box. Its drag is 1/2 rho c_d (sum_i A_i |u_i|) u, u = wind - velocity, where A_i is the face
-across axis i: a box shows less of itself to wind on a face than to wind on a corner. A UAV is the same from all sides.
+The payload is level. Its drag is 1/2 rho c_d (sum_i A_i |u_i|) u, u = wind - velocity, where A_i is the area of its
+hull's silhouette along axis i: exact for a box, which shows less of itself to wind on a face than to wind on a
+corner. A UAV is the same from all sides.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ SMOOTHING = 0.3
 class Air:
     """The wind, and what drag it makes.
 
-    ``wind``: velocity of the air (3,) (m/s, NED). ``payload``: 1/2 rho c_d A of the box's faces across x, y, z (3,),
+    ``wind``: velocity of the air (3,) (m/s, NED). ``payload``: 1/2 rho c_d A of its silhouettes along x, y, z (3,),
     ``uav``: 1/2 rho c_d A of each of the UAVs (kg/m). ``limit``: the drag on the payload fades to this (N).
     """
 
@@ -35,7 +36,7 @@ class Air:
 
     def on_payload(self, velocity: Array) -> Array:
         """Force (..., 3) (N, NED) on a payload that moves at ``velocity`` (..., 3) (m/s)."""
-        force = box_drag(self.payload, self.wind - velocity)
+        force = payload_drag(self.payload, self.wind - velocity)
         return force * _fading(_dot(force, force), self.limit)[0]
 
     def on_uav(self, velocity: Array) -> Array:
@@ -59,14 +60,13 @@ class Air:
         return np.stack([c * F, c_dot * F + c * F_dot, c_ddot * F + 2.0 * c_dot * F_dot + c * F_ddot])
 
 
-def box_coefficients(size: Array) -> Array:
-    """1/2 rho c_d A (3,) (kg/m) of a box with these edges (3,) (m), across x, y, z."""
-    x, y, z = size
-    return 0.5 * AIR_DENSITY * BOX_DRAG * np.array([y * z, x * z, x * y])
+def drag_coefficients(areas: Array) -> Array:
+    """1/2 rho c_d A (3,) (kg/m) of a payload whose silhouettes along x, y, z have these ``areas`` (3,) (m2)."""
+    return 0.5 * AIR_DENSITY * BOX_DRAG * areas
 
 
-def box_drag(coefficients: Array, u: Array) -> Array:
-    """Drag (..., 3) (N) of a box with these ``coefficients`` (3,) (kg/m) in air that passes it with ``u`` (..., 3)."""
+def payload_drag(coefficients: Array, u: Array) -> Array:
+    """Drag (..., 3) (N) of a payload with ``coefficients`` (3,) (kg/m) in air that passes it at ``u`` (..., 3)."""
     return (_size(u) @ coefficients)[..., None] * u
 
 

@@ -1,7 +1,8 @@
 """Faults of the world: wind, by a simple model of drag, and a load that changes.
 
 Drag is quadratic in the air's velocity against the body, along that velocity, at the centre of mass:
-F = 1/2 rho c_d A |u| u. The payload's area is that of its box across the wind; a UAV's product c_d A is the same
+F = 1/2 rho c_d A |u| u. The payload's area across the wind is
+made of its silhouettes along its axes, as of a box; a UAV's product c_d A is the same
 from all sides. The wind acts on neither thrust, torques nor links. Without a wind fault there is no air at all.
 """
 
@@ -90,10 +91,10 @@ class WorldFaults:
 def _drag(world: World, air: Vector) -> Forces:
     state = world.state()
     relative = _minus(air, state.payload_velocity_in_world)
-    length, width, height = (float(edge) for edge in world.parameters.payload_size)
-    # |u| times the area of the box across u: the sum over its faces of their share in u.
+    area_x, area_y, area_z = world.parameters.payload.areas.tolist()
+    # |u| times the area across u: of a box, the sum over its faces of their share in u.
     x, y, z = into_body(state.payload_quaternion, relative)
-    area_times_speed = abs(x) * width * height + abs(y) * length * height + abs(z) * length * width
+    area_times_speed = abs(x) * area_x + abs(y) * area_y + abs(z) * area_z
     factor = 0.5 * AIR_DENSITY * PAYLOAD_DRAG * area_times_speed
     payload = _times(factor, relative)
     uavs = []

@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 import pybullet
-from numpy.typing import NDArray
 
+from idc_controller.payload_hull import PayloadHull
 from idc_controller.rotations_float import into_body
 from vehicle_sim.world.world_state import flipped, quaternion_from_engine
 
@@ -33,18 +33,20 @@ class Contacts(NamedTuple):
 class Ground:
     """Ground and pad in one physics client."""
 
-    def __init__(self, client: int, payload_size: NDArray[np.float64]) -> None:
-        length, width, height = (float(edge) for edge in payload_size)
+    def __init__(self, client: int, payload: PayloadHull) -> None:
         plane = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=client)
         ground = pybullet.createMultiBody(0.0, plane, physicsClientId=client)
-        half_extents = [length / 2 + PAD_MARGIN, width / 2 + PAD_MARGIN, PAD_THICKNESS / 2]
+        x, y, _ = (np.ptp(payload.bounds, axis=0) / 2.0).tolist()
+        half_extents = [x + PAD_MARGIN, y + PAD_MARGIN, PAD_THICKNESS / 2]
+        north, east, _ = payload.bounds.mean(axis=0).tolist()
         box = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=half_extents, physicsClientId=client)
-        pad = pybullet.createMultiBody(0.0, box, basePosition=(0.0, 0.0, PAD_THICKNESS / 2), physicsClientId=client)
+        middle = flipped((north, east, -PAD_THICKNESS / 2))
+        pad = pybullet.createMultiBody(0.0, box, basePosition=middle, physicsClientId=client)
         self._client = client
         self._bodies = ground, pad
-        self._half_height = height / 2
+        self._lower_face = payload.below - _STANDING_DEPTH
         # Above this height of its centre the payload cannot stand on anything, whatever its attitude.
-        self._standing_height = PAD_THICKNESS + float(np.linalg.norm(payload_size)) / 2 + 0.05
+        self._standing_height = PAD_THICKNESS + payload.reach + 0.05
 
     def is_near(self, payload: Pose) -> bool:
         """Return True for a payload low enough to stand on pad or ground."""
@@ -71,4 +73,4 @@ class Ground:
         position, quaternion = payload
         offset = flipped((point[0] - position[0], point[1] - position[1], point[2] - position[2]))
         down = into_body(quaternion_from_engine(quaternion), offset)[2]
-        return down > self._half_height - _STANDING_DEPTH
+        return down > self._lower_face

@@ -15,6 +15,7 @@ import pybullet
 from numpy.typing import NDArray
 
 from idc_controller.parameters import SystemParameters
+from idc_controller.payload_hull import PayloadHull
 from vehicle_sim.world.errors import UnsupportedWorld
 
 # PyBullet exchanges at most 128 coordinates a body (MAX_DEGREE_OF_FREEDOM) and is silently wrong beyond:
@@ -24,6 +25,7 @@ MAX_VEHICLES = (MAX_COORDINATES - 7) // 8
 
 LINK_RADIUS = 0.01  # m, of the links' collision shape
 DISC_THICKNESS = 0.04  # m, of the UAVs' collision shape
+PAYLOAD_FILE = "payload.obj"
 
 # A link without mass needs some inertia, or the engine diverges; 1e-6 kg m2 across it is below any measurable effect.
 # Along its axis, where no joint or force turns it, more costs nothing: it keeps contacts from spinning the link up
@@ -62,11 +64,15 @@ def check_supported(parameters: SystemParameters) -> None:
 
 def urdf_text(parameters: SystemParameters) -> str:
     """The system as URDF. Attachment points outside the payload's box stand on outriggers without mass or shape."""
-    size = " ".join(repr(float(edge)) for edge in parameters.payload_size)
+    edges = parameters.payload.box_edges
+    if edges is None:
+        shape = f'<mesh filename="{PAYLOAD_FILE}"/>'
+    else:
+        shape = f'<box size="{" ".join(map(repr, edges.tolist()))}"/>'
     parts = [
         '<?xml version="1.0"?>',
         '<robot name="cooplift">',
-        _link("payload", parameters.m_0, np.diag(parameters.J_0), f'<box size="{size}"/>'),
+        _link("payload", parameters.m_0, np.diag(parameters.J_0), shape),
     ]
     for i, (p_i, l_i, m_i, J_i) in enumerate(
         zip(parameters.p, parameters.l, parameters.m, parameters.J, strict=True), start=1
@@ -97,6 +103,7 @@ def load_multibody(client: int, parameters: SystemParameters, position: tuple[fl
         | pybullet.URDF_USE_SELF_COLLISION_EXCLUDE_PARENT
     )
     with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / PAYLOAD_FILE).write_text(_payload_text(parameters.payload))
         path = Path(folder) / "system.urdf"
         path.write_text(urdf_text(parameters))
         body = pybullet.loadURDF(str(path), basePosition=position, flags=flags, physicsClientId=client)
@@ -125,6 +132,16 @@ def load_multibody(client: int, parameters: SystemParameters, position: tuple[fl
                 physicsClientId=client,
             )  # fmt: skip
     return Multibody(body, links, tuple(index[f"uav{i}"] for i in numbers))
+
+
+def _payload_text(payload: PayloadHull) -> str:
+    """The vertices of the payload's hull, and faces without which the engine's reader takes none, as OBJ."""
+    import trimesh  # half a second, spent only where there is a mesh
+
+    hull = trimesh.convex.convex_hull(payload.vertices * (1.0, -1.0, -1.0))
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in hull.vertices.tolist()]
+    lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in hull.faces.tolist()]
+    return "\n".join([*lines, ""])
 
 
 def _link(name: str, mass: float, inertia: NDArray[np.float64], shape: str, shape_z: float = 0.0) -> str:

@@ -64,8 +64,8 @@ class World:
             fixedTimeStep=1.0 / self.physics_hz, numSubSteps=0, deterministicOverlappingPairs=1,
             physicsClientId=client,
         )  # fmt: skip
-        self._ground = Ground(client, parameters.payload_size)
-        self._system = load_multibody(client, parameters, (0.0, 0.0, PAD_THICKNESS + parameters.payload_size[2] / 2))
+        self._ground = Ground(client, parameters.payload)
+        self._system = load_multibody(client, parameters, (0.0, 0.0, PAD_THICKNESS + parameters.payload.below))
         self.obstacles = ObstacleBodies(client)
         weights = [float(m_i) * parameters.g for m_i in parameters.m]
         self._cradles = Cradles(client, self._system.body, self._system.uavs, weights)

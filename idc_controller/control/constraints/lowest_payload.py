@@ -14,7 +14,7 @@ class LowestPayload:
     """See :class:`~idc_controller.control.constraints.constraint.StateConstraint`."""
 
     def __init__(self, model: LinearModel, settings: MpcSettings) -> None:
-        self._lowest = -float(model.parameters.payload_size[2]) / 2.0
+        self._lowest = -model.parameters.payload.below
         self.slack = np.zeros(1, dtype=int)
         self.G = np.zeros((1, model.layout.size))
         self.G[0, model.layout.r_0.start + 2] = 1.0

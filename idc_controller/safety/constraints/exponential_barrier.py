@@ -76,7 +76,7 @@ class ExponentialBarrier:
         s, n, obstacle = self.settings, separation.normals, separation.obstacle
         surface = np.sum(n * obstacle.positions, axis=1) - obstacle.shape.support(-n)
         surface -= s.margin + s.tracking + obstacle.growth
-        payload = surface - self.formation.box_support(n)
+        payload = surface - self.formation.payload.support(n)
         discs = surface - s.uav_tracking - self.formation.disc_support(n, acceleration)
         return payload, discs, self.formation.levers(acceleration)[:, 0]
 

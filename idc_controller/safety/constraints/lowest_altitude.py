@@ -14,8 +14,7 @@ class LowestAltitude:
 
     def __init__(self, formation: Formation, settings: PlannerSettings, penalty: Penalty) -> None:
         self.penalty = penalty
-        underside = float(formation.box_support(np.array([[0.0, 0.0, 1.0]]))[0])
-        self.lowest = -(underside + settings.ground_clearance)
+        self.lowest = -(formation.payload.below + settings.ground_clearance)
         """Greatest z (NED) of the payload's centre (m)."""
         self._stages = limited_stages(settings.chain)
         knots = settings.chain.knots
