@@ -1,6 +1,8 @@
-"""The type of all arrays of numbers."""
+"""Types of arrays."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Indices = NDArray[np.intp]

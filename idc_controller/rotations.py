@@ -1,11 +1,9 @@
 """Rotations: w-first unit quaternions, rotation matrices and the hat map. Pure functions."""
 
-from __future__ import annotations
-
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from idc_controller.arrays import Array
 
 
 def hat(v: ArrayLike) -> Array:

@@ -3,8 +3,6 @@
 For arrays see :mod:`idc_controller.rotations`.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

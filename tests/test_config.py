@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from standing_obstacles import StandingObstacles
 
 from gcs.campaign.toml_text import tables_text
 from gcs.config import SystemConfig, UnusableFile, read_system
@@ -13,7 +14,6 @@ from gcs.config.settings_page import settings_page
 from gcs.errors import UnusableInput
 from gcs.flight import stack
 from idc_controller.control.mpc import ModelPredictiveController
-from idc_controller.geometry.obstacles import StandingObstacles
 
 REPOSITORY = Path(__file__).parents[1]
 EXAMPLE = REPOSITORY / "missions" / "system.toml"

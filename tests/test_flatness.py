@@ -5,11 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from flight_in_process import MISSIONS
+from nonlinear_motion import uav_positions
 from test_linear_model import UNSYMMETRIC
 
 from gcs.config import read_system
 from idc_controller.model.linear import StateLayout
-from idc_controller.model.nonlinear import Inputs, SystemState, accelerations, hat, uav_positions
+from idc_controller.model.nonlinear import Inputs, SystemState, accelerations
+from idc_controller.rotations import hat
 from idc_controller.trajectory.flatness import Load, flat_reference
 
 CONFIG = read_system(MISSIONS / "system.toml")

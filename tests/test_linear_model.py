@@ -5,11 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from flight_in_process import MISSIONS
+from nonlinear_motion import uav_positions, uav_velocities
 from scipy.linalg import expm
 
 from gcs.config import read_system
 from idc_controller.model.linear import LinearModel
-from idc_controller.model.nonlinear import Inputs, SystemState, accelerations, uav_positions, uav_velocities
+from idc_controller.model.nonlinear import Inputs, SystemState, accelerations
 from idc_controller.rotations import euler_from_quaternion, quaternion_from_euler
 
 CONFIG = read_system(MISSIONS / "system.toml")

@@ -4,21 +4,10 @@ from dataclasses import fields, replace
 
 import numpy as np
 import pytest
+from nonlinear_motion import energy, hover_inputs, hover_state, rk4_step, uav_positions, uav_velocities
 from paper_system import system
 
-from idc_controller.model.nonlinear import (
-    Inputs,
-    SystemState,
-    accelerations,
-    energy,
-    hover_inputs,
-    hover_state,
-    matrix_P,
-    rk4_step,
-    thrust_forces,
-    uav_positions,
-    uav_velocities,
-)
+from idc_controller.model.nonlinear import Inputs, SystemState, accelerations, matrix_P, thrust_forces
 from idc_controller.rotations import hat
 
 

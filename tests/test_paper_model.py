@@ -2,19 +2,11 @@
 
 import numpy as np
 import pytest
+from nonlinear_motion import hover_inputs, hover_state, uav_positions
 from paper_system import system
 from test_nonlinear_model import make_parameters, newton_euler, random_state
 
-from idc_controller.model.nonlinear import (
-    Inputs,
-    accelerations,
-    hover_inputs,
-    hover_state,
-    matrix_P,
-    thrust_forces,
-    uav_positions,
-    vector_Q,
-)
+from idc_controller.model.nonlinear import Inputs, accelerations, matrix_P, thrust_forces, vector_Q
 from idc_controller.paper import printed_equations as printed
 from idc_controller.paper.plant import Plant, PlantState
 from idc_controller.paper.state_space import (

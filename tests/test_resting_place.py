@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from standing_obstacles import StandingObstacles
 
 from gcs.config import read_system
-from idc_controller.geometry.obstacles import PredictedObstacle, StandingObstacles
+from idc_controller.geometry.obstacles import PredictedObstacle
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
 from idc_controller.guidance.resting_place import RestingPlace

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from standing_obstacles import StandingObstacles
 
 from gcs.config import read_system
 from gcs.flight import stack
-from idc_controller.geometry.obstacles import StandingObstacles
 from idc_controller.geometry.sphere import Sphere
 from idc_controller.model.linear import LinearModel
 from idc_controller.safety.settings import PlannerSettings

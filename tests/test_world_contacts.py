@@ -5,16 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from nonlinear_motion import hover_state, uav_positions
 from paper_system import system
 from world_runs import closest_distance, place, uav_array
 
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
-from idc_controller.model.nonlinear import (
-    hover_state,
-    uav_positions,
-)
 from vehicle_sim.world.errors import SimulationError
 from vehicle_sim.world.world import World
 

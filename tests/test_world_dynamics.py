@@ -5,19 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from nonlinear_motion import hover_inputs, hover_state, rk4_step, uav_positions, uav_velocities
 from paper_system import system
 from world_runs import angle_between, link_lengths, place, run, uav_array, unequal
 
-from idc_controller.model.nonlinear import (
-    Inputs,
-    accelerations,
-    hover_inputs,
-    hover_state,
-    rk4_step,
-    thrust_forces,
-    uav_positions,
-    uav_velocities,
-)
+from idc_controller.model.nonlinear import Inputs, accelerations, thrust_forces
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
 from vehicle_sim.world.errors import UnsupportedWorld
 from vehicle_sim.world.multibody import MAX_VEHICLES

@@ -4,13 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from nonlinear_motion import hover_state, uav_positions
 from paper_system import system
 from world_runs import STANDING_ON_GROUND, STANDING_ON_PAD, angle_between, place, run, uav_array, unequal
 
-from idc_controller.model.nonlinear import (
-    hover_state,
-    uav_positions,
-)
 from vehicle_sim.world.world import World
 
 

@@ -6,7 +6,7 @@ import math
 from dataclasses import Field as ShapeField
 from dataclasses import dataclass, field, fields, make_dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Union
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Union, get_type_hints
 
 import numpy as np
 from pydantic import AfterValidator, Field, ValidationInfo
@@ -50,12 +50,12 @@ def _hull_beside(name: str, info: ValidationInfo) -> MeshHull:
         raise ValueError(error) from error
 
 
-_TYPES: dict[tuple[str, str], Any] = {
+_TYPES: dict[tuple[str, Any], Any] = {
     # of a shape's field, by unit and annotation
-    ("m", "float"): Positive,
-    ("m", "Vector"): tuple[Positive, Positive, Positive],
-    ("rad", "float"): float,
-    ("file", "MeshHull"): Annotated[str, Field(min_length=1), AfterValidator(_hull_beside)],
+    ("m", float): Positive,
+    ("m", Vector): tuple[Positive, Positive, Positive],
+    ("rad", float): float,
+    ("file", MeshHull): Annotated[str, Field(min_length=1), AfterValidator(_hull_beside)],
 }
 
 
@@ -71,8 +71,9 @@ class _ObstacleTable:
 
 def _table(kind: str, shape: type[Shape]) -> Any:
     """Return the dataclass that a table of this shape is read into."""
+    hints = get_type_hints(shape)
     own: list[tuple[str, Any, Any]] = [
-        (key_of(part), _TYPES[part.metadata["unit"], str(part.type)], field(default=part.default))
+        (key_of(part), _TYPES[part.metadata["unit"], hints[part.name]], field(default=part.default))
         for part in fields(shape)
     ]
     place = tuple[float, float] if shape.is_grounded else Vector

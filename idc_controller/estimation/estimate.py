@@ -1,15 +1,9 @@
 """Results of the estimator: the state at one moment, and the innovations of the measurements applied for it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from idc_controller.arrays import Array
 from idc_controller.estimation.measurements import SensorKey
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,11 +6,9 @@ it, and all later ones are applied again. Disturbance forces on the payload and 
 payload's mass are estimated along with the state, so that none of them leaves an offset.
 """
 
-from __future__ import annotations
-
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.estimation.estimate import Estimate, InnovationRecord
 from idc_controller.estimation.health.channel import SensorGroup
 from idc_controller.estimation.health.covariance_reset import initial_covariance
@@ -27,8 +25,6 @@ from idc_controller.model.linear import LinearModel
 from idc_controller.rotations import quaternion_from_euler
 from idc_controller.trajectory.reference import Reference
 
-Array = NDArray[np.float64]
-
 _POSES, _MOTIONS = (True, False), (False, True)
 
 
@@ -43,8 +39,6 @@ class Estimator:
         self.settings = s = settings or EstimatorSettings()
         self.measurement_model = MeasurementModel(model, noise, s.measurement)
         self.health = SensorHealth(number_of_uavs, noise, s)
-        self.discarded_late = 0
-        """Measurements that came too late to be used."""
         self._process = ProcessModel(model, s.process)
         self._filter = ErrorStateFilter(self._process)
         self._update = MeasurementUpdate(self.measurement_model, self.health, s)
@@ -88,10 +82,7 @@ class Estimator:
     def add(self, measurement: Measurement) -> Measurement | None:
         """Take a measurement; return what may be used of it: nothing where it is stuck or too old."""
         usable = self.health.received(measurement)
-        if usable is not None and not self._replay.add(usable):
-            self.discarded_late += 1
-            return None
-        return usable
+        return usable if usable is not None and self._replay.add(usable) else None
 
     def hold_payload(self, time: float, position: Array, yaw: float) -> None:
         """Take the payload to stand at ``time`` (s) where its unit's telemetry has timed out.

@@ -5,15 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array, Indices, Mask
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, MeasurementNoise, Position, SensorKey
 from idc_controller.estimation.settings import MeasurementModelSettings
 from idc_controller.model.linear import LinearModel
 from idc_controller.rotations import euler_from_quaternion, quaternion_from_euler, rotation_from_quaternion
 from idc_controller.trajectory.flatness import FlatReference
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -36,17 +34,17 @@ class ObservationStack:
     """(m, n), links upright."""
     variance: Array
     """(m,)"""
-    sizes: NDArray[np.int_]
+    sizes: Indices
     """Rows of each (K,); they add up to m."""
-    starts: NDArray[np.int_]
+    starts: Indices
     """Their first rows (K,)."""
-    rows_by_size: tuple[NDArray[np.int_], ...]
+    rows_by_size: tuple[Indices, ...]
     """Rows of the observations of one size, (count, size) for each size that there is."""
-    of_payload: NDArray[np.bool_]
+    of_payload: Mask
     """Which rows (m,) are the payload's."""
-    uavs: NDArray[np.int_]
+    uavs: Indices
     """UAVs whose position is observed (K,)."""
-    heights: NDArray[np.int_]
+    heights: Indices
     """Rows of their heights (K,); those of the vertical velocities are three below."""
 
     def split(self, rows: Array) -> tuple[Array, ...]:
@@ -54,7 +52,7 @@ class ObservationStack:
         ends = self.starts + self.sizes
         return tuple(rows[a:b] for a, b in zip(self.starts.tolist(), ends.tolist(), strict=True))
 
-    def subset(self, present: NDArray[np.bool_]) -> ObservationStack:
+    def subset(self, present: Mask) -> ObservationStack:
         """Return the stack of the rows ``present`` (m,) alone; :meth:`MeasurementModel.observe` takes whole ones."""
         sizes = np.add.reduceat(present, self.starts, dtype=int)
         left = sizes > 0
@@ -66,7 +64,7 @@ class ObservationStack:
         )  # fmt: skip
 
 
-def _blocks(sizes: NDArray[np.int_]) -> tuple[NDArray[np.int_], NDArray[np.int_], tuple[NDArray[np.int_], ...]]:
+def _blocks(sizes: Indices) -> tuple[Indices, Indices, tuple[Indices, ...]]:
     """Return sizes, first rows, and rows by size, of observations one below the other."""
     starts = np.cumsum(sizes) - sizes
     return sizes, starts, tuple(starts[sizes == size][:, None] + np.arange(size) for size in np.unique(sizes))

@@ -1,9 +1,6 @@
 """Measurement update: innovations of one moment, their test, and the correction of the filter."""
 
-from __future__ import annotations
-
 import numpy as np
-from numpy.typing import NDArray
 
 from idc_controller.estimation.estimate import InnovationRecord
 from idc_controller.estimation.health.covariance_reset import reset_covariance
@@ -16,8 +13,6 @@ from idc_controller.estimation.propagation import ErrorStateFilter
 from idc_controller.estimation.replay import Moment
 from idc_controller.estimation.settings import EstimatorSettings
 from idc_controller.trajectory.flatness import FlatReference
-
-Array = NDArray[np.float64]
 
 
 class MeasurementUpdate:

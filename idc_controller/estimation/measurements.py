@@ -10,9 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from idc_controller.arrays import Array
 
 PAYLOAD = -1
 """``source`` of measurements of the payload's navigation unit; UAVs are 0 .. N-1."""

@@ -1,17 +1,13 @@
 """Process model of the filter: the linear model, with its disturbances as part of the state."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import expm
 
+from idc_controller.arrays import Array, Indices
 from idc_controller.estimation.settings import ProcessNoiseSettings
 from idc_controller.model.linear import LinearModel
-
-Array = NDArray[np.float64]
 
 
 class ProcessModel:
@@ -42,7 +38,7 @@ class ProcessModel:
         """Return the covariance (n, n) that an interval (us) adds; ``force_scale``: of the noise of the forces."""
         return self._noise(interval_us, force_scale)
 
-    def per_vehicle_noise(self, measured: NDArray[np.int_]) -> Array:
+    def per_vehicle_noise(self, measured: Indices) -> Array:
         """Return the variances (n,) added to the own forces of the UAVs ``measured`` (K,) from sample to sample.
 
         A UAV with a wrong attitude estimate pulls aside. Of one that is measured less nothing is learnt.

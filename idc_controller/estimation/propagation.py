@@ -1,18 +1,14 @@
 """Propagation of the filter's state from its last update to the time of the next set-points."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np
 from filterpy.kalman import KalmanFilter
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array, Indices
 from idc_controller.estimation.process_model import ProcessModel
 from idc_controller.estimation.setpoint_history import SetpointHistory
 from idc_controller.trajectory.reference import Reference
-
-Array = NDArray[np.float64]
 
 
 class PropagationInterval:
@@ -97,7 +93,7 @@ class ErrorStateFilter:
         """Add ``added`` (n, n) to the covariance."""
         self._kf.P = self._kf.P + added
 
-    def update(self, y: Array, variance: Array, H: Array, measured: NDArray[np.int_]) -> float:
+    def update(self, y: Array, variance: Array, H: Array, measured: Indices) -> float:
         """Correct by measurements and return their normalised innovation squared.
 
         Args:

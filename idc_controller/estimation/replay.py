@@ -1,18 +1,12 @@
 """Replay of late measurements: they are kept in order of their time, with snapshots of the filter to return to."""
 
-from __future__ import annotations
-
 import bisect
 import math
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from idc_controller.arrays import Array
 from idc_controller.estimation.health.sensor_health import HealthSnapshot
 from idc_controller.estimation.measurements import PAYLOAD, Measurement, SensorKey
-
-Array = NDArray[np.float64]
 
 
 @dataclass

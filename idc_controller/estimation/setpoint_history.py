@@ -1,18 +1,14 @@
 """Set-points in force on the vehicles over time, and the share of them that their links lose."""
 
-from __future__ import annotations
-
 import bisect
 import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array, Mask
 from idc_controller.estimation.settings import SetpointHistorySettings
-
-Array = NDArray[np.float64]
 
 
 @dataclass
@@ -26,7 +22,7 @@ class _Entry:
     flown: Array | None
     starts: Array
     """When they take effect on each vehicle (N,) (s)."""
-    confirmed: NDArray[np.bool_]
+    confirmed: Mask
     """Which vehicles (N,) have reported that, or that they never flew them."""
     exact: bool = True
     """Whether all take effect at ``effective``."""

@@ -1,7 +1,5 @@
 """Settings of the estimator: noise densities, tests, isolation, adaptation and memory."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 from idc_controller.errors import ParameterError

@@ -10,15 +10,11 @@ For every w on a grid the best kappa follows from running sums, so there is no i
 Where it explains little of F, or where there is hardly any F, there is no wind.
 """
 
-from __future__ import annotations
-
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.estimation.settings import WindSettings
 from idc_controller.model.drag import Air, drag_coefficients, payload_drag
-
-Array = NDArray[np.float64]
 
 
 class _Sums:

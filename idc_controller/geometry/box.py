@@ -1,7 +1,5 @@
 """Boxes: the wall, which stands upright, and what boxes have in common."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -11,10 +9,10 @@ import coal
 import numpy as np
 import shapely
 
+from idc_controller.arrays import Array
 from idc_controller.geometry.shape import (
     ANGLE,
     LENGTH,
-    Array,
     CollisionGeometry,
     Columns,
     PlanView,

@@ -1,7 +1,5 @@
 """The capsule: a cylinder with round ends, in any attitude."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import ClassVar
@@ -9,8 +7,9 @@ from typing import ClassVar
 import coal
 import numpy as np
 
+from idc_controller.arrays import Array
 from idc_controller.geometry.oriented import OrientedShape
-from idc_controller.geometry.shape import LENGTH, Array, CollisionGeometry
+from idc_controller.geometry.shape import LENGTH, CollisionGeometry
 
 _RINGS, _AROUND = 5, 12
 """Samples of the surface: circles over the length, points on each; the ends have as many circles."""

@@ -1,15 +1,11 @@
 """Signed distance from points to many obstacles at once."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.geometry.shape import Shape
-
-Array = NDArray[np.float64]
 
 
 class Bodies:

@@ -13,14 +13,12 @@ from itertools import product
 import coal
 import numpy as np
 import trimesh
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from idc_controller.arrays import Array
 from idc_controller.errors import TrajectoryError
 from idc_controller.parameters import SystemParameters
 from idc_controller.rotations import rotation_from_quaternion
-
-Array = NDArray[np.float64]
 
 _LINEAR_SEARCH = 32
 """Up to so many points the distance library looks at all of them, so that their order and facets do not matter."""
@@ -121,7 +119,8 @@ class Formation:
         axis = thrust / np.linalg.norm(thrust, axis=1, keepdims=True)
         along = np.sum(normals * axis, axis=1)
         flat = np.sqrt(np.maximum(1.0 - along**2, 0.0)) + 0.1
-        return np.max(normals @ self.hover_offsets.T, axis=1) + self.disc_radius * np.minimum(flat, 1.0)
+        support = np.max(normals @ self.hover_offsets.T, axis=1) + self.disc_radius * np.minimum(flat, 1.0)
+        return np.asarray(support)
 
 
 @dataclass(frozen=True)

@@ -12,14 +12,13 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from idc_controller.arrays import Array, Indices, Mask
 from idc_controller.errors import TrajectoryError
 from idc_controller.geometry.formation import BoundingCylinder
 from idc_controller.geometry.obstacles import PredictedObstacle
 from idc_controller.geometry.shape import Shape
-
-Array = NDArray[np.float64]
 
 TOUCHING = 1e-6
 """m; a place that keeps the margin to within this keeps it."""
@@ -69,14 +68,14 @@ class FreeSpace:
         """Distance of the formation at each place to each obstacle (P, M); negative inside (m)."""
         return self._bodies.distance(places[:, None] - self.centres, self.formation) - self.growth
 
-    def is_free(self, places: Array, extra: float = 0.0) -> NDArray[np.bool_]:
+    def is_free(self, places: Array, extra: float = 0.0) -> Mask:
         """Where the formation keeps the margin, and ``extra`` (m) more, and all the bounds (P,)."""
         free = self.within_bounds(places)
         if len(self.centres):
             free &= (self.clearance(places) >= self.margin + extra - TOUCHING).all(axis=1)
         return free
 
-    def free_lattice(self, north: Array, east: Array, down: Array, extra: float) -> NDArray[np.bool_]:
+    def free_lattice(self, north: Array, east: Array, down: Array, extra: float) -> Mask:
         """:meth:`is_free` at every combination of coordinates (X,), (Y,), (Z,) -> (X, Y, Z)."""
         altitude = (-down >= self.lowest - TOUCHING) & (-down <= self.highest + TOUCHING)
         free = np.broadcast_to(altitude, (len(north), len(east), len(down))).copy()
@@ -98,24 +97,24 @@ class FreeSpace:
             free[rows, columns] &= across[..., None] ** 2 + over**2 >= (distance + body.ball) ** 2
         return free
 
-    def within_bounds(self, places: Array) -> NDArray[np.bool_]:
+    def within_bounds(self, places: Array) -> Mask:
         """Whether the altitude is within its bounds at each place (P,)."""
         return np.asarray((-places[:, 2] >= self.lowest - TOUCHING) & (-places[:, 2] <= self.highest + TOUCHING))
 
-    def are_free_segments(self, starts: Array, ends: Array) -> NDArray[np.bool_]:
+    def are_free_segments(self, starts: Array, ends: Array) -> Mask:
         """Whether the margin and the bounds are kept on the segments from ``starts`` to ``ends`` (E, 3) -> (E,)."""
         free = self.within_bounds(starts) & self.within_bounds(ends)
         free[free] = self.keep_away(starts[free], ends[free], np.full(len(self.centres), self.margin - TOUCHING))
         return np.asarray(free)
 
-    def keep_away(self, starts: Array, ends: Array, least: Array) -> NDArray[np.bool_]:
+    def keep_away(self, starts: Array, ends: Array, least: Array) -> Mask:
         """Whether the clearance is ``least`` (M,) or more on segments from ``starts`` to ``ends`` (E, 3) -> (E,)."""
         if not (len(self.centres) and len(starts)):
             return np.ones(len(starts), dtype=bool)
         half = np.linalg.norm(ends - starts, axis=1)[:, None] / 2.0
         middle = self.clearance((starts + ends) / 2.0) - least
         outer = np.minimum(self.clearance(starts), self.clearance(ends)) - least
-        kept: NDArray[np.bool_] = np.all((middle >= 0.0) & (outer >= 0.0), axis=1)
+        kept: Mask = np.all((middle >= 0.0) & (outer >= 0.0), axis=1)
         # Nowhere does the distance change faster than the place.
         undecided = (outer + middle < half) & kept[:, None]
         segment, body = np.nonzero(undecided)
@@ -124,7 +123,7 @@ class FreeSpace:
             kept[segment[lowest < least[body]]] = False
         return kept
 
-    def _least(self, starts: Array, ends: Array, index: NDArray[np.intp]) -> Array:
+    def _least(self, starts: Array, ends: Array, index: Indices) -> Array:
         """Return the least clearance on each segment (E, 3) to the one obstacle of that ``index`` (E,) -> (E,)."""
         bodies, offsets, segments = self._bodies.chosen(index), starts - self.centres[index], ends - starts
 
@@ -173,7 +172,7 @@ class _Bodies:
         self._half_x, self._half_y, self._half_z, self._upright, self.ball, self._cosine, self._sine = sizes.T
         self._turned = bool(np.any(self._sine))
 
-    def chosen(self, index: NDArray[np.intp]) -> _Bodies:
+    def chosen(self, index: Indices) -> _Bodies:
         """The bodies of these indices, repeated as the indices are."""
         bodies = _Bodies(())
         bodies._take(self._sizes[index])

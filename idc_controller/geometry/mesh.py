@@ -1,7 +1,5 @@
 """A convex body from a mesh, in any attitude."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -10,8 +8,9 @@ from typing import Any, ClassVar, NamedTuple, Self
 import coal
 import numpy as np
 
+from idc_controller.arrays import Array
 from idc_controller.geometry.oriented import OrientedShape
-from idc_controller.geometry.shape import Array, CollisionGeometry, Vector
+from idc_controller.geometry.shape import CollisionGeometry, Vector
 
 
 class MeshHull(NamedTuple):

@@ -1,17 +1,11 @@
 """Obstacles as the safety filter takes them: convex shapes, where they will be, and how uncertain that is."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
+from idc_controller.arrays import Array
 from idc_controller.geometry.shape import Shape
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,19 +27,3 @@ class ObstacleSource(Protocol):
     def predict(self, times: Array) -> Sequence[PredictedObstacle]:
         """Return all obstacles at ``times`` (K,) (s)."""
         ...
-
-
-class StandingObstacles:
-    """Obstacles that stay where they are and are known exactly."""
-
-    def __init__(self, obstacles: Sequence[tuple[str, Shape, Array]]) -> None:
-        """Name, shape and centre (3,) (m, NED) of each."""
-        self._obstacles = tuple(obstacles)
-
-    def predict(self, times: Array) -> list[PredictedObstacle]:
-        """Return all of them, the same at every one of ``times`` (K,)."""
-        K = len(times)
-        return [
-            PredictedObstacle(name, shape, np.tile(position, (K, 1)), np.zeros(K))
-            for name, shape, position in self._obstacles
-        ]

@@ -13,8 +13,9 @@ import coal
 import numpy as np
 import shapely
 
+from idc_controller.arrays import Array
 from idc_controller.errors import ShapeError
-from idc_controller.geometry.shape import ANGLE, Array, Columns, PlanView, Shape, UprightBounds, Vector
+from idc_controller.geometry.shape import ANGLE, Columns, PlanView, Shape, UprightBounds, Vector
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
 
 if TYPE_CHECKING:
@@ -162,7 +163,8 @@ class OrientedShape(Shape):
     def _hull(self) -> trimesh.Trimesh:
         import trimesh  # half a second, spent only where there is such a body
 
-        return trimesh.convex.convex_hull(self.corners)
+        hull: trimesh.Trimesh = trimesh.convex.convex_hull(self.corners)
+        return hull
 
     @cached_property
     def _in_world(self) -> Array:

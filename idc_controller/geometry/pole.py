@@ -1,7 +1,5 @@
 """The pole: an upright cylinder that stands on the ground."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -11,16 +9,8 @@ import coal
 import numpy as np
 import shapely
 
-from idc_controller.geometry.shape import (
-    LENGTH,
-    Array,
-    CollisionGeometry,
-    Columns,
-    PlanView,
-    Shape,
-    UprightBounds,
-    Vector,
-)
+from idc_controller.arrays import Array
+from idc_controller.geometry.shape import LENGTH, CollisionGeometry, Columns, PlanView, Shape, UprightBounds, Vector
 
 #: A sensor's rays at the side: share of the radius to the right; share of the visible length up (1) or down (-1).
 _SIDE = ((0.8, 0.0), (-0.8, 0.0), (0.5, 1.0), (-0.5, -1.0), (-0.85, 0.6), (0.85, -0.6), (-0.3, 1.0), (0.3, -1.0))

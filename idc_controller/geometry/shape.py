@@ -3,8 +3,6 @@
 A kind of shape is one module with one class, entered in :data:`idc_controller.geometry.shapes.SHAPES`. SI units, NED.
 """
 
-from __future__ import annotations
-
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
@@ -14,11 +12,10 @@ from typing import Any, ClassVar, NamedTuple, Self
 import coal
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.errors import ShapeError
 
-Array = NDArray[np.float64]
 Vector = tuple[float, float, float]
 
 _CIRCLE_SEGMENTS = 32

@@ -1,7 +1,5 @@
 """The registry of shapes: a new kind is its own module and one entry here."""
 
-from __future__ import annotations
-
 from idc_controller.errors import ShapeError
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.capsule import Capsule

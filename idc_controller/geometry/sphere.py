@@ -1,7 +1,5 @@
 """The sphere."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -11,16 +9,8 @@ import coal
 import numpy as np
 import shapely
 
-from idc_controller.geometry.shape import (
-    LENGTH,
-    Array,
-    CollisionGeometry,
-    Columns,
-    PlanView,
-    Shape,
-    UprightBounds,
-    Vector,
-)
+from idc_controller.arrays import Array
+from idc_controller.geometry.shape import LENGTH, CollisionGeometry, Columns, PlanView, Shape, UprightBounds, Vector
 
 #: Off-axis positions of a sensor's rays: share of the radius; six of them, turned by a random angle.
 _RING = (0.9, 0.6, 0.9, 0.6, 0.9, 0.6)

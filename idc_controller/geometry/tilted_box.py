@@ -1,7 +1,5 @@
 """The box in any attitude."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import ClassVar
@@ -9,9 +7,10 @@ from typing import ClassVar
 import coal
 import numpy as np
 
+from idc_controller.arrays import Array
 from idc_controller.geometry.box import distance_of_gaps
 from idc_controller.geometry.oriented import OrientedShape
-from idc_controller.geometry.shape import LENGTH, Array, CollisionGeometry, Vector
+from idc_controller.geometry.shape import LENGTH, CollisionGeometry, Vector
 
 
 @dataclass(frozen=True)

@@ -5,14 +5,11 @@ hull's silhouette along axis i: exact for a box, which shows less of itself to w
 corner. A UAV is the same from all sides.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from idc_controller.arrays import Array
 
 AIR_DENSITY = 1.225  # kg/m3
 BOX_DRAG = 1.05  # c_d of a cube, across a face

@@ -21,19 +21,16 @@ Inputs: ``n`` set-points (N, 2), then thrust set-points (N,). Disturbances (N): 
 one on each of the UAVs (N, 2).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import expm
 
+from idc_controller.arrays import Array
 from idc_controller.parameters import SystemParameters
 from idc_controller.rotations import hat
 
-Array = NDArray[np.float64]
 E3 = np.array([0.0, 0.0, 1.0])
 
 

@@ -1,21 +1,17 @@
 """Association of clusters with obstacles: the nearest surface, a different one for each cluster of a vehicle."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
+from idc_controller.arrays import Array
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.distance import Bodies
 from idc_controller.geometry.shape import Shape
 from idc_controller.perception.scan_assembly import Cluster
 from idc_controller.perception.settings import AssociationSettings
-
-Array = NDArray[np.float64]
 
 _FAR = 1e3
 

@@ -5,16 +5,12 @@ proves wrong later shows that; it comes late, but for an obstacle that stops and
 as an acceleration by which the obstacle may leave any prediction, and both decay slowly.
 """
 
-from __future__ import annotations
-
 from collections import deque
 
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.perception.settings import ManoeuvreSettings
-
-Array = NDArray[np.float64]
 
 
 class ManoeuvreDetector:
@@ -24,19 +20,11 @@ class ManoeuvreDetector:
         self._settings = settings or ManoeuvreSettings()
         self._since = self._time = time
         self._mean_square = 0.5
-        self._model_mismatch = 0.0
-        self._predictions: deque[tuple[float, Array]] = deque()
-        self._prediction_error = 0.0
-
-    @property
-    def model_mismatch(self) -> float:
+        self.model_mismatch = 0.0
         """How far the motion models mismatched lately, 0 to 1."""
-        return self._model_mismatch
-
-    @property
-    def prediction_error(self) -> float:
+        self._predictions: deque[tuple[float, Array]] = deque()
+        self.prediction_error = 0.0
         """By how much predictions over ``horizon`` were worse than usual lately (m)."""
-        return self._prediction_error
 
     @property
     def is_settled(self) -> bool:
@@ -46,8 +34,8 @@ class ManoeuvreDetector:
     def advance(self, time: float) -> None:
         """Decay until ``time`` (s)."""
         share = float(np.exp(-max(time - self._time, 0.0) / self._settings.memory))
-        self._model_mismatch *= share
-        self._prediction_error *= share
+        self.model_mismatch *= share
+        self.prediction_error *= share
         self._time = max(time, self._time)
 
     def add_innovation(self, mean_square: float) -> None:
@@ -55,7 +43,7 @@ class ManoeuvreDetector:
         s = self._settings
         self._mean_square += s.innovation_share * (min(mean_square, 10.0) - self._mean_square)
         mismatch = (self._mean_square - s.mismatch_begin) / (s.mismatch_full - s.mismatch_begin)
-        self._model_mismatch = max(self._model_mismatch, min(mismatch, 1.0))
+        self.model_mismatch = max(self.model_mismatch, min(mismatch, 1.0))
 
     def add_prediction(self, position: Array) -> None:
         """Take the prediction that it is at ``position`` (3,) (NED, m) after ``horizon``."""
@@ -67,15 +55,15 @@ class ManoeuvreDetector:
         while self._predictions and self._predictions[0][0] <= self._time + s.frame:
             time, predicted = self._predictions.popleft()
             error = float(np.linalg.norm(position + velocity * (time - self._time) - predicted))
-            self._prediction_error = max(self._prediction_error, error - s.usual_error)
+            self.prediction_error = max(self.prediction_error, error - s.usual_error)
 
     def variance(self, elapsed: Array) -> Array:
         """Return the variance (m2) on any axis after the times ``elapsed`` (K,) (s), beside the motion models'."""
         s = self._settings
-        mismatch = 0.5 * self._model_mismatch * s.mismatch_acceleration
-        return np.asarray((mismatch**2 + (self._prediction_error / s.horizon**2) ** 2) * elapsed**4)
+        mismatch = 0.5 * self.model_mismatch * s.mismatch_acceleration
+        return np.asarray((mismatch**2 + (self.prediction_error / s.horizon**2) ** 2) * elapsed**4)
 
     def growth_limit(self, scatter: float) -> float:
         """Return the largest growth of the body (m) if its points ``scatter`` (m) in every frame."""
         s = self._settings
-        return min(s.growth_max + s.growth_per_error * self._prediction_error + scatter, s.growth_limit)
+        return min(s.growth_max + s.growth_per_error * self.prediction_error + scatter, s.growth_limit)

@@ -1,22 +1,18 @@
 """Map check: offsets of the detected standing obstacles from their places on the map, vehicle by vehicle."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.geometry.distance import Bodies
 from idc_controller.geometry.shape import Shape
 from idc_controller.perception.obstacle_filter import surface_of
 from idc_controller.perception.scan_assembly import Cluster
 from idc_controller.perception.settings import MapCheckSettings
 from idc_controller.perception.surfaces.points import SurfacePoints
-
-Array = NDArray[np.float64]
 
 
 class _Offset:

@@ -11,14 +11,10 @@ They interact as in Blom and Bar-Shalom (1988). The axes are filtered separately
 and little time. The tests compare a single model with ``filterpy``.
 """
 
-from __future__ import annotations
-
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.perception.settings import ImmSettings
-
-Array = NDArray[np.float64]
 
 _LOG_2PI = float(np.log(2.0 * np.pi))
 _DIAGONAL = np.arange(3)

@@ -1,12 +1,10 @@
 """Shape, size, place and motion of one obstacle from its surface points."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.distance import Bodies
 from idc_controller.geometry.shape import Shape
@@ -19,7 +17,6 @@ from idc_controller.perception.surfaces.known import KnownSurface
 from idc_controller.perception.surfaces.points import SurfacePoints
 from idc_controller.perception.surfaces.round import RoundSurface
 
-Array = NDArray[np.float64]
 Surface = RoundSurface | FlatSurface | KnownSurface
 
 KINDS = ("sphere", "pole", "wall")

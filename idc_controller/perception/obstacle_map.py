@@ -1,15 +1,13 @@
 """Obstacle map: the obstacles known before the flight, and tracks of those the vehicles' range sensors detect."""
 
-from __future__ import annotations
-
 import math
 from collections import defaultdict
 from collections.abc import Sequence, Set
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.estimation.measurements import Measurement
 from idc_controller.geometry.distance import Bodies
 from idc_controller.geometry.obstacles import PredictedObstacle
@@ -21,8 +19,6 @@ from idc_controller.perception.scan_assembly import Cluster, Detection, ScanAsse
 from idc_controller.perception.settings import PerceptionSettings
 from idc_controller.perception.track import Track
 from idc_controller.perception.track_list import TrackList
-
-Array = NDArray[np.float64]
 
 
 class TrackEstimate(NamedTuple):

@@ -1,17 +1,14 @@
 """Poses of the vehicles over the last second, measured and estimated, by which their scans are placed."""
 
-from __future__ import annotations
-
 from collections import deque
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.estimation.measurements import Attitude, Measurement, Position
 from idc_controller.rotations import quaternion_product
 
-Array = NDArray[np.float64]
 _Pose = TypeVar("_Pose", Attitude, Position)
 
 _SAMPLES = 30

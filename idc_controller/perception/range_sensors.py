@@ -1,7 +1,5 @@
 """Validity of the vehicles' range sensors: failures they report, impossible detections, and stuck scans."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Set
 

@@ -1,7 +1,5 @@
 """Retention of tracks without detections: coasting, deletion, and restoration when obstacle sensing was lost."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 from idc_controller.perception.settings import RetentionSettings

@@ -1,20 +1,16 @@
 """Assembly of scans: detections of the range sensors become points in the world, by the poses of their vehicles."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.perception.pose_history import PoseHistory
 from idc_controller.perception.range_sensors import Point, RangeSensors
 from idc_controller.perception.settings import ScanSettings
 from idc_controller.perception.surfaces.points import SurfacePoints
 from idc_controller.rotations import rotation_from_quaternion
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

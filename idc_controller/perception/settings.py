@@ -1,7 +1,5 @@
 """Settings of perception: scans, association, tracks and their retention, map check, motion models."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 from idc_controller.errors import ParameterError

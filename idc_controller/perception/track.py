@@ -1,21 +1,17 @@
 """Track of one obstacle."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.geometry.obstacles import PredictedObstacle
 from idc_controller.geometry.shape import Shape
 from idc_controller.perception.motion_imm import MotionModels
 from idc_controller.perception.obstacle_filter import ObstacleFilter
 from idc_controller.perception.settings import PerceptionSettings
 from idc_controller.perception.surfaces.points import SurfacePoints, joined
-
-Array = NDArray[np.float64]
 
 
 @dataclass(eq=False)

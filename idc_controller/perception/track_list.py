@@ -1,21 +1,15 @@
 """List of tracks: initiation from unassigned clusters, merging, and retention."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Callable, Sequence
 
-import numpy as np
-from numpy.typing import NDArray
-
+from idc_controller.arrays import Array
 from idc_controller.perception.association import ClusterMemory, gating_shape, mean_distances
 from idc_controller.perception.motion_imm import MotionModels
 from idc_controller.perception.retention import TrackRetention
 from idc_controller.perception.scan_assembly import Cluster
 from idc_controller.perception.settings import PerceptionSettings
 from idc_controller.perception.track import Track
-
-Array = NDArray[np.float64]
 
 
 class TrackList:

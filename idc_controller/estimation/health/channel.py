@@ -1,7 +1,5 @@
 """Names of what can be isolated: a channel of one sensor, and the sensors of one kind of a group."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from idc_controller.estimation.measurements import Measurement, Position

@@ -9,15 +9,13 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.stats import chi2
 
+from idc_controller.arrays import Array, Mask
 from idc_controller.estimation.health.channel import Channel
 from idc_controller.estimation.measurement_model import ObservationStack
 from idc_controller.estimation.measurements import PAYLOAD, Position
 from idc_controller.estimation.settings import ChannelIsolationSettings
-
-Array = NDArray[np.float64]
 
 
 class ChannelIsolation:
@@ -46,7 +44,7 @@ class ChannelIsolation:
         return tuple(sorted(c.source for c in self._acceptances if c.kind is Position and not c.part
                             and c._replace(part=1) in self._acceptances))  # fmt: skip
 
-    def rows(self, stack: ObservationStack) -> NDArray[np.bool_]:
+    def rows(self, stack: ObservationStack) -> Mask:
         """Return the rows (m,) of a whole ``stack`` that belong to isolated channels."""
         rows = np.zeros(len(stack.variance), dtype=bool)
         for channel, part in _channels(stack):
@@ -56,8 +54,8 @@ class ChannelIsolation:
     def learn(
         self,
         stack: ObservationStack,
-        tested: NDArray[np.bool_],
-        accepted: NDArray[np.bool_],
+        tested: Mask,
+        accepted: Mask,
         is_inconsistent: Callable[[int], bool],
     ) -> None:
         """Count the rejections of one moment, and isolate what has too many.

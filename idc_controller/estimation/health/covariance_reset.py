@@ -1,14 +1,10 @@
 """Covariance of the estimate at the start, and what is added where sound measurements contradict a prediction."""
 
-from __future__ import annotations
-
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.estimation.process_model import ProcessModel
 from idc_controller.estimation.settings import CovarianceResetSettings, InitialCovarianceSettings
-
-Array = NDArray[np.float64]
 
 
 def initial_covariance(process: ProcessModel, settings: InitialCovarianceSettings) -> Array:

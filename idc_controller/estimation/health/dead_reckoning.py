@@ -5,20 +5,16 @@ that drifts, say) agree with each other and would bias the estimate. So would th
 when it persists after a blow. Yet each of them contradicts its own motion, whatever the others measure.
 """
 
-from __future__ import annotations
-
 from collections import deque
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.estimation.health.channel import SensorGroup
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, Position, SensorKey
 from idc_controller.estimation.settings import DeadReckoningSettings
 from idc_controller.rotations import quaternion_product
-
-Array = NDArray[np.float64]
 
 _MEDIAN_EFFICIENCY = 1.2533  # standard deviation of a median of n, times sqrt(n), over that of one sample
 _FROM_STEPS = 1.4826 / 2.0**0.5  # standard deviation of a sample over the median step from one to the next

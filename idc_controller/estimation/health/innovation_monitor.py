@@ -4,21 +4,17 @@ Innovations of a sound filter, normalised by their covariance, are independent a
 over about a second show what no single sample does.
 """
 
-from __future__ import annotations
-
 from collections import defaultdict, deque
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.stats import chi2
 
+from idc_controller.arrays import Array
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, SensorKey
 from idc_controller.estimation.settings import InnovationMonitorSettings
-
-Array = NDArray[np.float64]
 
 
 class Finding(Enum):

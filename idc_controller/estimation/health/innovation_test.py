@@ -1,17 +1,13 @@
 """Innovation test of the measurements of one moment: a gate on each, and on each channel of a rejected one."""
 
-from __future__ import annotations
-
 import contextlib
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.stats import chi2
 
+from idc_controller.arrays import Array, Mask
 from idc_controller.estimation.measurement_model import ObservationStack
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,7 +20,7 @@ class InnovationTest:
     """Innovations normalised to variance 1 (m,)."""
     mean_squares: Array
     """Mean square of each measurement's normalised innovation (K,); on average 1."""
-    accepted: NDArray[np.bool_]
+    accepted: Mask
     """Which measurements pass (K,)."""
     covariance: Array
     """Innovation covariance (m, m)."""
@@ -55,7 +51,7 @@ class InnovationGate:
         accepted = mean_squares * stack.sizes <= self._limits[stack.sizes]
         return InnovationTest(variance, normalised, mean_squares, accepted, covariance)
 
-    def accepted_rows(self, residual: Array, test: InnovationTest, stack: ObservationStack) -> NDArray[np.bool_]:
+    def accepted_rows(self, residual: Array, test: InnovationTest, stack: ObservationStack) -> Mask:
         """Return the rows (m,) of accepted measurements, and of the channels that pass alone in rejected ones.
 
         Pose or motion may be right by itself: a drifting position, say, comes with a true velocity.

@@ -5,19 +5,15 @@ correlation, the sensors are noisier than assumed; where they keep pointing the 
 assumed (gusts, a load that is lost).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from enum import Enum
 
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array, Mask
 from idc_controller.estimation.health.innovation_test import InnovationTest
 from idc_controller.estimation.measurements import PAYLOAD, SensorKey
 from idc_controller.estimation.settings import NoiseAdaptationSettings
-
-Array = NDArray[np.float64]
 
 
 class Reaction(Enum):
@@ -82,7 +78,7 @@ class NoiseAdaptation:
 
     def learn(
         self, time: float, keys: Sequence[object], normalised: Array, mean_squares: Array,
-        accepted: NDArray[np.bool_], of_payload: NDArray[np.bool_],
+        accepted: Mask, of_payload: Mask,
     ) -> None:  # fmt: skip
         """Learn from one moment.
 

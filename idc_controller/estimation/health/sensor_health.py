@@ -1,13 +1,11 @@
 """Sensor health: which parts of a measurement the estimator may use."""
 
-from __future__ import annotations
-
 from copy import copy
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array, Mask
 from idc_controller.estimation.health.channel import Channel, SensorGroup
 from idc_controller.estimation.health.channel_isolation import ChannelIsolation
 from idc_controller.estimation.health.dead_reckoning import DeadReckoning
@@ -16,8 +14,6 @@ from idc_controller.estimation.health.stuck_sensor import StuckSensors
 from idc_controller.estimation.measurement_model import ObservationStack
 from idc_controller.estimation.measurements import PAYLOAD, Measurement, MeasurementNoise, Position, SensorKey
 from idc_controller.estimation.settings import EstimatorSettings
-
-Array = NDArray[np.float64]
 
 
 class HealthSnapshot(NamedTuple):
@@ -86,7 +82,7 @@ class SensorHealth:
         isolated = self.isolated_groups.get(SensorGroup(measurement.source == PAYLOAD, type(measurement)))
         return measurement if isolated is None else measurement.without(*isolated)
 
-    def usable_rows(self, stack: ObservationStack, y: Array, H: Array, x: Array, P: Array) -> NDArray[np.bool_]:
+    def usable_rows(self, stack: ObservationStack, y: Array, H: Array, x: Array, P: Array) -> Mask:
         """Return which rows (m,) of one moment may be used; isolated channels that are consistent are restored.
 
         Args:

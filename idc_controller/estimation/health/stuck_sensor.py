@@ -1,17 +1,11 @@
 """Detection of stuck sensors: a value with noise never repeats to the digit."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from idc_controller.arrays import Array
 from idc_controller.estimation.health.channel import Channel
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, MeasurementNoise, SensorKey
 from idc_controller.estimation.settings import StuckSensorSettings
-
-Array = NDArray[np.float64]
 
 
 @dataclass

@@ -1,13 +1,10 @@
 """What all fits of a shape to surface points have in common."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from idc_controller.arrays import Array, Mask
 
 _SCORE_CAP = 16.0
 _MEDIAN_OF_SQUARE = 0.455  # of a normal variable of variance 1
@@ -52,7 +49,7 @@ class EndOfSurface:
         """As far as the surface may be taken to reach (m)."""
         return float(self._value if self._is_observed else self._value + self._margin)
 
-    def update(self, along: Array, cut: NDArray[np.bool_]) -> None:
+    def update(self, along: Array, cut: Mask) -> None:
         """Points of one frame, by their coordinate in that direction (n,), and whether they end the sensor's range."""
         last = int(np.argmax(along))
         furthest, is_cut = float(along[last]), bool(cut[last])

@@ -1,17 +1,13 @@
 """Walls from surface points: a box that stands upright, with the face of the best visibility in front."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array, Indices, Mask
 from idc_controller.geometry.box import Wall
 from idc_controller.perception.surfaces.fit import EndOfSurface, Fit, score, unexplained
 from idc_controller.perception.surfaces.points import SurfacePoints
-
-Array = NDArray[np.float64]
 
 THICKNESS = 0.4  # m, while only the front is detected
 SIDE_MARGIN = 1.0  # m, how much further an edge beyond the sensors' range is taken to be
@@ -36,7 +32,6 @@ class FlatSurface:
         self._yaw_variance = 0.1**2
         self._thickness = THICKNESS
         self._thickness_is_observed = False
-        self._front_sigma = 0.05
         self._ends = {key: EndOfSurface(SIDE_MARGIN if key[0] == 1 else TOP_MARGIN) for key in _SIDES}
 
     @property
@@ -84,7 +79,7 @@ class FlatSurface:
         best = int(np.argmax(votes))
         normal_best = sign[best] * normal[best]
         self._yaw = float(np.arctan2(normal_best[1], normal_best[0]))
-        middle = scan.points[np.abs(depth[best]) <= tolerance].mean(axis=0)
+        middle: Array = scan.points[np.abs(depth[best]) <= tolerance].mean(axis=0)
         middle[:2] += normal_best * (sign[best] * level[best] - middle[:2] @ normal_best)
         return middle
 
@@ -160,7 +155,7 @@ class FlatSurface:
             score(off, own_variance), unexplained(off, own_variance, fitted=1),
         )  # fmt: skip
 
-    def _learn_thickness(self, q: Array, front: NDArray[np.bool_], scan: SurfacePoints) -> None:
+    def _learn_thickness(self, q: Array, front: Mask, scan: SurfacePoints) -> None:
         """From points behind the front, which lie on the top or on a side."""
         behind = (q[:, 0] < -_DEPTH_OBSERVED) & ~front & ~scan.cut
         if np.count_nonzero(behind) == 0:
@@ -195,7 +190,7 @@ class FlatSurface:
 
 
 @cache
-def _pairs(n: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+def _pairs(n: int) -> tuple[Indices, Indices]:
     """Of n points, in a fixed order; of many points only some."""
     i, j = np.triu_indices(n, 1)
     few = slice(None, None, max(1, len(i) // 400))

@@ -1,16 +1,12 @@
 """The place of any known convex shape from surface points: Gauss-Newton on the distance to its surface."""
 
-from __future__ import annotations
-
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.geometry.distance import Bodies
 from idc_controller.geometry.shape import Shape
 from idc_controller.perception.surfaces.fit import Fit, score, unexplained
 from idc_controller.perception.surfaces.points import SurfacePoints
-
-Array = NDArray[np.float64]
 
 _SIDEWAYS = 0.1  # m: how firmly it is held on axes on which no point shows its place
 _STEP = 1e-4  # m, of the differences that give the surface's normals

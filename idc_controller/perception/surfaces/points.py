@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from idc_controller.arrays import Array, Mask
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,7 +18,7 @@ class SurfacePoints:
     """(n, 3)"""
     origins: Array
     """Where the sensor of each point was (n, 3)."""
-    cut: NDArray[np.bool_]
+    cut: Mask
     """Whether a point lies at the end of its sensor's range, so that more may lie behind (n,)."""
     noise: float
     """Standard deviation along the line of sight (m)."""
@@ -34,7 +33,7 @@ class SurfacePoints:
     def rays(self) -> Array:
         """Unit vectors from the sensors to the points (n, 3)."""
         ray = self.points - self.origins
-        return ray / np.maximum(np.sqrt(np.einsum("ij,ij->i", ray, ray)), 1e-6)[:, None]
+        return np.asarray(ray / np.maximum(np.sqrt(np.einsum("ij,ij->i", ray, ray)), 1e-6)[:, None])
 
     def moved(self, by: Array, time: float, variance: float) -> SurfacePoints:
         """The same points as if measured at ``time``, the obstacle having moved by (3,) (m) until then.

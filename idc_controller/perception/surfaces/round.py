@@ -1,17 +1,13 @@
 """Spheres and poles from surface points: Gauss-Newton on distance to the surface, centre and radius together."""
 
-from __future__ import annotations
-
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.shape import Shape
 from idc_controller.geometry.sphere import Sphere
 from idc_controller.perception.surfaces.fit import EndOfSurface, Fit, score, unexplained
 from idc_controller.perception.surfaces.points import SurfacePoints
-
-Array = NDArray[np.float64]
 
 FIRST_RADIUS, FIRST_RADIUS_SIGMA = 0.6, 0.35  # m, before anything is known: rather too large
 RADIUS_WALK = 0.003  # m a frame
@@ -65,7 +61,7 @@ class RoundSurface:
         if self._is_pole:
             direction[2] = 0.0
             direction /= max(np.hypot(direction[0], direction[1]), 1e-3)
-        return scan.points[nearest] + self._radius * direction
+        return np.asarray(scan.points[nearest] + self._radius * direction)
 
     def fit(self, scan: SurfacePoints, predicted: Array, iterations: int = 3) -> Fit:
         """Where the obstacle is in this frame; learns the shape from it. ``predicted`` (3,): where it is expected."""
