@@ -51,3 +51,15 @@ def derived(default: Any) -> Any:
     ``default`` is its value in the default system.
     """
     return field(default=default, metadata={DERIVED_KEY: True})
+
+
+@dataclass(frozen=True)
+class SampledSettings:
+    """Settings of what counts samples: times are declared, the counts follow from the ``rate``."""
+
+    rate: float = derived(25.0)
+    """Of the samples (Hz)."""
+
+    def count(self, time: float) -> int:
+        """Return how many samples there are in a ``time`` (s), one or more."""
+        return max(round(time * self.rate), 1)

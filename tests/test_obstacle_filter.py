@@ -12,6 +12,7 @@ from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
 from idc_controller.perception.motion_imm import MotionModels
 from idc_controller.perception.obstacle_filter import ObstacleFilter
+from idc_controller.perception.settings import SurfaceSettings
 from idc_controller.perception.surfaces.round import RoundSurface
 
 MODELS = MotionModels()
@@ -105,7 +106,7 @@ def test_sphere_fit_places_points_on_the_side_facing_the_sensors(seed):
     points = replace(
         points, points=points.points + rng.normal(0.0, 5 * NOISE, points.points.shape), scatter=(5 * NOISE) ** 2
     )
-    surface, place = RoundSurface("sphere", Sphere(0.5)), np.array([-0.8, 0.0, -6.0])
+    surface, place = RoundSurface("sphere", Sphere(0.5), SurfaceSettings()), np.array([-0.8, 0.0, -6.0])
     for _ in range(10):
         place = surface.fit(points, place).position
     assert abs(place[0]) < 0.35

@@ -8,6 +8,9 @@ from standing_obstacles import StandingObstacles
 
 from gcs.config import read_system
 from gcs.flight import stack
+from idc_controller.estimation.health.channel_isolation import ChannelIsolation
+from idc_controller.estimation.measurement_model import MeasurementModel
+from idc_controller.estimation.measurements import Attitude, MeasurementNoise
 from idc_controller.geometry.sphere import Sphere
 from idc_controller.model.linear import LinearModel
 from idc_controller.safety.settings import PlannerSettings
@@ -88,3 +91,43 @@ def test_stop_without_setpoints_takes_longer_with_a_smaller_acceleration():
         for a in (1.5, 0.5)
     ]
     assert durations == pytest.approx([4.0, 1.5 * 3.0 / (4.0 / 3.0 * 0.5)])
+
+
+@pytest.mark.parametrize(("telemetry", "counts"), [(25, (12, 25, 9, 5, 3, 10, 30)), (50, (24, 50, 18, 10, 6, 20, 60))])
+def test_counts_of_samples_follow_rate_of_telemetry(telemetry, counts):
+    config = system(rates={"telemetry": telemetry})
+    s = stack.estimator(config, LinearModel(config.parameters())).settings
+    of_estimator = (
+        s.isolation.rejections, s.isolation.acceptances, s.dead_reckoning.samples, s.dead_reckoning.smoothed,
+        s.reset.payload_rejections, s.adaptation.dwell,
+    )  # fmt: skip
+    assert (*of_estimator, stack.perception(config).scans.poses) == counts
+    assert s.adaptation.correlation_share == pytest.approx(0.1 * 25 / telemetry)
+
+
+@pytest.mark.parametrize(("control", "losses", "neighbours"), [(20, 20, 3), (10, 10, 2)])
+def test_counts_of_setpoints_follow_rate_of_control(control, losses, neighbours):
+    config = system(rates={"control": control})
+    setpoints = stack.estimator(config, LinearModel(config.parameters())).settings.setpoints
+    assert (setpoints.losses_max, setpoints.neighbours, setpoints.loss_share) == (losses, neighbours, 1.0 / losses)
+
+
+def test_isolation_of_a_channel_takes_as_long_at_any_rate_of_telemetry():
+    times = []
+    for telemetry in (25, 50):
+        config = system(rates={"telemetry": telemetry})
+        settings = config.estimation.estimator.at_rates(telemetry, config.rates.control).isolation
+        isolation = ChannelIsolation(4, settings)
+        stack_of_one = MeasurementModel(LinearModel(config.parameters()), MeasurementNoise()).stack(((0, Attitude),))
+        tested, accepted = np.ones(4, dtype=bool), np.zeros(4, dtype=bool)
+        steps = 0
+        while not isolation.isolated:
+            isolation.learn(stack_of_one, tested, accepted, lambda uav: True)
+            steps += 1
+        times.append(steps / telemetry)
+    assert times == [0.48, 0.48]
+
+
+def test_predictions_of_obstacles_are_compared_within_half_of_the_time_between_scans():
+    assert stack.perception(system(range_sensor={"rate": 10})).tracking.manoeuvre.frame == 0.05
+    assert stack.perception(system(range_sensor={"rate": 25})).tracking.manoeuvre.frame == 0.02

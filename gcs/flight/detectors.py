@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections import defaultdict, deque
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
@@ -326,7 +326,8 @@ def _obstacles(step: MonitorStep) -> None:
 
 def detectors(flight: Flight, settings: MonitorSettings) -> tuple[Detector, ...]:
     """Return the detectors of a flight, in the order in which they run."""
-    rates, innovations = flight.mission.system.rates, flight.mission.system.estimation.innovation_monitor
+    rates = flight.mission.system.rates
+    innovations = replace(flight.mission.system.estimation.innovation_monitor, rate=rates.telemetry)
     return (
         _TelemetryTimeout(settings.missed_samples / rates.telemetry),
         _range_sensors,

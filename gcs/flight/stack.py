@@ -22,6 +22,7 @@ from idc_controller.guidance.resting_place import RestingPlace
 from idc_controller.model.linear import LinearModel
 from idc_controller.perception.obstacle_map import ObstacleMap
 from idc_controller.perception.scan_assembly import SensorModel
+from idc_controller.perception.settings import PerceptionSettings
 from idc_controller.safety.filter_protocol import SafetyFilter
 from idc_controller.safety.safety_filter import AvoidanceFilter
 from idc_controller.trajectory.settings import BrakingSettings
@@ -44,14 +45,20 @@ def estimator(config: SystemConfig, model: LinearModel) -> Estimator:
         payload_velocity=sensors.payload_velocity,
         payload_rates=sensors.payload_rates,
     )
-    return Estimator(model, noise, config.estimation.estimator)
+    settings = config.estimation.estimator.at_rates(config.rates.telemetry, config.rates.control)
+    return Estimator(model, noise, settings)
+
+
+def perception(config: SystemConfig) -> PerceptionSettings:
+    """Return the settings of perception at the rates of the system file."""
+    return config.perception.at_rates(config.rates.telemetry, config.range_sensor.rate)
 
 
 def obstacle_map(mission: Mission) -> ObstacleMap:
     """The obstacle map of a mission, for the sensors of its system file."""
     config = mission.system
     sensors = SensorModel(config.range_sensor.noise, config.sensors.position, math.radians(config.sensors.attitude_deg))
-    return ObstacleMap(map_of(mission), sensors, config.range_sensor.range, config.perception)
+    return ObstacleMap(map_of(mission), sensors, config.range_sensor.range, perception(config))
 
 
 def avoidance(config: SystemConfig, model: LinearModel, obstacles: ObstacleSource) -> AvoidanceFilter:

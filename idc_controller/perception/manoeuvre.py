@@ -41,7 +41,7 @@ class ManoeuvreDetector:
     def add_innovation(self, mean_square: float) -> None:
         """Take the last innovation: its ``mean_square`` over the axes, normalised by its variance."""
         s = self._settings
-        self._mean_square += s.innovation_share * (min(mean_square, 10.0) - self._mean_square)
+        self._mean_square += s.innovation_share * (min(mean_square, s.innovation_max) - self._mean_square)
         mismatch = (self._mean_square - s.mismatch_begin) / (s.mismatch_full - s.mismatch_begin)
         self.model_mismatch = max(self.model_mismatch, min(mismatch, 1.0))
 

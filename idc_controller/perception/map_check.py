@@ -11,15 +11,15 @@ from idc_controller.geometry.distance import Bodies
 from idc_controller.geometry.shape import Shape
 from idc_controller.perception.obstacle_filter import surface_of
 from idc_controller.perception.scan_assembly import Cluster
-from idc_controller.perception.settings import MapCheckSettings
+from idc_controller.perception.settings import MapCheckSettings, PerceptionSettings, SurfaceSettings
 from idc_controller.perception.surfaces.points import SurfacePoints
 
 
 class _Offset:
     """Offset of a vehicle's points from one obstacle, without a break: a Kalman filter, axis by axis."""
 
-    def __init__(self, time: float, settings: MapCheckSettings) -> None:
-        self.time, self._settings = time, settings
+    def __init__(self, time: float, settings: MapCheckSettings, surfaces: SurfaceSettings) -> None:
+        self.time, self._settings, self._surfaces = time, settings, surfaces
         self.mean = np.zeros(3)
         self._variance = np.full(3, settings.initial_sigma**2)
         self._scatter = 0.0  # variance of the points beyond their sensor's (m2)
@@ -33,7 +33,7 @@ class _Offset:
     def update(self, points: SurfacePoints, shape: Shape, centre: Array) -> None:
         """Take one scan of the obstacle, which the map has at ``centre`` (3,)."""
         s = self._settings
-        surface = surface_of(shape.kind, shape)
+        surface = surface_of(shape.kind, shape, self._surfaces)
         points = replace(points, scatter=self._scatter)
         # After a large jump the fit would end on the side of a round shape that faces away from the sensor.
         predicted = surface.guess(points) if shape.round_axes else centre + self.mean
@@ -60,19 +60,17 @@ class MapCheck:
         self,
         standing: Sequence[tuple[str, Shape, Array]],
         view_range: float,
-        association_gate: float,
-        settings: MapCheckSettings | None = None,
+        settings: PerceptionSettings,
     ) -> None:
         """Start without offsets.
 
         Args:
             standing: name, shape and centre (3,) (NED, m) of the obstacles on the map.
             view_range: within which they are certainly detected (m).
-            association_gate: mean distance of points up to which they may belong to an obstacle (m).
-            settings: of the check.
+            settings: of perception.
         """
-        self._standing, self._view_range, self._gate = standing, view_range, association_gate
-        self._settings = settings or MapCheckSettings()
+        self._standing, self._view_range, self._gate = standing, view_range, settings.association.remembered_gate
+        self._settings, self._surfaces = settings.map_check, settings.tracking.surfaces
         self._agreements: dict[tuple[int, int], int] = {}
         self._offsets: dict[tuple[int, int], _Offset] = {}
 
@@ -116,7 +114,7 @@ class MapCheck:
         elif self._agreements.get(pair, 0) >= s.agreements:
             offset = self._offsets.get(pair)
             if offset is None:
-                offset = self._offsets[pair] = _Offset(detected.time, s)
+                offset = self._offsets[pair] = _Offset(detected.time, s, self._surfaces)
             offset.update(detected, shape, centre)
 
     @property

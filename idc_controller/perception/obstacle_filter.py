@@ -10,7 +10,7 @@ from idc_controller.geometry.distance import Bodies
 from idc_controller.geometry.shape import Shape
 from idc_controller.perception.manoeuvre import ManoeuvreDetector
 from idc_controller.perception.motion_imm import MotionImm, MotionModels
-from idc_controller.perception.settings import ObstacleFilterSettings
+from idc_controller.perception.settings import ObstacleFilterSettings, SurfaceSettings
 from idc_controller.perception.surfaces.fit import Fit
 from idc_controller.perception.surfaces.flat import FlatSurface
 from idc_controller.perception.surfaces.known import KnownSurface
@@ -20,8 +20,6 @@ from idc_controller.perception.surfaces.round import RoundSurface
 Surface = RoundSurface | FlatSurface | KnownSurface
 
 KINDS = ("sphere", "pole", "wall")
-_OUTERMOST = 1.5  # standard deviations by which noise alone puts the outermost of some points outside
-_UNCOVERED_LEAST, _UNCOVERED_SMOOTHING = 0.15, 0.2  # m: from here on an obstacle is none of the shapes
 
 
 class ObstacleFilter:
@@ -52,10 +50,10 @@ class ObstacleFilter:
         self._scatter = scatter
         self._uncovered = 0.0
         """How far points stand out of the fitted shape, which is then not the obstacle's (m)."""
-        self._surface = surface_of(known.kind if known else "sphere", known)
+        self._surface = surface_of(known.kind if known else "sphere", known, self.settings.surfaces)
         if known is None and scatter == 0.0 and len(first.points) >= self.settings.points_min:
             # Before the kind is chosen: with much scatter a wall would fit anything.
-            self._learn_scatter(min(_fresh_fit(kind, first)[1].unexplained for kind in KINDS), share=1.0)
+            self._learn_scatter(min(self._fresh_fit(kind, first)[1].unexplained for kind in KINDS), share=1.0)
         first = replace(first, scatter=self._scatter)
         predicted = self._surface.guess(first)
         fit = self._surface.fit(first, predicted, iterations=8)
@@ -100,8 +98,8 @@ class ObstacleFilter:
     @property
     def is_static(self) -> bool:
         """Whether it stands still."""
-        _, velocity, _ = self._imm.state
-        return bool(self._imm.weight[0] > 0.5 and np.linalg.norm(velocity) < self.settings.static_speed)
+        s, (_, velocity, _) = self.settings, self._imm.state
+        return bool(self._imm.weight[0] > s.static_weight and np.linalg.norm(velocity) < s.static_speed)
 
     def advance(self, time: float) -> None:
         """Predict the motion to ``time`` (s); earlier times are passed over."""
@@ -122,7 +120,7 @@ class ObstacleFilter:
         elif points.time < imm.time:
             late = imm.time - points.time
             _, velocity, _ = imm.state
-            points = points.moved(velocity * late, imm.time, (0.5 * late) ** 2)
+            points = points.moved(velocity * late, imm.time, (s.late_speed * late) ** 2)
         fit = self._surface.fit(points, imm.state[0])
         self._manoeuvre.advance(imm.time)
         self._manoeuvre.add_innovation(imm.update(fit.position, fit.variance))
@@ -140,8 +138,8 @@ class ObstacleFilter:
         """Follow how far the outermost points of a frame lie outside of the fitted shape, beyond their noise."""
         distance = Bodies([self.shape]).distance(points.points, (fit.position + self._surface.offset)[None])[0]
         noise = np.sqrt(points.noise**2 + float(points.pose_variance.mean()) + points.scatter)
-        outside = max(float(distance.max()) - _OUTERMOST * noise, 0.0)
-        self._uncovered += _UNCOVERED_SMOOTHING * (outside - self._uncovered)
+        outside = max(float(distance.max()) - self.settings.outermost_sigmas * noise, 0.0)
+        self._uncovered += self.settings.uncovered_smoothing * (outside - self._uncovered)
 
     def _compare_predictions(self) -> None:
         """Compare an earlier prediction with the state now, and predict anew."""
@@ -160,7 +158,7 @@ class ObstacleFilter:
         # Where points scatter, its motion is estimated late.
         limit = self._manoeuvre.growth_limit(np.sqrt(self._scatter))
         growth = np.minimum(np.sqrt(variance), limit)
-        if self._uncovered > _UNCOVERED_LEAST:
+        if self._uncovered > self.settings.uncovered_min:
             growth = growth + self._uncovered
         return mean + self._surface.offset, growth
 
@@ -177,7 +175,7 @@ class ObstacleFilter:
         for kind in KINDS:
             if kind == self.kind:
                 continue
-            surface, fit = _fresh_fit(kind, points)
+            surface, fit = self._fresh_fit(kind, points)
             self._note(kind, fit.score)
             unexplained = min(unexplained, fit.unexplained)
             tried[kind] = surface, fit.position
@@ -198,17 +196,16 @@ class ObstacleFilter:
         share = self.settings.smoothing if share is None else share
         self._scatter = min(max(self._scatter + share * unexplained, 0.0), self.settings.scatter_max**2)
 
+    def _fresh_fit(self, kind: str, points: SurfacePoints) -> tuple[Surface, Fit]:
+        """Fit a surface of a kind to one frame alone."""
+        surface = surface_of(kind, None, self.settings.surfaces)
+        return surface, surface.fit(points, surface.guess(points), iterations=8)
 
-def surface_of(kind: str, known: Shape | None) -> Surface:
+
+def surface_of(kind: str, known: Shape | None, settings: SurfaceSettings) -> Surface:
     """Return a surface to fit to points; ``known``: the shape is given and only its place is to be found."""
     if known is None:
-        return FlatSurface() if kind == FlatSurface.kind else RoundSurface(kind)
+        return FlatSurface(None, settings) if kind == FlatSurface.kind else RoundSurface(kind, None, settings)
     if isinstance(known, Wall):
-        return FlatSurface(known)
-    return RoundSurface(kind, known) if known.round_axes else KnownSurface(known)
-
-
-def _fresh_fit(kind: str, points: SurfacePoints) -> tuple[Surface, Fit]:
-    """Fit a surface of a kind to one frame alone."""
-    surface = surface_of(kind, None)
-    return surface, surface.fit(points, surface.guess(points), iterations=8)
+        return FlatSurface(known, settings)
+    return RoundSurface(kind, known, settings) if known.round_axes else KnownSurface(known, settings)

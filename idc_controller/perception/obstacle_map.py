@@ -63,7 +63,7 @@ class ObstacleMap:
         self._tracks = TrackList(moving, [obstacle.name for obstacle in known], models, s)
         self._view_range = s.retention.in_view_share * sensor_range
         self._scans = ScanAssembly(sensors, s.scans)
-        self._check = MapCheck(self._standing, self._view_range, s.association.remembered_gate, s.map_check)
+        self._check = MapCheck(self._standing, self._view_range, s)
         self._time = -math.inf
         self._deleted: list[str] = []
 

@@ -7,32 +7,31 @@ import numpy as np
 
 from idc_controller.arrays import Array
 from idc_controller.estimation.measurements import Attitude, Measurement, Position
+from idc_controller.perception.settings import ScanSettings
 from idc_controller.rotations import quaternion_product
 
 _Pose = TypeVar("_Pose", Attitude, Position)
 
-_SAMPLES = 30
-
 
 class _Samples:
-    def __init__(self) -> None:
+    def __init__(self, length: int) -> None:
+        self._length = length
         self.attitudes: dict[int, deque[Attitude]] = {}
         self.positions: dict[int, deque[Position]] = {}
 
     def add(self, sample: Measurement) -> None:
         if isinstance(sample, Attitude):
-            self.attitudes.setdefault(sample.source, deque(maxlen=_SAMPLES)).append(sample)
+            self.attitudes.setdefault(sample.source, deque(maxlen=self._length)).append(sample)
         else:
-            self.positions.setdefault(sample.source, deque(maxlen=_SAMPLES)).append(sample)
+            self.positions.setdefault(sample.source, deque(maxlen=self._length)).append(sample)
 
 
 class PoseHistory:
     """Positions and attitudes of the vehicles. Times are the team's (s)."""
 
-    def __init__(self, gap: float) -> None:
-        """``gap``: largest time between a pose and the moment it stands for (s)."""
-        self._gap = gap
-        self._measured, self._estimated = _Samples(), _Samples()
+    def __init__(self, settings: ScanSettings) -> None:
+        self._gap = settings.pose_gap
+        self._measured, self._estimated = _Samples(settings.poses), _Samples(settings.poses)
 
     def add_measured(self, sample: Measurement) -> None:
         """Add a measured position or attitude of a vehicle; those of the payload are passed over."""

@@ -61,7 +61,7 @@ class ScanAssembly:
 
     def __init__(self, sensors: SensorModel, settings: ScanSettings | None = None) -> None:
         self._sensors, self._settings = sensors, settings or ScanSettings()
-        self.poses = PoseHistory(self._settings.pose_gap)
+        self.poses = PoseHistory(self._settings)
         self.range_sensors = RangeSensors(sensors.range_noise > 0.0, self._settings)
         self._waiting: dict[tuple[int, int], _Scan] = {}
         self._waiting_points: dict[int, int] = {}
@@ -74,7 +74,7 @@ class ScanAssembly:
         waiting = self._waiting_points.get(uav, 0)
         if (
             not math.isfinite(sum(point) + max_range)
-            or not 0.0 < math.hypot(*point) < 2.0 * max_range
+            or not 0.0 < math.hypot(*point) < self._settings.range_factor * max_range
             or waiting >= self._settings.points_max
         ):
             self.discarded += 1

@@ -1,35 +1,31 @@
-"""Settings of perception: scans, association, tracks and their retention, map check, motion models."""
+"""Settings of perception: scans, association, tracks and their retention, map check, surfaces, motion models."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Self
 
 from idc_controller.errors import ParameterError
-from idc_controller.settings import setting
+from idc_controller.settings import SampledSettings, derived, setting
 
 
 @dataclass(frozen=True)
-class ScanSettings:
+class ScanSettings(SampledSettings):
     """How detections become points in the world, and when a range sensor's telemetry is invalid."""
 
     pose_gap: float = setting(0.1, "s", "largest time between a scan and the pose that places it", gt=0.0)
     pose_wait: float = setting(0.3, "s", "for which a scan waits for a measured pose", ge=0.0)
+    pose_memory: float = setting(1.2, "s", "for which poses are kept", gt=0.0)
     simultaneous: float = setting(0.02, "s", "within which scans of several vehicles are one frame", ge=0.0)
-    estimated_attitude_sigma: float = setting(
-        0.03,
-        "rad",
-        "standard deviation of an attitude that is estimated, not measured: model error in manoeuvres",
-        ge=0.0,
-    )
-    cut_sigmas: float = setting(
-        4.0,
-        "",
-        "standard deviations from the sensor's range within which a surface may continue beyond a point",
-        ge=0.0,
-    )
+    estimated_attitude_sigma: float = setting(0.03, "rad", "standard deviation of estimated attitudes", ge=0.0)
+    cut_sigmas: float = setting(4.0, "", "standard deviations from the end of the range that cut a surface", ge=0.0)
+    range_factor: float = setting(2.0, "", "of the sensor's range, beyond which a detection is impossible", ge=1.0)
     points_max: int = setting(2000, "", "points of a vehicle that wait at a time", ge=1)
-    invalid_after: float = setting(
-        0.5, "s", "of invalid or repeated detections after which a vehicle's range sensor counts as lost", ge=0.0
-    )
+    invalid_after: float = setting(0.5, "s", "of invalid detections until a range sensor counts as lost", ge=0.0)
     recovery: float = setting(1.0, "s", "after the last of them for which it still does", ge=0.0)
+
+    @property
+    def poses(self) -> int:
+        """Poses of a vehicle that are kept."""
+        return self.count(self.pose_memory)
 
 
 @dataclass(frozen=True)
@@ -38,19 +34,13 @@ class AssociationSettings:
 
     map_gate: float = setting(0.25, "m", "mean distance of a cluster from a standing obstacle of the map", gt=0.0)
     track_gate: float = setting(0.4, "m", "mean distance from a track, beside the track's own uncertainty", gt=0.0)
-    undetected_gate: float = setting(
-        3.0, "m", "mean distance from a moving obstacle of the map not detected yet", gt=0.0
-    )
+    undetected_gate: float = setting(3.0, "m", "mean distance from a moving map obstacle not detected yet", gt=0.0)
     group_gate: float = setting(0.5, "m", "mean distance between clusters of vehicles that begin one track", gt=0.0)
-    remembered_gate: float = setting(
-        1.2, "m", "mean distance from the obstacle the cluster was last assigned to", gt=0.0
-    )
+    remembered_gate: float = setting(1.2, "m", "mean distance from the obstacle assigned last", gt=0.0)
     remembered_gain: float = setting(0.5, "m", "by which such an assignment is preferred", ge=0.0)
     memory: float = setting(3.0, "s", "for which a vehicle's number of a cluster stands for an obstacle", ge=0.0)
-    wall_extension: float = setting(4.0, "m", "by which a wall may be longer and higher than detected so far", ge=0.0)
-    merge_gate: float = setting(
-        0.25, "m", "mean distance of a track's points from another track that merges them", gt=0.0
-    )
+    wall_extension: float = setting(4.0, "m", "by which a wall may be larger than detected so far", ge=0.0)
+    merge_gate: float = setting(0.25, "m", "mean distance of a track's points from another that merges them", gt=0.0)
     merge_frames: int = setting(3, "", "frames in a row for which that must hold", ge=1)
 
 
@@ -63,16 +53,10 @@ class RetentionSettings:
     coasting_after: float = setting(0.3, "s", "without a detection after which a static track coasts at rest", gt=0.0)
     delete_after: float = setting(1.0, "s", "without a detection in the field of view until deletion", gt=0.0)
     forget_after: float = setting(2.0, "s", "without a detection out of view until a moving track is deleted", gt=0.0)
-    restorable: float = setting(
-        3.0, "s", "after deletion in which a track is restored when all obstacle sensing proves to be lost", ge=0.0
-    )
-    in_view_share: float = setting(
-        0.8, "", "share of the sensors' range within which an obstacle is certainly detected", gt=0.0, le=1.0
-    )
+    restorable: float = setting(3.0, "s", "after deletion in which lost sensing restores a track", ge=0.0)
+    in_view_share: float = setting(0.8, "", "share of the range within which detection is certain", gt=0.0, le=1.0)
     link_timeout: float = setting(0.3, "s", "age of a position up to which a vehicle's field of view counts", gt=0.0)
-    undetected_growth: float = setting(
-        0.5, "m", "growth of a moving obstacle of the map that was not detected yet", ge=0.0
-    )
+    undetected_growth: float = setting(0.5, "m", "growth of a moving map obstacle not detected yet", ge=0.0)
 
 
 @dataclass(frozen=True)
@@ -82,12 +66,7 @@ class MapCheckSettings:
     offset_min: float = setting(0.2, "m", "offset from which on detections contradict the map", gt=0.0)
     sigmas: float = setting(6.0, "", "and in its standard deviations", gt=0.0)
     duration: float = setting(0.4, "s", "for which it must last: the time until a wrong pose is isolated", ge=0.0)
-    agreement_sigmas: float = setting(
-        1.25,
-        "",
-        "mean distance of points of a scan that agrees with the map, in standard deviations (mean 0.8)",
-        gt=0.0,
-    )
+    agreement_sigmas: float = setting(1.25, "", "mean distance of a scan that agrees, in standard deviations", gt=0.0)
     agreements: int = setting(5, "", "such scans before an offset of the obstacle can be detected", ge=1)
     walk: float = setting(0.05, "m/sqrt(s)", "random walk of the offset", ge=0.0)
     initial_sigma: float = setting(0.5, "m", "initial uncertainty of the offset", gt=0.0)
@@ -100,18 +79,12 @@ class ImmSettings:
 
     static_walk: float = setting(0.01, "m/sqrt(s)", "static model: random walk of the position", ge=0.0)
     velocity_walk: float = setting(0.15, "m/s/sqrt(s)", "constant-velocity model: random walk of the velocity", ge=0.0)
-    singer_accelerations: tuple[float, ...] = setting(
-        (1.0, 4.0), "m/s2", "Singer models: standard deviations of the acceleration", gt=0.0
-    )
-    singer_times: tuple[float, ...] = setting(
-        (1.0, 0.5), "s", "Singer models: correlation times of the acceleration", gt=0.0
-    )
+    singer_accelerations: tuple[float, ...] = setting((1.0, 4.0), "m/s2", "Singer models: accelerations", gt=0.0)
+    singer_times: tuple[float, ...] = setting((1.0, 0.5), "s", "Singer models: their correlation times", gt=0.0)
     frequencies: tuple[float, ...] = setting(
         (0.5, 0.7, 1.0, 1.4, 2.0, 2.8), "rad/s", "harmonic models: angular frequencies", gt=0.0
     )
-    harmonic_walk: float = setting(
-        0.1, "m/s2/sqrt(s)", "harmonic models: random walk of the acceleration at 1 rad/s, proportional to it", ge=0.0
-    )
+    harmonic_walk: float = setting(0.1, "m/s2/sqrt(s)", "harmonic models: acceleration's walk at 1 rad/s", ge=0.0)
     initial_velocity: float = setting(1.5, "m/s", "initial standard deviation of the velocity", gt=0.0)
     initial_acceleration: float = setting(1.5, "m/s2", "initial standard deviation of the acceleration", gt=0.0)
     transition_rate: float = setting(0.1, "1/s", "share of a model's weight that moves to the others", ge=0.0)
@@ -123,23 +96,28 @@ class ImmSettings:
 
 
 @dataclass(frozen=True)
-class ManoeuvreSettings:
+class ManoeuvreSettings(SampledSettings):
     """What counts as a manoeuvre that no motion model contains, and by how much predictions are widened for it."""
 
-    mismatch_begin: float = setting(
-        0.9, "", "mean squared normalised innovation (0.5 is usual) from which on the models mismatch", gt=0.0
-    )
+    rate: float = derived(10.0)
+    """Of the scans (Hz)."""
+    mismatch_begin: float = setting(0.9, "", "mean squared innovation (usually 0.5) from which on models fail", gt=0.0)
     mismatch_full: float = setting(1.5, "", "from which on they mismatch wholly", gt=0.0)
     mismatch_acceleration: float = setting(2.0, "m/s2", "standard deviation of the acceleration then", ge=0.0)
+    innovation_max: float = setting(10.0, "", "bound of one squared innovation", gt=0.0)
     innovation_share: float = setting(0.15, "", "share of one innovation in their mean", gt=0.0, le=1.0)
     memory: float = setting(8.0, "s", "time constant with which mismatch and prediction error decay", gt=0.0)
     horizon: float = setting(1.0, "s", "after which predictions are compared with the track", gt=0.0)
     usual_error: float = setting(0.15, "m", "error of a good prediction over that time", ge=0.0)
     settling: float = setting(3.0, "s", "after the first detection until predictions are compared", ge=0.0)
-    frame: float = setting(0.05, "s", "time between frames within which a prediction is due", ge=0.0)
     growth_max: float = setting(0.5, "m", "largest growth of a body while predictions are right", ge=0.0)
     growth_per_error: float = setting(1.5, "", "by which that rises with the prediction error", ge=0.0)
     growth_limit: float = setting(1.5, "m", "up to which it rises: an obstacle may come faster than the team", ge=0.0)
+
+    @property
+    def frame(self) -> float:
+        """Time about a scan within which a prediction is due: half of that between scans (s)."""
+        return 0.5 / self.rate
 
     def __post_init__(self) -> None:
         if self.mismatch_full <= self.mismatch_begin:
@@ -149,10 +127,42 @@ class ManoeuvreSettings:
 
 
 @dataclass(frozen=True)
+class SurfaceSettings:
+    """Fits of spheres, poles, walls and known shapes to the points of one frame."""
+
+    model_sigma: float = setting(0.015, "m", "standard deviation of a real surface about its shape", ge=0.0)
+    sideways_sigma: float = setting(0.1, "m", "movement expected on axes on which no point shows it", gt=0.0)
+    scatter_loss: float = setting(18.0, "", "factor of scatter in the uncertainty of a centre: by trial", ge=0.0)
+    radius: float = setting(0.6, "m", "of a sphere or pole before anything is detected: rather too large", gt=0.0)
+    radius_sigma: float = setting(0.35, "m", "its standard deviation", gt=0.0)
+    radius_sigma_min: float = setting(0.015, "m", "least standard deviation of a radius", gt=0.0)
+    radius_walk: float = setting(0.003, "m", "random walk of a radius from frame to frame", ge=0.0)
+    sphere_radius_min: float = setting(0.1, "m", "smallest sphere", gt=0.0)
+    pole_radius_min: float = setting(0.04, "m", "smallest radius of a pole", gt=0.0)
+    radius_max: float = setting(1.6, "m", "largest radius of a sphere or pole", gt=0.0)
+    centre_sigma: float = setting(2.0, "m", "uncertainty of the first guess of a centre", gt=0.0)
+    pole_end_depth: float = setting(0.1, "m", "within a pole's side from which on a point lies on its end", ge=0.0)
+    pole_end_share: float = setting(0.2, "", "and share of the radius beside that", ge=0.0)
+    pole_extension: float = setting(3.0, "m", "of a pole above points at the end of the range", ge=0.0)
+    side_extension: float = setting(1.0, "m", "of a wall to the side of them", ge=0.0)
+    top_extension: float = setting(2.0, "m", "of a wall above and below them", ge=0.0)
+    thickness: float = setting(0.4, "m", "of a wall while only its front is detected", gt=0.0)
+    depth_observed: float = setting(0.12, "m", "behind the front from which on points show the thickness", gt=0.0)
+    yaw_sigma: float = setting(0.1, "rad", "initial uncertainty of a wall's heading", gt=0.0)
+    yaw_walk: float = setting(0.001, "rad", "its random walk from frame to frame", ge=0.0)
+    size_sigma_max: float = setting(0.3, "m", "largest uncertainty of a wall's ends from its heading", ge=0.0)
+    end_jump: float = setting(0.3, "m", "from which on an end is somewhere else rather than measured anew", gt=0.0)
+    end_smoothing: float = setting(0.2, "", "share of one frame in the place of an end", gt=0.0, le=1.0)
+    end_retreat: float = setting(0.15, "", "the same where the surface seems much shorter", gt=0.0, le=1.0)
+
+
+@dataclass(frozen=True)
 class ObstacleFilterSettings:
     """Shape and motion of one track."""
 
     static_speed: float = setting(0.1, "m/s", "speed below which a track is static", gt=0.0)
+    static_weight: float = setting(0.5, "", "weight of the static model above which it is", gt=0.0, lt=1.0)
+    late_speed: float = setting(0.5, "m/s", "uncertainty of the speed by which late frames are moved", ge=0.0)
     pole_complexity: float = setting(0.4, "", "by which a pole must fit better than a sphere", ge=0.0)
     wall_complexity: float = setting(0.8, "", "by which a wall must fit better than a sphere", ge=0.0)
     hysteresis: float = setting(1.0, "", "by which another shape must fit better than the one so far", ge=0.0)
@@ -162,6 +172,10 @@ class ObstacleFilterSettings:
     every_frames: int = setting(20, "", "frames after which they are tried again", ge=1)
     retry_score: float = setting(2.5, "", "score from which on they are tried at once (about 1 is right)", gt=1.0)
     scatter_max: float = setting(0.5, "m", "largest standard deviation of the points' scatter", gt=0.0)
+    outermost_sigmas: float = setting(1.5, "", "standard deviations by which noise alone puts points outside", ge=0.0)
+    uncovered_min: float = setting(0.15, "m", "points outside of the shape from which on it is another", ge=0.0)
+    uncovered_smoothing: float = setting(0.2, "", "share of one frame in that distance", gt=0.0, le=1.0)
+    surfaces: SurfaceSettings = field(default_factory=SurfaceSettings)
     motion: ImmSettings = field(default_factory=ImmSettings)
     manoeuvre: ManoeuvreSettings = field(default_factory=ManoeuvreSettings)
 
@@ -175,3 +189,9 @@ class PerceptionSettings:
     retention: RetentionSettings = field(default_factory=RetentionSettings)
     map_check: MapCheckSettings = field(default_factory=MapCheckSettings)
     tracking: ObstacleFilterSettings = field(default_factory=ObstacleFilterSettings)
+
+    def at_rates(self, telemetry: float, scans: float) -> Self:
+        """Return the settings at the rates (Hz) of telemetry and of the range sensors."""
+        manoeuvre = replace(self.tracking.manoeuvre, rate=scans)
+        tracking = replace(self.tracking, manoeuvre=manoeuvre)
+        return replace(self, scans=replace(self.scans, rate=telemetry), tracking=tracking)

@@ -103,7 +103,7 @@ class NoiseAdaptation:
             for k, part in enumerate((of_payload, ~of_payload)):
                 rows = part & accepted
                 if rows.any():
-                    clipped = float(np.clip(product[rows].mean(), -3.0, 3.0))
+                    clipped = float(np.clip(product[rows].mean(), -s.correlation_max, s.correlation_max))
                     self._correlation[k] += s.correlation_share * (clipped - self._correlation[k])
             self._since_change += 1
             correlation = float(self._correlation.max())

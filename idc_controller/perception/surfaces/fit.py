@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from idc_controller.arrays import Array, Mask
+from idc_controller.perception.settings import SurfaceSettings
 
 _SCORE_CAP = 16.0
 _MEDIAN_OF_SQUARE = 0.455  # of a normal variable of variance 1
@@ -38,34 +39,30 @@ def unexplained(residual: Array, variance: Array, fitted: int) -> float:
 class EndOfSurface:
     """How far a surface reaches in one direction, from its detected points frame by frame."""
 
-    def __init__(self, margin: float) -> None:
-        """``margin`` (m) is added while the end itself was not in the sensors' range."""
-        self._margin = margin
+    def __init__(self, extension: float, settings: SurfaceSettings) -> None:
+        """``extension`` (m) is added while the end itself was not in the sensors' range."""
+        self._extension, self._settings = extension, settings
         self._value = -np.inf
         self._is_observed = False
 
     @property
     def outermost(self) -> float:
         """As far as the surface may be taken to reach (m)."""
-        return float(self._value if self._is_observed else self._value + self._margin)
+        return float(self._value if self._is_observed else self._value + self._extension)
 
     def update(self, along: Array, cut: Mask) -> None:
         """Points of one frame, by their coordinate in that direction (n,), and whether they end the sensor's range."""
-        last = int(np.argmax(along))
+        last, s = int(np.argmax(along)), self._settings
         furthest, is_cut = float(along[last]), bool(cut[last])
         beyond = furthest - self._value
-        if beyond > 0.3:
+        if beyond > s.end_jump:
             self._value, self._is_observed = furthest, not is_cut
         elif is_cut:
             if not self._is_observed:
                 self._value = max(self._value, furthest)
-        elif beyond > -0.3:
+        elif beyond > -s.end_jump:
             # Noise makes the outermost of several points a little too far out: the safe side.
-            self._value += (0.2 if self._is_observed else 1.0) * beyond
+            self._value += (s.end_smoothing if self._is_observed else 1.0) * beyond
             self._is_observed = True
         else:
-            self._value += 0.15 * beyond
-
-    def moved(self, by: float) -> None:
-        """The origin of the coordinate has moved by (m)."""
-        self._value -= by
+            self._value += s.end_retreat * beyond

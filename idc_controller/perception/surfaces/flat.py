@@ -6,15 +6,9 @@ import numpy as np
 
 from idc_controller.arrays import Array, Indices, Mask
 from idc_controller.geometry.box import Wall
+from idc_controller.perception.settings import SurfaceSettings
 from idc_controller.perception.surfaces.fit import EndOfSurface, Fit, score, unexplained
 from idc_controller.perception.surfaces.points import SurfacePoints
-
-THICKNESS = 0.4  # m, while only the front is detected
-SIDE_MARGIN = 1.0  # m, how much further an edge beyond the sensors' range is taken to be
-TOP_MARGIN = 2.0  # m
-YAW_WALK = 0.001  # rad a frame
-_DEPTH_OBSERVED = 0.12  # m behind the front from which points must belong to another face
-_SIDEWAYS = 0.1  # m: how firmly a wall is held to move along its normal only
 
 
 class FlatSurface:
@@ -26,13 +20,14 @@ class FlatSurface:
 
     kind = "wall"
 
-    def __init__(self, known: Wall | None = None) -> None:
-        self.known = known
+    def __init__(self, known: Wall | None, settings: SurfaceSettings) -> None:
+        self.known, self._settings = known, settings
         self._yaw = known.yaw if known else 0.0
-        self._yaw_variance = 0.1**2
-        self._thickness = THICKNESS
+        self._yaw_variance = settings.yaw_sigma**2
+        self._thickness = settings.thickness
         self._thickness_is_observed = False
-        self._ends = {key: EndOfSurface(SIDE_MARGIN if key[0] == 1 else TOP_MARGIN) for key in _SIDES}
+        extensions = {1: settings.side_extension, 2: settings.top_extension}
+        self._ends = {(axis, sign): EndOfSurface(extensions[axis], settings) for axis in (1, 2) for sign in (1, -1)}
 
     @property
     def shape(self) -> Wall:
@@ -57,7 +52,7 @@ class FlatSurface:
         if self.known is not None:
             return 0.0
         lo, hi = self._extent()
-        return float(min(np.sqrt(self._yaw_variance) * (hi[1] - lo[1]) / 2.0, 0.3))
+        return float(min(np.sqrt(self._yaw_variance) * (hi[1] - lo[1]) / 2.0, self._settings.size_sigma_max))
 
     def guess(self, scan: SurfacePoints) -> Array:
         """Orient the box by the points alone, and return a point of its front (3,); of a known one their middle."""
@@ -87,13 +82,13 @@ class FlatSurface:
         """Where the front is in this frame; learns the box from it. ``predicted`` (3,): where it is expected."""
         if self.known is not None:
             return self._fit_known(scan, predicted)
-        rotation = self._rotation()
+        s, rotation = self._settings, self._rotation()
         q = (scan.points - predicted) @ rotation
         rays = scan.rays @ rotation
         front = np.abs(q[:, 0]) < 0.5
         shift = 0.0
-        noise = (scan.noise * rays) ** 2 + (scan.pose_variance + scan.scatter)[:, None] + 0.015**2
-        self._yaw_variance += YAW_WALK**2
+        noise = (scan.noise * rays) ** 2 + (scan.pose_variance + scan.scatter)[:, None] + s.model_sigma**2
+        self._yaw_variance += s.yaw_walk**2
         for _ in range(iterations):
             residual = q[:, 0] - shift
             front = np.abs(residual) < 3.0 * np.sqrt(scan.noise**2 + scan.pose_variance + scan.scatter)
@@ -124,8 +119,8 @@ class FlatSurface:
             end.update(sign * q[:, axis], scan.cut)
         self._learn_thickness(q, front, scan)
         position = predicted + rotation[:, 0] * shift
-        variance = rotation[:, :2] ** 2 @ np.array([front_variance, _SIDEWAYS**2])
-        variance[2] = _SIDEWAYS**2
+        variance = rotation[:, :2] ** 2 @ np.array([front_variance, s.sideways_sigma**2])
+        variance[2] = s.sideways_sigma**2
         return Fit(position, variance, *self._score(q, noise))
 
     def _fit_known(self, scan: SurfacePoints, predicted: Array) -> Fit:
@@ -140,7 +135,7 @@ class FlatSurface:
         beyond = np.abs((scan.origins - predicted) @ rotation) > half
         residual = np.where(beyond, residual, np.inf)
         face = np.argmin(np.abs(residual), axis=1)
-        shift, variance = np.zeros(3), np.full(3, _SIDEWAYS**2)
+        shift, variance = np.zeros(3), np.full(3, self._settings.sideways_sigma**2)
         own = residual[np.arange(len(q)), face]
         common = float(np.mean(scan.pose_variance)) / scan.sensors
         for axis in range(3):
@@ -157,14 +152,15 @@ class FlatSurface:
 
     def _learn_thickness(self, q: Array, front: Mask, scan: SurfacePoints) -> None:
         """From points behind the front, which lie on the top or on a side."""
-        behind = (q[:, 0] < -_DEPTH_OBSERVED) & ~front & ~scan.cut
+        s = self._settings
+        behind = (q[:, 0] < -s.depth_observed) & ~front & ~scan.cut
         if np.count_nonzero(behind) == 0:
             return
         depth = float(-q[behind, 0].min())
-        if not self._thickness_is_observed or depth > self._thickness + 0.3:
+        if not self._thickness_is_observed or depth > self._thickness + s.end_jump:
             self._thickness, self._thickness_is_observed = depth, True
-        else:
-            self._thickness += 0.2 * (depth - self._thickness) if depth > self._thickness - 0.3 else 0.0
+        elif depth > self._thickness - s.end_jump:
+            self._thickness += s.end_smoothing * (depth - self._thickness)
 
     def _score(self, q: Array, noise: Array) -> tuple[float, float]:
         """Score and what is unexplained of points (n, 3) in the box's frame, of variance ``noise`` (n, 3)."""
@@ -195,6 +191,3 @@ def _pairs(n: int) -> tuple[Indices, Indices]:
     i, j = np.triu_indices(n, 1)
     few = slice(None, None, max(1, len(i) // 400))
     return i[few], j[few]
-
-
-_SIDES = ((1, 1), (1, -1), (2, 1), (2, -1))

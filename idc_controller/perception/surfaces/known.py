@@ -5,10 +5,10 @@ import numpy as np
 from idc_controller.arrays import Array
 from idc_controller.geometry.distance import Bodies
 from idc_controller.geometry.shape import Shape
+from idc_controller.perception.settings import SurfaceSettings
 from idc_controller.perception.surfaces.fit import Fit, score, unexplained
 from idc_controller.perception.surfaces.points import SurfacePoints
 
-_SIDEWAYS = 0.1  # m: how firmly it is held on axes on which no point shows its place
 _STEP = 1e-4  # m, of the differences that give the surface's normals
 
 
@@ -18,8 +18,8 @@ class KnownSurface:
     size_sigma = 0.0
     """Standard deviation of the size (m)."""
 
-    def __init__(self, known: Shape) -> None:
-        self.shape = known
+    def __init__(self, known: Shape, settings: SurfaceSettings) -> None:
+        self.shape, self._settings = known, settings
         self.kind = known.kind
         self.offset = np.zeros(3)
         self._body = Bodies([known])
@@ -32,7 +32,7 @@ class KnownSurface:
     def fit(self, scan: SurfacePoints, predicted: Array, iterations: int = 3) -> Fit:
         """Return where the centre is in this frame; ``predicted`` (3,): where it is expected."""
         place = predicted.copy()
-        prior = np.eye(3) / _SIDEWAYS**2
+        prior = np.eye(3) / self._settings.sideways_sigma**2
         variance = scan.noise**2 + scan.pose_variance + scan.scatter
         for _ in range(iterations):
             residual, normal = self._distance(scan.points - place)

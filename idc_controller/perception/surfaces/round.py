@@ -6,17 +6,11 @@ from idc_controller.arrays import Array
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.shape import Shape
 from idc_controller.geometry.sphere import Sphere
+from idc_controller.perception.settings import SurfaceSettings
 from idc_controller.perception.surfaces.fit import EndOfSurface, Fit, score, unexplained
 from idc_controller.perception.surfaces.points import SurfacePoints
 
-FIRST_RADIUS, FIRST_RADIUS_SIGMA = 0.6, 0.35  # m, before anything is known: rather too large
-RADIUS_WALK = 0.003  # m a frame
-RADIUS_SIGMA_LEAST = 0.015  # m
-RADII = {"sphere": (0.1, 1.6), "pole": (0.04, 1.6)}  # m
-_CENTRE_SIGMA = 2.0  # m: how little the guess of the centre counts
 _CLOSE_ENOUGH = 0.004  # m: a smaller last step of the search changes nothing that matters
-_SCATTER_LOSS = 18.0  # by trial: by how much more the centre is off than the linear fit's variance says
-_INSIDE = 0.1  # m: a point so far within a pole's side lies on its end
 
 
 class RoundSurface:
@@ -25,14 +19,13 @@ class RoundSurface:
     ``known``: the shape is given and stays as it is.
     """
 
-    def __init__(self, kind: str, known: Shape | None = None) -> None:
-        self.kind = kind
-        self.known = known
+    def __init__(self, kind: str, known: Shape | None, settings: SurfaceSettings) -> None:
+        self.kind, self.known, self._settings = kind, known, settings
         self._is_pole = kind == Pole.kind
         self._axes = 2 if self._is_pole else 3
-        self._radius = known.columns.radius if known else FIRST_RADIUS
-        self._variance = 1e-6 if known else FIRST_RADIUS_SIGMA**2
-        self._top = EndOfSurface(margin=3.0)
+        self._radius = known.columns.radius if known else settings.radius
+        self._variance = 1e-6 if known else settings.radius_sigma**2
+        self._top = EndOfSurface(settings.pole_extension, settings)
 
     @property
     def shape(self) -> Shape:
@@ -65,19 +58,19 @@ class RoundSurface:
 
     def fit(self, scan: SurfacePoints, predicted: Array, iterations: int = 3) -> Fit:
         """Where the obstacle is in this frame; learns the shape from it. ``predicted`` (3,): where it is expected."""
-        n_axes = self._axes
-        prior = np.full(n_axes + 1, 1.0 / _CENTRE_SIGMA**2)
-        prior[-1] = 1.0 / (self._variance + RADIUS_WALK**2)
+        n_axes, s = self._axes, self._settings
+        prior = np.full(n_axes + 1, 1.0 / s.centre_sigma**2)
+        prior[-1] = 1.0 / (self._variance + s.radius_walk**2)
         mean = np.append(predicted[:n_axes], self._radius)
         theta = mean.copy()
         points, rays = scan.points[:, :n_axes], scan.rays[:, :n_axes]
-        low, high = RADII[self.kind]
+        low, high = s.pole_radius_min if self._is_pole else s.sphere_radius_min, s.radius_max
         H = np.empty((len(points), n_axes + 1))
         for _ in range(iterations):
             residual, normal, variance = self._residuals(points, rays, theta, scan, H[:, -1])
             weight = 1.0 / (variance * (1.0 + residual**2 / (9.0 * np.maximum(variance, 0.0025))))
             if self._is_pole:
-                weight[residual < -_INSIDE - 0.2 * theta[-1]] = 0.0
+                weight[residual < -s.pole_end_depth - s.pole_end_share * theta[-1]] = 0.0
             H[:, :n_axes] = -normal
             HW = H.T * weight
             information = HW @ H
@@ -93,17 +86,17 @@ class RoundSurface:
         position[:n_axes] = theta[:n_axes]
         spread = np.full(3, 0.02**2)
         # Where points scatter by as much as the body is wide, their normals are no more than guesses.
-        guessed = 1.0 + _SCATTER_LOSS * scan.scatter / theta[-1] ** 2
+        guessed = 1.0 + s.scatter_loss * scan.scatter / theta[-1] ** 2
         spread[:n_axes] = guessed * np.diag(covariance)[:n_axes] + common
         residual, _, variance = self._residuals(points, rays, theta, scan, H[:, -1])
         if self._is_pole:
-            on_side = residual > -_INSIDE - 0.2 * theta[-1]
+            on_side = residual > -s.pole_end_depth - s.pole_end_share * theta[-1]
             # What lies inside the side must be the top: the highest points.
             height = scan.points[:, 2] - scan.points[:, 2].min()
             residual = np.where(on_side, residual, np.minimum(-residual, height))
         if self.known is None:
             self._radius = float(theta[-1])
-            self._variance = max(float(covariance[-1, -1]), RADIUS_SIGMA_LEAST**2)
+            self._variance = max(float(covariance[-1, -1]), s.radius_sigma_min**2)
             if self._is_pole:
                 self._top.update(-scan.points[:, 2], scan.cut)
         fitted = n_axes + (self.known is None)
@@ -120,7 +113,7 @@ class RoundSurface:
         distance = np.maximum(np.sqrt(np.einsum("ij,ij->i", d, d)), 1e-3)
         normal = d / distance[:, None]
         incidence = np.einsum("ij,ij->i", normal, rays)
-        variance = (scan.noise * incidence) ** 2 + scan.pose_variance + scan.scatter + 0.015**2
+        variance = (scan.noise * incidence) ** 2 + scan.pose_variance + scan.scatter + self._settings.model_sigma**2
         # Scatter across the surface puts points outside of it on average, the more so the smaller it is.
         outside = 0.5 * (self._axes - 1) * scan.scatter / theta[-1]
         residual = distance - theta[-1] - outside
