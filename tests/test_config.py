@@ -61,7 +61,7 @@ def test_settings_of_the_file_reach_estimator_guidance_filter_and_controller(tmp
         config, model, safety, lambda: 0.0, stack.guidance(config, model, StandingObstacles([]))
     )
     assert stack.estimator(config, model).settings.history == 0.7
-    assert controller.wind.settings.memory == 7.0
+    assert controller.load.wind.settings.memory == 7.0
     assert (safety.settings.jerk, safety.settings.margin, safety.filter_settings.watch) == (0.003, 0.6, 3.0)
     assert isinstance(controller.tracker, ModelPredictiveController)
     assert controller.tracker.settings.thrust_min == 2.0

@@ -1,7 +1,5 @@
 """The model predictive controller against the Riccati equation and against a solver of another kind."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from flight_in_process import MISSIONS
@@ -9,14 +7,14 @@ from scipy.linalg import block_diag, solve_discrete_are
 from scipy.optimize import nnls
 
 from gcs.config import read_system
-from gcs.flight.stack import moves
 from idc_controller.control.force_components import (
     inputs_in_force_components,
     setpoints_from_force_components,
     state_in_force_components,
 )
-from idc_controller.control.mpc import ModelPredictiveController
-from idc_controller.control.settings import MpcSettings
+from idc_controller.control.mpc import ModelPredictiveController, input_weight, state_weight
+from idc_controller.control.prediction import move_blocks
+from idc_controller.control.settings import MpcSettings, MpcTuning
 from idc_controller.errors import ParameterError, SolverError
 from idc_controller.model.linear import LinearModel
 from idc_controller.qp.parametric import ParametricQp
@@ -33,7 +31,7 @@ DEFAULT = ModelPredictiveController(MODEL, MpcSettings())
 def stages_at(height, settings=DEFAULT.settings, model=MODEL):
     rest = RestTrajectory(np.array([0.0, 0.0, -height]), 0.0)
     reference = Reference(model.parameters, rest, Load(model.parameters.m_0, np.zeros(3)))
-    return reference.at(settings.period * np.arange(settings.horizon + 1))
+    return reference.at(settings.period * np.arange(settings.tuning.horizon + 1))
 
 
 STAGES = stages_at(5.0)
@@ -46,16 +44,21 @@ def error_of(**parts):
     return error
 
 
+def next_error(mpc, error):
+    return mpc.prediction.A @ error + mpc.prediction.B @ mpc.track(error, STAGES).delta_u
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("vehicles", [3, 4, 6])
 def test_mpc_without_active_constraints_is_the_linear_quadratic_regulator(vehicles):
     model = LinearModel(CONFIG.with_vehicles(vehicles).parameters())
-    free = MpcSettings(moves=(1,) * 20)
-    mpc = ModelPredictiveController(model, free)
-    P = solve_discrete_are(mpc.A, mpc.B, mpc.Q, mpc.R)
-    K = np.linalg.solve(mpc.R + mpc.B.T @ P @ mpc.B, mpc.B.T @ P @ mpc.A)
+    mpc = ModelPredictiveController(model, MpcSettings(), blocks=(1,) * 20)
+    A, B, weights = mpc.prediction.A, mpc.prediction.B, MpcTuning().weights
+    Q, R = state_weight(weights, model.layout), input_weight(weights, model.layout)
+    P = solve_discrete_are(A, B, Q, R)
+    K = np.linalg.solve(R + B.T @ P @ B, B.T @ P @ A)
     rng = np.random.default_rng(vehicles)
-    stages = stages_at(5.0, free, model)
+    stages = stages_at(5.0, mpc.settings, model)
     for _ in range(5):
         error = 1e-3 * rng.standard_normal(model.layout.size)
         output = mpc.track(error, stages)
@@ -67,7 +70,7 @@ def test_blocked_moves_cost_little_and_bring_the_system_to_rest():
     rng = np.random.default_rng(3)
     error = 0.02 * rng.standard_normal(LAYOUT.size)
     for _ in range(400):
-        error = DEFAULT.A @ error + DEFAULT.B @ DEFAULT.track(error, STAGES).delta_u
+        error = next_error(DEFAULT, error)
     assert np.max(np.abs(error)) < 1e-4
 
 
@@ -120,20 +123,20 @@ def test_hard_input_limits_are_kept_whatever_the_error():
         error = rng.standard_normal(LAYOUT.size) * rng.choice([0.1, 0.5])
         output = DEFAULT.track(error, STAGES)
         u = inputs_in_force_components(STAGES.u[0], LAYOUT, p.hover_thrust) + output.delta_u
-        assert np.all(np.abs(u[LAYOUT.n_setpoint]) <= np.tan(s.uav_tilt_limit) + 1e-5)
+        assert np.all(np.abs(u[LAYOUT.n_setpoint]) <= np.tan(s.tuning.uav_tilt_limit) + 1e-5)
         assert np.all(u[LAYOUT.f_setpoint] <= 0.95 * p.thrust_max + 1e-4)
         assert np.all(u[LAYOUT.f_setpoint] >= s.thrust_min - 1e-4)
 
 
 def test_the_payloads_tilt_limit_binds_before_it_is_reached():
     # A rate that would carry the payload over the limit: with the limit it is stopped sooner than without.
-    loose = ModelPredictiveController(MODEL, replace(DEFAULT.settings, payload_tilt_limit=np.radians(80.0)))
+    loose = ModelPredictiveController(MODEL, MpcSettings(tuning=MpcTuning(payload_tilt_limit_deg=80.0)))
     peaks = {}
     for name, mpc in (("limited", DEFAULT), ("loose", loose)):
         error = error_of(Theta=(np.radians(3.0), 0.0, 0.0), omega=(0.9, 0.0, 0.0))
         peak = 0.0
         for _ in range(40):
-            error = mpc.A @ error + mpc.B @ mpc.track(error, STAGES).delta_u
+            error = next_error(mpc, error)
             peak = max(peak, error[LAYOUT.Theta][0])
         peaks[name] = np.degrees(peak)
     assert peaks["limited"] < peaks["loose"] - 0.1
@@ -160,7 +163,7 @@ def test_mpc_marks_step_and_clips_move_when_qp_has_no_solution(monkeypatch):
         output = mpc.track(far, STAGES)
     assert output.infeasible
     u = inputs_in_force_components(STAGES.u[0], LAYOUT, MODEL.parameters.hover_thrust) + output.delta_u
-    assert np.abs(u[LAYOUT.n_setpoint]).max() == pytest.approx(np.tan(mpc.settings.uav_tilt_limit))
+    assert np.abs(u[LAYOUT.n_setpoint]).max() == pytest.approx(np.tan(mpc.settings.tuning.uav_tilt_limit))
     assert not mpc.track(far, STAGES).infeasible
 
 
@@ -206,7 +209,7 @@ def test_force_components_are_inverted_exactly():
     u = np.concatenate([0.2 * rng.standard_normal(8), hover + rng.standard_normal(4)])
     target = np.concatenate([0.2 * rng.standard_normal(8), hover + rng.standard_normal(4)])
     delta = inputs_in_force_components(target, LAYOUT, hover) - inputs_in_force_components(u, LAYOUT, hover)
-    assert setpoints_from_force_components(delta, u, LAYOUT, hover) == pytest.approx(target)
+    assert setpoints_from_force_components(delta, u, LAYOUT, hover, 0.05) == pytest.approx(target)
     x = np.zeros(LAYOUT.size)
     x[LAYOUT.n], x[LAYOUT.f] = u[:8], u[8:]
     converted = state_in_force_components(x, LAYOUT, hover)
@@ -215,12 +218,16 @@ def test_force_components_are_inverted_exactly():
 
 
 @pytest.mark.parametrize("horizon", [2, 7, 20, 33])
-def test_moves_sum_to_any_horizon(horizon):
-    assert sum(moves(horizon)) == horizon
+def test_move_blocks_sum_to_any_horizon(horizon):
+    assert sum(move_blocks(horizon)) == horizon
 
 
-def test_inconsistent_settings_are_refused():
-    with pytest.raises(ParameterError, match="do not sum"):
-        MpcSettings(moves=(1, 1))
-    with pytest.raises(ParameterError, match="constraint stages"):
-        MpcSettings(constraint_stages=(0, 4))
+def test_mpc_refuses_move_blocks_that_do_not_sum_to_the_horizon():
+    for blocks in ((1, 1), (0,) * 20):
+        with pytest.raises(ParameterError, match="move blocks"):
+            ModelPredictiveController(MODEL, MpcSettings(), blocks)
+
+
+def test_states_are_constrained_from_the_first_stage_at_the_interval_to_the_horizon():
+    settings = MpcSettings(tuning=MpcTuning(horizon=8), constraint_interval=3)
+    assert settings.constraint_stages == [1, 4, 7]

@@ -3,7 +3,6 @@
 from gcs.config.problems import UnusableFile
 from gcs.config.system import SystemConfig, read_system
 from gcs.config.tables import (
-    ControllerConfig,
     MotionConfig,
     PayloadConfig,
     RangeSensorConfig,
@@ -15,7 +14,6 @@ from gcs.config.tables import (
 )
 
 __all__ = [
-    "ControllerConfig",
     "MotionConfig",
     "PayloadConfig",
     "RangeSensorConfig",

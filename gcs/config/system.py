@@ -21,7 +21,6 @@ from gcs.config.schema import table_of, table_type
 from gcs.config.sub_packages import ControlConfig, EstimationConfig, GuidanceConfig, SafetyConfig
 from gcs.config.tables import (
     AvoidanceConfig,
-    ControllerConfig,
     MotionConfig,
     PayloadConfig,
     RangeSensorConfig,
@@ -33,6 +32,7 @@ from gcs.config.tables import (
 )
 from gcs.config.toml_file import TomlFile, read_toml
 from gcs.errors import UnusableInput
+from idc_controller.control.settings import MpcTuning
 from idc_controller.errors import ParameterError
 from idc_controller.parameters import SystemParameters, polygon_attachments
 from idc_controller.payload_hull import PayloadHull
@@ -51,7 +51,7 @@ class SystemConfig:
     rates: RatesConfig = field(default_factory=RatesConfig)
     motion: MotionConfig = field(default_factory=MotionConfig)
     world: WorldConfig = field(default_factory=WorldConfig)
-    controller: ControllerConfig = field(default_factory=ControllerConfig)
+    controller: MpcTuning = field(default_factory=MpcTuning)
     avoidance: AvoidanceConfig = field(default_factory=AvoidanceConfig)
     flight: FlightSettings = field(default_factory=FlightSettings)
     estimation: EstimationConfig = field(default_factory=EstimationConfig)

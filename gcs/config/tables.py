@@ -6,9 +6,9 @@ Table I of the paper.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
-from idc_controller.control.settings import MpcWeights
+from idc_controller.control.settings import CONTROL_RATE
 from idc_controller.settings import setting
 
 Vector = tuple[float, float, float]
@@ -85,7 +85,7 @@ class RatesConfig:
     telemetry: int = setting(
         25, "Hz", "telemetry of each vehicle, and of the payload unit that it relays", gt=0, le=1_000_000
     )
-    control: int = setting(20, "Hz", "set-points from the ground", gt=0, le=1_000_000)
+    control: int = setting(CONTROL_RATE, "Hz", "set-points from the ground", gt=0, le=1_000_000)
 
 
 @dataclass(frozen=True)
@@ -110,16 +110,6 @@ class WorldConfig:
     """Differences of the simulated world from the controller's model."""
 
     payload_mass_factor: float = setting(1.0, "", "true payload mass over payload.mass", gt=0.0)
-
-
-@dataclass(frozen=True)
-class ControllerConfig:
-    """The model predictive controller."""
-
-    horizon: int = setting(20, "", "control steps of the prediction", ge=2, le=200)
-    payload_tilt_limit_deg: float = setting(5.0, "deg", "soft limit of the payload's tilt", gt=0.0, lt=90.0)
-    uav_tilt_limit_deg: float = setting(35.0, "deg", "soft limit of a UAV's tilt", gt=0.0, lt=90.0)
-    weights: MpcWeights = field(default_factory=MpcWeights)
 
 
 @dataclass(frozen=True)

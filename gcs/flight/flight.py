@@ -229,7 +229,7 @@ class Flight:
 
     def _begin_spool_up(self, time: float) -> None:
         assert self._pad is not None
-        rest = Reference(self.control.controller.parameters, self._pad, self.control.controller.load)
+        rest = Reference(self.control.controller.parameters, self._pad, self.control.controller.load.estimate)
         self.control.estimator.start(time, rest.at(np.array([time])).x[0])
         self.control.estimator.add_setpoint(time, None)
         self.takeoff_time = time

@@ -102,41 +102,12 @@ def controller(
 ) -> IntegratedDecisionController:
     """The integrated decision controller with the MPC as its tracker."""
     period = 1.0 / config.rates.control
-    settings = replace(
-        config.control.mpc,
-        period=period,
-        horizon=config.controller.horizon,
-        moves=moves(config.controller.horizon),
-        constraint_stages=tuple(range(1, config.controller.horizon + 1, 3)),
-        payload_tilt_limit=float(np.radians(config.controller.payload_tilt_limit_deg)),
-        uav_tilt_limit=float(np.radians(config.controller.uav_tilt_limit_deg)),
-        weights=config.controller.weights,
-    )
+    mpc = replace(config.control.mpc, period=period, tuning=config.controller)
     return IntegratedDecisionController(
         model,
-        ModelPredictiveController(model, settings),
+        ModelPredictiveController(model, mpc),
         safety,
-        replace(
-            config.control.controller,
-            period=period,
-            horizon=config.controller.horizon,
-            wind=config.estimation.wind,
-            ground=config.control.ground,
-        ),
+        replace(config.control.controller, period=period, wind=config.estimation.wind, ground=config.control.ground),
         stopwatch,
         guidance,
     )
-
-
-def moves(horizon: int) -> tuple[int, ...]:
-    """Move blocks that sum to ``horizon``: single steps first, then longer and longer ones."""
-    blocks: list[int] = []
-    for length in (1, 1, 1, 2, 2, 3, 4, 6):
-        if sum(blocks) >= horizon:
-            break
-        blocks.append(min(length, horizon - sum(blocks)))
-    rest = horizon - sum(blocks)
-    while rest > 0:
-        blocks.append(min(6, rest))
-        rest -= blocks[-1]
-    return tuple(blocks)

@@ -13,16 +13,15 @@ import numpy as np
 from idc_controller.arrays import Array
 from idc_controller.control.force_components import setpoints_from_force_components, state_in_force_components
 from idc_controller.control.ground_controller import GroundController
+from idc_controller.control.load_adaptation import LoadAdaptation, limited
 from idc_controller.control.settings import ControllerSettings
 from idc_controller.control.tracker import Tracker
 from idc_controller.estimation.estimate import Estimate
-from idc_controller.estimation.wind import WindEstimator
 from idc_controller.guidance.progress import Guidance
-from idc_controller.model.drag import Air
 from idc_controller.model.linear import LinearModel
 from idc_controller.parameters import SystemParameters
 from idc_controller.safety.filter_protocol import SafetyFilter, SafetyReport
-from idc_controller.trajectory.flatness import FlatReference, Load, PayloadTrajectory
+from idc_controller.trajectory.flatness import FlatReference, PayloadTrajectory
 from idc_controller.trajectory.reference import Reference
 from idc_controller.trajectory.trajectory import Trajectory
 
@@ -74,19 +73,15 @@ class IntegratedDecisionController:
         self.layout = model.layout
         self.tracker, self.safety, self.settings = tracker, safety, settings
         self.guidance = guidance or Guidance()
+        self.load = LoadAdaptation(model, settings)
         self._ground_controller = GroundController(model, settings.period, settings.ground)
         self._tracked: PayloadTrajectory | None = None
         self._stopwatch = stopwatch
-        self._weight = self.parameters.m_0 * self.parameters.g
-        self.load = Load(self.parameters.m_0, np.zeros(3), np.zeros((self.parameters.number_of_uavs, 3)))
-        self.wind = WindEstimator(
-            self.parameters.payload.areas, settings.period, settings.drag_limit * self._weight, settings.wind
-        )
-        self._times = settings.period * np.append(np.arange(settings.horizon + 1), 0.5)
+        self._times = settings.period * np.append(np.arange(tracker.horizon + 1), 0.5)
 
     def reference(self, mission: PayloadTrajectory) -> Reference:
         """What is tracked until the next decision, for the estimator; at first the mission itself."""
-        return Reference(self.parameters, self._tracked or mission, self.load)
+        return Reference(self.parameters, self._tracked or mission, self.load.estimate)
 
     def decide(
         self,
@@ -104,14 +99,16 @@ class IntegratedDecisionController:
         trajectory: PayloadTrajectory = mission
         if not on_ground:
             trajectory = self.safety.filter(estimate.time, self.guidance.reference(estimate.time, mission), estimate)
-            self.guidance.observe(trajectory, self.safety.report.lag, self.safety.report.deviation, self.load.air)
+            self.guidance.observe(
+                trajectory, self.safety.report.lag, self.safety.report.deviation, self.load.estimate.air
+            )
         self._tracked = None if on_ground else trajectory
         planned = self._stopwatch()
         if on_ground:
-            self._release()
+            self.load.release()
         elif learn_load:
-            self._learn(estimate)
-        reference = Reference(self.parameters, trajectory, self.load)
+            self.load.learn(estimate)
+        reference = Reference(self.parameters, trajectory, self.load.estimate)
         # The stages 0 .. N_p, then the middle of the first: a set-point is held for one period, and the reference's at
         # the middle of it leaves the least error.
         flat = reference.at(estimate.time + self._times)
@@ -120,12 +117,12 @@ class IntegratedDecisionController:
         error = state_in_force_components(estimate.x, self.layout, hover)
         error -= state_in_force_components(stages.x[0], self.layout, hover)
         s = self.settings
-        error[self.layout.r_0] = _limited(error[self.layout.r_0], s.position_error_limit)
-        error[self.layout.v_0] = _limited(error[self.layout.v_0], s.velocity_error_limit)
+        error[self.layout.r_0] = limited(error[self.layout.r_0], s.position_error_limit)
+        error[self.layout.v_0] = limited(error[self.layout.v_0], s.velocity_error_limit)
         ready = self._stopwatch()
         output = (self._ground_controller if on_ground else self.tracker).track(error, stages)
         tracked = self._stopwatch()
-        u = setpoints_from_force_components(output.delta_u, flat.u[-1], self.layout, hover)
+        u = setpoints_from_force_components(output.delta_u, flat.u[-1], self.layout, hover, s.least_lift)
         if not on_ground:
             u = self.safety.correct(estimate.time, u, estimate)
         n = u[self.layout.n_setpoint].reshape(-1, 2)
@@ -145,39 +142,3 @@ class IntegratedDecisionController:
             progress_rate=self.guidance.rate,
             detours=self.guidance.detours,
         )
-
-    def _release(self) -> None:
-        """The ground holds the payload: links that lean against the wind come upright."""
-        share = self.settings.period / self.settings.upright_time_constant
-        drag, uav_drag = _drag(self.load.air, np.zeros(3))
-        self.load = Load(self.load.mass, (1.0 - share) * (self.load.force + drag), self.load.uav_force + uav_drag)
-
-    def _learn(self, estimate: Estimate) -> None:
-        share = self.settings.period / self.settings.load_time_constant
-        mass = self.load.mass + share * (self.parameters.m_0 + estimate.mass_excess - self.load.mass)
-        velocity = estimate.x[self.layout.v_0]
-        drag, uav_drag = _drag(self.load.air, velocity)
-        force, uav_force = self.load.force + drag, self.load.uav_force + uav_drag
-        # What one of the UAVs has of its own is no wind.
-        self.wind.learn(estimate.force, np.median(estimate.uav_force, axis=0), velocity)
-        drag, uav_drag = _drag(self.wind.air, velocity)
-        uav_limit = self.settings.force_limit * float(self.parameters.m.min()) * self.parameters.g
-        # The estimate of the wind changes what is left over, not the whole.
-        force, uav_force = force - drag, uav_force - uav_drag
-        limit = self._weight * (self.settings.force_limit if self.wind.air is None else self.settings.drag_limit)
-        force = force + share * (_limited(estimate.force, limit) - drag - force)
-        on_uavs = np.array([_limited(force_i, uav_limit) for force_i in estimate.uav_force])
-        uav_force = uav_force + share * (on_uavs - uav_drag - uav_force)
-        least, most = self.settings.mass_share
-        mass = float(np.clip(mass, least * self.parameters.m_0, most * self.parameters.m_0))
-        self.load = Load(mass, force, uav_force, self.wind.air)
-
-
-def _drag(air: Air | None, velocity: Array) -> tuple[Array, Array]:
-    """On the payload and on each UAV (3,) (N), at ``velocity`` (3,) (m/s)."""
-    return (np.zeros(3), np.zeros(3)) if air is None else (air.on_payload(velocity), air.on_uav(velocity))
-
-
-def _limited(error: Array, limit: float) -> Array:
-    norm = float(np.linalg.norm(error))
-    return error * (limit / norm) if norm > limit else error

@@ -24,14 +24,19 @@ def state_in_force_components(x: Array, layout: StateLayout, hover: Array) -> Ar
     return converted
 
 
-def setpoints_from_force_components(delta: Array, u_reference: Array, layout: StateLayout, hover: Array) -> Array:
-    """Set-points (3 N,), tilts and thrusts, of a reference plus ``delta`` (3 N,) in force components."""
+def setpoints_from_force_components(
+    delta: Array, u_reference: Array, layout: StateLayout, hover: Array, least_lift: float
+) -> Array:
+    """Set-points (3 N,), tilts and thrusts, of a reference plus ``delta`` (3 N,) in force components.
+
+    The force points up whatever is commanded, with ``least_lift`` of the hover thrust at least.
+    """
     N = layout.number_of_uavs
     n = u_reference[layout.n_setpoint].reshape(N, 2)
     f = u_reference[layout.f_setpoint]
     lateral = f[:, None] * n + hover[:, None] * delta[layout.n_setpoint].reshape(N, 2)
     upward = f * _cosine(n) + delta[layout.f_setpoint]
-    upward = np.maximum(upward, 0.05 * hover)  # the force points up whatever is commanded
+    upward = np.maximum(upward, least_lift * hover)
     thrust = np.sqrt(np.sum(lateral**2, axis=-1) + upward**2)
     return np.concatenate([(lateral / thrust[:, None]).ravel(), thrust])
 

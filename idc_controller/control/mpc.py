@@ -5,16 +5,19 @@ taken about the exact flat reference; the model is minimal, so the Riccati equat
 constrained at stages 1 .. N_p (stage 0 cannot be changed) and softly, so that no state makes the QP infeasible.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import block_diag, solve_discrete_are
+from scipy.linalg import solve_discrete_are
 
 from idc_controller.arrays import Array
 from idc_controller.control.constraints import state_constraints
 from idc_controller.control.constraints.input_limits import InputLimits
+from idc_controller.control.prediction import CondensedPrediction, move_blocks
 from idc_controller.control.settings import MpcSettings, MpcWeights
 from idc_controller.control.tracker import TrackingOutput
-from idc_controller.errors import SolverError
+from idc_controller.errors import ParameterError, SolverError
 from idc_controller.model.linear import LinearModel, StateLayout
 from idc_controller.qp.parametric import ParametricQp
 from idc_controller.trajectory.flatness import FlatReference
@@ -23,16 +26,34 @@ from idc_controller.trajectory.flatness import FlatReference
 class ModelPredictiveController:
     """Tracks a flat reference. Time-invariant matrices are built once; a step is a gradient and a QP."""
 
-    def __init__(self, model: LinearModel, settings: MpcSettings) -> None:
-        self.settings = settings
-        self.layout = model.layout
-        self.A, self.B, _ = model.discretised(round(settings.period * 1e6))
-        self.Q = state_weight(settings.weights, self.layout)
-        self.R = input_weight(settings.weights, self.layout)
-        self.Q_f = solve_discrete_are(self.A, self.B, self.Q, self.R)
-        self._input_limits = InputLimits(model, settings)
-        self.state_constraints = state_constraints(model, settings)
-        self._condense()
+    def __init__(self, model: LinearModel, settings: MpcSettings, blocks: Sequence[int] | None = None) -> None:
+        """Args: ``blocks`` of stages over which each move is held, in sum the horizon; None: those usual for it."""
+        self.settings, self.layout = settings, model.layout
+        self.horizon = N_p = settings.tuning.horizon
+        blocks = move_blocks(N_p) if blocks is None else blocks
+        if sum(blocks) != N_p:
+            raise ParameterError(f"move blocks {tuple(blocks)} do not sum to the horizon of {N_p} stages")
+        A, B, _ = model.discretised(round(settings.period * 1e6))
+        self.prediction = prediction = CondensedPrediction(A, B, blocks)
+        Q, R = state_weight(settings.tuning.weights, self.layout), input_weight(settings.tuning.weights, self.layout)
+        Q_f = solve_discrete_are(A, B, Q, R)
+        F, H = prediction.F, prediction.H
+        self._gradient = sum(
+            (gradient @ F_k for gradient, F_k in zip(prediction.gradients(Q, Q_f), F[1:], strict=True)),
+            np.zeros((H.shape[2], len(A))),
+        )
+        # Input bounds of every move are hard; the states' bounds are soft.
+        self._input_limits, self.state_constraints = InputLimits(model, settings), state_constraints(model, settings)
+        rows = np.vstack([constraint.G for constraint in self.state_constraints])
+        stages = settings.constraint_stages
+        G = np.vstack([np.kron(np.eye(len(blocks)), self._input_limits.G), *(rows @ H[k] for k in stages)])
+        slack_of_constraint = _numbered([constraint.slack for constraint in self.state_constraints])
+        slack_of_row = np.concatenate([np.full(2 * H.shape[2], -1), np.tile(slack_of_constraint, len(stages))])
+        self._free_response = np.vstack([rows @ F[k] for k in stages])
+        self.qp = ParametricQp(
+            prediction.hessian(Q, R, Q_f), G, slack_of_row,
+            slack_linear=settings.slack_linear, slack_quadratic=settings.slack_quadratic,
+        )  # fmt: skip
 
     def track(self, error: Array, reference: FlatReference) -> TrackingOutput:
         """Optimal first move for ``error`` (12 + 11 N,) in force components about ``reference``.
@@ -50,44 +71,10 @@ class ModelPredictiveController:
             return TrackingOutput(np.clip(first_move, -h[m : 2 * m], h[:m]), infeasible=True)
         return TrackingOutput(solution.x[:m], solution.iterations)
 
-    def _condense(self) -> None:
-        """Predict all stages from error and moves: E = F e_0 + H V, and condense the cost and the constraints."""
-        s, n, m = self.settings, self.layout.size, self.layout.inputs
-        N_p, moves = s.horizon, len(s.moves)
-        move_of_stage = np.repeat(np.arange(moves), s.moves)
-        F = np.zeros((N_p + 1, n, n))
-        H = np.zeros((N_p + 1, n, moves * m))
-        F[0] = np.eye(n)
-        for k in range(N_p):
-            F[k + 1] = self.A @ F[k]
-            H[k + 1] = self.A @ H[k]
-            block = slice(move_of_stage[k] * m, (move_of_stage[k] + 1) * m)
-            H[k + 1][:, block] += self.B
-        P = block_diag(*(held * self.R for held in s.moves))
-        gradient = np.zeros((moves * m, n))
-        for k in range(1, N_p + 1):
-            weight = self.Q_f if k == N_p else self.Q
-            P += H[k].T @ weight @ H[k]
-            gradient += H[k].T @ weight @ F[k]
-
-        # Input bounds of every move are hard; the states' bounds are soft.
-        rows = np.vstack([constraint.G for constraint in self.state_constraints])
-        G = np.vstack([np.kron(np.eye(moves), self._input_limits.G), *(rows @ H[k] for k in s.constraint_stages)])
-        slack_of_constraint = _numbered([constraint.slack for constraint in self.state_constraints])
-        slack_of_row = np.concatenate(
-            [np.full(2 * moves * m, -1), np.tile(slack_of_constraint, len(s.constraint_stages))]
-        )
-        self._gradient = gradient
-        self._free_response = np.vstack([rows @ F[k] for k in s.constraint_stages])
-        self._first_stage_of_move = np.concatenate([[0], np.cumsum(s.moves)[:-1]])
-        self.qp = ParametricQp(
-            (P + P.T) / 2, G, slack_of_row, slack_linear=s.slack_linear, slack_quadratic=s.slack_quadratic
-        )
-
     def bounds(self, error: Array, reference: FlatReference) -> Array:
         """Return h of the QP: of the inputs of every move, then of the states at every constrained stage."""
-        stages = list(self.settings.constraint_stages)
-        inputs = self._input_limits.h(reference.u[self._first_stage_of_move])
+        stages = self.settings.constraint_stages
+        inputs = self._input_limits.h(reference.u[self.prediction.first_stages])
         states = np.concatenate([constraint.h(reference, stages) for constraint in self.state_constraints], axis=1)
         return np.concatenate([inputs.ravel(), states.ravel() - self._free_response @ error])
 

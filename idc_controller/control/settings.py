@@ -1,14 +1,16 @@
 """Settings of the tracking controllers: the MPC's horizon, limits and weights, and how the load is learnt."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from idc_controller.errors import ParameterError
 from idc_controller.estimation.settings import WindSettings
 from idc_controller.settings import derived, setting
 
 Triple = tuple[float, float, float]
+
+CONTROL_RATE = 20
+"""Control steps a second of the default system (Hz): ``rates.control``."""
 
 
 @dataclass(frozen=True)
@@ -33,21 +35,36 @@ class MpcWeights:
 
 
 @dataclass(frozen=True)
-class MpcSettings:
-    """Horizon, limits and weights of the MPC. Angles in rad."""
+class MpcTuning:
+    """What is tuned first of the model predictive controller: table ``controller``."""
 
-    period: float = derived(0.05)
-    """Control period (s): ``rates.control``."""
-    horizon: int = derived(20)
-    """Stages N_p of the horizon: ``controller.horizon``."""
-    moves: tuple[int, ...] = derived((1, 1, 1, 2, 2, 3, 4, 6))
-    """Stages over which each move is held; they sum to the horizon."""
-    constraint_stages: tuple[int, ...] = derived((1, 4, 7, 10, 13, 16, 19))
-    """Stages at which states are constrained."""
-    payload_tilt_limit: float = derived(float(np.radians(5.0)))
-    """Largest roll, pitch and yaw of the payload (rad, eq:consOsc): ``controller.payload_tilt_limit_deg``."""
-    uav_tilt_limit: float = derived(float(np.radians(35.0)))
-    """Largest tilt set-point (rad): ``controller.uav_tilt_limit_deg``."""
+    horizon: int = setting(20, "", "control steps of the prediction", ge=2, le=200)
+    payload_tilt_limit_deg: float = setting(5.0, "deg", "soft limit of the payload's tilt", gt=0.0, lt=90.0)
+    uav_tilt_limit_deg: float = setting(35.0, "deg", "soft limit of a UAV's tilt", gt=0.0, lt=90.0)
+    weights: MpcWeights = field(default_factory=MpcWeights)
+
+    @property
+    def payload_tilt_limit(self) -> float:
+        """Largest roll, pitch and yaw of the payload (rad, eq:consOsc)."""
+        return float(np.radians(self.payload_tilt_limit_deg))
+
+    @property
+    def uav_tilt_limit(self) -> float:
+        """Largest tilt set-point (rad)."""
+        return float(np.radians(self.uav_tilt_limit_deg))
+
+
+@dataclass(frozen=True)
+class MpcSettings:
+    """Limits of the MPC and the cost of exceeding them."""
+
+    period: float = derived(1.0 / CONTROL_RATE)
+    """Control period (s): of ``rates.control``."""
+    tuning: MpcTuning = derived(MpcTuning())
+    """Table ``controller``."""
+    constraint_interval: int = setting(
+        3, "", "control steps between the stages of the prediction at which states are constrained, the first on", ge=1
+    )
     thrust_min: float = setting(1.0, "N", "least thrust set-point of a UAV", ge=0.0)
     thrust_share_max: float = setting(
         0.95, "", "largest thrust set-point, as a share of the largest thrust", gt=0, le=1
@@ -55,16 +72,16 @@ class MpcSettings:
     separation_share: float = setting(
         0.425, "", "part of the gap between neighbouring rotor discs in hover that has to stay open", ge=0.0, le=1.0
     )
+    neighbour_share: float = setting(
+        1.3, "", "pairs of UAVs up to so many times the least distance apart in hover are neighbours", ge=1.0
+    )
     slack_linear: float = setting(1e3, "", "linear cost of exceeding a limit of the state", gt=0.0)
     slack_quadratic: float = setting(1e4, "", "quadratic cost of exceeding a limit of the state", gt=0.0)
-    weights: MpcWeights = derived(MpcWeights())
-    """Of ``controller.weights``."""
 
-    def __post_init__(self) -> None:
-        if sum(self.moves) != self.horizon or min(self.moves) < 1:
-            raise ParameterError(f"moves {self.moves} do not sum to the horizon of {self.horizon} stages")
-        if not all(1 <= k <= self.horizon for k in self.constraint_stages):
-            raise ParameterError(f"constraint stages {self.constraint_stages} leave 1 .. {self.horizon}")
+    @property
+    def constraint_stages(self) -> list[int]:
+        """Stages of the prediction at which states are constrained."""
+        return list(range(1, self.tuning.horizon + 1, self.constraint_interval))
 
 
 @dataclass(frozen=True)
@@ -84,10 +101,8 @@ class GroundControlSettings:
 class ControllerSettings:
     """How fast the load is learnt and how far an error is answered at once."""
 
-    period: float = derived(0.05)
+    period: float = derived(1.0 / CONTROL_RATE)
     """Control period (s): of ``rates.control``."""
-    horizon: int = derived(20)
-    """Stages over which the tracker needs the reference: ``controller.horizon``."""
     wind: WindSettings = derived(WindSettings())
     """Table ``estimation.wind``."""
     ground: GroundControlSettings = derived(GroundControlSettings())
@@ -111,3 +126,6 @@ class ControllerSettings:
         0.3, "m", "a position error of the payload is answered as if it were at most this", gt=0.0
     )
     velocity_error_limit: float = setting(0.6, "m/s", "the same of its velocity", gt=0.0)
+    least_lift: float = setting(
+        0.05, "", "least upward force in a UAV's set-points, over its hover thrust: it points up always", gt=0.0, lt=1.0
+    )

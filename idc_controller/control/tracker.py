@@ -22,6 +22,9 @@ class TrackingOutput:
 class Tracker(Protocol):
     """Turns the error about a reference into set-points."""
 
+    horizon: int
+    """Number N_p of the last stage of the reference that it needs."""
+
     def track(self, error: Array, reference: FlatReference) -> TrackingOutput:
         """``error`` (12 + 11 N,) now, ``reference`` over the horizon's stages 0 .. N_p."""
         ...

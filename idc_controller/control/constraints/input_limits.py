@@ -14,7 +14,7 @@ class InputLimits:
     def __init__(self, model: LinearModel, settings: MpcSettings) -> None:
         self._layout, self._hover = model.layout, model.parameters.hover_thrust
         N = model.layout.number_of_uavs
-        tilt = np.full(2 * N, np.tan(settings.uav_tilt_limit))
+        tilt = np.full(2 * N, np.tan(settings.tuning.uav_tilt_limit))
         thrust_max = settings.thrust_share_max * model.parameters.thrust_max
         self._upper = np.concatenate([tilt, np.full(N, thrust_max)])
         self._lower = np.concatenate([-tilt, np.full(N, settings.thrust_min)])

@@ -14,7 +14,7 @@ class PayloadTilt:
     """See :class:`~idc_controller.control.constraints.constraint.StateConstraint`."""
 
     def __init__(self, model: LinearModel, settings: MpcSettings) -> None:
-        self._limit = settings.payload_tilt_limit
+        self._limit = settings.tuning.payload_tilt_limit
         self.slack = np.repeat(np.arange(3), 2)
         self.G = np.zeros((6, model.layout.size))
         self.G[np.arange(6), model.layout.Theta.start + self.slack] = np.tile([1.0, -1.0], 3)

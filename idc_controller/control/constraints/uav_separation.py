@@ -9,9 +9,6 @@ from idc_controller.control.settings import MpcSettings
 from idc_controller.model.linear import LinearModel
 from idc_controller.trajectory.flatness import FlatReference
 
-NEIGHBOURS = 1.3
-"""Pairs up to this many times the least distance apart in hover are neighbours: not those across the payload."""
-
 
 class UavSeparation:
     """See :class:`~idc_controller.control.constraints.constraint.StateConstraint`."""
@@ -28,7 +25,7 @@ class UavSeparation:
         rows, bounds = [], []
         for (i, j), d in apart.items():
             distance = float(np.linalg.norm(d))
-            if distance < NEIGHBOURS * nearest:
+            if distance < settings.neighbour_share * nearest:
                 rows.append(-(d / distance) @ (C[3 * i : 3 * i + 3] - C[3 * j : 3 * j + 3]))
                 bounds.append(max(distance - self.distance, 0.0))
         self.G, self._h = np.array(rows), np.array(bounds)

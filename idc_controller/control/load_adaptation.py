@@ -1,0 +1,63 @@
+"""The load that the reference is made for: payload mass, disturbance forces and wind, learnt from the estimates."""
+
+import numpy as np
+
+from idc_controller.arrays import Array
+from idc_controller.control.settings import ControllerSettings
+from idc_controller.estimation.estimate import Estimate
+from idc_controller.estimation.wind import WindEstimator
+from idc_controller.model.drag import Air
+from idc_controller.model.linear import LinearModel
+from idc_controller.trajectory.flatness import Load
+
+
+class LoadAdaptation:
+    """Follows the estimator's forces and mass excess, more slowly than the estimate itself and within limits."""
+
+    def __init__(self, model: LinearModel, settings: ControllerSettings) -> None:
+        self.parameters, self.layout, self.settings = model.parameters, model.layout, settings
+        self._weight = self.parameters.m_0 * self.parameters.g
+        self.estimate = Load(self.parameters.m_0, np.zeros(3), np.zeros((self.parameters.number_of_uavs, 3)))
+        self.wind = WindEstimator(
+            self.parameters.payload.areas, settings.period, settings.drag_limit * self._weight, settings.wind
+        )
+
+    def release(self) -> None:
+        """Let links that lean against the wind come upright: the ground holds the payload."""
+        share = self.settings.period / self.settings.upright_time_constant
+        load = self.estimate
+        drag, uav_drag = _drag(load.air, np.zeros(3))
+        self.estimate = Load(load.mass, (1.0 - share) * (load.force + drag), load.uav_force + uav_drag)
+
+    def learn(self, estimate: Estimate) -> None:
+        """Follow the disturbance forces and the mass excess of ``estimate``."""
+        load = self.estimate
+        share = self.settings.period / self.settings.load_time_constant
+        mass = load.mass + share * (self.parameters.m_0 + estimate.mass_excess - load.mass)
+        velocity = estimate.x[self.layout.v_0]
+        drag, uav_drag = _drag(load.air, velocity)
+        force, uav_force = load.force + drag, load.uav_force + uav_drag
+        # What one of the UAVs has of its own is no wind.
+        self.wind.learn(estimate.force, np.median(estimate.uav_force, axis=0), velocity)
+        drag, uav_drag = _drag(self.wind.air, velocity)
+        uav_limit = self.settings.force_limit * float(self.parameters.m.min()) * self.parameters.g
+        # The estimate of the wind changes what is left over, not the whole.
+        force, uav_force = force - drag, uav_force - uav_drag
+        limit = self._weight * (self.settings.force_limit if self.wind.air is None else self.settings.drag_limit)
+        force = force + share * (limited(estimate.force, limit) - drag - force)
+        on_uavs = np.array([limited(force_i, uav_limit) for force_i in estimate.uav_force])
+        uav_force = uav_force + share * (on_uavs - uav_drag - uav_force)
+        least, most = self.settings.mass_share
+        mass = float(np.clip(mass, least * self.parameters.m_0, most * self.parameters.m_0))
+        self.estimate = Load(mass, force, uav_force, self.wind.air)
+
+
+def _drag(air: Air | None, velocity: Array) -> tuple[Array, Array]:
+    """On the payload and on each UAV (3,) (N), at ``velocity`` (3,) (m/s)."""
+    return (np.zeros(3), np.zeros(3)) if air is None else (air.on_payload(velocity), air.on_uav(velocity))
+
+
+def limited(vector: Array, limit: float) -> Array:
+    """Return ``vector`` (3,), shortened to ``limit`` if it is longer."""
+    norm = float(np.linalg.norm(vector))
+    return vector * (limit / norm) if norm > limit else vector
