@@ -5,7 +5,7 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.config import read_system
 from gcs.mavlink.codec import Codec
-from gcs.mission import Fault
+from gcs.mission.model import Fault
 from vehicle_sim.faults import FaultInjector
 from vehicle_sim.world.sensors import Measurement
 

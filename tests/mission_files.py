@@ -10,8 +10,10 @@ import pytest
 from rich.console import Console
 
 from gcs.config import UnusableFile
-from gcs.mission import Mission, Route, describe, read_mission
-from gcs.mission.route import Circle, FlyTo, Leg, TakeOff
+from gcs.mission.describe import describe
+from gcs.mission.model import Mission
+from gcs.mission.read import read_mission
+from gcs.mission.route import Circle, FlyTo, Leg, Route, TakeOff
 
 MISSIONS = Path(__file__).parents[1] / "missions"
 HOME = (47.397742, 8.545594, 488.0)

@@ -14,8 +14,8 @@ from gcs.campaign.faults.base_mission import read_base
 from gcs.campaign.faults.campaign_file import read_campaign
 from gcs.campaign.faults.sweep import FaultFlights
 from gcs.config import UnusableFile
-from gcs.mission import Fault, read_mission
-from gcs.mission.model import Limits
+from gcs.mission.model import Fault, Limits
+from gcs.mission.read import read_mission
 
 MISSIONS = Path(__file__).parents[1] / "missions"
 
@@ -112,12 +112,12 @@ SWEEP = "{ probability = [0.1, 0.3] }"
         ("seeds = [3, 7]", "seeds = [3, 3]", "line 5: campaign.seeds: 3 appears 2 times"),
         ("seeds = [3, 7]", "seeds = [3]\nseed_count = 2", "line 6: campaign.seed_count: seeds are listed already"),
         ("seeds = [3, 7]", "seeds = []", "line 5: campaign.seeds: needs at least 1"),
-        ("seeds = [3, 7]", 'seeds = [3]\ncontroller = "pid"', "line 6: campaign.controller: input should be 'idc'"),
+        ("seeds = [3, 7]", 'seeds = [3]\ncontroller = "pid"', "line 6: campaign.controller: must be 'idc'"),
         ("short_figure.toml", "long_figure.toml", "line 4: campaign.missions[1]: there is no file long_figure.toml"),
         ("packet_loss", "paket_loss", "line 9: fault[1].kind: there is no kind 'paket_loss': did you mean 'packet"),
-        (SWEEP, "{ probability = [0.1, 3] }", "line 11: fault[1].probability: input should be"),
+        (SWEEP, "{ probability = [0.1, 3] }", "line 11: fault[1].probability: must be"),
         (SWEEP, "{ share = [0.1] }", "line 11: fault[1].share: unknown key"),
-        (SWEEP, "{ probability = 0.1 }", "line 11: fault[1].severity.probability: input should"),
+        (SWEEP, "{ probability = 0.1 }", "line 11: fault[1].severity.probability: must"),
         (SWEEP, "{ probability = [] }", "line 11: fault[1].severity.probability: needs at least"),
         (SWEEP, "{ probability = [0.1, 0.1] }", "'loss': probability 0.1 appears twice"),
         (SWEEP, "{ start = [1.0] }", "line 11: fault[1].severity.start: start appears in the"),

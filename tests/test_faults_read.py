@@ -12,7 +12,9 @@ from gcs.errors import UnusableInput
 from gcs.faults import KINDS, read_settings
 from gcs.faults.listing import kinds_markdown, parameters
 from gcs.faults.record import notes_of
-from gcs.mission import Fault, describe, read_mission
+from gcs.mission.describe import describe
+from gcs.mission.model import Fault
+from gcs.mission.read import read_mission
 
 ROOT = Path(__file__).parents[1]
 BEGIN = """
@@ -67,7 +69,7 @@ def test_fault_is_read_and_described(tmp_path):
         (fault("packet_los"), "kind", "fault[1].kind: there is no kind 'packet_los': did you mean 'packet_loss'?"),
         (fault("xyz"), "kind", "fault[1].kind: there is no kind 'xyz': gcs faults --kinds lists them"),
         (fault("packet_loss"), "[[fault]]", "fault[1].probability: missing key"),
-        (fault("packet_loss", "probability = 1.1"), "probability", "fault[1].probability: input should be less than"),
+        (fault("packet_loss", "probability = 1.1"), "probability", "fault[1].probability: must be less than"),
         (fault("packet_loss", "probability = nan"), "probability", "fault[1].probability: "),
         (fault("packet_loss", 'probability = "much"'), "probability", "fault[1].probability: "),
         (fault("packet_loss", "probability = 0.1", "prob = 0.1"), "prob =", "fault[1].prob: unknown key"),

@@ -21,7 +21,8 @@ from mission_files import (
     wpl,
 )
 
-from gcs.mission import Lissajous, read_mission
+from gcs.mission.model import Lissajous
+from gcs.mission.read import read_mission
 from gcs.mission.route import FlyTo, Land
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.pole import Pole

@@ -10,8 +10,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from gcs.config import UnusableFile, read_system
-from gcs.mission import Route, read_mission
-from gcs.mission.route import HoldForever, Land, TakeOff
+from gcs.mission.read import read_mission
+from gcs.mission.route import HoldForever, Land, Route, TakeOff
 
 MISSIONS = Path(__file__).parents[1] / "missions"
 FUZZ = settings(

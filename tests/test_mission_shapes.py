@@ -16,8 +16,7 @@ from programs import ENVIRONMENT
 
 from gcs.campaign.toml_text import mission_text
 from gcs.errors import UnusableInput
-from gcs.mission import Obstacle
-from gcs.mission.model import Limits
+from gcs.mission.model import Limits, Obstacle
 from gcs.record.clearance import clearance_over_time
 from gcs.record.obstacle_shapes import OBSTACLE_SHAPES, read_shape, write_shapes
 from idc_controller.geometry.capsule import Capsule
@@ -148,7 +147,7 @@ def test_check_of_mission_with_unusable_mesh_exits_with_2(tmp_path):
 def test_missing_unknown_and_wrong_keys_of_shapes_are_refused(tmp_path):
     for shape, line, reason in (
         ("capsule", "radius = 1.0", "length: missing key"),
-        ("capsule", "radius = 1.0\nlength = 0.0", "length: input should be greater than 0"),
+        ("capsule", "radius = 1.0\nlength = 0.0", "length: must be greater than 0"),
         ("box", "size = [1.0, 1.0, 1.0]\ntilt_deg = 3.0", "tilt_deg: unknown key"),
         ("mesh", "scale = 1.0", "file: missing key"),
         ("cone", "radius = 1.0", "'cone' is none of 'sphere', 'pole', 'wall', 'capsule', 'box', 'mesh'"),
@@ -226,7 +225,7 @@ def test_clearance_to_a_capsule_is_exact():
 
 
 def test_rock_of_the_missions_is_unknown(tmp_path: Path):
-    from gcs.mission import read_mission
+    from gcs.mission.read import read_mission
 
     [rock] = read_mission(MISSIONS / "unknown_rock.toml").obstacles
     assert isinstance(rock, Obstacle) and rock.shape.kind == "mesh" and not rock.known

@@ -6,7 +6,9 @@ import pytest
 from mission_files import MISSIONS, POINTS, TAKE_OFF, TOML, A, read, refusal, row, shape, wpl
 
 from gcs.config import UnusableFile
-from gcs.mission import Lissajous, Route, read_mission
+from gcs.mission.model import Lissajous
+from gcs.mission.read import read_mission
+from gcs.mission.route import Route
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
 

@@ -23,7 +23,8 @@ from obstacle_scene import (
 
 from gcs.flight import stack
 from gcs.mavlink.telemetry import detection
-from gcs.mission import HarmonicMotion, Obstacle
+from gcs.mission.model import Obstacle
+from gcs.mission.motion import HarmonicMotion
 from gcs.mission.read import read_mission
 from idc_controller.estimation.measurements import Attitude, Position
 from idc_controller.geometry.box import Wall

@@ -6,16 +6,9 @@ import numpy as np
 import pytest
 
 from gcs.config import UnusableFile
-from gcs.mission import (
-    CircleMotion,
-    HarmonicMotion,
-    LinearMotion,
-    Obstacle,
-    RandomWalkMotion,
-    WaypointsMotion,
-    mover,
-    read_mission,
-)
+from gcs.mission.model import Obstacle
+from gcs.mission.motion import CircleMotion, HarmonicMotion, LinearMotion, RandomWalkMotion, WaypointsMotion
+from gcs.mission.read import read_mission
 from idc_controller.geometry.sphere import Sphere
 from vehicle_sim.world.obstacle_bodies import MovingObstacles
 
@@ -23,7 +16,7 @@ SQUARE = ((0.0, 0.0, 0.0), (2.0, 0.0, 0.0), (2.0, 1.0, 0.0))
 
 
 def at(motion, *times):
-    displacement = mover(motion)
+    displacement = motion.mover()
     return np.array([displacement(time) for time in times])
 
 
@@ -106,7 +99,7 @@ def test_obstacles_of_world_follow_their_motion():
     for time in (0.0, 1.25):
         moving.move(time)
         for i, motion in enumerate(motions):
-            np.testing.assert_allclose(bodies.places[str(i)], np.array([5.0, i, -4.0]) + mover(motion)(time))
+            np.testing.assert_allclose(bodies.places[str(i)], np.array([5.0, i, -4.0]) + motion.mover()(time))
 
 
 def mission(folder, shape, motion):
@@ -153,7 +146,7 @@ def test_motions_are_read_from_mission(tmp_path, shape, motion, expected):
         (
             "sphere",
             '{ kind = "waypoints", points = [[0, 0, 0], [1, 0, 0], [0, 0, 0]], speed = 1.0, repeat = true }',
-            "two points after one another are the same",
+            "two consecutive points are the same",
         ),
         ("sphere", '{ kind = "random_walk", seed = -1, speed = [1, 1, 1], bandwidth = 1.0 }', "motion.seed: "),
         ("sphere", '{ kind = "random_walk", seed = 1, speed = [1, 1], bandwidth = 1.0 }', "motion.speed"),

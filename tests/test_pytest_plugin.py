@@ -15,7 +15,8 @@ from gcs.campaign.testing import fault
 from gcs.errors import GcsError, UnusableInput
 from gcs.faults.link import PacketLoss
 from gcs.faults.values import Bias
-from gcs.mission import Fault, read_mission
+from gcs.mission.model import Fault
+from gcs.mission.read import read_mission
 
 pytestmark = pytest.mark.slow
 

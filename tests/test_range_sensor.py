@@ -13,7 +13,8 @@ from scripted_ground import ScriptedGround, exchange
 
 from gcs.config import UnusableFile, read_system
 from gcs.mavlink.codec import Codec
-from gcs.mission import HarmonicMotion, Obstacle
+from gcs.mission.model import Obstacle
+from gcs.mission.motion import HarmonicMotion
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.distance import Bodies
 from idc_controller.geometry.pole import Pole

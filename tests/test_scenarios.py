@@ -20,7 +20,8 @@ from gcs.campaign.scenarios.report import from_bad_end, report
 from gcs.campaign.scenarios.schedule import Schedule, arrival
 from gcs.config.flight_settings import DEFAULTS
 from gcs.errors import UnusableInput
-from gcs.mission import Lissajous, mover, read_mission
+from gcs.mission.model import Lissajous
+from gcs.mission.read import read_mission
 from gcs.record.run_folder import open_run_folder
 from gcs.record.tables import truth_columns
 from idc_controller.geometry.obstacles import PredictedObstacle
@@ -106,7 +107,7 @@ def test_harmonic_motion_is_fastest_when_the_payload_passes():
     random = np.random.default_rng(2)
     for _ in range(10):
         motion = motion_for("harmonic", random, 17.0, np.array([1.0, 0.0, 0.0]), 2.0)
-        np.testing.assert_allclose(mover(motion)(17.0), 0.0, atol=1e-3)
+        np.testing.assert_allclose(motion.mover()(17.0), 0.0, atol=1e-3)
 
 
 # Schedule
@@ -126,7 +127,7 @@ def test_mission_sphere_is_at_its_mean_position_when_payload_passes(name, missio
     ]  # fmt: skip
     assert near
     for i in near:
-        np.testing.assert_allclose(mover(sphere.motion)(schedule.times[i]), 0.0, atol=0.1)
+        np.testing.assert_allclose(sphere.motion.mover()(schedule.times[i]), 0.0, atol=0.1)
 
 
 @pytest.fixture

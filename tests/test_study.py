@@ -18,7 +18,7 @@ from gcs.campaign.tables import extreme
 from gcs.campaign.toml_text import system_text
 from gcs.config import read_system
 from gcs.errors import UnusableInput
-from gcs.mission import read_mission
+from gcs.mission.read import read_mission
 from gcs.record.run_folder import write_json
 
 MISSIONS = Path(__file__).parents[1] / "missions"

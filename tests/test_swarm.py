@@ -12,7 +12,8 @@ from scripted_ground import GROUND, ScriptedGround, exchange
 from gcs.config import read_system
 from gcs.mavlink import px4
 from gcs.mavlink.codec import Codec
-from gcs.mission import HarmonicMotion, Home, LinearMotion, Obstacle
+from gcs.mission.model import Home, Obstacle
+from gcs.mission.motion import HarmonicMotion, LinearMotion
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere

@@ -9,8 +9,8 @@ from functools import partial
 from gcs.config import SystemConfig
 from gcs.mavlink import px4
 from gcs.mavlink.address import Address
-from gcs.mission import Home as MissionHome
-from gcs.mission import Obstacle
+from gcs.mission.model import Home as MissionHome
+from gcs.mission.model import Obstacle
 from vehicle_sim.autopilot.airframe import Airframe
 from vehicle_sim.autopilot.settings import AutopilotSettings, FailsafeSettings
 from vehicle_sim.faults.interface import FaultInterface

@@ -1,6 +1,5 @@
 """Configuration: the system's parameters, read strictly from TOML into frozen dataclasses."""
 
-from gcs.config.problems import UnusableFile
 from gcs.config.system import SystemConfig, read_system
 from gcs.config.tables import (
     MotionConfig,
@@ -12,6 +11,7 @@ from gcs.config.tables import (
     UavConfig,
     WorldConfig,
 )
+from gcs.config.validate import UnusableFile
 
 __all__ = [
     "MotionConfig",

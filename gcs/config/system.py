@@ -16,7 +16,6 @@ import numpy as np
 from pydantic import TypeAdapter
 
 from gcs.config.flight_settings import FlightSettings
-from gcs.config.problems import UnusableFile
 from gcs.config.schema import table_of, table_type
 from gcs.config.sub_packages import ControlConfig, EstimationConfig, GuidanceConfig, SafetyConfig
 from gcs.config.tables import (
@@ -31,6 +30,7 @@ from gcs.config.tables import (
     WorldConfig,
 )
 from gcs.config.toml_file import TomlFile, read_toml
+from gcs.config.validate import UnusableFile
 from gcs.errors import UnusableInput
 from idc_controller.control.settings import MpcTuning
 from idc_controller.errors import ParameterError

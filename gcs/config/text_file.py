@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from gcs.config.problems import UnusableFile
+from gcs.config.validate import UnusableFile
 
 SIZE_LIMIT = 8_000_000
 """Bytes. The longest missions that ground stations write are a few hundred kilobytes."""

@@ -9,7 +9,7 @@ from typing import Any, Literal, TypeVar, dataclass_transform
 from pydantic import Field
 
 from gcs.config import SystemConfig
-from gcs.config.toml_file import strict
+from gcs.config.validate import strict
 
 Direction = Literal["telemetry", "command", "both"]
 Family = Literal["link", "timing", "values", "sensors", "world"]

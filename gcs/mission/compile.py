@@ -5,8 +5,6 @@ Meanings: https://mavlink.io/en/messages/common.html#mav_commands and
 https://mavlink.io/en/services/mission.html
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -15,9 +13,7 @@ from pathlib import Path
 from pymavlink.dialects.v20 import common as mavlink
 
 from gcs.config import MotionConfig, UnusableFile
-from gcs.mission.content import WaypointFile
 from gcs.mission.flow import check_flow
-from gcs.mission.geodesy import check_latitude_longitude, north_east
 from gcs.mission.items import (
     AMSL_FRAMES,
     CONDITION_GATE,
@@ -26,6 +22,7 @@ from gcs.mission.items import (
     LEFT_OUT,
     ItemError,
     MissionItem,
+    WaypointFile,
     command_name,
     frame_name,
 )
@@ -148,7 +145,7 @@ def _place(item: MissionItem, context: _Context) -> Place:
     if here:
         return Place(None, altitude)
     assert latitude is not None and longitude is not None  # for the type checker: `here` covers None
-    return Place(_north_east(latitude, longitude, context), altitude)
+    return Place(context.file.home.north_east(latitude, longitude), altitude)
 
 
 def _above_home(item: MissionItem, altitude: float, context: _Context) -> float:
@@ -157,11 +154,6 @@ def _above_home(item: MissionItem, altitude: float, context: _Context) -> float:
     if context.file.home.altitude is None:
         raise ItemError("altitude", "is above mean sea level, and the file does not say how high home is")
     return altitude - context.file.home.altitude
-
-
-def _north_east(latitude: float, longitude: float, context: _Context) -> tuple[float, float]:
-    home = context.file.home
-    return north_east(latitude, longitude, (home.latitude, home.longitude, home.altitude or 0.0))
 
 
 def _seconds(item: MissionItem) -> float:
@@ -187,17 +179,13 @@ def _note_heading(item: MissionItem, context: _Context) -> None:
 # Commands -------------------------------------------------------------------------------------------------------
 
 
-def _waypoint(item: MissionItem, context: _Context) -> Step:
-    _note_heading(item, context)
+def _go(item: MissionItem, context: _Context) -> Go:
     return Go(item.label, _place(item, context), _seconds(item))
 
 
-def _spline(item: MissionItem, context: _Context) -> Step:
-    return Go(item.label, _place(item, context), _seconds(item), spline=True)
-
-
-def _gate(item: MissionItem, context: _Context) -> Step:
-    return Go(item.label, _place(item, context))
+def _waypoint(item: MissionItem, context: _Context) -> Step:
+    _note_heading(item, context)
+    return _go(item, context)
 
 
 def _loiter_unlimited(item: MissionItem, context: _Context) -> Step:
@@ -217,27 +205,16 @@ def _loiter_turns(item: MissionItem, context: _Context) -> Step:
     return Turn(item.label, _place(item, context), abs(radius), turns, radius > 0.0)
 
 
-def _loiter_time(item: MissionItem, context: _Context) -> Step:
-    return Go(item.label, _place(item, context), _seconds(item))
-
-
-def _return(item: MissionItem, context: _Context) -> Step:
-    return Return(item.label)
-
-
 def _land(item: MissionItem, context: _Context) -> Step:
     _note_heading(item, context)
-    latitude, longitude, altitude = item.params[4:7]
+    altitude = item.params[6]
     if altitude and item.frame != mavlink.MAV_FRAME_MISSION:
         height = _above_home(item, altitude, context)
         if height < -0.5:
             raise ItemError("altitude", f"below ground: {-height:.6g} m lower than home")
         if height > 0.5:
             context.note(item, f"altitude {altitude:g} m left out: the ground is flat, and the payload lands on it")
-    place = _place(replace(item, params=(*item.params[:6], None)), context)
-    if latitude is not None and longitude is not None:
-        check_latitude_longitude(latitude, longitude)
-    return Descend(item.label, place)
+    return Descend(item.label, _place(replace(item, params=(*item.params[:6], None)), context))
 
 
 def _take_off(item: MissionItem, context: _Context) -> Step:
@@ -275,15 +252,7 @@ def _change_speed(item: MissionItem, context: _Context) -> Step | None:
     return Speed(item.label, speed)
 
 
-def _jump(item: MissionItem, context: _Context) -> Step | None:
-    return _jump_by(item, context, context.index_of_number, "target")
-
-
-def _jump_by_tag(item: MissionItem, context: _Context) -> Step | None:
-    return _jump_by(item, context, context.index_of_tag, "tag")
-
-
-def _jump_by(item: MissionItem, context: _Context, index_of: dict[int, int], name: str) -> Step | None:
+def _jump(item: MissionItem, index_of: dict[int, int], name: str, context: _Context) -> Step | None:
     target = _whole(item, 0, name)
     repeats = _whole(item, 1, "repeats")
     if repeats < -1:
@@ -297,24 +266,20 @@ def _jump_by(item: MissionItem, context: _Context, index_of: dict[int, int], nam
     return Jump(item.label, index_of[target], None if repeats == -1 else repeats)
 
 
-def _tag(item: MissionItem, context: _Context) -> Step | None:
-    return None
-
-
 _COMMANDS: dict[int, Callable[[MissionItem, _Context], Step | None]] = {
     mavlink.MAV_CMD_NAV_WAYPOINT: _waypoint,
-    mavlink.MAV_CMD_NAV_SPLINE_WAYPOINT: _spline,
-    CONDITION_GATE: _gate,
+    mavlink.MAV_CMD_NAV_SPLINE_WAYPOINT: lambda item, context: replace(_go(item, context), spline=True),
+    CONDITION_GATE: lambda item, context: Go(item.label, _place(item, context)),
     mavlink.MAV_CMD_NAV_LOITER_UNLIM: _loiter_unlimited,
     mavlink.MAV_CMD_NAV_LOITER_TURNS: _loiter_turns,
-    mavlink.MAV_CMD_NAV_LOITER_TIME: _loiter_time,
-    mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH: _return,
+    mavlink.MAV_CMD_NAV_LOITER_TIME: _go,
+    mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH: lambda item, context: Return(item.label),
     mavlink.MAV_CMD_NAV_LAND: _land,
     mavlink.MAV_CMD_NAV_TAKEOFF: _take_off,
     mavlink.MAV_CMD_NAV_DELAY: _delay,
     mavlink.MAV_CMD_CONDITION_DELAY: _delay,
     mavlink.MAV_CMD_DO_CHANGE_SPEED: _change_speed,
-    mavlink.MAV_CMD_DO_JUMP: _jump,
-    mavlink.MAV_CMD_JUMP_TAG: _tag,
-    mavlink.MAV_CMD_DO_JUMP_TAG: _jump_by_tag,
+    mavlink.MAV_CMD_DO_JUMP: lambda item, context: _jump(item, context.index_of_number, "target", context),
+    mavlink.MAV_CMD_JUMP_TAG: lambda item, context: None,
+    mavlink.MAV_CMD_DO_JUMP_TAG: lambda item, context: _jump(item, context.index_of_tag, "tag", context),
 }

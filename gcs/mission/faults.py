@@ -1,17 +1,62 @@
-"""Whether a fault of a mission makes sense: with its own kind, and with the team that flies."""
+"""Faults of a mission: read from their tables, and checked against their kinds and the team that flies."""
 
-from __future__ import annotations
+from collections.abc import Iterator, Mapping
+from difflib import get_close_matches
+from functools import cache
+from typing import Any
 
-from collections.abc import Iterator
+from pydantic import TypeAdapter
 
-from gcs.config import SystemConfig
+from gcs.config import SystemConfig, UnusableFile
+from gcs.config.toml_file import TomlFile
 from gcs.errors import UnusableInput
-from gcs.faults import KINDS, read_settings
+from gcs.faults import KINDS, read_settings, settings_adapter
 from gcs.mission.model import Fault, Mission
+
+_KEYS = ("kind", "start", "duration", "every", "times", "vehicles", "direction")
+"""Keys of every fault; all others are parameters of its kind."""
+
+
+def fault_data(file: TomlFile, index: int, table: Any) -> Any:
+    """Return the table of the file's fault ``index`` (from 0) as :class:`Fault` is read from it."""
+    if not isinstance(table, Mapping):
+        return table
+    settings = {key: value for key, value in table.items() if key not in _KEYS}
+    return {k: table[k] for k in _KEYS if k in table} | {"settings": settings, "line": file.line(("fault", index))}
+
+
+def read_fault(file: TomlFile, index: int, table: Mapping[str, Any]) -> Fault:
+    """Return the fault of ``table``, which is the file's fault ``index`` (from 0).
+
+    Raises :class:`UnusableFile` for unknown kinds and keys and for wrong values; whether the fault agrees with itself
+    and with a system, :func:`fault_problems` checks.
+    """
+    fault = file.validated(_adapter(), fault_data(file, index, table), ("fault", index))
+    if problems := parameter_problems(file, index, fault):
+        raise UnusableFile(problems)
+    return fault
+
+
+@cache
+def _adapter() -> TypeAdapter[Fault]:
+    return TypeAdapter(Fault)
+
+
+def parameter_problems(file: TomlFile, index: int, fault: Fault) -> list[str]:
+    """Return every reason against the kind of the file's fault ``index`` and its parameters."""
+    if fault.kind not in KINDS:
+        near = get_close_matches(fault.kind, KINDS, 1)
+        hint = f": did you mean '{near[0]}'?" if near else ": gcs faults --kinds lists them"
+        return [file.problem(("fault", index, "kind"), f"there is no kind '{fault.kind}'{hint}")]
+    try:
+        file.validated(settings_adapter(fault.kind), dict(fault.settings), ("fault", index))
+    except UnusableFile as error:
+        return list(error.reasons)
+    return []
 
 
 def fault_problems(fault: Fault, system: SystemConfig) -> Iterator[tuple[str, str]]:
-    """Key and reason of everything that is wrong with a fault of a known kind and sane parameters."""
+    """Yield key and reason of every disagreement of a fault (known kind, sane parameters) with itself or the system."""
     kind = KINDS[fault.kind]
     if kind.direction is None and fault.direction is not None:
         yield "direction", f"{fault.kind} has none"
@@ -28,7 +73,7 @@ def fault_problems(fault: Fault, system: SystemConfig) -> Iterator[tuple[str, st
     if fault.every is None and fault.times is not None:
         yield "times", "goes with `every`"
     if fault.every is not None and fault.duration is None:
-        yield "every", "needs a duration: what has no end does not come again"
+        yield "every", "needs a duration: a fault without end does not come again"
     elif fault.every is not None and fault.duration is not None and fault.every <= fault.duration:
         yield "every", f"{fault.every:g} s is not more than the duration, {fault.duration:g} s"
     if kind.bounded and fault.duration is None:
@@ -38,7 +83,7 @@ def fault_problems(fault: Fault, system: SystemConfig) -> Iterator[tuple[str, st
 
 
 def check_faults_of(mission: Mission) -> None:
-    """For a mission whose system has changed, or that was made in Python. Raises :class:`UnusableInput`."""
+    """Check the faults of a mission whose system has changed since it was read. Raises :class:`UnusableInput`."""
     for fault in mission.faults:
         read_settings(fault.kind, fault.settings)
         for key, reason in fault_problems(fault, mission.system):

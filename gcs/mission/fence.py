@@ -1,124 +1,85 @@
-"""QGroundControl's geofence: exclusion circles are poles, exclusion polygons walls, an inclusion the boundary."""
-
-from __future__ import annotations
+"""Geofence: exclusion circles are poles, exclusion polygons walls, an inclusion area is the boundary."""
 
 import math
+from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any, TypeGuard
 
 import numpy as np
 import shapely
 
-from gcs.mission.content import Fence, FileHome
-from gcs.mission.geodesy import north_east
-from gcs.mission.items import ItemError
 from gcs.mission.model import Obstacle
+from gcs.mission.route import Position
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.shape import Shape
 
 Point = tuple[float, float]
+Corners = tuple[Point, ...]
 
 FENCE_HEIGHT = 150.0
 """m. A fence has no top; this is above what regulations let fly."""
 WALL_THICKNESS = 0.2
-CORNER_LIMIT = 500
 CIRCLE_CORNERS = 32
 
 
-def read_fence(section: dict[str, Any], home: FileHome) -> Fence:
-    """The ``geoFence`` section of a plan in m about home. Raises :class:`ItemError`."""
-    origin = (home.latitude, home.longitude, home.altitude or 0.0)
-    obstacles: list[Obstacle] = []
-    boundaries: list[tuple[Point, ...]] = []
-    for number, (where, raw) in enumerate(_entries(section, "circles"), start=1):
-        circle = raw.get("circle")
-        if not isinstance(circle, dict):
-            raise ItemError(where, "circle: missing")
-        centre = _place(circle.get("center"), f"{where}.center", origin)
-        radius = circle.get("radius")
-        if not _is_number(radius) or not 0.0 < radius < 1e5:
-            raise ItemError(where, "radius: must be a positive number of metres")
-        if _inclusion(raw, where):
-            # Corners on the circle: the polygon lies inside it.
-            angles = np.arange(CIRCLE_CORNERS) * (2.0 * math.pi / CIRCLE_CORNERS)
-            boundaries.append(
-                tuple((centre[0] + radius * math.cos(a), centre[1] + radius * math.sin(a)) for a in angles)
-            )
-        else:
-            obstacles.append(_standing(f"fence circle {number}", centre, Pole(float(radius), FENCE_HEIGHT)))
-    for number, (where, raw) in enumerate(_entries(section, "polygons"), start=1):
-        corners = raw.get("polygon")
-        if not isinstance(corners, list) or not 3 <= len(corners) <= CORNER_LIMIT:
-            raise ItemError(where, f"polygon: expected 3 to {CORNER_LIMIT} corners")
-        polygon = tuple(_place(c, f"{where}.polygon", origin) for c in corners)
-        if not (area := shapely.Polygon(polygon)).is_valid or area.area < 1e-3:
-            raise ItemError(where, "polygon: has no area, or crosses itself")
-        if _inclusion(raw, where):
-            boundaries.append(polygon)
-        else:
-            obstacles.extend(_walls(f"fence polygon {number}", polygon))
-    if len(boundaries) > 1:
-        raise ItemError("inclusion", f"{len(boundaries)} areas: at most one boundary is supported")
-    return Fence(tuple(obstacles), boundaries[0] if boundaries else None)
+@dataclass(frozen=True)
+class Fence:
+    """A geofence in m about home: what it excludes, and the corners of the area that must not be left."""
+
+    obstacles: tuple[Obstacle, ...] = ()
+    boundary: Corners | None = None
+
+    def violation(self, place: Position) -> str | None:
+        """Return the reason why a place must not be flown to; None if it may."""
+        reason = None
+        if self.boundary is not None and not shapely.Polygon(self.boundary).covers(shapely.Point(place[:2])):
+            reason = "outside the fence's inclusion area"
+        for obstacle in self.obstacles:
+            if -place[2] <= _top(obstacle) and obstacle.shape.plan_view.contains(_from_centre(place, obstacle)):
+                reason = f"inside {obstacle.name}, which the fence excludes"
+        return reason
+
+    def crossings(self, start: Position, end: Position) -> list[str]:
+        """Return the names of the parts that a straight line from ``start`` to ``end`` crosses."""
+        crossed = []
+        if self.boundary is not None and start[:2] != end[:2]:
+            line = shapely.LineString([start[:2], end[:2]])
+            if line.crosses(shapely.Polygon(self.boundary)):
+                crossed.append("the fence's inclusion area")
+        low = min(-start[2], -end[2])
+        for obstacle in self.obstacles:
+            here, there = (_from_centre(place, obstacle) for place in (start, end))
+            if low < _top(obstacle) and obstacle.shape.plan_view.is_crossed(here, there):
+                crossed.append(obstacle.name)
+        return crossed
 
 
-def is_inside(point: Point, polygon: tuple[Point, ...]) -> bool:
-    """Whether a point lies in a polygon."""
-    return bool(shapely.Polygon(polygon).covers(shapely.Point(point)))
+def circle_corners(centre: Point, radius: float) -> Corners:
+    """Return corners on a circle: the polygon lies inside it."""
+    angles = np.arange(CIRCLE_CORNERS) * (2.0 * math.pi / CIRCLE_CORNERS)
+    return tuple((centre[0] + radius * math.cos(a), centre[1] + radius * math.sin(a)) for a in angles)
 
 
-def leaves(start: Point, end: Point, polygon: tuple[Point, ...]) -> bool:
-    """Whether a straight line between two points crosses an edge of a polygon."""
-    return start != end and bool(shapely.LineString([start, end]).crosses(shapely.Polygon(polygon)))
+def excluded_circle(name: str, centre: Point, radius: float) -> Obstacle:
+    """Return the pole in place of an exclusion circle."""
+    return _standing(name, centre, Pole(radius, FENCE_HEIGHT))
 
 
-def _entries(section: dict[str, Any], kind: str) -> list[tuple[str, dict[str, Any]]]:
-    entries = section.get(kind, [])
-    if not isinstance(entries, list) or not all(isinstance(e, dict) for e in entries):
-        raise ItemError(kind, "expected a list of objects")
-    for number, entry in enumerate(entries, start=1):
-        if isinstance(entry.get("version"), bool) or entry.get("version") != 1:
-            raise ItemError(f"{kind}[{number}]", f"version: {entry.get('version')!s:.20} is not supported, only 1")
-    return [(f"{kind}[{number}]", entry) for number, entry in enumerate(entries, start=1)]
-
-
-def _inclusion(raw: dict[str, Any], where: str) -> bool:
-    inclusion = raw.get("inclusion")
-    if not isinstance(inclusion, bool):
-        raise ItemError(where, "inclusion: must be true or false")
-    return inclusion
-
-
-def _is_number(value: Any) -> TypeGuard[float]:
-    return isinstance(value, int | float) and not isinstance(value, bool)
-
-
-def _place(value: Any, where: str, origin: tuple[float, float, float]) -> Point:
-    if not isinstance(value, list) or len(value) < 2 or not all(_is_number(v) for v in value[:2]):
-        raise ItemError(where, "expected [latitude, longitude]")
-    try:
-        latitude, longitude = float(value[0]), float(value[1])
-        return north_east(latitude, longitude, origin)
-    except (ItemError, OverflowError) as problem:
-        raise ItemError(where, str(problem)) from problem
-
-
-def boundary_walls(polygon: tuple[Point, ...]) -> list[Obstacle]:
-    """One wall along each edge of an area that must not be left, on its outer side."""
-    return walls_along("boundary", polygon, inside=False)
-
-
-def _walls(name: str, polygon: tuple[Point, ...]) -> list[Obstacle]:
-    """One wall for a rectangle; for any other polygon one along each edge, on its inner side."""
+def excluded_polygon(name: str, polygon: Corners) -> list[Obstacle]:
+    """Return one wall for a rectangle; for any other polygon one along each edge, on its inner side."""
     if (rectangle := _rectangle(polygon)) is not None:
         centre, size, yaw = rectangle
         return [_standing(name, centre, Wall((*size, FENCE_HEIGHT), yaw))]
-    return walls_along(name, polygon, inside=True)
+    return _walls_along(name, polygon, inside=True)
 
 
-def walls_along(name: str, polygon: tuple[Point, ...], *, inside: bool) -> list[Obstacle]:
-    """One wall along each edge of a polygon, on its inner or its outer side."""
+def boundary_walls(polygon: Corners) -> list[Obstacle]:
+    """Return one wall along each edge of an area that must not be left, on its outer side."""
+    return _walls_along("boundary", polygon, inside=False)
+
+
+def _walls_along(name: str, polygon: Corners, *, inside: bool) -> list[Obstacle]:
+    """Return one wall along each edge of a polygon, on its inner or its outer side."""
     inward = 1.0 if shapely.LinearRing(polygon).is_ccw == inside else -1.0
     walls = []
     for number, (a, b) in enumerate(pairwise((*polygon, polygon[0])), start=1):
@@ -138,8 +99,8 @@ def _standing(name: str, place: Point, shape: Shape) -> Obstacle:
     return Obstacle(name, (*place, -FENCE_HEIGHT / 2.0), shape)
 
 
-def _rectangle(polygon: tuple[Point, ...]) -> tuple[Point, Point, float] | None:
-    """Centre, edge lengths and heading (rad) of a polygon that is a rectangle within 5 cm; otherwise None."""
+def _rectangle(polygon: Corners) -> tuple[Point, Point, float] | None:
+    """Return centre, edge lengths and heading (rad) of a rectangle (within 5 cm); None for another polygon."""
     if len(polygon) != 4:
         return None
     a, b, c, d = (np.array(p) for p in polygon)
@@ -149,3 +110,12 @@ def _rectangle(polygon: tuple[Point, ...]) -> tuple[Point, Point, float] | None:
     centre = (a + b + c + d) / 4.0
     heading = math.atan2(b[1] - a[1], b[0] - a[0])
     return (float(centre[0]), float(centre[1])), (x, y), heading
+
+
+def _from_centre(place: Position, obstacle: Obstacle) -> Point:
+    return place[0] - obstacle.position[0], place[1] - obstacle.position[1]
+
+
+def _top(obstacle: Obstacle) -> float:
+    """Return the altitude of its top (m)."""
+    return obstacle.shape.half_height - obstacle.position[2]

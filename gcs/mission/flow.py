@@ -6,9 +6,7 @@ import math
 from collections.abc import Iterator
 from itertools import islice
 
-from gcs.mission.content import Fence
-from gcs.mission.fence import is_inside, leaves
-from gcs.mission.model import Obstacle
+from gcs.mission.fence import Fence
 from gcs.mission.route import (
     Circle,
     Climb,
@@ -124,27 +122,20 @@ def _notes(route: Route, flown: set[int], legs: list[Leg]) -> Iterator[str]:
 
 
 def _outside_fence(legs: list[Leg], fence: Fence) -> Iterator[str]:
-    """Legs that end outside the boundary or inside an excluded area; each item once."""
-    seen = set[str]()
-    if fence.boundary is not None and not is_inside((0.0, 0.0), fence.boundary):
+    """Yield what is wrong with legs that end outside the boundary or inside an excluded area; each item once."""
+    if fence.boundary is not None and Fence(boundary=fence.boundary).violation((0.0, 0.0, 0.0)):
         yield "geoFence: inclusion: home is outside of it"
+    sources = set[str]()
     for leg in legs:
-        if leg.source in seen:
+        if leg.source in sources:
             continue
-        reason = None
-        for place in _places(leg):
-            if fence.boundary is not None and not is_inside(place[:2], fence.boundary):
-                reason = "outside the fence's inclusion area"
-            for obstacle in fence.obstacles:
-                if _is_within(place, obstacle):
-                    reason = f"inside {obstacle.name}, which the fence excludes"
-        if reason:
-            seen.add(leg.source)
-            yield f"{leg.source}: latitude, longitude: {reason}"
+        if reasons := [reason for place in _places(leg) if (reason := fence.violation(place))]:
+            sources.add(leg.source)
+            yield f"{leg.source}: latitude, longitude: {reasons[-1]}"
 
 
 def _places(leg: Leg) -> list[Position]:
-    """Where a leg ends; of a circle, places all around it."""
+    """Return the end of a leg; of a circle, places all around it."""
     if not isinstance(leg, Circle):
         return [leg.position]
     north, east, down = leg.centre
@@ -153,35 +144,13 @@ def _places(leg: Leg) -> list[Position]:
 
 
 def _segments_across_fence(legs: list[Leg], fence: Fence) -> Iterator[str]:
-    """Straight segments that cross the fence, though they end on its right side; each item once."""
-    reported = set[tuple[str, str]]()
+    """Yield notes on straight segments that cross the fence, though they end on its right side; each item once."""
+    noted = set[tuple[str, str]]()
     start: Position = (0.0, 0.0, 0.0)
     for leg in legs:
         end = leg.end(start) if isinstance(leg, Circle) else leg.position
-        crossed = []
-        if isinstance(leg, FlyTo) and fence != Fence():
-            if fence.boundary is not None and leaves(start[:2], end[:2], fence.boundary):
-                crossed.append("the fence's inclusion area")
-            low = min(-start[2], -end[2])
-            for obstacle in fence.obstacles:
-                here, there = (_from_centre(place, obstacle) for place in (start, end))
-                if low < _top(obstacle) and obstacle.shape.plan_view.is_crossed(here, there):
-                    crossed.append(obstacle.name)
-        for name in crossed:
-            if (leg.source, name) not in reported:
-                reported.add((leg.source, name))
+        for name in fence.crossings(start, end) if isinstance(leg, FlyTo) else ():
+            if (leg.source, name) not in noted:
+                noted.add((leg.source, name))
                 yield f"{leg.source}: the straight path there crosses {name}"
         start = end
-
-
-def _is_within(place: Position, obstacle: Obstacle) -> bool:
-    return -place[2] <= _top(obstacle) and obstacle.shape.plan_view.contains(_from_centre(place, obstacle))
-
-
-def _from_centre(place: Position, obstacle: Obstacle) -> tuple[float, float]:
-    return place[0] - obstacle.position[0], place[1] - obstacle.position[1]
-
-
-def _top(obstacle: Obstacle) -> float:
-    """Altitude of its top (m)."""
-    return obstacle.shape.half_height - obstacle.position[2]

@@ -1,18 +1,30 @@
-"""A mission item, whichever file it comes from, and the names of MAVLink's commands and frames."""
-
-from __future__ import annotations
+"""A waypoint file before it is compiled into a route: home, items and fence, whichever format they come from."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
+import pymap3d
+from pymap3d.haversine import anglesep
 from pymavlink.dialects.v20 import common as mavlink
 
+from gcs.mission.fence import Fence
+
+ITEM_LIMIT = 10_000
+FARTHEST = 10_000.0
+"""m from home. Beyond it the file's home is wrong, or the world no longer flat."""
 PARAM_NAMES = ("param 1", "param 2", "param 3", "param 4", "latitude", "longitude", "altitude")
+
+
+class ItemError(ValueError):
+    """An item that cannot be flown: field and reason."""
+
+    def __init__(self, field: str, reason: str) -> None:
+        super().__init__(f"{field}: {reason}")
 
 
 @dataclass(frozen=True)
 class MissionItem:
-    """One MISSION_ITEM. ``where`` names its line or item; ``number`` is what a DO_JUMP to it would say.
+    """One MISSION_ITEM. ``where`` names its line or item; ``number`` is that by which a DO_JUMP refers to it.
 
     ``params`` are the seven of MAVLink, latitude and longitude in deg; None: not given.
     """
@@ -30,15 +42,58 @@ class MissionItem:
         return f"{self.where} ({command_name(self.command)})"
 
 
-class ItemError(Exception):
-    """What is wrong with an item: field and reason."""
+@dataclass(frozen=True)
+class FileHome:
+    """Home as the file has it (deg, m above mean sea level); the altitude may not be known.
 
-    def __init__(self, field: str, reason: str) -> None:
-        super().__init__(f"{field}: {reason}")
+    Raises :class:`ItemError` for no place on earth, and for 0, 0, which stands for none.
+    """
+
+    latitude: float
+    longitude: float
+    altitude: float | None
+
+    def __post_init__(self) -> None:
+        if self.latitude == 0.0 and self.longitude == 0.0:
+            raise ItemError("latitude, longitude", "0, 0: home gives no place")
+        check_latitude_longitude(self.latitude, self.longitude)
+
+    def north_east(self, latitude: float, longitude: float) -> tuple[float, float]:
+        """Return the place (m from home), both on the ellipsoid's surface at home's altitude.
+
+        Raises :class:`ItemError` for no place on earth, and beyond :data:`FARTHEST`.
+        """
+        check_latitude_longitude(latitude, longitude)
+        altitude = self.altitude or 0.0
+        north, east, _ = pymap3d.geodetic2ned(latitude, longitude, altitude, self.latitude, self.longitude, altitude)
+        # The chord alone does not discriminate near the antipodes.
+        if math.hypot(north, east) > FARTHEST or abs(latitude - self.latitude) > 1.0:
+            kilometres = float(anglesep(self.longitude, self.latitude, longitude, latitude)) * 111.2
+            reason = f"{kilometres:.0f} km from home (limit {FARTHEST / 1000:.0f} km)"
+            raise ItemError("latitude, longitude", reason)
+        return float(north), float(east)
+
+
+@dataclass(frozen=True)
+class WaypointFile:
+    """Home, items, fence, and notes on what is left out."""
+
+    home: FileHome
+    items: tuple[MissionItem, ...]
+    fence: Fence = field(default_factory=Fence)
+    notes: tuple[str, ...] = ()
+
+
+def check_latitude_longitude(latitude: float, longitude: float) -> None:
+    """Raise :class:`ItemError` outside -90 .. 90 and -180 .. 180 deg."""
+    if not -90.0 <= latitude <= 90.0:
+        raise ItemError("latitude", f"{latitude:g} is outside -90 .. 90 deg")
+    if not -180.0 <= longitude <= 180.0:
+        raise ItemError("longitude", f"{longitude:g} is outside -180 .. 180 deg")
 
 
 def command_name(command: int) -> str:
-    """``NAV_WAYPOINT``, or the number where MAVLink's common dialect has no name for it."""
+    """Return ``NAV_WAYPOINT``, or the number where MAVLink's common dialect has no name for it."""
     if command == CONDITION_GATE:
         return "CONDITION_GATE"
     entry = mavlink.enums["MAV_CMD"].get(command)
@@ -46,19 +101,9 @@ def command_name(command: int) -> str:
 
 
 def frame_name(frame: int) -> str:
-    """``frame 3, GLOBAL_RELATIVE_ALT``."""
+    """Return ``frame 3, GLOBAL_RELATIVE_ALT``."""
     entry = mavlink.enums["MAV_FRAME"].get(frame)
     return f"frame {frame}" + (f", {entry.name.removeprefix('MAV_FRAME_')}" if entry else "")
-
-
-def param(value: float, name: str) -> float | None:
-    """A parameter as written: NaN means not given.
-
-    Raises :class:`ItemError` for an infinite one.
-    """
-    if math.isinf(value):
-        raise ItemError(name, "is not finite")
-    return None if math.isnan(value) else float(value)
 
 
 CONDITION_GATE = 4501

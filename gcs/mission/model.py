@@ -1,7 +1,5 @@
 """A mission as read: reference, obstacles, faults and limits."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -10,8 +8,8 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from gcs.config.system import SystemConfig
-from gcs.config.tables import Vector
-from gcs.config.toml_file import NotNegative, Positive, strict
+from gcs.config.validate import NotNegative, Positive, strict
+from gcs.mission.motion import AnyMotion
 from gcs.mission.route import Route
 from idc_controller.geometry.shape import Shape
 
@@ -47,77 +45,6 @@ class Lissajous:
     altitude: Annotated[float, Field(ge=RESTING_ALTITUDE)]
     duration: Positive
     kind: Literal["lissajous"] = "lissajous"
-
-
-@strict
-@dataclass(frozen=True)
-class HarmonicMotion:
-    """Displacement ``amplitude * sin(angular_frequency t + phase)`` from the position (m, rad/s, rad)."""
-
-    amplitude: Vector
-    angular_frequency: Positive
-    phase: float = 0.0
-    kind: Literal["harmonic"] = "harmonic"
-
-
-@strict
-@dataclass(frozen=True)
-class LinearMotion:
-    """Displacement ``velocity * t`` from the position (m/s)."""
-
-    velocity: Vector
-    kind: Literal["linear"] = "linear"
-
-
-@strict
-@dataclass(frozen=True)
-class CircleMotion:
-    """Round the position on a level circle: ``radius`` (m), ``angular_frequency`` (rad/s).
-
-    ``phase`` (rad) is where on the circle it is at time 0, from north towards east; ``clockwise`` as seen from above.
-    """
-
-    radius: Positive
-    angular_frequency: Positive
-    phase: float = 0.0
-    clockwise: bool = True
-    kind: Literal["circle"] = "circle"
-
-
-@strict
-@dataclass(frozen=True)
-class WaypointsMotion:
-    """Straight from displacement to displacement (``points``, m) at ``speed`` (m/s), stopping for ``hold`` (s) at each.
-
-    ``acceleration`` (m/s2) is that with which it starts and stops at every point; None: at once. ``repeat``: goes on
-    from the last point to the first one and so on; otherwise it stays at the last one.
-    """
-
-    points: Annotated[tuple[Vector, ...], Field(min_length=2, max_length=1000)]
-    speed: Positive
-    hold: NotNegative = 0.0
-    acceleration: Positive | None = None
-    repeat: bool = False
-    kind: Literal["waypoints"] = "waypoints"
-
-
-@strict
-@dataclass(frozen=True)
-class RandomWalkMotion:
-    """Wanders about the position: on each axis the acceleration is noise of limited band, the same for one ``seed``.
-
-    ``speed`` is the standard deviation of the velocity on each axis (m/s), ``bandwidth`` the highest angular
-    frequency (rad/s); the lowest is a fifth of it, which keeps it about its position.
-    """
-
-    seed: Annotated[int, Field(ge=0, lt=2**63)]
-    speed: tuple[NotNegative, NotNegative, NotNegative]
-    bandwidth: Positive
-    kind: Literal["random_walk"] = "random_walk"
-
-
-AnyMotion = HarmonicMotion | LinearMotion | CircleMotion | WaypointsMotion | RandomWalkMotion
-Motion = Annotated[AnyMotion, Field(discriminator="kind")]
 
 
 @dataclass(frozen=True)

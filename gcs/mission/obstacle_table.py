@@ -1,7 +1,5 @@
 """``[[obstacle]]`` of the project's own missions: the keys that all obstacles have, and those of each shape."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import Field as ShapeField
 from dataclasses import dataclass, field, fields, make_dataclass
@@ -13,8 +11,9 @@ from pydantic import AfterValidator, Field, ValidationInfo
 
 from gcs.config.mesh_file import UnusableMesh, read_mesh
 from gcs.config.tables import Vector
-from gcs.config.toml_file import Positive, strict
-from gcs.mission.model import Motion, Name, Obstacle
+from gcs.config.validate import Positive, strict
+from gcs.mission.model import Name, Obstacle
+from gcs.mission.motion import Motion
 from idc_controller.geometry.mesh import MeshHull
 from idc_controller.geometry.shape import Shape
 from idc_controller.geometry.shapes import SHAPES

@@ -1,60 +1,164 @@
 """QGroundControl's ``.plan``.
 
-Format: https://docs.qgroundcontrol.com/master/en/qgc-dev-guide/file_formats/plan.html
+Format: https://docs.qgroundcontrol.com/master/en/qgc-dev-guide/file_formats/plan.html. Complex items (surveys and the
+like) are flown by the simple items that are stored with them.
 """
 
-from __future__ import annotations
-
 import json
+import math
 from collections.abc import Iterator
+from itertools import islice
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, Literal
 
-from gcs.config import UnusableFile
-from gcs.mission.content import ITEM_LIMIT, Fence, FileHome, WaypointFile
-from gcs.mission.fence import read_fence
-from gcs.mission.geodesy import check_latitude_longitude
-from gcs.mission.items import PARAM_NAMES, ItemError, MissionItem, param
+import shapely
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, TypeAdapter
 
-VERSIONS = {"plan": 1, "mission": 2, "geoFence": 2, "rallyPoints": 2}
-COMPLEX_VERSIONS = {"survey": (4, 5), "CorridorScan": (2,), "StructureScan": (2, 3)}
-TRANSECT_VERSIONS = (1, 2)
+from gcs.config.validate import Key, UnusableFile, dotted, validated
+from gcs.mission.fence import Corners, Fence, circle_corners, excluded_circle, excluded_polygon
+from gcs.mission.items import ITEM_LIMIT, PARAM_NAMES, FileHome, ItemError, MissionItem, WaypointFile
+from gcs.mission.model import Obstacle
+
+CORNER_LIMIT = 500
+
+
+def _supported(*versions: int) -> AfterValidator:
+    def check(version: int) -> int:
+        if version not in versions:
+            raise ValueError(f"{version} is not supported, only {' or '.join(map(str, versions))}")
+        return version
+
+    return AfterValidator(check)
+
+
+def _finite(value: float | None) -> float | None:
+    """Return a parameter, None for NaN: not given."""
+    if value is not None and math.isinf(value):
+        raise ValueError("is not finite")
+    return None if value is None or math.isnan(value) else value
+
+
+Number = Annotated[float | None, AfterValidator(_finite)]
+Natural = Annotated[int, Field(ge=0)]
+Place = Annotated[list[float], Field(min_length=2, max_length=3)]
+
+
+class _Object(BaseModel):
+    model_config = ConfigDict(strict=True, frozen=True, defer_build=True)
+
+
+class _SimpleItem(_Object):
+    type: Literal["SimpleItem"]
+    frame: Natural
+    command: Natural
+    params: Annotated[list[Number], Field(min_length=len(PARAM_NAMES), max_length=len(PARAM_NAMES))]
+    doJumpId: Natural | None = None
+    autoContinue: bool = True
+
+
+class _Transects(_Object):
+    version: Annotated[int, _supported(1, 2)]
+    Items: Annotated[list[_SimpleItem], Field(min_length=1)]
+
+
+class _Complex(_Object):
+    type: Literal["ComplexItem"]
+    TransectStyleComplexItem: _Transects
+
+
+class _Survey(_Complex):
+    complexItemType: Literal["survey"]
+    version: Annotated[int, _supported(4, 5)]
+
+
+class _CorridorScan(_Complex):
+    complexItemType: Literal["CorridorScan"]
+    version: Annotated[int, _supported(2)]
+
+
+class _StructureScan(_Complex):
+    complexItemType: Literal["StructureScan"]
+    version: Annotated[int, _supported(2, 3)]
+
+
+_ComplexItem = Annotated[_Survey | _CorridorScan | _StructureScan, Field(discriminator="complexItemType")]
+
+
+class _Mission(_Object):
+    version: Annotated[int, _supported(2)]
+    plannedHomePosition: Annotated[list[Number], Field(min_length=2, max_length=3)]
+    items: list[Annotated[_SimpleItem | _ComplexItem, Field(discriminator="type")]]
+
+
+class _Circle(_Object):
+    center: Place
+    radius: Annotated[float, Field(gt=0.0, lt=1e5)]
+
+
+class _FencePart(_Object):
+    version: Annotated[int, _supported(1)]
+    inclusion: bool
+
+
+class _FenceCircle(_FencePart):
+    circle: _Circle
+
+
+class _FencePolygon(_FencePart):
+    polygon: Annotated[list[Place], Field(min_length=3, max_length=CORNER_LIMIT)]
+
+
+class _GeoFence(_Object):
+    version: Annotated[int, _supported(2)]
+    circles: list[_FenceCircle] = []
+    polygons: list[_FencePolygon] = []
+
+
+class _RallyPoints(_Object):
+    version: Annotated[int, _supported(2)]
+    points: list[Any] = []
+
+
+class _Plan(_Object):
+    fileType: Literal["Plan"]
+    version: Annotated[int, _supported(1)]
+    mission: _Mission
+    geoFence: _GeoFence | None = None
+    rallyPoints: _RallyPoints | None = None
 
 
 def read_plan(path: Path, text: str) -> WaypointFile:
     """Read the text of a plan. Raises :class:`UnusableFile` with every reason found."""
-    document = _parse(path, text)
-    problems: list[str] = []
 
-    def attempt(where: str, read: Any, *arguments: Any) -> Any:
-        try:
-            return read(*arguments)
-        except ItemError as problem:
-            problems.append(f"{path}: {where}: {problem}")
+    def problem(key: Key, reason: str) -> str:
+        if key[:2] == ("mission", "items") and len(key) > 2:  # as notes and later errors name it
+            return f"{path}: item {int(key[2]) + 1}: {dotted(key[3:])}: {reason}"
+        return f"{path}: {dotted(key)}: {reason}"
 
-    attempt("plan", _check_plan, document)
-    sections = {name: attempt(name, _section, document, name) or {} for name in ("mission", "geoFence", "rallyPoints")}
-    items, notes = [], []
-    home = None
-    if sections["mission"]:
-        home = attempt("mission", _home, sections["mission"])
-        for where, raw in _simple_items(path, sections["mission"], problems):
-            if item := attempt(where, _item, where, raw):
-                items.append(item)
-        if not items and not problems:
-            problems.append(f"{path}: mission: items: there is no waypoint")
-    fence = Fence()
-    if home is not None and sections["geoFence"]:
-        fence = attempt("geoFence", read_fence, sections["geoFence"], home) or fence
-    points = sections["rallyPoints"].get("points")
-    if isinstance(points, list) and points:
-        notes.append(f"rallyPoints: {len(points)} left out: the payload returns to its pad")
-    if problems or home is None:
+    plan = validated(TypeAdapter(_Plan), _parse(path, text), problem)
+    items = list(islice(_simple_items(plan.mission), ITEM_LIMIT + 1))
+    problems = []
+    if not items:
+        problems.append(problem(("mission", "items"), "there is no waypoint"))
+    if len(items) > ITEM_LIMIT:
+        problems.append(problem(("mission", "items"), f"more than {ITEM_LIMIT} items"))
+    fence, notes = Fence(), []
+    try:
+        home = _home(*plan.mission.plannedHomePosition)
+    except ItemError as error:
+        raise UnusableFile([*problems, problem(("mission", "plannedHomePosition"), str(error))]) from error
+    try:
+        fence = _fence(plan.geoFence, home) if plan.geoFence else fence
+    except ItemError as error:
+        problems.append(f"{path}: geoFence: {error}")
+    if problems:
         raise UnusableFile(problems)
+    if plan.rallyPoints and plan.rallyPoints.points:
+        notes.append(f"rallyPoints: {len(plan.rallyPoints.points)} left out: the payload returns to its pad")
     return WaypointFile(home, tuple(items), fence, tuple(notes))
 
 
-def _parse(path: Path, text: str) -> dict[str, Any]:
+def _parse(path: Path, text: str) -> Any:
     try:
         document = json.loads(text)
     except json.JSONDecodeError as error:
@@ -67,127 +171,50 @@ def _parse(path: Path, text: str) -> dict[str, Any]:
     return document
 
 
-def _check_plan(document: dict[str, Any]) -> None:
-    if document.get("fileType") != "Plan":
-        raise ItemError("fileType", f'{_shown(document.get("fileType"))}, expected "Plan"')
-    _check_version(document, (VERSIONS["plan"],))
-
-
-def _check_version(table: dict[str, Any], supported: tuple[int, ...]) -> None:
-    version = table.get("version")
-    if isinstance(version, bool) or version not in supported:
-        known = " or ".join(map(str, supported))
-        raise ItemError("version", f"{_shown(version)} is not supported, only {known}")
-
-
-def _section(document: dict[str, Any], name: str) -> dict[str, Any]:
-    section = document.get(name)
-    if section is None and name != "mission":
-        return {}
-    if section is None:
-        raise ItemError("mission", "missing: there is nothing to fly")
-    if not isinstance(section, dict):
-        raise ItemError(name, "must be an object")
-    _check_version(section, (VERSIONS[name],))
-    return section
-
-
-def _home(mission: dict[str, Any]) -> FileHome:
-    key = "plannedHomePosition"
-    home = mission.get(key)
-    if home is None:
-        raise ItemError(key, "missing: altitudes are above it")
-    if not isinstance(home, list) or len(home) not in (2, 3):
-        raise ItemError(key, "expected [latitude, longitude, altitude]")
-    latitude, longitude, altitude = (_number(v, key) for v in [*home, None][:3])
-    if latitude is None or longitude is None or (latitude == 0.0 and longitude == 0.0):
-        raise ItemError(key, "gives no place")
-    check_latitude_longitude(latitude, longitude)
+def _home(latitude: float | None, longitude: float | None, altitude: float | None = None) -> FileHome:
+    if latitude is None or longitude is None:
+        raise ItemError("latitude, longitude", "home gives no place")
     return FileHome(latitude, longitude, altitude)
 
 
-def _simple_items(path: Path, mission: dict[str, Any], problems: list[str]) -> Iterator[tuple[str, dict[str, Any]]]:
-    """The simple items in the order of flight, each with its name; complex items by the items stored in them."""
-    items = mission.get("items")
-    if not isinstance(items, list):
-        problems.append(f"{path}: mission: items: missing, or not a list")
-        return
-    count = 0
-    for position, raw in enumerate(items, start=1):
-        where = f"item {position}"
-        try:
-            if not isinstance(raw, dict):
-                raise ItemError("type", "must be an object")
-            if raw.get("type") == "SimpleItem":
-                found = [(where, raw)]
-            elif raw.get("type") == "ComplexItem":
-                found = [(f"{where}.{i}", inner) for i, inner in enumerate(_stored_items(raw), start=1)]
-            else:
-                raise ItemError("type", f"{_shown(raw.get('type'))}, expected SimpleItem or ComplexItem")
-        except ItemError as problem:
-            problems.append(f"{path}: {where}: {problem}")
-            continue
-        count += len(found)
-        if count > ITEM_LIMIT:
-            problems.append(f"{path}: {where}: more than {ITEM_LIMIT} items")
-            return
-        yield from found
+def _simple_items(mission: _Mission) -> Iterator[MissionItem]:
+    """Yield the simple items in the order of flight."""
+    for number, item in enumerate(mission.items, start=1):
+        if isinstance(item, _SimpleItem):
+            yield _item(f"item {number}", item)
+        else:
+            for i, stored in enumerate(item.TransectStyleComplexItem.Items, start=1):
+                yield _item(f"item {number}.{i}", stored)
 
 
-def _stored_items(raw: dict[str, Any]) -> list[dict[str, Any]]:
-    kind = raw.get("complexItemType")
-    if not isinstance(kind, str) or kind not in COMPLEX_VERSIONS:
-        raise ItemError("complexItemType", f"{_shown(kind)} is not supported")
-    _check_version(raw, COMPLEX_VERSIONS[kind])
-    transects = raw.get("TransectStyleComplexItem")
-    if not isinstance(transects, dict) or not transects.get("Items"):
-        raise ItemError("TransectStyleComplexItem.Items", f"missing: a {kind} is flown by the items stored with it")
-    _check_version(transects, TRANSECT_VERSIONS)
-    items = transects["Items"]
-    if not isinstance(items, list) or not all(isinstance(i, dict) and i.get("type") == "SimpleItem" for i in items):
-        raise ItemError("TransectStyleComplexItem.Items", "expected a list of SimpleItem")
-    return items
+def _item(where: str, raw: _SimpleItem) -> MissionItem:
+    return MissionItem(where, raw.doJumpId, raw.frame, raw.command, tuple(raw.params), raw.autoContinue)
 
 
-def _item(where: str, raw: dict[str, Any]) -> MissionItem:
-    params = raw.get("params")
-    if not isinstance(params, list) or len(params) != len(PARAM_NAMES):
-        raise ItemError("params", f"expected a list of {len(PARAM_NAMES)}")
-    jump_id = raw.get("doJumpId")
-    autocontinue = raw.get("autoContinue", True)
-    if not isinstance(autocontinue, bool):
-        raise ItemError("autoContinue", f"{_shown(autocontinue)} is neither true nor false")
-    return MissionItem(
-        where,
-        None if jump_id is None else _integer(jump_id, "doJumpId"),
-        _integer(raw.get("frame"), "frame"),
-        _integer(raw.get("command"), "command"),
-        tuple(_number(v, f"params[{i}] ({PARAM_NAMES[i]})") for i, v in enumerate(params)),
-        autocontinue,
-    )
+def _fence(section: _GeoFence, home: FileHome) -> Fence:
+    obstacles: list[Obstacle] = []
+    boundaries: list[Corners] = []
+    for number, circle in enumerate(section.circles, start=1):
+        (centre,) = _places(f"circles[{number}].center", [circle.circle.center], home)
+        if circle.inclusion:
+            boundaries.append(circle_corners(centre, circle.circle.radius))
+        else:
+            obstacles.append(excluded_circle(f"fence circle {number}", centre, circle.circle.radius))
+    for number, polygon in enumerate(section.polygons, start=1):
+        corners = _places(f"polygons[{number}].polygon", polygon.polygon, home)
+        if not (area := shapely.Polygon(corners)).is_valid or area.area < 1e-3:
+            raise ItemError(f"polygons[{number}].polygon", "has no area, or crosses itself")
+        if polygon.inclusion:
+            boundaries.append(corners)
+        else:
+            obstacles.extend(excluded_polygon(f"fence polygon {number}", corners))
+    if len(boundaries) > 1:
+        raise ItemError("inclusion", f"{len(boundaries)} areas: at most one boundary is supported")
+    return Fence(tuple(obstacles), boundaries[0] if boundaries else None)
 
 
-def _integer(value: Any, name: str) -> int:
-    if isinstance(value, bool) or not isinstance(value, int) or value < 0:
-        raise ItemError(name, "missing" if value is None else f"{_shown(value)} is not a whole number")
-    return value
-
-
-def _number(value: Any, name: str) -> float | None:
-    if value is None:
-        return None
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise ItemError(name, f"{_shown(value)} is not a number")
+def _places(where: str, corners: list[Place], home: FileHome) -> Corners:
     try:
-        return param(float(value), name)
-    except OverflowError:
-        raise ItemError(name, "is not finite") from None
-
-
-def _shown(value: Any) -> str:
-    """A value from the file, short enough for a message."""
-    try:
-        text = json.dumps(value)
-    except (ValueError, RecursionError):
-        text = type(value).__name__
-    return text if len(text) <= 40 else text[:37] + "..."
+        return tuple(home.north_east(*corner[:2]) for corner in corners)
+    except ItemError as error:
+        raise ItemError(where, str(error)) from error

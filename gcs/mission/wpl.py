@@ -3,25 +3,24 @@
 Format: https://mavlink.io/en/file_formats/ (twelve columns; row 0 is home).
 """
 
-from __future__ import annotations
-
+import math
 import re
 from pathlib import Path
 
 from pymavlink.dialects.v20 import common as mavlink
 
-from gcs.config import UnusableFile
-from gcs.mission.content import ITEM_LIMIT, FileHome, WaypointFile
-from gcs.mission.geodesy import check_latitude_longitude
+from gcs.config.validate import UnusableFile
 from gcs.mission.items import (
     AMSL_FRAMES,
     FRAMES,
+    ITEM_LIMIT,
     PARAM_NAMES,
+    FileHome,
     ItemError,
     MissionItem,
+    WaypointFile,
     command_name,
     frame_name,
-    param,
 )
 
 VERSION = "110"
@@ -76,7 +75,10 @@ def _item(line: int, cells: list[str], expected_index: int) -> MissionItem:
     for name, cell in zip(_COLUMNS, cells, strict=True):
         if not _NUMBER.fullmatch(cell):
             raise ItemError(name, f"'{cell}' is not a number")
-        values[name] = param(float(cell), name)
+        value = float(cell)
+        if math.isinf(value):
+            raise ItemError(name, "is not finite")
+        values[name] = None if math.isnan(value) else value
     index, current, frame, command, autocontinue = (
         _integer(values[name], name) for name in ("index", "current", "frame", "command", "autocontinue")
     )
@@ -103,7 +105,6 @@ def _home(item: MissionItem) -> FileHome:
     if item.frame not in FRAMES:
         raise ItemError("frame", f"{frame_name(item.frame)}, is not supported in a mission")
     latitude, longitude, altitude = item.params[4:7]
-    if latitude is None or longitude is None or (latitude == 0.0 and longitude == 0.0):
-        raise ItemError("latitude, longitude", "row 0 is home's, and gives no place")
-    check_latitude_longitude(latitude, longitude)
+    if latitude is None or longitude is None:
+        raise ItemError("latitude, longitude", "home gives no place")
     return FileHome(latitude, longitude, altitude if item.frame in AMSL_FRAMES else None)

@@ -15,8 +15,9 @@ from threadpoolctl import threadpool_limits
 from gcs.config import SystemConfig, read_system
 from gcs.faults.record import notes_of
 from gcs.mavlink.address import Address
-from gcs.mission import Mission, read_mission
 from gcs.mission.faults import check_faults_of
+from gcs.mission.model import Mission
+from gcs.mission.read import read_mission
 from gcs.record.run_folder import open_run_folder, write_manifest
 from vehicle_sim.app.arguments import GROUND_PORT
 from vehicle_sim.app.ending import Ending

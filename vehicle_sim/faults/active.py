@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from gcs.faults import KINDS, Direction, Kind, read_settings
-from gcs.mission import Fault
+from gcs.mission.model import Fault
 from vehicle_sim.faults.schedule import Schedule
 
 _STREAM = 2_000_003  # separates these generators from the sensors'

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TypeVar
 
 from gcs.config import SystemConfig
-from gcs.mission import Fault
+from gcs.mission.model import Fault
 from vehicle_sim.faults import link, sensors, timing, values
 from vehicle_sim.faults.active import ActiveFault
 from vehicle_sim.faults.impairment import LinkImpairment

@@ -6,8 +6,7 @@ from dataclasses import dataclass, replace
 
 import pybullet
 
-from gcs.mission import Obstacle as MissionObstacle
-from gcs.mission import mover
+from gcs.mission.model import Obstacle as MissionObstacle
 from idc_controller.errors import ShapeError
 from idc_controller.geometry.shape import Shape
 from idc_controller.rotations_float import Vector
@@ -87,7 +86,7 @@ class MovingObstacles:
         for obstacle in obstacles:
             place = obstacle.position
             if obstacle.motion is not None:
-                self._moving.append((obstacle.name, place, mover(obstacle.motion)))
+                self._moving.append((obstacle.name, place, obstacle.motion.mover()))
                 place = _moved(place, self._moving[-1][2](0.0))
             bodies.add(obstacle.name, obstacle.shape, place)
 

@@ -14,10 +14,10 @@ from pydantic import Field, TypeAdapter
 from gcs.campaign.faults.base_mission import BaseMission, read_base
 from gcs.campaign.faults.sweep import CLEAN, Case, SweptFault, label
 from gcs.config import UnusableFile
-from gcs.config.toml_file import Key, NotNegative, TomlFile, read_toml, strict
-from gcs.mission.faults import fault_problems
+from gcs.config.toml_file import TomlFile, read_toml
+from gcs.config.validate import Key, NotNegative, strict
+from gcs.mission.faults import fault_problems, read_fault
 from gcs.mission.model import Limits, Name
-from gcs.mission.toml_mission import read_fault
 
 Seed = Annotated[int, Field(ge=0, lt=2**63)]
 Severity = Annotated[dict[str, Annotated[tuple[Any, ...], Field(min_length=1, max_length=1000)]], Field(min_length=1)]

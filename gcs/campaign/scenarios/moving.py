@@ -8,15 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from gcs.mission.model import (
-    AnyMotion,
-    CircleMotion,
-    HarmonicMotion,
-    LinearMotion,
-    RandomWalkMotion,
-    WaypointsMotion,
-)
-from gcs.mission.motion import mover
+from gcs.mission.motion import AnyMotion, CircleMotion, HarmonicMotion, LinearMotion, RandomWalkMotion, WaypointsMotion
 
 Array = NDArray[np.float64]
 Random = np.random.Generator
@@ -37,7 +29,7 @@ def motion_for(kind: str, random: Random, time: float, travel: Array, fastest: f
 
 def displacement(motion: AnyMotion, times: Array) -> Array:
     """Return the displacement (K, 3) (m) at ``times`` (K,) (s)."""
-    move = mover(motion)
+    move = motion.mover()
     return np.array([move(time) for time in times.tolist()])
 
 

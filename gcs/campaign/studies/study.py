@@ -25,7 +25,7 @@ from gcs.campaign.scenarios.plans import Scenarios
 from gcs.campaign.toml_text import system_text
 from gcs.config import SystemConfig
 from gcs.config.text_file import read_text
-from gcs.mission.model import AnyMotion, Motion
+from gcs.mission.motion import AnyMotion, Motion
 from gcs.mission.read import read_mission
 
 MARGIN = "avoidance.margin"

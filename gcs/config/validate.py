@@ -1,0 +1,113 @@
+"""Strict validation of data from files: every reason why a file is refused, one line each, with its key."""
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from typing import Annotated, Any, TypeVar
+
+from pydantic import ConfigDict, Field, TypeAdapter, ValidationError, with_config
+
+from gcs.errors import UnusableInput
+
+T = TypeVar("T")
+Key = tuple[str | int, ...]
+Positive = Annotated[float, Field(gt=0.0)]
+NotNegative = Annotated[float, Field(ge=0.0)]
+
+_REASONS = {
+    "missing": "missing key",
+    "union_tag_not_found": "missing key",
+    "unexpected_keyword_argument": "unknown key",
+    "extra_forbidden": "unknown key",
+    "dataclass_type": "must be a table",
+    "model_type": "must be a table",
+}
+
+
+class UnusableFile(UnusableInput):
+    """A file that cannot be used.
+
+    ``reasons`` holds every reason that was found, one line each: file, line or item, field, reason.
+    ``str(error)`` is the first of them, and says how many more there are.
+    """
+
+    def __init__(self, reasons: Sequence[str]) -> None:
+        # A hostile file could bring in line breaks and control characters.
+        lines = tuple("".join(c if c.isprintable() else " " for c in reason)[:1000] for reason in reasons)
+        more = len(lines) - 1
+        super().__init__(lines[0] + (f" (and {more} more)" if more else ""))
+        self.reasons = lines
+
+
+def strict(cls: type[T]) -> type[T]:
+    """Class decorator for a dataclass that is read from a file: no unknown keys, no infinite numbers."""
+    return with_config(ConfigDict(extra="forbid", allow_inf_nan=False))(cls)
+
+
+def validated(
+    adapter: TypeAdapter[T],
+    data: Any,
+    problem: Callable[[Key, str], str],
+    context: Mapping[str, Any] | None = None,
+) -> T:
+    """Return ``data`` as the adapter's type.
+
+    ``problem`` makes the line for a key and a reason. Raises :class:`UnusableFile` with every unknown key, missing key
+    and wrong value.
+    """
+    try:
+        # Through JSON: strict types, yet arrays become tuples and tables dataclasses. Dates, which JSON does not
+        # have, become text and are refused as such.
+        return adapter.validate_json(json.dumps(data, default=str), strict=True, context=dict(context or {}))
+    except ValidationError as error:
+        found = error.errors(include_url=False)
+    except (ValueError, RecursionError) as error:
+        raise UnusableFile([problem((), str(error))]) from error
+    raise UnusableFile([problem(*_explained(data, dict(e))) for e in found])
+
+
+def dotted(key: Sequence[str | int]) -> str:
+    """Return ``obstacle[1].radius``: arrays are counted from 1, as people count their tables."""
+    text = ""
+    for part in key:
+        text += f"[{part + 1}]" if isinstance(part, int) else f".{part}"
+    return text.lstrip(".") or "file"
+
+
+def shown(value: Any) -> str:
+    """Return a value from a file, short enough for a message."""
+    try:
+        text = json.dumps(value, default=str)
+    except (ValueError, RecursionError):
+        text = type(value).__name__
+    return text if len(text) <= 40 else text[:37] + "..."
+
+
+def _explained(data: Any, error: dict[str, Any]) -> tuple[Key, str]:
+    """Return the key and the reason of an error that pydantic found in ``data``."""
+    key: list[str | int] = []
+    location = error["loc"]
+    for part in location:
+        if (isinstance(data, dict) and part in data) or (
+            isinstance(data, list) and isinstance(part, int) and part < len(data)
+        ):
+            data = data[part]
+            key.append(part)
+        elif part == location[-1] and error["type"] == "missing":
+            key.append(part)  # otherwise it is a name of pydantic's own: the tag of a union, "key", ...
+    kind, context = error["type"], error.get("ctx", {})
+    reason = _REASONS.get(kind, error["msg"].replace("Input should", "must"))
+    if kind.startswith("union_tag"):  # the key that distinguishes several kinds of table
+        key.append(str(context["discriminator"]).strip("'"))
+    if kind == "union_tag_invalid":
+        reason = f"'{context['tag']}' is none of {context['expected_tags']}"
+    elif kind == "value_error":
+        reason = str(context["error"])
+    elif kind == "too_short":
+        reason = f"needs at least {context['min_length']}, has {context['actual_length']}"
+    elif kind == "too_long":
+        reason = f"takes at most {context['max_length']}, has {context['actual_length']}"
+    elif kind == "missing" and key and isinstance(key[-1], int):
+        reason = "missing value"
+    elif reason not in ("missing key", "unknown key"):
+        reason += f", found {shown(error['input'])}"
+    return tuple(key), reason[0].lower() + reason[1:]
