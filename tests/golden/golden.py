@@ -5,6 +5,8 @@ A refactoring that is meant to change no behaviour changes no checksum:
   python tests/golden/golden.py                  compare; exit status 1 when a flight differs
   python tests/golden/golden.py leg spheres_1    compare these flights only
   python tests/golden/golden.py --renew          write the checksums anew, on purpose
+  python tests/golden/golden.py --records DIR    keep the records in DIR; where DIR has those of an earlier run (of the
+                                                 commit before, say), print the first row and column that differ
 
 The checksums hold for the versions that `checksums.json` names, and for one kind of processor. `telemetry.tlog` is
 compared twice: whole, and without the texts of its STATUSTEXT messages, so that a reworded message can be distinguished
@@ -18,11 +20,14 @@ import hashlib
 import json
 import multiprocessing
 import platform
+import shutil
 import sys
 import tempfile
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from importlib.metadata import version
+from itertools import zip_longest
 from pathlib import Path
 
 HERE = Path(__file__).parent
@@ -94,8 +99,8 @@ GOLDEN = {
 }  # fmt: skip
 
 
-def fly(name: str) -> tuple[str, dict[str, str]]:
-    """Return the name and the SHA-256 checksums of the records of one flight, by file."""
+def fly(name: str, records: Path | None = None) -> tuple[str, dict[str, str], list[str]]:
+    """Return the name, the SHA-256 checksums by file, and the first differences from earlier ``records``."""
     golden = GOLDEN[name]
     with tempfile.TemporaryDirectory() as scratch, threadpool_limits(limits=1):
         mission, folder = golden.mission, Path(scratch) / "run"
@@ -107,24 +112,56 @@ def fly(name: str) -> tuple[str, dict[str, str]]:
             mission.write_text(text + golden.tables, encoding="utf-8")
         with InProcessFlight(mission, folder, seed=golden.seed) as flight:
             flight.fly(golden.on_exchange)
-        return name, checksums(folder)
+        differences = []
+        if records is not None:
+            earlier = records / name
+            if earlier.exists():
+                differences = [text for file in FILES if (text := first_difference(earlier / file, folder / file))]
+            else:
+                shutil.copytree(folder, earlier)
+        return name, checksums(folder), differences
+
+
+def first_difference(earlier: Path, later: Path) -> str:
+    """Return the first row and column in which two records differ, with both values; empty where they are equal."""
+    is_table = later.suffix == ".csv"
+    old, new = (_rows(path.read_bytes(), is_table) for path in (earlier, later))
+    for number, (one, other) in enumerate(zip_longest(old, new)):
+        if one == other:
+            continue
+        if one is None or other is None:
+            return f"{later.name}: {len(old)} rows before, {len(new)} rows now"
+        if not is_table or number == 0:
+            return f"{later.name}: {'header' if is_table else f'message {number}'}: {one!r} before, {other!r} now"
+        values = zip(old[0].split(b","), one.split(b","), other.split(b","), strict=True)
+        column, before, now = next(each for each in values if each[1] != each[2])
+        return f"{later.name}: row {number}, {column.decode()}: {before.decode()} before, {now.decode()} now"
+    return ""
+
+
+def _rows(data: bytes, is_table: bool) -> list[bytes]:
+    return data.splitlines() if is_table else list(_records(data))
 
 
 def checksums(folder: Path) -> dict[str, str]:
     """Return the SHA-256 checksums of the records in a run folder, by file."""
     found = {file: _sha256((folder / file).read_bytes()) for file in FILES}
-    found[WITHOUT_TEXT] = _sha256(b"".join(_records_without_texts((folder / "telemetry.tlog").read_bytes())))
+    log = (folder / "telemetry.tlog").read_bytes()
+    found[WITHOUT_TEXT] = _sha256(b"".join(map(_without_text, _records(log))))
     return found
 
 
-def _records_without_texts(log: bytes) -> Iterator[bytes]:
+def _records(log: bytes) -> Iterator[bytes]:
     at = 0
     while at < len(log):
         length = _STAMP_LENGTH + 12 + log[at + _STAMP_LENGTH + 1]  # MAVLink 2, unsigned
-        record = log[at : at + length]
-        is_text = int.from_bytes(record[_STAMP_LENGTH + 7 : _STAMP_LENGTH + 10], "little") == _STATUSTEXT
-        yield record[: _STAMP_LENGTH + 11] if is_text else record
+        yield log[at : at + length]
         at += length
+
+
+def _without_text(record: bytes) -> bytes:
+    is_text = int.from_bytes(record[_STAMP_LENGTH + 7 : _STAMP_LENGTH + 10], "little") == _STATUSTEXT
+    return record[: _STAMP_LENGTH + 11] if is_text else record
 
 
 def _sha256(data: bytes) -> str:
@@ -141,6 +178,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("flights", nargs="*", choices=[[], *GOLDEN], metavar="FLIGHT", help=", ".join(GOLDEN))
     parser.add_argument("--renew", action="store_true", help="write the checksums of these flights anew")
+    parser.add_argument("--records", type=Path, metavar="DIR", help="folder of the records of this or an earlier run")
     options = parser.parse_args()
     names = options.flights or [*GOLDEN]
     on_file = json.loads(CHECKSUMS.read_text(encoding="utf-8")) if CHECKSUMS.exists() else {"flights": {}}
@@ -149,11 +187,11 @@ def main() -> int:
         return 2
     differing = 0
     with multiprocessing.get_context("spawn").Pool() as pool:
-        for name, found in pool.imap_unordered(fly, names, chunksize=1):
+        for name, found, differences in pool.imap_unordered(partial(fly, records=options.records), names, chunksize=1):
             files = _differing(on_file["flights"].get(name, {}), found)
             differing += bool(files)
             verdict = "equal" if not files else ("renewed: " if options.renew else "differs: ") + ", ".join(files)
-            print(f"{name}: {verdict}", flush=True)
+            print(f"{name}: {verdict}", *differences, sep="\n  ", flush=True)
             on_file["flights"][name] = found
     if options.renew:
         ordered = {name: on_file["flights"][name] for name in GOLDEN if name in on_file["flights"]}
@@ -162,6 +200,8 @@ def main() -> int:
         )
         return 0
     print(f"{len(names) - differing} of {len(names)} flights are equal")
+    if differing and options.records is None:
+        print("--records DIR, before and after the change, names the first row and column that differ")
     return 1 if differing else 0
 
 
