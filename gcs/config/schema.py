@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterator
-from functools import reduce
+from functools import cache, reduce
 from operator import or_
 from types import UnionType
 from typing import Annotated, Any, Union, get_args, get_origin, get_type_hints
@@ -76,14 +76,17 @@ def _plain(value: Any) -> Any:
     return [_plain(item) for item in value] if isinstance(value, tuple) else value
 
 
-def _declared(cls: type[Any]) -> Iterator[tuple[str, Any, dataclasses.Field[Any]]]:
-    """Yield name, type and field of every setting and table of ``cls``."""
+@cache
+def _declared(cls: type[Any]) -> tuple[tuple[str, Any, dataclasses.Field[Any]], ...]:
+    """Return name, type and field of every setting and table of ``cls``."""
     hints = get_type_hints(cls)
+    declared = []
     for field in dataclasses.fields(cls):
         hint = hints[field.name]
         is_table = dataclasses.is_dataclass(hint) and DERIVED_KEY not in field.metadata
-        if METADATA_KEY in field.metadata or (is_table and any(_declared(hint))):
-            yield field.name, hint, field
+        if METADATA_KEY in field.metadata or (is_table and _declared(hint)):
+            declared.append((field.name, hint, field))
+    return tuple(declared)
 
 
 def _default(field: dataclasses.Field[Any]) -> Any:
