@@ -6,6 +6,8 @@ INSTALLED := $(VENV)/installed
 
 # One BLAS thread: small matrices are no faster with more, and sums repeat.
 export OPENBLAS_NUM_THREADS := 1
+# Compiled modules are kept: the tests start many programs.
+unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: help install fly test test-fast golden golden-renew benchmark docs clean
 

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import numpy as np
 
-from gcs.app.fly import ground_station
+from gcs.app.fly import flight_result, ground_station
 from gcs.mission.read import read_mission
 from gcs.record.recorder import FlightRecorder
-from gcs.record.summary import summarise, within_limits
+from gcs.record.summary import within_limits
 from vehicle_sim.faults import FaultInjector
 from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.truth_log import TruthLog
@@ -106,8 +106,11 @@ def copied_mission(folder, name, **changes):
 class InProcessFlight:
     """One flight. ``on_exchange(flight)`` is called after every exchange and may do what it likes."""
 
-    def __init__(self, mission, folder, *, seed=None, world=None, faults=None, controller="idc"):
-        """``mission``: a path or a Mission; ``world``: the system file's config of the world when it differs."""
+    def __init__(self, mission, folder, *, seed=None, world=None, faults=None, controller="idc", obstacles=()):
+        """``mission``: a path or a Mission; ``world``: the system file's config of the world when it differs.
+
+        ``obstacles``: those of the world; the mission's own are on the map only.
+        """
         if isinstance(mission, Path):
             mission = read_mission(mission)
         self.mission = mission if seed is None else replace(mission, seed=seed)
@@ -116,7 +119,7 @@ class InProcessFlight:
         config = world or self.mission.system
         if faults is None and self.mission.faults:
             faults = FaultInjector(self.mission.faults, self.mission.seed, config)
-        self.swarm = Swarm(config, seed=self.mission.seed, home=self.mission.home, faults=faults)
+        self.swarm = Swarm(config, seed=self.mission.seed, home=self.mission.home, faults=faults, obstacles=obstacles)
         self.swarm.record(TruthLog(folder, config.team.vehicles))
         self.recorder = FlightRecorder(folder, 0.0)
         addresses = [address_of(vehicle.system_id) for vehicle in self.swarm.vehicles]
@@ -159,15 +162,13 @@ class InProcessFlight:
     def __exit__(self, *_):
         self.close()
 
-    def summary(self):
-        """Close the records and return their summary as the command does."""
+    def result(self):
+        """Close the records and return how the flight ended, as the command does."""
         self.close()
-        limits = self.mission.limits
-        return summarise(
-            self.folder, completed=self.flight.completed, outcome="completed" if self.flight.completed else "failed",
-            duration_s=self.now - self.flight.takeoff_time, real_time_factor=None,
-            limits=None if limits is None else {**limits.__dict__}, obstacles=False,
-        )  # fmt: skip
+        return flight_result(self.folder, self.mission, self.station, self.recorder.last_time, wall=0.0)
+
+    def summary(self):
+        return self.result().summary
 
 
 def flown(mission, folder, **options):

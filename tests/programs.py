@@ -26,7 +26,7 @@ class GcsProcess:
     """The command itself, followed by the phases that it prints."""
 
     def __init__(self, mission, folder, *options):
-        command = [sys.executable, "-m", "gcs", "fly", mission, "--run-dir", folder, *options]
+        command = [sys.executable, "-m", "gcs", "fly", mission, "--run-dir", folder, "--no-pictures", *options]
         self.folder = folder
         self.process = subprocess.Popen(
             [*map(str, command)], env=ENVIRONMENT, cwd=folder.parent, stdout=subprocess.PIPE, stderr=subprocess.PIPE,

@@ -1,14 +1,13 @@
-"""Obstacles avoided in whole flights: simulator, vehicles, MAVLink over UDP and ground in lockstep, with noise."""
-
-import json
-import subprocess
-import sys
+"""Obstacles avoided in whole flights: simulator, vehicles, MAVLink bytes and ground in lockstep, with noise."""
 
 import numpy as np
 import pytest
-from flight_in_process import system_file, truth_of
+from flight_in_process import InProcessFlight, system_file, truth_of
 from mission_files import MISSIONS
-from programs import ENVIRONMENT
+from programs import gcs_fly
+
+from gcs.app.exit_status import ExitStatus
+from gcs.mission.read import read_mission
 
 pytestmark = pytest.mark.slow
 
@@ -101,16 +100,13 @@ payload_tilt_deg = 6.0
 
 
 def flown(folder, text):
-    """Exit status, summary and what was said of a flight of the mission ``text``; its records lie in folder/run."""
+    """Return the result of a flight of the mission ``text``; its records lie in folder/run."""
     system_file(folder)
-    (folder / "mission.toml").write_text(text + LIMITS)
-    command = [sys.executable, "-m", "gcs", "fly", str(folder / "mission.toml"), "--json", "--no-pictures"]
-    done = subprocess.run(
-        [*command, "--run-dir", str(folder / "run")],
-        capture_output=True, text=True, timeout=500, env=ENVIRONMENT,
-    )  # fmt: skip
-    assert done.stdout, done.stderr
-    return done.returncode, json.loads(done.stdout), done.stderr
+    mission = folder / "mission.toml"
+    mission.write_text(text + LIMITS)
+    with InProcessFlight(mission, folder / "run", obstacles=read_mission(mission).obstacles) as flight:
+        flight.fly()
+        return flight.result()
 
 
 def check_safe(summary):
@@ -121,19 +117,18 @@ def check_safe(summary):
 
 
 def test_figure_keeps_clear_of_mapped_sphere_and_of_detected_sphere(tmp_path):
-    code, summary, said = flown(tmp_path, FIGURE)
-    check_safe(summary)
-    assert summary["outcome"] == "completed", said
-    assert code == 0, said
+    result = flown(tmp_path, FIGURE)
+    check_safe(result.summary)
+    assert result.exit_code == ExitStatus.DONE, result.reason
     # Both were on the path: the mission's own path leads within the margin of them.
-    assert summary["position_rmse_m"]["total"] > 0.1
+    assert result.summary["position_rmse_m"]["total"] > 0.1
 
 
 def test_pole_on_straight_path_is_avoided(tmp_path):
     shape = 'shape = "pole"\nposition = [7.0, 0.0]\nradius = 0.3\nheight = 12.0'
-    code, summary, said = flown(tmp_path, STRAIGHT.format(name="pole", obstacle="mast", shape=shape))
-    check_safe(summary)
-    assert code == 0, said
+    result = flown(tmp_path, STRAIGHT.format(name="pole", obstacle="mast", shape=shape))
+    check_safe(result.summary)
+    assert result.exit_code == ExitStatus.DONE, result.reason
     truth = truth_of(tmp_path / "run")
     np.testing.assert_allclose([truth["payload_x_m"][-1], truth["payload_y_m"][-1]], [13.0, 0.0], atol=0.15)
     assert np.abs(truth["payload_y_m"]).max() > 1.0
@@ -141,12 +136,10 @@ def test_pole_on_straight_path_is_avoided(tmp_path):
 
 def test_blocked_path_ends_in_safe_stop(tmp_path):
     shape = 'shape = "wall"\nposition = [8.0, 60.0, -20.0]\nsize = [0.3, 300.0, 40.0]'
-    code, summary, said = flown(tmp_path, STRAIGHT.format(name="closed", obstacle="the great wall", shape=shape))
-    check_safe(summary)
-    assert code == 1
-    assert summary["outcome"] == "aborted"
-    assert "the great wall" in said
-    assert "Traceback" not in said
+    result = flown(tmp_path, STRAIGHT.format(name="closed", obstacle="the great wall", shape=shape))
+    check_safe(result.summary)
+    assert result.exit_code == ExitStatus.OUTSIDE_LIMITS and result.summary["outcome"] == "aborted"
+    assert "the great wall" in result.reason
     truth = truth_of(tmp_path / "run")
     assert truth["payload_z_m"][-1] == pytest.approx(-0.25, abs=0.02)
     assert truth["payload_x_m"].max() < 8.0 - 0.15 - 0.8 - 0.4
@@ -164,20 +157,17 @@ def test_flight_ends_safely_when_all_range_sensors_fail_alike(tmp_path, fault, r
     shape = 'shape = "pole"\nposition = [7.0, 0.0]\nradius = 0.3\nheight = 12.0'
     mission = STRAIGHT.format(name="pole", obstacle="mast", shape=shape)
     wrong = f'\n[[fault]]\nchannel = "obstacles"\nstart = 6.0\n{fault}\n'
-    code, summary, said = flown(tmp_path, mission + wrong)
-    check_safe(summary)
-    assert code == 1 and summary["outcome"] == "aborted"
-    assert reason in said
-    assert summary["landing"]["on_ground"]
+    result = flown(tmp_path, mission + wrong)
+    check_safe(result.summary)
+    assert result.exit_code == ExitStatus.OUTSIDE_LIMITS and result.summary["outcome"] == "aborted"
+    assert reason in result.reason
+    assert result.summary["landing"]["on_ground"]
 
 
 def test_flight_keeps_clear_of_rock_that_is_not_on_the_map(tmp_path):
-    command = [sys.executable, "-m", "gcs", "fly", str(MISSIONS / "unknown_rock.toml"), "--json", "--no-pictures"]
-    done = subprocess.run(
-        [*command, "--run-dir", str(tmp_path / "run")], capture_output=True, text=True, timeout=500, env=ENVIRONMENT
-    )
-    summary = json.loads(done.stdout)
-    assert done.returncode == 0, done.stderr
+    """The two programs, as a user starts them."""
+    code, summary = gcs_fly(MISSIONS / "unknown_rock.toml", tmp_path / "run", "--no-pictures")
+    assert code == 0, summary
     assert summary["contacts"] == 0
     assert summary["clearance_min_m"] >= 0.3
     # Without avoidance the formation would fly into it.
@@ -185,6 +175,6 @@ def test_flight_keeps_clear_of_rock_that_is_not_on_the_map(tmp_path):
 
 
 def test_flight_keeps_clear_of_tilted_box_on_the_map_and_of_unknown_moving_capsule(tmp_path):
-    code, summary, said = flown(tmp_path, TILTED)
-    assert code == 0, said
-    check_safe(summary)
+    result = flown(tmp_path, TILTED)
+    assert result.exit_code == ExitStatus.DONE, result.reason
+    check_safe(result.summary)

@@ -7,7 +7,6 @@ from flight_in_process import (
     check_within_limits,
     copied_mission,
     flown,
-    noiseless,
     position_rmse,
     short_figure,
     truth_of,
@@ -28,20 +27,19 @@ def figure(tmp_path_factory):
     return folder, mission, *gcs_fly(mission, folder / "run", "--seed", 7341)
 
 
-def test_the_figure_eight_is_flown_within_limits(figure):
-    _, _, code, summary = figure
+def test_figure_eight_is_flown_within_limits(figure):
+    folder, _, code, summary = figure
     assert code == 0
     assert summary["outcome"] == "completed"
     check_within_limits(summary)
+    assert (folder / "run" / "position.png").exists()
 
 
-def test_the_same_seed_gives_the_same_truth_to_the_byte_and_another_does_not(figure):
+def test_truth_repeats_to_the_byte_with_same_seed(figure):
+    """With another seed it does not: tests/test_swarm.py."""
     folder, mission, _, _ = figure
-    assert gcs_fly(mission, folder / "again", "--seed", 7341)[0] == 0
-    assert gcs_fly(mission, folder / "other", "--seed", 7342)[0] == 0
-    first = (folder / "run" / "truth.csv").read_bytes()
-    assert first == (folder / "again" / "truth.csv").read_bytes()
-    assert first != (folder / "other" / "truth.csv").read_bytes()
+    assert gcs_fly(mission, folder / "again", "--seed", 7341, "--no-pictures")[0] == 0
+    assert (folder / "run" / "truth.csv").read_bytes() == (folder / "again" / "truth.csv").read_bytes()
 
 
 def test_short_figure_covers_whole_curve(figure):
@@ -51,13 +49,7 @@ def test_short_figure_covers_whole_curve(figure):
     assert np.abs(truth["payload_y_m"]).max() > 2.7
 
 
-def test_tracking_error_is_smaller_without_noise(tmp_path):
-    summary = flown(noiseless(read_mission(short_figure(tmp_path))), tmp_path / "run")
-    check_within_limits(summary)
-    assert summary["position_rmse_m"]["total"] <= 0.02
-
-
-@pytest.mark.parametrize("vehicles", [3, 5, 6, 8])
+@pytest.mark.parametrize("vehicles", [3, 5, 8])
 def test_figure_eight_is_flown_by_other_team_sizes(tmp_path, vehicles):
     summary = flown(read_mission(short_figure(tmp_path, duration=8.0, vehicles=vehicles)), tmp_path / "run", seed=11)
     check_within_limits(summary)
@@ -73,13 +65,6 @@ def test_figure_eight_is_flown_with_asymmetric_attachments(tmp_path):
     assert summary["completed"]
     assert summary["position_rmse_m"]["total"] <= 0.03
     assert summary["contacts"] == 0
-
-
-@pytest.mark.parametrize("factor", [0.9, 1.1])
-def test_figure_eight_is_flown_with_ten_percent_payload_mass_error(tmp_path, factor):
-    mission = short_figure(tmp_path, duration=12.0, payload_mass_factor=str(factor))
-    summary = flown(read_mission(mission), tmp_path / "run", seed=21)
-    check_within_limits(summary, rmse=0.035)
 
 
 def test_hover_keeps_its_position(tmp_path):
@@ -133,7 +118,7 @@ def test_two_programs_with_different_payload_masses_fly_in_lockstep(tmp_path):
     try:
         addresses = addresses_of(swarm)
         urls = [addresses[f"vehicle {i}"] for i in (1, 2, 3, 4)]
-        code, summary = gcs_fly(ground, tmp_path / "run", "--connect", *urls)
+        code, summary = gcs_fly(ground, tmp_path / "run", "--no-pictures", "--connect", *urls)
         assert code == 0, summary
     finally:
         swarm.terminate()

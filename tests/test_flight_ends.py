@@ -11,6 +11,7 @@ from flight_in_process import InProcessFlight, short_figure, truth_of
 from programs import PATIENCE, GcsProcess, addresses_of, free_port, swarm_process
 from pymavlink import mavutil
 
+from gcs.app.cli import main
 from gcs.flight.phase import Phase
 from gcs.mavlink import px4
 from gcs.record.landing import is_set_down
@@ -136,12 +137,11 @@ def test_unreachable_vehicles_are_refused_with_their_address(tmp_path):
         (("--vehicles", "2"), "2"),
     ],
 )
-def test_unusable_input_ends_before_anything_is_started(tmp_path, options, reason):
-    gcs = GcsProcess(short_figure(tmp_path), tmp_path / "run", *options)
-    code, errors = gcs.end()
-    assert code == 2, errors
-    assert reason in errors
-    assert len(errors.strip().splitlines()) == 1
+def test_unusable_input_ends_before_anything_is_started(tmp_path, capsys, options, reason):
+    assert main(["fly", str(short_figure(tmp_path)), "--run-dir", str(tmp_path / "run"), *options]) == 2
+    printed = capsys.readouterr()
+    assert reason in printed.err and printed.out == ""
+    assert len(printed.err.strip().splitlines()) == 1
     assert not (tmp_path / "run").exists()
 
 

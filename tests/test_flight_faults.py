@@ -1,13 +1,21 @@
-"""Single faults of one vehicle, of one channel of all, or of the payload's unit: the team goes on, within limits."""
+"""Single faults of one vehicle, of one channel of all, or of the payload's unit: the team goes on, within limits.
+
+Flights of one process: tests/test_pytest_plugin.py and the last of these fly faults with the two programs.
+"""
+
+from dataclasses import replace
 
 import pytest
-from flight_in_process import short_figure
+from flight_in_process import InProcessFlight, short_figure
 
+from gcs.app.exit_status import ExitStatus
 from gcs.campaign.testing import fault
 from gcs.faults.link import BandwidthCap, Jitter, Latency, Partition, Reordering
 from gcs.faults.sensors import AttitudeLost, PositionDrift, PositionLost, RatesLost
 from gcs.faults.values import Bias, Drift, NotANumber, Stuck, SwappedVehicles
 from gcs.faults.world import Wind
+from gcs.mission.model import Limits
+from gcs.mission.read import read_mission
 from gcs.record.run_data import read_run
 
 pytestmark = pytest.mark.slow
@@ -15,7 +23,7 @@ pytestmark = pytest.mark.slow
 pytest_plugins = ["gcs.campaign.pytest_plugin"]
 
 START = 13.0  # s after take-off: on the figure
-LIMITS = {"position_rmse": 0.15, "settle": 0.0, "payload_tilt_deg": 4.0, "uav_separation": 0.75}
+LIMITS = Limits(position_rmse=0.15, settle=0.0, payload_tilt_deg=4.0, uav_separation=0.75)
 
 
 def of_one(parameters, direction=None, start=START):
@@ -47,32 +55,36 @@ FAULTS = {
 }
 
 
+def check_flown_within(limits, mission, folder, faults, seed):
+    """Fly ``mission`` with ``faults``; assert that it completes within ``limits`` and without contact."""
+    mission = replace(read_mission(mission), faults=tuple(faults), limits=limits)
+    with InProcessFlight(mission, folder, seed=seed) as flight:
+        flight.fly()
+        result = flight.result()
+    assert result.exit_code == ExitStatus.DONE, (result.reason, result.summary["limits"])
+    assert result.summary["contacts"] == 0
+
+
 @pytest.mark.parametrize("name", FAULTS)
-def test_flight_with_faults_completes_within_limits(name, fly_with_faults, tmp_path):
-    mission = short_figure(tmp_path, duration=12.0)
-    flight = fly_with_faults(mission, FAULTS[name], limits=LIMITS, seed=31)
-    assert flight.within_limits, flight.failures
-    assert flight.summary["contacts"] == 0
+def test_flight_with_faults_completes_within_limits(name, tmp_path):
+    check_flown_within(LIMITS, short_figure(tmp_path, duration=12.0), tmp_path / "run", FAULTS[name], seed=31)
 
 
-def test_bias_of_attitude_on_board_is_compensated(fly_with_faults, tmp_path):
+def test_bias_of_attitude_on_board_is_compensated(tmp_path):
     """The disturbance force is estimated, then the vehicle deviates no more."""
     wrong = of_one(Bias(amount=0.05, channel="attitude", at_source=True))
-    flight = fly_with_faults(short_figure(tmp_path, duration=20.0), wrong, limits={"uav_separation": 0.7}, seed=34)
-    assert flight.within_limits, flight.failures
-    assert flight.summary["contacts"] == 0
-    run = read_run(flight.run_dir)
+    mission = short_figure(tmp_path, duration=20.0)
+    check_flown_within(Limits(uav_separation=0.7), mission, tmp_path / "run", wrong, seed=34)
+    run = read_run(tmp_path / "run")
     # It began 13 s after lift-off, which comes about 3 s after the records begin.
     assert run.uav_separation()[run.time > START + 10.0].min() > 0.93
 
 
-def test_wind_drag_is_compensated_along_trajectory(fly_with_faults, tmp_path):
+def test_wind_drag_is_compensated_along_trajectory(tmp_path):
     """After half a minute of estimation the drag of 3 m/s against the payload's own motion costs little."""
-    limits = {"position_rmse": 0.3, "settle": 15.0, "payload_tilt_deg": 4.0, "uav_separation": 0.75}
+    limits = Limits(position_rmse=0.3, settle=15.0, payload_tilt_deg=4.0, uav_separation=0.75)
     wind = [fault(Wind(velocity=(2.1, -2.1, 0.0), gust=0.3), start=2.0)]
-    flight = fly_with_faults(short_figure(tmp_path, duration=25.0), wind, limits=limits, seed=32)
-    assert flight.within_limits, flight.failures
-    assert flight.summary["contacts"] == 0
+    check_flown_within(limits, short_figure(tmp_path, duration=25.0), tmp_path / "run", wind, seed=32)
 
 
 def test_growing_link_latency_ends_in_simultaneous_stop(fly_with_faults, tmp_path):

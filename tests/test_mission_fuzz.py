@@ -15,7 +15,7 @@ from gcs.mission.route import HoldForever, Land, Route, TakeOff
 
 MISSIONS = Path(__file__).parents[1] / "missions"
 FUZZ = settings(
-    max_examples=150, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.function_scoped_fixture]
+    max_examples=75, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
 
 numbers = st.one_of(

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from flight_in_process import HOP, system_file
 
-from gcs.app.fly import _result
+from gcs.app.fly import flight_result
 from gcs.flight.alarms import AlarmLog
 from gcs.mission.read import read_mission
 from gcs.record import landing as landings
@@ -113,7 +113,7 @@ def test_landing_outcome_follows_from_truth(tmp_path, rows, landed, completed, o
     failsafes = SimpleNamespace(time=1.0, interrupted=False, alarms=AlarmLog())
     flown = SimpleNamespace(completed=completed, landed=landed, takeoff_time=0.0, reason="", failsafes=failsafes)
     station = SimpleNamespace(flight=flown)
-    summary = _result(run, read_mission(path), station, 9.0, 1.0).summary
+    summary = flight_result(run, read_mission(path), station, 9.0, 1.0).summary
     assert (summary["outcome"], summary["completed"]) == (outcome, outcome == "completed")
     assert summary["limits"]["touchdown_speed"][2] == (outcome != "failed")
 

@@ -77,6 +77,7 @@ def test_vehicles_hold_then_land_after_link_loss(flown):
     assert "Touch-down" in texts
 
 
+@pytest.mark.slow
 def test_payload_stays_level_without_contacts(flown):
     _, _, _, truth, _ = flown
     assert {row["contacts"] for row in truth} == {"0"}
@@ -84,11 +85,13 @@ def test_payload_stays_level_without_contacts(flown):
     assert tilt < math.radians(5.0)
 
 
+@pytest.mark.slow
 def test_truth_rows_are_on_a_grid_of_20_ms_from_zero(flown):
     _, _, _, truth, _ = flown
     assert [row["time_s"] for row in truth] == [repr(k / 50) for k in range(len(truth))]
 
 
+@pytest.mark.slow
 def test_obstacles_start_moving_at_take_off(flown):
     folder, _, _, truth, take_off = flown
     obstacles = rows(folder / "obstacles.csv")
@@ -107,6 +110,7 @@ def test_obstacles_start_moving_at_take_off(flown):
         assert float(row["yaw_rad"]) == pytest.approx(math.radians(30.0))
 
 
+@pytest.mark.slow
 def test_telemetry_carries_newest_sample(flown):
     _, _, ground, _, _ = flown
     assert sorted(ground.stamps) == [1, 2, 3, 4]
@@ -117,6 +121,7 @@ def test_telemetry_carries_newest_sample(flown):
         assert {b - a for (a, _), (b, _) in itertools.pairwise(stamps[1:])} == {1000 // CONFIG.rates.telemetry}
 
 
+@pytest.mark.slow
 def test_every_vehicle_relays_the_payload_unit(flown):
     _, _, ground, _, _ = flown
     samples = {}
@@ -129,6 +134,7 @@ def test_every_vehicle_relays_the_payload_unit(flown):
         assert len({(x, z) for _, x, z in of}) == 1
 
 
+@pytest.mark.slow
 def test_noise_has_standard_deviation_of_system_file(flown):
     _, _, ground, truth, _ = flown
     true = {round(float(row["time_s"]) * 1e3): row for row in truth}

@@ -24,6 +24,7 @@ from vehicle_sim.world.world import World
 NOISE = SensorNoise(position=0.02, attitude=math.radians(0.2), velocity=0.02, rates=0.005)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("velocity", [(0.0, 0.0), (3.0, 2.5)])
 def test_payload_is_braked_held_and_set_down(velocity: tuple[float, float]) -> None:
     config = read_system()

@@ -127,6 +127,7 @@ def test_signal_ends_simulation_with_closed_records(tmp_path, number, status, pa
     assert manifest["command"][:3] == ["vehicle-sim", "--mission", "mission.toml"]
 
 
+@pytest.mark.slow
 def test_vehicles_send_heartbeats_to_the_ground_port():
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as ground:
         ground.bind(("127.0.0.1", 0))
@@ -143,7 +144,8 @@ def test_vehicles_send_heartbeats_to_the_ground_port():
             assert running.wait(PATIENCE) == 0
 
 
-def test_the_folder_of_a_parent_keeps_its_manifest(tmp_path):
+@pytest.mark.slow
+def test_run_folder_of_a_parent_keeps_its_manifest(tmp_path):
     (tmp_path / "run").mkdir()
     (tmp_path / "run" / "manifest.json").write_text("the parent's")
     with process("--base-port", 0, "--lockstep", "--with-parent", "--run-dir", "run") as (running, _, _):
@@ -153,6 +155,7 @@ def test_the_folder_of_a_parent_keeps_its_manifest(tmp_path):
     assert (tmp_path / "run" / "truth.csv").exists()
 
 
+@pytest.mark.slow
 def test_ctrl_c_at_the_terminal_is_handled_by_the_parent(tmp_path):
     with process("--base-port", 0, "--lockstep", "--with-parent") as (running, _, _):
         running.send_signal(signal.SIGINT)

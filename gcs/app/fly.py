@@ -155,10 +155,13 @@ def fly(options: FlyOptions, mission: Mission, progress: Callable[[Flight], None
             flight = station.flight
             reason = "interrupted twice: the vehicles land autonomously"
             flight.raise_failsafe(flight.time, Failsafe.INTERRUPTED_TWICE, Trigger(reason))
-    return _result(run_dir, mission, station, recorder.last_time, time.monotonic() - wall)
+    return flight_result(run_dir, mission, station, recorder.last_time, time.monotonic() - wall)
 
 
-def _result(run_dir: Path, mission: Mission, station: GroundStation, last_time: float, wall: float) -> FlightResult:
+def flight_result(
+    run_dir: Path, mission: Mission, station: GroundStation, last_time: float, wall: float
+) -> FlightResult:
+    """Return how a flight of ``wall`` seconds ended, and write its summary; its records end at ``last_time`` (s)."""
     flight = station.flight
     limits = dataclasses.asdict(mission.limits) if mission.limits is not None else None
     begun = not math.isnan(flight.takeoff_time)
