@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterator
-from functools import cache, reduce
+from functools import reduce
 from operator import or_
 from types import UnionType
 from typing import Annotated, Any, Union, get_args, get_origin, get_type_hints
@@ -76,17 +76,25 @@ def _plain(value: Any) -> Any:
     return [_plain(item) for item in value] if isinstance(value, tuple) else value
 
 
-@cache
-def _declared(cls: type[Any]) -> tuple[tuple[str, Any, dataclasses.Field[Any]], ...]:
-    """Return name, type and field of every setting and table of ``cls``."""
-    hints = get_type_hints(cls)
-    declared = []
-    for field in dataclasses.fields(cls):
-        hint = hints[field.name]
-        is_table = dataclasses.is_dataclass(hint) and DERIVED_KEY not in field.metadata
-        if METADATA_KEY in field.metadata or (is_table and _declared(hint)):
-            declared.append((field.name, hint, field))
-    return tuple(declared)
+_Declared = tuple[tuple[str, Any, dataclasses.Field[Any]], ...]
+_declared_of: dict[type[Any], _Declared] = {}
+
+
+def _declared(cls: type[Any]) -> _Declared:
+    """Return name, type and field of every setting and table of ``cls``; found once, as resolving types takes long."""
+    if cls not in _declared_of:
+        hints = get_type_hints(cls)
+        _declared_of[cls] = tuple(
+            (field.name, hints[field.name], field)
+            for field in dataclasses.fields(cls)
+            if METADATA_KEY in field.metadata or _is_table(hints[field.name], field)
+        )
+    return _declared_of[cls]
+
+
+def _is_table(hint: Any, field: dataclasses.Field[Any]) -> bool:
+    is_dataclass = isinstance(hint, type) and dataclasses.is_dataclass(hint)
+    return is_dataclass and DERIVED_KEY not in field.metadata and bool(_declared(hint))
 
 
 def _default(field: dataclasses.Field[Any]) -> Any:
