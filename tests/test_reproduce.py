@@ -18,7 +18,7 @@ from gcs.reproduce import figures
 from gcs.reproduce.numbers import flight_numbers, model_numbers
 from gcs.reproduce.page import ABSENT, paper_text, rounded
 from gcs.reproduce.plan import plan
-from gcs.reproduce.simulation import Case, Flown, simulate
+from gcs.reproduce.simulation import Flown, simulate
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
@@ -193,8 +193,8 @@ def test_flight_numbers_cover_time_to_first_contact(tmp_path):
 
 
 def test_avoidance_intervals_close_short_gaps():
-    flown = Flown(Case("x", "project", 1.0), (), 0.0, 0.0)
-    flown.time = np.arange(100) * 0.05
-    flown.avoiding = np.zeros(100, dtype=bool)
-    flown.avoiding[[10, 11, 15, 60]] = True
+    avoiding = np.zeros(100, dtype=bool)
+    avoiding[[10, 11, 15, 60]] = True
+    rest = np.zeros((100, 3))
+    flown = Flown((), 0.0, 0.0, np.arange(100) * 0.05, rest, rest, rest, rest, rest, rest, avoiding, rest)
     np.testing.assert_allclose(flown.avoidance_intervals(), [(0.5, 0.8), (3.0, 3.05)])

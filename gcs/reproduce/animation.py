@@ -1,4 +1,4 @@
-"""The simulations as moving pictures (GIF): what the paper's video shows."""
+"""Animations of the simulations (GIF), as in the paper's video."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from gcs.reproduce.simulation import Flown
 
 
 def animate(flown: Mapping[str, Flown], title: str, path: Path, frames: int) -> None:
-    """``frames`` pictures of each of ``flown`` side by side over its time."""
+    """Write ``frames`` pictures of the simulations ``flown``, next to each other, over their time."""
     figure = new_figure(title, (5.2 * len(flown), 4.8))
     axes: list[Any] = []
     moving: list[Any] = []
@@ -24,8 +24,8 @@ def animate(flown: Mapping[str, Flown], title: str, path: Path, frames: int) -> 
         ax.set_title(TITLES.get(name, name), fontsize=10)
         label_space(ax)
         axes.append(ax)
-    # The axes do not change any more: without this the layout is found anew for every picture.
-    figure.canvas.draw()
+    # Fixed from here on, which saves the layout of every picture.
+    figure.draw_without_rendering()
     figure.set_layout_engine("none")
     writer = PillowWriter(fps=12)
     with writer.saving(figure, str(path), 70):

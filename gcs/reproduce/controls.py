@@ -1,10 +1,10 @@
-"""The controllers that are compared on one plant: the paper's, corrected step by step, and the project's."""
+"""The controllers compared on one plant: the paper's, corrected step by step, and the project's."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 import coal
 import numpy as np
@@ -36,38 +36,42 @@ Array = NDArray[np.float64]
 
 PERIOD = 0.05  # s
 VISIBLE = 0.05
-"""m off the reference, from which on the project's planner is said to avoid something."""
+"""Deviation (m) from the reference from which on the project's planner counts as avoiding."""
 
 
-class Control(Protocol):
-    """Decides once a period, acts on the rotors at every step of the plant."""
+class Control(ABC):
+    """A controller of the plant: decides once per period, and acts on the rotors at each step of the plant."""
 
-    avoiding: bool
+    avoiding = False
     """The last decision was changed for an obstacle."""
-    infeasible_tracking: int
-    """Decisions whose QP, as printed, had no solution."""
-    infeasible_avoidance: int
+    infeasible_tracking = 0
+    """Number of decisions whose QP, as printed, had no solution."""
+    infeasible_avoidance = 0
 
-    def decide(self, time: float, measured: PlantState) -> None:
-        """Take a decision."""
-        ...
-
-    def act(self, state: PlantState, dt: float) -> tuple[Array, Array]:
-        """Thrusts (N,) and torques (N, 3) for the next ``dt`` (s)."""
-        ...
+    def __init__(self, parameters: SystemParameters, figure: Trajectory | None) -> None:
+        """``figure``: the trajectory to track; None: eq:Lissajous as printed."""
+        self.parameters, self.figure = parameters, figure
 
     def reference(self, times: Array) -> Array:
-        """Reference positions of the payload (K, 3)."""
-        ...
+        """Return the reference positions of the payload (K, 3) at ``times`` (K,)."""
+        return printed_reference(times) if self.figure is None else np.asarray(self.figure.derivatives(times, 0)[0])
+
+    @abstractmethod
+    def decide(self, time: float, measured: PlantState) -> None:
+        """Take the decision of the period that begins at ``time`` (s)."""
+
+    @abstractmethod
+    def act(self, state: PlantState, dt: float) -> tuple[Array, Array]:
+        """Return thrusts (N,) (N) and torques (N, 3) (N m) for the next ``dt`` (s)."""
 
 
 @dataclass(frozen=True)
 class PaperVariant:
-    """How the paper is read.
+    """A reading of the paper.
 
-    ``tracking`` outputs: the cost is on what y' names alone; states: on all states, those that y' does not name are
-    wanted at zero; flat: corrected, errors about the exact reference over the horizon, entered from rest.
-    ``acceleration`` linear or nonlinear: which equations A_obs is made of.
+    ``tracking``: cost on the components of y' only (outputs); on all states, with zero as the reference of those not
+    in y' (states); corrected, on errors about the exact reference over the horizon, entered from rest (flat).
+    ``acceleration``: equations that A_obs is derived from, linear or nonlinear.
     """
 
     tracking: str = "outputs"
@@ -75,44 +79,39 @@ class PaperVariant:
     poles: tuple[float, float] = (2.0, 2.0)
 
 
-class PaperControl:
+class PaperControl(Control):
     """Thrust and torque, held for a period: the paper's MPC, then its obstacle avoidance controller."""
 
     def __init__(
         self, parameters: SystemParameters, variant: PaperVariant, figure: Trajectory | None = None,
         spheres: Sequence[Sphere] = (), margin: float = MARGIN,
     ) -> None:  # fmt: skip
-        """``figure`` is what a flat variant tracks; the others track eq:Lissajous as printed."""
+        """``figure``: of a flat variant; the others track eq:Lissajous as printed."""
+        super().__init__(parameters, figure)
         outputs = variant.tracking == "outputs"
         weights = Weights.of_named_outputs() if outputs else Weights()
-        self.variant, self.parameters, self.spheres, self.margin = variant, parameters, tuple(spheres), margin
-        self._figure = figure
+        self.variant, self.spheres, self.margin = variant, tuple(spheres), margin
         self._mpc = ThrustTorqueMpc(parameters, Settings(weights=weights, terminal_outputs_alone=outputs))
         self._plant, self._formation = Plant(parameters), Formation(parameters)
         self._A_v, self._G = linear_acceleration(parameters)
         self._hover = np.column_stack([parameters.hover_thrust, np.zeros((parameters.number_of_uavs, 3))]).ravel()
         self._u = self._hover
-        self.avoiding, self.infeasible_tracking, self.infeasible_avoidance = False, 0, 0
-
-    def reference(self, times: Array) -> Array:
-        """See :class:`Control`."""
-        return printed_reference(times) if self._figure is None else self._figure.derivatives(times, 0)[0]
 
     def decide(self, time: float, measured: PlantState) -> None:
-        """See :class:`Control`."""
+        """Take a decision."""
         mpc = self._mpc
         x = minimal_state(measured)
         times = time + PERIOD * np.arange(mpc.settings.horizon + 1, dtype=np.float64)
-        if self._figure is None:
-            wanted = np.zeros((len(times), len(x)))
-            wanted[:, :3] = printed_reference(times)
+        if self.figure is None:
+            reference = np.zeros((len(times), len(x)))
+            reference[:, :3] = printed_reference(times)
             u = np.tile(self._hover, (len(times) - 1, 1))
             state = mpc.F @ x
-            free = state - wanted
+            free = state - reference
         else:
-            wanted, u = _flat_in_paper_inputs(self.parameters, self._figure, times)
-            free = mpc.F @ (x - wanted[0])
-            state = wanted + free
+            reference, u = _flat_in_paper_inputs(self.parameters, self.figure, times)
+            free = mpc.F @ (x - reference[0])
+            state = reference + free
         move = mpc.solve(free, state, u)
         self.infeasible_tracking += move.infeasible_as_printed
         rows, bounds = self._rows(time, measured, x)
@@ -123,7 +122,7 @@ class PaperControl:
         self._u = self._hover + corrected.delta_u
 
     def act(self, state: PlantState, dt: float) -> tuple[Array, Array]:
-        """See :class:`Control`: held."""
+        """Return the decision: held over the period."""
         u = self._u.reshape(-1, 4)
         return u[:, 0], u[:, 1:]
 
@@ -156,14 +155,14 @@ class PaperControl:
         return np.array(rows), np.array(bounds)
 
 
-class ProjectControl:
+class ProjectControl(Control):
     """The project's controller: set-points of attitude and thrust, an attitude loop on board, rotors with a lag."""
 
     def __init__(
         self, parameters: SystemParameters, figure: Trajectory, spheres: Sequence[Sphere] = (), margin: float = MARGIN
     ) -> None:
-        config = configuration()
-        self.parameters, self._figure = parameters, figure
+        super().__init__(parameters, figure)
+        self._trajectory, config = figure, configuration()
         model = LinearModel(parameters)
         self._layout = model.layout
         self._safety: SafetyFilter = NoObstacles()
@@ -176,27 +175,22 @@ class ProjectControl:
         N = parameters.number_of_uavs
         self._directions, self._thrusts = np.tile([0.0, 0.0, -1.0], (N, 1)), parameters.hover_thrust
         self._thrust, self._torque = parameters.hover_thrust, np.zeros((N, 3))
-        self.avoiding, self.infeasible_tracking, self.infeasible_avoidance = False, 0, 0
-
-    def reference(self, times: Array) -> Array:
-        """See :class:`Control`."""
-        return self._figure.derivatives(times, 0)[0]
 
     def decide(self, time: float, measured: PlantState) -> None:
-        """See :class:`Control`."""
+        """Take a decision."""
         N = self._layout.number_of_uavs
         n = self._layout.size + 3 + 2 * N + 1
         estimate = Estimate(time, self._state(measured), np.zeros(3), np.zeros((N, 3)), 0.0, np.zeros((n, n)))
-        decision = self._controller.decide(estimate, self._figure)
+        decision = self._controller.decide(estimate, self._trajectory)
         self._directions, self._thrusts = decision.directions, decision.thrusts
-        # The plan deviates a little long before and after an obstacle: only a visible deviation counts.
-        deviation = decision.flat.payload[0, 0] - self._figure.position(time)
+        # The plan deviates slightly long before and after an obstacle: only larger deviations count.
+        deviation = decision.flat.payload[0, 0] - self._trajectory.position(time)
         self.avoiding = decision.safety.active and float(np.linalg.norm(deviation)) > VISIBLE
         self.infeasible_tracking += decision.infeasible
         self.infeasible_avoidance += decision.safety.infeasible
 
     def act(self, state: PlantState, dt: float) -> tuple[Array, Array]:
-        """See :class:`Control`: torque = J (kp e - kd omega), first-order lag of the rotors."""
+        """Return torques J (kp e - kd omega) and thrusts after the first-order lag of the rotors."""
         p = self.parameters
         R = rotation_from_quaternion(state.quaternion)
         down = np.einsum("ijk,ij->ik", R, np.cross(R[:, :, 2], -self._directions))
@@ -215,16 +209,16 @@ class ProjectControl:
         x[layout.s], x[layout.s_dot] = state.q[:, :2].ravel(), state.q_dot[:, :2].ravel()
         # Thrust directions -R e3 and their derivatives.
         R, e3 = rotation_from_quaternion(state.quaternion), np.array([0.0, 0.0, 1.0])
-        turning = np.cross(state.omega, e3)
-        gaining = np.cross(state.omega, turning) + np.cross(np.linalg.solve(p.J, self._torque[:, :, None])[:, :, 0], e3)
-        for part, vector in ((layout.n, np.tile(e3, (len(R), 1))), (layout.n_dot, turning), (layout.n_acc, gaining)):
+        rate = np.cross(state.omega, e3)
+        second = np.cross(state.omega, rate) + np.cross(np.linalg.solve(p.J, self._torque[:, :, None])[:, :, 0], e3)
+        for part, vector in ((layout.n, np.tile(e3, (len(R), 1))), (layout.n_dot, rate), (layout.n_acc, second)):
             x[part] = -np.einsum("ijk,ik->ij", R, vector)[:, :2].ravel()
         x[layout.f] = self._thrust
         return x
 
 
 def minimal_state(state: PlantState) -> Array:
-    """Deviation from hover at the origin in the minimal coordinates (12 + 10 N,)."""
+    """Return the deviation from hover at the origin in the minimal coordinates (12 + 10 N,)."""
     layout = Layout.minimal(len(state.q))
     x = np.zeros(layout.size)
     x[:12] = np.concatenate([state.r_0, state.v_0, euler_from_quaternion(state.quaternion_0), state.omega_0])
@@ -234,7 +228,7 @@ def minimal_state(state: PlantState) -> Array:
 
 
 def _flat_in_paper_inputs(parameters: SystemParameters, figure: Trajectory, times: Array) -> tuple[Array, Array]:
-    """Minimal states at ``times`` (K,) and the inputs (K - 1, 4 N) between them that keep the system there."""
+    """Return the minimal states at ``times`` (K,) and the inputs (K - 1, 4 N) between them that lead through them."""
     load = Load(parameters.m_0, np.zeros(3))
     between = 0.5 * (times[1:] + times[:-1])
     flat = flat_reference(parameters, figure, np.concatenate([times, between]), load)
@@ -242,17 +236,20 @@ def _flat_in_paper_inputs(parameters: SystemParameters, figure: Trajectory, time
     source, layout = StateLayout(N), Layout.minimal(N)
     x, u = np.zeros((K, layout.size)), np.zeros((K - 1, N, 4))
     x[:, :6] = flat.x[:K, :6]
-    pair = lambda part: flat.x[:, part].reshape(-1, N, 2)  # noqa: E731
-    x[:, layout.of_uavs("s")], x[:, layout.of_uavs("s_dot")] = pair(source.s)[:K], pair(source.s_dot)[:K]
-    n = pair(source.n)
+
+    def pairs(part: slice) -> Array:
+        return np.asarray(flat.x[:, part].reshape(-1, N, 2))
+
+    x[:, layout.of_uavs("s")], x[:, layout.of_uavs("s_dot")] = pairs(source.s)[:K], pairs(source.s_dot)[:K]
+    n = pairs(source.n)
     roll = np.arcsin(n[..., 1])
     pitch = np.arcsin(-n[..., 0] / np.cos(roll))
     x[:, layout.of_uavs("Theta")[:, 0]], x[:, layout.of_uavs("Theta")[:, 1]] = roll[:K], pitch[:K]
-    for at, part in ((layout.of_uavs("omega"), source.n_dot), (None, source.n_acc)):
-        rate = np.stack([pair(part)[..., 1] / np.cos(roll), -pair(part)[..., 0] / np.cos(pitch)], axis=-1)
-        if at is not None:
-            x[:, at[:, :2]] = rate[:K]
-        else:
-            u[..., 1:3] = np.einsum("ijk,tik->tij", parameters.J[:, :2, :2], rate[K:])
+    omega, omega_dot = (
+        np.stack([part[..., 1] / np.cos(roll), -part[..., 0] / np.cos(pitch)], axis=-1)
+        for part in (pairs(source.n_dot), pairs(source.n_acc))
+    )
+    x[:, layout.of_uavs("omega")[:, :2]] = omega[:K]
+    u[..., 1:3] = np.einsum("ijk,tik->tij", parameters.J[:, :2, :2], omega_dot[K:])
     u[..., 0] = flat.x[K:, source.f]
     return x, u.reshape(K - 1, 4 * N)

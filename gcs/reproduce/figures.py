@@ -1,14 +1,13 @@
-"""The paper's figures, each with what is printed beside what is corrected. PNG files."""
+"""The paper's figures as PNG files, each as printed and as corrected."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
@@ -16,7 +15,7 @@ from gcs.record.figures import FLOWN, LIMIT, OBSTACLE, SERIES
 from gcs.record.pictures import save_picture
 from gcs.record.run_data import RunData
 from gcs.record.summary import payload_angles
-from gcs.reproduce.scene import RADIUS
+from gcs.reproduce.scene import ALTITUDE, RADIUS
 from gcs.reproduce.simulation import LOST_TILT, Flown
 from idc_controller.rotations import rotation_from_quaternion
 
@@ -33,51 +32,50 @@ _REFERENCE: dict[str, Any] = {"color": "#BBBBBB", "lw": 4.0, "solid_capstyle": "
 
 
 def draw_position(flown: Mapping[str, Flown], title: str, path: Path) -> None:
-    """trackxyz, trackObsxyz: position over time, a column a control, avoidance shaded."""
+    """Draw trackxyz or trackObsxyz: position over time, a column per controller, avoidance shaded."""
 
-    def draw(axes: Sequence[Axes], run: Flown) -> None:
-        for i, ax in enumerate(axes):
-            ax.plot(run.time, run.reference[:, i], **_REFERENCE)
-            ax.plot(run.time, run.position[:, i], color=FLOWN, lw=1.4, label="flown")
-        axes[2].invert_yaxis()
+    def draw(ax: Axes, run: Flown, i: int) -> None:
+        ax.plot(run.time, run.reference[:, i], **_REFERENCE)
+        ax.plot(run.time, run.position[:, i], color=FLOWN, lw=1.4, label="flown")
+        if i == 2:
+            ax.invert_yaxis()
 
     _columns(flown, title, ("x (m)", "y (m)", "z (m)"), draw, path)
 
 
 def draw_attitude(flown: Mapping[str, Flown], title: str, path: Path) -> None:
-    """attrpy, attObsrpy: roll, pitch, yaw of the payload over time, with the 5 degrees of the paper."""
+    """Draw attrpy or attObsrpy: roll, pitch, yaw of the payload over time, with the 5 degrees of the paper."""
 
-    def draw(axes: Sequence[Axes], run: Flown) -> None:
-        for i, ax in enumerate(axes):
-            ax.plot(run.time, run.angles[:, i], color=FLOWN, lw=1.2)
-            for limit in (-5.0, 5.0):
-                ax.axhline(limit, color=LIMIT, ls="--", lw=1.0)
+    def draw(ax: Axes, run: Flown, i: int) -> None:
+        ax.plot(run.time, run.angles[:, i], color=FLOWN, lw=1.2)
+        _limits(ax, -5.0, 5.0)
 
     _columns(flown, title, ("roll (deg)", "pitch (deg)", "yaw (deg)"), draw, path)
 
 
-def _columns(flown: Mapping[str, Flown], title: str, labels: Sequence[str], draw: Any, path: Path) -> None:
+def _columns(
+    flown: Mapping[str, Flown], title: str, labels: Sequence[str], draw: Callable[[Axes, Flown, int], None], path: Path
+) -> None:
     figure = new_figure(title, (4.6 * len(flown), 7.0))
     grid = figure.subplots(3, len(flown), squeeze=False, sharey="row")
     for column, (name, run) in enumerate(flown.items()):
-        axes = list(grid[:, column])
-        draw(axes, run)
-        ended = "" if run.lost_at is None else f" (lost at {run.lost_at:.1f} s)"
-        axes[0].set_title(TITLES.get(name, name) + ended, fontsize=11)
-        for ax in axes:
+        for i, ax in enumerate(grid[:, column]):
+            draw(ax, run, i)
             for begin, end in run.avoidance_intervals():
                 ax.axvspan(begin, end, color="red", alpha=0.12, lw=0)
             ax.grid(alpha=0.3)
-        axes[2].set_xlabel("time (s)")
+        lost = "" if run.lost_at is None else f" (lost at {run.lost_at:.1f} s)"
+        grid[0, column].set_title(TITLES.get(name, name) + lost, fontsize=11)
+        grid[2, column].set_xlabel("time (s)")
     for row, label in enumerate(labels):
         grid[row, 0].set_ylabel(label)
     if grid[0, 0].get_legend_handles_labels()[1]:
         grid[0, 0].legend(frameon=False, fontsize=8, ncols=2)
-    _save(figure, path)
+    save_picture(figure, path, DPI)
 
 
 def draw_snapshot(flown: Mapping[str, Flown], title: str, path: Path) -> None:
-    """anim3d, animObs3d: the formation at some moments in three dimensions, east-north-up as in the paper."""
+    """Draw anim3d or animObs3d: the formation at some times in space, east-north-up as in the paper."""
     figure = new_figure(title, (6.4 * len(flown), 6.2))
     for column, (name, run) in enumerate(flown.items()):
         ax = figure.add_subplot(1, len(flown), column + 1, projection="3d")
@@ -91,11 +89,11 @@ def draw_snapshot(flown: Mapping[str, Flown], title: str, path: Path) -> None:
             draw_formation(ax, run, nearest)
         ax.set_title(TITLES.get(name, name), fontsize=11)
         label_space(ax)
-    _save(figure, path)
+    save_picture(figure, path, DPI)
 
 
 def draw_formation(ax: Any, run: Flown, k: int) -> list[Any]:
-    """Payload's upper face, links and UAVs at record ``k``."""
+    """Draw the payload's upper face, links and UAVs at record ``k``."""
     R_0, r_0 = rotation_from_quaternion(run.quaternion[k]), run.position[k]
     corners = np.array([[0.5, 0.5, -0.25], [0.5, -0.5, -0.25], [-0.5, -0.5, -0.25], [-0.5, 0.5, -0.25]])
     attached = r_0 + corners @ R_0.T
@@ -110,7 +108,7 @@ def draw_formation(ax: Any, run: Flown, k: int) -> list[Any]:
 
 
 def draw_spheres(ax: Any, run: Flown, k: int) -> list[Any]:
-    """The obstacles at record ``k``."""
+    """Draw the obstacles at record ``k``."""
     u, v = np.meshgrid(np.linspace(0.0, 2.0 * np.pi, 17), np.linspace(0.0, np.pi, 9))
     ball = RADIUS * np.stack([np.cos(u) * np.sin(v), np.sin(u) * np.sin(v), np.cos(v)], axis=-1)
     return [
@@ -121,60 +119,65 @@ def draw_spheres(ax: Any, run: Flown, k: int) -> list[Any]:
 
 
 def draw_noise(worst: Mapping[str, Any], path: Path) -> None:
-    """sigmavsdev: largest roll and pitch against the noise."""
+    """Draw sigmavsdev: largest roll and pitch against the noise."""
     figure = new_figure(
         "Largest angle against noise on the payload's velocity and rates, avoiding two spheres", (9, 4.6)
     )
     ax = figure.add_subplot()
     for color, (control, by_sigma) in zip(SERIES, sorted(worst.items()), strict=False):
         sigmas = sorted(by_sigma, key=float)
-        for key, style in (("roll_max_deg", "o-"), ("pitch_max_deg", "s--")):
-            values = [by_sigma[sigma][key] for sigma in sigmas]
-            label = f"{TITLES.get(control, control)}: {key.split('_')[0]}"
+        for angle, style in (("roll", "o-"), ("pitch", "s--")):
+            values = [by_sigma[sigma][f"{angle}_max_deg"] for sigma in sigmas]
+            label = f"{TITLES.get(control, control)}: {angle}"
             ax.plot([float(sigma) for sigma in sigmas], values, style, color=color, label=label)
-    ax.axhline(10.0, color=LIMIT, ls="--", lw=1.0, label="the paper's threshold")
+    _limits(ax, 10.0, label="the paper's threshold")
     for sigma, height, text in ((0.008, 8.6, "paper: 10 deg"), (0.012, 7.8, "paper: unstable beyond")):
         ax.axvline(sigma, color="#999999", ls=":", lw=1.0)
         ax.text(sigma, height, f" {text}", fontsize=8, color="#555555")
     ax.set_ylim(bottom=0.0)
     _finish(ax, "sigma (m/s and rad/s)", "largest angle (deg)")
-    _save(figure, path)
+    save_picture(figure, path, DPI)
 
 
 def draw_mass(mass: Mapping[str, Any], path: Path) -> None:
-    """Control effort and tilt against the payload's true mass."""
+    """Draw control effort and tilt against the payload's true mass."""
     figure = new_figure("Payload mass: designed for 3.0 kg, avoiding two spheres", (10, 4.2))
     left, right = figure.subplots(1, 2)
-    for color, (control, found) in zip(SERIES, _by_control(mass).items(), strict=False):
-        values = sorted(found)
-        label = TITLES.get(control, control)
-        left.plot(values, [found[m].get("effort_change_percent") for m in values], "o-", color=color, label=label)
-        right.plot(values, [_tilt(found[m]) for m in values], "o-", color=color, label=label)
-    for change in (-5.0, 5.0):
-        left.axhline(change, color=LIMIT, ls="--", lw=1.0)
+    _draw_series(left, mass, lambda n: n.get("effort_change_percent"))
+    _draw_series(right, mass, lambda n: max(n["roll_max_deg"], n["pitch_max_deg"]))
+    _limits(left, -5.0, 5.0)
     _finish(left, "true mass (kg)", "change of mean |u| (%)")
     right.set_ylim(bottom=0.0)
     _finish(right, "true mass (kg)", "largest roll or pitch (deg)")
-    _save(figure, path)
+    save_picture(figure, path, DPI)
 
 
 def draw_margin(margin: Mapping[str, Any], path: Path) -> None:
-    """Clearance, deviation and tilt against the safety margin."""
+    """Draw clearance and height against the safety margin."""
     figure = new_figure("Safety margin around spheres of 0.5 m", (10, 4.2))
     left, right = figure.subplots(1, 2)
-    for color, (control, found) in zip(SERIES, _by_control(margin).items(), strict=False):
-        values = sorted(found)
-        label = TITLES.get(control, control)
-        left.plot(values, [found[m]["clearance_min_m"] for m in values], "o-", color=color, label=label)
-        right.plot(values, [found[m]["height_max_m"] - 5.0 for m in values], "o-", color=color, label=label)
+    _draw_series(left, margin, lambda n: n["clearance_min_m"])
+    _draw_series(right, margin, lambda n: n["height_max_m"] - ALTITUDE)
     left.plot(left.get_xlim(), left.get_xlim(), ":", color="#999999", label="the margin itself")
     _finish(left, "margin (m)", "least clearance (m)")
     _finish(right, "margin (m)", "highest above the reference (m)")
-    _save(figure, path)
+    save_picture(figure, path, DPI)
+
+
+def _draw_series(ax: Axes, section: Mapping[str, Any], figure: Callable[[Mapping[str, Any]], Any]) -> None:
+    """Draw a figure of the cases of a section, which are named CONTROLLER_VALUE, against the value."""
+    by_control: dict[str, dict[float, Any]] = {}
+    for name, numbers in section.items():
+        control, value = name.split("_")
+        by_control.setdefault(control, {})[float(value)] = numbers
+    for color, (control, found) in zip(SERIES, by_control.items(), strict=False):
+        values = sorted(found)
+        label = TITLES.get(control, control)
+        ax.plot(values, [figure(found[value]) for value in values], "o-", color=color, label=label)
 
 
 def draw_course(runs: Mapping[str, RunData], path: Path) -> None:
-    """gazObs, payTrajGaz: the obstacle scenario and the payload's path through it, from above and from the side."""
+    """Draw gazObs and payTrajGaz: the obstacles and the payload's path, from above and from the side."""
     figure = new_figure("Obstacle scenario in PyBullet, through MAVLink", (12, 6.4))
     above, side = figure.subplots(2, 1, sharex=True)
     for number, obstacle in enumerate(next(iter(runs.values())).obstacles):
@@ -189,41 +192,40 @@ def draw_course(runs: Mapping[str, RunData], path: Path) -> None:
                     color=OBSTACLE, alpha=0.7 if obstacle.shape.round_axes else 0.2, label=label)  # fmt: skip
             ax.plot(track[:, 0], sign * track[:, axis], color=OBSTACLE, lw=1.0, alpha=0.6)
     for color, (name, run) in zip(SERIES, runs.items(), strict=False):
-        path_flown, lost = _until_lost(run)
-        label = f"{FLOWN_BY[name]}, lost" if lost else FLOWN_BY[name]
-        for ax, height in ((above, path_flown[:, 1]), (side, -path_flown[:, 2])):
-            ax.plot(path_flown[:, 0], height, color=color, lw=1.6, label=label)
-            if lost:
-                ax.plot(path_flown[-1, 0], height[-1], "x", color=color, ms=10, mew=2.5)
+        flown, label = _until_lost(name, run)
+        for ax, height in ((above, flown[:, 1]), (side, -flown[:, 2])):
+            ax.plot(flown[:, 0], height, color=color, lw=1.6, label=label)
+            if len(flown) < len(run.time):
+                ax.plot(flown[-1, 0], height[-1], "x", color=color, ms=10, mew=2.5)
     above.set_aspect("equal", adjustable="datalim")
     _finish(above, "", "east (m)")
     _finish(side, "north (m)", "height (m)")
-    _save(figure, path)
+    save_picture(figure, path, DPI)
 
 
 def draw_course_position(runs: Mapping[str, RunData], path: Path) -> None:
-    """payloadObsGaz: the payload's position and attitude over time in the obstacle scenario."""
+    """Draw payloadObsGaz: the payload's position and tilt over time among the obstacles."""
     figure = new_figure("Payload in the obstacle scenario", (11, 8.5))
     axes = list(figure.subplots(4, 1, sharex=True))
     for color, (name, run) in zip(SERIES, runs.items(), strict=False):
-        path_flown, lost = _until_lost(run)
-        time = run.time[: len(path_flown)]
-        label = f"{FLOWN_BY[name]}, lost" if lost else FLOWN_BY[name]
+        flown, label = _until_lost(name, run)
+        time = run.time[: len(flown)]
         for i in range(3):
-            axes[i].plot(time, path_flown[:, i], color=color, lw=1.3, label=label)
-        axes[3].plot(time, _tilt_over_time(run)[: len(path_flown)], color=color, lw=1.1, label=label)
+            axes[i].plot(time, flown[:, i], color=color, lw=1.3, label=label)
+        axes[3].plot(time, _tilt_over_time(run)[: len(flown)], color=color, lw=1.1, label=label)
     axes[2].invert_yaxis()
-    axes[3].axhline(5.0, color=LIMIT, ls="--", lw=1.0)
+    _limits(axes[3], 5.0)
     for ax, label in zip(axes, ("north (m)", "east (m)", "down (m)", "tilt (deg)"), strict=True):
         _finish(ax, "", label)
     axes[3].set_xlabel("time (s)")
-    _save(figure, path)
+    save_picture(figure, path, DPI)
 
 
-def _until_lost(run: RunData) -> tuple[Array, bool]:
-    """The payload's path (K, 3) until it tips over, and whether it does: samples after that are no flight."""
+def _until_lost(name: str, run: RunData) -> tuple[Array, str]:
+    """Return the payload's path (K, 3) until it tips over, if it does, and the label of the flight."""
     over = np.flatnonzero(_tilt_over_time(run) > LOST_TILT)
-    return (run.payload_position[: over[0] + 1], True) if len(over) else (run.payload_position, False)
+    end = over[0] + 1 if len(over) else len(run.time)
+    return run.payload_position[:end], FLOWN_BY[name] + (", lost" if len(over) else "")
 
 
 def _tilt_over_time(run: RunData) -> Array:
@@ -234,34 +236,26 @@ _TO_ENU = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
 
 
 def enu(points: Array) -> Array:
-    """East, north, up (3, K) of NED points (K, 3)."""
+    """Return east, north, up (3, K) of NED points (K, 3)."""
     return np.asarray(_TO_ENU @ points.T)
 
 
 def label_space(ax: Any) -> None:
-    """Axes of a picture in space."""
+    """Label and scale the axes of a picture in space."""
     ax.set(xlabel="east (m)", ylabel="north (m)", zlabel="up (m)", xlim=(-8, 8), ylim=(-8, 8), zlim=(0, 12))
     ax.view_init(elev=28.0, azim=-60.0)
 
 
 def new_figure(title: str, size: tuple[float, float]) -> Figure:
-    """A figure without pyplot, which would pick a screen."""
+    """Return an empty figure without pyplot, which would need a display."""
     figure = Figure(figsize=size, layout="constrained")
-    FigureCanvasAgg(figure)
     figure.suptitle(title, fontsize=12, fontweight="bold")
     return figure
 
 
-def _by_control(section: Mapping[str, Any]) -> dict[str, dict[float, Any]]:
-    found: dict[str, dict[float, Any]] = {}
-    for name, numbers in section.items():
-        control, value = name.split("_")
-        found.setdefault(control, {})[float(value)] = numbers
-    return found
-
-
-def _tilt(numbers: Mapping[str, Any]) -> float:
-    return float(max(numbers["roll_max_deg"], numbers["pitch_max_deg"]))
+def _limits(ax: Axes, *values: float, label: str | None = None) -> None:
+    for value in values:
+        ax.axhline(value, color=LIMIT, ls="--", lw=1.0, label=label)
 
 
 def _finish(ax: Axes, x: str, y: str) -> None:
@@ -270,7 +264,3 @@ def _finish(ax: Axes, x: str, y: str) -> None:
     ax.grid(alpha=0.3)
     if ax.get_legend_handles_labels()[1]:
         ax.legend(frameon=False, fontsize=8)
-
-
-def _save(figure: Figure, path: Path) -> None:
-    save_picture(figure, path, DPI)

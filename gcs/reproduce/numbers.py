@@ -4,40 +4,37 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gcs.record.run_data import RunData, read_run
 from gcs.record.summary import payload_angles
+from gcs.reproduce.controls import PERIOD
 from gcs.reproduce.plan import DESIGN_MASS, Plan
 from gcs.reproduce.scene import configuration, printed_reference, shaped_figure
 from gcs.reproduce.work import Results
-from idc_controller.model.nonlinear import Inputs, SystemState, accelerations, matrix_P, thrust_forces, vector_Q
+from idc_controller.model import nonlinear
+from idc_controller.model.nonlinear import Inputs, SystemState
 from idc_controller.paper import printed_equations as printed
+from idc_controller.paper import state_space
 from idc_controller.paper.avoidance import linear_acceleration
 from idc_controller.paper.plant import Plant, PlantState
-from idc_controller.paper.state_space import (
-    Layout,
-    discretised,
-    embedding,
-    input_names,
-    linearised,
-    minimal,
-    relative_degrees,
-    uncontrollable_modes,
-)
+from idc_controller.paper.state_space import Layout
 from idc_controller.parameters import SystemParameters, polygon_attachments
+
+if TYPE_CHECKING:
+    import pandas
 
 Array = NDArray[np.float64]
 
-PERIOD = 0.05
 _STATES = 20
+"""Random states at which the printed equations are evaluated."""
 
 
 def numbers(plan: Plan, results: Results) -> dict[str, Any]:
-    """All of them; a quick run has fewer."""
+    """Return the numbers of a run; a quick one has fewer."""
     found: dict[str, Any] = {"quick": plan.quick, "model": model_numbers()}
     for (section, name), flown in sorted(results.simulations.items()):
         found.setdefault(section, {})[name] = flown.numbers()
@@ -52,7 +49,7 @@ def numbers(plan: Plan, results: Results) -> dict[str, Any]:
 
 
 def flight_numbers(summary: Mapping[str, Any], run: RunData) -> dict[str, Any]:
-    """A flight's summary, and its numbers until the first contact."""
+    """Return figures of a flight's summary, and its figures until the first contact."""
     contacts = run.contacts if run.contacts is not None else np.zeros(len(run.time))
     powered = (run.thrust > 0.0).any(axis=1)
     in_contact = np.flatnonzero((contacts > 0) & powered)
@@ -74,45 +71,47 @@ def flight_numbers(summary: Mapping[str, Any], run: RunData) -> dict[str, Any]:
 
 
 def _touched_first(run: RunData, clearance: Array) -> str:
-    """What a first contact was with: an obstacle, or the vehicles among themselves."""
+    """Return the name of the obstacle of the first contact, or that two UAVs touched each other."""
     return run.obstacles[int(np.argmin(clearance))].name if clearance.min() < 0.01 else "one UAV another"
 
 
 def model_numbers() -> dict[str, Any]:
-    """What follows from the equations alone: cheap, and the same on every run."""
+    """Return the numbers that follow from the equations, without a simulation."""
     p = configuration().parameters()
-    A, B = linearised(p)
-    A_small, B_small = minimal(p)
-    T = embedding(p)
-    lost = uncontrollable_modes(*discretised(A, B, PERIOD))
+    A, B = state_space.linearised(p)
+    A_small, B_small = state_space.minimal(p)
+    T = state_space.embedding(p)
+    modes, modes_small = (
+        state_space.uncontrollable_modes(*state_space.discretised(*pair, PERIOD)) for pair in ((A, B), (A_small, B_small))
+    )
     G = linear_acceleration(p)[1]
-    wrong = [_errors_of(seed) for seed in range(_STATES)]
+    errors = [_errors_of(seed) for seed in range(_STATES)]
     return {
         "state_printed": printed.printed_state_dimension(4),
         "state": len(A),
         "state_minimal": len(A_small),
-        "uncontrollable_modes": len(lost),
-        "uncontrollable_modes_minimal": len(uncontrollable_modes(*discretised(A_small, B_small, PERIOD))),
-        "uncontrollable_mode": float(np.mean(np.real(lost))),
+        "uncontrollable_modes": len(modes),
+        "uncontrollable_modes_minimal": len(modes_small),
+        "uncontrollable_mode": float(np.mean(np.real(modes))),
         "minimal_against_full": float(max(np.abs(A @ T - T @ A_small).max(), np.abs(B - T @ B_small).max())),
         "relative_degrees": _degrees(p),
         "A_obs_per_thrust": {axis: float(-2.0 * G[i, 0]) for i, axis in enumerate("xyz")},
         "hover_thrust_n": {str(N): _hover_thrusts(p, N) for N in (3, 4, 6)},
         "printed_fall_mps2": _printed_fall(p),
-        "P_asymmetry": float(max(w["asymmetry"] for w in wrong)),
-        "P_acceleration_error_median": float(np.median([w["acceleration"] for w in wrong])),
-        "moment_residual_printed_nm": float(np.median([w["moment_printed"] for w in wrong])),
-        "moment_residual_nm": float(max(w["moment"] for w in wrong)),
-        "lagrange_moment_error_nm": float(np.median([w["lagrange"] for w in wrong])),
-        "derivations_difference": float(max(w["derivations"] for w in wrong)),
+        "P_asymmetry": float(max(w["asymmetry"] for w in errors)),
+        "P_acceleration_error_median": float(np.median([w["acceleration"] for w in errors])),
+        "moment_residual_printed_nm": float(np.median([w["moment_printed"] for w in errors])),
+        "moment_residual_nm": float(max(w["moment"] for w in errors)),
+        "lagrange_moment_error_nm": float(np.median([w["lagrange"] for w in errors])),
+        "derivations_difference": float(max(w["derivations"] for w in errors)),
         "hull": _hull(p),
     }
 
 
 def _degrees(p: SystemParameters) -> dict[str, dict[str, int | str]]:
-    """Lowest derivative of each axis of r_0 that any UAV's input reaches, at hover."""
-    A, B = minimal(p)
-    degrees = relative_degrees(A, B, np.eye(3, len(A)))
+    """Return the lowest derivative of each axis of r_0 that an input of any UAV reaches, at hover."""
+    A, B = state_space.minimal(p)
+    degrees = state_space.relative_degrees(A, B, np.eye(3, len(A)))
     names = ("thrust", "tau_x", "tau_y", "tau_z")
     return {
         name: {axis: min((int(d) for d in degrees[i, k::4] if d > 0), default="never") for i, axis in enumerate("xyz")}
@@ -132,29 +131,23 @@ def _hover_thrusts(p: SystemParameters, N: int) -> dict[str, float]:
 
 
 def _printed_fall(p: SystemParameters) -> float:
-    """Vertical acceleration at hover with the printed direction of thrust (m/s2)."""
-    state = _random_state(p, np.random.default_rng(0), 0.0)
-    level = np.array([1.0, 0.0, 0.0, 0.0])
-    N = p.number_of_uavs
-    state = SystemState(
-        state.r_0, np.zeros(3), level, np.zeros(3), np.tile([0.0, 0.0, 1.0], (N, 1)), np.zeros((N, 3)),
-        np.tile(level, (N, 1)), np.zeros((N, 3)),
-    )  # fmt: skip
+    """Return the vertical acceleration at hover with the printed direction of thrust (m/s2)."""
+    state = nonlinear.hover_state(p)
     F = printed.printed_thrust_forces(state.quaternion, p.hover_thrust)
-    return float(accelerations(p, state, Inputs(F, np.zeros((N, 3)))).r_0_ddot[2])
+    return float(nonlinear.accelerations(p, state, Inputs(F, np.zeros((p.number_of_uavs, 3)))).r_0_ddot[2])
 
 
 def _errors_of(seed: int) -> dict[str, float]:
-    """What the printed equations do at a random state: links within 20 degrees of hover, rates of 0.5 rad/s."""
+    """Return the errors of the printed equations at a random state: links about 20 degrees off, rates 0.5 rad/s."""
     p = configuration().parameters()
     rng = np.random.default_rng(seed)
     state = _random_state(p, rng, 0.5)
     N = p.number_of_uavs
     thrust, torque = p.hover_thrust * rng.uniform(0.8, 1.2, N), 0.1 * rng.normal(size=(N, 3))
-    inputs = Inputs(thrust_forces(state.quaternion, thrust), torque)
+    inputs = Inputs(nonlinear.thrust_forces(state.quaternion, thrust), torque)
     P = printed.printed_matrix_P(p, state.q)
-    right = np.linalg.solve(matrix_P(p, state.q), vector_Q(p, state, inputs))
-    second = accelerations(p, state, inputs)
+    right = np.linalg.solve(nonlinear.matrix_P(p, state.q), nonlinear.vector_Q(p, state, inputs))
+    second = nonlinear.accelerations(p, state, inputs)
     R_0 = state.R_0
     plant = PlantState(
         state.r_0, state.r_0_dot, state.quaternion_0, state.omega_0, state.q @ R_0.T,
@@ -191,7 +184,7 @@ def _random_state(p: SystemParameters, rng: np.random.Generator, rate: float) ->
 
 
 def _hull(p: SystemParameters) -> dict[str, float]:
-    """How far the links lean and the UAVs move against the payload on the figure eight, by its acceleration."""
+    """Return the tilt of the links and the UAVs' shift relative to the payload on the figure eight."""
     times = np.linspace(0.0, 4.0 * np.pi, 2001)
     h = 1e-3
     r = [printed_reference(times + offset) for offset in (-h, 0.0, h)]
@@ -208,7 +201,7 @@ def _hull(p: SystemParameters) -> dict[str, float]:
 
 
 def _effort_against_design(mass: dict[str, Any]) -> None:
-    """Adds to each mass how its effort differs from the design's (%)."""
+    """Add to each mass by how much its effort differs from that with the design mass (%)."""
     for name, found in mass.items():
         design = mass.get(f"{name.rsplit('_', 1)[0]}_{DESIGN_MASS:g}")
         if design is not None and found["effort_mean"] is not None and design["effort_mean"]:
@@ -216,7 +209,7 @@ def _effort_against_design(mass: dict[str, Any]) -> None:
 
 
 def _worst_by_sigma(noise: dict[str, Any]) -> dict[str, dict[str, dict[str, Any]]]:
-    """Worst of all seeds, by control and sigma."""
+    """Return the worst figures of all seeds, by controller and sigma."""
     worst: dict[str, dict[str, dict[str, Any]]] = {}
     for name, found in noise.items():
         control, sigma, _ = name.split("_")
@@ -231,17 +224,21 @@ def _worst_by_sigma(noise: dict[str, Any]) -> dict[str, dict[str, dict[str, Any]
     return worst
 
 
-def matrices() -> dict[str, tuple[Array, list[str], list[str]]]:
-    """The matrices the paper left on a drive, with names of rows and columns, at hover and 20 Hz."""
+def matrices() -> dict[str, pandas.DataFrame]:
+    """Return the matrices of the paper's external file, with labels of rows and columns, at hover and 20 Hz."""
+    import pandas  # takes long to import
+
     p = configuration().parameters()
-    full, small, inputs = Layout.full(4).names(), Layout.minimal(4).names(), input_names(4)
-    A, B = linearised(p)
-    A_k, B_k = discretised(A, B, PERIOD)
-    A_small, B_small = minimal(p)
-    A_small_k, B_small_k = discretised(A_small, B_small, PERIOD)
+    full, small, inputs = Layout.full(4).names(), Layout.minimal(4).names(), state_space.input_names(4)
+    continuous, continuous_small = state_space.linearised(p), state_space.minimal(p)
+    A, B, A_small, B_small = (
+        *state_space.discretised(*continuous, PERIOD),
+        *state_space.discretised(*continuous_small, PERIOD),
+    )
+    table = pandas.DataFrame
     return {
-        "A_continuous": (A, full, full), "B_continuous": (B, full, inputs),
-        "A": (A_k, full, full), "B": (B_k, full, inputs),
-        "A_minimal": (A_small_k, small, small), "B_minimal": (B_small_k, small, inputs),
-        "minimal_to_full": (embedding(p), full, small),
+        "A_continuous": table(continuous[0], full, full), "B_continuous": table(continuous[1], full, inputs),
+        "A": table(A, full, full), "B": table(B, full, inputs),
+        "A_minimal": table(A_small, small, small), "B_minimal": table(B_small, small, inputs),
+        "minimal_to_full": table(state_space.embedding(p), full, small),
     }  # fmt: skip

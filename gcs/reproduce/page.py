@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import json
+import math
 import re
 from collections.abc import Mapping, Sequence
 from importlib import resources
@@ -12,6 +13,7 @@ from typing import Any
 
 _PLACE = re.compile(r"\{\{([\w.|]+)(?::([^}]*))?\}\}")
 ABSENT = "n/a"
+ANGLES = ("roll", "pitch", "yaw")
 
 CAPTIONS = {
     "trackxyz.png": "trackxyz: position of the payload without obstacles.",
@@ -31,13 +33,13 @@ CAPTIONS = {
 
 
 def paper_text(numbers: Mapping[str, Any]) -> str:
-    """``docs/paper.md``: the text with every number put in from ``numbers``; those that a quick run lacks are n/a."""
+    """Return the text of ``docs/paper.md`` with its numbers from ``numbers``; those that a quick run lacks are n/a."""
     template = resources.files("gcs.reproduce").joinpath("paper.md.in").read_text(encoding="utf-8")
 
     def put(match: re.Match[str]) -> str:
         value: Any = numbers
         for key in match[1].split("."):
-            # Keys of masses and noises have a point themselves, written as a bar: 2|7.
+            # A point within a key is written as a bar: 2|7.
             value = value.get(key.replace("|", ".")) if isinstance(value, Mapping) else None
         if value is None:
             return ABSENT
@@ -47,7 +49,7 @@ def paper_text(numbers: Mapping[str, Any]) -> str:
 
 
 def write_page(out: Path, numbers: Mapping[str, Any], pictures: Sequence[str], seconds: float) -> Path:
-    """``index.html`` in ``out``."""
+    """Write ``index.html`` into ``out``."""
     note = (
         "<p><b>Quick run.</b> Shorter simulations; without the flights in PyBullet through MAVLink (gazObs, "
         "payTrajGaz, payloadObsGaz), the project's controller in the studies, the repeats of the noise, and the other "
@@ -89,15 +91,17 @@ Files: <a href="paper.md">paper.md</a> (equation by equation), <a href="numbers.
 
 
 def write_numbers(path: Path, numbers: Mapping[str, Any]) -> None:
-    """Strict JSON, rounded to the significant digits."""
-    path.write_text(json.dumps(rounded(numbers), indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    """Write ``numbers`` as strict JSON."""
+    path.write_text(json.dumps(numbers, indent=1, allow_nan=False) + "\n", encoding="utf-8")
 
 
 def rounded(value: Any) -> Any:
-    """Floats to six significant digits."""
+    """Return numbers with their floats rounded to six significant digits, and None for those that are not finite."""
     if isinstance(value, Mapping):
         return {name: rounded(part) for name, part in value.items()}
-    return float(f"{value:.6g}") if isinstance(value, float) else value
+    if isinstance(value, float):
+        return float(f"{value:.6g}") if math.isfinite(value) else None
+    return value
 
 
 def _relative_degrees(table: Mapping[str, Mapping[str, Any]]) -> str:
@@ -106,19 +110,13 @@ def _relative_degrees(table: Mapping[str, Mapping[str, Any]]) -> str:
 
 
 def _cases(title: str, section: Mapping[str, Any]) -> str:
-    head = ["", "RMSE (m)", "roll (deg)", "pitch (deg)", "yaw (deg)", "clearance (m)", "no solution (steps)", "lost"]
+    head = ["", "RMSE (m)", "roll (deg)", "pitch (deg)", "yaw (deg)", "clearance (m)", "infeasible (steps)", "lost"]
     rows = []
     for name, n in section.items():
         lost = "" if n["lost_at_s"] is None else f"at {n['lost_at_s']:.2f} s"
-        unsolved = f"{n['tracking_infeasible_steps']} + {n['avoidance_infeasible_steps']} of {n['steps']}"
-        cells = (
-            n["rmse_m"]["total"],
-            n["roll_max_deg"],
-            n["pitch_max_deg"],
-            n["yaw_max_deg"],
-            n.get("clearance_min_m"),
-        )
-        rows.append([name, *(ABSENT if c is None else f"{c:.3f}" for c in cells), unsolved, lost])
+        infeasible = f"{n['tracking_infeasible_steps']} + {n['avoidance_infeasible_steps']} of {n['steps']}"
+        cells = (n["rmse_m"]["total"], *(n[f"{axis}_max_deg"] for axis in ANGLES), n.get("clearance_min_m"))
+        rows.append([name, *(_cell(value, ".3f") for value in cells), infeasible, lost])
     return f"<h2>{title}</h2>" + _table(head, rows)
 
 
@@ -126,14 +124,13 @@ def _flights(section: Mapping[str, Any]) -> str:
     if not section:
         return ""
     head = ["", "outcome", "clearance (m)", "contacts", "angle (deg)", "UAVs apart (m)"]
-    rows = [
-        [
-            name, n["outcome"], *(ABSENT if n[key] is None else f"{n[key]:.3g}" for key in
-            ("clearance_min_m", "contacts", "tilt_max_deg", "uav_separation_min_m")),
-        ]
-        for name, n in section.items()
-    ]  # fmt: skip
+    keys = ("clearance_min_m", "contacts", "tilt_max_deg", "uav_separation_min_m")
+    rows = [[name, n["outcome"], *(_cell(n[key], ".3g") for key in keys)] for name, n in section.items()]
     return "<h2>Flights in PyBullet</h2>" + _table(head, rows)
+
+
+def _cell(value: float | None, form: str) -> str:
+    return ABSENT if value is None else format(value, form)
 
 
 def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:

@@ -1,4 +1,4 @@
-"""What is simulated and flown, quick and in full."""
+"""The simulations and flights of ``gcs reproduce``, quick and in full."""
 
 from __future__ import annotations
 
@@ -8,20 +8,18 @@ from gcs.reproduce.controls import PaperVariant
 from gcs.reproduce.simulation import PROJECT, Case
 
 PRINTED = PaperVariant("states")
-"""The reading of the paper that flies."""
-OUTPUTS = PaperVariant("outputs")
-CORRECTED = PaperVariant("flat")
-NONLINEAR = PaperVariant("states", "nonlinear")
+"""The reading of the paper whose simulation does not diverge."""
 MASSES = (2.7, 3.0, 3.3)
-"""kg, of the plant; the controller is designed for the middle one."""
+"""kg, of the plant's payload."""
 DESIGN_MASS = 3.0
+"""kg, of the controller's payload in the mass study."""
 POLES = ((1.0, 1.0), (4.0, 4.0), (1.0, 4.0))
-"""1/s, beside (2, 2): the paper gives none."""
+"""1/s, in addition to (2, 2): the paper gives none."""
 
 
 @dataclass(frozen=True)
 class Plan:
-    """``cases`` by section and name; ``flights`` name: (mission file, controller); frames of an animation."""
+    """Cases by section and name; mission file and controller of each flight by name; frames of an animation."""
 
     quick: bool
     cases: dict[tuple[str, str], Case]
@@ -30,21 +28,21 @@ class Plan:
 
 
 def plan(quick: bool) -> Plan:
-    """The quick one leaves out the flights in PyBullet, repeats of the noise, and the dearer variants."""
+    """Return the full plan, or the quick one: without flights in PyBullet, repeats of the noise, and slow variants."""
     as_printed, shaped = (12.0, 8.0) if quick else (40.0, 40.0)
     base = {
-        "outputs": Case("outputs", OUTPUTS, as_printed),
-        "printed": Case("printed", PRINTED, as_printed),
-        "corrected": Case("corrected", CORRECTED, shaped),
-        "project": Case("project", PROJECT, shaped),
+        "outputs": Case(PaperVariant("outputs"), as_printed),
+        "printed": Case(PRINTED, as_printed),
+        "corrected": Case(PaperVariant("flat"), shaped),
+        "project": Case(PROJECT, shaped),
     }
     cases = {("tracking", name): case for name, case in base.items()}
     avoiding = {name: replace(case, obstacles=True) for name, case in base.items() if name != "outputs"}
     if not quick:
-        avoiding["nonlinear"] = replace(avoiding["printed"], name="nonlinear", control=NONLINEAR)
+        avoiding["nonlinear"] = replace(avoiding["printed"], control=replace(PRINTED, acceleration="nonlinear"))
         for poles in POLES:
             name = f"poles_{poles[0]:g}_{poles[1]:g}"
-            avoiding[name] = replace(avoiding["printed"], name=name, control=replace(PRINTED, poles=poles))
+            avoiding[name] = replace(avoiding["printed"], control=replace(PRINTED, poles=poles))
     cases |= {("avoidance", name): case for name, case in avoiding.items()}
     compared = ("printed",) if quick else ("printed", "project")
     for name in compared:

@@ -1,4 +1,4 @@
-"""Section IV of the paper: the system, the figure eight as printed and with a beginning, and the two spheres."""
+"""Section IV of the paper: the system, the figure eight as printed and entered from rest, and the two spheres."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from idc_controller.trajectory.waypoints import WaypointTrajectory
 Array = NDArray[np.float64]
 
 ALTITUDE, RATE = 5.0, 0.5
-"""m and rad/s, eq:Lissajous."""
+"""Altitude (m) and angular rate (rad/s) of eq:Lissajous."""
 AMPLITUDE = (6.0, 3.0)
 RADIUS, MARGIN = 0.5, 0.5
-"""m, of the spheres and around them: R_o = 1 m."""
-SWING, SWING_RATE = 1.5, 1.0
-"""m and rad/s of the moving sphere: not stated by the paper."""
+"""Radius of the spheres and safety margin (m): R_o = 1 m."""
+OSCILLATION, OSCILLATION_RATE = 1.5, 1.0
+"""Amplitude (m) and angular rate (rad/s) of the moving sphere: not stated by the paper."""
 
 
 @cache
@@ -35,7 +35,7 @@ def configuration() -> SystemConfig:
 
 
 def printed_reference(times: Array) -> Array:
-    """eq:Lissajous (K, 3): a step to the altitude, and full speed from the first moment on."""
+    """Return eq:Lissajous (K, 3) at ``times`` (K,): a step to the altitude, and full speed from the start."""
     phase = RATE * np.asarray(times, dtype=float)
     return np.column_stack(
         [
@@ -59,12 +59,12 @@ class ShapedFigure:
 
 @cache
 def shaped_figure(duration: float) -> ShapedFigure:
-    """Climb, then ``duration`` (s) at full rate, within the limits of the system file."""
+    """Return a climb, then ``duration`` (s) at full rate, within the limits of the system file."""
     motion = configuration().motion
     climb = Limits(motion.climb_speed, motion.acceleration, motion.jerk, motion.snap)
     curve = Limits(motion.curve_speed, motion.curve_acceleration, motion.curve_jerk, motion.curve_snap)
     up = WaypointTrajectory([0.0, 0.0, 0.0], [Leg(np.array([0.0, 0.0, -ALTITUDE]), motion.climb_speed)], climb)
-    up.position(ALTITUDE / motion.climb_speed + 20.0)  # it learns of its end by looking ahead
+    up.position(ALTITUDE / motion.climb_speed + 20.0)  # its end is known only after a sample beyond it
     figure = LissajousTrajectory(LissajousCurve(AMPLITUDE, -ALTITUDE), RATE, duration, curve, start=up.end)
     begin, phase = figure.full_rate[0], figure.phase([figure.full_rate[0]])[0, 0]
     # The phase is monotonic: the time of a quarter turn is before or after the full rate begins.
@@ -76,7 +76,7 @@ def shaped_figure(duration: float) -> ShapedFigure:
 
 @dataclass(frozen=True)
 class Sphere:
-    """Radius 0.5 m; swings along x about its mean position when it has an amplitude."""
+    """A sphere of :data:`RADIUS` that oscillates along x about its mean position with ``amplitude`` (m)."""
 
     name: str
     mean: tuple[float, float, float]
@@ -84,29 +84,29 @@ class Sphere:
     phase: float = 0.0
 
     def motion(self, times: Array) -> tuple[Array, Array, Array]:
-        """Position, velocity and acceleration (K, 3)."""
-        angle = SWING_RATE * np.asarray(times, dtype=float) + self.phase
+        """Return position, velocity and acceleration (K, 3) at ``times`` (K,)."""
+        angle = OSCILLATION_RATE * np.asarray(times, dtype=float) + self.phase
         along = self.amplitude * np.array([1.0, 0.0, 0.0])
         return (
             np.array(self.mean) + np.outer(np.sin(angle), along),
-            SWING_RATE * np.outer(np.cos(angle), along),
-            -(SWING_RATE**2) * np.outer(np.sin(angle), along),
+            OSCILLATION_RATE * np.outer(np.cos(angle), along),
+            -(OSCILLATION_RATE**2) * np.outer(np.sin(angle), along),
         )
 
 
 def two_spheres(meets: float) -> tuple[Sphere, ...]:
-    """One rests at (-6, 0, -5); one oscillates about (6, 0, -5) and is there, moving inwards, at ``meets`` (s)."""
-    phase = (np.pi - SWING_RATE * meets) % (2.0 * np.pi)
-    return (Sphere("static", (-6.0, 0.0, -ALTITUDE)), Sphere("moving", (6.0, 0.0, -ALTITUDE), SWING, phase))
+    """Return one at rest at (-6, 0, -5), and one about (6, 0, -5) that is there, moving inwards, at ``meets`` (s)."""
+    phase = (np.pi - OSCILLATION_RATE * meets) % (2.0 * np.pi)
+    return (Sphere("static", (-6.0, 0.0, -ALTITUDE)), Sphere("moving", (6.0, 0.0, -ALTITUDE), OSCILLATION, phase))
 
 
 class KnownSpheres:
-    """The spheres as the safety filter sees them: positions and motions known, as the paper assumes."""
+    """The spheres for the safety filter: positions and motions known, as the paper assumes."""
 
     def __init__(self, spheres: Sequence[Sphere]) -> None:
         self.spheres = tuple(spheres)
 
     def predict(self, times: Array) -> list[PredictedObstacle]:
-        """All of them at ``times`` (K,)."""
+        """Return all of them at ``times`` (K,)."""
         none = np.zeros(len(times))
         return [PredictedObstacle(s.name, SphereShape(RADIUS), s.motion(times)[0], none) for s in self.spheres]

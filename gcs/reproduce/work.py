@@ -1,17 +1,11 @@
-"""Runs a plan on all cores: simulations in processes, flights as ``gcs fly`` with a simulated swarm of their own."""
+"""Carries out a plan on all cores: simulations in processes, flights as ``gcs fly`` with a simulated swarm each."""
 
 from __future__ import annotations
 
-import json
 import multiprocessing
-import os
 import signal
-import subprocess
-import sys
 import threading
-import time
-from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor, as_completed
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from multiprocessing.pool import Pool
 from pathlib import Path
@@ -19,86 +13,51 @@ from typing import Any
 
 from threadpoolctl import threadpool_limits
 
-from gcs.campaign.process_pool import all_cores
+from gcs.campaign.process_pool import POLL, all_cores, fly_process, run_parallel
 from gcs.errors import GcsError
 from gcs.reproduce.plan import Plan
 from gcs.reproduce.simulation import Case, Flown, simulate
 
-LONGEST_FLIGHT = 900.0
-"""s of wall time after which a flight is given up."""
-POLL = 0.2  # s
-
 
 @dataclass
 class Results:
-    """Simulations by section and name, and summaries and run folders of the flights by name."""
+    """Run folders and summaries of the flights by name, and simulations by section and name."""
 
+    folders: Mapping[str, Path] = field(default_factory=dict)
     simulations: dict[tuple[str, str], Flown] = field(default_factory=dict)
     flights: dict[str, dict[str, Any]] = field(default_factory=dict)
-    folders: dict[str, Path] = field(default_factory=dict)
 
 
 def run(plan: Plan, missions: Path, out: Path, jobs: int | None, done: Callable[[str], None]) -> Results:
-    """Run everything of ``plan``; ``done`` is called with each name as it ends. ``jobs`` at a time, None: one a core.
+    """Carry out ``plan`` with ``jobs`` in parallel (None: one per core); ``done`` receives each name as it ends.
 
-    An interrupt ends all of it. Raises :class:`GcsError` for a flight that did not even start; one that ends badly
-    is a result.
+    An interrupt ends all of it. Raises :class:`GcsError` for a flight that did not start; any other flight is a result.
     """
-    results, stop, jobs = Results(), threading.Event(), jobs or all_cores()
-    # Fresh processes: forked ones would inherit the threads of the progress display.
-    with multiprocessing.get_context("spawn").Pool(jobs, _prepare) as processes, ThreadPoolExecutor(jobs) as threads:
-        try:
-            pending: dict[Future[Any], tuple[str, str]] = {}
-            for name, (mission, controller) in plan.flights.items():
-                results.folders[name] = out / "flights" / name
-                flight = threads.submit(fly, missions / mission, controller, results.folders[name], stop)
-                pending[flight] = ("flights", name)
-            # The longest first, so that all cores have something to do until the end.
-            for key, case in sorted(plan.cases.items(), key=lambda item: -item[1].duration):
-                pending[threads.submit(_simulated, case, processes, stop)] = key
-            for future in as_completed(pending):
-                section, name = pending[future]
-                if section == "flights":
-                    results.flights[name] = future.result()
-                else:
-                    results.simulations[section, name] = future.result()
-                done(f"{section} {name}")
-        finally:
-            stop.set()
-            threads.shutdown(cancel_futures=True)
+    results, jobs = Results({name: out / "flights" / name for name in plan.flights}), jobs or all_cores()
+
+    def carry_out(task: tuple[str, str], stop: threading.Event) -> str | None:
+        section, name = task
+        if task in plan.cases:
+            simulated = _simulated(plan.cases[task], processes, stop)
+            if simulated is None:
+                return None
+            results.simulations[task] = simulated
+        else:
+            mission, controller = missions / plan.flights[name][0], plan.flights[name][1]
+            flown = fly_process(mission, ("--controller", controller), results.folders[name], stop)
+            if flown is None:
+                return None
+            if not flown.summary:
+                raise GcsError(f"{mission}: {flown.reason or 'the flight did not end'}")
+            results.flights[name] = flown.summary
+        return f"{section} {name}"
+
+    # The longest first, so that no core idles at the end. Spawned: a fork would inherit the progress display's threads.
+    tasks = [*(("flights", name) for name in plan.flights)]
+    tasks += sorted(plan.cases, key=lambda task: -plan.cases[task].duration)
+    with multiprocessing.get_context("spawn").Pool(jobs, _prepare) as processes:
+        run_parallel(tasks, jobs, carry_out, lambda task: None, lambda task, name: done(name))
     return results
-
-
-def fly(mission: Path, controller: str, folder: Path, stop: threading.Event) -> dict[str, Any]:
-    """The summary of ``gcs fly``, in PyBullet through MAVLink, in lockstep; empty once ``stop`` is set."""
-    command = [
-        sys.executable, "-m", "gcs", "fly", str(mission), "--controller", controller, "--run-dir", str(folder),
-        "--json", "--no-pictures",
-    ]  # fmt: skip
-    process = subprocess.Popen(
-        command,
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,  # Ctrl-C is for this program, which ends its flights itself
-        env={**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
-    )
-    deadline = time.monotonic() + LONGEST_FLIGHT
-    while True:
-        try:
-            said, errors = process.communicate(timeout=POLL)
-            break
-        except subprocess.TimeoutExpired:
-            if stop.is_set() or time.monotonic() > deadline:
-                process.kill()  # the simulator ends with it: it reads the end of its standard input
-    if stop.is_set():
-        return {}
-    try:
-        return dict(json.loads(said))
-    except ValueError:
-        lines = errors.strip().splitlines()
-        raise GcsError(f"{mission}: {lines[-1] if lines else 'the flight did not end'}") from None
 
 
 def _simulated(case: Case, processes: Pool, stop: threading.Event) -> Flown | None:
@@ -111,6 +70,5 @@ def _simulated(case: Case, processes: Pool, stop: threading.Event) -> Flown | No
 
 
 def _prepare() -> None:
-    # Ctrl-C is for the program itself.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent process
     threadpool_limits(limits=1)
