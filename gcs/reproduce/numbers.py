@@ -82,7 +82,8 @@ def model_numbers() -> dict[str, Any]:
     A_small, B_small = state_space.minimal(p)
     T = state_space.embedding(p)
     modes, modes_small = (
-        state_space.uncontrollable_modes(*state_space.discretised(*pair, PERIOD)) for pair in ((A, B), (A_small, B_small))
+        state_space.uncontrollable_modes(*state_space.discretised(*pair, PERIOD))
+        for pair in ((A, B), (A_small, B_small))
     )
     G = linear_acceleration(p)[1]
     errors = [_errors_of(seed) for seed in range(_STATES)]
