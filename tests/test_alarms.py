@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 from flight_in_process import HOP, InProcessFlight, system_file
 
-from gcs.campaign.faults.detection import detection, first_start
+from gcs.campaign.faults.judgement import detection, first_start
 from gcs.config.flight_settings import DEFAULTS
 from gcs.flight.alarms import AlarmLog
 from gcs.flight.detectors import EventCounter, MonitorAlarm
@@ -79,16 +79,18 @@ def test_detection_counts_from_the_first_fault_of_the_case(tmp_path):
     write_records(tmp_path, [4.0, 7.5, 9.0], [2.0, None, 5.0, 4.0])
     assert first_start(tmp_path) == 5.0
     assert first_start(tmp_path, 3) == 7.0
-    found = detection(tmp_path, 3)
+    found = detection(tmp_path, first_start(tmp_path, 3))
     assert (found.after, found.alarm, found.false) == (0.5, "measurements_rejected, vehicle 2", 1)
 
 
 def test_detection_without_faults_or_records(tmp_path):
-    assert detection(tmp_path, 1).false is None
+    assert detection(tmp_path, first_start(tmp_path, 1)).false is None
     write_records(tmp_path, [4.0], [None])
-    assert detection(tmp_path, 1) == replace(detection(tmp_path, 1), after=None, alarm="", false=1)
+    assert detection(tmp_path, first_start(tmp_path, 1)) == replace(
+        detection(tmp_path, first_start(tmp_path, 1)), after=None, alarm="", false=1
+    )
     (tmp_path / "faults.json").unlink()
-    assert detection(tmp_path, 0).false == 1
+    assert detection(tmp_path, first_start(tmp_path, 0)).false == 1
 
 
 def hop(folder, *faults):

@@ -10,7 +10,7 @@ from small_campaign import OUTSIDE, SUMMARY, campaign_file
 
 from gcs.campaign.engine import Campaign
 from gcs.campaign.faults.campaign_file import read_campaign
-from gcs.campaign.faults.judgement import COLUMNS, NOT_FLOWN, VERDICTS, stop_time, team_stop
+from gcs.campaign.faults.judgement import COLUMNS, NOT_FLOWN, VERDICTS, first_start, stop_time, team_stop
 from gcs.campaign.faults.rates import interval, rates_of
 from gcs.campaign.faults.report import draw_matrix, report
 from gcs.campaign.faults.sweep import FaultFlights
@@ -58,22 +58,22 @@ def test_report_covers_all_outcomes(tmp_path):
 def test_team_stop_counts_from_first_fault_of_case(tmp_path):
     faults = [{"activations": [[5.0, None]]}]
     (tmp_path / "faults.json").write_text(json.dumps({"take_off_s": 3.0, "end_s": 20.0, "faults": faults}))
-    assert team_stop(tmp_path, 1) == (None, None)
+    assert team_stop(tmp_path, first_start(tmp_path, 1)) == (None, None)
     rows = ["1.0,1,OFFBOARD,1,0", "1.0,2,OFFBOARD,1,0", "8.45,2,AUTO.LOITER,1,1", "8.5,1,AUTO.LOITER,1,1"]
     (tmp_path / "modes.csv").write_text("\n".join(["time_s,vehicle,mode,armed,failsafe", *rows, ""]))
-    assert team_stop(tmp_path, 1) == (0.5, 0.05)
+    assert team_stop(tmp_path, first_start(tmp_path, 1)) == (0.5, 0.05)
     faults.insert(0, {"kind": "wind", "activations": [[0.0, None]]})  # not what they stopped for
     (tmp_path / "faults.json").write_text(json.dumps({"take_off_s": 3.0, "end_s": 20.0, "faults": faults}))
-    assert team_stop(tmp_path, 2) == (0.5, 0.05)
+    assert team_stop(tmp_path, first_start(tmp_path, 2)) == (0.5, 0.05)
 
 
 def test_stop_time_counts_from_first_fault_of_case(tmp_path):
     faults = [{"activations": [[5.0, 6.0]]}, {"activations": []}, {"activations": [[4.0, None]]}]
     (tmp_path / "faults.json").write_text(json.dumps({"take_off_s": 3.0, "end_s": 20.0, "faults": faults}))
-    assert stop_time({"broken_off_s": 9.25}, tmp_path, 3) == 2.25
+    assert stop_time({"broken_off_s": 9.25}, first_start(tmp_path, 3)) == 2.25
     faults[:0] = [{"activations": [[1.0, None]]}]  # the mission's own
     (tmp_path / "faults.json").write_text(json.dumps({"take_off_s": 3.0, "end_s": 20.0, "faults": faults}))
-    assert stop_time({"broken_off_s": 9.25}, tmp_path, 3) == 2.25
-    assert stop_time({"broken_off_s": 6.5}, tmp_path, 3) is None  # for another reason
-    assert stop_time({"broken_off_s": None}, tmp_path, 3) is None
-    assert stop_time({"broken_off_s": 6.25}, tmp_path / "none", 3) is None
+    assert stop_time({"broken_off_s": 9.25}, first_start(tmp_path, 3)) == 2.25
+    assert stop_time({"broken_off_s": 6.5}, first_start(tmp_path, 3)) is None  # for another reason
+    assert stop_time({"broken_off_s": None}, first_start(tmp_path, 3)) is None
+    assert stop_time({"broken_off_s": 6.25}, first_start(tmp_path / "none", 3)) is None

@@ -172,7 +172,7 @@ def record(campaign, plan, late=0.0, stop_short=False):
     rows = []
     for time in np.arange(0.0, schedule.landing + 10.0 + late, 0.02):
         on_trajectory = time - spool_up - late - DEFAULTS.takeoff_landing.spool_up_time + schedule.start
-        position = schedule.position(np.array([on_trajectory]))[0]
+        position = np.array([np.interp(on_trajectory, schedule.times, axis) for axis in schedule.positions.T])
         if stop_short:
             position = position * 0.8
         values = dict.fromkeys(columns, 0.0) | dict(zip(columns[1:4], position, strict=True)) | {"time_s": time}

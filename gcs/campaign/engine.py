@@ -1,7 +1,5 @@
 """The campaign engine: flies the plans of a generator, once each, whatever happens in between."""
 
-from __future__ import annotations
-
 import dataclasses
 import shlex
 import threading

@@ -1,7 +1,5 @@
 """The folder of a campaign, which a process may be killed in at any moment: locked, adopted, written whole."""
 
-from __future__ import annotations
-
 import fcntl
 import hashlib
 import json

@@ -1,7 +1,5 @@
 """Parallel flights: each a ``gcs fly`` process, all of which end with the process that started them."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

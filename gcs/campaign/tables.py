@@ -1,7 +1,5 @@
 """Tables of results: as files, and for the terminal."""
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
@@ -31,7 +29,7 @@ def write_csv(path: Path, columns: Sequence[str], rows: Iterable[Mapping[str, An
 
 
 def write_parquet(path: Path, columns: Sequence[str], results: Sequence[Result]) -> Path:
-    """Write a Parquet file; what is not known is missing. Raises :class:`UnusableInput` where it cannot."""
+    """Write a Parquet file, unknown values as missing. Raises :class:`UnusableInput` where it cannot."""
     import pandas  # takes long to import, and no flight needs it
     import pyarrow
     import pyarrow.parquet
@@ -45,21 +43,25 @@ def write_parquet(path: Path, columns: Sequence[str], results: Sequence[Result])
     return path
 
 
-def text_table(columns: Mapping[str, Sequence[str]], left: Sequence[str]) -> Table:
-    """Return a table of ``columns`` by title; those of ``left`` may wrap, figures do not."""
+def text_table(rows: Sequence[Mapping[str, str]], left: Sequence[str]) -> Table:
+    """Return a table of ``rows``, cells by title; columns of ``left`` may wrap, figures do not.
+
+    Columns without any value are left out.
+    """
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for title, cells in columns.items():
-        least = max(len(part) for part in (*title.split(), *([] if title in left else cells)))
+    titles = [title for title in (rows[0] if rows else ()) if {row[title] for row in rows} - {"", "-"}]
+    for title in titles:
+        least = max(len(part) for part in (*title.split(), *([] if title in left else (row[title] for row in rows))))
         table.add_column(title, justify="left" if title in left else "right", min_width=least)
-    for row in zip(*columns.values(), strict=True):
-        table.add_row(*map(Text, row))
+    for row in rows:
+        table.add_row(*(Text(row[title]) for title in titles))
     return table
 
 
 def extreme(
     results: Sequence[Result], column: str, of: Callable[[list[float]], float], digits: int, unit: str = ""
 ) -> str:
-    """Return the least (``of`` is min) or largest (max) of what is known of a column, as text."""
+    """Return the least (``of`` is min) or largest (max) known value of a column, as text."""
     values = [value for result in results if (value := result.figure(column)) is not None]
     return f"{of(values):.{digits}f} {unit}".strip() if values else "-"
 
@@ -72,7 +74,7 @@ def headline(results: Sequence[Result], what: str, passed_means: str) -> Text:
 
 
 def failed_flights(results: Sequence[Result]) -> list[Text]:
-    """Return each flight that did not pass, why, and the command that repeats it."""
+    """Return each flight that did not pass with the reasons and the command that repeats it."""
     failed = [result for result in results if not result.passed]
     lines = []
     for result in failed[:SHOWN_FAILURES]:

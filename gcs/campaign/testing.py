@@ -1,7 +1,5 @@
 """Flights with faults in tests: the fixture ``fly_with_faults`` (:mod:`gcs.campaign.pytest_plugin`)."""
 
-from __future__ import annotations
-
 import dataclasses
 import threading
 from collections.abc import Iterable, Mapping, Sequence

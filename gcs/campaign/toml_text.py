@@ -1,7 +1,5 @@
 """Missions and system files as text: the project's ``.toml``, from the model's own objects."""
 
-from __future__ import annotations
-
 import dataclasses
 import json
 from collections.abc import Mapping, Sequence

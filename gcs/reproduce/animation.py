@@ -1,7 +1,5 @@
 """Animations of the simulations (GIF), as in the paper's video."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """The controllers compared on one plant: the paper's, corrected step by step, and the project's."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """The paper's figures as PNG files, each as printed and as corrected."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """``index.html``: what was reproduced, figure by figure, and the text with this run's numbers."""
 
-from __future__ import annotations
-
 import html
 import json
 import math

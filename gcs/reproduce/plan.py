@@ -1,7 +1,5 @@
 """The simulations and flights of ``gcs reproduce``, quick and in full."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 from gcs.reproduce.controls import PaperVariant

@@ -1,7 +1,5 @@
 """Section IV of the paper: the system, the figure eight as printed and entered from rest, and the two spheres."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache

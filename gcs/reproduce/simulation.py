@@ -1,7 +1,5 @@
 """The numerical simulation of Section IV: one controller on the corrected nonlinear plant, and its evaluation."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any

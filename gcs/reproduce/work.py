@@ -1,7 +1,5 @@
 """Carries out a plan on all cores: simulations in processes, flights as ``gcs fly`` with a simulated swarm each."""
 
-from __future__ import annotations
-
 import multiprocessing
 import signal
 import threading

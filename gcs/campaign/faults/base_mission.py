@@ -1,7 +1,5 @@
 """Missions made of a mission: with another seed, with faults, with other limits, as files that ``gcs fly`` repeats."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The campaign file: which faults, how severe, in which missions, with which seeds. Read strictly."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace

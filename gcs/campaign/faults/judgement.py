@@ -1,24 +1,26 @@
 """The judgement of a flight with faults."""
 
-from __future__ import annotations
-
+import json
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from gcs.campaign.faults.detection import detection, first_start
 from gcs.campaign.process_pool import FlownProcess
 from gcs.campaign.result import Result
-from gcs.faults.record import fault_notes
+from gcs.errors import UnusableInput
+from gcs.faults import KINDS
+from gcs.faults.record import FAULTS_FILE, fault_notes
 from gcs.record.modes import stops_after
+from gcs.record.tables import ALARMS, read_text_table
 
 WITHIN, OUTSIDE, ABORTED, COLLIDED, FAILED, NOT_FLOWN = VERDICTS = (
     "within limits", "outside limits", "aborted", "collided", "failed", "not flown",
 )  # fmt: skip
-"""How a flight ended, from good to bad: ``aborted`` is set down safely, but before its mission was done."""
+"""How a flight ended, from good to bad; ``aborted``: set down safely before the mission was done."""
 
 WITHIN_LIMITS, SAFE = REQUIREMENTS = ("within limits", "safe")
-"""What a flight passes by: completed within its limits; or set down safely in any phase, with its limits held."""
+"""Conditions of a pass: completed within its limits; or set down safely in any phase, with its limits held."""
 
 COLUMNS = (
     "number", "name", "fault", "kind", "level", "severity", "mission", "seed", "outcome", "passed", "within_limits",
@@ -28,21 +30,24 @@ COLUMNS = (
 )  # fmt: skip
 
 
-def is_safe(result: Result) -> bool:
-    """Return whether the payload was set down without contact, in any phase."""
-    return result.outcome in (WITHIN, OUTSIDE, ABORTED) and not result.contacts
+@dataclass(frozen=True)
+class Detection:
+    """Time (s) from the start of the case's first fault to the first alarm since, and that alarm; None: no alarm.
 
+    ``false``: number of alarms before the flight's first fault.
+    """
 
-def meets(requirement: str, result: Result) -> bool:
-    """Return whether a flight passes by one of :data:`REQUIREMENTS`."""
-    return result.within_limits if requirement == WITHIN_LIMITS else is_safe(result) and not result.failures
+    after: float | None
+    alarm: str
+    false: int | None
 
 
 def judge(count: int, flown: FlownProcess, run_dir: Path) -> dict[str, Any]:
     """Return the columns of a flight whose last ``count`` faults are those of its case."""
-    stop = stop_time(flown.summary, run_dir, count)
-    last, spread = team_stop(run_dir, count) if stop is not None else (None, None)
-    detected = detection(run_dir, count)
+    begin = first_start(run_dir, count)
+    stop = stop_time(flown.summary, begin)
+    last, spread = team_stop(run_dir, begin) if stop is not None else (None, None)
+    detected = detection(run_dir, begin)
     return {
         "outcome": verdict(flown),
         "within_limits": flown.exit_code == 0,
@@ -59,29 +64,69 @@ def judge(count: int, flown: FlownProcess, run_dir: Path) -> dict[str, Any]:
 
 def verdict(flown: FlownProcess) -> str:
     """Return one of :data:`VERDICTS`."""
-    outcome = flown.summary.get("outcome")
-    if outcome is None:
-        return NOT_FLOWN
+    outcome = str(flown.summary.get("outcome") or NOT_FLOWN)
     if outcome != "completed":
-        return str(outcome)
+        return outcome
     return WITHIN if flown.exit_code == 0 else OUTSIDE
 
 
-def limits_not_held(summary: dict[str, Any]) -> list[str]:
+def is_safe(result: Result) -> bool:
+    """Return whether the payload was set down without contact, in any phase."""
+    return result.outcome in (WITHIN, OUTSIDE, ABORTED) and not result.contacts
+
+
+def meets(requirement: str, result: Result) -> bool:
+    """Return whether a flight passes by one of :data:`REQUIREMENTS`."""
+    return result.within_limits if requirement == WITHIN_LIMITS else is_safe(result) and not result.failures
+
+
+def limits_not_held(summary: Mapping[str, Any]) -> list[str]:
     """Return the names of the limits that were not held."""
     return [name for name, (_, _, held) in summary.get("limits", {}).items() if not held]
 
 
-def stop_time(summary: Mapping[str, Any], run_dir: Path, count: int) -> float | None:
-    """Return the time from :func:`first_start` of the last ``count`` faults to the abort (s); None: there was none."""
-    broken_off, begin = summary.get("broken_off_s"), first_start(run_dir, count)
+def first_start(run_dir: Path, count: int | None = None) -> float | None:
+    """Return the start of the first of the last ``count`` faults of a flight (None: of all), in time of the tables (s).
+
+    The faults before them are the mission's own; of the last ones wind and load count only if there are no others.
+    None: none of them started, or there is no record of them.
+    """
+    try:
+        record = json.loads((run_dir / FAULTS_FILE).read_text(encoding="utf-8"))
+        faults = record["faults"][0 if count is None else len(record["faults"]) - count :]
+        if count is not None:
+            others = [f for f in faults if (kind := KINDS.get(f.get("kind"))) is None or kind.family != "world"]
+            faults = others or faults
+        return float(record["take_off_s"] + min(fault["activations"][0][0] for fault in faults if fault["activations"]))
+    except (OSError, ValueError, KeyError, TypeError, IndexError):
+        return None
+
+
+def stop_time(summary: Mapping[str, Any], begin: float | None) -> float | None:
+    """Return the time from ``begin``, the :func:`first_start` of a case, to the abort (s); None: there was none."""
+    broken_off = summary.get("broken_off_s")
     return None if broken_off is None or begin is None or broken_off < begin else round(broken_off - begin, 3)
 
 
-def team_stop(run_dir: Path, count: int) -> tuple[float | None, float | None]:
-    """Return the time from :func:`first_start` to the last vehicle's stop, and that from the first one's stop (s)."""
-    begin = first_start(run_dir, count)
+def team_stop(run_dir: Path, begin: float | None) -> tuple[float | None, float | None]:
+    """Return the time from ``begin`` to the last vehicle's stop, and that from the first vehicle's stop (s)."""
     stops = stops_after(run_dir, begin).values() if begin is not None else ()
     if begin is None or not stops:
         return None, None
     return round(max(stops) - begin, 3), round(max(stops) - min(stops), 3)
+
+
+def detection(run_dir: Path, begin: float | None) -> Detection:
+    """Return the detection of the faults of a case that start at ``begin``, from the flight's table of alarms."""
+    try:
+        alarms = read_text_table(run_dir / ALARMS)
+        times = [float(time) for time in alarms["time_s"]]
+    except (UnusableInput, ValueError, KeyError):
+        return Detection(None, "", None)
+    first = first_start(run_dir)
+    false = sum(first is None or time < first for time in times)
+    since = [i for i, time in enumerate(times) if begin is not None and time >= begin]
+    if begin is None or not since:
+        return Detection(None, "", false)
+    i = min(since, key=times.__getitem__)
+    return Detection(round(times[i] - begin, 3), f"{alarms['code'][i]}, {alarms['source'][i]}", false)

@@ -1,7 +1,5 @@
 """The rates of success of a campaign of faults, with their confidence intervals."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass

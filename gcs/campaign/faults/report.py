@@ -1,12 +1,9 @@
 """The report of a campaign of faults: tables, rates, and the matrix of faults and severities."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 from rich.console import RenderableType
@@ -21,7 +18,7 @@ from gcs.record.pictures import save_picture
 
 MATRIX = "matrix.png"
 COLOURS = {
-    # To be distinguished without red and green, too.
+    # Distinct for colour-blind readers, too.
     WITHIN: "#009E73", OUTSIDE: "#F0E442", ABORTED: "#56B4E9", COLLIDED: "#D55E00", FAILED: "#882255",
     NOT_FLOWN: "#BBBBBB",
 }  # fmt: skip
@@ -43,36 +40,36 @@ def report(name: str, results: Sequence[Result], out: Path) -> tuple[list[Render
         flights = sum(bool(result.false_alarms) for result in results)
         parts.append(Text(f"{false} alarms before any fault, in {flights} flights", style="bold red"))
     if idle := sum(bool(result.notes) for result in results):
-        parts.append(Text(f"{idle} flights with a fault that never came or disturbed nothing: see notes in the table"))
+        parts.append(Text(f"{idle} flights with a fault that never started or had no effect: see notes in the table"))
     return parts, files
 
 
 def _rates_table(rates: Sequence[Rates], results: Sequence[Result]) -> Table:
-    """Return a row for each fault and severity; without columns of which nothing is known."""
-    columns: dict[str, list[str]] = {}
+    """Return a row for each fault and severity."""
+    rows = []
     for rate in rates:
         chosen = [result for result in results if (result.fault, result.level) == (rate.fault, rate.level)]
-        for title, cell in (
-            ("fault", rate.fault),
-            ("severity", rate.severity),
-            ("flights", str(rate.flights)),
-            ("within limits", _share(rate.within_limits_rate, rate.within_limits_low, rate.within_limits_high)),
-            ("safe", _share(rate.safe_rate, rate.safe_low, rate.safe_high)),
-            ("least clearance", extreme(chosen, "clearance_min_m", min, 2, "m")),
-            ("largest tilt", extreme(chosen, "tilt_max_deg", max, 1, "deg")),
-            ("least separation", extreme(chosen, "uav_separation_min_m", min, 2, "m")),
-            ("touchdown", extreme(chosen, "touchdown_mps", max, 2, "m/s")),
-            ("detected in", _detected(chosen)),
-            ("stopped in", extreme(chosen, "stop_s", max, 2, "s")),
-            ("all in", extreme(chosen, "team_stop_s", max, 2, "s")),
-        ):
-            columns.setdefault(title, []).append(cell)
-    known = {title: cells for title, cells in columns.items() if set(cells) - {"", "-"}}
-    return text_table(known, left=("fault", "severity"))
+        rows.append(
+            {
+                "fault": rate.fault,
+                "severity": rate.severity,
+                "flights": str(rate.flights),
+                "within limits": _share(rate.within_limits_rate, rate.within_limits_low, rate.within_limits_high),
+                "safe": _share(rate.safe_rate, rate.safe_low, rate.safe_high),
+                "least clearance": extreme(chosen, "clearance_min_m", min, 2, "m"),
+                "largest tilt": extreme(chosen, "tilt_max_deg", max, 1, "deg"),
+                "least separation": extreme(chosen, "uav_separation_min_m", min, 2, "m"),
+                "touchdown": extreme(chosen, "touchdown_mps", max, 2, "m/s"),
+                "detected in": _detected(chosen),
+                "stopped in": extreme(chosen, "stop_s", max, 2, "s"),
+                "all in": extreme(chosen, "team_stop_s", max, 2, "s"),
+            }
+        )
+    return text_table(rows, left=("fault", "severity"))
 
 
 def _detected(results: Sequence[Result]) -> str:
-    """Return the longest time to detection, and in how many flights where it was not in all."""
+    """Return the longest time to detection, and the number of flights with one if some have none."""
     count = sum(result.detected_s is not None for result in results)
     share = f" ({count} of {len(results)})" if 0 < count < len(results) else ""
     return extreme(results, "detected_s", max, 2, "s") + share
@@ -83,11 +80,10 @@ def _share(rate: float, low: float, high: float) -> str:
 
 
 def draw_matrix(name: str, results: Sequence[Result], folder: Path) -> Path:
-    """Draw a row for each fault, a cell for each severity, in it the share of each outcome."""
+    """Draw a matrix of faults and severities, with the share of each outcome in each cell."""
     faults = list(dict.fromkeys(result.fault for result in results))
     levels = max((result.level for result in results), default=1)
     figure = Figure(figsize=(2.8 + _WIDTH * levels, 1.6 + _HEIGHT * max(len(faults), 1)), layout="constrained")
-    FigureCanvasAgg(figure)
     ax = figure.subplots()
     cells: dict[tuple[int, int], list[Result]] = {}
     for result in results:

@@ -1,7 +1,5 @@
 """The judgement of a flight through an obstacle scenario: contacts, clearance, angles, and arrival at the goal."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Motions that bring an obstacle to a given place at a given time."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

@@ -1,7 +1,5 @@
 """Plans of random obstacle scenarios (``gcs courses``)."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

@@ -1,12 +1,9 @@
 """The distribution over the obstacle scenarios of a campaign: tables and a picture."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from rich.console import RenderableType
 from rich.table import Table
@@ -19,7 +16,7 @@ from gcs.record.pictures import save_picture
 from gcs.record.run_folder import write_json
 
 _QUANTITIES = (
-    # field, title, unit, limit, whether high values are the bad ones
+    # field, title, unit, limit, high values are the bad ones
     ("clearance_min_m", "clearance", "m", HELD_TO.clearance, False),
     ("tilt_max_deg", "payload angle", "deg", HELD_TO.payload_tilt_deg, True),
     ("uav_separation_min_m", "UAV separation", "m", SEPARATION, False),
@@ -40,43 +37,41 @@ def report(results: Sequence[Result], out: Path) -> tuple[list[RenderableType], 
 
 
 def _kinds(results: Sequence[Result]) -> Table:
-    columns: dict[str, list[str]] = {}
+    rows = []
     for kind in sorted({result.kind for result in results}):
         chosen = [result for result in results if result.kind == kind]
-        arrived = sum(result.arrival_s is not None and result.outcome == "completed" for result in chosen)
-        for title, cell in (
-            ("kind", kind),
-            ("flown", str(len(chosen))),
-            ("passed", str(sum(result.passed for result in chosen))),
-            ("arrived", str(arrived)),
-            ("contacts", str(sum(bool(result.contacts) for result in chosen))),
-            ("least clearance", extreme(chosen, "clearance_min_m", min, 3, "m")),
-        ):
-            columns.setdefault(title, []).append(cell)
-    return text_table(columns, left=("kind",))
+        rows.append(
+            {
+                "kind": kind,
+                "flown": str(len(chosen)),
+                "passed": str(sum(r.passed for r in chosen)),
+                "arrived": str(sum(r.arrival_s is not None and r.outcome == "completed" for r in chosen)),
+                "contacts": str(sum(bool(r.contacts) for r in chosen)),
+                "least clearance": extreme(chosen, "clearance_min_m", min, 3, "m"),
+            }
+        )
+    return text_table(rows, left=("kind",))
 
 
 def _distribution(results: Sequence[Result]) -> Table:
-    columns: dict[str, list[str]] = {}
+    rows = []
     for field, title, unit, limit, high_is_bad in _QUANTITIES:
         values = _values(results, field)
         cells = [f"{value:.3f}" for value in from_bad_end(values, high_is_bad)] if len(values) else ["-"] * 4
         bound = "" if limit is None else f"{'<=' if high_is_bad else '>='} {limit:g}"
-        for name, cell in zip(_TITLES, (f"{title} ({unit})", *cells, bound), strict=True):
-            columns.setdefault(name, []).append(cell)
-    return text_table(columns, left=("figure",))
+        rows.append(dict(zip(_TITLES, (f"{title} ({unit})", *cells, bound), strict=True)))
+    return text_table(rows, left=("figure",))
 
 
 def from_bad_end(values: Sequence[float] | np.ndarray, high_is_bad: bool) -> list[float]:
-    """Worst value, 1 % and 5 % percentile counted from the bad end, and median."""
+    """Return the worst value, the 1 % and 5 % percentile counted from the bad end, and the median."""
     shares = [100.0 - share for share in _SHARES] if high_is_bad else list(_SHARES)
     return [float(value) for value in np.percentile(values, shares)]
 
 
 def draw_distribution(results: Sequence[Result], folder: Path) -> Path:
-    """Histograms of clearance, tilt, separation and delay. Raises :class:`UnusableInput` where it cannot."""
+    """Draw histograms of clearance, tilt, separation and delay. Raises :class:`UnusableInput` where it cannot."""
     figure = Figure(figsize=(9.0, 6.5), layout="constrained")
-    FigureCanvasAgg(figure)
     for ax, (field, title, unit, limit, high_is_bad) in zip(figure.subplots(2, 2).flat, _QUANTITIES[:4], strict=True):
         values = _values(results, field)
         ax.set_xlabel(f"{title} ({unit})")

@@ -1,36 +1,23 @@
 """The undisturbed trajectory of the payload, in the time of the obstacles.
 
-That time starts with take-off: when the first cradle releases, which is while the rotors spool up and so before the
-trajectory begins.
+That time starts when the first cradle releases, while the rotors spool up, and so before the trajectory begins.
 """
-
-from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gcs.config.flight_settings import TakeoffLandingSettings
 from gcs.flight.mission_trajectory import MissionTrajectory
 from gcs.mission.model import RESTING_ALTITUDE, Mission
-from idc_controller.parameters import SystemParameters
 
 Array = NDArray[np.float64]
 
 PAD_OFFSET = 0.003
-"""m: what navigation noise leaves between the pad and home. A figure eight begins with that distance, at rest at both
-ends, which takes seconds however short it is."""
+"""Offset (m) of home from the pad by navigation noise. A figure eight begins with that distance, at rest at both ends,
+which takes seconds however short it is."""
 LAG = 0.138
-"""s from a set-point of the ground to the thrust in the world: a control step, the hold of a step, the motors' lag."""
+"""Time (s) from a set-point of the ground to the thrust in the world: control step, hold of a step, motor lag."""
 SAMPLE = 0.02
 LONGEST = 3600.0
-
-
-def trajectory_start(parameters: SystemParameters, settings: TakeoffLandingSettings) -> float:
-    """Return the time of the obstacles at which the trajectory begins (s)."""
-    own_weight = parameters.m * parameters.g / parameters.hover_thrust
-    spool_up = settings.spool_up_time
-    release = spool_up * float(own_weight.min()) + LAG
-    return spool_up - release
 
 
 class Schedule:
@@ -39,33 +26,28 @@ class Schedule:
     def __init__(self, mission: Mission) -> None:
         """Raises :class:`ValueError` for a mission that lasts longer than an hour."""
         pad = np.array([PAD_OFFSET, -PAD_OFFSET, -RESTING_ALTITUDE])
-        self._trajectory = MissionTrajectory(mission, pad, 0.0)
-        self.start = trajectory_start(mission.system.parameters(), mission.system.flight.takeoff_landing)
+        mission_trajectory = MissionTrajectory(mission, pad, 0.0)
+        parameters, spool_up = mission.system.parameters(), mission.system.flight.takeoff_landing.spool_up_time
+        own_weight = parameters.m * parameters.g / parameters.hover_thrust
+        release = spool_up * float(own_weight.min()) + LAG
+        self.start = spool_up - release
         """When the climb begins."""
         count = 4096
         while True:  # the end of a lazy trajectory is known only after a sample beyond it
             elapsed: Array = SAMPLE * np.arange(count, dtype=np.float64)
-            positions = self._trajectory.trajectory.derivatives(elapsed, 0)[0]
-            if elapsed[-1] > self._trajectory.landing_from:
+            positions = mission_trajectory.trajectory.derivatives(elapsed, 0)[0]
+            if elapsed[-1] > mission_trajectory.landing_from:
                 break
             if elapsed[-1] > LONGEST:
                 raise ValueError(f"the mission lasts longer than {LONGEST:g} s")
             count *= 2
-        self.landing = self.start + self._trajectory.landing_from
+        self.landing = self.start + mission_trajectory.landing_from
         """When the final descent begins."""
-        until = elapsed <= self._trajectory.landing_from
+        until = elapsed <= mission_trajectory.landing_from
         self.times: Array = self.start + elapsed[until]
         self.positions: Array = positions[until]
-        """Where the payload is at ``times`` (K, 3), from the pad to the place above the landing."""
-        self.goal: Array = np.array(self._trajectory.trajectory.position(self._trajectory.landing_from))
-
-    def position(self, times: Array) -> Array:
-        """Return the position of the payload (K, 3), NED (m)."""
-        return np.asarray(self._trajectory.trajectory.derivatives(np.maximum(times - self.start, 0.0), 0)[0])
-
-    def velocity(self, times: Array) -> Array:
-        """Return its velocity (K, 3) (m/s)."""
-        return np.asarray(self._trajectory.trajectory.derivatives(np.maximum(times - self.start, 0.0), 1)[1])
+        """Of the payload at ``times`` (K, 3), from the pad to the place above the landing."""
+        self.goal: Array = np.array(mission_trajectory.trajectory.position(mission_trajectory.landing_from))
 
 
 def arrival(times: Array, positions: Array, goal: Array, within: float) -> float | None:

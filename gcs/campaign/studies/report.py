@@ -1,13 +1,12 @@
 """The report of a study: its table and its picture."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
+from itertools import product
 from pathlib import Path
+from typing import Any
 
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from rich.console import RenderableType
 from rich.table import Table
@@ -21,7 +20,7 @@ from gcs.record.pictures import save_picture
 
 _MARKERS = "os^Dv"
 _HIGHEST_ANGLE = 30.0
-"""deg: a payload that tips over would make the rest invisible."""
+"""Upper end of the axis (deg): one payload that tips over must not compress the rest."""
 
 
 def report(study: Study, results: Sequence[Result], out: Path) -> tuple[list[RenderableType], list[Path]]:
@@ -34,27 +33,27 @@ def report(study: Study, results: Sequence[Result], out: Path) -> tuple[list[Ren
 
 def _table(study: Study, results: Sequence[Result]) -> Table:
     """Return a row for each mission and variant, with the worst values."""
-    columns: dict[str, list[str]] = {}
-    for mission in study.missions:
-        for variant in study.variants:
-            chosen = [result for result in results if (result.mission, result.variant) == (mission, variant.label)]
-            if not chosen:
-                continue
-            clearance, tilt = chosen[0].clearance_asked_m, chosen[0].tilt_limit_deg
-            for title, cell in (
-                ("mission", mission),
-                ("variant", variant.label),
-                ("done", f"{sum(result.outcome == 'completed' for result in chosen)}/{len(chosen)}"),
-                ("contacts", str(sum(result.contacts or 0 for result in chosen))),
-                ("clearance (m)", _with_limit(extreme(chosen, "clearance_min_m", min, 2), ">=", clearance)),
-                ("angle (deg)", _with_limit(extreme(chosen, "tilt_max_deg", max, 1), "<=", tilt)),
-                ("UAVs (m)", extreme(chosen, "uav_separation_min_m", min, 2)),
-                ("RMSE (m)", extreme(chosen, "position_rmse_m", max, 3)),
-                ("slack (m)", extreme(chosen, "slack_max_m", max, 3)),
-                ("delay (s)", extreme(chosen, "delay_s", max, 1)),
-            ):
-                columns.setdefault(title, []).append(cell)
-    return text_table(columns, left=("mission", "variant"))
+    rows = []
+    for mission, variant in product(study.missions, study.variants):
+        chosen = [result for result in results if (result.mission, result.variant) == (mission, variant.label)]
+        if not chosen:
+            continue
+        clearance, tilt = chosen[0].clearance_asked_m, chosen[0].tilt_limit_deg
+        rows.append(
+            {
+                "mission": mission,
+                "variant": variant.label,
+                "done": f"{sum(result.outcome == 'completed' for result in chosen)}/{len(chosen)}",
+                "contacts": str(sum(result.contacts or 0 for result in chosen)),
+                "clearance (m)": _with_limit(extreme(chosen, "clearance_min_m", min, 2), ">=", clearance),
+                "angle (deg)": _with_limit(extreme(chosen, "tilt_max_deg", max, 1), "<=", tilt),
+                "UAVs (m)": extreme(chosen, "uav_separation_min_m", min, 2),
+                "RMSE (m)": extreme(chosen, "position_rmse_m", max, 3),
+                "slack (m)": extreme(chosen, "slack_max_m", max, 3),
+                "delay (s)": extreme(chosen, "delay_s", max, 1),
+            }
+        )
+    return text_table(rows, left=("mission", "variant"))
 
 
 def _with_limit(figure: str, sign: str, limit: float | None) -> str:
@@ -62,9 +61,8 @@ def _with_limit(figure: str, sign: str, limit: float | None) -> str:
 
 
 def draw_study(study: Study, results: Sequence[Result], path: Path) -> Path:
-    """Clearance and payload angle of every flight against what is changed. Raises :class:`UnusableInput`."""
+    """Draw clearance and payload angle of every flight against the variants. Raises :class:`UnusableInput`."""
     figure = Figure(figsize=(9.0, 4.2), layout="constrained")
-    FigureCanvasAgg(figure)
     clearance, angle = figure.subplots(1, 2)
     _draw(clearance, study, results, "clearance_min_m", "clearance_asked_m")
     _draw(angle, study, results, "tilt_max_deg", "tilt_limit_deg")
@@ -89,30 +87,27 @@ def draw_study(study: Study, results: Sequence[Result], path: Path) -> Path:
 
 def _draw(ax: Axes, study: Study, results: Sequence[Result], figure: str, limit: str) -> None:
     by_label = study.variants[0].value is None
-    by_name = {variant.label: variant for variant in study.variants}
+    variants = {variant.label: variant for variant in study.variants}
     for number, mission in enumerate(study.missions):
-        chosen = [result for result in results if result.mission == mission]
-        colour = SERIES[number % len(SERIES)]
+        colour, marker = SERIES[number % len(SERIES)], _MARKERS[number % len(_MARKERS)]
         aside = 0.12 * (number - (len(study.missions) - 1) / 2.0) if by_label else 0.0
-        points: list[tuple[float, float]] = []
-        touching: list[tuple[float, float]] = []
+        points: dict[bool, list[tuple[float, float]]] = {False: [], True: []}  # by contact
         limits: dict[float, float] = {}
-        for result in chosen:
-            variant = by_name[result.variant]
+        for result in results:
+            if result.mission != mission:
+                continue
+            variant = variants[result.variant]
             x = study.variants.index(variant) + aside if variant.value is None else variant.value
             if (value := result.figure(limit)) is not None:
                 limits[x] = value
             if (value := result.figure(figure)) is not None and math.isfinite(value):
-                (touching if result.contacts else points).append((x, value))
-        if figure == "tilt_max_deg":
-            points, touching = [[(x, min(y, _HIGHEST_ANGLE)) for x, y in places] for places in (points, touching)]
-        marker = _MARKERS[number % len(_MARKERS)]
-        if points:
-            ax.plot(*zip(*points, strict=True), marker, color=colour, ms=6, alpha=0.8, clip_on=False, label=mission)
-        if touching:
-            ax.plot(
-                *zip(*touching, strict=True), "x", color=colour, ms=9, mew=2, clip_on=False, label=f"{mission}, contact"
-            )
+                y = min(value, _HIGHEST_ANGLE) if figure == "tilt_max_deg" else value
+                points[bool(result.contacts)].append((x, y))
+        style: dict[str, Any] = {"color": colour, "clip_on": False}
+        if points[False]:
+            ax.plot(*zip(*points[False], strict=True), marker, ms=6, alpha=0.8, label=mission, **style)
+        if points[True]:
+            ax.plot(*zip(*points[True], strict=True), "x", ms=9, mew=2, label=f"{mission}, contact", **style)
         if limits:
             xs = sorted(limits)
             ax.plot(xs, [limits[x] for x in xs], "--", color=LIMIT, lw=1.2, label="limit")

@@ -1,7 +1,5 @@
 """Plans of studies (``gcs study``): the same missions flown again with one parameter changed at a time."""
 
-from __future__ import annotations
-
 import dataclasses
 import json
 import tomllib
