@@ -133,7 +133,11 @@ def _hover_thrusts(p: SystemParameters, N: int) -> dict[str, float]:
 
 def _printed_fall(p: SystemParameters) -> float:
     """Return the vertical acceleration at hover with the printed direction of thrust (m/s2)."""
-    state = nonlinear.hover_state(p)
+    hover = PlantState.hovering(p, np.zeros(3))
+    state = SystemState(
+        hover.r_0, hover.v_0, hover.quaternion_0, hover.omega_0, hover.q, np.zeros_like(hover.q),
+        hover.quaternion, hover.omega,
+    )  # fmt: skip
     F = printed.printed_thrust_forces(state.quaternion, p.hover_thrust)
     return float(nonlinear.accelerations(p, state, Inputs(F, np.zeros((p.number_of_uavs, 3)))).r_0_ddot[2])
 
