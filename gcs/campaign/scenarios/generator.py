@@ -21,7 +21,8 @@ from gcs.campaign.scenarios.schedule import Schedule
 from gcs.campaign.toml_text import mission_text
 from gcs.config import SystemConfig, read_system
 from gcs.errors import GcsError
-from gcs.mission.model import RESTING_ALTITUDE, AnyMotion, Limits, Lissajous, Mission, Obstacle
+from gcs.mission.model import RESTING_ALTITUDE, Limits, Lissajous, Mission, Obstacle
+from gcs.mission.motion import AnyMotion
 from gcs.mission.route import Route
 from gcs.mission.toml_mission import route_through
 from idc_controller.geometry.box import Wall
