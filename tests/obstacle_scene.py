@@ -91,13 +91,13 @@ class Scene:
         ``off`` (3,): error of the reported positions (m), of which the ground has estimates.
         """
         for i, position, quaternion, scan in self.look(time, centre, obstacles):
-            obstacle_map.add_measured_pose(Attitude(time, i, quaternion, np.zeros(3)))
+            obstacle_map.scans.poses.add_measured(Attitude(time, i, quaternion, np.zeros(3)))
             reported = position if off is None else position + off
-            obstacle_map.add_measured_pose(Position(time, i, reported, np.zeros(3)))
+            obstacle_map.scans.poses.add_measured(Position(time, i, reported, np.zeros(3)))
             if off is not None:
-                obstacle_map.add_estimated_pose(Position(time, i, position, np.zeros(3)))
+                obstacle_map.scans.poses.add_estimated(Position(time, i, position, np.zeros(3)))
             for message in messages_of(scan):
-                obstacle_map.add_detection(detection(message), i, time)
+                obstacle_map.scans.add(detection(message), i, time)
 
     def frame(self, time, centre, obstacle):
         """All points on one obstacle; None if no vehicle detects it."""

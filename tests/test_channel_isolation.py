@@ -5,10 +5,9 @@ from copy import copy
 import numpy as np
 import pytest
 
-from idc_controller.estimation.health.channel import Channel
 from idc_controller.estimation.health.channel_isolation import ChannelIsolation
 from idc_controller.estimation.measurement_model import ObservationStack, _blocks
-from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
+from idc_controller.estimation.measurements import PAYLOAD, Attitude, Channel, Position
 from idc_controller.estimation.settings import ChannelIsolationSettings
 
 SOURCES = (PAYLOAD, 0, 1, 2, 3)

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from idc_controller.estimation.health.channel import SensorGroup
 from idc_controller.estimation.health.dead_reckoning import DeadReckoning
-from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
+from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position, SensorGroup
 from idc_controller.estimation.settings import DeadReckoningSettings
 from idc_controller.rotations import quaternion_from_euler, quaternion_product
 

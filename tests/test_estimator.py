@@ -8,8 +8,7 @@ from flight_in_process import MISSIONS
 
 from gcs.config import read_system
 from idc_controller.estimation.estimator import Estimator
-from idc_controller.estimation.health.channel import SensorGroup
-from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
+from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position, SensorGroup
 from idc_controller.model.linear import LinearModel
 from idc_controller.rotations import quaternion_product
 from idc_controller.rotations_float import attitude_of_direction
@@ -147,7 +146,7 @@ def test_estimator_ignores_one_corrupted_relay():
         out = [(k, s) for s in samples]
         for s in samples:
             if s.source == PAYLOAD and isinstance(s, Position):
-                out += [(k, s), (k, replace(s, position=s.position + 30.0))]
+                out += [(k, s), (k, replace(s, pose=s.pose + 30.0))]
         return out
 
     _, corrupted, _ = run(moments, with_corrupted_relay)
@@ -180,7 +179,7 @@ def corrupted(s, **parts):
 )
 def test_estimator_uses_velocity_when_position_is_unusable(position):
     moments = samples_of(2.0)
-    _, estimate, innovations = run([corrupted(s, position=position(k)) for k, s in enumerate(moments)])
+    _, estimate, innovations = run([corrupted(s, pose=position(k)) for k, s in enumerate(moments)])
     _, without, _ = run([[m for m in s if m.source != 1 or not isinstance(m, Position)] for s in moments])
     sigma, without_sigma = (np.sqrt(np.diag(e.covariance))[LAYOUT.s_dot][2:4] for e in (estimate, without))
     assert np.all(sigma < 0.7 * without_sigma)
@@ -192,7 +191,7 @@ def test_estimator_uses_velocity_when_position_is_unusable(position):
 
 def test_estimator_uses_position_when_velocity_is_missing():
     moments = samples_of(2.0)
-    _, estimate, _ = run([corrupted(s, velocity=np.full(3, np.nan)) for s in moments])
+    _, estimate, _ = run([corrupted(s, motion=np.full(3, np.nan)) for s in moments])
     _, without, _ = run([[m for m in s if m.source != 1 or not isinstance(m, Position)] for s in moments])
     sigma, without_sigma = (np.sqrt(np.diag(e.covariance))[LAYOUT.s][2:4] for e in (estimate, without))
     assert np.all(sigma < 0.7 * without_sigma)
@@ -209,8 +208,8 @@ def test_estimator_isolates_worse_fitting_part_of_inconsistent_group(of_payload,
         [
             replace(
                 m,
-                position=m.position + position * max(m.time - begin, 0.0) * north,
-                velocity=m.velocity + velocity * (m.time > begin) * north,
+                pose=m.pose + position * max(m.time - begin, 0.0) * north,
+                motion=m.motion + velocity * (m.time > begin) * north,
             )
             if (m.source == PAYLOAD) == of_payload and isinstance(m, Position)
             else m

@@ -31,12 +31,12 @@ def look(known, true, off, until=6.0, seed=0, noise=1.0):
         for uav, position, quaternion, scan in (
             scene.look(t, HERE, [true, sphere(UNKNOWN, name="other")]) if k % 2 == 0 else ()
         ):
-            m.add_measured_pose(Attitude(t, uav, quaternion, np.zeros(3)))
-            m.add_measured_pose(Position(t, uav, position, np.zeros(3)))
+            m.scans.poses.add_measured(Attitude(t, uav, quaternion, np.zeros(3)))
+            m.scans.poses.add_measured(Position(t, uav, position, np.zeros(3)))
             for message in messages_of(scan):
                 wrong = np.asarray(off(t, uav)) + rng.normal(0.0, np.sqrt(noise**2 - 1.0) * NOISE * (t >= 2.0), 3)
                 message.x, message.y, message.z = np.array([message.x, message.y, message.z]) + wrong
-                m.add_detection(detection(message), uav, t)
+                m.scans.add(detection(message), uav, t)
         m.update(t)
         yield t, m
 

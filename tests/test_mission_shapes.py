@@ -19,10 +19,10 @@ from gcs.errors import UnusableInput
 from gcs.mission.model import Limits, Obstacle
 from gcs.record.clearance import clearance_over_time
 from gcs.record.obstacle_shapes import OBSTACLE_SHAPES, read_shape, write_shapes
+from idc_controller.geometry.box import Box
 from idc_controller.geometry.capsule import Capsule
 from idc_controller.geometry.mesh import Mesh, MeshHull
 from idc_controller.geometry.sphere import Sphere
-from idc_controller.geometry.tilted_box import Box
 from vehicle_sim.world.world import World
 
 OBSTACLES = """

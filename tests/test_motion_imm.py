@@ -99,14 +99,20 @@ def followed(motion, seed=0, until=8.0, each=lambda imm: None):
     return imm
 
 
+def harmonic(frequency):
+    """Return the index of the model with that angular frequency."""
+    s = MODELS.settings
+    return 2 + len(s.singer_times) + s.frequencies.index(frequency)
+
+
 @pytest.mark.parametrize(
     ("motion", "likely"),
     [
-        (lambda t: np.zeros(3), "static"),
-        (lambda t: np.array([1.2 * t, -0.8 * t, 0.2 * t]), "velocity"),
-        (lambda t: np.array([1.5 * np.sin(t), 0.0, 0.0]), "harmonic 1"),
-        (lambda t: np.array([0.0, 1.0 * np.sin(2.0 * t), 0.3]), "harmonic 2"),
-        (lambda t: np.array([1.4 * np.cos(1.4 * t), 1.4 * np.sin(1.4 * t), 0.0]), "harmonic 1.4"),
+        (lambda t: np.zeros(3), 0),
+        (lambda t: np.array([1.2 * t, -0.8 * t, 0.2 * t]), 1),
+        (lambda t: np.array([1.5 * np.sin(t), 0.0, 0.0]), harmonic(1.0)),
+        (lambda t: np.array([0.0, 1.0 * np.sin(2.0 * t), 0.3]), harmonic(2.0)),
+        (lambda t: np.array([1.4 * np.cos(1.4 * t), 1.4 * np.sin(1.4 * t), 0.0]), harmonic(1.4)),
     ],
 )
 def test_true_model_is_most_probable_and_predicts(motion, likely):
@@ -118,7 +124,7 @@ def test_true_model_is_most_probable_and_predicts(motion, likely):
             errors.append(imm.predict(times)[0] - [motion(t) for t in times])
 
     imm = followed(motion, each=watch)
-    assert MODELS.names[int(np.argmax(imm.weight))] == likely
+    assert int(np.argmax(imm.weight)) == likely
     times = imm.time + np.array([0.0, 0.5, 1.0])
     _, covariance = imm.predict(times)
     now, ahead = np.sqrt(np.mean(np.sum(np.square(errors), axis=2), axis=0))

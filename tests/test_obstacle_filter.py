@@ -7,7 +7,7 @@ import pytest
 from obstacle_scene import MOTIONS, NOISE, Scene, pole, random_motion, sphere, stop_and_go, wall
 
 from idc_controller.geometry.box import Wall
-from idc_controller.geometry.distance import Bodies
+from idc_controller.geometry.obstacles import Bodies
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
 from idc_controller.perception.motion_imm import MotionModels

@@ -27,12 +27,11 @@ from gcs.mission.model import Obstacle
 from gcs.mission.motion import HarmonicMotion
 from gcs.mission.read import read_mission
 from idc_controller.estimation.measurements import Attitude, Position
-from idc_controller.geometry.box import Wall
+from idc_controller.geometry.box import Box, Wall
 from idc_controller.geometry.capsule import Capsule
-from idc_controller.geometry.distance import Bodies
+from idc_controller.geometry.obstacles import Bodies
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
-from idc_controller.geometry.tilted_box import Box
 from idc_controller.perception.obstacle_map import ObstacleMap
 from idc_controller.perception.scan_assembly import Cluster
 from vehicle_sim.swarm import Swarm
@@ -306,7 +305,7 @@ def test_map_in_flight_has_the_obstacles_the_vehicles_detect(tmp_path):
         flight.swarm = Swarm(mission.system, seed=1, home=mission.home, obstacles=obstacles)
         flight.fly(until=6.0)
         predicted = {o.name: o for o in obstacle_map.predict(np.array([flight.now]))}
-        assert obstacle_map.discarded == 0
+        assert obstacle_map.scans.discarded == 0
     assert len(predicted) == 3
     kinds = {o.shape.kind: o for name, o in predicted.items() if name != "known"}
     assert np.linalg.norm(kinds["sphere"].positions[0] - [4.0, 4.0, -3.5]) < 0.08
@@ -326,12 +325,12 @@ def test_new_track_begins_with_scatter_of_earlier_ones():
     scatter = []
     for k in range(40):
         for i, position, quaternion, scan in scene.look(0.1 * k, HERE, [near, late] if k >= 30 else [near]):
-            m.add_measured_pose(Attitude(0.1 * k, i, quaternion, np.zeros(3)))
-            m.add_measured_pose(Position(0.1 * k, i, position, np.zeros(3)))
+            m.scans.poses.add_measured(Attitude(0.1 * k, i, quaternion, np.zeros(3)))
+            m.scans.poses.add_measured(Position(0.1 * k, i, position, np.zeros(3)))
             for message in messages_of(scan):
                 x, y, z = rng.normal(0.0, 5 * NOISE, 3)
                 message.x, message.y, message.z = message.x + x, message.y + y, message.z + z
-                m.add_detection(detection(message), i, 0.1 * k)
+                m.scans.add(detection(message), i, 0.1 * k)
         m.update(0.1 * k)
         scatter.append([track.filter.scatter**0.5 for track in m.tracks])
     assert len(scatter[29]) == 1 and scatter[29][0] > 3 * NOISE

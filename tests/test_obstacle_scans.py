@@ -57,14 +57,14 @@ def test_scan_waits_for_pose_and_impossible_detections_are_discarded():
     scene = Scene(0)
     ((i, position, quaternion, scan),) = scene.look(1.0, HERE, [sphere((5.0, 0.0, -6.0))])[:1]
     for message in messages_of(scan):
-        m.add_detection(detection(message), i, 1.0)
+        m.scans.add(detection(message), i, 1.0)
     m.update(1.0)
     assert m.tracks == []
-    m.add_measured_pose(Position(1.0, i, position, np.full(3, np.nan)))  # of its motion nothing is known
-    m.add_measured_pose(Attitude(1.0, i, quaternion, np.full(3, np.nan)))
+    m.scans.poses.add_measured(Position(1.0, i, position, np.full(3, np.nan)))  # of its motion nothing is known
+    m.scans.poses.add_measured(Attitude(1.0, i, quaternion, np.full(3, np.nan)))
     m.update(1.05)
     assert len(m.tracks) == 1
-    assert m.discarded == 0
+    assert m.scans.discarded == 0
 
     def nonsense(**changes):
         fields = {
@@ -77,15 +77,15 @@ def test_scan_waits_for_pose_and_impossible_detections_are_discarded():
         {"frame": mavlink.MAV_FRAME_GLOBAL}, {"x": float("nan")}, {"y": float("inf")}, {"x": 0.0}, {"x": 1e6},
         {"max_distance": 0.0}, {"max_distance": float("nan")},
     ):  # fmt: skip
-        m.add_detection(detection(nonsense(**bad)), 0, 1.1)
-    assert m.discarded == 7
-    m.add_detection(detection(nonsense()), 3, 1.1)  # of a vehicle whose pose never comes
+        m.scans.add(detection(nonsense(**bad)), 0, 1.1)
+    assert m.scans.discarded == 7
+    m.scans.add(detection(nonsense()), 3, 1.1)  # of a vehicle whose pose never comes
     m.update(1.1)
     m.update(1.5)
-    assert m.discarded == 8
+    assert m.scans.discarded == 8
     for k in range(5000):  # a flood
-        m.add_detection(detection(nonsense(time_boot_ms=2000 + k)), 2, 2.0)
-    assert m.discarded > 3000
+        m.scans.add(detection(nonsense(time_boot_ms=2000 + k)), 2, 2.0)
+    assert m.scans.discarded > 3000
 
 
 # Obstacles of the mission
@@ -100,7 +100,7 @@ def with_invalid_sensors(kind):
         t = k / 20
         scene.feed(m, t, HERE, [])
         if kind == "broken":
-            m.set_failed_sensors({0, 1, 2, 3}, t)
+            m.scans.range_sensors.set_failed({0, 1, 2, 3}, t)
         elif k % 2 == 0:
             for uav, messages in enumerate(stuck):
                 # How many points there are, and under which number, may still follow what is in field of view.
@@ -109,7 +109,7 @@ def with_invalid_sensors(kind):
                     message.time_boot_ms = round(t * 1e3)
                     if kind == "nan":
                         message.x = np.nan
-                    m.add_detection(detection(message), uav, t)
+                    m.scans.add(detection(message), uav, t)
         m.update(t)
         yield m
 
@@ -120,7 +120,7 @@ def test_sensing_is_not_lost_with_one_valid_sensor():
     run(m, lambda t: here, 1.0, scene=scene)
     for k in range(20, 80):
         scene.feed(m, k / 20, HERE, [])
-        m.set_failed_sensors({0, 1, 3}, k / 20)
+        m.scans.range_sensors.set_failed({0, 1, 3}, k / 20)
         m.update(k / 20)
         assert not m.sensing_lost
     assert m.predict(np.array([4.0])) == []
@@ -144,12 +144,12 @@ def test_track_deleted_before_sensing_loss_is_restored():
     assert m.predict(np.array([2.5])) == []
     for k in range(50, 75):
         scene.feed(m, k / 20, HERE, [])
-        m.set_failed_sensors({0, 1, 2, 3}, k / 20)
+        m.scans.range_sensors.set_failed({0, 1, 2, 3}, k / 20)
         m.update(k / 20)
     assert m.sensing_lost
     for k in range(75, 135):  # and is kept, although they report valid health again
         scene.feed(m, k / 20, HERE, [])
-        m.set_failed_sensors(set(), k / 20)
+        m.scans.range_sensors.set_failed(set(), k / 20)
         m.update(k / 20)
     assert not m.sensing_lost
     (back,) = m.predict(np.array([6.75]))

@@ -16,7 +16,7 @@ from gcs.mavlink.codec import Codec
 from gcs.mission.model import Obstacle
 from gcs.mission.motion import HarmonicMotion
 from idc_controller.geometry.box import Wall
-from idc_controller.geometry.distance import Bodies
+from idc_controller.geometry.obstacles import Bodies
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion

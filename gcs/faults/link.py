@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Annotated
 
-from gcs.faults.kind import FaultSettings, kind, parameter
+from gcs.faults.kind import kind, parameter
 
 _Chance = Annotated[float, parameter("of a datagram", ge=0.0, le=1.0)]
 _Delay = 60.0  # s, the longest
 
 
 @kind("packet_loss", "link", direction="both")
-class PacketLoss(FaultSettings):
+@dataclass(frozen=True)
+class PacketLoss:
     """Datagrams are lost, each independently of the others."""
 
     probability: _Chance
 
 
 @kind("burst_loss", "link", direction="both")
-class BurstLoss(FaultSettings):
+@dataclass(frozen=True)
+class BurstLoss:
     """Datagrams are lost in bursts (Gilbert-Elliott): a good and a bad state by turns, of exponential lengths."""
 
     burst: Annotated[float, parameter("mean length of the bad state", "s", gt=0.0, le=1e3)] = 0.5
@@ -28,21 +31,24 @@ class BurstLoss(FaultSettings):
 
 
 @kind("latency", "link", direction="both")
-class Latency(FaultSettings):
+@dataclass(frozen=True)
+class Latency:
     """Datagrams arrive later, in their order."""
 
     delay: Annotated[float, parameter("how much later", "s", ge=0.0, le=_Delay)]
 
 
 @kind("jitter", "link", direction="both")
-class Jitter(FaultSettings):
+@dataclass(frozen=True)
+class Jitter:
     """Datagrams arrive later by a random time, in their order."""
 
     spread: Annotated[float, parameter("the longest delay; each is uniform from 0", "s", ge=0.0, le=_Delay)]
 
 
 @kind("reordering", "link", direction="both")
-class Reordering(FaultSettings):
+@dataclass(frozen=True)
+class Reordering:
     """Some datagrams are delayed, so that later ones overtake them."""
 
     probability: _Chance
@@ -50,7 +56,8 @@ class Reordering(FaultSettings):
 
 
 @kind("duplication", "link", direction="both")
-class Duplication(FaultSettings):
+@dataclass(frozen=True)
+class Duplication:
     """Some datagrams arrive twice."""
 
     probability: _Chance
@@ -58,7 +65,8 @@ class Duplication(FaultSettings):
 
 
 @kind("corruption", "link", direction="both")
-class Corruption(FaultSettings):
+@dataclass(frozen=True)
+class Corruption:
     """Some bytes of some datagrams are replaced by other ones, anywhere."""
 
     probability: _Chance
@@ -66,21 +74,24 @@ class Corruption(FaultSettings):
 
 
 @kind("bad_checksum", "link", direction="both")
-class BadChecksum(FaultSettings):
+@dataclass(frozen=True)
+class BadChecksum:
     """The checksum of every message in some datagrams is wrong; the contents are not."""
 
     probability: _Chance
 
 
 @kind("truncation", "link", direction="both")
-class Truncation(FaultSettings):
+@dataclass(frozen=True)
+class Truncation:
     """Some datagrams are cut off anywhere."""
 
     probability: _Chance
 
 
 @kind("bandwidth_cap", "link", direction="both")
-class BandwidthCap(FaultSettings):
+@dataclass(frozen=True)
+class BandwidthCap:
     """Datagrams wait for those before them to pass, and are lost when too many wait."""
 
     rate: Annotated[float, parameter("of each direction of a vehicle's link", "bytes/s", gt=0.0, le=1e9)]
@@ -88,17 +99,20 @@ class BandwidthCap(FaultSettings):
 
 
 @kind("partition", "link", direction="both")
-class Partition(FaultSettings):
+@dataclass(frozen=True)
+class Partition:
     """Nothing passes, in both directions or in one."""
 
 
 @kind("stall", "link", direction="both", bounded=True)
-class Stall(FaultSettings):
+@dataclass(frozen=True)
+class Stall:
     """Nothing passes for the duration; then all delayed datagrams arrive at once."""
 
 
 @kind("flapping", "link", direction="both")
-class Flapping(FaultSettings):
+@dataclass(frozen=True)
+class Flapping:
     """The link is down and up by turns, down first; what is sent while it is down is lost."""
 
     down: Annotated[float, parameter("length of each outage", "s", gt=0.0, le=1e4)]

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Annotated
 
-from gcs.faults.kind import FaultSettings, kind, parameter
+from gcs.faults.kind import kind, parameter
 
 _Vector = tuple[float, float, float]
 _Onboard = Annotated[
@@ -14,14 +15,16 @@ _Onboard = Annotated[
 
 
 @kind("position_lost", "sensors")
-class PositionLost(FaultSettings):
+@dataclass(frozen=True)
+class PositionLost:
     """Position and velocity are no longer measured or reported."""
 
     onboard: _Onboard = True
 
 
 @kind("position_glitch", "sensors")
-class PositionGlitch(FaultSettings):
+@dataclass(frozen=True)
+class PositionGlitch:
     """The measured position jumps away and back, level, in random directions, and the vehicle flies by it."""
 
     size: Annotated[float, parameter("how far", "m", gt=0.0, le=1e5)]
@@ -30,31 +33,36 @@ class PositionGlitch(FaultSettings):
 
 
 @kind("position_drift", "sensors")
-class PositionDrift(FaultSettings):
+@dataclass(frozen=True)
+class PositionDrift:
     """The measured position drifts away, the velocity does not, and the vehicle flies by it."""
 
     velocity: Annotated[_Vector, parameter("of the drift, north-east-down", "m/s")]
 
 
 @kind("attitude_lost", "sensors")
-class AttitudeLost(FaultSettings):
+@dataclass(frozen=True)
+class AttitudeLost:
     """The attitude is no longer reported, nor the rates, which share its message."""
 
     onboard: _Onboard = False
 
 
 @kind("rates_lost", "sensors")
-class RatesLost(FaultSettings):
+@dataclass(frozen=True)
+class RatesLost:
     """The rates are reported as NaN, MAVLink's unknown value."""
 
     onboard: _Onboard = False
 
 
 @kind("payload_unit_lost", "sensors")
-class PayloadUnitLost(FaultSettings):
+@dataclass(frozen=True)
+class PayloadUnitLost:
     """The vehicles no longer get anything of the payload's navigation unit that they could relay."""
 
 
 @kind("obstacle_sensing_lost", "sensors")
-class ObstacleSensingLost(FaultSettings):
+@dataclass(frozen=True)
+class ObstacleSensingLost:
     """The vehicles no longer detect obstacles."""

@@ -2,46 +2,53 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Annotated
 
-from gcs.faults.kind import FaultSettings, kind, parameter
+from gcs.faults.kind import kind, parameter
 
 
 @kind("low_rate", "timing", direction="telemetry")
-class LowRate(FaultSettings):
+@dataclass(frozen=True)
+class LowRate:
     """Of the stream of measurements (telemetry) or of set-points (command), only an even share comes."""
 
     share: Annotated[float, parameter("of the messages that come; 0.5: half rate", gt=0.0, le=1.0)] = 0.5
 
 
 @kind("clock_skew", "timing")
-class ClockSkew(FaultSettings):
+@dataclass(frozen=True)
+class ClockSkew:
     """A vehicle's clock runs fast or slow; the error that has grown stays when the fault ends."""
 
     rate: Annotated[float, parameter("seconds gained a second", "s/s", ge=-0.5, le=0.5)]
 
 
 @kind("clock_step", "timing")
-class ClockStep(FaultSettings):
+@dataclass(frozen=True)
+class ClockStep:
     """A vehicle's clock is off by a constant; it is right again when the fault ends."""
 
     step: Annotated[float, parameter("what it is ahead", "s", ge=-1e6, le=1e6)]
 
 
 @kind("stale_stamps", "timing")
-class StaleStamps(FaultSettings):
+@dataclass(frozen=True)
+class StaleStamps:
     """Measurements are reported with the stamps of an earlier time."""
 
     age: Annotated[float, parameter("how much earlier", "s", gt=0.0, le=1e3)]
 
 
 @kind("stamp_wrap", "timing")
-class StampWrap(FaultSettings):
+@dataclass(frozen=True)
+class StampWrap:
     """A vehicle's clock is set to just before its stamps (32 bits of ms) overflow, and then they do."""
 
     lead: Annotated[float, parameter("from the start of the fault to the overflow", "s", ge=0.0, le=1e6)] = 1.0
 
 
 @kind("ground_hang", "timing")
-class GroundHang(FaultSettings):
+@dataclass(frozen=True)
+class GroundHang:
     """Of all that the ground sends, only its heartbeat comes: as if it hung."""

@@ -108,7 +108,7 @@ class TelemetryRouter:
             obstacle_map = self._flight.system.obstacle_map
             # Detections from before a clock jump have the stamp of another pose.
             if obstacle_map is not None and now - link.clock.jumped_at > self._clock_settled:
-                obstacle_map.add_detection(detection(message), index, time)
+                obstacle_map.scans.add(detection(message), index, time)
         else:
             self._add_measurement(received, index, time)
         return time
@@ -117,16 +117,16 @@ class TelemetryRouter:
         self, message: mavlink.MAVLink_attitude_target_message, index: int, time: float, latest: float, now: float
     ) -> None:
         link, flight = self._links[index], self._flight
-        setpoint = setpoint_flown(message, link.status.parameters.get(px4.PARAM_THRUST_MAX, math.nan))
+        setpoint = setpoint_flown(message, link.parameters.get(px4.PARAM_THRUST_MAX, math.nan))
         if setpoint is None or flight.phase not in IN_AIR:
             return
         # Its stamp is that of the moment at which it began to act.
         until = min(max(time, latest), self._clock.time(now))
         confirmation = flight.control.estimator.confirm_setpoint(
-            index, time, until, setpoint, link.clock.spread, link.setpoints.delay_max
+            index, time, until, setpoint, link.clock.spread, link.latency_max
         )
         if confirmation is not None:
-            link.setpoints.confirm(confirmation)
+            link.confirm_setpoint(confirmation)
 
     def _add_measurement(self, received: Received, index: int, time: float) -> None:
         obstacle_map = self._flight.system.obstacle_map
@@ -138,7 +138,7 @@ class TelemetryRouter:
         self._id_check.add(sample)
         used = self._flight.add_measurement(sample)
         if obstacle_map is not None and used is not None:
-            obstacle_map.add_measured_pose(used)
+            obstacle_map.scans.poses.add_measured(used)
 
 
 def whole_ms(time: float) -> float:

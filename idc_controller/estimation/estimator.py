@@ -10,12 +10,17 @@ import numpy as np
 
 from idc_controller.arrays import Array
 from idc_controller.estimation.estimate import Estimate, InnovationRecord
-from idc_controller.estimation.health.channel import SensorGroup
-from idc_controller.estimation.health.covariance_reset import initial_covariance
 from idc_controller.estimation.health.sensor_health import SensorHealth
 from idc_controller.estimation.measurement_model import MeasurementModel
 from idc_controller.estimation.measurement_update import MeasurementUpdate
-from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, MeasurementNoise, Position
+from idc_controller.estimation.measurements import (
+    PAYLOAD,
+    Attitude,
+    Measurement,
+    MeasurementNoise,
+    Position,
+    SensorGroup,
+)
 from idc_controller.estimation.process_model import ProcessModel
 from idc_controller.estimation.propagation import ErrorStateFilter, PropagationInterval
 from idc_controller.estimation.replay import ReplayBuffer, Snapshot
@@ -49,7 +54,7 @@ class Estimator:
         """Begin at ``time`` (s) from the state ``x`` (12 + 11 N,) of a team on the ground."""
         self._setpoints.clear()
         self.health.start()
-        P = initial_covariance(self._process, self.settings.initial)
+        P = self._process.initial_covariance(self.settings.initial)
         full = np.concatenate([x, np.zeros(self._process.size - len(x))])
         self._replay.start(Snapshot(time, full, P, self.health.snapshot()))
 

@@ -3,7 +3,6 @@
 import numpy as np
 
 from idc_controller.estimation.estimate import InnovationRecord
-from idc_controller.estimation.health.covariance_reset import reset_covariance
 from idc_controller.estimation.health.innovation_test import InnovationGate
 from idc_controller.estimation.health.noise_adaptation import Reaction
 from idc_controller.estimation.health.sensor_health import SensorHealth
@@ -55,7 +54,7 @@ class MeasurementUpdate:
         test = self._gate.test(residual, H @ filter.P @ H.T, stack, adaptation.measurement_scale)
         reaction = adaptation.react(moment.time, keys, test) if adapt else Reaction.NONE
         if reaction is Reaction.COVARIANCE_RESET:
-            filter.inflate(reset_covariance(filter.process, filter.P, self._settings.reset))
+            filter.inflate(filter.process.covariance_reset(filter.P, self._settings.reset))
         if reaction is not Reaction.NONE:
             test = self._gate.test(residual, H @ filter.P @ H.T, stack, adaptation.measurement_scale)
         accepted = self._gate.accepted_rows(residual, test, stack)

@@ -3,11 +3,10 @@
 A pose or a motion that was not measured, or may not be used, is all nan.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple, Self
 
 import numpy as np
 
@@ -18,97 +17,84 @@ PAYLOAD = -1
 
 
 @dataclass(frozen=True, eq=False)
-class Attitude:
+class _Sample:
+    time: float
+    """Time of validity (s)."""
+    source: int
+    """UAV index or :data:`PAYLOAD`."""
+    pose: Array
+    motion: Array
+
+    @property
+    def has_pose(self) -> bool:
+        """Whether the pose was measured."""
+        return not math.isnan(self.pose[0])
+
+    @property
+    def has_motion(self) -> bool:
+        """Whether the motion was measured."""
+        return not math.isnan(self.motion[0])
+
+    def same_values(self, other: object) -> bool:
+        """Return whether ``other`` is of the same kind and has the same values to the digit."""
+        return type(other) is type(self) and _same(self.pose, other.pose) and _same(self.motion, other.motion)
+
+    def without(self, pose: bool, motion: bool) -> Self:
+        """Return a copy with the ``pose`` or the ``motion`` marked as not measured."""
+        return type(self)(self.time, self.source, _masked(pose, self.pose), _masked(motion, self.motion))
+
+
+class Attitude(_Sample):
     """Attitude and body rates of a UAV or of the payload."""
 
-    time: float
-    """Time of validity (s)."""
-    source: int
-    """UAV index or :data:`PAYLOAD`."""
-    quaternion: Array
-    """Body to world, w first (4,)."""
-    rates: Array
-    """Body frame (3,) (rad/s)."""
+    @property
+    def quaternion(self) -> Array:
+        """Body to world, w first (4,)."""
+        return self.pose
 
     @property
-    def has_pose(self) -> bool:
-        """Whether the attitude was measured."""
-        return not math.isnan(self.quaternion[0])
-
-    @property
-    def has_motion(self) -> bool:
-        """Whether the rates were measured."""
-        return not math.isnan(self.rates[0])
-
-    @property
-    def pose(self) -> Array:
-        """:attr:`quaternion`."""
-        return self.quaternion
-
-    @property
-    def motion(self) -> Array:
-        """:attr:`rates`."""
-        return self.rates
-
-    def same_values(self, other: object) -> bool:
-        """Return whether ``other`` is of the same kind and has the same values to the digit."""
-        if not isinstance(other, Attitude):
-            return False
-        return _same(self.quaternion, other.quaternion) and _same(self.rates, other.rates)
-
-    def without(self, pose: bool, motion: bool) -> Attitude:
-        """Return a copy with the attitude (``pose``) or the rates (``motion``) marked as not measured."""
-        quaternion, rates = _masked(pose, self.quaternion), _masked(motion, self.rates)
-        return Attitude(self.time, self.source, quaternion, rates)
+    def rates(self) -> Array:
+        """Body frame (3,) (rad/s)."""
+        return self.motion
 
 
-@dataclass(frozen=True, eq=False)
-class Position:
+class Position(_Sample):
     """Position and velocity of a UAV or of the payload's centre."""
 
-    time: float
-    """Time of validity (s)."""
-    source: int
-    """UAV index or :data:`PAYLOAD`."""
-    position: Array
-    """World, NED (3,) (m)."""
-    velocity: Array
-    """World, NED (3,) (m/s)."""
+    @property
+    def position(self) -> Array:
+        """World, NED (3,) (m)."""
+        return self.pose
 
     @property
-    def has_pose(self) -> bool:
-        """Whether the position was measured."""
-        return not math.isnan(self.position[0])
-
-    @property
-    def has_motion(self) -> bool:
-        """Whether the velocity was measured."""
-        return not math.isnan(self.velocity[0])
-
-    @property
-    def pose(self) -> Array:
-        """:attr:`position`."""
-        return self.position
-
-    @property
-    def motion(self) -> Array:
-        """:attr:`velocity`."""
-        return self.velocity
-
-    def same_values(self, other: object) -> bool:
-        """Return whether ``other`` is of the same kind and has the same values to the digit."""
-        if not isinstance(other, Position):
-            return False
-        return _same(self.position, other.position) and _same(self.velocity, other.velocity)
-
-    def without(self, pose: bool, motion: bool) -> Position:
-        """Return a copy with the position (``pose``) or the velocity (``motion``) marked as not measured."""
-        return Position(self.time, self.source, _masked(pose, self.position), _masked(motion, self.velocity))
+    def velocity(self) -> Array:
+        """World, NED (3,) (m/s)."""
+        return self.motion
 
 
 Measurement = Attitude | Position
 SensorKey = tuple[int, type[Measurement]]
 """Source and kind of a measurement."""
+
+
+class Channel(NamedTuple):
+    """Pose (``part`` 0) or motion (1) of one kind of measurement of one source."""
+
+    source: int
+    kind: type[Measurement]
+    part: int
+
+    @property
+    def name(self) -> str:
+        """position, velocity, attitude or rates."""
+        return (("position", "velocity") if self.kind is Position else ("attitude", "rates"))[self.part]
+
+
+class SensorGroup(NamedTuple):
+    """One kind of measurement, of the payload unit or of all vehicles."""
+
+    of_payload: bool
+    kind: type[Measurement]
 
 
 def median_of(copies: Sequence[Measurement]) -> Measurement:

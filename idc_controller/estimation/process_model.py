@@ -6,7 +6,7 @@ import numpy as np
 from scipy.linalg import expm
 
 from idc_controller.arrays import Array, Indices
-from idc_controller.estimation.settings import ProcessNoiseSettings
+from idc_controller.estimation.settings import CovarianceResetSettings, InitialCovarianceSettings, ProcessNoiseSettings
 from idc_controller.model.linear import LinearModel
 
 
@@ -21,7 +21,7 @@ class ProcessModel:
         self.force, self.uav_force = slice(n, n + 3), slice(n + 3, self.mass)
         self.forces = slice(n, self.mass)
         self._plain = lru_cache(maxsize=256)(self._discretised)
-        self._noise = lru_cache(maxsize=256)(self._integrated)
+        self.noise = lru_cache(maxsize=256)(self._integrated_noise)
 
     def transition(self, interval_us: int, acceleration: Array) -> tuple[Array, Array]:
         """Return F (n, n) and B (n, 3 N) over an interval (us).
@@ -34,10 +34,6 @@ class ProcessModel:
         F[: self.layout.size, self.mass] = B_d[:, :3] @ direction
         return F, B
 
-    def noise(self, interval_us: int, force_scale: float) -> Array:
-        """Return the covariance (n, n) that an interval (us) adds; ``force_scale``: of the noise of the forces."""
-        return self._noise(interval_us, force_scale)
-
     def per_vehicle_noise(self, measured: Indices) -> Array:
         """Return the variances (n,) added to the own forces of the UAVs ``measured`` (K,) from sample to sample.
 
@@ -46,6 +42,34 @@ class ProcessModel:
         added = np.zeros(self.size)
         added[self.uav_force].reshape(-1, 2)[measured] = self._densities.per_vehicle_force**2
         return added
+
+    def initial_covariance(self, settings: InitialCovarianceSettings) -> Array:
+        """Return the covariance (n, n) of the whole state of a team on the ground."""
+        layout = self.layout
+        sigma = np.empty(self.size)
+        sigma[layout.r_0], sigma[layout.v_0] = settings.position, settings.velocity
+        sigma[layout.Theta], sigma[layout.omega] = settings.attitude, settings.rates
+        sigma[layout.s], sigma[layout.s_dot] = settings.link, settings.link_rate
+        sigma[layout.n], sigma[layout.n_dot] = settings.thrust_direction, settings.thrust_direction_rate
+        sigma[layout.n_acc] = settings.thrust_direction_acceleration
+        sigma[layout.f] = settings.thrust
+        sigma[self.force], sigma[self.mass] = settings.force, settings.mass
+        sigma[self.uav_force] = 0.0
+        P = np.diag(sigma**2)
+        P[self.uav_force, self.uav_force] = self.uav_forces(settings.uav_force, settings.per_vehicle_force)
+        return P
+
+    def covariance_reset(self, P: Array, settings: CovarianceResetSettings) -> Array:
+        """Return what is added (n, n) to ``P`` (n, n) where most measurements contradict the prediction.
+
+        A blow or a gust changes velocities and forces, not positions; added at every moment at which they do.
+        """
+        layout, force = self.layout, self.force
+        added = np.zeros(self.size)
+        added[layout.v_0], added[layout.omega] = settings.velocity**2, settings.rates**2
+        added[layout.s_dot] = settings.link_rate**2
+        added[force] = np.maximum(settings.force**2 - np.diag(P)[force], 0.0)
+        return np.diag(added)
 
     def setpoint_noise(self, B: Array, change: Array, probability: Array) -> Array:
         """Return the covariance (n, n) of set-points that may not act yet, or never.
@@ -76,8 +100,8 @@ class ProcessModel:
         F[:n, :n], F[:n, self.forces] = A_k, B_dk
         return F, np.vstack([B_k, np.zeros((self.size - n, self.layout.inputs))]), B_dk
 
-    def _integrated(self, interval_us: int, force_scale: float) -> Array:
-        """Van Loan's integral of the process noise."""
+    def _integrated_noise(self, interval_us: int, force_scale: float) -> Array:
+        """Return the covariance (n, n) that an interval (us) adds; ``force_scale``: of the forces' noise."""
         p, layout, n = self._densities, self.layout, self.layout.size
         density = np.zeros(self.size)
         density[layout.v_0] = p.payload_acceleration

@@ -29,29 +29,12 @@ class _Sums:
         self.force_square = 0.0
         """|F|^2 (N2 s)."""
         self.mean, self.time = np.zeros(2), 0.0  # F (N s), and how much of the memory is filled (s)
-        self.uav_product = self.uav_square = 0.0
+        self.uav_product = self.uav_square = 0.0  # of a UAV, its drag as the square of the airspeed (N m2, m4/s3)
 
-    def add_force(self, force: Array) -> None:
-        """Add the level force (2,) (N) of one period."""
-        self.force_square = self._keep * self.force_square + self._period * float(force @ force)
-        self.mean = self._keep * self.mean + self._period * force
-        self.time = self._keep * self.time + self._period
-
-    def add_drag(self, force: Array, drag: Array) -> None:
-        """Add the level force (2,) and the ``drag`` of every wind (..., 2) (N) of one period."""
-        self.product = self._keep * self.product + self._period * (drag @ force)
-        self.square = self._keep * self.square + self._period * np.einsum("ijk,ijk->ij", drag, drag)
-
-    def add_uav(self, force: Array, drag: Array) -> None:
-        """Add the level force on a UAV (2,) (N) and the square of its airspeed (2,) (m2/s2) of one period."""
-        self.uav_product = self._keep * self.uav_product + self._period * float(force @ drag)
-        self.uav_square = self._keep * self.uav_square + self._period * float(drag @ drag)
-
-    def decay(self) -> None:
-        """Let a period pass without drag."""
-        self.product *= self._keep
-        self.square *= self._keep
-        self.uav_product, self.uav_square = self._keep * self.uav_product, self._keep * self.uav_square
+    def add(self, **values: Array | float) -> None:
+        """Add to each of these integrals its value over one period; 0: only the past fades."""
+        for name, value in values.items():
+            setattr(self, name, self._keep * getattr(self, name) + self._period * value)
 
 
 class WindEstimator:
@@ -90,13 +73,14 @@ class WindEstimator:
             velocity: of the payload (3,) (m/s, NED).
         """
         s, sums = self.settings, self._sums
-        sums.add_force(force[:2])
+        sums.add(force_square=float(force[:2] @ force[:2]), mean=force[:2], time=1.0)
         least = s.force_min**2 * s.memory
         if sums.force_square < least:
             self.air = None
-            sums.decay()
+            sums.add(product=0.0, square=0.0, uav_product=0.0, uav_square=0.0)
             return
-        sums.add_drag(force[:2], payload_drag(self._coefficients, self._winds - velocity)[..., :2])
+        drag = payload_drag(self._coefficients, self._winds - velocity)[..., :2]
+        sums.add(product=drag @ force[:2], square=np.einsum("ijk,ijk->ij", drag, drag))
         prior = self._factor_prior
         factor = np.clip((sums.product + prior) / (sums.square + prior), 0.0, s.factor_max)
         cost = factor * (factor * sums.square - 2.0 * sums.product)
@@ -105,7 +89,8 @@ class WindEstimator:
         wind = np.array([self._axis[best[0]] + self._vertex(cost[:, best[1]], int(best[0])),
                          self._axis[best[1]] + self._vertex(cost[best[0]], int(best[1])), 0.0])  # fmt: skip
         airspeed = wind - velocity
-        sums.add_uav(uav_force[:2], float(np.linalg.norm(airspeed)) * airspeed[:2])
+        uav_drag = float(np.linalg.norm(airspeed)) * airspeed[:2]
+        sums.add(uav_product=float(uav_force[:2] @ uav_drag), uav_square=float(uav_drag @ uav_drag))
         low, high = s.explained_min, s.explained_full
         explained = -(float(cost[best]) + least) / sums.force_square
         weight = float(np.clip((explained - low) / (high - low), 0.0, 1.0))

@@ -1,8 +1,9 @@
-"""Boxes: the wall, which stands upright, and what boxes have in common."""
+"""Boxes: the wall, which stands upright, and the box in any attitude."""
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import ClassVar, Self
 
 import coal
@@ -10,6 +11,7 @@ import numpy as np
 import shapely
 
 from idc_controller.arrays import Array
+from idc_controller.geometry.oriented import OrientedShape
 from idc_controller.geometry.shape import (
     ANGLE,
     LENGTH,
@@ -78,7 +80,7 @@ class Wall(Shape):
         yaw = np.array([shape.yaw for shape in shapes])[:, None]
         cosine, sine = np.cos(yaw), np.sin(yaw)
         x, y, z = offsets[..., 0], offsets[..., 1], offsets[..., 2]
-        return distance_of_gaps(
+        return _distance_of_gaps(
             np.abs(cosine * x + sine * y) - half[..., 0],
             np.abs(cosine * y - sine * x) - half[..., 1],
             np.abs(z) - half[..., 2],
@@ -115,7 +117,40 @@ class Wall(Shape):
         return [(cosine * u - sine * v, sine * u + cosine * v, w) for u, v, w in points]
 
 
-def distance_of_gaps(a: Array, b: Array, c: Array) -> Array:
+@dataclass(frozen=True)
+class Box(OrientedShape):
+    """A box of edges ``size`` (x, y, z) (m)."""
+
+    size: Vector = field(metadata=LENGTH)
+
+    kind: ClassVar[str] = "box"
+
+    @property
+    def dimensions(self) -> str:
+        """Its sizes in words."""
+        return " x ".join(f"{edge:.4g}" for edge in self.size) + f" m{self.attitude}"
+
+    @cached_property
+    def corners(self) -> Array:
+        """The corners (8, 3)."""
+        signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+        return np.asarray(signs * np.array(self.size) / 2.0)
+
+    def geometry(self) -> coal.ShapeBase:
+        """Return the shape for distance queries, in its own frame."""
+        return coal.Box(*self.size)
+
+    def collision(self) -> CollisionGeometry:
+        """Return the shape for a physics engine, in its own frame."""
+        return CollisionGeometry("box", {"halfExtents": [edge / 2 for edge in self.size]})
+
+    def distance(self, points: Array) -> Array:
+        """Signed distance (n,) (m) of ``points`` (n, 3) in the shape's own frame."""
+        x, y, z = (np.abs(points) - np.array(self.size) / 2.0).T
+        return _distance_of_gaps(x, y, z)
+
+
+def _distance_of_gaps(a: Array, b: Array, c: Array) -> Array:
     """Signed distance to a box, from the distances beyond its faces on its three axes."""
     inside = np.minimum(np.maximum(np.maximum(a, b), c), 0.0)
     a, b, c = np.maximum(a, 0.0), np.maximum(b, 0.0), np.maximum(c, 0.0)

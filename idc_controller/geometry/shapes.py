@@ -1,13 +1,12 @@
 """The registry of shapes: a new kind is its own module and one entry here."""
 
 from idc_controller.errors import ShapeError
-from idc_controller.geometry.box import Wall
+from idc_controller.geometry.box import Box, Wall
 from idc_controller.geometry.capsule import Capsule
 from idc_controller.geometry.mesh import Mesh
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.shape import Shape
 from idc_controller.geometry.sphere import Sphere
-from idc_controller.geometry.tilted_box import Box
 
 SHAPES: dict[str, type[Shape]] = {shape.kind: shape for shape in (Sphere, Pole, Wall, Capsule, Box, Mesh)}
 

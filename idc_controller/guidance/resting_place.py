@@ -12,8 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from idc_controller.arrays import Array
-from idc_controller.geometry.distance import Bodies
-from idc_controller.geometry.obstacles import ObstacleSource, PredictedObstacle
+from idc_controller.geometry.obstacles import Bodies, ObstacleSource, PredictedObstacle
 from idc_controller.guidance.settings import RestingPlaceSettings
 from idc_controller.parameters import SystemParameters
 from idc_controller.trajectory.settings import BrakingSettings

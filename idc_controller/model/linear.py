@@ -21,7 +21,6 @@ Inputs: ``n`` set-points (N, 2), then thrust set-points (N,). Disturbances (N): 
 one on each of the UAVs (N, 2).
 """
 
-from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -34,70 +33,19 @@ from idc_controller.rotations import hat
 E3 = np.array([0.0, 0.0, 1.0])
 
 
-@dataclass(frozen=True)
 class StateLayout:
     """Index of each coordinate in the state vector (12 + 11 N) and the input vector (3 N)."""
 
-    number_of_uavs: int
+    r_0, v_0, Theta, omega = slice(0, 3), slice(3, 6), slice(6, 9), slice(9, 12)
 
-    @property
-    def size(self) -> int:
-        """Length of the state vector."""
-        return 12 + 11 * self.number_of_uavs
-
-    @property
-    def inputs(self) -> int:
-        """Length of the input vector."""
-        return 3 * self.number_of_uavs
-
-    r_0 = slice(0, 3)
-    v_0 = slice(3, 6)
-    Theta = slice(6, 9)
-    omega = slice(9, 12)
-
-    def _pairs(self, k: int) -> slice:
-        begin = 12 + 2 * k * self.number_of_uavs
-        return slice(begin, begin + 2 * self.number_of_uavs)
-
-    @cached_property
-    def s(self) -> slice:
-        """Link tilts."""
-        return self._pairs(0)
-
-    @cached_property
-    def s_dot(self) -> slice:
-        """Link tilt rates."""
-        return self._pairs(1)
-
-    @cached_property
-    def n(self) -> slice:
-        """UAV tilts."""
-        return self._pairs(2)
-
-    @cached_property
-    def n_dot(self) -> slice:
-        """UAV tilt rates."""
-        return self._pairs(3)
-
-    @cached_property
-    def n_acc(self) -> slice:
-        """UAV tilt accelerations."""
-        return self._pairs(4)
-
-    @cached_property
-    def f(self) -> slice:
-        """Thrusts."""
-        return slice(12 + 10 * self.number_of_uavs, self.size)
-
-    @cached_property
-    def n_setpoint(self) -> slice:
-        """Tilt set-points in the input vector."""
-        return slice(0, 2 * self.number_of_uavs)
-
-    @cached_property
-    def f_setpoint(self) -> slice:
-        """Thrust set-points in the input vector."""
-        return slice(2 * self.number_of_uavs, self.inputs)
+    def __init__(self, number_of_uavs: int) -> None:
+        self.number_of_uavs = N = number_of_uavs
+        self.size, self.inputs = 12 + 11 * N, 3 * N
+        self.s, self.s_dot, self.n, self.n_dot, self.n_acc = (
+            slice(12 + 2 * k * N, 12 + 2 * (k + 1) * N) for k in range(5)
+        )
+        self.f = slice(12 + 10 * N, self.size)
+        self.n_setpoint, self.f_setpoint = slice(0, 2 * N), slice(2 * N, self.inputs)
 
 
 class LinearModel:

@@ -8,7 +8,7 @@ from scipy.optimize import linear_sum_assignment
 
 from idc_controller.arrays import Array
 from idc_controller.geometry.box import Wall
-from idc_controller.geometry.distance import Bodies
+from idc_controller.geometry.obstacles import Bodies
 from idc_controller.geometry.shape import Shape
 from idc_controller.perception.scan_assembly import Cluster
 from idc_controller.perception.settings import AssociationSettings

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from idc_controller.arrays import Array
-from idc_controller.geometry.distance import Bodies
+from idc_controller.geometry.obstacles import Bodies
 from idc_controller.geometry.shape import Shape
 from idc_controller.perception.obstacle_filter import surface_of
 from idc_controller.perception.scan_assembly import Cluster

@@ -11,6 +11,8 @@ They interact as in Blom and Bar-Shalom (1988). The axes are filtered separately
 and little time. The tests compare a single model with ``filterpy``.
 """
 
+from functools import lru_cache
+
 import numpy as np
 
 from idc_controller.arrays import Array
@@ -25,19 +27,13 @@ class MotionModels:
 
     def __init__(self, settings: ImmSettings | None = None) -> None:
         self.settings = settings = settings or ImmSettings()
-        singer = tuple(zip(settings.singer_accelerations, settings.singer_times, strict=True))
-        self.names = (
-            "static", "velocity", *(f"singer {s:g}/{tau:g}" for s, tau in singer),
-            *(f"harmonic {omega:g}" for omega in settings.frequencies),
-        )  # fmt: skip
-        self.count = len(self.names)
-        self._singer = slice(2, 2 + len(singer))
-        self._harmonic = slice(2 + len(singer), self.count)
+        harmonic = 2 + len(settings.singer_times)
+        self.count = harmonic + len(settings.frequencies)
+        self._singer, self._harmonic = slice(2, harmonic), slice(harmonic, self.count)
         self._sigma = np.array(settings.singer_accelerations)
         self._tau = np.array(settings.singer_times)
         self._omega = np.array(settings.frequencies)
-        self._cache: dict[float, tuple[Array, Array]] = {}
-        self._horizons: dict[bytes, tuple[Array, Array]] = {}
+        self._at = lru_cache(maxsize=500)(self._transition_and_noise)
 
     def transition(self, dt: Array) -> Array:
         """Return F (M, K, 3, 3) over the times ``dt`` (K,) (s), on (position, velocity, acceleration)."""
@@ -81,22 +77,15 @@ class MotionModels:
 
     def step(self, dt: float) -> tuple[Array, Array]:
         """Return F and Q (M, 3, 3) over one step (s); cached, since steps repeat."""
-        key = round(dt, 5)
-        if key not in self._cache:
-            if len(self._cache) > 500:
-                self._cache.clear()
-            self._cache[key] = self.transition(np.array([key]))[:, 0], self.noise(np.array([key]))[:, 0]
-        return self._cache[key]
+        F, Q = self._at((round(dt, 5),))
+        return F[:, 0], Q[:, 0]
 
     def horizon(self, dt: Array) -> tuple[Array, Array]:
         """Return F and Q (M, K, 3, 3) over a horizon (K,) (s); cached, since controllers use the same few."""
-        rounded = np.round(dt, 4)
-        key = rounded.tobytes()
-        if key not in self._horizons:
-            if len(self._horizons) > 300:
-                self._horizons.clear()
-            self._horizons[key] = self.transition(rounded), self.noise(rounded)
-        return self._horizons[key]
+        return self._at(tuple(np.round(dt, 4).tolist()))
+
+    def _transition_and_noise(self, times: tuple[float, ...]) -> tuple[Array, Array]:
+        return self.transition(np.array(times)), self.noise(np.array(times))
 
 
 class MotionImm:

@@ -6,7 +6,7 @@ import numpy as np
 
 from idc_controller.arrays import Array
 from idc_controller.geometry.box import Wall
-from idc_controller.geometry.distance import Bodies
+from idc_controller.geometry.obstacles import Bodies
 from idc_controller.geometry.shape import Shape
 from idc_controller.perception.manoeuvre import ManoeuvreDetector
 from idc_controller.perception.motion_imm import MotionImm, MotionModels
@@ -89,11 +89,6 @@ class ObstacleFilter:
     def scatter(self) -> float:
         """Variance of the points beyond their sensors' (m2)."""
         return self._scatter
-
-    @property
-    def weights(self) -> dict[str, float]:
-        """Probability of each motion model."""
-        return dict(zip(self._imm.models.names, self._imm.weight.tolist(), strict=True))
 
     @property
     def is_static(self) -> bool:

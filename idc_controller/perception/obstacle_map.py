@@ -2,20 +2,18 @@
 
 import math
 from collections import defaultdict
-from collections.abc import Sequence, Set
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from idc_controller.arrays import Array
-from idc_controller.estimation.measurements import Measurement
-from idc_controller.geometry.distance import Bodies
-from idc_controller.geometry.obstacles import PredictedObstacle
+from idc_controller.geometry.obstacles import Bodies, PredictedObstacle
 from idc_controller.geometry.shape import Shape
 from idc_controller.perception.association import associate, gating_shape, mean_distances
 from idc_controller.perception.map_check import MapCheck, shifted
 from idc_controller.perception.motion_imm import MotionModels
-from idc_controller.perception.scan_assembly import Cluster, Detection, ScanAssembly, SensorModel
+from idc_controller.perception.scan_assembly import Cluster, ScanAssembly, SensorModel
 from idc_controller.perception.settings import PerceptionSettings
 from idc_controller.perception.track import Track
 from idc_controller.perception.track_list import TrackList
@@ -45,7 +43,7 @@ class MapObstacle(NamedTuple):
 class ObstacleMap:
     """An :class:`~idc_controller.geometry.obstacles.ObstacleSource`. Times are the team's (s).
 
-    Take telemetry with the ``add_`` methods, call :meth:`update` once a control step, then :meth:`predict`.
+    Add telemetry to :attr:`scans`, call :meth:`update` once a control step, then :meth:`predict`.
     """
 
     def __init__(
@@ -62,33 +60,11 @@ class ObstacleMap:
         self._standing = [(o.name, o.shape, o.centre) for o in known if not o.moves]
         self._tracks = TrackList(moving, [obstacle.name for obstacle in known], models, s)
         self._view_range = s.retention.in_view_share * sensor_range
-        self._scans = ScanAssembly(sensors, s.scans)
+        self.scans = ScanAssembly(sensors, s.scans)
+        """Takes poses, detections and failures of the range sensors from telemetry."""
         self._check = MapCheck(self._standing, self._view_range, s)
         self._time = -math.inf
         self._deleted: list[str] = []
-
-    # From telemetry
-
-    def add_measured_pose(self, sample: Measurement) -> None:
-        """Add a measured position or attitude of a vehicle."""
-        self._scans.poses.add_measured(sample)
-
-    def add_estimated_pose(self, sample: Measurement) -> None:
-        """Add an estimated position or attitude of a vehicle, for when the measured one is unusable."""
-        self._scans.poses.add_estimated(sample)
-
-    def add_detection(self, detection: Detection, uav: int, time: float) -> None:
-        """Add a detection of UAV ``uav`` (0 .. N-1), made at ``time`` (s); impossible ones are discarded."""
-        self._scans.add(detection, uav, time)
-
-    def set_failed_sensors(self, uavs: Set[int], time: float) -> None:
-        """Set the vehicles (0 .. N-1) that report a failure of their range sensor."""
-        self._scans.range_sensors.set_failed(uavs, time)
-
-    @property
-    def discarded(self) -> int:
-        """Number of detections that could not be used."""
-        return self._scans.discarded
 
     def update(
         self,
@@ -99,14 +75,14 @@ class ObstacleMap:
     ) -> None:
         """Update the tracks by all detections since the last call, see :meth:`ScanAssembly.frames`."""
         self._time = now
-        for clusters in self._scans.frames(now, pose_noise_scale, unusable_positions, unusable_attitudes):
+        for clusters in self.scans.frames(now, pose_noise_scale, unusable_positions, unusable_attitudes):
             self._update(clusters)
         self._deleted += self._tracks.retain(now, self.sensing_lost, self._in_field_of_view)
 
     @property
     def sensing_lost(self) -> bool:
         """Whether no vehicle has had a valid range sensor for some time."""
-        return self._scans.range_sensors.lost(self._scans.poses.uavs, self._time)
+        return self.scans.range_sensors.lost(self.scans.poses.uavs, self._time)
 
     @property
     def map_offsets(self) -> dict[int, Array]:
@@ -198,12 +174,12 @@ class ObstacleMap:
         return mean_distances(clusters, shapes, np.array(centres).reshape(-1, 3)), np.array(gates)
 
     def _valid_uavs(self) -> tuple[int, ...]:
-        return self._scans.range_sensors.valid(self._scans.poses.uavs, self._time)
+        return self.scans.range_sensors.valid(self.scans.poses.uavs, self._time)
 
     def _in_field_of_view(self, track: Track) -> bool:
         """Whether the range sensor of a vehicle whose telemetry comes in would certainly detect a track now."""
         timeout = self._settings.retention.link_timeout
-        places = [self._scans.poses.position(uav, self._time, timeout) for uav in self._valid_uavs()]
+        places = [self.scans.poses.position(uav, self._time, timeout) for uav in self._valid_uavs()]
         near = np.array([place for place in places if place is not None])
         if not len(near):
             return False

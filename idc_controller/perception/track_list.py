@@ -6,7 +6,6 @@ from collections.abc import Callable, Sequence
 from idc_controller.arrays import Array
 from idc_controller.perception.association import ClusterMemory, gating_shape, mean_distances
 from idc_controller.perception.motion_imm import MotionModels
-from idc_controller.perception.retention import TrackRetention
 from idc_controller.perception.scan_assembly import Cluster
 from idc_controller.perception.settings import PerceptionSettings
 from idc_controller.perception.track import Track
@@ -24,7 +23,7 @@ class TrackList:
         self.memory = ClusterMemory(settings.association.memory)
         self._models = models
         self._names = set(names)
-        self._retention = TrackRetention(settings.retention)
+        self._deleted: list[tuple[float, Track]] = []
         self._next_number = 1
         self._scatter = 0.0
 
@@ -83,10 +82,47 @@ class TrackList:
                     break
 
     def retain(self, now: float, sensing_lost: bool, in_field_of_view: Callable[[Track], bool]) -> list[str]:
-        """Delete tracks, see :meth:`TrackRetention.retain`; return the names of confirmed ones that are deleted."""
-        self.tracks, deleted = self._retention.retain(self.tracks, now, sensing_lost, in_field_of_view)
+        """Delete tracks that are not detected; return the names of confirmed ones that are deleted.
+
+        Args:
+            now: s.
+            sensing_lost: whether no vehicle can detect obstacles; then nothing is deleted, and what was is restored.
+            in_field_of_view: whether a vehicle would certainly detect a track.
+        """
+        s = self._settings.retention
         self.memory.forget(now)
+        self._deleted = [(since, track) for since, track in self._deleted if now - since <= s.restorable]
+        if sensing_lost:
+            self._restore()
+            return []
+        kept, deleted = [], []
+        for track in self.tracks:
+            silence = now - track.last_detected
+            on_map = track.map_shape is not None
+            if silence <= s.tentative_time or track.is_retained or (on_map and track.is_deleted):
+                kept.append(track)
+            elif not track.is_confirmed:
+                pass
+            elif silence > s.delete_after and in_field_of_view(track):
+                deleted.append(track.name)
+                self._deleted.append((now, track))
+                if on_map:
+                    track.is_deleted = True
+                    kept.append(track)
+            elif on_map or track.is_static or silence <= s.forget_after:
+                kept.append(track)
+        self.tracks = kept
         return deleted
+
+    def _restore(self) -> None:
+        """Retain the tracks confirmed before obstacle sensing was lost, and restore those deleted meanwhile."""
+        for _, track in self._deleted:
+            track.is_deleted = False
+            if track not in self.tracks:
+                self.tracks.append(track)
+        self._deleted.clear()
+        for track in self.tracks:
+            track.is_retained = track.is_retained or track.is_confirmed
 
     def _track(self, name: str) -> Track:
         return Track(name, self._models, self._settings, scatter=self._scatter)

@@ -12,9 +12,8 @@ import numpy as np
 from scipy.stats import chi2
 
 from idc_controller.arrays import Array, Mask
-from idc_controller.estimation.health.channel import Channel
 from idc_controller.estimation.measurement_model import ObservationStack
-from idc_controller.estimation.measurements import PAYLOAD, Position
+from idc_controller.estimation.measurements import PAYLOAD, Channel, Position
 from idc_controller.estimation.settings import ChannelIsolationSettings
 
 

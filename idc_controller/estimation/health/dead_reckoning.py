@@ -6,13 +6,11 @@ when it persists after a blow. Yet each of them contradicts its own motion, what
 """
 
 from collections import deque
-from typing import Protocol
 
 import numpy as np
 
 from idc_controller.arrays import Array
-from idc_controller.estimation.health.channel import SensorGroup
-from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, Position, SensorKey
+from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, Position, SensorGroup, SensorKey
 from idc_controller.estimation.settings import DeadReckoningSettings
 from idc_controller.rotations import quaternion_product
 
@@ -65,16 +63,6 @@ class DeadReckoning:
         return tuple(found)
 
 
-class _Integral(Protocol):
-    def advance(self, duration: float, motion: Array) -> None:
-        """Integrate a ``motion`` (3,) over a ``duration`` (s)."""
-        ...
-
-    def difference(self, pose: Array) -> Array:
-        """Return ``pose`` less the integral (3,), which is constant but for noise."""
-        ...
-
-
 class _IntegratedVelocity:
     """Path (m) by velocities."""
 
@@ -82,9 +70,11 @@ class _IntegratedVelocity:
         self._path = np.zeros(3)
 
     def advance(self, duration: float, motion: Array) -> None:
+        """Integrate a ``motion`` (3,) over a ``duration`` (s)."""
         self._path = self._path + duration * motion
 
     def difference(self, pose: Array) -> Array:
+        """Return ``pose`` less the integral (3,), which is constant but for noise."""
         return np.asarray(pose - self._path)
 
 
@@ -112,7 +102,7 @@ class _SourceCheck:
         """Difference of pose and integrated motion over what is allowed."""
         self._settings = s = settings
         is_position = isinstance(first, Position)
-        self._integral: _Integral = _IntegratedVelocity() if is_position else _IntegratedRates(first.pose)
+        self._integral = _IntegratedVelocity() if is_position else _IntegratedRates(first.pose)
         self._error = s.position_error if is_position else s.attitude_error
         self._inconsistent = 0
         self._recent: deque[Measurement] = deque(maxlen=s.smoothed)

@@ -6,13 +6,20 @@ from typing import NamedTuple
 import numpy as np
 
 from idc_controller.arrays import Array, Mask
-from idc_controller.estimation.health.channel import Channel, SensorGroup
 from idc_controller.estimation.health.channel_isolation import ChannelIsolation
 from idc_controller.estimation.health.dead_reckoning import DeadReckoning
 from idc_controller.estimation.health.noise_adaptation import NoiseAdaptation
 from idc_controller.estimation.health.stuck_sensor import StuckSensors
 from idc_controller.estimation.measurement_model import ObservationStack
-from idc_controller.estimation.measurements import PAYLOAD, Measurement, MeasurementNoise, Position, SensorKey
+from idc_controller.estimation.measurements import (
+    PAYLOAD,
+    Channel,
+    Measurement,
+    MeasurementNoise,
+    Position,
+    SensorGroup,
+    SensorKey,
+)
 from idc_controller.estimation.settings import EstimatorSettings
 
 

@@ -3,8 +3,7 @@
 from dataclasses import dataclass
 
 from idc_controller.arrays import Array
-from idc_controller.estimation.health.channel import Channel
-from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, MeasurementNoise, SensorKey
+from idc_controller.estimation.measurements import PAYLOAD, Attitude, Channel, Measurement, MeasurementNoise, SensorKey
 from idc_controller.estimation.settings import StuckSensorSettings
 
 

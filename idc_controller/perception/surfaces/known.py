@@ -3,7 +3,7 @@
 import numpy as np
 
 from idc_controller.arrays import Array
-from idc_controller.geometry.distance import Bodies
+from idc_controller.geometry.obstacles import Bodies
 from idc_controller.geometry.shape import Shape
 from idc_controller.perception.settings import SurfaceSettings
 from idc_controller.perception.surfaces.fit import Fit, score, unexplained
