@@ -37,7 +37,7 @@ ALLOWED = {
     ),
     "gcs.mavlink": "idc_controller.estimation idc_controller.perception",
     "gcs.mission": "gcs.config gcs.faults idc_controller.geometry idc_controller.perception",
-    "gcs.record": "gcs.flight idc_controller.control idc_controller.geometry idc_controller.perception",
+    "gcs.record": "gcs.config gcs.flight idc_controller.control idc_controller.geometry idc_controller.perception",
     "gcs.reproduce": (
         "gcs.campaign gcs.config gcs.flight gcs.record idc_controller.estimation idc_controller.geometry "
         "idc_controller.guidance idc_controller.model idc_controller.paper idc_controller.safety "

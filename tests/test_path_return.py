@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from gcs.record.path_return import return_times
 from gcs.record.run_data import read_run
+from gcs.record.safety import return_times
 from gcs.record.tables import REFERENCE_COLUMNS, TableWriter
 from idc_controller.geometry.sphere import Sphere
 from vehicle_sim.world.obstacle_bodies import Obstacle

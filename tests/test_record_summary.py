@@ -150,14 +150,9 @@ def test_clearance_is_taken_to_the_true_surface(tmp_path) -> None:
     assert summary["limits"]["clearance"][2] is False
 
 
-@pytest.mark.parametrize(
-    "system",
-    [
-        {"parameters": {"payload_size": [1.0, 1.0, 0.5], "disc_radius": 0.2}},
-        {"payload": {"size": [1.0, 1.0, 0.5]}, "uav": {"disc_radius": 0.2}},
-    ],
-)
-def test_sizes_come_from_the_manifest(tmp_path, system) -> None:
+@pytest.mark.parametrize("payload", [{}, {"payload": {"size": [1.0, 1.0, 0.5]}}])
+def test_summary_takes_sizes_from_the_manifest(tmp_path, payload) -> None:
+    system = {"uav": {"disc_radius": 0.2}, **payload}
     folder = open_run_folder("hover", tmp_path / "run")
     write_manifest(folder, command=[], seed=1, mission={}, system=system, start="then")
     write_truth(folder, obstacles=sphere_ahead)

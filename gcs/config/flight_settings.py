@@ -1,7 +1,5 @@
 """The numbers that decide how a flight is run: failsafes, alarms, take-off and landing, clocks."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 

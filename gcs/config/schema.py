@@ -5,8 +5,6 @@ A table of the system file is a frozen dataclass whose fields are declared with
 fields are no keys of the file: constants, and what is ``derived`` from other settings.
 """
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Iterator
 from functools import reduce

@@ -1,7 +1,5 @@
 """``docs/settings.md``, written from the declarations: ``python -m gcs.config.settings_page`` prints it."""
 
-from __future__ import annotations
-
 from itertools import groupby
 from typing import Any
 

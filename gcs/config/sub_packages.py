@@ -1,7 +1,5 @@
 """The tables of the system file by sub-package: each assembles the settings that the sub-package declares."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 from idc_controller.control.settings import ControllerSettings, GroundControlSettings, MpcSettings

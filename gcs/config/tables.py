@@ -4,8 +4,6 @@ SI units; frames are north-east-down (world) and forward-right-down (payload, UA
 Table I of the paper.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from idc_controller.control.settings import CONTROL_RATE

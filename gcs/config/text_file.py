@@ -1,7 +1,5 @@
 """Read a text file whole, or say in one line why not."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from gcs.config.validate import UnusableFile

@@ -1,7 +1,5 @@
 """What will be flown, for people: the answer of ``gcs check``."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from itertools import islice

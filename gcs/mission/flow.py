@@ -1,7 +1,5 @@
 """Control flow of a route: loops without a waypoint, steps never reached, legs that cannot be flown."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from itertools import islice

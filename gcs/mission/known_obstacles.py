@@ -1,7 +1,5 @@
 """Obstacles of a mission that the ground knows before the flight."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 import numpy as np

@@ -4,8 +4,6 @@ Jumps make a route a program rather than a list: it may be endless, and a positi
 steps before. :meth:`Route.legs` runs it lazily.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """A file that only grows, record by record, and never disturbs a flight."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 from pathlib import Path

@@ -10,22 +10,19 @@ between them. A convex hull never moves more than its parts do, so the clearance
 The hull is built and the distance taken by ``coal`` (Gilbert-Johnson-Keerthi on its support functions).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import coal
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from gcs.errors import UnusableInput
+from idc_controller.arrays import Array
 from idc_controller.errors import ShapeError
 from idc_controller.geometry.formation import formation_points
 from idc_controller.geometry.shape import Shape
 from idc_controller.payload_hull import PayloadHull
-
-Array = NDArray[np.float64]
 
 RIM_VERTICES = 64
 

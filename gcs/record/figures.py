@@ -1,7 +1,5 @@
 """Pictures of a run folder: what ``gcs report`` draws, and every flight at its end."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -11,15 +9,11 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
-from numpy.typing import NDArray
 
 from gcs.errors import UnusableInput
 from gcs.record.clearance import ObstacleTrack
-from gcs.record.pictures import save_picture
 from gcs.record.run_data import RunData, position_error, read_run
 from gcs.record.summary import payload_angles
-
-Array = NDArray[np.float64]
 
 # The palette of Okabe and Ito: distinct for colour-blind readers, too.
 FLOWN, LIMIT, OBSTACLE = "#0072B2", "#D55E00", "#CC79A7"
@@ -50,6 +44,15 @@ def report(run_dir: Path | str) -> list[Path]:
     for name, draw in drawings.items():
         pictures.append(save_picture(draw(run), run.folder / f"{name}.png", _DPI))
     return pictures
+
+
+def save_picture(figure: Figure, path: Path, dpi: int) -> Path:
+    """Write a figure to ``path`` and return it. Raises :class:`UnusableInput` if it cannot be written."""
+    try:
+        figure.savefig(path, dpi=dpi)
+    except OSError as error:
+        raise UnusableInput(f"{path}: cannot be written: {error.strerror}") from None
+    return path
 
 
 def draw_position(run: RunData) -> Figure:

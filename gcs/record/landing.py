@@ -1,18 +1,14 @@
 """Landing figures: touchdown speed, whether the payload is upright on the ground, contacts before."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 
 import coal
 import numpy as np
-from numpy.typing import NDArray
 
 from gcs.record.run_data import RunData
+from idc_controller.arrays import Array
 from idc_controller.rotations import rotation_from_quaternion
-
-Array = NDArray[np.float64]
 
 UPRIGHT_DEG = 15.0
 TOUCHDOWN_SPEED = 1.0

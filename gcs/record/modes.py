@@ -1,7 +1,5 @@
 """When the vehicles left OFFBOARD: from ``modes.csv`` of a run folder."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from gcs.record.tables import MODE_COLUMNS, read_text_table

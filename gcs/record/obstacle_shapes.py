@@ -1,7 +1,5 @@
 """``obstacle_shapes.json`` of a run: obstacles' shapes that the columns of ``obstacles.csv`` do not hold in full."""
 
-from __future__ import annotations
-
 import dataclasses
 import json
 from collections.abc import Mapping

@@ -1,7 +1,5 @@
 """Reading the records of a run folder, finished or cut off."""
 
-from __future__ import annotations
-
 import json
 from collections import Counter
 from collections.abc import Mapping
@@ -10,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gcs.config.system import SystemConfig
 from gcs.errors import UnusableInput
-from gcs.record.clearance import DEFAULT_PAYLOAD, ObstacleTrack, clearance_over_time
+from gcs.record.clearance import ObstacleTrack, clearance_over_time
 from gcs.record.obstacle_shapes import read_shape
 from gcs.record.run_folder import MANIFEST
 from gcs.record.tables import (
@@ -25,14 +23,13 @@ from gcs.record.tables import (
     read_text_table,
     truth_columns,
 )
+from idc_controller.arrays import Array
 from idc_controller.geometry.shape import Columns, Shape
 from idc_controller.payload_hull import PayloadHull
 
-Array = NDArray[np.float64]
 Table = dict[str, Array]
 
 SUMMARY = "summary.json"
-_DEFAULT_DISC_RADIUS = 0.3  # m
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,12 +69,15 @@ class RunData:
             return np.empty((0, 3))
         return np.column_stack([self.reference[name] for name in REFERENCE_COLUMNS[1:4]])
 
+    def setting(self, table: str, key: str) -> Any:
+        """Return the value of a key of the system file, by the manifest; where that has none, its default."""
+        value = self.manifest.get("system", {}).get(table, {}).get(key)
+        return getattr(getattr(SystemConfig(), table), key) if value is None else value
+
     @property
     def payload(self) -> PayloadHull:
         """The payload's hull."""
-        system = self.manifest.get("system")
-        size = _find(system, "payload_size") or _find(_find(system, "payload"), "size")
-        return DEFAULT_PAYLOAD if size is None else PayloadHull.box(size)
+        return PayloadHull.box(self.setting("payload", "size"))
 
     def uav_separation(self) -> Array:
         """Smallest distance between the centres of two UAVs (T,) (m)."""
@@ -87,7 +87,6 @@ class RunData:
 
     def clearance(self) -> Array:
         """Distance from the formation to each obstacle (T, number of obstacles) (m), NaN where unknown."""
-        radius = _find(self.manifest.get("system"), "disc_radius")
         return clearance_over_time(
             self.payload_position,
             self.payload_quaternion,
@@ -95,7 +94,7 @@ class RunData:
             self.uav_quaternion,
             self.obstacles,
             self.payload.vertices,
-            _DEFAULT_DISC_RADIUS if radius is None else radius,
+            self.setting("uav", "disc_radius"),
         )
 
 
@@ -217,14 +216,3 @@ def _json(path: Path) -> Mapping[str, Any]:
     if not isinstance(content, dict):
         raise UnusableInput(f"{path}: is not a JSON object")
     return content
-
-
-def _find(tree: Any, name: str) -> Any:
-    """The value of the first key of that name in nested objects, or None."""
-    if isinstance(tree, Mapping):
-        if name in tree:
-            return tree[name]
-        for branch in tree.values():
-            if (found := _find(branch, name)) is not None:
-                return found
-    return None

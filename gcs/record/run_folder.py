@@ -1,7 +1,5 @@
 """The folder that holds the records of one flight, and its manifest."""
 
-from __future__ import annotations
-
 import dataclasses
 import enum
 import json

@@ -1,17 +1,18 @@
 """Safety figures of a flight: tracking errors against the bounds in the margins, slacks, detours."""
 
-from __future__ import annotations
-
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from gcs.record.path_return import return_times
-from gcs.record.run_data import RunData, Table
+from gcs.record.run_data import RunData, position_error
 from gcs.record.tables import PLAN_COLUMNS, read_table
+from idc_controller.arrays import Array
 
 GRAVITY = 9.81  # m/s2
+BACK = 0.1  # m from the reference
+EVERY = 5  # rows of the reference: ten times a second
 
 
 def safety_figures(run: RunData) -> dict[str, Any] | None:
@@ -44,17 +45,17 @@ def safety_figures(run: RunData) -> dict[str, Any] | None:
         q = np.array([0.0, 0.0, GRAVITY]) - acceleration
         q /= np.linalg.norm(q, axis=1, keepdims=True)
         # From its place in hover a UAV moves with its link's upper end.
-        length = _link_length(run)
-        shift = length * (np.array([0.0, 0.0, 1.0]) - q)
+        shift = run.setting("team", "link_length") * (np.array([0.0, 0.0, 1.0]) - q)
         expected = position[:, None] + hover + shift[:, None]
         uav = float(np.linalg.norm(run.uav_position[rows] - expected, axis=2).max())
+    clearance = run.setting("avoidance", "margin") + (_bound(plan["payload_bound_m"]) or 0.0)
     return {
         "payload_tracking_max_m": float(payload.max()) if len(rows) else None,
         "payload_tracking_bound_m": _bound(plan["payload_bound_m"]),
         "uav_tracking_max_m": uav,
         "uav_tracking_bound_m": _bound(plan["uav_bound_m"]),
         "slack_max_m": float(plan["slack_m"].max()),
-        "way_back_max_s": max((after for _, after in return_times(run, _clearance(run, plan))), default=None),
+        "way_back_max_s": max((after for _, after in return_times(run, clearance)), default=None),
         "detours": int(plan["detours"].max()),
         "clock_rate_min": float(plan["clock_rate"].min()),
     }
@@ -65,11 +66,32 @@ def _bound(values: Any) -> float | None:
     return float(known[0]) if len(known) else None
 
 
-def _clearance(run: RunData, plan: Table) -> float:
-    margin = run.manifest.get("system", {}).get("avoidance", {}).get("margin", 0.5)
-    return float(margin) + (_bound(plan["payload_bound_m"]) or 0.0)
+def return_times(run: RunData, clearance: float) -> list[tuple[float, float]]:
+    """Return when the reference became free (s), and how long after that (s) the payload was within :data:`BACK` of it.
+
+    The reference is free while the formation on it, level and with its links upright, keeps ``clearance`` (m) to all
+    obstacles. Where the payload did not come back, the time to the end.
+    """
+    if run.reference is None or not run.obstacles or not run.number_of_uavs or not len(run.time):
+        return []
+    time, place = run.reference["time_s"][::EVERY], run.reference_position[::EVERY]
+    level = np.array([1.0, 0.0, 0.0, 0.0])
+    upright = run.uav_position[0] - run.payload_position[0]
+    planned = replace(
+        run,
+        time=time,
+        payload_position=place,
+        payload_quaternion=np.tile(level, (len(time), 1)),
+        uav_position=place[:, None] + upright,
+        uav_quaternion=np.tile(level, (len(time), len(upright), 1)),
+        obstacles=tuple(replace(track, position=_at(time, run.time, track.position)) for track in run.obstacles),
+    )
+    free = np.nan_to_num(planned.clearance(), nan=np.inf).min(axis=1) >= clearance
+    at, error = position_error(run)
+    near = at[np.linalg.norm(error, axis=1) <= BACK]
+    cleared = time[1:][free[1:] & ~free[:-1]]
+    return [(float(t), float(min(near[near >= t], default=at[-1]) - t)) for t in cleared]
 
 
-def _link_length(run: RunData) -> float:
-    team = run.manifest.get("system", {}).get("team", {})
-    return float(team.get("link_length", 3.2))
+def _at(times: Array, known: Array, values: Array) -> Array:
+    return np.column_stack([np.interp(times, known, axis) for axis in values.T])

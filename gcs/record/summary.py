@@ -1,21 +1,17 @@
 """``summary.json``: the figures of a flight, computed after it from its records."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcs.record.landing import landing_figures, onsets
 from gcs.record.run_data import SUMMARY, RunData, Table, position_error, read_run
 from gcs.record.run_folder import write_json
 from gcs.record.safety import safety_figures
+from idc_controller.arrays import Array
 from idc_controller.rotations import euler_from_quaternion
-
-Array = NDArray[np.float64]
 
 OUTCOMES = ("completed", "aborted", "collided", "failed")
 LIMITS = ("position_rmse", "payload_tilt_deg", "clearance", "uav_separation", "touchdown_speed")

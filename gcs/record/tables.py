@@ -1,19 +1,15 @@
 """The tables (CSV) of a run folder: their columns, their writer and their reader."""
 
-from __future__ import annotations
-
 import csv
 import io
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcs.errors import UnusableInput
 from gcs.record.append_file import AppendOnlyFile
-
-Array = NDArray[np.float64]
+from idc_controller.arrays import Array
 
 PAYLOAD_COLUMNS = (
     "payload_x_m", "payload_y_m", "payload_z_m",
@@ -52,7 +48,7 @@ Cell = float | int | bool | str
 
 
 def truth_columns(number_of_uavs: int) -> tuple[str, ...]:
-    """The columns of ``truth.csv`` for so many UAVs."""
+    """Return the columns of ``truth.csv``."""
     parts = ("x_m", "y_m", "z_m", "qw", "qx", "qy", "qz", "thrust_n")
     uavs = tuple(f"uav{i}_{part}" for i in range(1, number_of_uavs + 1) for part in parts)
     return ("time_s", *PAYLOAD_COLUMNS, *uavs, "contacts")
@@ -98,38 +94,22 @@ def _line(cells: Sequence[str]) -> bytes:
 
 
 def read_table(path: Path | str) -> dict[str, Array]:
-    """The columns of a numeric table, each (rows,).
-
-    A last line without its line break, as a killed process may leave, is left out. Raises
-    :class:`UnusableInput`, with file and line, for a file that cannot be read or is not such a table.
-    """
-    path = Path(path)
-    header, lines = _whole_lines(path)
-    columns = header.split(",")
+    """Return the columns of a numeric table, each (rows,). Otherwise like :func:`read_text_table`."""
+    table = read_text_table(path)
     try:
-        values = np.loadtxt(lines, delimiter=",", ndmin=2) if lines else np.empty((0, len(columns)))
-        if values.shape[1] != len(columns):
-            raise ValueError
+        return {name: np.array(cells, dtype=float) for name, cells in table.items()}
     except ValueError:
-        raise UnusableInput(_first_bad_line(path, columns, lines)) from None
-    return dict(zip(columns, values.T, strict=True))
+        raise UnusableInput(f"{path}, {_first_bad_cell(table)} is not a number") from None
 
 
 def read_text_table(path: Path | str) -> dict[str, list[str]]:
-    """The columns of a table that also holds words, as text. Otherwise like :func:`read_table`."""
-    path = Path(path)
-    header, lines = _whole_lines(path)
-    columns = header.split(",")
-    rows = list(csv.reader(lines))
-    for number, row in enumerate(rows, start=2):
-        if len(row) != len(columns):
-            raise UnusableInput(f"{path}, line {number}: {len(row)} values for {len(columns)} columns")
-    return {name: [row[i] for row in rows] for i, name in enumerate(columns)}
+    """Return the columns of a table as text.
 
-
-def _whole_lines(path: Path) -> tuple[str, list[str]]:
+    A last line without its line break, as a killed process may leave, is left out. Raises :class:`UnusableInput`, with
+    file and line, for a file that cannot be read or is not such a table.
+    """
     try:
-        text = path.read_text(encoding="utf-8")
+        text = Path(path).read_text(encoding="utf-8")
     except OSError as error:
         raise UnusableInput(f"{path}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
@@ -137,17 +117,21 @@ def _whole_lines(path: Path) -> tuple[str, list[str]]:
     header, *lines = text.split("\n")
     if not lines:
         raise UnusableInput(f"{path}, line 1: the header is missing or cut off")
-    return header, lines[:-1]
+    columns = header.split(",")
+    rows = list(csv.reader(lines[:-1]))
+    for number, row in enumerate(rows, start=2):
+        if len(row) != len(columns):
+            raise UnusableInput(f"{path}, line {number}: {len(row)} values for {len(columns)} columns")
+    return (
+        dict(zip(columns, map(list, zip(*rows, strict=True)), strict=True)) if rows else {name: [] for name in columns}
+    )
 
 
-def _first_bad_line(path: Path, columns: Sequence[str], lines: Sequence[str]) -> str:
-    for number, line in enumerate(lines, start=2):
-        cells = line.split(",")
-        if len(cells) != len(columns):
-            return f"{path}, line {number}: {len(cells)} values for {len(columns)} columns"
-        for name, cell in zip(columns, cells, strict=True):
+def _first_bad_cell(table: Mapping[str, Sequence[str]]) -> str:
+    for number, row in enumerate(zip(*table.values(), strict=True), start=2):
+        for name, cell in zip(table, row, strict=True):
             try:
                 float(cell)
             except ValueError:
-                return f"{path}, line {number}, {name}: {cell!r} is not a number"
-    return f"{path}: is not a table of numbers"
+                return f"line {number}, {name}: {cell!r}"
+    raise AssertionError("all cells are numbers")

@@ -4,8 +4,6 @@ A record is a time stamp (microseconds since 1970, 8 bytes, big-endian) and one 
 log several links keep the link's number in the two lowest bits of the time stamp; they are 0 here.
 """
 
-from __future__ import annotations
-
 import struct
 from collections.abc import Iterator
 from pathlib import Path

@@ -9,8 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from gcs.record.figures import FLOWN, LIMIT, OBSTACLE, SERIES
-from gcs.record.pictures import save_picture
+from gcs.record.figures import FLOWN, LIMIT, OBSTACLE, SERIES, save_picture
 from gcs.record.run_data import RunData
 from gcs.record.summary import payload_angles
 from gcs.reproduce.scene import ALTITUDE, RADIUS

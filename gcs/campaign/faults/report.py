@@ -14,7 +14,7 @@ from gcs.campaign.faults.judgement import ABORTED, COLLIDED, COLUMNS, FAILED, NO
 from gcs.campaign.faults.rates import CONFIDENCE, Rates, rates_of, write_rates
 from gcs.campaign.result import Result
 from gcs.campaign.tables import extreme, text_table, write_csv, write_parquet
-from gcs.record.pictures import save_picture
+from gcs.record.figures import save_picture
 
 MATRIX = "matrix.png"
 COLOURS = {

@@ -12,7 +12,7 @@ from gcs.campaign.result import Result
 from gcs.campaign.scenarios.generator import HELD_TO
 from gcs.campaign.scenarios.judgement import COLUMNS, SEPARATION
 from gcs.campaign.tables import extreme, text_table, write_csv
-from gcs.record.pictures import save_picture
+from gcs.record.figures import save_picture
 from gcs.record.run_folder import write_json
 
 _QUANTITIES = (

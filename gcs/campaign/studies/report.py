@@ -15,8 +15,7 @@ from rich.text import Text
 from gcs.campaign.result import Result
 from gcs.campaign.studies.study import STUDY_COLUMNS, Study
 from gcs.campaign.tables import extreme, text_table, write_csv
-from gcs.record.figures import LIMIT, SERIES
-from gcs.record.pictures import save_picture
+from gcs.record.figures import LIMIT, SERIES, save_picture
 
 _MARKERS = "os^Dv"
 _HIGHEST_ANGLE = 30.0
