@@ -19,7 +19,7 @@ from idc_controller.safety.safety_filter import AvoidanceFilter
 from idc_controller.safety.settings import PlannerSettings
 from idc_controller.trajectory.flatness import Load, flat_forces
 from idc_controller.trajectory.paths import Leg
-from idc_controller.trajectory.trajectory import Limits
+from idc_controller.trajectory.settings import Limits
 from idc_controller.trajectory.waypoints import WaypointTrajectory
 
 STEP = 0.05  # s

@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from idc_controller.safety.settings import PlannerSettings
 from idc_controller.trajectory.integrator_chain import Chain
 
-CHAINS = [Chain(), Chain(0.05, (1, 2, 3)), Chain(0.2, (1,)), Chain(0.1, (4, 1, 4))]
+DEFAULT = PlannerSettings().chain
+CHAINS = [DEFAULT, Chain(0.05, (1, 2, 3)), Chain(0.2, (1,)), Chain(0.1, (4, 1, 4))]
 
 
 def integrated(chain, start, knots, times):
@@ -59,7 +61,7 @@ def test_snap_is_piecewise_linear_through_knots(chain):
 
 
 def test_evaluation_is_continuous_up_to_snap():
-    chain = Chain()
+    chain = DEFAULT
     rng = np.random.default_rng(2)
     states = chain.roll_out(rng.normal(size=(5, 3)), rng.normal(size=(chain.knots, 3)))
     joints = chain.period * np.arange(1, chain.stages)
@@ -71,7 +73,7 @@ def test_evaluation_is_continuous_up_to_snap():
 
 
 def test_each_state_is_derivative_of_lower_one():
-    chain = Chain()
+    chain = DEFAULT
     rng = np.random.default_rng(3)
     states = chain.roll_out(rng.normal(size=(5, 3)), rng.normal(size=(chain.knots, 3)))
     h = 1e-4
@@ -82,7 +84,7 @@ def test_each_state_is_derivative_of_lower_one():
 
 
 def test_stacked_roll_outs_are_evaluated_as_separate_ones():
-    chain = Chain()
+    chain = DEFAULT
     rng = np.random.default_rng(4)
     plans = [chain.roll_out(rng.normal(size=(5, 3)), rng.normal(size=(chain.knots, 3))) for _ in range(3)]
     times = rng.uniform(0.0, 1.5 * chain.stages * chain.period, 30)
@@ -93,7 +95,7 @@ def test_stacked_roll_outs_are_evaluated_as_separate_ones():
 
 
 def test_chain_has_constant_velocity_beyond_last_stage():
-    chain = Chain()
+    chain = DEFAULT
     states = chain.roll_out(np.ones((5, 3)), np.zeros((chain.knots, 3)))
     end = chain.stages * chain.period
     evaluated = chain.evaluate(states, np.array([end, end + 2.0]))

@@ -58,7 +58,7 @@ def test_mission_is_followed_while_progress_continues(navigator):
     assert progress == 5.0
     assert navigator.followed(mission) is mission
     assert navigator.mission_progress(4.2) == 4.2
-    assert navigator.blocked(5.0) == ""
+    assert navigator.hold_up.blocked(5.0) == ""
 
 
 def test_detour_is_searched_only_after_patience_has_elapsed(navigator):
@@ -113,39 +113,39 @@ def test_blocked_path_is_reported_with_blocking_obstacle_after_timeout(navigator
     progress, searches = held_up(navigator, obstacles, settings.give_up)
     assert navigator.detours == 0
     assert progress == 5.0
-    assert "the long wall" in navigator.reason
+    assert "the long wall" in navigator.hold_up.reason
     # Searches become rarer.
     gaps = np.diff(searches)
     assert np.all(np.diff(gaps) > -0.06)
     assert gaps[0] < 2.0 * settings.search_interval + 0.1
     assert len(searches) < 8
     since = searches[0]
-    assert navigator.blocked(since + settings.give_up - 0.1) == ""
-    assert "the long wall" in navigator.blocked(since + settings.give_up)
+    assert navigator.hold_up.blocked(since + settings.give_up - 0.1) == ""
+    assert "the long wall" in navigator.hold_up.blocked(since + settings.give_up)
 
 
 def test_detour_is_flown_and_reason_cleared_when_path_opens(navigator):
     held_up(navigator, [CLOSED], 3.0)
-    assert navigator.reason
+    assert navigator.hold_up.reason
     held_up(navigator, [ACROSS], 9.0, begin=3.05)
     assert navigator.detours == 1
-    assert navigator.reason == ""
-    assert navigator.blocked(100.0) == ""
+    assert navigator.hold_up.reason == ""
+    assert navigator.hold_up.blocked(100.0) == ""
 
 
 def test_reason_is_cleared_when_progress_resumes(navigator):
     held_up(navigator, [CLOSED], 3.0)
     navigator.watch(3.1, 5.0, 1.0, straight(18.0), TRACKED)
-    assert navigator.reason == ""
-    assert navigator.blocked(100.0) == ""
+    assert navigator.hold_up.reason == ""
+    assert navigator.hold_up.blocked(100.0) == ""
 
 
 def test_waypoint_inside_obstacle_is_named_in_reason(navigator):
     mission = straight(10.0)
     held_up(navigator, [wall("block", 10.0, 0.0, (3.0, 3.0, 8.0))], 3.0, mission=mission)
     assert navigator.detours == 0
-    assert "block" in navigator.reason
-    assert "10.0 m north" in navigator.reason
+    assert "block" in navigator.hold_up.reason
+    assert "10.0 m north" in navigator.hold_up.reason
 
 
 def test_reset_discards_detour(navigator):
@@ -154,4 +154,4 @@ def test_reset_discards_detour(navigator):
     navigator.reset()
     assert navigator.followed(mission) is mission
     assert navigator.mission_progress(7.0) == 7.0
-    assert navigator.blocked(1000.0) == ""
+    assert navigator.hold_up.blocked(1000.0) == ""

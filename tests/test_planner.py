@@ -18,7 +18,6 @@ from idc_controller.safety.constraints.exponential_barrier import barrier_operat
 from idc_controller.safety.planner import Planner, terminal_weight
 from idc_controller.safety.separation import separations
 from idc_controller.safety.settings import PlannerSettings
-from idc_controller.trajectory.integrator_chain import Chain
 
 SETTINGS = PlannerSettings()
 K = SETTINGS.chain.stages
@@ -288,8 +287,8 @@ def test_plan_stays_above_ground_with_mission_near_it(planner):
 
 
 def test_plan_is_feasible_with_other_integrator_chains():
-    chain = Chain(0.2, (1, 1, 2, 3, 4))
-    planner = Planner(Formation(system(6)), PlannerSettings(chain=chain, barrier_rates=(3.0, 3.0)))
+    coarse = PlannerSettings(stage=0.2, blocks=(1, 1, 2, 3, 4), barrier_rates=(3.0, 3.0))
+    planner, chain = Planner(Formation(system(6)), coarse), coarse.chain
     mission = cruising(1.0, stages=chain.stages, period=chain.period)
     k = chain.stages + 1
     obstacle = PredictedObstacle("o", Sphere(0.4), np.tile([2.0, 0.3, -7.0], (k, 1)), np.zeros(k))

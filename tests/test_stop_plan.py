@@ -8,9 +8,8 @@ from gcs.config import read_system
 from idc_controller.model.linear import StateLayout
 from idc_controller.trajectory.flatness import Load, flat_reference
 from idc_controller.trajectory.lissajous import LissajousCurve, LissajousTrajectory
-from idc_controller.trajectory.settings import BrakingSettings
+from idc_controller.trajectory.settings import BrakingSettings, Limits
 from idc_controller.trajectory.stop_plan import Braking, stop_plan
-from idc_controller.trajectory.trajectory import Limits
 
 PARAMETERS = read_system().parameters()
 LIMITS = Limits(20.0, 6.0, 20.0, 80.0)

@@ -3,7 +3,7 @@ import pytest
 
 from idc_controller.errors import TrajectoryError
 from idc_controller.trajectory.lissajous import LissajousCurve, LissajousTrajectory
-from idc_controller.trajectory.trajectory import Limits
+from idc_controller.trajectory.settings import Limits
 
 LIMITS = Limits(speed=4.5, acceleration=3.6, jerk=5.0, snap=6.0)
 CURVE = LissajousCurve((6.0, 3.0), -5.0)

@@ -9,9 +9,10 @@ from scipy.interpolate import BSpline
 
 from idc_controller.errors import TrajectoryError
 from idc_controller.trajectory.paths import Circle, Leg
+from idc_controller.trajectory.settings import Limits
 from idc_controller.trajectory.smoothing import smoothing_for
 from idc_controller.trajectory.spline import SplineTrajectory
-from idc_controller.trajectory.trajectory import Limits, RestTrajectory
+from idc_controller.trajectory.trajectory import RestTrajectory
 from idc_controller.trajectory.waypoints import WaypointTrajectory
 
 LIMITS = Limits(speed=1.5, acceleration=2.0, jerk=4.0, snap=6.0)

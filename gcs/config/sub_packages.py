@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 from idc_controller.control.settings import ControllerSettings, GroundControlSettings, MpcSettings
 from idc_controller.estimation.settings import EstimatorSettings, InnovationMonitorSettings, WindSettings
-from idc_controller.guidance.settings import NavigatorSettings, ProgressSettings, RestingPlaceSettings
+from idc_controller.guidance.settings import DetourSettings, NavigatorSettings, ProgressSettings, RestingPlaceSettings
 from idc_controller.safety.settings import FilterSettings, PlannerSettings
 
 
@@ -23,6 +23,7 @@ class GuidanceConfig:
 
     progress: ProgressSettings = field(default_factory=ProgressSettings)
     navigator: NavigatorSettings = field(default_factory=NavigatorSettings)
+    detour: DetourSettings = field(default_factory=DetourSettings)
     resting_place: RestingPlaceSettings = field(default_factory=RestingPlaceSettings)
 
 

@@ -19,7 +19,6 @@ from gcs.config.flight_settings import FlightSettings
 from gcs.config.schema import table_of, table_type
 from gcs.config.sub_packages import ControlConfig, EstimationConfig, GuidanceConfig, SafetyConfig
 from gcs.config.tables import (
-    AvoidanceConfig,
     MotionConfig,
     PayloadConfig,
     RangeSensorConfig,
@@ -37,6 +36,7 @@ from idc_controller.errors import ParameterError
 from idc_controller.parameters import SystemParameters, polygon_attachments
 from idc_controller.payload_hull import PayloadHull
 from idc_controller.perception.settings import PerceptionSettings
+from idc_controller.trajectory.settings import AvoidanceSettings
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class SystemConfig:
     motion: MotionConfig = field(default_factory=MotionConfig)
     world: WorldConfig = field(default_factory=WorldConfig)
     controller: MpcTuning = field(default_factory=MpcTuning)
-    avoidance: AvoidanceConfig = field(default_factory=AvoidanceConfig)
+    avoidance: AvoidanceSettings = field(default_factory=AvoidanceSettings)
     flight: FlightSettings = field(default_factory=FlightSettings)
     estimation: EstimationConfig = field(default_factory=EstimationConfig)
     perception: PerceptionSettings = field(default_factory=PerceptionSettings)

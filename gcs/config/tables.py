@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from idc_controller.control.settings import CONTROL_RATE
 from idc_controller.settings import setting
+from idc_controller.trajectory.settings import Limits
 
 Vector = tuple[float, float, float]
 
@@ -90,11 +91,11 @@ class RatesConfig:
 class MotionConfig:
     """Limits of the payload's trajectories."""
 
-    speed: float = setting(1.5, "m/s", "speed where a mission names none", gt=0.0)
+    speed: float = setting(Limits.speed, "m/s", "speed where a mission names none", gt=0.0)
     speed_max: float = setting(3.0, "m/s", "speed to which a mission's is capped", gt=0.0)
-    acceleration: float = setting(1.5, "m/s2", "acceleration between waypoints", gt=0.0)
-    jerk: float = setting(2.0, "m/s3", "jerk between waypoints", gt=0.0)
-    snap: float = setting(6.0, "m/s4", "snap between waypoints", gt=0.0)
+    acceleration: float = setting(Limits.acceleration, "m/s2", "acceleration between waypoints", gt=0.0)
+    jerk: float = setting(Limits.jerk, "m/s3", "jerk between waypoints", gt=0.0)
+    snap: float = setting(Limits.snap, "m/s4", "snap between waypoints", gt=0.0)
     climb_speed: float = setting(1.0, "m/s", "vertical speed of take-off and descent", gt=0.0)
     landing_speed: float = setting(0.3, "m/s", "vertical speed at touch-down", gt=0.0)
     curve_speed: float = setting(5.0, "m/s", "speed on figure eights, which turn all the time", gt=0.0)
@@ -108,13 +109,3 @@ class WorldConfig:
     """Differences of the simulated world from the controller's model."""
 
     payload_mass_factor: float = setting(1.0, "", "true payload mass over payload.mass", gt=0.0)
-
-
-@dataclass(frozen=True)
-class AvoidanceConfig:
-    """The safety filter."""
-
-    margin: float = setting(0.5, "m", "clearance to keep between hull and obstacles", gt=0.0)
-    barrier_rates: tuple[float, ...] = setting(
-        (5.0,), "1/s", "rates of the exponential barrier, one for each degree", gt=0.0
-    )

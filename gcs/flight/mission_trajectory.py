@@ -14,7 +14,8 @@ from gcs.mission.route import Circle, FlyTo, HoldForever, Land, Leg, Speed, Take
 from idc_controller.trajectory import paths
 from idc_controller.trajectory.cached import CachedTrajectory
 from idc_controller.trajectory.lissajous import LissajousCurve, LissajousTrajectory
-from idc_controller.trajectory.trajectory import Limits, Trajectory
+from idc_controller.trajectory.settings import Limits
+from idc_controller.trajectory.trajectory import Trajectory
 from idc_controller.trajectory.waypoints import WaypointTrajectory
 
 Array = NDArray[np.float64]

@@ -25,8 +25,7 @@ from idc_controller.perception.scan_assembly import SensorModel
 from idc_controller.perception.settings import PerceptionSettings
 from idc_controller.safety.filter_protocol import SafetyFilter
 from idc_controller.safety.safety_filter import AvoidanceFilter
-from idc_controller.trajectory.settings import BrakingSettings
-from idc_controller.trajectory.trajectory import Limits
+from idc_controller.trajectory.settings import BrakingSettings, Limits
 
 
 def linear_model(config: SystemConfig) -> LinearModel:
@@ -75,7 +74,12 @@ def avoidance(config: SystemConfig, model: LinearModel, obstacles: ObstacleSourc
 def guidance(config: SystemConfig, model: LinearModel, obstacles: ObstacleSource) -> AdaptiveGuidance:
     """The guidance that waits for the payload, and leads round ``obstacles``."""
     stages = config.safety.planner.chain.times
-    settings = replace(config.guidance.navigator, limits=motion_limits(config), margin=config.avoidance.margin)
+    settings = replace(
+        config.guidance.navigator,
+        limits=motion_limits(config),
+        margin=config.avoidance.margin,
+        detour=config.guidance.detour,
+    )
     navigator = Navigator(model.parameters, settings, obstacles, stages)
     return AdaptiveGuidance(navigator, config.guidance.progress, stages, model.parameters.m_0 * model.parameters.g)
 

@@ -12,7 +12,8 @@ from idc_controller.geometry.obstacles import PredictedObstacle
 from idc_controller.geometry.sphere import Sphere as SphereShape
 from idc_controller.trajectory.lissajous import LissajousCurve, LissajousTrajectory
 from idc_controller.trajectory.paths import Leg
-from idc_controller.trajectory.trajectory import Limits, Trajectory
+from idc_controller.trajectory.settings import Limits
+from idc_controller.trajectory.trajectory import Trajectory
 from idc_controller.trajectory.waypoints import WaypointTrajectory
 
 Array = NDArray[np.float64]

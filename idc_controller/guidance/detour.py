@@ -20,6 +20,7 @@ from idc_controller.errors import TrajectoryError
 from idc_controller.geometry.formation import BoundingCylinder
 from idc_controller.geometry.free_space import FreeSpace, first_conflict
 from idc_controller.geometry.shape import Shape
+from idc_controller.guidance.settings import DetourSettings
 from idc_controller.guidance.straighten import free_segments_from, straightened
 from idc_controller.trajectory.trajectory import point
 
@@ -28,17 +29,6 @@ __all__ = ["BoundingCylinder", "Detour", "FreeSpace", "find_detour", "first_conf
 Box = tuple[Array, Array]
 """Two opposite corners, NED (m)."""
 
-SPACING = 0.5
-"""m between the nodes of the grid."""
-FINE_SPACING = 0.25
-"""m horizontally where the coarse grid finds no path: gaps some 0.3 m wider than they must be are found."""
-MOST_NODES = 160_000
-AROUND = 4.0
-"""m of region beyond start, goal and the obstacles about them."""
-REGION_MOST = 80.0
-"""m, the largest edge of a region that is chosen here."""
-LEAVE_WITHIN = 3.0
-"""m, how far a start too near an obstacle may be from free space."""
 _LONGER = (2.0, 6.0, math.inf)  # m than the straight line: limit of a path's length in three searches
 
 _HALF = [(i, j, k) for i in (-1, 0, 1) for j in (-1, 0, 1) for k in (-1, 0, 1) if (i, j, k) > (0, 0, 0)]
@@ -73,7 +63,7 @@ def find_detour(
     growth: ArrayLike | None = None,
     region: tuple[ArrayLike, ArrayLike] | None = None,
     names: Sequence[str] | None = None,
-    climb_cost: float = 1.0,
+    settings: DetourSettings = DetourSettings(),
 ) -> Detour:
     """Return the shortest path for the formation from ``start`` to ``goal`` (3,), NED (m).
 
@@ -87,7 +77,6 @@ def find_detour(
         lowest, highest: altitudes of the payload's centre (m, up).
         region: two opposite corners (3,) of the box to search; None: one chosen about start, goal and obstacles.
         names: the obstacles' names, for the reason.
-        climb_cost: what a metre up or down is worth in metres sideways.
 
     Raises:
         TrajectoryError: what is given has no meaning.
@@ -99,14 +88,15 @@ def find_detour(
         return Detour(None, reason)
     if free_segments_from(space, begin, end[None])[0]:
         return Detour(np.array([begin, end]))
-    box = _region(space, begin, end) if region is None else _box(region, space)
-    coarser = max(1.0, (float(np.prod((box[1] - box[0]) / SPACING + 1.0)) / MOST_NODES) ** (1.0 / 3.0))
+    box = _region(space, begin, end, settings) if region is None else _box(region, space)
+    spacing, fine = settings.spacing, settings.fine_spacing
+    coarser = max(1.0, (float(np.prod((box[1] - box[0]) / spacing + 1.0)) / settings.nodes_max) ** (1.0 / 3.0))
     reason = ""
-    for spacing in ((SPACING, SPACING, SPACING), (FINE_SPACING, FINE_SPACING, SPACING)):
-        grid = _Grid(space, box, coarser * np.array(spacing), begin, end)
-        nodes, reason = grid.path(climb_cost)
+    for horizontal in (spacing, fine):
+        grid = _Grid(space, box, coarser * np.array([horizontal, horizontal, spacing]), begin, end)
+        nodes, reason = grid.path(settings.leave_within)
         if nodes is not None:
-            return Detour(straightened(space, nodes, climb_cost))
+            return Detour(straightened(space, nodes, settings))
     if not space.is_free(begin[None])[0]:
         reason = (_refused(space, begin, "start", called) or reason) + ", and no path leads out of there"
     return Detour(None, reason)
@@ -130,21 +120,21 @@ def _refused(space: FreeSpace, place: Array, what: str, names: Sequence[str]) ->
     return None
 
 
-def _region(space: FreeSpace, start: Array, goal: Array) -> Box:
+def _region(space: FreeSpace, start: Array, goal: Array, settings: DetourSettings) -> Box:
     """A box about start and goal that holds the obstacles in between, and a path round them."""
-    keep = space.formation.radius + space.margin + AROUND
+    keep = space.formation.radius + space.margin + settings.around
     low, high = np.minimum(start, goal)[:2] - keep, np.maximum(start, goal)[:2] + keep
     lows = space.centres[:, :2] - (space.lateral_reach + keep)[:, None]
     highs = space.centres[:, :2] + (space.lateral_reach + keep)[:, None]
     inside = np.zeros(len(lows), dtype=bool)
     while True:  # obstacles that reach into the region widen it, and so may bring in others
-        reach_in = np.all((highs - AROUND > low) & (lows + AROUND < high), axis=1)
+        reach_in = np.all((highs - settings.around > low) & (lows + settings.around < high), axis=1)
         if not (reach_in & ~inside).any():
             break
         inside |= reach_in
         low, high = np.minimum(low, lows[inside].min(axis=0)), np.maximum(high, highs[inside].max(axis=0))
     middle = (start + goal)[:2] / 2.0
-    most = np.maximum(REGION_MOST / 2.0, np.abs(goal - start)[:2] / 2.0 + keep)
+    most = np.maximum(settings.region_max / 2.0, np.abs(goal - start)[:2] / 2.0 + keep)
     low, high = np.maximum(low, middle - most), np.minimum(high, middle + most)
     top = max(-start[2], -goal[2]) + 1.0
     if len(space.centres):  # nothing is gained higher than above all obstacles
@@ -179,12 +169,11 @@ class _Grid:
         self._free = np.pad(space.free_lattice(axes[0], axes[1], axes[2], needed), 2)
         self._axes = axes
 
-    def path(self, climb_cost: float) -> tuple[Array | None, str]:
+    def path(self, leave_within: float) -> tuple[Array | None, str]:
         """Points (M, 3) of the shortest path from start to goal, or None and why."""
         nodes = np.argwhere(self._free[2:-2:2, 2:-2:2, 2:-2:2])
         places = np.column_stack([axis[2 * index] for axis, index in zip(self._axes, nodes.T, strict=True)])
-        scale = np.array([1.0, 1.0, climb_cost])
-        starts, goals = self._entries(places, self._start), self._entries(places, self._goal)
+        starts, goals = (self._entries(places, end, leave_within) for end in (self._start, self._goal))
         if len(starts) == 0:
             return None, "there is no free space about the start"
         if len(goals) == 0:
@@ -194,21 +183,21 @@ class _Grid:
         if not np.isin(part[goals], part[starts]).any():
             return None, "every path from start to goal is closed or too narrow for the formation"
         reachable = np.isin(part, part[starts])
-        to_goal = np.linalg.norm((places - self._goal) * scale, axis=1)
-        from_start = np.linalg.norm((places - self._start) * scale, axis=1)
-        straight = float(np.linalg.norm((self._goal - self._start) * scale))
+        to_goal = np.linalg.norm(places - self._goal, axis=1)
+        from_start = np.linalg.norm(places - self._start, axis=1)
+        straight = float(np.linalg.norm(self._goal - self._start))
         for longer in _LONGER:
             # No path that is at most so much longer leaves this ellipsoid.
             chosen = np.flatnonzero(reachable & (to_goal + from_start <= straight + longer))
-            found = self._search(nodes, places, chosen, starts, goals, scale, longer)
+            found = self._search(nodes, places, chosen, starts, goals, longer)
             if found is not None:
                 return np.vstack([self._start, places[found], self._goal]), ""
         return None, "every path from start to goal is closed or too narrow for the formation"
 
-    def _entries(self, places: Array, place: Array) -> NDArray[np.intp]:
+    def _entries(self, places: Array, place: Array, leave_within: float) -> NDArray[np.intp]:
         """Indices of the nodes next to ``place`` to which, or from which, there is a path."""
         distance = np.linalg.norm(places - place, axis=1)
-        for within in (1.8 * float(self._spacing.max()), LEAVE_WITHIN):
+        for within in (1.8 * float(self._spacing.max()), leave_within):
             near = np.flatnonzero(distance <= within)
             if len(near) > 400:
                 near = near[np.argsort(distance[near], kind="stable")[:400]]
@@ -224,7 +213,6 @@ class _Grid:
         chosen: NDArray[np.intp],
         starts: NDArray[np.intp],
         goals: NDArray[np.intp],
-        scale: Array,
         longer: float,
     ) -> NDArray[np.intp] | None:
         """Indices of the nodes on the shortest path among the ``chosen`` ones; None: there is none."""
@@ -238,16 +226,16 @@ class _Grid:
         edges = (neighbours >= 0) & free[flat[:, None] + steps]
         # Each edge costs its length less what it gains on the goal: Dijkstra then searches as A* does, and what
         # it counts is how much longer than straight the path is.
-        to_goal = np.linalg.norm((places[chosen] - self._goal) * scale, axis=1)
-        straight = float(np.linalg.norm((self._goal - self._start) * scale))
-        lengths = np.linalg.norm(_DIRECTIONS * self._spacing * scale, axis=1)
+        to_goal = np.linalg.norm(places[chosen] - self._goal, axis=1)
+        straight = float(np.linalg.norm(self._goal - self._start))
+        lengths = np.linalg.norm(_DIRECTIONS * self._spacing, axis=1)
         rows, columns = np.nonzero(edges)
         heads = neighbours[rows, columns]
         costs = lengths[columns] + to_goal[heads] - to_goal[rows]
         back = np.full(len(places), -1)
         back[chosen] = np.arange(count)
         first, last = (back[ends][back[ends] >= 0] for ends in (starts, goals))
-        out = np.linalg.norm((places[chosen[first]] - self._start) * scale, axis=1) + to_goal[first] - straight
+        out = np.linalg.norm(places[chosen[first]] - self._start, axis=1) + to_goal[first] - straight
         rows = np.concatenate([rows, last, np.full(len(first), count)])
         heads = np.concatenate([heads, np.full(len(last), count + 1), first])
         costs = np.concatenate([costs, np.zeros(len(last)), out])

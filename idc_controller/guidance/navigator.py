@@ -19,10 +19,56 @@ from idc_controller.trajectory.paths import Leg
 from idc_controller.trajectory.trajectory import Trajectory
 from idc_controller.trajectory.waypoints import WaypointTrajectory
 
-REJOIN = 0.3
-"""s before the end of a detour, at which the mission is followed again."""
-FIXED = 0.2
-"""m; an obstacle that moves less over the stages does not leave a waypoint free."""
+
+class HoldUp:
+    """How long the mission has been held up, when a detour is searched next, and why there is none."""
+
+    def __init__(self, settings: NavigatorSettings) -> None:
+        self._settings = settings
+        self._since: float | None = None
+        self._last_search = -np.inf
+        self._interval = settings.search_interval
+        self._blocked_since: float | None = None
+        self.reason = ""
+        """Why the last search found no detour; empty: it found one."""
+
+    def clear(self) -> None:
+        """Forget all but the intervals of the search."""
+        self._since, self._blocked_since, self.reason = None, None, ""
+
+    def found(self) -> None:
+        """Note a search that found a detour."""
+        self.clear()
+        self._interval = self._settings.search_interval
+
+    def not_found(self, time: float, reason: str) -> None:
+        """Note a search at ``time`` (s) that found none."""
+        self.reason = reason
+        if self._blocked_since is None:
+            self._blocked_since = time
+
+    def search_is_due(self, time: float, rate: float) -> bool:
+        """Return whether a detour is to be searched at ``time`` (s), by the progress ``rate``."""
+        s = self._settings
+        if rate >= s.held_up_rate:
+            self._since = None
+            if rate > s.resumed_rate:
+                self.found()
+            return False
+        if self._since is None:
+            self._since = time
+        if time - self._since < s.patience or time - self._last_search < self._interval:
+            return False
+        self._last_search = time
+        # A search that found nothing is repeated ever more rarely: the map must change first.
+        self._interval = min(2.0 * self._interval, s.search_interval_max)
+        return True
+
+    def blocked(self, time: float) -> str:
+        """Return the reason, once there has been no detour for long; empty: the mission can go on."""
+        if self._blocked_since is None or time - self._blocked_since < self._settings.give_up:
+            return ""
+        return self.reason
 
 
 class Navigator:
@@ -37,16 +83,11 @@ class Navigator:
         self._stages = stages
         self.lowest = self.formation.below + settings.ground_clearance
         """Lowest altitude of the payload's centre on a detour (m)."""
+        self.hold_up = HoldUp(settings)
         self._detour: WaypointTrajectory | None = None
         self._resume = 0.0
-        self._held_since: float | None = None
-        self._last_search = -np.inf
-        self._interval = settings.search_interval
-        self._blocked_since: float | None = None
         self.detours = 0
         """Detours taken so far."""
-        self.reason = ""
-        """Why the last search found no detour; empty: it found one."""
 
     def followed(self, mission: Trajectory) -> Trajectory:
         """Return the mission or the detour."""
@@ -56,19 +97,14 @@ class Navigator:
         """Return the mission's progress when that along the followed trajectory is ``progress`` (s)."""
         return progress if self._detour is None else self._resume
 
-    def blocked(self, time: float) -> str:
-        """Return why the mission cannot go on, once that has been so for long; empty: it can."""
-        if self._blocked_since is None or time - self._blocked_since < self.settings.give_up:
-            return ""
-        return self.reason
-
     def reset(self) -> None:
         """Follow whatever mission is given next, by its own progress."""
-        self._detour, self._held_since, self._blocked_since, self.reason = None, None, None, ""
+        self._detour = None
+        self.hold_up.clear()
 
     def advance(self, progress: float) -> float:
         """Return the progress (s) to go on with: back on the mission when the detour is flown."""
-        if self._detour is not None and progress >= self._detour.end - REJOIN:
+        if self._detour is not None and progress >= self._detour.end - self.settings.rejoin:
             self._detour = None
             return self._resume
         return progress
@@ -84,38 +120,26 @@ class Navigator:
             mission: what the detour leads back to.
             tracked: the trajectory that is tracked now; the detour begins on it.
         """
-        s = self.settings
-        if rate >= s.held_up_rate:
-            self._held_since = None
-            if rate > 0.9:
-                self._blocked_since, self.reason, self._interval = None, "", s.search_interval
+        if not self.hold_up.search_is_due(time, rate):
             return progress
-        if self._held_since is None:
-            self._held_since = time
-        if time - self._held_since < s.patience or time - self._last_search < self._interval:
-            return progress
-        self._last_search = time
-        # A search that found nothing is repeated ever more rarely: the map must change first.
-        self._interval = min(2.0 * self._interval, s.search_interval_max)
         position = tracked.derivatives(np.array([time]), 0)[0, 0]
         obstacles = list(self.obstacles.predict(time + self._stages))
         found = self._search(self.mission_progress(progress), mission, position, obstacles)
-        if found is None:
-            if self._blocked_since is None:
-                self._blocked_since = time
+        if isinstance(found, str):
+            self.hold_up.not_found(time, found)
             return progress
-        self._blocked_since, self.reason, self._held_since = None, "", None
-        self._interval = s.search_interval
+        self.hold_up.found()
         waypoints, self._resume = found
-        legs = [Leg(waypoint, s.limits.speed) for waypoint in waypoints[1:]]
-        self._detour = WaypointTrajectory(position, legs, s.limits, corner=s.corner)
+        limits = self.settings.limits
+        legs = [Leg(waypoint, limits.speed) for waypoint in waypoints[1:]]
+        self._detour = WaypointTrajectory(position, legs, limits, corner=self.settings.corner)
         self.detours += 1
         return 0.0
 
     def _search(
         self, progress: float, mission: Trajectory, position: Array, obstacles: list[PredictedObstacle]
-    ) -> tuple[Array, float] | None:
-        """Return waypoints of a detour, and the mission's progress where it leads; None: there is no detour."""
+    ) -> tuple[Array, float] | str:
+        """Return waypoints of a detour and the mission's progress where it leads, or why there is no detour."""
         s = self.settings
         now = [PredictedObstacle(o.name, o.shape, o.positions[:1], o.growth[:1]) for o in obstacles]
         ahead = progress + np.arange(0.0, s.look_ahead, s.sample)
@@ -129,28 +153,31 @@ class Navigator:
         begin = int(np.argmax(conflicts)) if conflicts.any() else 0
         free = np.flatnonzero(~conflicts[begin:]) + begin
         until = ahead[int(free[0])] if len(free) else ahead[-1]
-        fixed = [now[i] for i, o in enumerate(obstacles) if np.linalg.norm(o.positions[-1] - o.positions[0]) < FIXED]
+        fixed = [
+            now[i] for i, o in enumerate(obstacles) if np.linalg.norm(o.positions[-1] - o.positions[0]) < s.standing
+        ]
         # The progress is ahead of the payload when that is held up.
         for waypoint in mission.waypoints(progress - s.behind, until):
             for obstacle in fixed:
                 if first_conflict(waypoint[None], [obstacle], self.formation, 0.0) is not None:
                     north, east, down = waypoint
-                    self.reason = f"{obstacle.name} stands at the waypoint {north:.1f} m north, {east:.1f} m east, "
-                    self.reason += f"{-down:.1f} m high"
-                    return None
-        goals = [int(free[0]), int(free[min(8, len(free) - 1)])] if len(free) else [len(path) - 1]
+                    place = f"{north:.1f} m north, {east:.1f} m east, {-down:.1f} m high"
+                    return f"{obstacle.name} stands at the waypoint {place}"
+        goals = (
+            [int(free[0]), int(free[min(round(s.goal_spare / s.sample), len(free) - 1)])]
+            if len(free)
+            else [len(path) - 1]
+        )
         for goal in goals:
             detour = find_detour(
                 bodies, position, path[goal], self.formation, keep, lowest=self.lowest, highest=highest,
-                growth=growth, names=names,
+                growth=growth, names=names, settings=s.detour,
             )  # fmt: skip
             if detour.waypoints is not None:
                 return detour.waypoints, float(ahead[goal])
         # By its surface: a long wall's centre may be far.
         space = FreeSpace(bodies, self.formation, keep, self.lowest, highest, growth=growth)
-        self.reason = "there is no way on"
+        reason = "there is no way on"
         if bodies:
-            self.reason = f"the way on is blocked by {names[int(np.argmin(space.clearance(position[None])[0]))]}"
-        if detour.reason.startswith("the formation at the goal"):
-            self.reason += f": {detour.reason}"
-        return None
+            reason = f"the way on is blocked by {names[int(np.argmin(space.clearance(position[None])[0]))]}"
+        return f"{reason}: {detour.reason}" if detour.reason.startswith("the formation at the goal") else reason

@@ -130,7 +130,7 @@ class AdaptiveGuidance(Guidance):
 
     def blocked(self, time: float) -> str:
         """See :meth:`Guidance.blocked`."""
-        return self.navigator.blocked(time)
+        return self.navigator.hold_up.blocked(time)
 
     def _followed_progress(self, time: float) -> float:
         """Return the progress (s) along what is followed, mission or detour."""

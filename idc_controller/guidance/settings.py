@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from idc_controller.settings import derived, setting
-from idc_controller.trajectory.trajectory import Limits
+from idc_controller.trajectory.settings import AvoidanceSettings, Limits
 
 
 @dataclass(frozen=True)
@@ -34,12 +34,28 @@ class ProgressSettings:
 
 
 @dataclass(frozen=True)
+class DetourSettings:
+    """Search of a path on a grid, and its straightening."""
+
+    spacing: float = setting(0.5, "m", "between the nodes of the grid", gt=0.0)
+    fine_spacing: float = setting(
+        0.25, "m", "horizontally, where that finds no path: gaps some 0.3 m wider than they must be are found", gt=0.0
+    )
+    nodes_max: int = setting(160_000, "", "nodes beyond which the grid is coarser", gt=0)
+    around: float = setting(4.0, "m", "of region beyond start, goal and the obstacles about them", ge=0.0)
+    region_max: float = setting(80.0, "m", "largest edge of the region, unless start and goal are farther apart", gt=0)
+    leave_within: float = setting(3.0, "m", "from a start too near an obstacle to free space", gt=0.0)
+    waypoint_cost: float = setting(0.15, "m", "of path that one waypoint less is worth", ge=0.0)
+    straightened: int = setting(40, "", "points among which the straightening chooses its waypoints", ge=2)
+
+
+@dataclass(frozen=True)
 class NavigatorSettings:
     """When a detour is searched, and how it is flown."""
 
-    limits: Limits = derived(Limits(1.5, 1.5, 2.0, 6.0))
+    limits: Limits = derived(Limits())
     """Of the trajectories: table ``motion``."""
-    margin: float = derived(0.5)
+    margin: float = derived(AvoidanceSettings.margin)
     """Clearance to keep between hull and obstacles (m): ``avoidance.margin``."""
     spare: float = setting(0.2, "m", "more than the margin, so that the safety filter need not act on a detour", ge=0.0)
     corner: float = setting(0.1, "m", "by how much a detour's corners are cut", gt=0.0)
@@ -54,13 +70,21 @@ class NavigatorSettings:
     behind: float = setting(6.0, "s", "how far back a waypoint may lie that was not reached", ge=0.0)
     ground_clearance: float = setting(0.10, "m", "least height of the payload's underside on a detour", ge=0.0)
     climb: float = setting(8.0, "m", "how far above the mission a detour may lead", ge=0.0)
+    rejoin: float = setting(0.3, "s", "before the end of a detour the mission is followed again", ge=0.0)
+    goal_spare: float = setting(2.0, "s", "how much farther along the mission a second goal is tried", ge=0.0)
+    standing: float = setting(
+        0.2, "m", "an obstacle that moves less over the planner's stages does not leave a waypoint free", ge=0.0
+    )
+    resumed_rate: float = setting(0.9, "", "progress rate above which the mission is no longer held up", gt=0.0, lt=1.0)
+    detour: DetourSettings = derived(DetourSettings())
+    """Table ``guidance.detour``."""
 
 
 @dataclass(frozen=True)
 class RestingPlaceSettings:
     """Where a team without set-points may come to rest; the defaults of the obstacles' growth are those of the map."""
 
-    margin: float = derived(0.5)
+    margin: float = derived(AvoidanceSettings.margin)
     """Clearance to keep between hull and obstacles (m): ``avoidance.margin``."""
     drift: float = setting(0.3, "m", "more than the margin: vehicles without set-points deviate from the plan", ge=0.0)
     look_ahead: float = setting(10.0, "s", "how far ahead obstacles are predicted", gt=0.0)

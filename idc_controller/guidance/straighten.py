@@ -7,11 +7,7 @@ from numpy.typing import NDArray
 
 from idc_controller.arrays import Array
 from idc_controller.geometry.free_space import FreeSpace
-
-WAYPOINT_COST = 0.15
-"""m of path that one waypoint less is worth."""
-STRAIGHTENED = 40
-"""Points among which the straightening chooses its waypoints."""
+from idc_controller.guidance.settings import DetourSettings
 
 
 def free_segments_from(space: FreeSpace, place: Array, ends: Array) -> NDArray[np.bool_]:
@@ -29,12 +25,12 @@ def free_segments_from(space: FreeSpace, place: Array, ends: Array) -> NDArray[n
     return free
 
 
-def straightened(space: FreeSpace, path: Array, climb_cost: float) -> Array:
+def straightened(space: FreeSpace, path: Array, settings: DetourSettings) -> Array:
     """Return the same path with as few and as straight pieces as free space allows."""
-    scale = np.array([1.0, 1.0, climb_cost])
     points = path
     for _ in range(2):
-        points = _tightened(space, _fewest(space, _resampled(points), scale))
+        chosen = _fewest(space, _resampled(points, settings.straightened), settings.waypoint_cost)
+        points = _tightened(space, chosen)
     return points
 
 
@@ -56,20 +52,20 @@ def _tightened(space: FreeSpace, points: Array) -> Array:
     return points
 
 
-def _resampled(points: Array) -> Array:
-    """The corners of a path, and more points between them."""
-    if len(points) >= STRAIGHTENED:
+def _resampled(points: Array, number: int) -> Array:
+    """The corners of a path, and more points between them, ``number`` in all."""
+    if len(points) >= number:
         return points
     lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    spacing = max(float(lengths.sum()) / (STRAIGHTENED - len(points)), 0.05)
+    spacing = max(float(lengths.sum()) / (number - len(points)), 0.05)
     pieces = []
     for a, b, length in zip(points[:-1], points[1:], lengths, strict=True):
-        number = max(1, round(length / spacing))
-        pieces.append(a + (b - a) * (np.arange(number) / number)[:, None])
+        parts = max(1, round(length / spacing))
+        pieces.append(a + (b - a) * (np.arange(parts) / parts)[:, None])
     return np.vstack([*pieces, points[-1]])
 
 
-def _fewest(space: FreeSpace, points: Array, scale: Array) -> Array:
+def _fewest(space: FreeSpace, points: Array, waypoint_cost: float) -> Array:
     """The best chain of points (M, 3) from the first to the last, in order: short, and with few waypoints."""
     count = len(points)
     first, second = np.triu_indices(count, 1)
@@ -78,7 +74,7 @@ def _fewest(space: FreeSpace, points: Array, scale: Array) -> Array:
     visible[first[inner], second[inner]] = space.are_free_segments(points[first[inner]], points[second[inner]])
     visible[0, 1:] = free_segments_from(space, points[0], points[1:])
     visible[np.arange(count - 1), np.arange(1, count)] = True  # the path as it came
-    cost = np.linalg.norm((points[:, None] - points[None]) * scale, axis=-1) + WAYPOINT_COST
+    cost = np.linalg.norm(points[:, None] - points[None], axis=-1) + waypoint_cost
     best, before = np.full(count, math.inf), np.zeros(count, dtype=int)
     best[0] = 0.0
     for j in range(1, count):

@@ -1,14 +1,16 @@
 """Settings of the safety filter: weights of its planner, limits of its plans, margins and barrier."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from idc_controller.arrays import Array
 from idc_controller.errors import ParameterError
 from idc_controller.settings import derived, setting
 from idc_controller.trajectory.integrator_chain import Chain
-from idc_controller.trajectory.trajectory import Limits
+from idc_controller.trajectory.settings import AvoidanceSettings, Limits
 
 Triple = tuple[float, float, float]
 
@@ -17,7 +19,10 @@ Triple = tuple[float, float, float]
 class PlannerSettings:
     """The safety QP: weights of the deviation per axis (x, y, z), limits of the plan, and the barrier."""
 
-    chain: Chain = Chain()
+    stage: float = setting(0.1, "s", "from stage to stage of a plan", gt=0.0)
+    blocks: tuple[int, ...] = setting(
+        (1, 1, 1, 1, 2, 2, 2, 3, 3, 4, 6, 6), "", "stages from knot to knot of the snap; their sum is the horizon", ge=1
+    )
     position: Triple = setting((0.7, 0.7, 1.0), "", "weight of the deviation's position, x, y, z", ge=0.0)
     velocity: Triple = setting((0.6, 0.6, 0.05), "", "weight of the deviation's velocity, x, y, z", ge=0.0)
     acceleration: float = setting(0.005, "", "weight of the deviation's acceleration", ge=0.0)
@@ -26,7 +31,7 @@ class PlannerSettings:
     crackle: float = setting(
         0.0002, "", "weight of the change of snap from stage to stage: the UAVs' tilt rates follow it", ge=0.0
     )
-    limits: Limits = derived(Limits(1.5, 1.5, 2.0, 6.0))
+    limits: Limits = derived(Limits())
     """Of the motion between waypoints, from which the plan's follow: table ``motion``."""
     acceleration_share: Triple = setting(
         (2.0, 2.0, 1.8), "", "largest acceleration of a plan over that between waypoints, x, y, z", gt=0.0
@@ -35,9 +40,9 @@ class PlannerSettings:
         (1.0, 1.0, 5.0 / 3.0), "", "largest snap of a plan over that between waypoints, x, y, z", gt=0.0
     )
     ground_clearance: float = setting(0.05, "m", "least height of the payload's underside in a plan", ge=0.0)
-    barrier_rates: tuple[float, ...] = derived((5.0,))
+    barrier_rates: tuple[float, ...] = derived(AvoidanceSettings.barrier_rates)
     """Rates of the exponential barrier (1/s), one for each degree: ``avoidance.barrier_rates``."""
-    margin: float = derived(0.5)
+    margin: float = derived(AvoidanceSettings.margin)
     """Clearance to keep between hull and obstacles (m): ``avoidance.margin``."""
     tracking: float = setting(0.10, "m", "bound on the payload's deviation from the plan, added to the margin", ge=0.0)
     uav_tracking: float = setting(0.02, "m", "what the rotor discs may deviate beyond that", ge=0.0)
@@ -50,10 +55,27 @@ class PlannerSettings:
         "given up now is won back, and what cannot be kept later excuses nothing now",
         gt=0.0,
     )
+    limit_interval: int = setting(
+        3, "", "stages from one at which a plan's limits are kept to the next: between them it cannot change much", ge=1
+    )
+    acceleration_spare: float = setting(
+        0.1, "m/s2", "beyond the reference's own acceleration, which a plan may always have", ge=0.0
+    )
+    snap_spare: float = setting(1.0, "m/s4", "beyond the reference's own snap, which a plan may always have", ge=0.0)
     limit_slack_linear: float = setting(
         3000.0, "", "linear cost of exceeding the plan's limits: beyond them it cannot be tracked", gt=0.0
     )
     limit_slack_quadratic: float = setting(1000.0, "", "quadratic cost of exceeding the plan's limits", gt=0.0)
+
+    @cached_property
+    def chain(self) -> Chain:
+        """The stages of a plan and the knots of its snap."""
+        return Chain(self.stage, self.blocks)
+
+    @property
+    def limited_stages(self) -> NDArray[np.int_]:
+        """Stages at which the limits of acceleration and height are kept."""
+        return np.arange(self.limit_interval, self.chain.stages + 1, self.limit_interval)
 
     @property
     def acceleration_limit(self) -> Array:

@@ -18,8 +18,8 @@ from idc_controller.arrays import Array
 class Chain:
     """Stages of ``period`` (s), knots after ``blocks`` stages each."""
 
-    period: float = 0.1
-    blocks: tuple[int, ...] = (1, 1, 1, 1, 2, 2, 2, 3, 3, 4, 6, 6)
+    period: float
+    blocks: tuple[int, ...]
 
     @property
     def stages(self) -> int:

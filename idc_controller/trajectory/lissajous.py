@@ -13,7 +13,8 @@ from scipy.interpolate import BPoly, PPoly
 
 from idc_controller.arrays import Array
 from idc_controller.errors import TrajectoryError
-from idc_controller.trajectory.trajectory import Limits, Trajectory, checked_times, finite, positive
+from idc_controller.trajectory.settings import Limits
+from idc_controller.trajectory.trajectory import Trajectory, checked_times, finite, positive
 
 SHORTEST_RAMP, LONGEST_RAMP = 0.25, 60.0
 """s, between rest and the full rate."""

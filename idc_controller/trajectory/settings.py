@@ -1,8 +1,50 @@
-"""Settings of trajectories: how a team without set-points brakes."""
+"""Settings of trajectories: limits of the motion, clearance to keep, how a team without set-points brakes."""
 
+import math
 from dataclasses import dataclass
 
+import numpy as np
+
+from idc_controller.arrays import Array
+from idc_controller.errors import TrajectoryError
 from idc_controller.settings import setting
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Largest Euclidean norms that a trajectory's derivatives may reach; the defaults are those between waypoints.
+
+    Raises:
+        TrajectoryError: a limit is not positive or not finite.
+    """
+
+    speed: float = 1.5
+    """m/s"""
+    acceleration: float = 1.5
+    """m/s2"""
+    jerk: float = 2.0
+    """m/s3"""
+    snap: float = 6.0
+    """m/s4"""
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).items():
+            if not (math.isfinite(value) and value > 0.0):
+                raise TrajectoryError(f"limit {name} must be a positive number, not {value}")
+
+    def as_array(self) -> Array:
+        """Return the four limits by order of derivative (4,)."""
+        return np.array([self.speed, self.acceleration, self.jerk, self.snap])
+
+
+@dataclass(frozen=True)
+class AvoidanceSettings:
+    """What is kept from obstacles: table ``avoidance``."""
+
+    margin: float = setting(0.5, "m", "clearance to keep between hull and obstacles", gt=0.0)
+    barrier_rates: tuple[float, ...] = setting(
+        (5.0,), "1/s", "rates of the exponential barrier, one for each degree", gt=0.0
+    )
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,8 @@ from functools import lru_cache
 import numpy as np
 
 from idc_controller.arrays import Array
+from idc_controller.trajectory.settings import Limits
 from idc_controller.trajectory.spline import SUPPORT, evaluate
-from idc_controller.trajectory.trajectory import Limits
 
 TURN = 2.0**0.5
 """Change of velocity, in full speeds, that holds the limits without a pause: a right angle."""

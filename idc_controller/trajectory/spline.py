@@ -16,7 +16,8 @@ from scipy.interpolate import BSpline, PPoly, make_interp_spline
 
 from idc_controller.arrays import Array
 from idc_controller.errors import TrajectoryError
-from idc_controller.trajectory.trajectory import Limits, Trajectory, checked_times, finite, positive
+from idc_controller.trajectory.settings import Limits
+from idc_controller.trajectory.trajectory import Trajectory, checked_times, finite, positive
 
 DEGREE = 5
 SUPPORT = DEGREE + 1

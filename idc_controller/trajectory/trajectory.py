@@ -5,37 +5,12 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from idc_controller.arrays import Array
 from idc_controller.errors import TrajectoryError
-
-
-@dataclass(frozen=True)
-class Limits:
-    """Largest Euclidean norms that a trajectory's derivatives may reach.
-
-    ``speed`` m/s, ``acceleration`` m/s^2, ``jerk`` m/s^3, ``snap`` m/s^4; all positive and finite.
-
-    Raises:
-        TrajectoryError: a limit is not positive or not finite.
-    """
-
-    speed: float
-    acceleration: float
-    jerk: float
-    snap: float
-
-    def __post_init__(self) -> None:
-        for field in fields(self):
-            positive(getattr(self, field.name), f"limit {field.name}")
-
-    def as_array(self) -> Array:
-        """The four limits by order of derivative, shape (4,)."""
-        return np.array([self.speed, self.acceleration, self.jerk, self.snap])
 
 
 class Trajectory(ABC):

@@ -17,9 +17,10 @@ from idc_controller.arrays import Array
 from idc_controller.errors import TrajectoryError
 from idc_controller.trajectory.paths import Circle, Leg, Mark, Piece, pieces
 from idc_controller.trajectory.sampled_path import SampledPath, at_half_intervals, distance_to_line
+from idc_controller.trajectory.settings import Limits
 from idc_controller.trajectory.smoothing import Smoothing, smoothing_for
 from idc_controller.trajectory.spline import SplineTrajectory, within_limits
-from idc_controller.trajectory.trajectory import Limits, Trajectory, checked_times, finite, point, positive
+from idc_controller.trajectory.trajectory import Trajectory, checked_times, finite, point, positive
 
 PIECE_SLOWER = 0.93
 """Factor by which a piece is slowed until it holds the limits."""

@@ -1,23 +1,14 @@
 """Bounds on the acceleration of a plan, along the axes and between north and east, both ways."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from idc_controller.arrays import Array
 from idc_controller.safety.constraints.constraint import Penalty, PlanningStep
 from idc_controller.safety.settings import PlannerSettings
-from idc_controller.trajectory.integrator_chain import Chain
 
 _DIAGONAL = np.sqrt(0.5)
 DIRECTIONS = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [_DIAGONAL, _DIAGONAL, 0], [_DIAGONAL, -_DIAGONAL, 0]])
 """Unit vectors along which the acceleration is bounded (5, 3)."""
-EVERY = 3
-"""The plan's limits are kept at every third stage: between them it cannot change much."""
-
-
-def limited_stages(chain: Chain) -> NDArray[np.int_]:
-    """Return the stages at which the limits of acceleration and height are kept."""
-    return np.arange(EVERY, chain.stages + 1, EVERY)
 
 
 class AccelerationBounds:
@@ -25,7 +16,8 @@ class AccelerationBounds:
 
     def __init__(self, settings: PlannerSettings, penalty: Penalty) -> None:
         self.penalty = penalty
-        self._stages = limited_stages(settings.chain)
+        self._spare = settings.acceleration_spare
+        self._stages = settings.limited_stages
         limits = settings.acceleration_limit
         self._limits = np.array([*limits, limits[:2].min(), limits[:2].min()])
         along = np.einsum("da,kz->dkaz", DIRECTIONS, settings.chain.response[1][self._stages, 2])
@@ -35,7 +27,7 @@ class AccelerationBounds:
         """Return G (m, 3 knots) and h (m,) (m/s2)."""
         own = DIRECTIONS @ step.reference[2, self._stages].T
         value = own + DIRECTIONS @ step.free[self._stages, 2].T
-        limit = np.maximum(self._limits[:, None], np.abs(own) + 0.1)
+        limit = np.maximum(self._limits[:, None], np.abs(own) + self._spare)
         return self._G, np.stack([limit - value, limit + value], axis=1).ravel()
 
     def slack_shares(self, step: PlanningStep) -> Array:

@@ -4,7 +4,6 @@ import numpy as np
 
 from idc_controller.arrays import Array
 from idc_controller.geometry.formation import Formation
-from idc_controller.safety.constraints.acceleration_bounds import limited_stages
 from idc_controller.safety.constraints.constraint import Penalty, PlanningStep
 from idc_controller.safety.settings import PlannerSettings
 
@@ -16,7 +15,7 @@ class LowestAltitude:
         self.penalty = penalty
         self.lowest = -(formation.payload.below + settings.ground_clearance)
         """Greatest z (NED) of the payload's centre (m)."""
-        self._stages = limited_stages(settings.chain)
+        self._stages = settings.limited_stages
         knots = settings.chain.knots
         self._G = np.zeros((len(self._stages), 3 * knots))
         self._G[:, 2 * knots :] = settings.chain.response[1][self._stages, 0]

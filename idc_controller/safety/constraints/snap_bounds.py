@@ -11,11 +11,11 @@ class SnapBounds:
     """What the reference leaves of the snap limit; its own snap is always allowed."""
 
     def __init__(self, settings: PlannerSettings) -> None:
-        self._limit = settings.snap_limit
-        self._knots = np.cumsum(settings.chain.blocks)
+        self._limit, self._spare = settings.snap_limit, settings.snap_spare
+        self._knots = np.cumsum(settings.blocks)
 
     def bounds(self, step: PlanningStep) -> tuple[Array, Array]:
         """Return the lower and the upper bound of z (3 knots,) (m/s4)."""
         snap = step.reference[4, self._knots]
-        limit = np.maximum(self._limit, np.abs(snap).max(axis=0) + 1.0)
+        limit = np.maximum(self._limit, np.abs(snap).max(axis=0) + self._spare)
         return (-limit - snap).T.ravel(), (limit - snap).T.ravel()
