@@ -102,6 +102,17 @@ class SystemParameters:
         """Thrust of each UAV at the equilibrium eq:EqPt (N,) (N), corrected to hold for any layout."""
         return (self.m + self.m_0 * self.payload_share) * self.g
 
+    @cached_property
+    def spacing(self) -> float:
+        """Least distance between two UAVs in hover (m)."""
+        hover = self.p - np.outer(self.l, [0.0, 0.0, 1.0])
+        return min(float(np.linalg.norm(hover[i] - hover[j])) for i in range(len(hover)) for j in range(i))
+
+    def separation(self, share: float) -> float:
+        """Return the UAV separation (m) at which ``share`` of the gap between neighbouring discs in hover remains."""
+        discs = 2.0 * self.disc_radius
+        return discs + share * (self.spacing - discs)
+
     def with_payload_mass(self, m_0: float) -> SystemParameters:
         """The same system with another payload mass (kg); the inertia scales with it."""
         return replace(self, m_0=m_0, J_0=self.J_0 * (m_0 / self.m_0))

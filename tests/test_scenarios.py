@@ -347,6 +347,6 @@ def test_distribution_counts_from_the_bad_end():
 
 def test_report_is_written_when_no_figure_is_known(tmp_path):
     _, files = report(
-        [Result(number=1, name="0001-poles", kind="poles", failures="failed", outcome="failed")], tmp_path
+        [Result(number=1, name="0001-poles", kind="poles", failures="failed", outcome="failed")], tmp_path, 0.75
     )
     assert all(path.exists() for path in files)

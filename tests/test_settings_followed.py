@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from standing_obstacles import StandingObstacles
 
+from gcs.campaign.scenarios.judgement import least_separation
 from gcs.config import read_system
 from gcs.flight import stack
 from idc_controller.estimation.health.channel_isolation import ChannelIsolation
@@ -71,6 +72,11 @@ def test_separation_limit_follows_spacing_of_the_team(spacing, limit):
     separation = tracker.state_constraints[-1]
     assert separation.distance == pytest.approx(limit)
     assert separation.h(None, [1]) == pytest.approx(np.full((1, 4), spacing - limit))
+
+
+@pytest.mark.parametrize(("spacing", "limit"), [(1.0, 0.75), (1.4, 0.9)])
+def test_judged_separation_follows_spacing_of_the_team(spacing, limit):
+    assert least_separation(system(team={"spacing": spacing})) == pytest.approx(limit)
 
 
 def test_limits_of_plans_follow_limits_of_motion():

@@ -19,8 +19,9 @@ Flies many random obstacle scenarios in parallel and shows the distribution of c
   gcs courses --count 1000 --out runs/courses-seed1    adds more scenarios to a campaign
 
 Every scenario is a mission file that `gcs fly` repeats. A campaign that was interrupted resumes when started again.
-A scenario is passed without contact, with 0.3 m of clearance, payload angles up to 6 deg, a UAV separation of 0.75 m,
-and arrival at the goal. Exit status: 0 all passed; 1 not all; 2 unusable input; 130 interrupted, results kept.
+A scenario is passed without contact, with 0.3 m of clearance, payload angles up to 6 deg, arrival at the goal, and the
+UAV separation that follows from the system file (0.75 m by default). Exit status: 0 all passed; 1 not all; 2 unusable
+input; 130 interrupted, results kept.
 """
 
 

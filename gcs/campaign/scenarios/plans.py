@@ -12,7 +12,7 @@ from rich.console import RenderableType
 from gcs.campaign.engine import FlightPlan, PlanGenerator
 from gcs.campaign.result import Result
 from gcs.campaign.scenarios.generator import HELD_TO, KINDS, generate
-from gcs.campaign.scenarios.judgement import COLUMNS, OPTIONAL, judge
+from gcs.campaign.scenarios.judgement import COLUMNS, OPTIONAL, judge, least_separation
 from gcs.config import read_system
 
 
@@ -51,7 +51,7 @@ class Scenarios(PlanGenerator):
 
     def plans(self, out: Path) -> Iterator[FlightPlan]:
         """Yield a flight for each scenario."""
-        system = None if self.config is None else read_system(self.config)
+        system = read_system(self.config)
         options = ["--controller", self.controller]
         if self.config is not None:
             options += ["--config", str(self.config)]
@@ -67,4 +67,4 @@ class Scenarios(PlanGenerator):
         """Write ``results.csv``, ``results.json`` and the distribution."""
         from gcs.campaign.scenarios.report import report  # matplotlib takes long to import
 
-        return report(results, out)
+        return report(results, out, least_separation(read_system(self.config)))

@@ -10,30 +10,34 @@ from rich.table import Table
 
 from gcs.campaign.result import Result
 from gcs.campaign.scenarios.generator import HELD_TO
-from gcs.campaign.scenarios.judgement import COLUMNS, SEPARATION
+from gcs.campaign.scenarios.judgement import COLUMNS
 from gcs.campaign.tables import extreme, text_table, write_csv
 from gcs.record.figures import save_picture
 from gcs.record.run_folder import write_json
 
-_QUANTITIES = (
-    # field, title, unit, limit, high values are the bad ones
-    ("clearance_min_m", "clearance", "m", HELD_TO.clearance, False),
-    ("tilt_max_deg", "payload angle", "deg", HELD_TO.payload_tilt_deg, True),
-    ("uav_separation_min_m", "UAV separation", "m", SEPARATION, False),
-    ("delay_s", "delay", "s", None, True),
-    ("goal_error_m", "error at goal", "m", None, True),
-    ("step_time_p99_ms", "control step, p99", "ms", None, True),
-)
+_Quantity = tuple[str, str, str, float | None, bool]
+"""Column, title, unit, limit, and whether high values are the bad ones."""
 _SHARES = (0.0, 1.0, 5.0, 50.0)
 _PICTURE = "distribution.png"
 _TITLES = ("figure", "worst", "1 %", "5 %", "median", "limit")
 
 
-def report(results: Sequence[Result], out: Path) -> tuple[list[RenderableType], list[Path]]:
-    """Write ``results.csv``, ``results.json`` and the picture of the distribution; return its tables, and the files."""
+def report(results: Sequence[Result], out: Path, separation: float) -> tuple[list[RenderableType], list[Path]]:
+    """Write ``results.csv``, ``results.json`` and the picture of the distribution; return its tables, and the files.
+
+    ``separation``: least UAV separation with which a flight passes (m).
+    """
+    quantities: tuple[_Quantity, ...] = (
+        ("clearance_min_m", "clearance", "m", HELD_TO.clearance, False),
+        ("tilt_max_deg", "payload angle", "deg", HELD_TO.payload_tilt_deg, True),
+        ("uav_separation_min_m", "UAV separation", "m", separation, False),
+        ("delay_s", "delay", "s", None, True),
+        ("goal_error_m", "error at goal", "m", None, True),
+        ("step_time_p99_ms", "control step, p99", "ms", None, True),
+    )
     rows = [result.row(COLUMNS) for result in results]
     files = [write_csv(out / "results.csv", COLUMNS, rows), write_json(out / "results.json", rows)]
-    return [_kinds(results), _distribution(results)], [*files, draw_distribution(results, out)]
+    return [_kinds(results), _distribution(results, quantities)], [*files, _draw(results, quantities[:4], out)]
 
 
 def _kinds(results: Sequence[Result]) -> Table:
@@ -53,9 +57,9 @@ def _kinds(results: Sequence[Result]) -> Table:
     return text_table(rows, left=("kind",))
 
 
-def _distribution(results: Sequence[Result]) -> Table:
+def _distribution(results: Sequence[Result], quantities: Sequence[_Quantity]) -> Table:
     rows = []
-    for field, title, unit, limit, high_is_bad in _QUANTITIES:
+    for field, title, unit, limit, high_is_bad in quantities:
         values = _values(results, field)
         cells = [f"{value:.3f}" for value in from_bad_end(values, high_is_bad)] if len(values) else ["-"] * 4
         bound = "" if limit is None else f"{'<=' if high_is_bad else '>='} {limit:g}"
@@ -69,10 +73,10 @@ def from_bad_end(values: Sequence[float] | np.ndarray, high_is_bad: bool) -> lis
     return [float(value) for value in np.percentile(values, shares)]
 
 
-def draw_distribution(results: Sequence[Result], folder: Path) -> Path:
-    """Draw histograms of clearance, tilt, separation and delay. Raises :class:`UnusableInput` where it cannot."""
+def _draw(results: Sequence[Result], quantities: Sequence[_Quantity], folder: Path) -> Path:
+    """Draw histograms of four ``quantities``. Raises :class:`UnusableInput` where it cannot."""
     figure = Figure(figsize=(9.0, 6.5), layout="constrained")
-    for ax, (field, title, unit, limit, high_is_bad) in zip(figure.subplots(2, 2).flat, _QUANTITIES[:4], strict=True):
+    for ax, (field, title, unit, limit, high_is_bad) in zip(figure.subplots(2, 2).flat, quantities, strict=True):
         values = _values(results, field)
         ax.set_xlabel(f"{title} ({unit})")
         ax.set_ylabel("scenarios")

@@ -18,14 +18,12 @@ class UavSeparation:
         hover = p.p - np.outer(p.l, [0.0, 0.0, 1.0])
         C = model.uav_position_rows
         apart = {(i, j): hover[i] - hover[j] for i in range(len(hover)) for j in range(i)}
-        nearest = min(float(np.linalg.norm(d)) for d in apart.values())
-        discs = 2.0 * p.disc_radius
-        self.distance = discs + settings.separation_share * (nearest - discs)
+        self.distance = p.separation(settings.separation_share)
         """Least distance between neighbours (m)."""
         rows, bounds = [], []
         for (i, j), d in apart.items():
             distance = float(np.linalg.norm(d))
-            if distance < settings.neighbour_share * nearest:
+            if distance < settings.neighbour_share * p.spacing:
                 rows.append(-(d / distance) @ (C[3 * i : 3 * i + 3] - C[3 * j : 3 * j + 3]))
                 bounds.append(max(distance - self.distance, 0.0))
         self.G, self._h = np.array(rows), np.array(bounds)
