@@ -177,6 +177,31 @@ def test_settings_module_imports_mathematics_only(path):
     assert all(name.startswith("idc_controller.") for name, _ in sub_packages_imported(path))
 
 
+PROTOCOL = {"address", "codec", "lockstep", "messages", "px4", "udp"}
+"""Modules of gcs.mavlink that both ends of the wire share; the others are the ground's links."""
+
+
+def mavlink_modules_imported(path):
+    """Modules of gcs.mavlink that the module at ``path`` imports."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and f"{node.module}.".startswith("gcs.mavlink."):
+            yield from (
+                [alias.name for alias in node.names] if node.module == "gcs.mavlink" else [node.module.split(".")[2]]
+            )
+
+
+def test_vehicles_import_only_the_protocol_of_the_ground_station():
+    used = {name for path in (ROOT / "vehicle_sim").rglob("*.py") for name in mavlink_modules_imported(path)}
+    assert used == PROTOCOL
+
+
+@pytest.mark.parametrize("name", sorted(PROTOCOL))
+def test_protocol_does_not_depend_on_the_links(name):
+    path = ROOT / "gcs" / "mavlink" / f"{name}.py"
+    assert {*mavlink_modules_imported(path)} <= PROTOCOL
+    assert not [module for module, _ in sub_packages_imported(path) if module.startswith("idc_controller")]
+
+
 def test_every_sub_package_is_in_the_table():
     folders = {
         f"{top}.{place.name}"

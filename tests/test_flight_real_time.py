@@ -68,7 +68,7 @@ def fly_in_real_time(mission, folder, stalls=()):
         thread.start()
         time.begin(GROUND)
         try:
-            run_in_real_time(station, connection, Interrupt(), clock=time.read)
+            run_in_real_time(station, connection, Interrupt(), mission.system.drivers, clock=time.read)
         finally:
             ending.request()
             time.leave(GROUND)

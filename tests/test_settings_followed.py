@@ -1,14 +1,21 @@
 """Numbers that follow from a key of the system file: the key is changed and the behaviour follows."""
 
+from contextlib import closing
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from gcs.mavlink.requests import CommandState
 from standing_obstacles import StandingObstacles
 
 from gcs.campaign.scenarios.judgement import least_separation
 from gcs.config import read_system
+from gcs.drivers.connection import Connection
+from gcs.drivers.interrupt import Interrupt
+from gcs.drivers.lockstep import run_in_lockstep
 from gcs.flight import stack
+from gcs.mavlink.vehicle_link import VehicleLink
 from idc_controller.estimation.health.channel_isolation import ChannelIsolation
 from idc_controller.estimation.measurement_model import MeasurementModel
 from idc_controller.estimation.measurements import Attitude, MeasurementNoise
@@ -137,3 +144,24 @@ def test_isolation_of_a_channel_takes_as_long_at_any_rate_of_telemetry():
 def test_predictions_of_obstacles_are_compared_within_half_of_the_time_between_scans():
     assert stack.perception(system(range_sensor={"rate": 10})).tracking.manoeuvre.frame == 0.05
     assert stack.perception(system(range_sensor={"rate": 25})).tracking.manoeuvre.frame == 0.02
+
+
+@pytest.mark.parametrize("tries", [2, 4])
+def test_commands_are_repeated_as_often_and_as_soon_as_the_file_says(tmp_path, tries):
+    path = tmp_path / "system.toml"
+    path.write_text(f"[mavlink.link]\ntries = {tries}\nretry_interval = 0.2\n")
+    requests = VehicleLink(1, None, read_system(path).mavlink.link).requests
+    command = requests.command(400, 1.0)
+    sent = [0.05 * k for k in range(40) if requests.due(0.05 * k)]
+    assert sent == pytest.approx([0.2 * k for k in range(tries)])
+    assert command.state is CommandState.UNANSWERED
+
+
+def test_world_without_ticks_is_lost_after_the_time_of_the_file(tmp_path):
+    path = tmp_path / "system.toml"
+    path.write_text("[drivers]\njoin_interval = 0.02\ntick_timeout = 0.05\n")
+    reasons = []
+    station = SimpleNamespace(ended=False, raise_failsafe=lambda now, failsafe, reason: reasons.append(reason))
+    with closing(Connection()) as ground, closing(Connection()) as world:
+        run_in_lockstep(station, ground, world.socket.getsockname(), Interrupt(), read_system(path).drivers)
+    assert reasons == ["the simulated world does not answer for 0.05 s"]

@@ -130,7 +130,7 @@ def fly(options: FlyOptions, mission: Mission, progress: Callable[[Flight], None
         interrupt = resources.enter_context(Interrupt())
         ended = simulator.end_reason if simulator is not None else lambda: None
 
-        wall = time.monotonic()
+        settings, wall = mission.system.drivers, time.monotonic()
 
         def update() -> None:
             nonlocal wall
@@ -141,16 +141,12 @@ def fly(options: FlyOptions, mission: Mission, progress: Callable[[Flight], None
 
         try:
             if options.realtime:
-                run_in_real_time(station, connection, interrupt, speed=options.speed, progress=update, end_reason=ended)
-            else:
-                run_in_lockstep(
-                    station,
-                    connection,
-                    _clock_address(options, simulator),
-                    interrupt,
-                    progress=update,
-                    end_reason=ended,
+                run_in_real_time(
+                    station, connection, interrupt, settings, speed=options.speed, progress=update, end_reason=ended
                 )
+            else:
+                clock = _clock_address(options, simulator)
+                run_in_lockstep(station, connection, clock, interrupt, settings, progress=update, end_reason=ended)
         except KeyboardInterrupt:
             flight = station.flight
             reason = "interrupted twice: the vehicles land autonomously"
@@ -199,7 +195,7 @@ def ground_station(
     """
     config = mission.system
     model = stack.linear_model(config)
-    links = [VehicleLink(i, address) for i, address in enumerate(addresses, start=1)]
+    links = [VehicleLink(i, address, config.mavlink.link) for i, address in enumerate(addresses, start=1)]
     stopwatch = time.perf_counter
     obstacle_map = stack.obstacle_map(mission)
     safety: SafetyFilter = NoObstacles()
@@ -235,7 +231,8 @@ def _swarm(
             run_dir=run_dir,
             realtime=options.realtime,
             speed=options.speed,
-        )
+        ),
+        mission.system.drivers,
     )
     resources.enter_context(simulator)
     return simulator, simulator.vehicles

@@ -30,7 +30,9 @@ from gcs.config.tables import (
 )
 from gcs.config.toml_file import TomlFile, read_toml
 from gcs.config.validate import UnusableFile
+from gcs.drivers.settings import DriverSettings
 from gcs.errors import UnusableInput
+from gcs.mavlink.settings import MavlinkSettings
 from idc_controller.control.settings import MpcTuning
 from idc_controller.errors import ParameterError
 from idc_controller.parameters import SystemParameters, polygon_attachments
@@ -54,6 +56,8 @@ class SystemConfig:
     controller: MpcTuning = field(default_factory=MpcTuning)
     avoidance: AvoidanceSettings = field(default_factory=AvoidanceSettings)
     flight: FlightSettings = field(default_factory=FlightSettings)
+    mavlink: MavlinkSettings = field(default_factory=MavlinkSettings)
+    drivers: DriverSettings = field(default_factory=DriverSettings)
     estimation: EstimationConfig = field(default_factory=EstimationConfig)
     perception: PerceptionSettings = field(default_factory=PerceptionSettings)
     guidance: GuidanceConfig = field(default_factory=GuidanceConfig)

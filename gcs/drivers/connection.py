@@ -35,9 +35,9 @@ class Connection:
         """The datagrams that have come."""
         return arrived(self.socket)
 
-    def wait(self, timeout: float) -> None:
-        """Until something can be received, but not longer than ``timeout`` (s)."""
-        select.select([self.socket], [], [], timeout)
+    def wait(self, timeout: float) -> bool:
+        """Wait until something can be received, at most ``timeout`` (s); return False if nothing can."""
+        return bool(select.select([self.socket], [], [], timeout)[0])
 
     def close(self) -> None:
         """Close the socket."""

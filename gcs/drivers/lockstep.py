@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import math
-import select
 from collections.abc import Callable
 
 from gcs.drivers.connection import Connection
 from gcs.drivers.interrupt import Interrupt
+from gcs.drivers.settings import DriverSettings
 from gcs.flight.failsafe import Failsafe
 from gcs.flight.ground_station import GroundStation
 from gcs.mavlink.address import Address
 from gcs.mavlink.lockstep import Done, Tick, decode_tick
-
-JOIN_INTERVAL = 0.5  # s of wall time after which an unanswered join is repeated
-TICK_TIMEOUT = 20.0  # s of wall time without a tick after which the world is lost
 
 
 def run_in_lockstep(
@@ -22,6 +19,7 @@ def run_in_lockstep(
     connection: Connection,
     clock_address: Address,
     interrupt: Interrupt,
+    settings: DriverSettings,
     *,
     progress: Callable[[], None] = lambda: None,
     end_reason: Callable[[], str | None] = lambda: None,
@@ -30,27 +28,25 @@ def run_in_lockstep(
 
     ``end_reason`` returns why the world has ended, None while it runs.
     """
-    connection.send(Done(0, None).encode(), clock_address)
-    landing = False
+    join = Done(0, None).encode()
+    connection.send(join, clock_address)
     waited = now = 0.0
-    joined = False
+    joined = landing = False
     inbox: list[tuple[bytes, Address]] = []
     while not station.ended:
         tick = _next_tick(connection, clock_address, inbox)
         if tick is None:
-            ready, _, _ = select.select([connection.socket], [], [], JOIN_INTERVAL)
-            if ready:
+            if connection.wait(settings.join_interval):
                 continue
-            waited += JOIN_INTERVAL
-            if (reason := end_reason()) is not None:
-                station.raise_failsafe(now, Failsafe.SIMULATION_LOST, reason)
-                break
-            if waited >= TICK_TIMEOUT:
-                reason = f"the simulated world does not answer for {TICK_TIMEOUT:g} s"
+            waited += settings.join_interval
+            reason = end_reason()
+            if reason is None and waited >= settings.tick_timeout:
+                reason = f"the simulated world does not answer for {settings.tick_timeout:g} s"
+            if reason is not None:
                 station.raise_failsafe(now, Failsafe.SIMULATION_LOST, reason)
                 break
             if not joined:
-                connection.send(Done(0, None).encode(), clock_address)
+                connection.send(join, clock_address)
             continue
         joined, waited = True, 0.0
         now = tick.time_us * 1e-6
@@ -71,7 +67,7 @@ def run_in_lockstep(
 
 
 def _next_tick(connection: Connection, clock_address: Address, inbox: list[tuple[bytes, Address]]) -> Tick | None:
-    """The next tick that has come, with all datagrams before it put into ``inbox``."""
+    """Return the next tick that has come, None: none; put all datagrams before it into ``inbox``."""
     for datagram, sender in connection.receive():
         if sender == clock_address:
             if (tick := decode_tick(datagram)) is not None:

@@ -7,16 +7,16 @@ from collections.abc import Callable
 
 from gcs.drivers.connection import Connection
 from gcs.drivers.interrupt import Interrupt
+from gcs.drivers.settings import DriverSettings
 from gcs.flight.failsafe import Failsafe
 from gcs.flight.ground_station import GroundStation
-
-LONGEST_WAIT = 0.1  # s of wall time, so that an interrupt is noticed
 
 
 def run_in_real_time(
     station: GroundStation,
     connection: Connection,
     interrupt: Interrupt,
+    settings: DriverSettings,
     *,
     speed: float = 1.0,
     clock: Callable[[], float] = time.monotonic,
@@ -47,4 +47,4 @@ def run_in_real_time(
             continue
         wait = due / speed - (clock() - start)
         if wait > 0.0:
-            connection.wait(min(wait, LONGEST_WAIT))
+            connection.wait(min(wait, settings.wait_max))

@@ -9,19 +9,19 @@ from collections.abc import Sequence
 from pathlib import Path
 from types import TracebackType
 
+from gcs.drivers.settings import DriverSettings
 from gcs.errors import GcsError
 from gcs.mavlink.address import Address
 
 _LINE = re.compile(r"^(?P<who>clock|vehicle \d+): udp://(?P<host>[^:]+):(?P<port>\d+)$")
-LANDING_TIMEOUT = 60.0  # s of wall time for vehicles that are still in the air
-END_TIMEOUT = 10.0  # s of wall time to close its records
 
 
 class Simulator:
     """A running ``vehicle-sim``; a context manager that ends it."""
 
-    def __init__(self, arguments: Sequence[str]) -> None:
+    def __init__(self, arguments: Sequence[str], settings: DriverSettings) -> None:
         """Start it and read where it listens. Raises :class:`GcsError` with its error output when it does not start."""
+        self._settings = settings
         # A session of its own: Ctrl-C at the terminal is for the ground, which lands the vehicles first.
         self._process = subprocess.Popen(
             [sys.executable, "-m", "vehicle_sim", "--with-parent", *arguments],
@@ -57,8 +57,9 @@ class Simulator:
         return f"the simulated world has ended: vehicle-sim {how}"
 
     def close(self) -> None:
-        """Let it end, and wait until its records are closed: without its parent's pipe it lands what still flies."""
-        for timeout, stop in ((LANDING_TIMEOUT, self._process.terminate), (END_TIMEOUT, self._process.kill)):
+        """Let it end, and wait until its records are closed: without its parent's pipe it lands what is in the air."""
+        s = self._settings
+        for timeout, stop in ((s.landing_timeout, self._process.terminate), (s.end_timeout, self._process.kill)):
             try:
                 self._process.communicate(timeout=timeout)
                 return

@@ -63,7 +63,7 @@ class GroundStation:
         timing = settings.timing
         self.flight = flight
         self._recorder = recorder
-        self._id_check = SystemIdCheck(len(flight.system.team.links))
+        self._id_check = SystemIdCheck(len(flight.system.team.links), flight.mission.system.mavlink.id_check)
         self._monitor = FlightMonitor(flight, self._id_check, flight.failsafes.alarms, settings.monitor)
         self._codec = Codec(GROUND_SYSTEM, GROUND_COMPONENT)
         self._clock = TeamClock(timing)

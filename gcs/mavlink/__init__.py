@@ -1,1 +1,6 @@
-"""MAVLink on the ground's side: codec, clocks, links to vehicles, set-points out and telemetry in."""
+"""MAVLink: the protocol that both ends share, and the ground's links to the vehicles.
+
+Shared: :mod:`~gcs.mavlink.codec` and :mod:`~gcs.mavlink.messages` (bytes to typed messages and back),
+:mod:`~gcs.mavlink.px4` (modes, parameters, components), :mod:`~gcs.mavlink.lockstep`, :mod:`~gcs.mavlink.udp`,
+:mod:`~gcs.mavlink.address`. All other modules are the ground's; ``vehicle_sim`` imports none of them.
+"""

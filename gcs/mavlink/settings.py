@@ -56,3 +56,11 @@ class IdCheckSettings:
         2.0, "", "a position so many times nearer to another vehicle's estimate than to its own is the other's", gt=1.0
     )
     steps: int = setting(3, "", "consecutive control steps in which it must be so", ge=1)
+
+
+@dataclass(frozen=True)
+class MavlinkSettings:
+    """All of the above."""
+
+    link: LinkSettings = field(default_factory=LinkSettings)
+    id_check: IdCheckSettings = field(default_factory=IdCheckSettings)
