@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal, TypeVar
+from typing import Any, Literal, TypeVar, dataclass_transform
 
 from pydantic import Field
 
@@ -15,9 +15,17 @@ Direction = Literal["telemetry", "command", "both"]
 Family = Literal["link", "timing", "values", "sensors", "world"]
 Vehicles = tuple[int, ...] | None
 Problem = tuple[str, str] | None
-Check = Callable[[Any, SystemConfig, Vehicles], Problem]
 
-T = TypeVar("T")
+
+class FaultSettings:
+    """Base of the parameters of a kind."""
+
+    def problem(self, system: SystemConfig, vehicles: Vehicles) -> Problem:
+        """Return the key and the reason of what ``system`` or the named ``vehicles`` do not allow; None: nothing."""
+        return None
+
+
+S = TypeVar("S", bound=FaultSettings)
 
 
 @dataclass(frozen=True)
@@ -26,38 +34,33 @@ class Kind:
 
     ``settings``: the dataclass of its parameters. ``direction``: what holds where a mission gives none; None: the kind
     has no direction. ``of_vehicles``: it disturbs vehicles, of which some may be named; else the world. ``bounded``:
-    it must have a duration. ``check(settings, system, vehicles)``: the key and the reason of what cannot be, or None.
+    it must have a duration.
     """
 
     name: str
     family: Family
-    settings: type[Any]
+    settings: type[FaultSettings]
     summary: str
     direction: Direction | None
     of_vehicles: bool
     bounded: bool
-    check: Check | None
 
 
 KINDS: dict[str, Kind] = {}
 """All kinds by their names, in the order of their families; filled by :mod:`gcs.faults.kinds`."""
 
 
+@dataclass_transform(frozen_default=True, kw_only_default=True)
 def kind(
-    name: str,
-    family: Family,
-    *,
-    direction: Direction | None = None,
-    of_vehicles: bool = True,
-    bounded: bool = False,
-    check: Check | None = None,
-) -> Callable[[type[T]], type[T]]:
-    """Class decorator for the parameters of a kind; the docstring is what people read."""
+    name: str, family: Family, *, direction: Direction | None = None, of_vehicles: bool = True, bounded: bool = False
+) -> Callable[[type[S]], type[S]]:
+    """Class decorator that makes the parameters of a kind a dataclass; the docstring is what people read."""
 
-    def register(cls: type[T]) -> type[T]:
+    def register(cls: type[S]) -> type[S]:
+        settings = strict(dataclass(frozen=True, kw_only=True)(cls))
         summary = " ".join((cls.__doc__ or "").split())
-        KINDS[name] = Kind(name, family, strict(cls), summary, direction, of_vehicles, bounded, check)
-        return cls
+        KINDS[name] = Kind(name, family, settings, summary, direction, of_vehicles, bounded)
+        return settings
 
     return register
 

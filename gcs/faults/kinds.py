@@ -11,7 +11,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from gcs.errors import UnusableInput
 from gcs.faults import link, sensors, timing, values, world  # noqa: F401 -- each fills the table
-from gcs.faults.kind import KINDS
+from gcs.faults.kind import KINDS, FaultSettings
 
 _FAMILIES = ("link", "timing", "values", "sensors", "world")
 _sorted = sorted(KINDS.items(), key=lambda item: _FAMILIES.index(item[1].family))
@@ -22,12 +22,12 @@ __all__ = ["KINDS", "read_settings", "settings_adapter"]
 
 
 @cache
-def settings_adapter(name: str) -> TypeAdapter[Any]:
+def settings_adapter(name: str) -> TypeAdapter[FaultSettings]:
     """Reads the parameters of a kind of that name, which must exist."""
     return TypeAdapter(KINDS[name].settings)
 
 
-def read_settings(name: str, settings: Mapping[str, Any]) -> Any:
+def read_settings(name: str, settings: Mapping[str, Any]) -> FaultSettings:
     """The parameters of a fault, as the dataclass of its kind. Raises :class:`UnusableInput`."""
     if name not in KINDS:
         raise UnusableInput(f"fault: there is no kind '{name}'")

@@ -2,26 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Annotated
 
-from gcs.faults.kind import kind, parameter
+from gcs.faults.kind import FaultSettings, kind, parameter
 
 _Chance = Annotated[float, parameter("of a datagram", ge=0.0, le=1.0)]
 _Delay = 60.0  # s, the longest
 
 
 @kind("packet_loss", "link", direction="both")
-@dataclass(frozen=True)
-class PacketLoss:
+class PacketLoss(FaultSettings):
     """Datagrams are lost, each independently of the others."""
 
     probability: _Chance
 
 
 @kind("burst_loss", "link", direction="both")
-@dataclass(frozen=True)
-class BurstLoss:
+class BurstLoss(FaultSettings):
     """Datagrams are lost in bursts (Gilbert-Elliott): a good and a bad state by turns, of exponential lengths."""
 
     burst: Annotated[float, parameter("mean length of the bad state", "s", gt=0.0, le=1e3)] = 0.5
@@ -31,24 +28,21 @@ class BurstLoss:
 
 
 @kind("latency", "link", direction="both")
-@dataclass(frozen=True)
-class Latency:
+class Latency(FaultSettings):
     """Datagrams arrive later, in their order."""
 
     delay: Annotated[float, parameter("how much later", "s", ge=0.0, le=_Delay)]
 
 
 @kind("jitter", "link", direction="both")
-@dataclass(frozen=True)
-class Jitter:
+class Jitter(FaultSettings):
     """Datagrams arrive later by a random time, in their order."""
 
     spread: Annotated[float, parameter("the longest delay; each is uniform from 0", "s", ge=0.0, le=_Delay)]
 
 
 @kind("reordering", "link", direction="both")
-@dataclass(frozen=True)
-class Reordering:
+class Reordering(FaultSettings):
     """Some datagrams are delayed, so that later ones overtake them."""
 
     probability: _Chance
@@ -56,8 +50,7 @@ class Reordering:
 
 
 @kind("duplication", "link", direction="both")
-@dataclass(frozen=True)
-class Duplication:
+class Duplication(FaultSettings):
     """Some datagrams arrive twice."""
 
     probability: _Chance
@@ -65,8 +58,7 @@ class Duplication:
 
 
 @kind("corruption", "link", direction="both")
-@dataclass(frozen=True)
-class Corruption:
+class Corruption(FaultSettings):
     """Some bytes of some datagrams are replaced by other ones, anywhere."""
 
     probability: _Chance
@@ -74,24 +66,21 @@ class Corruption:
 
 
 @kind("bad_checksum", "link", direction="both")
-@dataclass(frozen=True)
-class BadChecksum:
+class BadChecksum(FaultSettings):
     """The checksum of every message in some datagrams is wrong; the contents are not."""
 
     probability: _Chance
 
 
 @kind("truncation", "link", direction="both")
-@dataclass(frozen=True)
-class Truncation:
+class Truncation(FaultSettings):
     """Some datagrams are cut off anywhere."""
 
     probability: _Chance
 
 
 @kind("bandwidth_cap", "link", direction="both")
-@dataclass(frozen=True)
-class BandwidthCap:
+class BandwidthCap(FaultSettings):
     """Datagrams wait for those before them to pass, and are lost when too many wait."""
 
     rate: Annotated[float, parameter("of each direction of a vehicle's link", "bytes/s", gt=0.0, le=1e9)]
@@ -99,20 +88,17 @@ class BandwidthCap:
 
 
 @kind("partition", "link", direction="both")
-@dataclass(frozen=True)
-class Partition:
+class Partition(FaultSettings):
     """Nothing passes, in both directions or in one."""
 
 
 @kind("stall", "link", direction="both", bounded=True)
-@dataclass(frozen=True)
-class Stall:
+class Stall(FaultSettings):
     """Nothing passes for the duration; then all delayed datagrams arrive at once."""
 
 
 @kind("flapping", "link", direction="both")
-@dataclass(frozen=True)
-class Flapping:
+class Flapping(FaultSettings):
     """The link is down and up by turns, down first; what is sent while it is down is lost."""
 
     down: Annotated[float, parameter("length of each outage", "s", gt=0.0, le=1e4)]

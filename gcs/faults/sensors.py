@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Annotated
 
-from gcs.faults.kind import kind, parameter
+from gcs.faults.kind import FaultSettings, kind, parameter
 
 _Vector = tuple[float, float, float]
 _Onboard = Annotated[
@@ -15,16 +14,14 @@ _Onboard = Annotated[
 
 
 @kind("position_lost", "sensors")
-@dataclass(frozen=True)
-class PositionLost:
+class PositionLost(FaultSettings):
     """Position and velocity are no longer measured or reported."""
 
     onboard: _Onboard = True
 
 
 @kind("position_glitch", "sensors")
-@dataclass(frozen=True)
-class PositionGlitch:
+class PositionGlitch(FaultSettings):
     """The measured position jumps away and back, level, in random directions, and the vehicle flies by it."""
 
     size: Annotated[float, parameter("how far", "m", gt=0.0, le=1e5)]
@@ -33,36 +30,31 @@ class PositionGlitch:
 
 
 @kind("position_drift", "sensors")
-@dataclass(frozen=True)
-class PositionDrift:
+class PositionDrift(FaultSettings):
     """The measured position drifts away, the velocity does not, and the vehicle flies by it."""
 
     velocity: Annotated[_Vector, parameter("of the drift, north-east-down", "m/s")]
 
 
 @kind("attitude_lost", "sensors")
-@dataclass(frozen=True)
-class AttitudeLost:
+class AttitudeLost(FaultSettings):
     """The attitude is no longer reported, nor the rates, which share its message."""
 
     onboard: _Onboard = False
 
 
 @kind("rates_lost", "sensors")
-@dataclass(frozen=True)
-class RatesLost:
+class RatesLost(FaultSettings):
     """The rates are reported as NaN, MAVLink's unknown value."""
 
     onboard: _Onboard = False
 
 
 @kind("payload_unit_lost", "sensors")
-@dataclass(frozen=True)
-class PayloadUnitLost:
+class PayloadUnitLost(FaultSettings):
     """The vehicles no longer get anything of the payload's navigation unit that they could relay."""
 
 
 @kind("obstacle_sensing_lost", "sensors")
-@dataclass(frozen=True)
-class ObstacleSensingLost:
+class ObstacleSensingLost(FaultSettings):
     """The vehicles no longer detect obstacles."""

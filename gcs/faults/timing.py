@@ -2,53 +2,46 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Annotated
 
-from gcs.faults.kind import kind, parameter
+from gcs.faults.kind import FaultSettings, kind, parameter
 
 
 @kind("low_rate", "timing", direction="telemetry")
-@dataclass(frozen=True)
-class LowRate:
+class LowRate(FaultSettings):
     """Of the stream of measurements (telemetry) or of set-points (command), only an even share comes."""
 
     share: Annotated[float, parameter("of the messages that come; 0.5: half rate", gt=0.0, le=1.0)] = 0.5
 
 
 @kind("clock_skew", "timing")
-@dataclass(frozen=True)
-class ClockSkew:
+class ClockSkew(FaultSettings):
     """A vehicle's clock runs fast or slow; the error that has grown stays when the fault ends."""
 
     rate: Annotated[float, parameter("seconds gained a second", "s/s", ge=-0.5, le=0.5)]
 
 
 @kind("clock_step", "timing")
-@dataclass(frozen=True)
-class ClockStep:
+class ClockStep(FaultSettings):
     """A vehicle's clock is off by a constant; it is right again when the fault ends."""
 
     step: Annotated[float, parameter("what it is ahead", "s", ge=-1e6, le=1e6)]
 
 
 @kind("stale_stamps", "timing")
-@dataclass(frozen=True)
-class StaleStamps:
+class StaleStamps(FaultSettings):
     """Measurements are reported with the stamps of an earlier time."""
 
     age: Annotated[float, parameter("how much earlier", "s", gt=0.0, le=1e3)]
 
 
 @kind("stamp_wrap", "timing")
-@dataclass(frozen=True)
-class StampWrap:
+class StampWrap(FaultSettings):
     """A vehicle's clock is set to just before its stamps (32 bits of ms) overflow, and then they do."""
 
     lead: Annotated[float, parameter("from the start of the fault to the overflow", "s", ge=0.0, le=1e6)] = 1.0
 
 
 @kind("ground_hang", "timing")
-@dataclass(frozen=True)
-class GroundHang:
+class GroundHang(FaultSettings):
     """Of all that the ground sends, only its heartbeat comes: as if it hung."""

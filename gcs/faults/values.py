@@ -10,77 +10,65 @@ from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from gcs.config import SystemConfig
-from gcs.faults.kind import Problem, Vehicles, kind, parameter
+from gcs.faults.kind import FaultSettings, Problem, Vehicles, kind, parameter
 
 Channel = Literal[
     "position", "velocity", "attitude", "rates",
     "payload_position", "payload_velocity", "payload_attitude", "payload_rates",
     "obstacles",
 ]  # fmt: skip
-Axis = Literal["x", "y", "z"]
-Axes = tuple[Axis, ...]
-ALL_AXES: Axes = ("x", "y", "z")
-
-_AnyChannel = Annotated[Channel, parameter("what is disturbed")]
-_AnyAxes = Annotated[Axes, parameter("of the channel", min_length=1, max_length=3)]
-_AtSource = Annotated[
-    bool,
-    parameter(
-        "true: the sensor itself is wrong, so that the vehicle flies by it, or all pass on the same of the payload; "
-        "false: only its telemetry"
-    ),
-]
+Axes = tuple[Literal["x", "y", "z"], ...]
 _Amount = 1e5
 
 
-def unit_is_whole(settings: ValueFault, system: SystemConfig, vehicles: Vehicles) -> Problem:
-    """The payload has one navigation unit: at its source a fault is in what all vehicles relay."""
-    if settings.at_source and settings.channel.startswith("payload_") and vehicles is not None:
-        return "vehicles", "the payload has one navigation unit: leave this out, or set at_source = false"
-    return None
-
-
 @dataclass(frozen=True, kw_only=True)
-class ValueFault:
-    """What all of them have."""
+class ValueFault(FaultSettings):
+    """What all but :class:`SwappedVehicles` have."""
 
-    channel: _AnyChannel
-    axes: _AnyAxes = ALL_AXES
-    at_source: _AtSource = False
+    channel: Annotated[Channel, parameter("what is disturbed")]
+    axes: Annotated[Axes, parameter("of the channel", min_length=1, max_length=3)] = ("x", "y", "z")
+    at_source: Annotated[
+        bool,
+        parameter(
+            "true: the sensor itself is wrong, so that the vehicle flies by it, or all pass on the same of the "
+            "payload; false: only its telemetry"
+        ),
+    ] = False
+
+    def problem(self, system: SystemConfig, vehicles: Vehicles) -> Problem:
+        """Refuse single vehicles for the payload's navigation unit, which is one that all vehicles relay."""
+        if self.at_source and self.channel.startswith("payload_") and vehicles is not None:
+            return "vehicles", "the payload has one navigation unit: leave this out, or set at_source = false"
+        return None
 
 
-@kind("bias", "values", check=unit_is_whole)
-@dataclass(frozen=True, kw_only=True)
+@kind("bias", "values")
 class Bias(ValueFault):
     """A constant is added."""
 
     amount: Annotated[float, parameter("on each of the axes", "channel's", ge=-_Amount, le=_Amount)]
 
 
-@kind("drift", "values", check=unit_is_whole)
-@dataclass(frozen=True, kw_only=True)
+@kind("drift", "values")
 class Drift(ValueFault):
     """What is added grows with the time since the fault began."""
 
     rate: Annotated[float, parameter("on each of the axes", "channel's/s", ge=-_Amount, le=_Amount)]
 
 
-@kind("scale", "values", check=unit_is_whole)
-@dataclass(frozen=True, kw_only=True)
+@kind("scale", "values")
 class Scale(ValueFault):
     """Values are multiplied."""
 
     factor: Annotated[float, parameter("by this", ge=-1e3, le=1e3)]
 
 
-@kind("stuck", "values", check=unit_is_whole)
-@dataclass(frozen=True, kw_only=True)
+@kind("stuck", "values")
 class Stuck(ValueFault):
     """Values stay what they were when the fault began; stamps go on."""
 
 
-@kind("spikes", "values", check=unit_is_whole)
-@dataclass(frozen=True, kw_only=True)
+@kind("spikes", "values")
 class Spikes(ValueFault):
     """Single samples are off by an amount, up or down, each axis independently."""
 
@@ -88,8 +76,7 @@ class Spikes(ValueFault):
     amount: Annotated[float, parameter("size of a spike", "channel's", gt=0.0, le=_Amount)]
 
 
-@kind("not_a_number", "values", check=unit_is_whole)
-@dataclass(frozen=True, kw_only=True)
+@kind("not_a_number", "values")
 class NotANumber(ValueFault):
     """Values are NaN or infinite. Messages of whole numbers, which cannot say so, are not sent."""
 
@@ -97,36 +84,31 @@ class NotANumber(ValueFault):
     probability: Annotated[float, parameter("of a sample", ge=0.0, le=1.0)] = 1.0
 
 
-@kind("quantisation", "values", check=unit_is_whole)
-@dataclass(frozen=True, kw_only=True)
+@kind("quantisation", "values")
 class Quantisation(ValueFault):
     """Values are rounded coarsely."""
 
     step: Annotated[float, parameter("to multiples of this", "channel's", gt=0.0, le=_Amount)]
 
 
-@kind("flipped_sign", "values", check=unit_is_whole)
-@dataclass(frozen=True, kw_only=True)
+@kind("flipped_sign", "values")
 class FlippedSign(ValueFault):
     """Values have the opposite sign."""
 
 
-@kind("swapped_frame", "values", check=unit_is_whole)
-@dataclass(frozen=True, kw_only=True)
+@kind("swapped_frame", "values")
 class SwappedFrame(ValueFault):
     """Values are in another frame: x and y exchanged, z reversed (east-north-up for north-east-down)."""
 
 
-@kind("noise", "values", check=unit_is_whole)
-@dataclass(frozen=True, kw_only=True)
+@kind("noise", "values")
 class Noise(ValueFault):
     """White noise is added, so that in all there is a multiple of the system file's; obstacles: on every axis."""
 
     factor: Annotated[float, parameter("noise with the fault over noise without", ge=1.0, le=1e3)]
 
 
-@kind("intermittent", "values", check=unit_is_whole)
-@dataclass(frozen=True, kw_only=True)
+@kind("intermittent", "values")
 class Intermittent(ValueFault):
     """Values are stuck and true in turn, for random times; true first."""
 
@@ -134,19 +116,16 @@ class Intermittent(ValueFault):
     stuck: Annotated[float, parameter("mean time of the last value", "s", gt=0.0, le=1e4)] = 0.5
 
 
-def _other_vehicle(settings: SwappedVehicles, system: SystemConfig, vehicles: Vehicles) -> Problem:
-    if vehicles is None or len(vehicles) != 1:
-        return "vehicles", "name the one vehicle whose data are swapped with those of `other`"
-    if settings.other > system.team.vehicles:
-        return "other", f"there is no vehicle {settings.other}: the team has {system.team.vehicles}"
-    if settings.other == vehicles[0]:
-        return "other", "is the same vehicle"
-    return None
-
-
-@kind("swapped_vehicles", "values", check=_other_vehicle)
-@dataclass(frozen=True)
-class SwappedVehicles:
+@kind("swapped_vehicles", "values")
+class SwappedVehicles(FaultSettings):
     """Two vehicles report each other's attitude, rates, position and velocity as their own."""
 
     other: Annotated[int, parameter("system id of the one that swaps with the one in `vehicles`", ge=1, le=254)]
+
+    def problem(self, system: SystemConfig, vehicles: Vehicles) -> Problem:
+        """Refuse another number of vehicles than one, and a partner that is not another vehicle of the team."""
+        if vehicles is None or len(vehicles) != 1:
+            return "vehicles", "name the one vehicle whose data are swapped with those of `other`"
+        if self.other > system.team.vehicles:
+            return "other", f"there is no vehicle {self.other}: the team has {system.team.vehicles}"
+        return ("other", "is the same vehicle") if self.other == vehicles[0] else None

@@ -2,26 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Annotated
 
 from gcs.config import SystemConfig
-from gcs.faults.kind import Problem, Vehicles, kind, parameter
+from gcs.faults.kind import FaultSettings, Problem, Vehicles, kind, parameter
 from idc_controller.errors import ParameterError
 
 _Vector = tuple[float, float, float]
 LEAST_MASS = 0.1  # kg that must be left of the payload
 
 
-def _speed_is_sane(settings: Wind, system: SystemConfig, vehicles: Vehicles) -> Problem:
-    if max(map(abs, settings.velocity)) > 100.0:
-        return "velocity", "more than 100 m/s"
-    return None
-
-
-@kind("wind", "world", of_vehicles=False, check=_speed_is_sane)
-@dataclass(frozen=True)
-class Wind:
+@kind("wind", "world", of_vehicles=False)
+class Wind(FaultSettings):
     """Wind, the same everywhere, with gusts: first-order coloured noise. Drag on payload and UAVs is quadratic."""
 
     velocity: Annotated[_Vector, parameter("steady part, where it blows to, north-east-down", "m/s")]
@@ -31,22 +23,25 @@ class Wind:
     gust_time: Annotated[float, parameter("correlation time of the gusts", "s", gt=0.0, le=100.0)] = 2.0
     rise: Annotated[float, parameter("time in which it rises, smoothly", "s", ge=0.0, le=1e3)] = 2.0
 
-
-def _can_be_carried(settings: PayloadMass, system: SystemConfig, vehicles: Vehicles) -> Problem:
-    true = system.true_parameters()
-    mass = true.m_0 + settings.change
-    if mass < LEAST_MASS:
-        return "change", f"{mass:g} kg would be left of the payload: at least {LEAST_MASS:g}"
-    try:
-        true.with_payload_mass(mass)
-    except ParameterError as error:
-        return "change", str(error)
-    return None
+    def problem(self, system: SystemConfig, vehicles: Vehicles) -> Problem:
+        """Refuse more than a hurricane."""
+        return ("velocity", "more than 100 m/s") if max(map(abs, self.velocity)) > 100.0 else None
 
 
-@kind("payload_mass", "world", of_vehicles=False, check=_can_be_carried)
-@dataclass(frozen=True)
-class PayloadMass:
+@kind("payload_mass", "world", of_vehicles=False)
+class PayloadMass(FaultSettings):
     """The payload is heavier or lighter at once, inertia in proportion, centre of mass where it was."""
 
     change: Annotated[float, parameter("what is added", "kg", ge=-1e3, le=1e3)]
+
+    def problem(self, system: SystemConfig, vehicles: Vehicles) -> Problem:
+        """Refuse a load that is nothing, or more than the team can carry."""
+        true = system.true_parameters()
+        mass = true.m_0 + self.change
+        if mass < LEAST_MASS:
+            return "change", f"{mass:g} kg would be left of the payload: at least {LEAST_MASS:g}"
+        try:
+            true.with_payload_mass(mass)
+        except ParameterError as error:
+            return "change", str(error)
+        return None

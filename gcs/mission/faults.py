@@ -78,10 +78,8 @@ def fault_problems(fault: Fault, system: SystemConfig) -> Iterator[tuple[str, st
         yield "every", f"{fault.every:g} s is not more than the duration, {fault.duration:g} s"
     if kind.bounded and fault.duration is None:
         yield "duration", f"{fault.kind} needs one"
-    if kind.check is not None:
-        problem = kind.check(read_settings(fault.kind, fault.settings), system, fault.vehicles)
-        if problem is not None:
-            yield problem
+    if (problem := read_settings(fault.kind, fault.settings).problem(system, fault.vehicles)) is not None:
+        yield problem
 
 
 def check_faults_of(mission: Mission) -> None:
