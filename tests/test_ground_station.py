@@ -7,7 +7,7 @@ from flight_in_process import MISSIONS, address_of
 from gcs.app.fly import ground_station
 from gcs.flight.ground_station import GROUND_COMPONENT, GROUND_SYSTEM
 from gcs.mavlink.codec import Codec
-from gcs.mavlink.vehicle_link import CommandState
+from gcs.mavlink.requests import CommandState
 from gcs.mission.read import read_mission
 from gcs.record.recorder import FlightRecorder
 
@@ -35,13 +35,13 @@ def send(station, message, system=1, address=None, now=0.0):
     ],
 )
 def test_acknowledgement_to_another_system_is_ignored(station, target, state):
-    command = station.links[0].command(ARM, 1.0)
+    command = station.links[0].requests.command(ARM, 1.0)
     send(station, mavlink.MAVLink_command_ack_message(ARM, mavlink.MAV_RESULT_DENIED, 0, 0, *target))
     assert command.state is state
 
 
 def test_acknowledgement_from_another_sender_is_ignored(station):
-    command = station.links[0].command(ARM, 1.0)
+    command = station.links[0].requests.command(ARM, 1.0)
     answer = mavlink.MAVLink_command_ack_message(ARM, mavlink.MAV_RESULT_DENIED)
     send(station, answer, system=1, address=address_of(2))
     send(station, answer, system=2, address=address_of(1))

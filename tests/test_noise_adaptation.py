@@ -86,5 +86,5 @@ def test_flight_stays_within_limits_with_a_third_of_datagrams_lost(tmp_path):
     mission = with_faults(tmp_path, 'kind = "packet_loss"\nprobability = 0.3\nstart = 0.0')
     with InProcessFlight(mission, tmp_path / "run", seed=43) as flight:
         flight.fly()
-        assert min(link.copies for link in flight.station.links) > 1
+        assert min(link.setpoints.copies for link in flight.station.links) > 1
         check_within_limits(flight.summary())

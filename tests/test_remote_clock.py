@@ -36,10 +36,10 @@ def test_setpoint_stamps_stay_monotonic_after_clock_step():
     before = []
     for k in range(10):
         link.clock.add_stamp(10.0 + 0.05 * k, 0.05 * k, in_order=True)
-        before.append(link.stamp(0.05 * k))
+        before.append(link.setpoints.stamp(0.05 * k))
     assert before == pytest.approx([10.0 + 0.05 * k for k in range(10)])
     link.clock.add_stamp(10.1, 0.5, in_order=True)
-    after = [link.stamp(0.5 + 0.05 * k) for k in range(20)]
+    after = [link.setpoints.stamp(0.5 + 0.05 * k) for k in range(20)]
     assert after[0] > before[-1]
     assert all(b > a for a, b in pairwise(after))
     assert after[-1] == pytest.approx(0.5 + 0.05 * 19 + 9.6)

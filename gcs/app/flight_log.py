@@ -50,10 +50,10 @@ class _LinkLog:
         if not math.isfinite(link.received_at):
             return
         who = f"{time:.2f} s: vehicle {link.system_id}"
-        if (link.custom_mode, link.armed) != self._mode:
-            self._mode = (link.custom_mode, link.armed)
-            armed = "armed" if link.armed else "disarmed"
-            LOG.info("%s: mode %s, %s", who, px4.mode_name(link.custom_mode), armed)
+        if (link.status.custom_mode, link.status.armed) != self._mode:
+            self._mode = (link.status.custom_mode, link.status.armed)
+            armed = "armed" if link.status.armed else "disarmed"
+            LOG.info("%s: mode %s, %s", who, px4.mode_name(link.status.custom_mode), armed)
         if link.address != self._address:
             self._address = link.address
             LOG.info("%s: connected from %s", who, link.address)
@@ -74,5 +74,5 @@ def _counts(link: VehicleLink) -> dict[str, int]:
         "out of order": found.reordered,
         "duplicates": found.duplicated,
         "damaged datagrams": found.damaged,
-        "lost set-points": link.lost_setpoints,
+        "lost set-points": link.setpoints.lost,
     }

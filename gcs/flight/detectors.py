@@ -223,7 +223,7 @@ class _MessageEvents:
                 (name, MonitorAlarm.MESSAGES_CORRUPTED, self._events, statistics.damaged),
                 (name, MonitorAlarm.VALUES_NOT_FINITE, self._events, statistics.not_finite),
                 ("payload", MonitorAlarm.VALUES_NOT_FINITE, self._events, statistics.payload_not_finite),
-                (name, MonitorAlarm.SETPOINTS_LOST, self._setpoints, link.lost_setpoints),
+                (name, MonitorAlarm.SETPOINTS_LOST, self._setpoints, link.setpoints.lost),
             ):
                 # Every vehicle relays the payload's: counted for each.
                 if (more := total - self._totals.get((i, source, code), 0)) > 0:
@@ -267,7 +267,7 @@ _OF_FINDING = {
 def _range_sensors(step: MonitorStep) -> None:
     """Range sensors that vehicles report as failed."""
     for i, link in enumerate(step.links):
-        if not link.obstacle_sensing_valid:
+        if not link.status.obstacle_sensing_valid:
             step.raise_alarm(step.name(i), MonitorAlarm.RANGE_SENSOR_FAILED)
 
 

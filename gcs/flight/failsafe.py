@@ -14,7 +14,6 @@ import numpy as np
 from gcs.flight.alarms import AlarmCode, AlarmLog, Severity
 from gcs.flight.condition import Check, Condition, Moment, Reaction, System, Trigger
 from gcs.flight.phase import Phase
-from gcs.flight.team import last_text
 from gcs.mavlink import px4
 from gcs.mavlink.vehicle_link import VehicleLink
 
@@ -45,7 +44,7 @@ def _parameter_mismatch(system: System, moment: Moment) -> Trigger | None:
 
     def problem(link: VehicleLink) -> str:
         for name, value in expected.items():
-            reported = link.parameters[name]
+            reported = link.status.parameters[name]
             # Less thrust than assumed is unsafe, more is not.
             too_low = reported < value * (1.0 - tolerance)
             if too_low or (name != px4.PARAM_THRUST_MAX and reported > value * (1.0 + tolerance)):
@@ -57,11 +56,13 @@ def _parameter_mismatch(system: System, moment: Moment) -> Trigger | None:
 
 def _already_armed(system: System, moment: Moment) -> Trigger | None:
     text = "is armed already: another ground station may be flying it"
-    return _first_vehicle(system, lambda link: text if link.armed else "")
+    return _first_vehicle(system, lambda link: text if link.status.armed else "")
 
 
 def _prearm_check_failed(system: System, moment: Moment) -> Trigger | None:
-    return _first_vehicle(system, lambda link: "" if link.prearm_ok else f"fails its pre-arm checks{last_text(link)}")
+    return _first_vehicle(
+        system, lambda link: "" if link.status.prearm_ok else f"fails its pre-arm checks{link.status.last_text}"
+    )
 
 
 def _position_unknown(system: System, moment: Moment) -> Trigger | None:
@@ -125,14 +126,22 @@ def _link_latency_exceeded(system: System, moment: Moment) -> Trigger | None:
 
 
 def _disarmed_in_flight(system: System, moment: Moment) -> Trigger | None:
-    return _first_vehicle(system, lambda link: "" if link.armed else f"has disarmed itself{last_text(link)}")
+    return _first_vehicle(
+        system, lambda link: "" if link.status.armed else f"has disarmed itself{link.status.last_text}"
+    )
 
 
 def _offboard_left(system: System, moment: Moment) -> Trigger | None:
     def problem(link: VehicleLink) -> str:
-        return "" if link.offboard else f"has left OFFBOARD for {px4.mode_name(link.custom_mode)}{last_text(link)}"
+        return (
+            ""
+            if link.status.offboard
+            else f"has left OFFBOARD for {px4.mode_name(link.status.custom_mode)}{link.status.last_text}"
+        )
 
-    return _first_vehicle(system, problem, lambda link: link.parameters[px4.PARAM_SETPOINT_LOSS] + link.clock.delay)
+    return _first_vehicle(
+        system, problem, lambda link: link.status.parameters[px4.PARAM_SETPOINT_LOSS] + link.clock.delay
+    )
 
 
 def _telemetry_incomplete(system: System, moment: Moment) -> Trigger | None:

@@ -115,12 +115,12 @@ class GroundStation:
             messages[i].extend(due)
             carries_setpoints[i] = True
         for link, queue in zip(self.links, messages, strict=True):
-            queue.extend(link.requests_to_send(now))
+            queue.extend(link.requests.due(now))
         out = []
         for link, queue, repeated in zip(self.links, messages, carries_setpoints, strict=True):
             if link.address is None:
                 continue
-            copies = link.copies if repeated else 1
+            copies = link.setpoints.copies if repeated else 1
             for datagram in gather(self._codec.encode(message) for message in queue):
                 out += [(datagram, link.address)] * copies
                 self._recorder.datagram(now, datagram)
@@ -140,7 +140,7 @@ class GroundStation:
     def _step(self, now: float, messages: list[list[Message]]) -> None:
         """Make one control step and add its messages to those of each vehicle."""
         time = self._clock.time(now)
-        delays = np.array([link.setpoint_delay for link in self.links])
+        delays = np.array([link.setpoints.delay for link in self.links])
         waits = self._schedule.waits(delays)
         self._update_obstacle_map(time)
         leaves = time + self._schedule.latency + waits
@@ -164,7 +164,7 @@ class GroundStation:
         if obstacle_map is None:
             return
         obstacle_map.scans.range_sensors.set_failed(
-            {i for i, link in enumerate(self.links) if not link.obstacle_sensing_valid}, time
+            {i for i, link in enumerate(self.links) if not link.status.obstacle_sensing_valid}, time
         )
         noise = math.sqrt(estimator.health.adaptation.measurement_scale)
         obstacle_map.update(time, noise, estimator.unusable_poses(Position), estimator.unusable_poses(Attitude))
@@ -188,8 +188,8 @@ class GroundStation:
             messages.append(stop_plan_message(start, plan.duration, plan.control_points[i].tolist()))
         if setpoints is not None:
             direction, thrust = setpoints.directions[i], float(setpoints.thrusts[i])
-            thrust_max = link.parameters[px4.PARAM_THRUST_MAX]
-            messages.append(attitude_target(link.system_id, link.stamp(now), direction, thrust, thrust_max))
+            thrust_max = link.status.parameters[px4.PARAM_THRUST_MAX]
+            messages.append(attitude_target(link.system_id, link.setpoints.stamp(now), direction, thrust, thrust_max))
         return messages
 
 

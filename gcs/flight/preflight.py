@@ -46,7 +46,7 @@ class Preflight:
             self.connect_start = now
         self.missing = ""
         for link in self._team.links:
-            link.want_parameters(NEEDED_PARAMETERS)
+            link.requests.want_parameters(NEEDED_PARAMETERS)
             if not self.missing and (missing := self._missing(link, now)):
                 self.missing = f"vehicle {link.system_id} {missing}"
         return not self.missing
@@ -88,6 +88,6 @@ class Preflight:
             return "sends no attitude and position"
         if now - link.payload_received_at > timeout:
             return "relays no payload navigation data"
-        if absent := [name for name in NEEDED_PARAMETERS if name not in link.parameters]:
+        if absent := [name for name in NEEDED_PARAMETERS if name not in link.status.parameters]:
             return "does not send " + ", ".join(absent)
-        return "has not reported whether it is ready" if link.prearm_ok is None else ""
+        return "has not reported whether it is ready" if link.status.prearm_ok is None else ""

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink import px4
-from gcs.mavlink.vehicle_link import Command, CommandState, VehicleLink
+from gcs.mavlink.requests import Command, CommandState
+from gcs.mavlink.vehicle_link import VehicleLink
 from idc_controller.parameters import SystemParameters
 
 
@@ -22,7 +23,7 @@ class Team:
 
     def command_all(self, number: int, *parameters: float) -> None:
         """Send a command to every vehicle."""
-        self._commands = [(link, link.command(number, *parameters)) for link in self.links]
+        self._commands = [(link, link.requests.command(number, *parameters)) for link in self.links]
 
     @property
     def answered(self) -> bool:
@@ -36,7 +37,7 @@ class Team:
             if command.state is CommandState.REFUSED and command.result is not None:
                 result = mavlink.enums["MAV_RESULT"].get(command.result)
                 name = result.name.removeprefix("MAV_RESULT_").lower() if result else str(command.result)
-                return f"vehicle {link.system_id} answers {command.name} with {name}{last_text(link)}"
+                return f"vehicle {link.system_id} answers {command.name} with {name}{link.status.last_text}"
             if command.state is CommandState.UNANSWERED:
                 return f"vehicle {link.system_id} does not answer {command.name}"
         return None
@@ -44,24 +45,19 @@ class Team:
     @property
     def armed(self) -> bool:
         """Whether every vehicle is armed."""
-        return all(link.armed for link in self.links)
+        return all(link.status.armed for link in self.links)
 
     @property
     def disarmed(self) -> bool:
         """Whether every vehicle is disarmed."""
-        return not any(link.armed for link in self.links)
+        return not any(link.status.armed for link in self.links)
 
     @property
     def land_delay(self) -> float:
         """Time after which a vehicle without set-points descends (s)."""
-        return min(link.parameters[px4.PARAM_LAND_DELAY] for link in self.links)
+        return min(link.status.parameters[px4.PARAM_LAND_DELAY] for link in self.links)
 
     def reachable_are_disarmed(self, now: float, timeout: float) -> bool:
         """Return whether every vehicle with telemetry newer than ``timeout`` (s), and at least one, is disarmed."""
         reachable = [link for link in self.links if now - link.telemetry_received_at <= timeout]
-        return bool(reachable) and not any(link.armed for link in reachable)
-
-
-def last_text(link: VehicleLink) -> str:
-    """Return the last STATUSTEXT of a vehicle in brackets; empty: there is none."""
-    return f" ({link.texts[-1]})" if link.texts else ""
+        return bool(reachable) and not any(link.status.armed for link in reachable)

@@ -117,16 +117,16 @@ class TelemetryRouter:
         self, message: mavlink.MAVLink_attitude_target_message, index: int, time: float, latest: float, now: float
     ) -> None:
         link, flight = self._links[index], self._flight
-        setpoint = setpoint_flown(message, link.parameters.get(px4.PARAM_THRUST_MAX, math.nan))
+        setpoint = setpoint_flown(message, link.status.parameters.get(px4.PARAM_THRUST_MAX, math.nan))
         if setpoint is None or flight.phase not in IN_AIR:
             return
         # Its stamp is that of the moment at which it began to act.
         until = min(max(time, latest), self._clock.time(now))
         confirmation = flight.control.estimator.confirm_setpoint(
-            index, time, until, setpoint, link.clock.spread, link.latency_max
+            index, time, until, setpoint, link.clock.spread, link.setpoints.delay_max
         )
         if confirmation is not None:
-            link.confirm_setpoint(confirmation)
+            link.setpoints.confirm(confirmation)
 
     def _add_measurement(self, received: Received, index: int, time: float) -> None:
         obstacle_map = self._flight.system.obstacle_map

@@ -1,12 +1,18 @@
-"""Set-points: the controller's output as a SET_ATTITUDE_TARGET for each vehicle, and with it a stop plan."""
+"""Set-points: SET_ATTITUDE_TARGET and the stop plan beside it, and their delay and loss on the link."""
 
 from __future__ import annotations
 
+import math
+from collections import deque
 from collections.abc import Sequence
+from statistics import median
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink import px4
+from gcs.mavlink.clock import RemoteClock
+from gcs.mavlink.settings import LinkSettings
+from idc_controller.estimation.setpoint_history import Confirmation
 from idc_controller.rotations_float import attitude_of_direction
 
 IGNORE_RATES = (
@@ -51,3 +57,60 @@ def stop_plan_message(
         delta=[duration] * points,
         pos_yaw=[0.0] * points,
     )
+
+
+class SetpointStream:
+    """Stamps, copies, delay and loss of the set-points to one vehicle. Times are the ground's (s) unless said."""
+
+    def __init__(self, clock: RemoteClock, parameters: dict[str, float], settings: LinkSettings) -> None:
+        self._clock, self._parameters, self._settings = clock, parameters, settings
+        self._delays: deque[float] = deque(maxlen=settings.delays)
+        self._last_stamp = -math.inf
+        self.loss = 0.0
+        """Share of the set-points that do not arrive, by its confirmations."""
+        self.lost = 0
+        """Number of set-points found to be lost."""
+
+    @property
+    def copies(self) -> int:
+        """How often to send what must arrive; once on a congested link, whose latency copies would increase."""
+        if self._clock.lag > self._settings.congestion_lag:
+            return 1
+        return 1 + (self.loss > self._settings.second_copy_loss) + (self.loss > self._settings.third_copy_loss)
+
+    @property
+    def delay(self) -> float:
+        """From when a set-point is sent until the vehicle flies it: by its confirmations, else by round trips."""
+        if len(self._delays) == self._settings.delays:
+            # Round trips are worse: on a link that loses or reorders, those that arrive are not late.
+            return median(self._delays)
+        return self._clock.delay + self._onboard_period
+
+    @property
+    def delay_max(self) -> float:
+        """The longest that a set-point can take, by round trips."""
+        return self._clock.round_trip_max + 2.0 * self._onboard_period + self._settings.stamp_error
+
+    def stamp(self, now: float) -> float:
+        """Return the stamp of a set-point that is sent at ``now``, by the vehicle's clock (s).
+
+        Where that is set back, stamps are not: the vehicle would take the set-points for reordered ones.
+        """
+        stamp = now + self._clock.offset
+        if 0.0 < self._last_stamp - stamp < self._settings.stamp_step_back:
+            stamp = self._last_stamp + 0.001
+        self._last_stamp = stamp
+        return stamp
+
+    def confirm(self, confirmation: Confirmation) -> None:
+        """Take the vehicle's report of a set-point that it flew."""
+        if confirmation.delay is not None:
+            self._delays.append(confirmation.delay)
+        if (flown := confirmation.as_sent) is not None:
+            self.loss += self._settings.loss_filter * (float(not flown) - self.loss)
+            self.lost += not flown
+
+    @property
+    def _onboard_period(self) -> float:
+        rate = self._parameters.get(px4.PARAM_ONBOARD_RATE, 0.0)
+        return 1.0 / rate if rate > 0.0 else 0.0

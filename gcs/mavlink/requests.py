@@ -1,0 +1,101 @@
+"""Requests to one vehicle: commands and parameter reads, repeated until they are answered."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+
+import pymavlink.dialects.v20.ardupilotmega as mavlink
+
+from gcs.mavlink import px4
+from gcs.mavlink.messages import Message
+from gcs.mavlink.settings import LinkSettings
+
+
+class CommandState(Enum):
+    """Progress of a command."""
+
+    PENDING = "pending"
+    ACCEPTED = "accepted"
+    REFUSED = "refused"
+    UNANSWERED = "unanswered"
+
+
+@dataclass
+class Command:
+    """A COMMAND_LONG that is sent until it is answered."""
+
+    number: int
+    parameters: tuple[float, ...]
+    state: CommandState = CommandState.PENDING
+    result: int | None = None
+    tries: int = 0
+    next_try: float = -math.inf
+
+    @property
+    def name(self) -> str:
+        """The command's MAVLink name."""
+        entry = mavlink.enums["MAV_CMD"].get(self.number)
+        return entry.name if entry else str(self.number)
+
+
+class Requests:
+    """Commands and parameter reads of one vehicle. Times are the ground's (s)."""
+
+    def __init__(self, system_id: int, parameters: dict[str, float], settings: LinkSettings) -> None:
+        """``parameters`` takes the values that the vehicle answers."""
+        self._system_id, self._parameters, self._settings = system_id, parameters, settings
+        self._commands: dict[int, Command] = {}
+        self._wanted: dict[str, float] = {}
+
+    def want_parameters(self, names: tuple[str, ...]) -> None:
+        """Request parameters until they are known."""
+        for name in names:
+            if name not in self._parameters:
+                self._wanted.setdefault(name, -math.inf)
+
+    def command(self, number: int, *parameters: float) -> Command:
+        """Send a command until it is answered; a new one takes the place of an older one of its number."""
+        command = Command(number, (*parameters, *([0.0] * (7 - len(parameters)))))
+        self._commands[number] = command
+        return command
+
+    def due(self, now: float) -> list[Message]:
+        """Return the requests that are to be sent at ``now``."""
+        messages: list[Message] = []
+        target = self._system_id, px4.AUTOPILOT_COMPONENT
+        for name, due in self._wanted.items():
+            if now >= due:
+                self._wanted[name] = now + self._settings.retry_interval
+                messages.append(mavlink.MAVLink_param_request_read_message(*target, name.encode(), -1))
+        for command in self._commands.values():
+            if command.state is not CommandState.PENDING or now < command.next_try:
+                continue
+            if command.tries >= self._settings.tries:
+                command.state = CommandState.UNANSWERED
+                continue
+            messages.append(
+                mavlink.MAVLink_command_long_message(*target, command.number, command.tries, *command.parameters)
+            )
+            command.tries += 1
+            command.next_try = now + self._settings.retry_interval
+        return messages
+
+    def handle(self, message: Message) -> None:
+        """Take the answer to a request, if ``message`` is one."""
+        if isinstance(message, mavlink.MAVLink_command_ack_message):
+            command = self._commands.get(message.command)
+            pending = command is not None and command.state is CommandState.PENDING
+            if command is not None and pending and message.result != mavlink.MAV_RESULT_IN_PROGRESS:
+                command.result = message.result
+                accepted = message.result == mavlink.MAV_RESULT_ACCEPTED
+                command.state = CommandState.ACCEPTED if accepted else CommandState.REFUSED
+        elif isinstance(message, mavlink.MAVLink_param_value_message):
+            try:
+                value = px4.parameter_from_wire(message.param_value, message.param_type)
+            except ValueError:
+                return
+            if math.isfinite(value):
+                self._parameters[message.param_id] = float(value)
+                self._wanted.pop(message.param_id, None)
