@@ -6,7 +6,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from gcs.mavlink.requests import CommandState
 from standing_obstacles import StandingObstacles
 
 from gcs.campaign.scenarios.judgement import least_separation
@@ -15,6 +14,7 @@ from gcs.drivers.connection import Connection
 from gcs.drivers.interrupt import Interrupt
 from gcs.drivers.lockstep import run_in_lockstep
 from gcs.flight import stack
+from gcs.mavlink.requests import CommandState
 from gcs.mavlink.vehicle_link import VehicleLink
 from idc_controller.estimation.health.channel_isolation import ChannelIsolation
 from idc_controller.estimation.measurement_model import MeasurementModel

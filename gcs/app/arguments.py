@@ -1,7 +1,5 @@
 """Types of command-line arguments that several commands of both programs have."""
 
-from __future__ import annotations
-
 import argparse
 import math
 

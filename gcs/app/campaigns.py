@@ -1,7 +1,5 @@
 """What the commands that fly campaigns share: their arguments, the run, and what is printed at the end."""
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The command ``gcs``: a table of its sub-commands, each a module of :mod:`gcs.app.commands`."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 from collections.abc import Sequence

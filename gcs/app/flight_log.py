@@ -1,7 +1,5 @@
 """The log of a flight: phases, modes, alarms, links and clocks, as they change."""
 
-from __future__ import annotations
-
 import logging
 import math
 

@@ -1,7 +1,5 @@
 """``gcs fly``: a mission file, a swarm, a driver and a run folder become one flight with a summary."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 import sys

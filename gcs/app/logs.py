@@ -5,8 +5,6 @@ changes and connections are INFO, alarms and failsafes WARNING, the reason for a
 DEBUG.
 """
 
-from __future__ import annotations
-
 import argparse
 import logging
 import sys

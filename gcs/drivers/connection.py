@@ -1,7 +1,5 @@
 """The ground's socket."""
 
-from __future__ import annotations
-
 import select
 import socket
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """Lockstep: the world's clock is the ground's clock (see :mod:`gcs.mavlink.lockstep`)."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

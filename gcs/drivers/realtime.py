@@ -1,7 +1,5 @@
 """Real time: UDP on the monotonic clock, which may run faster or slower than the world's."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 

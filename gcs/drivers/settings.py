@@ -1,7 +1,5 @@
 """Settings of the drivers: how long they wait, in wall time, for the simulated world and for datagrams."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from idc_controller.settings import setting

@@ -1,7 +1,5 @@
 """What describes a kind of fault, and how its parameters are declared."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal, TypeVar, dataclass_transform

@@ -1,7 +1,5 @@
 """The table of all kinds, and the strict reading of their parameters."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping
 from functools import cache

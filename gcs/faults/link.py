@@ -1,7 +1,5 @@
 """Faults of the links: what happens to datagrams on a link."""
 
-from __future__ import annotations
-
 from typing import Annotated
 
 from gcs.faults.kind import FaultSettings, kind, parameter

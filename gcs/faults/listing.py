@@ -1,7 +1,5 @@
 """The kinds of fault for people: as a list on the terminal, and as tables of the documentation."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from typing import Any

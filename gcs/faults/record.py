@@ -1,7 +1,5 @@
 """What a run folder says of its faults."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

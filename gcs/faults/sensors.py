@@ -1,7 +1,5 @@
 """Faults of the sensors: a measurement on board is lost or wrong."""
 
-from __future__ import annotations
-
 from typing import Annotated
 
 from gcs.faults.kind import FaultSettings, kind, parameter

@@ -1,7 +1,5 @@
 """Faults of timing: rates, clocks and stamps, and a ground that hangs."""
 
-from __future__ import annotations
-
 from typing import Annotated
 
 from gcs.faults.kind import FaultSettings, kind, parameter

@@ -4,8 +4,6 @@ The channels' units: position m and velocity m/s in the world (north-east-down);
 world to body, rad; rates rad/s in the body frame; obstacles: the places of the points, m in the body frame.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Annotated, Literal
 

@@ -1,7 +1,5 @@
 """Faults of the world: wind, and a load that changes."""
 
-from __future__ import annotations
-
 from typing import Annotated
 
 from gcs.config import SystemConfig

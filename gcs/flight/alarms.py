@@ -1,7 +1,5 @@
 """Alarms: codes with a MAVLink severity and a text for people, and the log of those that were raised."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Sequences of commands to all vehicles: arm, disarm, land autonomously."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink

@@ -7,15 +7,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from idc_controller.arrays import Array
 from idc_controller.control.controller import Decision, IntegratedDecisionController
 from idc_controller.estimation.estimate import Estimate
 from idc_controller.estimation.estimator import Estimator
 from idc_controller.trajectory.stop_plan import Braking, StopPlan, stop_plan
 from idc_controller.trajectory.trajectory import Trajectory
-
-Array = NDArray[np.float64]
 
 STOP_PLANS = 100
 """Control steps whose stop plans are kept; more than a vehicle flies without set-points."""

@@ -3,15 +3,12 @@
 To add one, add its code to :class:`MonitorAlarm` and a detector to :func:`detectors`.
 """
 
-from __future__ import annotations
-
 from collections import defaultdict, deque
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.stats import chi2
 
 from gcs.config.flight_settings import MonitorSettings
@@ -23,8 +20,6 @@ from gcs.mavlink.vehicle_link import VehicleLink
 from idc_controller.estimation.health.innovation_monitor import Finding, InnovationMonitor
 from idc_controller.estimation.measurements import PAYLOAD, Position
 from idc_controller.estimation.settings import InnovationMonitorSettings
-
-Array = NDArray[np.float64]
 
 
 class Scope(Enum):

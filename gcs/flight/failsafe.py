@@ -4,8 +4,6 @@ Whoever ends or changes a flight raises a member of :class:`Failsafe`; the more 
 member here, with its condition. ``docs/failsafes.md`` is made from this table.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable
 

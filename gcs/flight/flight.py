@@ -1,12 +1,9 @@
 """One flight, from connecting to disarming: its phases, the control step in each, and the reactions to failsafes."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcs.flight.alarms import AlarmLog
 from gcs.flight.command_sequences import Arming, AutonomousLanding, CommandSequence, Disarming
@@ -20,13 +17,12 @@ from gcs.flight.preflight import Preflight
 from gcs.flight.spool import SpoolDown, spool_up_share
 from gcs.flight.team import Team
 from gcs.mission.model import Mission
+from idc_controller.arrays import Array
 from idc_controller.estimation.estimate import Estimate
 from idc_controller.estimation.measurements import Measurement
 from idc_controller.perception.obstacle_map import ObstacleMap
 from idc_controller.trajectory.reference import Reference
 from idc_controller.trajectory.trajectory import RestTrajectory, Trajectory
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,8 +3,6 @@
 Data flow: datagram -> telemetry router -> estimator -> controller -> set-point schedule -> datagram.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Protocol
 

@@ -1,7 +1,5 @@
 """Tables of failsafes and alarms for ``docs/failsafes.md``: ``python -m gcs.flight.listing > docs/failsafes.md``."""
 
-from __future__ import annotations
-
 from dataclasses import asdict
 
 from gcs.config.flight_settings import DEFAULTS, FlightSettings

@@ -1,24 +1,20 @@
 """Mission trajectory: one trajectory of the payload from pad to ground, made of take-off, mission and landing."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcs.config import MotionConfig
 from gcs.mission.model import Lissajous, Mission
 from gcs.mission.route import Circle, FlyTo, HoldForever, Land, Leg, Speed, TakeOff
+from idc_controller.arrays import Array
 from idc_controller.trajectory import paths
 from idc_controller.trajectory.cached import CachedTrajectory
 from idc_controller.trajectory.lissajous import LissajousCurve, LissajousTrajectory
 from idc_controller.trajectory.settings import Limits
 from idc_controller.trajectory.trajectory import Trajectory
 from idc_controller.trajectory.waypoints import WaypointTrajectory
-
-Array = NDArray[np.float64]
 
 
 class MissionTrajectory:

@@ -1,11 +1,8 @@
 """Flight monitor: runs the detectors once a control step; what they find goes to the alarm log."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcs.config.flight_settings import DEFAULTS, MonitorSettings
 from gcs.flight.alarms import AlarmLog
@@ -14,6 +11,7 @@ from gcs.flight.detectors import MonitorStep, detectors
 from gcs.flight.flight import Flight
 from gcs.flight.phase import IN_AIR
 from gcs.mavlink.id_check import SystemIdCheck
+from idc_controller.arrays import Array
 
 
 class FlightMonitor:
@@ -24,7 +22,7 @@ class FlightMonitor:
     ) -> None:
         self._flight, self._id_check, self._log, self._settings = flight, id_check, log, settings
         self._detectors = detectors(flight, settings)
-        self._tilts: NDArray[np.float64] | None = None
+        self._tilts: Array | None = None
         self._steady_from = -math.inf
 
     def step(self, time: float, now: float, record: StepRecord | None) -> None:
@@ -38,7 +36,7 @@ class FlightMonitor:
         for detector in self._detectors:
             detector(step)
 
-    def _is_steady(self, time: float, tilts: NDArray[np.float64]) -> bool:
+    def _is_steady(self, time: float, tilts: Array) -> bool:
         """Return True if no tilt set-points (2 N,) (rad) of late stepped beyond the attitude loop's linear model."""
         s = self._settings
         if self._tilts is not None and float(np.abs(tilts - self._tilts).max()) > s.manoeuvre_tilt:

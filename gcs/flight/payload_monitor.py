@@ -1,7 +1,5 @@
 """Payload state from the estimate: clear of the ground, touched down, out of control, descent stalled."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Flight phases."""
 
-from __future__ import annotations
-
 from enum import Enum
 
 

@@ -1,19 +1,15 @@
 """Before take-off: all data that a flight needs, and where payload and vehicles are on the ground."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcs.config.flight_settings import DEFAULTS, FlightSettings
 from gcs.flight.team import Team
 from gcs.mavlink import px4
 from gcs.mavlink.vehicle_link import VehicleLink
+from idc_controller.arrays import Array
 from idc_controller.estimation.measurements import PAYLOAD, Measurement, Position
-
-Array = NDArray[np.float64]
 
 NEEDED_PARAMETERS = (
     px4.PARAM_THRUST_MAX,

@@ -1,19 +1,13 @@
 """Delayed set-points: those to vehicles with short links wait, so that all vehicles act simultaneously."""
 
-from __future__ import annotations
-
 import math
 from collections import deque
 from statistics import median
 
-import numpy as np
-from numpy.typing import NDArray
-
 from gcs.config.flight_settings import DEFAULTS, TimingSettings
 from gcs.flight.team_clock import TOLERANCE
 from gcs.mavlink.messages import Message
-
-Array = NDArray[np.float64]
+from idc_controller.arrays import Array
 
 
 class SetpointSchedule:

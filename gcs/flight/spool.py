@@ -1,7 +1,5 @@
 """Share of the hover thrust while the payload is on the ground: spool-up before the climb, spool-down after landing."""
 
-from __future__ import annotations
-
 from gcs.config.flight_settings import DEFAULTS, TakeoffLandingSettings
 
 

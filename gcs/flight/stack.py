@@ -1,7 +1,5 @@
 """From a system file to the mathematics that flies it: model, estimator and controller."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

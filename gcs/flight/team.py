@@ -1,7 +1,5 @@
 """The vehicles as a team: commands to all, and their common state."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink

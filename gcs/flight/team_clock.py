@@ -1,7 +1,5 @@
 """Team time: the boot time of the first vehicle, and the control steps on whole periods of it."""
 
-from __future__ import annotations
-
 import math
 
 from gcs.config.flight_settings import DEFAULTS, TimingSettings

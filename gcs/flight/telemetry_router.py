@@ -1,7 +1,5 @@
 """Telemetry routing: datagram -> codec -> vehicle link -> system-id check -> estimator and obstacle map."""
 
-from __future__ import annotations
-
 import math
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink

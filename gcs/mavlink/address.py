@@ -1,7 +1,5 @@
 """Connection URLs: where a vehicle listens, or where the ground listens for vehicles."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The clock of one vehicle as the ground estimates it: offset of its boot time, and link latency."""
 
-from __future__ import annotations
-
 import math
 from collections import deque
 from statistics import median

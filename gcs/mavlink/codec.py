@@ -1,7 +1,5 @@
 """Bytes to MAVLink messages and back, robust against whatever a datagram may hold. No socket, no clock."""
 
-from __future__ import annotations
-
 import struct
 from collections.abc import Iterable
 

@@ -4,14 +4,12 @@ Their telemetry is plausible in itself, and a loop that is closed over it pushes
 Their positions show it: each is at the other's estimate.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gcs.mavlink.settings import IdCheckSettings
+from idc_controller.arrays import Array
 from idc_controller.estimation.measurements import PAYLOAD, Measurement, Position
 
 
@@ -21,7 +19,7 @@ class SystemIdCheck:
     def __init__(self, number_of_uavs: int, settings: IdCheckSettings | None = None) -> None:
         self._settings = settings or IdCheckSettings()
         self._vehicle_of = list(range(number_of_uavs))
-        self._positions: dict[int, NDArray[np.float64]] = {}
+        self._positions: dict[int, Array] = {}
         self._suspected: dict[int, int] = {}
         self._steps = 0
 
@@ -51,9 +49,7 @@ class SystemIdCheck:
             self._suspected, self._steps = {}, 0
 
 
-def _swapped(
-    positions: dict[int, NDArray[np.float64]], places: NDArray[np.float64], distance_ratio: float
-) -> dict[int, int]:
+def _swapped(positions: dict[int, Array], places: Array, distance_ratio: float) -> dict[int, int]:
     """Return vehicles whose ``positions`` are at each other's ``places`` (N, 3), and at which; otherwise none."""
     at = {}
     for vehicle, position in positions.items():

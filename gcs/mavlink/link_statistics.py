@@ -1,7 +1,5 @@
 """Statistics of a link by sequence numbers: messages lost, reordered, duplicated."""
 
-from __future__ import annotations
-
 from collections import deque
 
 from gcs.mavlink import px4

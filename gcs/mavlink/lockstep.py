@@ -10,8 +10,6 @@ is due on either side.
 The barrier carries time alone and stands outside MAVLink, so that no fault on a link can stop the clock.
 """
 
-from __future__ import annotations
-
 import struct
 from dataclasses import dataclass
 

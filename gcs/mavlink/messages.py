@@ -4,8 +4,6 @@ A message is recognised by its class (``isinstance``), so that its fields have t
 ArduPilot's dialect, which holds the common one; a class of another dialect is another class.
 """
 
-from __future__ import annotations
-
 from operator import attrgetter
 from typing import NamedTuple
 

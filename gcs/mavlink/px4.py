@@ -3,8 +3,6 @@
 Sources: PX4 ``px4_custom_mode.h``; MAVLink parameter protocol, "byte-wise" encoding.
 """
 
-from __future__ import annotations
-
 import struct
 from enum import IntEnum
 

@@ -1,7 +1,5 @@
 """Requests to one vehicle: commands and parameter reads, repeated until they are answered."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from enum import Enum

@@ -1,7 +1,5 @@
 """Set-points: SET_ATTITUDE_TARGET and the stop plan beside it, and their delay and loss on the link."""
 
-from __future__ import annotations
-
 import math
 from collections import deque
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """Settings of the links between ground and vehicles: clocks, latencies, retries, copies."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 from idc_controller.settings import setting

@@ -1,19 +1,15 @@
 """Telemetry: MAVLink messages of the vehicles become measurements for the estimator."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
-from numpy.typing import NDArray
 
 from gcs.mavlink import px4
 from gcs.mavlink.messages import Received
+from idc_controller.arrays import Array
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, Position
 from idc_controller.perception.scan_assembly import Detection
-
-Array = NDArray[np.float64]
 
 
 def setpoint_flown(message: mavlink.MAVLink_attitude_target_message, thrust_max: float) -> Array | None:

@@ -1,7 +1,5 @@
 """Reading UDP sockets, for both ends of the wire."""
 
-from __future__ import annotations
-
 import socket
 from collections.abc import Iterator
 

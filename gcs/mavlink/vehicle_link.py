@@ -1,7 +1,5 @@
 """The link to one vehicle: what it last reported and when, its clock, and what it is sent."""
 
-from __future__ import annotations
-
 import math
 from collections import deque
 from dataclasses import dataclass, field

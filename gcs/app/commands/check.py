@@ -1,7 +1,5 @@
 """``gcs check``: what a mission file says."""
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """``gcs courses``: campaigns of random obstacle scenarios."""
 
-from __future__ import annotations
-
 import argparse
 from functools import partial
 from pathlib import Path

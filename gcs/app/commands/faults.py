@@ -1,7 +1,5 @@
 """``gcs faults``: the kinds of fault, and campaigns of them."""
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 

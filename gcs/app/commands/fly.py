@@ -1,7 +1,5 @@
 """``gcs fly``: its arguments, and what it prints."""
 
-from __future__ import annotations
-
 import argparse
 import json
 from functools import partial

@@ -1,7 +1,5 @@
 """``gcs report``: pictures of a run."""
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 

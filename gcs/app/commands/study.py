@@ -1,7 +1,5 @@
 """``gcs study``: campaigns with one parameter changed at a time."""
 
-from __future__ import annotations
-
 import argparse
 from functools import partial
 from pathlib import Path
