@@ -60,6 +60,23 @@ class SampledSettings:
     rate: float = derived(25.0)
     """Of the samples (Hz)."""
 
-    def count(self, time: float) -> int:
-        """Return how many samples there are in a ``time`` (s), one or more."""
-        return max(round(time * self.rate), 1)
+
+@dataclass(frozen=True)
+class SampleCount:
+    """Attribute of :class:`SampledSettings`: the number of samples, one or more, in its setting ``time`` (s)."""
+
+    time: str
+
+    def __get__(self, settings: SampledSettings, owner: type[SampledSettings]) -> int:
+        time: float = getattr(settings, self.time)
+        return max(round(time * settings.rate), 1)
+
+
+@dataclass(frozen=True)
+class SampleShare:
+    """Attribute of :class:`SampledSettings`: the share of a sample in a mean over its setting ``time``."""
+
+    time: str
+
+    def __get__(self, settings: SampledSettings, owner: type[SampledSettings]) -> float:
+        return 1.0 / SampleCount(self.time).__get__(settings, owner)

@@ -259,8 +259,8 @@ def test_estimated_vehicles_match_measurement_model():
     flat = REFERENCE.at(np.zeros(1))
     model = Estimator(MODEL).measurement_model
     for measurement in model.vehicles(0.0, moved):
-        observation = model.observations[measurement.source, type(measurement)]
-        expected = observation.rows @ (moved - flat.x[0])
+        rows, _ = model.observations[measurement.source, type(measurement)]
+        expected = rows @ (moved - flat.x[0])
         assert model.innovation(measurement, flat, 0) == pytest.approx(expected, abs=2e-3)
 
 

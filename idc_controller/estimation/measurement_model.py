@@ -15,16 +15,6 @@ from idc_controller.trajectory.flatness import FlatReference
 
 
 @dataclass(frozen=True)
-class Observation:
-    """Rows of one kind of measurement of one source."""
-
-    rows: Array
-    """(k, n)"""
-    variance: Array
-    """(k,)"""
-
-
-@dataclass(frozen=True)
 class ObservationStack:
     """Observations of one moment, one below the other."""
 
@@ -41,7 +31,7 @@ class ObservationStack:
     rows_by_size: tuple[Indices, ...]
     """Rows of the observations of one size, (count, size) for each size that there is."""
     of_payload: Mask
-    """Which rows (m,) are the payload's."""
+    """Rows (m,) of the payload."""
     uavs: Indices
     """UAVs whose position is observed (K,)."""
     heights: Indices
@@ -90,41 +80,41 @@ class MeasurementModel:
             attitude = max(noise.attitude, floor.attitude_noise_min)
             return np.repeat([attitude, max(rates, floor.rates_noise_min)], axes) ** 2
 
-        self.observations: dict[SensorKey, Observation] = {
-            (PAYLOAD, Attitude): Observation(
+        self.observations: dict[SensorKey, tuple[Array, Array]] = {
+            (PAYLOAD, Attitude): (
                 np.vstack([identity[layout.Theta], identity[layout.omega]]),
                 attitude_variance(noise.payload_rates, 3),
-            )
+            ),
+            (PAYLOAD, Position): (
+                np.vstack([identity[layout.r_0], identity[layout.v_0]]),
+                position_variance(noise.payload_velocity),
+            ),
         }
-        self.observations[PAYLOAD, Position] = Observation(
-            np.vstack([identity[layout.r_0], identity[layout.v_0]]),
-            position_variance(noise.payload_velocity),
-        )
+        """Rows (k, n) and variances (k,) of each kind of measurement of each source."""
         for i in range(N):
             three, two = slice(3 * i, 3 * i + 3), slice(2 * i, 2 * i + 2)
-            self.observations[i, Position] = Observation(
+            self.observations[i, Position] = (
                 np.vstack([model.uav_position_rows[three], model.uav_velocity_rows[three]]),
                 position_variance(noise.uav_velocity),
             )
-            self.observations[i, Attitude] = Observation(
+            self.observations[i, Attitude] = (
                 np.vstack([identity[layout.n][two], identity[layout.n_dot][two]]),
                 attitude_variance(noise.uav_rates, 2),
             )
-
         self._stacks: dict[tuple[SensorKey, ...], ObservationStack] = {}
 
     def stack(self, keys: tuple[SensorKey, ...]) -> ObservationStack:
         """Return the observations of these sensors."""
         if (found := self._stacks.get(keys)) is None:
             observations = [self.observations[key] for key in keys]
-            sizes = np.array([len(observation.variance) for observation in observations])
+            sizes = np.array([len(variance) for _, variance in observations])
             _, starts, _ = _blocks(sizes)
             tilted = [(i, start + 2) for (i, kind), start in zip(keys, starts.tolist(), strict=True)
                       if kind is Position and i != PAYLOAD]  # fmt: skip
             found = self._stacks[keys] = ObservationStack(
                 keys,
-                np.vstack([observation.rows for observation in observations]),
-                np.concatenate([observation.variance for observation in observations]),
+                np.vstack([rows for rows, _ in observations]),
+                np.concatenate([variance for _, variance in observations]),
                 *_blocks(sizes),
                 np.repeat([i == PAYLOAD for i, _ in keys], sizes),
                 np.array([i for i, _ in tilted], dtype=int),

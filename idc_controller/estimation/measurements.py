@@ -27,12 +27,12 @@ class _Sample:
 
     @property
     def has_pose(self) -> bool:
-        """Whether the pose was measured."""
+        """Return whether the pose was measured."""
         return not math.isnan(self.pose[0])
 
     @property
     def has_motion(self) -> bool:
-        """Whether the motion was measured."""
+        """Return whether the motion was measured."""
         return not math.isnan(self.motion[0])
 
     def same_values(self, other: object) -> bool:

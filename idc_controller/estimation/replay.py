@@ -3,6 +3,7 @@
 import bisect
 import math
 from dataclasses import dataclass
+from operator import attrgetter
 
 from idc_controller.arrays import Array
 from idc_controller.estimation.health.sensor_health import HealthSnapshot
@@ -28,7 +29,7 @@ class MeasurementHistory:
     def add(self, measurement: Measurement, applied: float) -> float | None:
         """Add one; return the time of its moment, or None if it adds nothing to what was ``applied`` until then (s)."""
         time = measurement.time
-        at = bisect.bisect_left(self._moments, time - self._simultaneous, key=_time_of)
+        at = bisect.bisect_left(self._moments, time - self._simultaneous, key=attrgetter("time"))
         if at < len(self._moments) and self._moments[at].time <= time + self._simultaneous:
             moment = self._moments[at]
         else:
@@ -42,7 +43,7 @@ class MeasurementHistory:
 
     def after(self, time: float) -> list[Moment]:
         """Return the moments after ``time`` (s)."""
-        return self._moments[bisect.bisect_right(self._moments, time, key=_time_of) :]
+        return self._moments[bisect.bisect_right(self._moments, time, key=attrgetter("time")) :]
 
     def has(self, key: SensorKey, since: float) -> bool:
         """Return whether there is a measurement of a source and kind after ``since`` (s)."""
@@ -50,7 +51,7 @@ class MeasurementHistory:
 
     def forget(self, until: float) -> None:
         """Discard all moments until that time (s)."""
-        del self._moments[: bisect.bisect_right(self._moments, until, key=_time_of)]
+        del self._moments[: bisect.bisect_right(self._moments, until, key=attrgetter("time"))]
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,12 +106,8 @@ class ReplayBuffer:
     def forget(self) -> float:
         """Discard what is older than the duration; return the oldest time that is left (s)."""
         horizon = self.time - self._duration
-        keep = max(bisect.bisect_right(self.snapshots, horizon, key=lambda s: s.time) - 1, 0)
+        keep = max(bisect.bisect_right(self.snapshots, horizon, key=attrgetter("time")) - 1, 0)
         del self.snapshots[:keep]
         oldest = self.snapshots[0].time
         self.measurements.forget(oldest)
         return oldest
-
-
-def _time_of(moment: Moment) -> float:
-    return moment.time

@@ -3,6 +3,7 @@
 import bisect
 import math
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import NamedTuple
 
 import numpy as np
@@ -23,9 +24,9 @@ class _Entry:
     starts: Array
     """When they take effect on each vehicle (N,) (s)."""
     confirmed: Mask
-    """Which vehicles (N,) have reported that, or that they never flew them."""
+    """Vehicles (N,) that have reported that, or that they never flew them."""
     exact: bool = True
-    """Whether all take effect at ``effective``."""
+    """True if all take effect at ``effective``."""
 
 
 class InForce(NamedTuple):
@@ -78,7 +79,7 @@ class SetpointHistory:
         """
         starts, confirmed = np.full(self._N, effective), np.zeros(self._N, dtype=bool)
         entry = _Entry(effective, starts.copy() if sent_at is None else sent_at, u, u, starts, confirmed)
-        bisect.insort(self._entries, entry, key=_effective)
+        bisect.insort(self._entries, entry, key=attrgetter("effective"))
 
     def switches(self, start: float, end: float) -> list[float]:
         """Return the times between ``start`` and ``end`` (s) at which other set-points should take effect."""
@@ -205,12 +206,8 @@ class SetpointHistory:
 
     def _at(self, time: float) -> int:
         """Return the index of the last entry that should be in force at ``time``; -1: none."""
-        return bisect.bisect_right(self._entries, time, key=_effective) - 1
+        return bisect.bisect_right(self._entries, time, key=attrgetter("effective")) - 1
 
     def _learn(self, uav: int, lost: float) -> None:
         share = self.loss[uav] + self._settings.loss_share * (lost - self.loss[uav])
         self.loss[uav] = max(share, self._settings.loss_min)
-
-
-def _effective(entry: _Entry) -> float:
-    return entry.effective

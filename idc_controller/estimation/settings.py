@@ -4,7 +4,7 @@ from dataclasses import dataclass, field, replace
 from typing import Self
 
 from idc_controller.errors import ParameterError
-from idc_controller.settings import SampledSettings, derived, setting
+from idc_controller.settings import SampleCount, SampledSettings, SampleShare, derived, setting
 
 
 @dataclass(frozen=True)
@@ -51,11 +51,8 @@ class CovarianceResetSettings(SampledSettings):
     link_rate: float = setting(0.03, "1/s", "added to the derivatives of the link directions", ge=0.0)
     force: float = setting(3.0, "N", "raised uncertainty of the disturbance force on the payload", ge=0.0)
     payload_time: float = setting(0.12, "s", "of rejections of the payload unit until the prediction is reset", gt=0.0)
-
-    @property
-    def payload_rejections(self) -> int:
-        """Rejections of the payload unit in a row after which the prediction is reset rather than the unit."""
-        return self.count(self.payload_time)
+    payload_rejections = SampleCount("payload_time")
+    """Rejections of the payload unit in a row after which the prediction is reset rather than the unit."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +67,7 @@ class MeasurementModelSettings:
 
 @dataclass(frozen=True)
 class StuckSensorSettings:
-    """When a repeated value is no measurement any more."""
+    """Detection of repeated values, which are no measurements."""
 
     repeats: int = setting(2, "", "repetitions to the digit after which a channel is stuck", ge=1)
     relay_interval: float = setting(0.02, "s", "by which the stamps of relayed copies of one sample differ", ge=0.0)
@@ -78,27 +75,21 @@ class StuckSensorSettings:
 
 @dataclass(frozen=True)
 class ChannelIsolationSettings(SampledSettings):
-    """When a channel of a vehicle is isolated, and when it is restored."""
+    """Isolation and restoration of a vehicle's channels."""
 
     rejection_time: float = setting(0.48, "s", "of rejections less acceptances until a channel is isolated", gt=0.0)
     acceptance_time: float = setting(1.0, "s", "of consistent samples in a row until it is restored", gt=0.0)
     restoring_probability: float = setting(0.999, "", "share of sound samples that are consistent", gt=0.0, lt=1.0)
     unusable_time: float = setting(0.5, "s", "for which a missing, stuck or rejected pose is unusable", ge=0.0)
-
-    @property
-    def rejections(self) -> int:
-        """Rejections less acceptances after which a channel is isolated."""
-        return self.count(self.rejection_time)
-
-    @property
-    def acceptances(self) -> int:
-        """Consistent samples in a row after which it is restored."""
-        return self.count(self.acceptance_time)
+    rejections = SampleCount("rejection_time")
+    """Rejections less acceptances after which a channel is isolated."""
+    acceptances = SampleCount("acceptance_time")
+    """Consistent samples in a row after which it is restored."""
 
 
 @dataclass(frozen=True)
 class DeadReckoningSettings(SampledSettings):
-    """When poses contradict the motion measured with them."""
+    """Consistency of poses with the motion measured with them."""
 
     window: float = setting(2.0, "s", "over which poses are compared with their integrated motion", gt=0.0)
     gap: float = setting(0.3, "s", "without a sample after which the integration starts anew", gt=0.0)
@@ -110,21 +101,15 @@ class DeadReckoningSettings(SampledSettings):
     consistent_ratio: float = setting(0.5, "", "test ratio of sources that count as evidence", gt=0.0, lt=1.0)
     consecutive: int = setting(3, "", "inconsistent tests in a row that are needed of the payload unit", ge=1)
     misfit_limit: float = setting(25.0, "", "limit of squared innovations where poses and motions compete", gt=0.0)
-
-    @property
-    def samples(self) -> int:
-        """Samples whose median is compared."""
-        return self.count(self.median_time)
-
-    @property
-    def smoothed(self) -> int:
-        """Samples whose median motion is integrated."""
-        return self.count(self.smoothing_time)
+    samples = SampleCount("median_time")
+    """Samples whose median is compared."""
+    smoothed = SampleCount("smoothing_time")
+    """Samples whose median motion is integrated."""
 
 
 @dataclass(frozen=True)
 class NoiseAdaptationSettings(SampledSettings):
-    """How measurement and process noise follow the innovations."""
+    """Adaptation of measurement and process noise to the innovations."""
 
     measurement_scale_max: float = setting(400.0, "", "largest scale of the measurement variances", ge=1.0)
     median_limit: float = setting(2.0, "", "median squared normalised innovation above which the scale grows", gt=1.0)
@@ -139,21 +124,15 @@ class NoiseAdaptationSettings(SampledSettings):
     dwell_time: float = setting(0.4, "s", "between two changes of the level", gt=0.0)
     gap: float = setting(0.2, "s", "between updates that are still consecutive", gt=0.0)
     persistent_cosine: float = setting(0.5, "", "cosine between innovations that is no noise", gt=-1.0, lt=1.0)
-
-    @property
-    def correlation_share(self) -> float:
-        """Share of an update in the mean correlation of innovations."""
-        return 1.0 / self.count(self.correlation_memory)
-
-    @property
-    def dwell(self) -> int:
-        """Updates between two changes of the level."""
-        return self.count(self.dwell_time)
+    correlation_share = SampleShare("correlation_memory")
+    """Share of an update in the mean correlation of innovations."""
+    dwell = SampleCount("dwell_time")
+    """Updates between two changes of the level."""
 
 
 @dataclass(frozen=True)
 class SetpointHistorySettings(SampledSettings):
-    """How commanded set-points are matched with those the vehicles report to have flown."""
+    """Matching of commanded set-points with those the vehicles report to have flown."""
 
     rate: float = derived(20.0)
     """Of the set-points (Hz)."""
@@ -166,21 +145,12 @@ class SetpointHistorySettings(SampledSettings):
     tilt_tolerance: float = setting(2e-4, "", "by which the tilts of one set-point differ", ge=0.0)
     thrust_tolerance: float = setting(2e-3, "N", "by which the thrusts of one set-point differ", ge=0.0)
     neighbour_time: float = setting(0.15, "s", "before and after a set-point whose others may act in its place", gt=0.0)
-
-    @property
-    def loss_share(self) -> float:
-        """Share of one set-point in the running mean of the loss."""
-        return 1.0 / self.count(self.loss_memory)
-
-    @property
-    def losses_max(self) -> int:
-        """Set-points lost in a row that are noticed."""
-        return self.count(self.loss_time_max)
-
-    @property
-    def neighbours(self) -> int:
-        """Set-points before and after one that may act in its place."""
-        return self.count(self.neighbour_time)
+    loss_share = SampleShare("loss_memory")
+    """Share of one set-point in the running mean of the loss."""
+    losses_max = SampleCount("loss_time_max")
+    """Set-points lost in a row that are noticed."""
+    neighbours = SampleCount("neighbour_time")
+    """Set-points before and after one that may act in its place."""
 
 
 @dataclass(frozen=True)
@@ -207,18 +177,15 @@ class WindSettings:
 
 @dataclass(frozen=True)
 class InnovationMonitorSettings(SampledSettings):
-    """When the innovations of one sensor over about a second show a bias or noise."""
+    """Detection of bias and noise by the innovations of one sensor over about a second."""
 
     false_alarm: float = setting(1e-10, "", "probability per sample of an alarm of a sound sensor", gt=0.0, lt=1.0)
     memory: float = setting(1.0, "s", "of the running means", gt=0.0)
     rejections: int = setting(3, "", "rejections within the time below that are an alarm", ge=1)
     rejection_time: float = setting(1.0, "s", "in which they are counted", gt=0.0)
     manoeuvre_factor: float = setting(2.5, "", "of these limits for UAV attitudes, modelled less exactly", ge=1.0)
-
-    @property
-    def share(self) -> float:
-        """Share of one sample in the running means."""
-        return 1.0 / self.count(self.memory)
+    share = SampleShare("memory")
+    """Share of one sample in the running means."""
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,6 @@ from idc_controller.geometry.shape import (
     ANGLE,
     LENGTH,
     CollisionGeometry,
-    Columns,
     PlanView,
     Shape,
     UprightBounds,
@@ -46,18 +45,8 @@ class Wall(Shape):
         return math.cos(self.yaw / 2), 0.0, 0.0, math.sin(self.yaw / 2)
 
     @property
-    def columns(self) -> Columns:
-        """The shape as the tables hold it."""
-        return Columns(0.0, self.size, self.yaw)
-
-    @classmethod
-    def from_columns(cls, columns: Columns) -> Self:
-        """Return the shape that the tables hold."""
-        return cls(columns.size, columns.yaw)
-
-    @property
     def dimensions(self) -> str:
-        """Its sizes in words."""
+        """Sizes in words."""
         edges = " x ".join(f"{edge:.4g}" for edge in self.size)
         return f"{edges} m, heading {math.degrees(self.yaw):.1f} deg"
 
@@ -85,16 +74,6 @@ class Wall(Shape):
             np.abs(cosine * y - sine * x) - half[..., 1],
             np.abs(z) - half[..., 2],
         )
-
-    @property
-    def reach(self) -> float:
-        """Radius of the ball about the centre that holds the body (m)."""
-        return float(np.linalg.norm(self.size)) / 2.0
-
-    @property
-    def horizontal_reach(self) -> float:
-        """Radius of the upright cylinder that holds the body (m)."""
-        return math.hypot(self.size[0], self.size[1]) / 2.0
 
     @property
     def upright_bounds(self) -> UprightBounds:
@@ -127,7 +106,7 @@ class Box(OrientedShape):
 
     @property
     def dimensions(self) -> str:
-        """Its sizes in words."""
+        """Sizes in words."""
         return " x ".join(f"{edge:.4g}" for edge in self.size) + f" m{self.attitude}"
 
     @cached_property
@@ -200,7 +179,7 @@ def _visible_area(half_size: Vector, s: Vector, axis: int) -> float:
 
 
 def _shortened(s: Vector, start: list[float], end: Vector, reach: float) -> Vector:
-    """From ``start``, which is in reach, towards ``end`` as far as the reach goes."""
+    """Return the point from ``start``, which is in reach, towards ``end`` as far as the reach goes."""
     d = [end[k] - start[k] for k in range(3)]
     o = [start[k] - s[k] for k in range(3)]
     a = sum(v * v for v in d)

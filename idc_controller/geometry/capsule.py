@@ -26,7 +26,7 @@ class Capsule(OrientedShape):
 
     @property
     def dimensions(self) -> str:
-        """Its sizes in words."""
+        """Sizes in words."""
         return f"radius {self.radius:g} m, {self.length:g} m between its round ends{self.attitude}"
 
     @cached_property

@@ -60,16 +60,16 @@ class FreeSpace:
             raise TrajectoryError("every obstacle needs a finite centre and one growth")
         self._bodies = _Bodies([shape for shape, _ in obstacles])
         self.lateral_reach = np.array([shape.horizontal_reach for shape, _ in obstacles]) + self.growth
-        """Of each obstacle from its centre outwards (M,) (m)."""
+        """Extent of each obstacle from its centre outwards (M,) (m)."""
         self.vertical_reach = self._bodies.half_height + self.growth
-        """Of each obstacle from its centre up and down (M,) (m)."""
+        """Extent of each obstacle from its centre up and down (M,) (m)."""
 
     def clearance(self, places: Array) -> Array:
         """Distance of the formation at each place to each obstacle (P, M); negative inside (m)."""
         return self._bodies.distance(places[:, None] - self.centres, self.formation) - self.growth
 
     def is_free(self, places: Array, extra: float = 0.0) -> Mask:
-        """Where the formation keeps the margin, and ``extra`` (m) more, and all the bounds (P,)."""
+        """Return the places (P,) at which the formation keeps the margin, and ``extra`` (m) more, and all bounds."""
         free = self.within_bounds(places)
         if len(self.centres):
             free &= (self.clearance(places) >= self.margin + extra - TOUCHING).all(axis=1)
@@ -98,17 +98,17 @@ class FreeSpace:
         return free
 
     def within_bounds(self, places: Array) -> Mask:
-        """Whether the altitude is within its bounds at each place (P,)."""
+        """Return whether the altitude is within its bounds at each place (P,)."""
         return np.asarray((-places[:, 2] >= self.lowest - TOUCHING) & (-places[:, 2] <= self.highest + TOUCHING))
 
     def are_free_segments(self, starts: Array, ends: Array) -> Mask:
-        """Whether the margin and the bounds are kept on the segments from ``starts`` to ``ends`` (E, 3) -> (E,)."""
+        """Return whether the margin and the bounds are kept on the segments from ``starts`` to ``ends`` (E, 3)."""
         free = self.within_bounds(starts) & self.within_bounds(ends)
         free[free] = self.keep_away(starts[free], ends[free], np.full(len(self.centres), self.margin - TOUCHING))
         return np.asarray(free)
 
     def keep_away(self, starts: Array, ends: Array, least: Array) -> Mask:
-        """Whether the clearance is ``least`` (M,) or more on segments from ``starts`` to ``ends`` (E, 3) -> (E,)."""
+        """Return whether the clearance is ``least`` (M,) or more on the segments ``starts`` to ``ends`` (E, 3)."""
         if not (len(self.centres) and len(starts)):
             return np.ones(len(starts), dtype=bool)
         half = np.linalg.norm(ends - starts, axis=1)[:, None] / 2.0
@@ -146,7 +146,7 @@ class FreeSpace:
 def first_conflict(
     positions: Array, obstacles: Sequence[PredictedObstacle], formation: BoundingCylinder, margin: float
 ) -> int | None:
-    """Index of the first of ``positions`` (K, 3) at which the formation is nearer than ``margin`` to an obstacle.
+    """Return the index of the first of ``positions`` (K, 3) nearer than ``margin`` (m) to an obstacle.
 
     Each obstacle is where it is predicted at the same K moments, or at one moment (1, 3) for all of them, and
     grown by its ``growth`` of that moment. None: there is no conflict.
@@ -173,7 +173,7 @@ class _Bodies:
         self._turned = bool(np.any(self._sine))
 
     def chosen(self, index: Indices) -> _Bodies:
-        """The bodies of these indices, repeated as the indices are."""
+        """Return the bodies of these indices, repeated as the indices are."""
         bodies = _Bodies(())
         bodies._take(self._sizes[index])
         return bodies

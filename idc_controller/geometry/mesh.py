@@ -40,7 +40,7 @@ class Mesh(OrientedShape):
 
     @property
     def dimensions(self) -> str:
-        """Its sizes in words."""
+        """Sizes in words."""
         edges = " x ".join(f"{edge:.4g}" for edge in np.ptp(self.corners, axis=0))
         return f"{self.file.name}, {edges} m{self.attitude}"
 

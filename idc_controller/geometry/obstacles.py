@@ -20,7 +20,7 @@ class PredictedObstacle:
     positions: Array
     """Centres in the world (K, 3) (m)."""
     growth: Array
-    """By how much the body is to be taken larger at each moment, for what is not known (K,) (m)."""
+    """Growth of the body at each moment, for what is not known (K,) (m)."""
 
 
 class ObstacleSource(Protocol):

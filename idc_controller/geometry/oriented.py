@@ -14,7 +14,6 @@ import numpy as np
 import shapely
 
 from idc_controller.arrays import Array
-from idc_controller.errors import ShapeError
 from idc_controller.geometry.shape import ANGLE, Columns, PlanView, Shape, UprightBounds, Vector
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
 
@@ -51,7 +50,7 @@ class OrientedShape(Shape):
 
     @property
     def attitude(self) -> str:
-        """Its angles in words, empty if there are none."""
+        """Angles in words, empty if there are none."""
         angles = {name: math.degrees(getattr(self, name)) for name in ("roll", "pitch", "yaw")}
         return "".join(f", {name} {angle:.1f} deg" for name, angle in angles.items() if angle)
 
@@ -80,11 +79,6 @@ class OrientedShape(Shape):
         """Rounding radius, edges of the box along north, east and down about the centre that holds it, no yaw."""
         x, y, z = (2.0 * (np.abs(self._in_world).max(axis=0) + self.rounding)).tolist()
         return Columns(self.rounding, (x, y, z), 0.0)
-
-    @classmethod
-    def from_columns(cls, columns: Columns) -> Self:
-        """Raise :class:`ShapeError`: the columns do not hold the attitude."""
-        raise ShapeError(f"a {cls.kind} needs the run's obstacle_shapes.json")
 
     def support(self, directions: Array) -> Array:
         """Largest ``direction . y`` over the body about its centre, for unit ``directions`` (..., 3) -> (...)."""

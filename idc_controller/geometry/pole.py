@@ -10,7 +10,7 @@ import numpy as np
 import shapely
 
 from idc_controller.arrays import Array
-from idc_controller.geometry.shape import LENGTH, CollisionGeometry, Columns, PlanView, Shape, UprightBounds, Vector
+from idc_controller.geometry.shape import LENGTH, CollisionGeometry, PlanView, Shape, UprightBounds, Vector
 
 #: A sensor's rays at the side: share of the radius to the right; share of the visible length up (1) or down (-1).
 _SIDE = ((0.8, 0.0), (-0.8, 0.0), (0.5, 1.0), (-0.5, -1.0), (-0.85, 0.6), (0.85, -0.6), (-0.3, 1.0), (0.3, -1.0))
@@ -30,18 +30,8 @@ class Pole(Shape):
     is_grounded: ClassVar[bool] = True
 
     @property
-    def columns(self) -> Columns:
-        """The shape as the tables hold it: the height is the last of the edges."""
-        return Columns(self.radius, (0.0, 0.0, self.height), 0.0)
-
-    @classmethod
-    def from_columns(cls, columns: Columns) -> Self:
-        """Return the shape that the tables hold."""
-        return cls(columns.radius, columns.size[2])
-
-    @property
     def dimensions(self) -> str:
-        """Its sizes in words."""
+        """Sizes in words."""
         return f"radius {self.radius:.4g} m, {self.height:g} m high"
 
     def geometry(self) -> coal.ShapeBase:
@@ -67,16 +57,6 @@ class Pole(Shape):
         inside = np.minimum(np.maximum(a, c), 0.0)
         a, c = np.maximum(a, 0.0), np.maximum(c, 0.0)
         return np.asarray(np.sqrt(a * a + c * c) + inside)
-
-    @property
-    def reach(self) -> float:
-        """Radius of the ball about the centre that holds the body (m)."""
-        return float(np.hypot(self.radius, self.height / 2.0))
-
-    @property
-    def horizontal_reach(self) -> float:
-        """Radius of the upright cylinder that holds the body (m)."""
-        return self.radius
 
     @property
     def upright_bounds(self) -> UprightBounds:

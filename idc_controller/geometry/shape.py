@@ -66,11 +66,11 @@ class PlanView(NamedTuple):
     radius: float
 
     def contains(self, place: tuple[float, float]) -> bool:
-        """Whether a place (north, east) about the centre (m) lies within."""
+        """Return whether a place (north, east) about the centre (m) lies within."""
         return bool(self.core.distance(shapely.Point(place)) <= self.radius)
 
     def is_crossed(self, start: tuple[float, float], end: tuple[float, float]) -> bool:
-        """Whether the straight line from ``start`` to ``end`` about the centre (m) leads through."""
+        """Return whether the straight line from ``start`` to ``end`` about the centre (m) leads through."""
         if start == end:
             return False
         line = shapely.LineString([start, end])
@@ -91,11 +91,11 @@ class Shape(ABC):
     round_axes: ClassVar[Vector | None] = None
     """Axes (0 or 1) on which the surface is one radius from the centre; None: it is not round about any centre."""
     is_upright: ClassVar[bool] = False
-    """Whether obstacles of this kind are tall enough that distant ones are discriminated by their plan view alone."""
+    """True if it is tall enough that distant ones are discriminated by their plan view alone."""
     in_columns: ClassVar[bool] = True
-    """Whether :attr:`columns` hold all of the shape; otherwise a run has it in ``obstacle_shapes.json``."""
+    """True if :attr:`columns` hold all of the shape; otherwise a run has it in ``obstacle_shapes.json``."""
     is_grounded: ClassVar[bool] = False
-    """Whether it stands on the ground, so that its place is (north, east)."""
+    """True if it stands on the ground, so that its place is (north, east)."""
 
     def check(self) -> None:
         """Raise :class:`ShapeError` for lengths that are not positive and angles that are not finite."""
@@ -121,9 +121,11 @@ class Shape(ABC):
         return 1.0, 0.0, 0.0, 0.0
 
     @property
-    @abstractmethod
     def columns(self) -> Columns:
-        """The shape as the tables hold it."""
+        """The shape as the tables hold it, by its fields ``radius``, ``size``, ``height`` (of the size) and ``yaw``."""
+        own = vars(self)
+        size = own.get("size", (0.0, 0.0, own.get("height", 0.0)))
+        return Columns(own.get("radius", 0.0), size, own.get("yaw", 0.0))
 
     @classmethod
     def from_fields(cls, values: Mapping[str, Any]) -> Self:
@@ -131,14 +133,17 @@ class Shape(ABC):
         return cls(**{key: tuple(value) if isinstance(value, list) else value for key, value in values.items()})
 
     @classmethod
-    @abstractmethod
     def from_columns(cls, columns: Columns) -> Self:
         """Return the shape that the tables hold. Raises :class:`ShapeError` where they do not hold all of it."""
+        if not cls.in_columns:
+            raise ShapeError(f"a {cls.kind} needs the run's obstacle_shapes.json")
+        values = {**columns._asdict(), "height": columns.size[2]}
+        return cls(**{part.name: values[part.name] for part in fields(cls)})
 
     @property
     @abstractmethod
     def dimensions(self) -> str:
-        """Its sizes in words, for people."""
+        """Sizes in words, for people."""
 
     @abstractmethod
     def geometry(self) -> coal.ShapeBase:
@@ -158,14 +163,16 @@ class Shape(ABC):
         """Signed distance (m) of points (B, n, 3), relative to each body's centre, to B bodies of this kind (B, n)."""
 
     @property
-    @abstractmethod
     def reach(self) -> float:
         """Radius of the ball about the centre that holds the body (m)."""
+        bounds = self.upright_bounds
+        return math.hypot(math.hypot(bounds.half_x, bounds.half_y) + bounds.radial, bounds.half_z) + bounds.ball
 
     @property
-    @abstractmethod
     def horizontal_reach(self) -> float:
         """Radius of the upright cylinder about the centre that holds the body (m)."""
+        bounds = self.upright_bounds
+        return math.hypot(bounds.half_x, bounds.half_y) + bounds.radial + bounds.ball
 
     @property
     @abstractmethod
@@ -174,7 +181,7 @@ class Shape(ABC):
 
     @property
     def half_height(self) -> float:
-        """From the centre up and down to the ends of its upright bounds (m)."""
+        """Distance from the centre up and down to the ends of the upright bounds (m)."""
         return self.upright_bounds.half_z + self.upright_bounds.ball
 
     @property

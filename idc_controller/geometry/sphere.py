@@ -10,7 +10,7 @@ import numpy as np
 import shapely
 
 from idc_controller.arrays import Array
-from idc_controller.geometry.shape import LENGTH, CollisionGeometry, Columns, PlanView, Shape, UprightBounds, Vector
+from idc_controller.geometry.shape import LENGTH, CollisionGeometry, PlanView, Shape, UprightBounds, Vector
 
 #: Off-axis positions of a sensor's rays: share of the radius; six of them, turned by a random angle.
 _RING = (0.9, 0.6, 0.9, 0.6, 0.9, 0.6)
@@ -26,18 +26,8 @@ class Sphere(Shape):
     round_axes: ClassVar[Vector | None] = (1.0, 1.0, 1.0)
 
     @property
-    def columns(self) -> Columns:
-        """The shape as the tables hold it."""
-        return Columns(self.radius, (0.0, 0.0, 0.0), 0.0)
-
-    @classmethod
-    def from_columns(cls, columns: Columns) -> Self:
-        """Return the shape that the tables hold."""
-        return cls(columns.radius)
-
-    @property
     def dimensions(self) -> str:
-        """Its sizes in words."""
+        """Sizes in words."""
         return f"radius {self.radius:g} m"
 
     def geometry(self) -> coal.ShapeBase:
@@ -58,16 +48,6 @@ class Sphere(Shape):
         radius = np.array([shape.radius for shape in shapes])[:, None]
         lateral = np.hypot(offsets[..., 0], offsets[..., 1])
         return np.asarray(np.hypot(lateral, np.abs(offsets[..., 2])) - radius)
-
-    @property
-    def reach(self) -> float:
-        """Radius of the ball about the centre that holds the body (m)."""
-        return self.radius
-
-    @property
-    def horizontal_reach(self) -> float:
-        """Radius of the upright cylinder that holds the body (m)."""
-        return self.radius
 
     @property
     def upright_bounds(self) -> UprightBounds:

@@ -21,14 +21,14 @@ class ManoeuvreDetector:
         self._since = self._time = time
         self._mean_square = 0.5
         self.model_mismatch = 0.0
-        """How far the motion models mismatched lately, 0 to 1."""
+        """Recent mismatch of the motion models, 0 to 1."""
         self._predictions: deque[tuple[float, Array]] = deque()
         self.prediction_error = 0.0
-        """By how much predictions over ``horizon`` were worse than usual lately (m)."""
+        """Recent excess of the error of predictions over ``horizon`` (m)."""
 
     @property
     def is_settled(self) -> bool:
-        """Whether it was detected for long enough for its predictions to be compared."""
+        """Return whether it was detected for long enough for its predictions to be compared."""
         return self._time - self._since > self._settings.settling
 
     def advance(self, time: float) -> None:

@@ -27,7 +27,7 @@ class _Offset:
 
     @property
     def is_detected(self) -> bool:
-        """Whether there is an offset, and has been for long enough."""
+        """Return whether there is an offset, and has been for long enough."""
         return self.time - self._detected_since >= self._settings.duration
 
     def update(self, points: SurfacePoints, shape: Shape, centre: Array) -> None:

@@ -11,10 +11,9 @@ from idc_controller.geometry.shape import Shape
 from idc_controller.perception.manoeuvre import ManoeuvreDetector
 from idc_controller.perception.motion_imm import MotionImm, MotionModels
 from idc_controller.perception.settings import ObstacleFilterSettings, SurfaceSettings
-from idc_controller.perception.surfaces.fit import Fit
 from idc_controller.perception.surfaces.flat import FlatSurface
 from idc_controller.perception.surfaces.known import KnownSurface
-from idc_controller.perception.surfaces.points import SurfacePoints
+from idc_controller.perception.surfaces.points import Fit, SurfacePoints
 from idc_controller.perception.surfaces.round import RoundSurface
 
 Surface = RoundSurface | FlatSurface | KnownSurface
@@ -49,7 +48,7 @@ class ObstacleFilter:
         self._scores: dict[str, float] = {}
         self._scatter = scatter
         self._uncovered = 0.0
-        """How far points stand out of the fitted shape, which is then not the obstacle's (m)."""
+        """Distance of points outside of the fitted shape, which is then not the obstacle's (m)."""
         self._surface = surface_of(known.kind if known else "sphere", known, self.settings.surfaces)
         if known is None and scatter == 0.0 and len(first.points) >= self.settings.points_min:
             # Before the kind is chosen: with much scatter a wall would fit anything.
@@ -92,7 +91,7 @@ class ObstacleFilter:
 
     @property
     def is_static(self) -> bool:
-        """Whether it stands still."""
+        """Return whether it is static."""
         s, (_, velocity, _) = self.settings, self._imm.state
         return bool(self._imm.weight[0] > s.static_weight and np.linalg.norm(velocity) < s.static_speed)
 

@@ -81,7 +81,7 @@ class ObstacleMap:
 
     @property
     def sensing_lost(self) -> bool:
-        """Whether no vehicle has had a valid range sensor for some time."""
+        """Return whether no vehicle has had a valid range sensor for some time."""
         return self.scans.range_sensors.lost(self.scans.poses.uavs, self._time)
 
     @property
@@ -91,7 +91,7 @@ class ObstacleMap:
 
     @property
     def map_offset_detected(self) -> bool:
-        """Whether all vehicles with valid range sensors detect the obstacles of the map with an offset."""
+        """Return whether all vehicles with valid range sensors detect the obstacles of the map with an offset."""
         return self._check.all_offset(self._valid_uavs())
 
     def take_deleted_tracks(self) -> list[str]:
@@ -177,7 +177,7 @@ class ObstacleMap:
         return self.scans.range_sensors.valid(self.scans.poses.uavs, self._time)
 
     def _in_field_of_view(self, track: Track) -> bool:
-        """Whether the range sensor of a vehicle whose telemetry comes in would certainly detect a track now."""
+        """Return whether the range sensor of a vehicle whose telemetry comes in would certainly detect a track now."""
         timeout = self._settings.retention.link_timeout
         places = [self.scans.poses.position(uav, self._time, timeout) for uav in self._valid_uavs()]
         near = np.array([place for place in places if place is not None])

@@ -4,12 +4,12 @@ from dataclasses import dataclass, field, replace
 from typing import Self
 
 from idc_controller.errors import ParameterError
-from idc_controller.settings import SampledSettings, derived, setting
+from idc_controller.settings import SampleCount, SampledSettings, derived, setting
 
 
 @dataclass(frozen=True)
 class ScanSettings(SampledSettings):
-    """How detections become points in the world, and when a range sensor's telemetry is invalid."""
+    """Placing of detections in the world, and validity of a range sensor's telemetry."""
 
     pose_gap: float = setting(0.1, "s", "largest time between a scan and the pose that places it", gt=0.0)
     pose_wait: float = setting(0.3, "s", "for which a scan waits for a measured pose", ge=0.0)
@@ -21,11 +21,8 @@ class ScanSettings(SampledSettings):
     points_max: int = setting(2000, "", "points of a vehicle that wait at a time", ge=1)
     invalid_after: float = setting(0.5, "s", "of invalid detections until a range sensor counts as lost", ge=0.0)
     recovery: float = setting(1.0, "s", "after the last of them for which it still does", ge=0.0)
-
-    @property
-    def poses(self) -> int:
-        """Poses of a vehicle that are kept."""
-        return self.count(self.pose_memory)
+    poses = SampleCount("pose_memory")
+    """Poses of a vehicle that are kept."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +58,7 @@ class RetentionSettings:
 
 @dataclass(frozen=True)
 class MapCheckSettings:
-    """When the detected obstacles of the map are offset from their places on it."""
+    """Detection of an offset of the obstacles from their places on the map."""
 
     offset_min: float = setting(0.2, "m", "offset from which on detections contradict the map", gt=0.0)
     sigmas: float = setting(6.0, "", "and in its standard deviations", gt=0.0)
@@ -97,7 +94,7 @@ class ImmSettings:
 
 @dataclass(frozen=True)
 class ManoeuvreSettings(SampledSettings):
-    """What counts as a manoeuvre that no motion model contains, and by how much predictions are widened for it."""
+    """Manoeuvres that no motion model contains, and the growth of predictions for them."""
 
     rate: float = derived(10.0)
     """Of the scans (Hz)."""

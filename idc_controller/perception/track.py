@@ -31,9 +31,9 @@ class Track:
     last_detected: float = -math.inf
     clusters: int = 0
     is_deleted: bool = False
-    """It was not detected where it should be, in the field of view; one of the map is kept for another detection."""
+    """Not detected in the field of view; a track of the map is kept for another detection."""
     is_retained: bool = False
-    """It was confirmed when all obstacle sensing proved to be lost: never deleted from then on."""
+    """Confirmed when all obstacle sensing proved to be lost: never deleted from then on."""
     overlaps: dict[str, int] = field(default_factory=dict)
     """Frames in a row in which its points belonged to another track as well."""
 
@@ -52,13 +52,13 @@ class Track:
 
     @property
     def is_confirmed(self) -> bool:
-        """Whether it counts as an obstacle."""
+        """Return whether it counts as an obstacle."""
         confirmed = self.map_shape is not None or self.clusters >= self.settings.retention.confirmations
         return not self.is_deleted and confirmed
 
     @property
     def is_static(self) -> bool:
-        """Whether it stands still."""
+        """Return whether it is static."""
         return self.filter is not None and self.filter.is_static
 
     @property

@@ -132,7 +132,7 @@ class _SourceCheck:
 
     @property
     def is_inconsistent(self) -> bool:
-        """Whether several tests in a row failed: enough for a source that has no others beside it."""
+        """Return whether several tests in a row failed: enough for a source that has no others beside it."""
         return self._inconsistent >= self._settings.consecutive
 
     def _integrate(self, before: float, measurement: Measurement) -> None:

@@ -18,7 +18,7 @@ from idc_controller.estimation.settings import InnovationMonitorSettings
 
 
 class Finding(Enum):
-    """What is wrong with a sensor."""
+    """Fault of a sensor that its innovations show."""
 
     REJECTED = "rejected"
     BIASED = "biased"

@@ -21,7 +21,7 @@ class InnovationTest:
     mean_squares: Array
     """Mean square of each measurement's normalised innovation (K,); on average 1."""
     accepted: Mask
-    """Which measurements pass (K,)."""
+    """Measurements that pass (K,)."""
     covariance: Array
     """Innovation covariance (m, m)."""
 

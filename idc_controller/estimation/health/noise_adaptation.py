@@ -48,7 +48,7 @@ class NoiseAdaptation:
 
     @property
     def is_at_limit(self) -> bool:
-        """Whether the process noise is at its highest level."""
+        """Return whether the process noise is at its highest level."""
         return self.level >= self._settings.process_levels
 
     def react(self, time: float, keys: Sequence[SensorKey], test: InnovationTest) -> Reaction:
@@ -80,11 +80,11 @@ class NoiseAdaptation:
         self, time: float, keys: Sequence[object], normalised: Array, mean_squares: Array,
         accepted: Mask, of_payload: Mask,
     ) -> None:  # fmt: skip
-        """Learn from one moment.
+        """Learn from the K measurements of one moment.
 
         Args:
             time: s.
-            keys: the K measurements.
+            keys: the measurements.
             normalised: their normalised innovations (m,).
             mean_squares: mean square of each (K,).
             accepted: rows that were accepted (m,).
@@ -114,7 +114,7 @@ class NoiseAdaptation:
         self._time, self._keys, self._last = time, keys, normalised
 
     def _persists(self, time: float, keys: Sequence[object], normalised: Array) -> bool:
-        """Whether the innovation (m,) points where the last one pointed."""
+        """Return whether the innovation (m,) points where the last one pointed."""
         if not self._follows(time, keys, normalised):
             return False
         product = float(normalised @ self._last)

@@ -24,7 +24,7 @@ from idc_controller.estimation.settings import EstimatorSettings
 
 
 class HealthSnapshot(NamedTuple):
-    """What is learnt anew when measurements are replayed."""
+    """Parts that learn anew when measurements are replayed."""
 
     adaptation: NoiseAdaptation
     isolation: ChannelIsolation

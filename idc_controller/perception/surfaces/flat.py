@@ -7,8 +7,7 @@ import numpy as np
 from idc_controller.arrays import Array, Indices, Mask
 from idc_controller.geometry.box import Wall
 from idc_controller.perception.settings import SurfaceSettings
-from idc_controller.perception.surfaces.fit import EndOfSurface, Fit, score, unexplained
-from idc_controller.perception.surfaces.points import SurfacePoints
+from idc_controller.perception.surfaces.points import EndOfSurface, Fit, SurfacePoints, score, unexplained
 
 
 class FlatSurface:
@@ -40,7 +39,7 @@ class FlatSurface:
 
     @property
     def offset(self) -> Array:
-        """From the reference point to the box's centre (3,)."""
+        """Vector from the reference point to the box's centre (3,)."""
         if self.known is not None:
             return np.zeros(3)
         lo, hi = self._extent()
@@ -48,7 +47,7 @@ class FlatSurface:
 
     @property
     def size_sigma(self) -> float:
-        """How little sure the place of the front's ends is (m)."""
+        """Standard deviation of the place of the front's ends (m)."""
         if self.known is not None:
             return 0.0
         lo, hi = self._extent()
@@ -79,7 +78,7 @@ class FlatSurface:
         return middle
 
     def fit(self, scan: SurfacePoints, predicted: Array, iterations: int = 3) -> Fit:
-        """Where the front is in this frame; learns the box from it. ``predicted`` (3,): where it is expected."""
+        """Return the place of the front in this frame, expected at ``predicted`` (3,), and learn the box from it."""
         if self.known is not None:
             return self._fit_known(scan, predicted)
         s, rotation = self._settings, self._rotation()
@@ -151,7 +150,7 @@ class FlatSurface:
         )  # fmt: skip
 
     def _learn_thickness(self, q: Array, front: Mask, scan: SurfacePoints) -> None:
-        """From points behind the front, which lie on the top or on a side."""
+        """Learn the thickness from points behind the front, which lie on the top or on a side."""
         s = self._settings
         behind = (q[:, 0] < -s.depth_observed) & ~front & ~scan.cut
         if np.count_nonzero(behind) == 0:
@@ -187,7 +186,7 @@ class FlatSurface:
 
 @cache
 def _pairs(n: int) -> tuple[Indices, Indices]:
-    """Of n points, in a fixed order; of many points only some."""
+    """Return pairs of n points in a fixed order; of many points only some."""
     i, j = np.triu_indices(n, 1)
     few = slice(None, None, max(1, len(i) // 400))
     return i[few], j[few]

@@ -6,8 +6,7 @@ from idc_controller.arrays import Array
 from idc_controller.geometry.obstacles import Bodies
 from idc_controller.geometry.shape import Shape
 from idc_controller.perception.settings import SurfaceSettings
-from idc_controller.perception.surfaces.fit import Fit, score, unexplained
-from idc_controller.perception.surfaces.points import SurfacePoints
+from idc_controller.perception.surfaces.points import Fit, SurfacePoints, score, unexplained
 
 _STEP = 1e-4  # m, of the differences that give the surface's normals
 
@@ -30,7 +29,7 @@ class KnownSurface:
         return np.asarray(middle + self.shape.support(ray) * ray)
 
     def fit(self, scan: SurfacePoints, predicted: Array, iterations: int = 3) -> Fit:
-        """Return where the centre is in this frame; ``predicted`` (3,): where it is expected."""
+        """Return the place of the centre in this frame, expected at ``predicted`` (3,)."""
         place = predicted.copy()
         prior = np.eye(3) / self._settings.sideways_sigma**2
         variance = scan.noise**2 + scan.pose_variance + scan.scatter

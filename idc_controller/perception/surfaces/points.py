@@ -1,4 +1,4 @@
-"""Points that range sensors found on one obstacle at one moment."""
+"""Points that range sensors found on one obstacle at one moment, and common parts of the fits of shapes to them."""
 
 from __future__ import annotations
 
@@ -7,6 +7,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from idc_controller.arrays import Array, Mask
+from idc_controller.perception.settings import SurfaceSettings
+
+_SCORE_CAP = 16.0
+_MEDIAN_OF_SQUARE = 0.455  # of a normal variable of variance 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -17,15 +21,15 @@ class SurfacePoints:
     points: Array
     """(n, 3)"""
     origins: Array
-    """Where the sensor of each point was (n, 3)."""
+    """Places of the sensors of each point (n, 3)."""
     cut: Mask
-    """Whether a point lies at the end of its sensor's range, so that more may lie behind (n,)."""
+    """Points (n,) at the end of their sensor's range, so that more may lie behind."""
     noise: float
     """Standard deviation along the line of sight (m)."""
     pose_variance: Array
     """Variance of each point from its sensor's own position and attitude, on every axis (n,) (m2)."""
     sensors: int = 1
-    """How many sensors contributed: what of their poses' errors averages out."""
+    """Number of sensors, over which errors of their poses average out."""
     scatter: float = 0.0
     """Variance of each point on its own beyond that, on every axis (m2): of sensors worse than they should be."""
 
@@ -36,7 +40,7 @@ class SurfacePoints:
         return np.asarray(ray / np.maximum(np.sqrt(np.einsum("ij,ij->i", ray, ray)), 1e-6)[:, None])
 
     def moved(self, by: Array, time: float, variance: float) -> SurfacePoints:
-        """The same points as if measured at ``time``, the obstacle having moved by (3,) (m) until then.
+        """Return the points as if measured at ``time``, the obstacle having moved by (3,) (m) until then.
 
         ``variance`` (m2) of that motion adds to the points'.
         """
@@ -47,7 +51,7 @@ class SurfacePoints:
 
 
 def joined(parts: list[SurfacePoints]) -> SurfacePoints:
-    """Several sensors' points of one obstacle at (nearly) one moment."""
+    """Return several sensors' points of one obstacle at (nearly) one moment."""
     if len(parts) == 1:
         return parts[0]
     return SurfacePoints(
@@ -59,3 +63,60 @@ def joined(parts: list[SurfacePoints]) -> SurfacePoints:
         np.concatenate([part.pose_variance for part in parts]),
         len(parts),
     )
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """Place of an obstacle's reference point in one frame."""
+
+    position: Array
+    """(3,) (m)"""
+    variance: Array
+    """(3,) (m2)"""
+    score: float
+    """Mean squared distance of the points to the surface over its variance: about 1 for the right shape."""
+    unexplained: float
+    """Excess of their squared distances over their variance (m2), by the median: about 0."""
+
+
+def score(residual: Array, variance: Array) -> float:
+    """Return the score of :class:`Fit`; single points that do not belong count for little."""
+    return float(np.mean(np.minimum(residual**2 / variance, _SCORE_CAP)))
+
+
+def unexplained(residual: Array, variance: Array, fitted: int) -> float:
+    """Return what :class:`Fit` leaves unexplained after ``fitted`` quantities were found; outliers do not count."""
+    n = len(residual)
+    return float(np.median(residual**2) / _MEDIAN_OF_SQUARE * n / max(n - fitted, 1) - np.median(variance))
+
+
+class EndOfSurface:
+    """Extent of a surface in one direction, from its detected points frame by frame."""
+
+    def __init__(self, extension: float, settings: SurfaceSettings) -> None:
+        """``extension`` (m) is added while the end itself was not in the sensors' range."""
+        self._extension, self._settings = extension, settings
+        self._value = -np.inf
+        self._is_observed = False
+
+    @property
+    def outermost(self) -> float:
+        """Coordinate up to which the surface may reach (m)."""
+        return float(self._value if self._is_observed else self._value + self._extension)
+
+    def update(self, along: Array, cut: Mask) -> None:
+        """Points of one frame, by their coordinate in that direction (n,), and whether they end the sensor's range."""
+        last, s = int(np.argmax(along)), self._settings
+        furthest, is_cut = float(along[last]), bool(cut[last])
+        beyond = furthest - self._value
+        if beyond > s.end_jump:
+            self._value, self._is_observed = furthest, not is_cut
+        elif is_cut:
+            if not self._is_observed:
+                self._value = max(self._value, furthest)
+        elif beyond > -s.end_jump:
+            # Noise makes the outermost of several points a little too far out: the safe side.
+            self._value += (s.end_smoothing if self._is_observed else 1.0) * beyond
+            self._is_observed = True
+        else:
+            self._value += s.end_retreat * beyond

@@ -7,8 +7,7 @@ from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.shape import Shape
 from idc_controller.geometry.sphere import Sphere
 from idc_controller.perception.settings import SurfaceSettings
-from idc_controller.perception.surfaces.fit import EndOfSurface, Fit, score, unexplained
-from idc_controller.perception.surfaces.points import SurfacePoints
+from idc_controller.perception.surfaces.points import EndOfSurface, Fit, SurfacePoints, score, unexplained
 
 _CLOSE_ENOUGH = 0.004  # m: a smaller last step of the search changes nothing that matters
 
@@ -38,7 +37,7 @@ class RoundSurface:
 
     @property
     def offset(self) -> Array:
-        """From the reference point to the shape's centre (3,)."""
+        """Vector from the reference point to the shape's centre (3,)."""
         return np.array([0.0, 0.0, -self.shape.half_height if self._is_pole else 0.0])
 
     @property
@@ -47,7 +46,7 @@ class RoundSurface:
         return 0.0 if self.known else float(np.sqrt(self._variance))
 
     def guess(self, scan: SurfacePoints) -> Array:
-        """A first place for the reference point: behind the nearest point, along its sensor's ray (3,)."""
+        """Return a first reference point: behind the nearest point, along its sensor's ray (3,)."""
         ray = scan.points - scan.origins
         nearest = int(np.argmin(np.einsum("ij,ij->i", ray, ray)))
         direction = scan.rays[nearest].copy()
@@ -57,7 +56,7 @@ class RoundSurface:
         return np.asarray(scan.points[nearest] + self._radius * direction)
 
     def fit(self, scan: SurfacePoints, predicted: Array, iterations: int = 3) -> Fit:
-        """Where the obstacle is in this frame; learns the shape from it. ``predicted`` (3,): where it is expected."""
+        """Return the place in this frame, expected at ``predicted`` (3,), and learn the shape from it."""
         n_axes, s = self._axes, self._settings
         prior = np.full(n_axes + 1, 1.0 / s.centre_sigma**2)
         prior[-1] = 1.0 / (self._variance + s.radius_walk**2)
