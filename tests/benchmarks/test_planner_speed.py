@@ -1,15 +1,16 @@
-"""What the safety filter costs a control step, and which solver suits which QP.
+"""Cost of the safety filter in a control step, and of solvers for its QP and the MPC's.
 
     python tests/benchmarks/test_planner_speed.py            both tables
     python tests/benchmarks/test_planner_speed.py --quick    fewer steps
 
-Times are of the processor (ms), so that other work on the machine disturbs them little; compare within one run only.
+Figures are CPU times in yardsticks, measured in turns with what they are compared with.
 """
 
 import argparse
 import importlib.util
 import sys
 import time
+from functools import partial
 from pathlib import Path
 
 import daqp
@@ -22,6 +23,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from avoidance_scene import STEP, avoidance, estimate_at, pole, sphere, straight
 from paper_system import system
+from yardstick import cpu_seconds, yardstick
 
 from idc_controller.control.controller import IntegratedDecisionController
 from idc_controller.control.mpc import ModelPredictiveController
@@ -47,7 +49,7 @@ def field(count):
 
 
 class Recorded:
-    """A flight whose control steps are timed and whose QPs are kept."""
+    """A flight whose control steps are timed, in yardsticks, and whose QPs are kept."""
 
     def __init__(self, count, n, steps):
         parameters = system(n)
@@ -57,7 +59,7 @@ class Recorded:
         mpc = ModelPredictiveController(model, MpcSettings())
         controller = IntegratedDecisionController(model, mpc, safety, ControllerSettings(), guidance=avoided.guidance)
         mission, rng = straight(24.0), np.random.default_rng(n)
-        self.planner, self.mpc, self.filter_ms, self.step_ms = [], [], [], []
+        self.planner, self.mpc, self.filter_cost, self.step_cost = [], [], [], []
         solve, track, real_filter = safety.planner.solver.solve, mpc.qp.solve, safety.filter
 
         def kept(problem):
@@ -72,7 +74,7 @@ class Recorded:
         def timed(*arguments):
             begin = time.process_time()
             trajectory = real_filter(*arguments)
-            self.filter_ms.append(1e3 * (time.process_time() - begin))
+            self.filter_cost.append(time.process_time() - begin)
             return trajectory
 
         safety.filter, mpc.qp.solve = timed, kept_mpc
@@ -89,23 +91,26 @@ class Recorded:
             estimate.x[:] = x
             begin = time.process_time()
             controller.decide(estimate, mission, learn_load=False)
-            self.step_ms.append(1e3 * (time.process_time() - begin))
+            spent, unit = time.process_time() - begin, yardstick()
+            self.step_cost.append(spent / unit)
+            self.filter_cost[-1] /= unit
+        mpc.qp.solve = track  # what is timed later is not recorded
         self.qp = mpc.qp
 
 
 def percentiles(values):
-    return f"{np.percentile(values, 50):8.2f} {np.percentile(values, 99):8.2f} {np.max(values):8.2f}"
+    return f"{np.percentile(values, 50):8.3g} {np.percentile(values, 99):8.3g} {np.max(values):8.3g}"
 
 
 def steps_table(steps):
-    """Filter and control step (filter, reference, MPC) against obstacles and team size."""
+    """Print filter and control step (filter, reference, MPC) against obstacles and team size."""
     columns = f"{'p50':>8} {'p99':>8} {'max':>8}"
     print(f"\n{'':14} | {'filter':>26} | {'control step':>26}")
     print(f"{'UAVs':>4} {'obstacles':>9} | {columns} | {columns}")
     cases = [(4, count) for count in OBSTACLES] + [(n, 2) for n in TEAMS if n != 4]
     for n, count in cases:
         run = Recorded(count, n, steps)
-        print(f"{n:>4} {count:>9} | {percentiles(run.filter_ms)} | {percentiles(run.step_ms)}")
+        print(f"{n:>4} {count:>9} | {percentiles(run.filter_cost)} | {percentiles(run.step_cost)}")
 
 
 # Solvers, on the same recorded QPs: each returns (seconds, x)
@@ -171,7 +176,7 @@ SOLVERS = {"daqp": by_daqp, "proxsuite": by_proxqp, "osqp": by_osqp, "piqp": by_
 
 
 def solvers_table(steps, most=150):
-    """Every installed solver on the same QPs; ratios to the first."""
+    """Print every installed solver on the same QPs, with its ratio to the first."""
     run = Recorded(10, 4, steps)
     for name, problems in (
         ("planner", run.planner),
@@ -187,7 +192,7 @@ def solvers_table(steps, most=150):
         for problem in chosen:  # in turn: what disturbs one disturbs all
             for solver in spent:
                 seconds, x = SOLVERS[solver](problem)
-                spent[solver].append(1e3 * seconds)
+                spent[solver].append(seconds / yardstick())
                 costs[solver].append(np.nan if x is None else 0.5 * x @ problem.H @ x + problem.g @ x)
         best = np.nanmin(np.array(list(costs.values())), axis=0)
         first = np.median(next(iter(spent.values())))
@@ -195,12 +200,7 @@ def solvers_table(steps, most=150):
             above = np.nanmax((np.array(costs[solver]) - best) / np.maximum(np.abs(best), 1.0), initial=0.0)
             failed = int(np.isnan(costs[solver]).sum())
             print(f"{solver:>10} {percentiles(times)} {np.median(times) / first:7.1f} {failed:>7} {above:>11.1e}")
-    times = []
-    for g, h in run.mpc:
-        begin = time.process_time()
-        run.qp.solve(g, h)
-        times.append(1e3 * (time.process_time() - begin))
-    if times:
+    if times := [cpu_seconds(partial(run.qp.solve, g, h)) / yardstick() for g, h in run.mpc]:
         print(f"{'as flown':>10} {percentiles(times)}   (ProxQP, set up once, warm)")
 
 
