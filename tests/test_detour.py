@@ -32,7 +32,7 @@ def sphere(*position, radius=0.5):
     return Sphere(radius), position
 
 
-def way(obstacles, start=START, goal=GOAL, margin=MARGIN, highest=12.0, **others):
+def detour_of(obstacles, start=START, goal=GOAL, margin=MARGIN, highest=12.0, **others):
     detour = find_detour(obstacles, start, goal, FORMATION, margin, highest=highest, **others)
     if detour.waypoints is not None:
         assert detour.reason == ""
@@ -42,7 +42,7 @@ def way(obstacles, start=START, goal=GOAL, margin=MARGIN, highest=12.0, **others
 
 
 def clearance_by_coal(obstacles, waypoints, spacing=0.05):
-    """Least distance on the way, sampled, by a library that knows nothing of closed forms."""
+    """Least distance on the detour, sampled, by a library that knows nothing of closed forms."""
     cylinder = coal.Cylinder(FORMATION.radius, FORMATION.above + FORMATION.below)
     least = math.inf
     for a, b in pairwise(waypoints):
@@ -57,16 +57,16 @@ def clearance_by_coal(obstacles, waypoints, spacing=0.05):
 
 
 def side(detour):
-    """East of the point of the way that is farthest from the straight way."""
+    """East of the point of the detour that is farthest from the straight path."""
     return detour.waypoints[np.argmax(np.abs(detour.waypoints[:, 1])), 1]
 
 
 def test_detour_without_obstacles_is_straight():
-    assert way([pole(10.0, 6.0)]).waypoints.tolist() == [list(START), list(GOAL)]
+    assert detour_of([pole(10.0, 6.0)]).waypoints.tolist() == [list(START), list(GOAL)]
 
 
 def test_detour_leads_over_wide_low_wall():
-    detour = way([wall(10.0, 0.0, 0.3, 30.0, height=6.0)])
+    detour = detour_of([wall(10.0, 0.0, 0.3, 30.0, height=6.0)])
     assert detour.waypoints is not None
     top = -detour.waypoints[:, 2].min()
     assert 6.0 + FORMATION.below + MARGIN <= top + 1e-6 <= 7.5
@@ -75,7 +75,7 @@ def test_detour_leads_over_wide_low_wall():
 
 
 def test_detour_leads_round_shorter_side_of_high_wall():
-    left, right = way([wall(10.0, 2.0, 0.3, 8.0)]), way([wall(10.0, -2.0, 0.3, 8.0)])
+    left, right = detour_of([wall(10.0, 2.0, 0.3, 8.0)]), detour_of([wall(10.0, -2.0, 0.3, 8.0)])
     assert side(left) < -2.0 - 1.1 - MARGIN + 1e-6 and side(right) > 2.0 + 1.1 + MARGIN - 1e-6
     assert left.length == pytest.approx(right.length, rel=0.02)
     shortest = 2.0 * math.hypot(10.0, 2.0 + 1.1 + MARGIN)
@@ -84,22 +84,22 @@ def test_detour_leads_round_shorter_side_of_high_wall():
 
 def test_detour_leads_under_high_sphere_and_over_low_sphere():
     """Only the height band of the formation matters: payload's bottom to discs' top."""
-    assert len(way([sphere(10.0, 0.0, -5.0 - 3.75 - 0.5 - 0.51)]).waypoints) == 2
-    assert len(way([sphere(10.0, 0.0, -5.0 + 0.25 + 0.5 + 0.51)]).waypoints) == 2
-    assert len(way([sphere(10.0, 0.0, -5.0 - 3.75 - 0.5 - 0.45)]).waypoints) > 2
+    assert len(detour_of([sphere(10.0, 0.0, -5.0 - 3.75 - 0.5 - 0.51)]).waypoints) == 2
+    assert len(detour_of([sphere(10.0, 0.0, -5.0 + 0.25 + 0.5 + 0.51)]).waypoints) == 2
+    assert len(detour_of([sphere(10.0, 0.0, -5.0 - 3.75 - 0.5 - 0.45)]).waypoints) > 2
 
 
 def test_detour_leads_through_wide_gap_of_poles():
     half = 0.3 + 1.1 + MARGIN + 0.2
     closed = wall(10.0, 3.0 - half - 6.5, 0.3, 12.0)
-    detour = way([pole(10.0, 3.0 - half), pole(10.0, 3.0 + half), closed])
+    detour = detour_of([pole(10.0, 3.0 - half), pole(10.0, 3.0 + half), closed])
     at_poles = np.interp(10.0, detour.waypoints[:, 0], detour.waypoints[:, 1])
     assert 3.0 - 0.21 < at_poles < 3.0 + 0.21
 
 
 def test_detour_leads_round_narrow_gap_of_poles():
     half = 0.3 + 1.1 + MARGIN - 0.1
-    detour = way([pole(10.0, -half), pole(10.0, half)])
+    detour = detour_of([pole(10.0, -half), pole(10.0, half)])
     assert abs(np.interp(10.0, detour.waypoints[:, 0], detour.waypoints[:, 1])) > half
 
 
@@ -108,20 +108,20 @@ def test_gap_missed_by_coarse_grid_is_found():
     half = 1.1 + MARGIN + 0.17
     walls = [wall(10.0, 0.75 - half - 10.0, 0.3, 20.0), wall(10.0, 0.75 + half + 10.0, 0.3, 20.0)]
     region = (-10.0, -6.5, -12.0), (30.0, 6.5, -0.5)
-    detour = way(walls, region=region)
+    detour = detour_of(walls, region=region)
     assert detour.waypoints is not None
     assert np.interp(10.0, detour.waypoints[:, 0], detour.waypoints[:, 1]) == pytest.approx(0.75, abs=0.17)
     narrow = [wall(10.0, 0.75 - 1.59 - 10.0, 0.3, 20.0), wall(10.0, 0.75 + 1.59 + 10.0, 0.3, 20.0)]
-    assert "too narrow" in way(narrow, region=region).reason
+    assert "too narrow" in detour_of(narrow, region=region).reason
 
 
 def test_goal_in_closed_box_is_unreachable():
     box = [wall(16.0, 0.0, 0.3, 8.0), wall(24.0, 0.0, 0.3, 8.0), wall(20.0, 4.0, 8.0, 0.3), wall(20.0, -4.0, 8.0, 0.3)]
-    detour = way(box)
+    detour = detour_of(box)
     assert detour.waypoints is None and detour.length == math.inf
     assert detour.reason == "every path from start to goal is closed or too narrow for the formation"
     # From above it can.
-    assert way(box, highest=20.0).waypoints is not None
+    assert detour_of(box, highest=20.0).waypoints is not None
 
 
 @pytest.mark.parametrize(
@@ -142,19 +142,19 @@ def test_goal_inside_obstacle_is_unreachable(obstacle, others, reason):
 
 def test_detour_keeps_altitude_limits():
     low_wall = [wall(10.0, 0.0, 0.3, 12.0, height=6.0)]
-    assert -way(low_wall).waypoints[:, 2].min() > 6.0
-    round_it = way(low_wall, highest=6.5)
-    assert np.allclose(round_it.waypoints[:, 2].min(), -5.0, atol=1.5)
-    assert -round_it.waypoints[:, 2].min() <= 6.5
-    assert abs(side(round_it)) > 6.0
+    assert -detour_of(low_wall).waypoints[:, 2].min() > 6.0
+    beside = detour_of(low_wall, highest=6.5)
+    assert np.allclose(beside.waypoints[:, 2].min(), -5.0, atol=1.5)
+    assert -beside.waypoints[:, 2].min() <= 6.5
+    assert abs(side(beside)) > 6.0
 
 
 def test_distance_does_not_decrease_from_start_within_margin():
     ball = sphere(1.9, 0.0, -5.0)
     detour = find_detour([ball], START, GOAL, FORMATION, MARGIN, highest=12.0)
     assert detour.waypoints is not None
-    room = FreeSpace([ball], FORMATION, MARGIN, 0.5, 12.0)
-    at_start = room.clearance(np.array([START]))[0, 0]
+    space = FreeSpace([ball], FORMATION, MARGIN, 0.5, 12.0)
+    at_start = space.clearance(np.array([START]))[0, 0]
     assert at_start == pytest.approx(0.3)
     first, rest = detour.waypoints[:2], detour.waypoints[1:]
     assert clearance_by_coal([ball], first) >= at_start - 2e-3
@@ -176,11 +176,11 @@ def test_detours_of_random_scenarios_keep_margin_and_repeat(seed):
         north, east, height = rng.uniform([3.5, -8.0, 3.0], [16.5, 8.0, 9.0])
         kind = (sphere(north, east, -height), pole(north, east), wall(north, east, 0.3, 3.0, height, rng.uniform(0, 3)))
         obstacles.append(kind[i % 3])
-    detour = way(obstacles, highest=14.0)
+    detour = detour_of(obstacles, highest=14.0)
     assert detour.waypoints is not None
     assert len(detour.waypoints) <= 9
     assert detour.length < 32.0
-    again = way(obstacles, highest=14.0)
+    again = detour_of(obstacles, highest=14.0)
     assert np.array_equal(detour.waypoints, again.waypoints)
 
 
@@ -228,11 +228,11 @@ def parameters():
 def test_search_refuses_invalid_arguments():
     for wrong in (
         lambda: BoundingCylinder(-1.0, 1.0, 1.0),
-        lambda: way([], margin=-0.1),
-        lambda: way([], highest=0.2),
-        lambda: way([], goal=(0.0, math.nan, 0.0)),
-        lambda: way([sphere(1.0, math.inf, 0.0)]),
-        lambda: way([pole(10.0, 0.0)], region=((0.0, 0.0, -99.0), (9.0, 9.0, -98.0))),
+        lambda: detour_of([], margin=-0.1),
+        lambda: detour_of([], highest=0.2),
+        lambda: detour_of([], goal=(0.0, math.nan, 0.0)),
+        lambda: detour_of([sphere(1.0, math.inf, 0.0)]),
+        lambda: detour_of([pole(10.0, 0.0)], region=((0.0, 0.0, -99.0), (9.0, 9.0, -98.0))),
     ):
         with pytest.raises(TrajectoryError):
             wrong()

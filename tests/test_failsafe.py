@@ -55,7 +55,7 @@ def test_codes_are_unique():
     assert all(row.condition is not None for row in Failsafe if row.check is not Check.EVENT)
 
 
-def test_no_failsafe_is_raised_by_healthy_links():
+def test_healthy_links_raise_no_failsafe():
     assert evaluated(state(*(link(i) for i in range(1, 5)))) is None
 
 

@@ -58,7 +58,7 @@ MIXED = (
 )
 
 
-def test_the_same_seed_and_faults_give_the_same_truth_to_the_byte(tmp_path):
+def test_truth_repeats_to_the_byte_with_same_seed_and_faults(tmp_path):
     runs = {"a": (MIXED, 1), "b": (MIXED, 1), "c": (MIXED, 2), "d": ((*MIXED[:8], *MIXED[9:]), 1)}
     truth, faults = {}, {}
     for name, (mixed, seed) in runs.items():

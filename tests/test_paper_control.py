@@ -82,7 +82,7 @@ def test_A_obs_in_closed_form():
     np.testing.assert_allclose(row, 0.0, atol=1e-12)  # a pole: the filter cannot act
 
 
-def test_the_nonlinear_reading_is_exact_in_the_thrusts():
+def test_nonlinear_reading_is_exact_in_the_thrusts():
     parameters, state, rng = system(), tilted(), np.random.default_rng(2)
     plant = Plant(parameters)
     a, G = nonlinear_acceleration(plant, state)
@@ -185,7 +185,7 @@ def test_named_outputs_have_no_rates():
     assert Settings().horizon == 20
 
 
-def test_no_diagonal_c_z_gives_a_uav_s_height():
+def test_height_of_a_uav_is_given_by_no_diagonal_c_z():
     """r_iz = r_0z + [R_0 (p_i - l_i q_i)]_z: one state less of it, and the height of the UAV is another."""
     parameters = system()
     plant, state = Plant(parameters), tilted(5)
@@ -194,7 +194,7 @@ def test_no_diagonal_c_z_gives_a_uav_s_height():
     assert np.abs(heights[0] - heights[1]).max() > 0.02  # the same r_0z
 
 
-def test_the_hull_does_not_translate_with_the_payload():
+def test_hull_does_not_translate_with_the_payload():
     """At the figure eight's largest acceleration the UAVs stand most of a metre off where hover has them."""
     parameters = system()
     formation = Formation(parameters)
@@ -229,7 +229,7 @@ def test_formation_in_world_is_hull_in_hover_when_hovering():
     np.testing.assert_allclose(points, formation.hull_points(np.zeros((1, 3)))[0] + state.r_0, atol=1e-12)
 
 
-def test_the_paper_s_filter_does_not_sink_onto_a_sphere():
+def test_filter_of_the_paper_does_not_sink_onto_a_sphere():
     parameters = system()
     above = PlantState.hovering(parameters, np.array([0.0, 0.0, -6.0]))  # the reference is at -5
     np.testing.assert_allclose(minimal_state(above)[:3], above.r_0)

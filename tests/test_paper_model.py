@@ -40,7 +40,7 @@ def plant_state(state):
 
 
 @pytest.mark.parametrize("n", [3, 4, 6])
-def test_the_plant_without_tensions_agrees(n):
+def test_plant_without_tensions_agrees(n):
     for seed in range(10):
         parameters, state, inputs, thrust, torque = random_case(n, seed)
         expected = accelerations(parameters, state, inputs)

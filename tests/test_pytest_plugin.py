@@ -37,7 +37,7 @@ def hop(tmp_path):
 # Flown
 
 
-def test_a_tenth_of_all_datagrams_may_be_lost(fly_with_faults, hop):
+def test_flight_completes_with_a_tenth_of_all_datagrams_lost(fly_with_faults, hop):
     flight = fly_with_faults(
         hop,
         [PacketLoss(probability=0.1)],
@@ -48,7 +48,7 @@ def test_a_tenth_of_all_datagrams_may_be_lost(fly_with_faults, hop):
     assert json.loads((flight.run_dir / "faults.json").read_text())["faults"][0]["disturbed"] > 50
 
 
-def test_a_failed_test_keeps_its_flight(pytester, hop):
+def test_failed_test_keeps_its_flight(pytester, hop):
     """A test of another project, in another folder; its flight is flown, and is not within its limits."""
     pytester.makepyfile(f"""
         def test_flies(fly_with_faults):
@@ -149,12 +149,12 @@ def test_records_of_passed_test_are_removed(pytester, hop, flown):
     assert "False" in kept.name
 
 
-def test_the_plugin_is_installed_with_the_package():
+def test_plugin_is_installed_with_the_package():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     assert project["entry-points"]["pytest11"] == {"gcs.campaign.pytest_plugin": "gcs.campaign.pytest_plugin"}
 
 
-def test_the_plugin_takes_no_time_to_start():
+def test_plugin_takes_no_time_to_start():
     """Whoever has the package installed has the plugin in every run of pytest."""
     code = (
         "import sys, pytest; before = set(sys.modules); import gcs.campaign.pytest_plugin; "

@@ -84,7 +84,7 @@ def test_wall_is_turned_about_the_down_axis() -> None:
     assert clearance(wall) == pytest.approx(-0.8 - corner, abs=BOUND + 1e-4)
 
 
-def test_a_tilted_disc_reaches_less_far() -> None:
+def test_tilted_disc_reaches_less_far() -> None:
     tilted = quaternion_from_euler(0.0, np.pi / 3, 0.0)
     # Seen from ahead the disc reaches r cos 60 deg; ahead of the disc's centre, far away along x.
     expected = 1000.0 - 0.5 - 0.3 * 0.5 - 0.5

@@ -192,7 +192,7 @@ def test_rows_are_on_disk_at_once_and_closing_twice_is_harmless(tmp_path) -> Non
     assert (tmp_path / "a.csv").read_bytes() == b"a\n1.5\n"
 
 
-def test_a_row_of_another_length_is_an_error(tmp_path) -> None:
+def test_row_of_another_length_is_an_error(tmp_path) -> None:
     with TableWriter(tmp_path / "a.csv", ("a", "b")) as table, pytest.raises(ValueError, match="1 values for 2"):
         table.write([1.0])
 

@@ -299,7 +299,7 @@ def test_trajectory_refuses_invalid_arguments(bad):
         bad()
 
 
-def test_no_legs_is_rest():
+def test_mission_without_legs_is_a_rest():
     trajectory = WaypointTrajectory(HIGH, [], LIMITS, start=2.0)
     assert np.array_equal(trajectory.position(9.0), HIGH)
     assert trajectory.end == 2.0

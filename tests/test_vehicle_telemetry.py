@@ -51,7 +51,7 @@ def test_streams_have_their_rates_and_stamps_of_samples(bench: Bench) -> None:
     assert max(len(datagram) for _, datagram, _ in bench.datagrams) <= DATAGRAM_LIMIT
 
 
-def test_the_payload_unit_is_relayed_as_a_component_with_its_own_stamp(bench: Bench) -> None:
+def test_payload_unit_is_relayed_as_a_component_with_its_own_stamp(bench: Bench) -> None:
     sample = Measurement(123.456, (0.5, 0.5, -0.5, 0.5), (1, 2, 3), (4, 5, -6), (7, 8, 9))
     bench.vehicle.relay(sample)
     bench.body.tick += 10

@@ -54,15 +54,15 @@ def test_steady_wind_and_drag_factor_are_estimated(wind, factor):
     assert air.uav == pytest.approx(true.uav, rel=0.2)
 
 
-def test_no_wind_without_force():
+def test_wind_is_zero_without_force():
     assert estimated_wind(lambda _: (np.zeros(3), np.zeros(3))) is None
 
 
-def test_no_wind_for_force_independent_of_velocity():
+def test_wind_is_zero_for_force_independent_of_velocity():
     assert estimated_wind(lambda _: (np.array([0.0, 8.0, 0.0]), np.zeros(3))) is None
 
 
-def test_no_wind_for_force_along_velocity():
+def test_wind_is_zero_for_force_along_velocity():
     assert estimated_wind(lambda velocity: (1.5 * velocity, np.zeros(3))) is None
 
 

@@ -58,7 +58,7 @@ def hover_modes(parameters):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("n", [3, 4, 6])
+@pytest.mark.parametrize("n", [3, 6])
 def test_hover_modes(n):
     parameters = system(n)
     frequencies, shapes, left = hover_modes(parameters)
@@ -131,7 +131,7 @@ def world_force_law(parameters, seed=0):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("parameters", [system(3), system(4), system(6), unequal()], ids=["3", "4", "6", "unequal"])
+@pytest.mark.parametrize("parameters", [system(3), system(6), unequal()], ids=["3", "6", "unequal"])
 def test_forced_motion_agrees_with_an_independent_integration(parameters):
     pairs = list(forced(parameters, 1000, 5.0, world_force_law(parameters)))
     path = np.array([world.payload_position_in_world for world, _ in pairs])

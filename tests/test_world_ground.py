@@ -108,7 +108,7 @@ def test_wind_does_not_move_uavs_in_cradles():
         assert world.state().uavs[0].velocity_in_world[1] > 0.1
 
 
-def test_no_cradle_closes_in_the_air():
+def test_cradles_stay_open_in_the_air():
     with World(system(4)) as world:
         place(world, hover_state(system(4), (0, 0, -1.5)))
         state = run(world, 0.05, [0.0] * 4)
