@@ -8,7 +8,7 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink.codec import Codec
 from gcs.record.tlog import frames_in
-from vehicle_sim.faults.interface import FaultInterface
+from vehicle_sim.faults import FaultInjector
 
 REMEMBERED = 64  # genuine datagrams that may be imitated
 
@@ -32,10 +32,11 @@ def with_random_contents(kind, contents, target_system, writer):
     return mavlink.MAVLink_message(kind.id, kind.msgname)._pack(writer, kind.crc_extra, bytes(payload))
 
 
-class Traffic(FaultInterface):
+class Traffic(FaultInjector):
     """Lets everything through, and remembers the last genuine datagrams of one vehicle in each direction."""
 
     def __init__(self, vehicle):
+        super().__init__()
         self._vehicle = vehicle
         self.to_it = deque(maxlen=REMEMBERED)
         self.from_it = deque(maxlen=REMEMBERED)

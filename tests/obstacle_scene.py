@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
+from gcs.config import RangeSensorConfig
 from gcs.mavlink.telemetry import detection
 from gcs.mission.known_obstacles import known_obstacles
 from idc_controller.estimation.measurements import Attitude, Position
@@ -55,7 +56,7 @@ class Scene:
     def __init__(self, seed=0, uavs=4, noise=NOISE, reach=REACH, loss=0.0):
         self.rng = np.random.default_rng([seed, 7])
         self.reach, self.noise, self.loss = reach, noise, loss
-        self.sensors = [RangeSensor(reach, noise, seed, i) for i in range(1, uavs + 1)]
+        self.sensors = [RangeSensor(RangeSensorConfig(range=reach, noise=noise), seed, i) for i in range(1, uavs + 1)]
 
     def look(self, time, centre, obstacles):
         """Return [(uav, position, attitude, RangeSample)] at ``time``, the formation at ``centre`` (3,)."""

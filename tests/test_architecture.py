@@ -68,12 +68,12 @@ ALLOWED = {
     ),
     "vehicle_sim.autopilot": "gcs.config gcs.mavlink idc_controller.trajectory vehicle_sim.world",
     "vehicle_sim.faults": "gcs.config gcs.faults gcs.mavlink gcs.mission gcs.record vehicle_sim.world",
-    "vehicle_sim.mavlink": "gcs.mavlink vehicle_sim.autopilot vehicle_sim.world",
+    "vehicle_sim.mavlink": "gcs.config gcs.mavlink gcs.mission vehicle_sim.autopilot vehicle_sim.world",
     "vehicle_sim.swarm": (
         "gcs.config gcs.mavlink gcs.mission vehicle_sim.autopilot vehicle_sim.faults vehicle_sim.mavlink "
         "vehicle_sim.world"
     ),
-    "vehicle_sim.world": "gcs.mission gcs.record idc_controller.geometry idc_controller.model",
+    "vehicle_sim.world": "gcs.config gcs.mission gcs.record idc_controller.geometry idc_controller.model",
 }
 SETTINGS = sorted((*ROOT.glob("idc_controller/*/settings.py"), *ROOT.glob("gcs/*/settings.py")))
 COMMON = {

@@ -7,6 +7,7 @@ import pytest
 
 from idc_controller.rotations import quaternion_from_euler
 from idc_controller.rotations_float import attitude_of_force
+from idc_controller.trajectory.settings import BrakingSettings
 from vehicle_sim.autopilot.attitude_control import AttitudeController
 from vehicle_sim.autopilot.hold_control import HoldPlan
 from vehicle_sim.world.sensors import Measurement, NavigationSensor, SensorNoise
@@ -37,7 +38,7 @@ def test_torque_takes_the_whole_inertia() -> None:
 
 
 def test_hold_plan_is_consistent_with_its_own_derivatives() -> None:
-    plan = HoldPlan.braking(2.0, (1.0, 2.0, -5.0), (3.0, -4.0, 1.0), 0.3, descent_start=7.0, descent_speed=0.5)
+    plan = HoldPlan.to_rest(2.0, (1.0, 2.0, -5.0), (3.0, -4.0, 1.0), 0.3, BrakingSettings(), 7.0, 0.5)
     h = 1e-4
     for t in np.linspace(2.1, 12.0, 53):
         before, here, after = plan.at(t - h), plan.at(t), plan.at(t + h)

@@ -14,7 +14,6 @@ from scripted_ground import ScriptedGround, exchange
 from gcs.faults.record import fault_notes
 from vehicle_sim.faults import FaultInjector, record_faults
 from vehicle_sim.faults.active import ActiveFault
-from vehicle_sim.faults.interface import FaultInterface
 from vehicle_sim.faults.world import Wind, WorldFaults
 from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.truth_log import TruthLog
@@ -27,7 +26,7 @@ def lifted(*faults, seed=1, until=4.0, folder=None):
     """A swarm that a scripted ground lifts: (ground, injector, swarm)."""
     system = SYSTEM.parameters()
     ground = ScriptedGround([("uav", i) for i in (1, 2, 3, 4)], float(system.hover_thrust.mean()), system.thrust_max)
-    injector = FaultInjector(faults, seed, SYSTEM) if faults else FaultInterface()
+    injector = FaultInjector(faults, seed, SYSTEM)
     with Swarm(SYSTEM, seed=seed, faults=injector) as swarm:
         if folder is not None:
             swarm.record(TruthLog(folder, 4))

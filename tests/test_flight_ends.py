@@ -17,7 +17,7 @@ from gcs.mavlink import px4
 from gcs.record.landing import is_set_down
 from gcs.record.modes import stops_after
 from idc_controller.trajectory.trajectory import RestTrajectory
-from vehicle_sim.faults.interface import FaultInterface
+from vehicle_sim.faults import FaultInjector
 
 pytestmark = pytest.mark.slow
 
@@ -148,10 +148,11 @@ def test_unusable_input_ends_before_anything_is_started(tmp_path, capsys, option
 # One process
 
 
-class Cut(FaultInterface):
+class Cut(FaultInjector):
     """From ``at`` (s) on nothing passes between a vehicle and the ground, in the directions named."""
 
     def __init__(self, vehicle, at, telemetry=True, commands=True):
+        super().__init__()
         self.vehicle, self.at, self.telemetry, self.commands = vehicle, at, telemetry, commands
 
     def to_vehicle(self, vehicle, arriving, now):
@@ -237,10 +238,11 @@ def test_link_loss_of_one_vehicle_lands_all_of_them(tmp_path, telemetry, command
     check_set_down(tmp_path / "run", summary)
 
 
-class TelemetryLoss(FaultInterface):
+class TelemetryLoss(FaultInjector):
     """Loss of telemetry from ``at`` (s) on; commands still arrive."""
 
     def __init__(self, at):
+        super().__init__()
         self.at = at
 
     def from_vehicle(self, vehicle, leaving, now):

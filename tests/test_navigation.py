@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from gcs.config.vehicle_settings import NavigationSettings
 from idc_controller.rotations import quaternion_product
 from vehicle_sim.autopilot.navigation import Navigation
-from vehicle_sim.autopilot.settings import NavigationSettings
 from vehicle_sim.world.sensors import Measurement
 
 STEP, LAG, NOISE = 0.004, 0.05, math.radians(0.2)

@@ -11,7 +11,7 @@ from mission_files import MISSIONS
 from obstacle_scene import pole, sphere, wall
 from scripted_ground import ScriptedGround, exchange
 
-from gcs.config import UnusableFile, read_system
+from gcs.config import RangeSensorConfig, UnusableFile, read_system
 from gcs.mavlink.codec import Codec
 from gcs.mission.model import Obstacle
 from gcs.mission.motion import HarmonicMotion
@@ -20,7 +20,7 @@ from idc_controller.geometry.obstacles import Bodies
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
-from vehicle_sim.faults.interface import FaultInterface
+from vehicle_sim.faults import FaultInjector
 from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.range_sensor import RangeSensor, visible_points
 
@@ -83,7 +83,10 @@ def test_ends_are_hit_when_they_are_in_range():
 def test_noise_is_along_the_line_of_sight_with_the_given_deviation():
     obstacle = sphere((8.0, 0.0, -6.0), 0.5)
     attitude = tuple(quaternion_from_euler(0.2, -0.1, 1.0))
-    noisy, exact = RangeSensor(REACH, 0.05, 1, 1), RangeSensor(REACH, 0.0, 1, 1)
+    noisy, exact = (
+        RangeSensor(RangeSensorConfig(range=REACH, noise=0.05), 1, 1),
+        RangeSensor(RangeSensorConfig(range=REACH, noise=0.0), 1, 1),
+    )
     errors = []
     for k in range(300):
         a = noisy.scan(0.1 * k, (0.0, 0.0, -6.0), attitude, [obstacle])
@@ -100,7 +103,7 @@ def test_noise_is_along_the_line_of_sight_with_the_given_deviation():
 
 def test_seed_and_vehicle_decide_the_noise():
     def run(seed, vehicle):
-        sensor = RangeSensor(REACH, 0.05, seed, vehicle)
+        sensor = RangeSensor(RangeSensorConfig(range=REACH, noise=0.05), seed, vehicle)
         return [sensor.scan(0.1 * k, (0.0, 0.0, -6.0), LEVEL, OBSTACLES_AROUND) for k in range(5)]
 
     assert run(1, 1) == run(1, 1)
@@ -112,7 +115,7 @@ OBSTACLES_AROUND = [sphere((5.0, 0.0, -6.0), name="a"), pole((0.0, 6.0), name="b
 
 
 def test_detection_numbers_are_per_vehicle_and_new_after_absence():
-    sensor = RangeSensor(REACH, 0.05, 1, 1)
+    sensor = RangeSensor(RangeSensorConfig(range=REACH, noise=0.05), 1, 1)
     first, second = sphere((9.0, 0.0, -6.0), name="first"), sphere((0.0, 9.0, -6.0), name="second")
 
     def numbers(position):
@@ -205,7 +208,7 @@ def test_detections_are_independent_of_names_shapes_and_map():
 
 
 def test_fault_injector_may_suppress_scans():
-    class SensorLoss(FaultInterface):
+    class SensorLoss(FaultInjector):
         def range_sample(self, vehicle, sample):
             return None if vehicle == 2 else sample._replace(detections=sample.detections[:1])
 

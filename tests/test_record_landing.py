@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from types import SimpleNamespace
 
 import numpy as np
@@ -11,13 +12,11 @@ from flight_in_process import HOP, system_file
 from gcs.app.fly import flight_result
 from gcs.flight.alarms import AlarmLog
 from gcs.mission.read import read_mission
-from gcs.record import landing as landings
 from gcs.record.landing import is_set_down, landing_figures
 from gcs.record.modes import stops_after
 from gcs.record.run_data import read_run
 from gcs.record.run_folder import open_run_folder
 from idc_controller.rotations import quaternion_from_euler
-from vehicle_sim.world import ground
 from vehicle_sim.world.truth_log import TruthLog
 from vehicle_sim.world.world_state import UavState, WorldState
 
@@ -92,8 +91,14 @@ def test_contact_after_touchdown_is_not_counted_before(tmp_path):
     assert figures(tmp_path, rows, (len(rows) - 3,))["contacts_before"] == 0
 
 
-def test_pad_is_that_of_the_world():
-    assert (landings.PAD_THICKNESS, landings.PAD_MARGIN) == (ground.PAD_THICKNESS, ground.PAD_MARGIN)
+def test_payload_beside_a_smaller_pad_is_not_set_down_at_its_height(tmp_path):
+    rows = flight(north=1.2, floor=PAD)
+    for name, margin in (("usual", 0.25), ("small", 0.1)):
+        run = write_flight(tmp_path / name, rows)
+        manifest = {"system": {"world": {"pad": {"thickness": 0.05, "margin": margin}}}}
+        (run / "manifest.json").write_text(json.dumps(manifest))
+    found = [landing_figures(read_run(tmp_path / name))["on_ground"] for name in ("usual", "small")]
+    assert found == [True, False]
 
 
 @pytest.mark.parametrize(

@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
+from gcs.config.vehicle_settings import SetpointSettings
 from idc_controller.rotations import quaternion_from_euler
 from vehicle_sim.autopilot.setpoint_stream import SetpointStream
 from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
-from vehicle_sim.autopilot.settings import SetpointSettings
 
 PERIOD = 0.05
 

@@ -17,7 +17,7 @@ from gcs.mission.motion import HarmonicMotion, LinearMotion
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
-from vehicle_sim.faults.interface import FaultInterface
+from vehicle_sim.faults import FaultInjector
 from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.errors import SimulationError, UnsupportedWorld
 from vehicle_sim.world.truth_log import TruthLog
@@ -231,7 +231,7 @@ def test_truth_is_written_50_times_a_second_or_more_at_any_physics_rate(tmp_path
 
 
 def test_fault_injector_acts_on_samples_and_datagrams():
-    class Disturbed(FaultInterface):
+    class Disturbed(FaultInjector):
         def own_sample(self, vehicle, sample):
             return None if vehicle == 2 else sample
 

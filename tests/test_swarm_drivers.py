@@ -14,7 +14,7 @@ from gcs.mavlink.codec import Codec
 from gcs.mavlink.lockstep import Done, decode_tick
 from vehicle_sim.app.ending import Ending
 from vehicle_sim.app.lockstep import LockstepDriver
-from vehicle_sim.app.realtime import LAG_MAX, RealTimeClock, RealTimeDriver
+from vehicle_sim.app.realtime import RealTimeClock, RealTimeDriver
 from vehicle_sim.app.sockets import SwarmSockets
 from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.errors import SimulationError
@@ -225,19 +225,19 @@ def test_real_time_resumes_without_jump_after_stall():
     wall = Wall(stop_at=0.5, stalls=(0.2, 0.3))
     with Swarm(CONFIG, seed=1) as swarm, SwarmSockets("127.0.0.1", 0, 4, with_clock=False) as sockets:
         RealTimeDriver(swarm, sockets, wall, 1.0, wall).run()
-        assert 0.48 < swarm.time < 0.5 + 2 * LAG_MAX + 0.02
+        assert 0.48 < swarm.time < 0.5 + 2 * 0.4 + 0.02
 
 
 def test_real_time_clock_limits_its_lag():
     now = [100.0]
-    clock = RealTimeClock(5.0, 2.0, lambda: now[0])
+    clock = RealTimeClock(5.0, 2.0, 0.4, lambda: now[0])
     assert clock.now() == 5.0
     now[0] += 0.05
     assert clock.follow(5.0) == pytest.approx(5.1)
     assert clock.wall_until(5.2) == pytest.approx(0.05)
     now[0] += 1000.0
-    assert clock.follow(5.1) == pytest.approx(5.1 + 2 * LAG_MAX)
-    assert clock.now() == pytest.approx(5.1 + 2 * LAG_MAX)
+    assert clock.follow(5.1) == pytest.approx(5.1 + 2 * 0.4)
+    assert clock.now() == pytest.approx(5.1 + 2 * 0.4)
     assert clock.wall_until(5.0) == 0.0
 
 

@@ -19,10 +19,9 @@ from vehicle_bench import (
     command,
 )
 
+from gcs.config.vehicle_settings import VehicleFailsafeSettings, VehicleLinkSettings
 from gcs.mavlink import px4
 from gcs.mavlink.codec import Codec
-from vehicle_sim.autopilot.settings import FailsafeSettings
-from vehicle_sim.mavlink.settings import VehicleLinkSettings
 
 
 def test_controlled_vehicle_refuses_commands_of_foreign_systems(flying: Bench) -> None:
@@ -38,7 +37,7 @@ def test_controlled_vehicle_refuses_commands_of_foreign_systems(flying: Bench) -
     flying.vehicle.step(flying.body.measure(), flying.now)
     assert flying.vehicle.autopilot.armed and flying.vehicle.autopilot.mode == px4.MODE_OFFBOARD
     assert flying.vehicle.autopilot.attitude_target[2] == pytest.approx(HOVER)
-    assert flying.vehicle.parameters["COM_OF_LOSS_T"] == pytest.approx(FailsafeSettings.setpoint_loss)
+    assert flying.vehicle.parameters["COM_OF_LOSS_T"] == pytest.approx(VehicleFailsafeSettings.setpoint_loss)
     assert flying.result(command(512, mavlink.MAVLINK_MSG_ID_HOME_POSITION), STRANGER) == ACCEPTED
 
 
@@ -64,7 +63,7 @@ def test_excessive_requests_are_rate_limited(flying: Bench) -> None:
 
 def test_second_ground_may_take_control_after_setpoint_timeout(flying: Bench) -> None:
     flying.streaming = {(STRANGER, 42): attitude_target(thrust=HOVER)}
-    flying.run(FailsafeSettings.setpoint_loss - 0.08)
+    flying.run(VehicleFailsafeSettings.setpoint_loss - 0.08)
     assert flying.result(OFFBOARD, STRANGER, 42) == DENIED
     flying.run(0.3)
     assert flying.vehicle.autopilot.failsafe  # its set-points do not fly the vehicle by themselves
@@ -114,7 +113,7 @@ def test_mutated_datagrams_neither_raise_nor_command(flying: Bench) -> None:
     assert vehicle.autopilot.armed and vehicle.autopilot.mode == px4.MODE_OFFBOARD
     assert vehicle.autopilot.changes == before
     assert vehicle.autopilot.attitude_target[2] == pytest.approx(HOVER)
-    assert vehicle.parameters["COM_OF_LOSS_T"] == pytest.approx(FailsafeSettings.setpoint_loss)
+    assert vehicle.parameters["COM_OF_LOSS_T"] == pytest.approx(VehicleFailsafeSettings.setpoint_loss)
 
 
 def test_random_messages_of_foreign_system_neither_raise_nor_change_state(flying: Bench) -> None:
@@ -131,5 +130,5 @@ def test_random_messages_of_foreign_system_neither_raise_nor_change_state(flying
         vehicle.datagrams_to_send(flying.now)
     assert vehicle.autopilot.changes == before
     assert vehicle.autopilot.armed and vehicle.parameters["COM_OF_LOSS_T"] == pytest.approx(
-        FailsafeSettings.setpoint_loss
+        VehicleFailsafeSettings.setpoint_loss
     )

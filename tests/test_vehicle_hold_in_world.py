@@ -35,9 +35,7 @@ def test_payload_is_braked_held_and_set_down(velocity: tuple[float, float]) -> N
         np.array([0.0, 0.0, -5.0]), np.array([*velocity, -0.5]), level[0], np.zeros(3),
         np.tile([0.0, 0.0, 1.0], (n, 1)), np.zeros((n, 3)), level, np.zeros((n, 3)),
     )  # fmt: skip
-    airframes = [
-        Airframe.of_system(system, i, arm_length=0.17, torque_to_thrust=0.016, rotor_speed_max=1000.0) for i in range(n)
-    ]
+    airframes = [Airframe.of_system(system, i, config.uav) for i in range(n)]
     pilots = [Autopilot(airframe, vehicle_parameters(airframe, i, 250)) for i, airframe in enumerate(airframes)]
     rotors = [Rotors(airframe.rotors, airframe.motor_time_constant, 0.002) for airframe in airframes]
     sensors = [NavigationSensor(NOISE, 3, i) for i in range(n)]

@@ -11,8 +11,8 @@ from vehicle_bench import (
     Bench,
 )
 
+from gcs.config.vehicle_settings import VehicleFailsafeSettings
 from gcs.mavlink import px4
-from vehicle_sim.autopilot.settings import FailsafeSettings
 
 
 def value_of(messages: list[Any]) -> dict[str, Any]:
@@ -42,8 +42,8 @@ def test_parameters_are_read_by_name_and_by_index(bench: Bench) -> None:
     ("name", "value", "kind", "stored"),
     [
         ("COM_OF_LOSS_T", 0.3, 9, pytest.approx(0.3)),
-        ("COM_OF_LOSS_T", math.nan, 9, pytest.approx(FailsafeSettings.setpoint_loss)),
-        ("COM_OF_LOSS_T", -1.0, 9, pytest.approx(FailsafeSettings.setpoint_loss)),
+        ("COM_OF_LOSS_T", math.nan, 9, pytest.approx(VehicleFailsafeSettings.setpoint_loss)),
+        ("COM_OF_LOSS_T", -1.0, 9, pytest.approx(VehicleFailsafeSettings.setpoint_loss)),
         ("COM_DL_LOSS_T", px4.parameter_to_wire(20, 6), 6, 20),
         ("COM_DL_LOSS_T", 20.0, 9, 10),
         ("COM_DL_LOSS_T", 20.0, 6, 10),  # a C cast: read byte-wise it is far out of range

@@ -6,6 +6,7 @@ from idc_controller.control.settings import ControllerSettings, GroundControlSet
 from idc_controller.estimation.settings import EstimatorSettings, InnovationMonitorSettings, WindSettings
 from idc_controller.guidance.settings import DetourSettings, NavigatorSettings, ProgressSettings, RestingPlaceSettings
 from idc_controller.safety.settings import FilterSettings, PlannerSettings
+from idc_controller.trajectory.settings import BrakingSettings
 
 
 @dataclass(frozen=True)
@@ -19,12 +20,13 @@ class EstimationConfig:
 
 @dataclass(frozen=True)
 class GuidanceConfig:
-    """Progress along the mission, and detours."""
+    """Progress along the mission, detours, and the stop of a team without set-points."""
 
     progress: ProgressSettings = field(default_factory=ProgressSettings)
     navigator: NavigatorSettings = field(default_factory=NavigatorSettings)
     detour: DetourSettings = field(default_factory=DetourSettings)
     resting_place: RestingPlaceSettings = field(default_factory=RestingPlaceSettings)
+    braking: BrakingSettings = field(default_factory=BrakingSettings)
 
 
 @dataclass(frozen=True)

@@ -30,6 +30,7 @@ from gcs.config.tables import (
 )
 from gcs.config.toml_file import TomlFile, read_toml
 from gcs.config.validate import UnusableFile
+from gcs.config.vehicle_settings import AutopilotSettings, VehicleLinkSettings
 from gcs.drivers.settings import DriverSettings
 from gcs.errors import UnusableInput
 from gcs.mavlink.settings import MavlinkSettings
@@ -38,7 +39,7 @@ from idc_controller.errors import ParameterError
 from idc_controller.parameters import SystemParameters, polygon_attachments
 from idc_controller.payload_hull import PayloadHull
 from idc_controller.perception.settings import PerceptionSettings
-from idc_controller.trajectory.settings import AvoidanceSettings
+from idc_controller.trajectory.settings import AvoidanceSettings, BrakingSettings
 
 
 @dataclass(frozen=True)
@@ -63,6 +64,8 @@ class SystemConfig:
     guidance: GuidanceConfig = field(default_factory=GuidanceConfig)
     safety: SafetyConfig = field(default_factory=SafetyConfig)
     control: ControlConfig = field(default_factory=ControlConfig)
+    autopilot: AutopilotSettings = field(default_factory=AutopilotSettings)
+    vehicle_link: VehicleLinkSettings = field(default_factory=VehicleLinkSettings)
 
     def parameters(self) -> SystemParameters:
         """Return the system as the controller models it.
@@ -92,6 +95,16 @@ class SystemConfig:
     def true_parameters(self) -> SystemParameters:
         """Return the system of the simulated world: ``world.payload_mass_factor`` scales the payload's mass."""
         return self.parameters().with_payload_mass(self.payload.mass * self.world.payload_mass_factor)
+
+    def braking(self) -> BrakingSettings:
+        """Return how a team without set-points brakes: its deceleration follows the acceleration between waypoints."""
+        share = self.guidance.resting_place.deceleration_share
+        return replace(self.guidance.braking, deceleration=share * self.motion.acceleration)
+
+    def onboard(self) -> AutopilotSettings:
+        """Return table ``autopilot`` with what follows from other tables: set-point loss time and braking."""
+        failsafe = replace(self.autopilot.failsafe, setpoint_loss=self.flight.failsafe.telemetry_timeout)
+        return replace(self.autopilot, failsafe=failsafe, hold=replace(self.autopilot.hold, braking=self.braking()))
 
     def with_vehicles(self, vehicles: int) -> SystemConfig:
         """Return the same system with another number of vehicles, on a polygon of the same spacing.

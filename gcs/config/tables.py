@@ -4,7 +4,7 @@ SI units; frames are north-east-down (world) and forward-right-down (payload, UA
 Table I of the paper.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from idc_controller.control.settings import CONTROL_RATE
 from idc_controller.settings import setting
@@ -73,6 +73,7 @@ class RangeSensorConfig:
     range: float = setting(10.0, "m", "largest distance at which an obstacle is detected", gt=0.0)
     rate: int = setting(10, "Hz", "scans; divides rates.physics", gt=0, le=1_000_000)
     noise: float = setting(0.05, "m", "standard deviation along the line of sight", ge=0.0)
+    range_min: float = setting(0.05, "m", "distance below which nothing is measured", ge=0.0)
 
 
 @dataclass(frozen=True)
@@ -105,7 +106,37 @@ class MotionConfig:
 
 
 @dataclass(frozen=True)
+class PadSettings:
+    """The pad on which the payload stands before take-off."""
+
+    thickness: float = setting(0.05, "m", "height of the pad above the ground", gt=0.0)
+    margin: float = setting(0.25, "m", "by which the pad is larger than the payload on every side", ge=0.0)
+
+
+@dataclass(frozen=True)
+class CradleSettings:
+    """Cradles that keep the UAVs on top of their links on the ground."""
+
+    release_factor: float = setting(
+        1.05, "", "of the UAV's weight: upward thrust that opens its cradle; it closes below the weight", ge=1.0
+    )
+    latch_speed: float = setting(0.3, "m/s", "speed above which a cradle does not close", gt=0.0)
+
+
+@dataclass(frozen=True)
+class AirSettings:
+    """Drag in wind, quadratic in the velocity of the air against a body."""
+
+    density: float = setting(1.225, "kg/m3", "density of the air", ge=0.0)
+    payload_drag: float = setting(1.05, "", "drag coefficient of the payload: of a box", ge=0.0)
+    uav_drag_area: float = setting(0.03, "m2", "drag coefficient times area of a UAV: a quadrotor of 0.7 kg", ge=0.0)
+
+
+@dataclass(frozen=True)
 class WorldConfig:
-    """Differences of the simulated world from the controller's model."""
+    """The simulated world, and its difference from the controller's model."""
 
     payload_mass_factor: float = setting(1.0, "", "true payload mass over payload.mass", gt=0.0)
+    pad: PadSettings = field(default_factory=PadSettings)
+    cradles: CradleSettings = field(default_factory=CradleSettings)
+    air: AirSettings = field(default_factory=AirSettings)

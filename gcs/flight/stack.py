@@ -23,7 +23,7 @@ from idc_controller.perception.scan_assembly import SensorModel
 from idc_controller.perception.settings import PerceptionSettings
 from idc_controller.safety.filter_protocol import SafetyFilter
 from idc_controller.safety.safety_filter import AvoidanceFilter
-from idc_controller.trajectory.settings import BrakingSettings, Limits
+from idc_controller.trajectory.settings import Limits
 
 
 def linear_model(config: SystemConfig) -> LinearModel:
@@ -85,8 +85,7 @@ def guidance(config: SystemConfig, model: LinearModel, obstacles: ObstacleSource
 def resting_place(config: SystemConfig, model: LinearModel, obstacles: ObstacleSource) -> RestingPlace:
     """The choice of where a team without set-points comes to rest, clear of ``obstacles``."""
     settings = replace(config.guidance.resting_place, margin=config.avoidance.margin)
-    braking = BrakingSettings(deceleration=settings.deceleration_share * config.motion.acceleration)
-    return RestingPlace(model.parameters, obstacles, settings, braking)
+    return RestingPlace(model.parameters, obstacles, settings, config.braking())
 
 
 def motion_limits(config: SystemConfig) -> Limits:

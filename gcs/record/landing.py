@@ -14,10 +14,6 @@ UPRIGHT_DEG = 15.0
 TOUCHDOWN_SPEED = 1.0
 """m/s: a payload that touches the ground faster was dropped, not set down."""
 
-# The pad about home, on which the payload is before take-off: as the simulated world builds it.
-PAD_THICKNESS = 0.05  # m
-PAD_MARGIN = 0.25  # m, by which it is larger than the payload on every side
-
 _TOUCHING = 0.02  # m between the lowest corner and what is under it
 _AIRBORNE = 0.1  # m
 _AT_REST = 0.1  # m/s
@@ -82,12 +78,12 @@ def onsets(touching_pairs: Array) -> int:
 
 def _height(run: RunData, rotation: Array) -> Array:
     """Return the least distance of the payload to the ground and to the pad (T,) (m)."""
-    hull = run.payload
+    hull, about_home = run.payload, run.pad
     height = np.min(-run.payload_position[:, None, 2] - rotation[:, 2] @ hull.vertices.T, axis=1)
-    pad = coal.Box(*np.ptp(hull.bounds, axis=0)[:2] + 2.0 * PAD_MARGIN, PAD_THICKNESS)
-    place = coal.Transform3s(np.eye(3), np.append(hull.bounds.mean(axis=0)[:2], -0.5 * PAD_THICKNESS))
+    pad = coal.Box(*np.ptp(hull.bounds, axis=0)[:2] + 2.0 * about_home.margin, about_home.thickness)
+    place = coal.Transform3s(np.eye(3), np.append(hull.bounds.mean(axis=0)[:2], -0.5 * about_home.thickness))
     payload, request = hull.geometry(), coal.DistanceRequest()
-    for t in np.flatnonzero(height < _AIRBORNE + PAD_THICKNESS):
+    for t in np.flatnonzero(height < _AIRBORNE + about_home.thickness):
         pose = coal.Transform3s(rotation[t], run.payload_position[t])
         height[t] = min(height[t], coal.distance(payload, pose, pad, place, request, coal.DistanceResult()))
     return np.asarray(height)

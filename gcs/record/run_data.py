@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from gcs.config.system import SystemConfig
+from gcs.config.tables import PadSettings
 from gcs.errors import UnusableInput
 from gcs.record.clearance import ObstacleTrack, clearance_over_time
 from gcs.record.obstacle_shapes import read_shape
@@ -78,6 +79,12 @@ class RunData:
     def payload(self) -> PayloadHull:
         """The payload's hull."""
         return PayloadHull.box(self.setting("payload", "size"))
+
+    @property
+    def pad(self) -> PadSettings:
+        """The pad about home, on which the payload is before take-off."""
+        found = self.setting("world", "pad")
+        return PadSettings(**found) if isinstance(found, Mapping) else PadSettings()
 
     def uav_separation(self) -> Array:
         """Smallest distance between the centres of two UAVs (T,) (m)."""

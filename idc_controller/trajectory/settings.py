@@ -7,7 +7,7 @@ import numpy as np
 
 from idc_controller.arrays import Array
 from idc_controller.errors import TrajectoryError
-from idc_controller.settings import setting
+from idc_controller.settings import derived, setting
 
 
 @dataclass(frozen=True)
@@ -52,4 +52,5 @@ class BrakingSettings:
     """Duration of a stop: the least, or as long as the deceleration demands."""
 
     time: float = setting(4.0, "s", "least time in which a team without set-points comes to rest", gt=0.0)
-    deceleration: float = setting(2.0, "m/s2", "largest deceleration of that stop; a faster team takes longer", gt=0.0)
+    deceleration: float = derived(2.0)
+    """Largest deceleration of that stop (m/s2); a faster team takes longer."""

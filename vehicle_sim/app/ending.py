@@ -14,9 +14,6 @@ from typing import Protocol
 INTERRUPTED = 130
 """Exit status after Ctrl-C."""
 
-LANDING_TIME = 120.0
-"""Simulated seconds that vehicles without a ground get to land."""
-
 
 class _HasFileno(Protocol):
     def fileno(self) -> int: ...

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from gcs.mavlink.address import Address
 from gcs.mavlink.lockstep import Done, Tick, decode_done
 from gcs.mavlink.udp import arrived
-from vehicle_sim.app.ending import LANDING_TIME, Ending
+from vehicle_sim.app.ending import Ending
 from vehicle_sim.app.sockets import SwarmSockets
 from vehicle_sim.app.swarm_log import LOG, SwarmLog
 from vehicle_sim.swarm import Swarm
@@ -121,7 +121,7 @@ class LockstepDriver:
 
     def _let_land(self) -> None:
         """Time runs freely until the vehicles have landed and disarmed."""
-        give_up = self._time_us + round(LANDING_TIME * 1e6)
+        give_up = self._time_us + round(self._swarm.failsafe.landing_timeout * 1e6)
         while not self._swarm.at_rest and self._time_us < give_up and not self._ending.requested:
             due = self._next_due_us()
             stride = self._time_us + STRIDE_US

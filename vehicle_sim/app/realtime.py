@@ -5,21 +5,22 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
-from vehicle_sim.app.ending import LANDING_TIME, Ending
+from vehicle_sim.app.ending import Ending
 from vehicle_sim.app.sockets import SwarmSockets
 from vehicle_sim.app.swarm_log import SwarmLog
 from vehicle_sim.swarm import Swarm
 
 STRIDE = 0.005  # s of simulated time between looks at the clock when nothing else is due
 STRIDE_MAX = 0.02  # s of simulated time at most between looks at the sockets
-LAG_MAX = 0.4  # s; less than vehicles wait for set-points. What the world is behind more, its clock is set back by
+LAG_RESERVE = 0.06  # s of the set-point loss time, which a lag of the world behind its clock must not reach
 
 
 class RealTimeClock:
     """Simulated time that follows a wall clock at a ratio, and is set back when it cannot be followed."""
 
-    def __init__(self, start: float, speed: float, wall: Callable[[], float] = time.monotonic) -> None:
-        """``start`` in simulated s; ``speed`` simulated over wall time."""
+    def __init__(self, start: float, speed: float, lag_max: float, wall: Callable[[], float] = time.monotonic) -> None:
+        """``start`` in simulated s; ``speed`` simulated over wall time; beyond ``lag_max`` (s) it is set back."""
+        self._lag_max = lag_max * max(1.0, speed)
         self._wall = wall
         self._speed = speed
         self._origin = start
@@ -34,11 +35,10 @@ class RealTimeClock:
 
         After a stall (a busy machine, a laptop asleep) time goes on from where it was, not with a rush.
         """
-        lag_max = LAG_MAX * max(1.0, self._speed)
         now = self.now()
-        if now - reached > lag_max:
-            self._origin -= now - reached - lag_max
-            now = reached + lag_max
+        if now - reached > self._lag_max:
+            self._origin -= now - reached - self._lag_max
+            now = reached + self._lag_max
         return now
 
     def wall_until(self, then: float) -> float:
@@ -69,7 +69,7 @@ class RealTimeDriver:
         """Run until the end is requested, or when the parent has ended and the vehicles have landed."""
         swarm, sockets, ending = self._swarm, self._sockets, self._ending
         reached = swarm.time
-        clock = RealTimeClock(reached, self._speed, self._wall)
+        clock = RealTimeClock(reached, self._speed, swarm.failsafe.telemetry_timeout - LAG_RESERVE, self._wall)
         give_up: float | None = None
         while not ending.requested:
             goal = min(clock.follow(reached), reached + STRIDE_MAX)
@@ -83,7 +83,7 @@ class RealTimeDriver:
                 swarm.receive(vehicle, datagram, sender, reached)
             self._send(reached)
             if ending.parent_gone:
-                give_up = reached + LANDING_TIME if give_up is None else give_up
+                give_up = reached + swarm.failsafe.landing_timeout if give_up is None else give_up
                 if swarm.at_rest or reached >= give_up:
                     return
             wake = min(reached + STRIDE, self._next_due(reached))

@@ -1,9 +1,9 @@
 """The physical parameters of one vehicle, as its autopilot knows them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
+from typing import Self
 
+from gcs.config import UavConfig
 from idc_controller.parameters import SystemParameters
 from vehicle_sim.world.rotors import RotorGeometry
 
@@ -26,21 +26,13 @@ class Airframe:
     g: float = 9.81
 
     @classmethod
-    def of_system(
-        cls,
-        system: SystemParameters,
-        index: int,
-        *,
-        arm_length: float,
-        torque_to_thrust: float,
-        rotor_speed_max: float,
-    ) -> Airframe:
-        """UAV ``index`` (from 0) of a system, with what the system does not know: lengths in m, speed in rad/s."""
+    def of_system(cls, system: SystemParameters, index: int, uav: UavConfig) -> Self:
+        """Return UAV ``index`` (from 0) of a system; ``uav`` adds what the controller does not model."""
         a, b, c = ((float(x), float(y), float(z)) for x, y, z in system.J[index])
         return cls(
             mass=float(system.m[index]),
             inertia=(a, b, c),
-            rotors=RotorGeometry(system.thrust_max, rotor_speed_max, arm_length, torque_to_thrust),
+            rotors=RotorGeometry(system.thrust_max, uav.rotor_speed_max, uav.arm_length, uav.torque_to_thrust),
             motor_time_constant=system.motor_time_constant,
             attitude_kp=system.attitude_kp,
             attitude_kd=system.attitude_kd,

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
+from gcs.config.vehicle_settings import AutopilotSettings
 from gcs.mavlink import px4
 from idc_controller.rotations_float import attitude_of_force, euler_of
 from vehicle_sim.autopilot import modes
@@ -24,7 +25,6 @@ from vehicle_sim.autopilot.navigation import Navigation
 from vehicle_sim.autopilot.parameter_table import ParameterTable
 from vehicle_sim.autopilot.setpoint_stream import SetpointStream
 from vehicle_sim.autopilot.setpoints import AttitudeSetpoint, StopPlan
-from vehicle_sim.autopilot.settings import AutopilotSettings
 from vehicle_sim.world.rotors import IDLE, Four
 from vehicle_sim.world.sensors import Measurement
 
@@ -33,9 +33,8 @@ class Autopilot:
     """One vehicle's autopilot. ``changes`` rises with every change of what a HEARTBEAT shows."""
 
     def __init__(
-        self, airframe: Airframe, parameters: ParameterTable, settings: AutopilotSettings | None = None
+        self, airframe: Airframe, parameters: ParameterTable, settings: AutopilotSettings = AutopilotSettings()
     ) -> None:
-        settings = settings or AutopilotSettings()
         weight, thrust_max = airframe.mass * airframe.g, airframe.rotors.thrust_max
         self._state = FlightState(
             airframe,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 
+from gcs.config.vehicle_settings import AutopilotSettings
 from gcs.mavlink import px4
 from idc_controller.rotations_float import euler_of
 from vehicle_sim.autopilot.actuation import Actuation
@@ -15,7 +16,6 @@ from vehicle_sim.autopilot.navigation import Navigation
 from vehicle_sim.autopilot.parameter_table import ParameterTable
 from vehicle_sim.autopilot.setpoint_stream import SetpointStream
 from vehicle_sim.autopilot.setpoints import StopPlan
-from vehicle_sim.autopilot.settings import AutopilotSettings
 from vehicle_sim.world.sensors import Measurement
 
 TIME_TOLERANCE = 1e-6  # s: sums of steps are not exact
@@ -89,15 +89,16 @@ class FlightState:
         measured = self.navigation.estimate
         if measured is None:
             return
-        descent = descent_start, self.parameters[px4.PARAM_LAND_SPEED], self.settings.hold.descent_ramp
-        plan = self._plan_of_ground(measured, now, descent) or HoldPlan.braking(
-            now, measured.position, measured.velocity, euler_of(measured.attitude)[2], *descent
+        settings = self.settings.hold
+        descent = descent_start, self.parameters[px4.PARAM_LAND_SPEED], settings.descent_ramp
+        plan = self._plan_of_ground(measured, now, descent) or HoldPlan.to_rest(
+            now, measured.position, measured.velocity, euler_of(measured.attitude)[2], settings.braking, *descent
         )
         thrust, weight = self.actuation.thrust, self.airframe.mass * self.airframe.g
         if not self.land.in_air:
             self.land.lift(thrust)
         hover = self.land.hover_thrust or max(thrust, weight)
-        self.hold = HoldController(plan, hover, weight, self.airframe.g, self.settings.hold)
+        self.hold = HoldController(plan, hover, weight, self.airframe.g, settings)
 
     def begin_descent(self, now: float) -> None:
         """Descend from where it is."""

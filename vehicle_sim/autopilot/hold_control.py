@@ -10,18 +10,17 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 from scipy.interpolate import BPoly
 
+from gcs.config.vehicle_settings import HoldSettings
 from idc_controller.rotations_float import Quaternion, Vector, attitude_of_force
 from idc_controller.trajectory.settings import BrakingSettings
-from vehicle_sim.autopilot.settings import HoldSettings
 from vehicle_sim.world.sensors import Measurement
 
 AT_REST: Vector = (0.0, 0.0, 0.0)
-BRAKING = BrakingSettings()
 
 
 class PlannedState(NamedTuple):
@@ -49,22 +48,20 @@ class HoldPlan:
     descent_ramp: float = HoldSettings.descent_ramp
 
     @classmethod
-    def braking(
-        cls, start: float, position: Vector, velocity: Vector, yaw: float,
-        descent_start: float = math.inf, descent_speed: float = HoldSettings.land_speed,
-        descent_ramp: float = HoldSettings.descent_ramp,
-    ) -> HoldPlan:  # fmt: skip
-        """From the vehicle's state to rest along its horizontal velocity, as 1 - 3 s^2 + 2 s^3 of it.
+    def to_rest(
+        cls, start: float, position: Vector, velocity: Vector, yaw: float, braking: BrakingSettings, *descent: float
+    ) -> Self:
+        """Return a plan from a state to rest along the horizontal velocity, as 1 - 3 s^2 + 2 s^3 of it.
 
         The altitude is that of the start: a vertical velocity is not braked along, because four noisy integrals of it
         would part.
         """
         v_x, v_y, _ = velocity
-        duration = max(BRAKING.time, 1.5 * math.hypot(v_x, v_y) / BRAKING.deceleration)
+        duration = max(braking.time, 1.5 * math.hypot(v_x, v_y) / braking.deceleration)
         x, y, z = position
         quarter = (x + duration * v_x / 4, y + duration * v_y / 4, z)
         end = (x + duration * v_x / 2, y + duration * v_y / 2, z)
-        return cls(start, duration, (position, quarter, end, end, end), yaw, descent_start, descent_speed, descent_ramp)
+        return cls(start, duration, (position, quarter, end, end, end), yaw, *descent)
 
     def at(self, now: float) -> PlannedState:
         """The planned state at a time (s)."""
@@ -137,7 +134,7 @@ class HoldController:
             carried = self._hover_thrust
         v_x, v_y, v_z = measured.velocity
         error_x, error_y = position[0] - x, position[1] - y
-        step = min(max(now - self._last_time, 0.0), 0.1)
+        step = min(max(now - self._last_time, 0.0), gains.step_max)
         self._last_time = now
         i_x = self._integral_x + gains.horizontal_ki * error_x * step
         i_y = self._integral_y + gains.horizontal_ki * error_y * step

@@ -1,10 +1,10 @@
-"""Whether a vehicle is on the ground or flies, and its hover thrust: learned from its own motion and thrust."""
+"""Detection of take-off and touchdown, and the hover thrust, from a vehicle's own motion and thrust."""
 
 from __future__ import annotations
 
 import math
 
-from vehicle_sim.autopilot.settings import LandDetectorSettings
+from gcs.config.vehicle_settings import LandDetectorSettings
 from vehicle_sim.world.sensors import Measurement
 
 
@@ -26,27 +26,31 @@ class LandDetector:
         self._light_since = math.inf
         self._touching_since = math.inf
         self.in_air = False
-        self.touching = False
-        self.touched_down = False
         self.hover_thrust: float | None = None
 
+    @property
+    def touching(self) -> bool:
+        """Return True if something keeps a vehicle that is commanded to sink from sinking."""
+        return self._touching_since < self._last_time
+
+    @property
+    def touched_down(self) -> bool:
+        """Return True if :attr:`touching` has lasted."""
+        return self._last_time - self._touching_since >= self._settings.time
+
     def start(self) -> None:
-        """The vehicle stands here: armed, or disarmed."""
+        """Take the vehicle to be on the ground here: armed, or disarmed."""
         self._ground = self._altitude
-        self.in_air = self.touching = self.touched_down = False
+        self.in_air = False
         self._light_since = self._touching_since = math.inf
 
     def lift(self, thrust: float) -> None:
-        """It stands upright on its link only by its ``thrust`` (N): that is flying, also before it rises."""
+        """Take the vehicle to fly: it is upright on its link only by its ``thrust`` (N), also before it rises."""
         self.in_air = True
         self.hover_thrust = min(max(thrust, self._weight), self._thrust_max)
 
     def update(self, measured: Measurement, thrust: float, now: float, learn: bool) -> None:
-        """One step of the onboard loop. ``thrust`` commanded (N); ``learn`` the hover thrust from it.
-
-        ``touching`` says, for a vehicle that is commanded to sink, that something keeps it from that;
-        ``touched_down`` that this has lasted.
-        """
+        """Take one step of the onboard loop. ``thrust`` commanded (N); ``learn`` the hover thrust from it."""
         step = now - self._last_time
         self._last_time = now
         z, v_z = measured.position[2], measured.velocity[2]
@@ -69,13 +73,11 @@ class LandDetector:
             self.hover_thrust = hover + (lift - hover) * step / (self._settings.hover_filter + step)
         hover = self.hover_thrust or lift
         slow = abs(self._velocity) < self._settings.vertical_speed_max
-        if not slow or thrust > 0.5 * (self._weight + hover):
+        if not slow or thrust > self._weight + self._settings.unloaded_share * (hover - self._weight):
             self._light_since = now
         if self._velocity > self._settings.touchdown_sinking or thrust > self._settings.touchdown_thrust * hover:
             self._touching_since = now
         self._light_since = min(self._light_since, now)
         self._touching_since = min(self._touching_since, now)
-        self.touching = self._touching_since < now
-        self.touched_down = now - self._touching_since >= self._settings.time
         if now - self._light_since >= self._settings.time:
             self.start()

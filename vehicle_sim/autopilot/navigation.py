@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
+from gcs.config.vehicle_settings import NavigationSettings
 from idc_controller.rotations_float import Quaternion, Vector, half_rotation, turned
-from vehicle_sim.autopilot.settings import NavigationSettings
 from vehicle_sim.world.sensors import Measurement
 
 

@@ -5,12 +5,15 @@ from __future__ import annotations
 import math
 import struct
 from dataclasses import dataclass
+from typing import Any
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
+from gcs.config.flight_settings import FailsafeSettings
+from gcs.config.vehicle_settings import AutopilotSettings, HoldSettings, VehicleFailsafeSettings
 from gcs.mavlink import px4
+from idc_controller.settings import METADATA_KEY, Setting
 from vehicle_sim.autopilot.airframe import Airframe
-from vehicle_sim.autopilot.settings import AutopilotSettings
 from vehicle_sim.world.errors import SimulationError
 
 REAL: int = mavlink.MAV_PARAM_TYPE_REAL32
@@ -79,10 +82,9 @@ class ParameterTable:
 
 
 def vehicle_parameters(
-    airframe: Airframe, system_id: int, onboard_rate: int, settings: AutopilotSettings | None = None
+    airframe: Airframe, system_id: int, onboard_rate: int, settings: AutopilotSettings = AutopilotSettings()
 ) -> ParameterTable:
     """The parameters of one vehicle with their defaults; ``onboard_rate`` of the attitude loop in Hz."""
-    settings = settings or AutopilotSettings()
     failsafe = settings.failsafe
     return ParameterTable(
         [
@@ -99,13 +101,20 @@ def vehicle_parameters(
             Parameter("CAL_GYRO0_ID", 1, INTEGER),
             Parameter("CAL_ACC0_ID", 1, INTEGER),
             Parameter("CAL_MAG0_ID", 1, INTEGER),
-            Parameter(px4.PARAM_SETPOINT_LOSS, failsafe.setpoint_loss, limits=(0.1, 60.0)),
-            Parameter(px4.PARAM_LAND_DELAY, failsafe.land_delay, limits=(0.0, 3600.0)),
-            Parameter(px4.PARAM_LINK_LOSS, failsafe.link_loss, INTEGER, limits=(5, 300)),
-            Parameter(px4.PARAM_LAND_SPEED, settings.hold.land_speed, limits=(0.1, 1.0)),
-            Parameter(px4.PARAM_TAKEOFF_ALTITUDE, settings.takeoff_altitude, limits=(0.0, 80.0)),
+            _settable(px4.PARAM_SETPOINT_LOSS, failsafe.setpoint_loss, FailsafeSettings, "telemetry_timeout"),
+            _settable(px4.PARAM_LAND_DELAY, failsafe.land_delay, VehicleFailsafeSettings, "land_delay"),
+            _settable(px4.PARAM_LINK_LOSS, failsafe.link_loss, VehicleFailsafeSettings, "link_loss", INTEGER),
+            _settable(px4.PARAM_LAND_SPEED, settings.hold.land_speed, HoldSettings, "land_speed"),
+            _settable(px4.PARAM_TAKEOFF_ALTITUDE, settings.takeoff_altitude, AutopilotSettings, "takeoff_altitude"),
         ]
     )
+
+
+def _settable(name: str, value: float, settings: type[Any], key: str, kind: int = REAL) -> Parameter:
+    """Return a parameter that the ground may set within the bounds that the setting ``key`` is declared with."""
+    declared: Setting = settings.__dataclass_fields__[key].metadata[METADATA_KEY]
+    assert declared.ge is not None and declared.le is not None
+    return Parameter(name, value, kind, (declared.ge, declared.le))
 
 
 def _float32(value: float) -> float:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections import deque
 
+from gcs.config.vehicle_settings import SetpointSettings
 from idc_controller.rotations_float import mean_attitude
 from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
-from vehicle_sim.autopilot.settings import SetpointSettings
 
 
 class SetpointStream:

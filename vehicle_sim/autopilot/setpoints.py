@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
+from gcs.config.vehicle_settings import SetpointSettings
 from idc_controller.rotations_float import Quaternion, Vector
-from vehicle_sim.autopilot.settings import SetpointSettings
 from vehicle_sim.world.errors import SimulationError
 
 _IGNORE_RATE = (
@@ -22,7 +22,6 @@ _IGNORE_ATTITUDE = mavlink.ATTITUDE_TARGET_TYPEMASK_ATTITUDE_IGNORE
 _KNOWN_BITS = sum(_IGNORE_RATE) | _IGNORE_THRUST | _IGNORE_ATTITUDE
 
 THRUST_TOLERANCE = 1e-4
-_DEFAULT = SetpointSettings()
 
 STOP_POINTS = 5  # control points of a quartic
 
@@ -45,9 +44,7 @@ class AttitudeSetpoint(NamedTuple):
     time_boot_ms: int
 
 
-def read_setpoint(
-    message: mavlink.MAVLink_set_attitude_target_message, limits: SetpointSettings = _DEFAULT
-) -> AttitudeSetpoint:
+def read_setpoint(message: mavlink.MAVLink_set_attitude_target_message, limits: SetpointSettings) -> AttitudeSetpoint:
     """The set-point in a SET_ATTITUDE_TARGET message. Raises :class:`SetpointError`.
 
     The type mask's bits as MAVLink defines them. Without an attitude all three rates must be given.
@@ -96,7 +93,7 @@ class StopPlan(NamedTuple):
 
 
 def read_stop_plan(
-    message: mavlink.MAVLink_trajectory_representation_bezier_message, limits: SetpointSettings = _DEFAULT
+    message: mavlink.MAVLink_trajectory_representation_bezier_message, limits: SetpointSettings
 ) -> StopPlan:
     """The plan in a TRAJECTORY_REPRESENTATION_BEZIER of one segment. Raises :class:`SetpointError`."""
     if message.valid_points != STOP_POINTS:

@@ -9,10 +9,9 @@ from gcs.config import SystemConfig
 from gcs.mission.model import Fault
 from vehicle_sim.faults import link, sensors, timing, values
 from vehicle_sim.faults.active import ActiveFault
-from vehicle_sim.faults.impairment import LinkImpairment
-from vehicle_sim.faults.interface import Datagram, FaultInterface, Forces
+from vehicle_sim.faults.impairment import Datagram, LinkImpairment
 from vehicle_sim.faults.samples import OWN, PAYLOAD, REPORTED, SCAN, SampleImpairment
-from vehicle_sim.faults.world import WorldFaults
+from vehicle_sim.faults.world import Forces, WorldFaults
 from vehicle_sim.world.range_sensor import RangeSample
 from vehicle_sim.world.sensors import Measurement, ReportedState
 from vehicle_sim.world.world import World
@@ -23,14 +22,17 @@ _SAMPLE_IMPAIRMENTS = sensors.SAMPLE_IMPAIRMENTS | timing.SAMPLE_IMPAIRMENTS | v
 _Sample = TypeVar("_Sample")
 
 
-class FaultInjector(FaultInterface):
+class FaultInjector:
     """Faults of one flight, each active from its start (s after the first vehicle lifts off) on.
+
+    They act between the vehicles and their sensors, between the vehicles and the wire, and on the world. Vehicles are
+    numbered by their system id, from 1; times in s.
 
     Equal seeds and faults disturb equal samples and datagrams equally; the random numbers of each fault, vehicle and
     direction are its own, so that one fault more or less does not change what the others do.
     """
 
-    def __init__(self, faults: Sequence[Fault], seed: int, system: SystemConfig) -> None:
+    def __init__(self, faults: Sequence[Fault] = (), seed: int = 1, system: SystemConfig = SystemConfig()) -> None:
         """Raises :class:`gcs.errors.UnusableInput` for a fault that no mission could name."""
         team = system.team.vehicles
         self.faults = tuple(ActiveFault.of(i, fault, seed, team) for i, fault in enumerate(faults, start=1))
@@ -50,7 +52,7 @@ class FaultInjector(FaultInterface):
                     for hook in impairment.acts_on:
                         self._samples.setdefault((hook, vehicle), []).append(impairment)
         world = [fault for fault in self.faults if fault.kind.family == "world"]
-        self._world = WorldFaults(world) if world else None
+        self._world = WorldFaults(world, system.world.air) if world else None
         directions = (*self._arriving.values(), *self._leaving.values())
         self._link_impairments = [impairment for direction in directions for impairment in direction]
 
@@ -63,20 +65,20 @@ class FaultInjector(FaultInterface):
                 self._leaving.setdefault(vehicle, []).append(impairment(fault, fault.generator(vehicle, _FROM_VEHICLE)))
 
     def took_off(self, time: float) -> None:
-        """Start the schedules of all faults."""
+        """Start the schedules of all faults: the first vehicle has lifted off."""
         for fault in self.faults:
             fault.schedule.take_off = time
 
     # The world
 
     def disturb(self, world: World, now: float) -> Forces | None:
-        """Apply wind and load."""
+        """Set the load, and return the forces of the wind on payload and UAVs; None: no force."""
         return None if self._world is None else self._world.act(world, now)
 
     # Clocks and samples
 
     def clock(self, vehicle: int, now: float) -> float:
-        """Return the time with the errors of the vehicle's clock."""
+        """Return the time of the vehicle's clock, the base of its stamps."""
         faults = self._clocks.get(vehicle)
         if not faults:
             return now
@@ -89,20 +91,20 @@ class FaultInjector(FaultInterface):
         return shown
 
     def own_sample(self, vehicle: int, sample: Measurement) -> Measurement | None:
-        """Return what the vehicle itself measures."""
+        """Return what the autopilot gets of the vehicle's own measurement; None: nothing."""
         return self._through(OWN, vehicle, sample.time, sample)
 
     def reported_sample(self, vehicle: int, sample: Measurement | None) -> ReportedState:
-        """Return what the vehicle reports."""
+        """Return what the telemetry reports of the measurement that the autopilot flies by."""
         report = ReportedState(sample, sample)
         return report if sample is None else self._through(REPORTED, vehicle, sample.time, report)
 
     def payload_sample(self, vehicle: int, sample: Measurement) -> Measurement | None:
-        """Return what the vehicle relays."""
+        """Return what the vehicle gets to relay of the payload unit's measurement; None: nothing."""
         return self._through(PAYLOAD, vehicle, sample.time, sample)
 
     def range_sample(self, vehicle: int, sample: RangeSample) -> RangeSample | None:
-        """Return what the vehicle detects."""
+        """Return what the vehicle gets to report of a scan; None: nothing."""
         return self._through(SCAN, vehicle, sample.time, sample)
 
     def _through(self, hook: str, vehicle: int, time: float, sample: _Sample) -> _Sample:
@@ -118,13 +120,13 @@ class FaultInjector(FaultInterface):
     # Datagrams
 
     def to_vehicle(self, vehicle: int, arriving: Sequence[Datagram], now: float) -> Sequence[Datagram]:
-        """Pass datagrams through the impairments of the link from the ground."""
+        """Return the datagrams that reach the vehicle now, of those ``arriving`` and of earlier ones."""
         for impairment in self._arriving.get(vehicle, ()):
             arriving = impairment.pass_on(arriving, now)
         return arriving
 
     def from_vehicle(self, vehicle: int, leaving: Sequence[Datagram], now: float) -> Sequence[Datagram]:
-        """Pass datagrams through the impairments of the link to the ground."""
+        """Return the datagrams that go on to the ground now, of those ``leaving`` and of earlier ones."""
         for impairment in self._leaving.get(vehicle, ()):
             leaving = impairment.pass_on(leaving, now)
         return leaving

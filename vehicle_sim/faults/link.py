@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from gcs.faults import link as kinds
 from vehicle_sim.faults.frames import frames
-from vehicle_sim.faults.impairment import GilbertElliottProcess, LinkImpairment, OrderedImpairment
-from vehicle_sim.faults.interface import Datagram
+from vehicle_sim.faults.impairment import Datagram, GilbertElliottProcess, LinkImpairment, OrderedImpairment
 from vehicle_sim.faults.schedule import TOLERANCE, Moment
 
 

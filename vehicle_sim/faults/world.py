@@ -11,15 +11,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from gcs.config.tables import AirSettings
 from gcs.faults import world as kinds
 from idc_controller.rotations_float import Vector, into_body
 from vehicle_sim.faults.active import WORLD, ActiveFault
-from vehicle_sim.faults.interface import Forces
 from vehicle_sim.world.world import World
 
-AIR_DENSITY = 1.225  # kg/m3
-PAYLOAD_DRAG = 1.05  # c_d of a box
-UAV_DRAG_AREA = 0.03  # m2, c_d A: a quadrotor of 0.7 kg
+Forces = tuple[Vector, Sequence[Vector]]
+"""On the payload, and on each UAV: at the centres of mass, north-east-down (N)."""
 
 
 class Wind:
@@ -58,7 +57,8 @@ class Wind:
 class WorldFaults:
     """All faults of the world of one flight."""
 
-    def __init__(self, faults: Sequence[ActiveFault]) -> None:
+    def __init__(self, faults: Sequence[ActiveFault], air: AirSettings = AirSettings()) -> None:
+        self._air = air
         self._winds = [Wind(fault) for fault in faults if isinstance(fault.settings, kinds.Wind)]
         self._loads = [fault for fault in faults if isinstance(fault.settings, kinds.PayloadMass)]
         self._change = 0.0
@@ -74,7 +74,7 @@ class WorldFaults:
                 wind.fault.seen += 1
                 wind.fault.disturbed += 1
                 air = velocity if air is None else (air[0] + velocity[0], air[1] + velocity[1], air[2] + velocity[2])
-        return None if air is None else _drag(world, air)
+        return None if air is None else _drag(world, self._air, air)
 
     def _set_load(self, world: World, now: float) -> None:
         total = 0.0
@@ -88,19 +88,19 @@ class WorldFaults:
             world.set_payload_mass(max(world.parameters.m_0 + total, kinds.LEAST_MASS))
 
 
-def _drag(world: World, air: Vector) -> Forces:
+def _drag(world: World, settings: AirSettings, air: Vector) -> Forces:
     state = world.state()
     relative = _minus(air, state.payload_velocity_in_world)
     area_x, area_y, area_z = world.parameters.payload.areas.tolist()
     # |u| times the area across u: of a box, the sum over its faces of their share in u.
     x, y, z = into_body(state.payload_quaternion, relative)
     area_times_speed = abs(x) * area_x + abs(y) * area_y + abs(z) * area_z
-    factor = 0.5 * AIR_DENSITY * PAYLOAD_DRAG * area_times_speed
+    factor = 0.5 * settings.density * settings.payload_drag * area_times_speed
     payload = _times(factor, relative)
     uavs = []
     for uav in state.uavs:
         relative = _minus(air, uav.velocity_in_world)
-        uavs.append(_times(0.5 * AIR_DENSITY * UAV_DRAG_AREA * math.hypot(*relative), relative))
+        uavs.append(_times(0.5 * settings.density * settings.uav_drag_area * math.hypot(*relative), relative))
     return payload, uavs
 
 

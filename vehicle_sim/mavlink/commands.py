@@ -7,13 +7,13 @@ from collections.abc import Callable
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
+from gcs.config.vehicle_settings import VehicleLinkSettings
 from gcs.mavlink import px4
 from vehicle_sim.autopilot.answer import ACCEPTED, Answer
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.mavlink.control_owner import ControlOwner, Sender
 from vehicle_sim.mavlink.dispatcher import Dispatcher, Request
 from vehicle_sim.mavlink.peer import Peer
-from vehicle_sim.mavlink.settings import VehicleLinkSettings
 from vehicle_sim.mavlink.telemetry import Telemetry
 
 #: Commands that only ask, or concern the asker's own link: anybody may give them.

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from gcs.config.vehicle_settings import VehicleLinkSettings
 from gcs.mavlink.address import Address
 from vehicle_sim.autopilot.answer import Answer, rejected_for_now
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
-from vehicle_sim.mavlink.settings import VehicleLinkSettings
 
 #: An address and the MAVLink system that speaks from it.
 Sender = tuple[Address, int]

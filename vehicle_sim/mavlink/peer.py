@@ -6,11 +6,11 @@ import math
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
+from gcs.config.vehicle_settings import StreamIntervals, VehicleLinkSettings
 from gcs.mavlink import px4
 from gcs.mavlink.address import Address
 from gcs.mavlink.codec import Codec, gather
 from gcs.mavlink.messages import Message
-from vehicle_sim.mavlink.settings import StreamIntervals, VehicleLinkSettings
 from vehicle_sim.mavlink.telemetry import Telemetry
 
 TIME_TOLERANCE = 1e-6  # s: sums of steps are not exact

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 
+from gcs.config.vehicle_settings import VehicleLinkSettings
 from gcs.mavlink.address import Address
 from vehicle_sim.mavlink.peer import TIME_TOLERANCE, Peer
-from vehicle_sim.mavlink.settings import VehicleLinkSettings
 from vehicle_sim.mavlink.telemetry import Telemetry
 
 

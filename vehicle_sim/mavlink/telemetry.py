@@ -9,11 +9,12 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink import px4
 from gcs.mavlink.messages import Message
+from gcs.mission.model import Home
 from idc_controller.rotations_float import euler_of, into_body
 from vehicle_sim.autopilot.attitude_control import LEVEL
 from vehicle_sim.autopilot.autopilot import Autopilot
-from vehicle_sim.mavlink.geodesy import Home, clamp, is_finite
-from vehicle_sim.world.range_sensor import MIN_DISTANCE, RangeSample
+from vehicle_sim.mavlink.geodesy import clamp, is_finite, place_of, place_of_home
+from vehicle_sim.world.range_sensor import RangeSample
 from vehicle_sim.world.sensors import Measurement, ReportedState
 
 _SENSORS: int = (
@@ -153,7 +154,7 @@ class Telemetry:
         measured = self._own_state
         if measured is None:
             return ()
-        latitude, longitude, altitude = self._home.geodetic(measured)
+        latitude, longitude, altitude = place_of(measured, self._home)
         v_x, v_y, v_z = (clamp(100.0 * v, 16) for v in measured.velocity)
         heading = round(math.degrees(euler_of(measured.attitude)[2]) * 100.0) % 36000
         return (
@@ -167,7 +168,7 @@ class Telemetry:
         measured = self._own_state
         if measured is None:
             return ()
-        latitude, longitude, altitude = self._home.geodetic(measured)
+        latitude, longitude, altitude = place_of(measured, self._home)
         v_n, v_e, _ = measured.velocity
         speed = min(round(100.0 * math.hypot(v_n, v_e)), 65534)
         course = round(math.degrees(math.atan2(v_e, v_n)) * 100.0) % 36000
@@ -181,13 +182,13 @@ class Telemetry:
     def _home_position(self, now: float) -> Built:
         return (
             mavlink.MAVLink_home_position_message(
-                *self._home.on_the_wire, 0.0, 0.0, 0.0,
+                *place_of_home(self._home), 0.0, 0.0, 0.0,
                 list(LEVEL), _NAN, _NAN, _NAN, self.time_boot_ms(now) * 1000,
             ),
         )  # fmt: skip
 
     def _global_origin(self, now: float) -> Built:
-        return (mavlink.MAVLink_gps_global_origin_message(*self._home.on_the_wire, self.time_boot_ms(now) * 1000),)
+        return (mavlink.MAVLink_gps_global_origin_message(*place_of_home(self._home), self.time_boot_ms(now) * 1000),)
 
     def _battery(self, now: float) -> Built:
         return (
@@ -250,7 +251,7 @@ class Telemetry:
         for detection in scan.detections:
             yield mavlink.MAVLink_obstacle_distance_3d_message(
                 stamp, mavlink.MAV_DISTANCE_SENSOR_LASER, mavlink.MAV_FRAME_BODY_FRD, detection.obstacle_id,
-                *detection.position_in_body, MIN_DISTANCE, scan.reach,
+                *detection.position_in_body, scan.range_min, scan.reach,
             )  # fmt: skip
 
     @property

@@ -7,24 +7,23 @@ from collections.abc import Callable
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
+from gcs.config.vehicle_settings import AutopilotSettings, VehicleLinkSettings
 from gcs.mavlink import px4
 from gcs.mavlink.address import Address
 from gcs.mavlink.codec import Codec
 from gcs.mavlink.messages import BROADCAST
+from gcs.mission.model import DEFAULT_HOME, Home
 from vehicle_sim.autopilot.airframe import Airframe
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.parameter_table import vehicle_parameters
-from vehicle_sim.autopilot.settings import AutopilotSettings
 from vehicle_sim.mavlink.commands import CommandServer
 from vehicle_sim.mavlink.control_owner import ControlOwner
 from vehicle_sim.mavlink.dispatcher import Dispatcher, Request
-from vehicle_sim.mavlink.geodesy import Home
 from vehicle_sim.mavlink.link_services import LinkServices
 from vehicle_sim.mavlink.parameter_server import ParameterServer
 from vehicle_sim.mavlink.peer import Peer, default_intervals
 from vehicle_sim.mavlink.peers import Peers
 from vehicle_sim.mavlink.setpoint_server import SetpointServer
-from vehicle_sim.mavlink.settings import StreamIntervals, VehicleLinkSettings
 from vehicle_sim.mavlink.telemetry import Telemetry
 from vehicle_sim.world.range_sensor import RangeSample
 from vehicle_sim.world.rotors import Four
@@ -48,35 +47,33 @@ class Vehicle:
         *,
         onboard_rate: float = 250.0,
         telemetry_rate: float = 50.0,
-        home: Home | None = None,
+        home: Home = DEFAULT_HOME,
         ground_address: Address | None = None,
         boot_time: float = 0.0,
         clock: Callable[[float], float] = float,
-        autopilot_settings: AutopilotSettings | None = None,
-        link_settings: VehicleLinkSettings | None = None,
-        stream_intervals: StreamIntervals | None = None,
+        autopilot: AutopilotSettings = AutopilotSettings(),
+        link: VehicleLinkSettings = VehicleLinkSettings(),
     ) -> None:
         """``system_id`` 1 .. 255; rates in Hz; ``boot_time`` (s) is the zero of every ``time_boot_ms``.
 
         ``clock`` is what its clock shows at a time.
         """
-        settings = link_settings or VehicleLinkSettings()
-        intervals = default_intervals(stream_intervals or StreamIntervals(), 1.0 / telemetry_rate)
+        intervals = default_intervals(link.intervals, 1.0 / telemetry_rate)
         self.system_id = system_id
-        self.parameters = vehicle_parameters(airframe, system_id, round(onboard_rate), autopilot_settings)
-        self.autopilot = Autopilot(airframe, self.parameters, autopilot_settings)
-        self.telemetry = Telemetry(system_id, self.autopilot, home or Home(), boot_time, clock)
+        self.parameters = vehicle_parameters(airframe, system_id, round(onboard_rate), autopilot)
+        self.autopilot = Autopilot(airframe, self.parameters, autopilot)
+        self.telemetry = Telemetry(system_id, self.autopilot, home, boot_time, clock)
         self._decoder = Codec(system_id, px4.AUTOPILOT_COMPONENT)
-        self._peers = Peers(lambda address: Peer(address, system_id, intervals, settings), ground_address, settings)
+        self._peers = Peers(lambda address: Peer(address, system_id, intervals, link), ground_address, link)
         self._sent_changes = 0
         self._latest = -math.inf
-        owner = ControlOwner(self.autopilot, settings)
+        owner = ControlOwner(self.autopilot, link)
         self._setpoints = SetpointServer(self.autopilot, owner, clock)
         self._dispatcher = Dispatcher()
         # A further protocol (missions, ...) registers its messages here.
         self._setpoints.register(self._dispatcher)
         LinkServices(clock).register(self._dispatcher)
-        CommandServer(self.autopilot, owner, self.telemetry, settings).register(self._dispatcher)
+        CommandServer(self.autopilot, owner, self.telemetry, link).register(self._dispatcher)
         ParameterServer(self.parameters, owner).register(self._dispatcher)
 
     @property

@@ -5,12 +5,10 @@ from typing import NamedTuple
 import numpy as np
 import pybullet
 
+from gcs.config.tables import PadSettings
 from idc_controller.payload_hull import PayloadHull
 from idc_controller.rotations_float import into_body
 from vehicle_sim.world.world_state import flipped, quaternion_from_engine
-
-PAD_THICKNESS = 0.05  # m
-PAD_MARGIN = 0.25  # m, by which the pad is larger than the payload on every side
 
 # Contact points closer than this (m) to the plane of the payload's lower face are the payload standing.
 _STANDING_DEPTH = 0.02
@@ -33,20 +31,19 @@ class Contacts(NamedTuple):
 class Ground:
     """Ground and pad in one physics client."""
 
-    def __init__(self, client: int, payload: PayloadHull) -> None:
+    def __init__(self, client: int, payload: PayloadHull, pad: PadSettings) -> None:
         plane = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=client)
         ground = pybullet.createMultiBody(0.0, plane, physicsClientId=client)
         x, y, _ = (np.ptp(payload.bounds, axis=0) / 2.0).tolist()
-        half_extents = [x + PAD_MARGIN, y + PAD_MARGIN, PAD_THICKNESS / 2]
+        half_extents = [x + pad.margin, y + pad.margin, pad.thickness / 2]
         north, east, _ = payload.bounds.mean(axis=0).tolist()
         box = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=half_extents, physicsClientId=client)
-        middle = flipped((north, east, -PAD_THICKNESS / 2))
-        pad = pybullet.createMultiBody(0.0, box, basePosition=middle, physicsClientId=client)
+        middle = flipped((north, east, -pad.thickness / 2))
         self._client = client
-        self._bodies = ground, pad
+        self._bodies = ground, pybullet.createMultiBody(0.0, box, basePosition=middle, physicsClientId=client)
         self._lower_face = payload.below - _STANDING_DEPTH
         # Above this height of its centre the payload cannot stand on anything, whatever its attitude.
-        self._standing_height = PAD_THICKNESS + payload.reach + 0.05
+        self._standing_height = pad.thickness + payload.reach + 0.05
 
     def is_near(self, payload: Pose) -> bool:
         """Return True for a payload low enough to stand on pad or ground."""

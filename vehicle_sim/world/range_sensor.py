@@ -12,11 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from gcs.config import RangeSensorConfig
 from idc_controller.rotations_float import Quaternion, Vector, into_body
 from vehicle_sim.world.obstacle_bodies import Obstacle
 
-#: Nothing nearer is measured (m).
-MIN_DISTANCE = 0.05
 #: Distinguishes these generators from the navigation sensors'.
 _STREAM = 1_000_003
 _IDS = 0xFFFE  # 0xFFFF says that an id is not known
@@ -30,20 +29,20 @@ class Detection(NamedTuple):
 
 
 class RangeSample(NamedTuple):
-    """All points of one scan at ``time`` (s); ``reach`` (m) of the sensor; whether it ``works``."""
+    """All points of one scan at ``time`` (s); the sensor's largest and least distance (m), and whether it works."""
 
     time: float
     reach: float
     detections: tuple[Detection, ...]
     works: bool = True
+    range_min: float = RangeSensorConfig.range_min
 
 
 class RangeSensor:
     """The same seed and id give the same noise, different ids independent noise."""
 
-    def __init__(self, reach: float, noise: float, seed: int, system_id: int) -> None:
-        """``reach`` (m); ``noise``: standard deviation along the line of sight (m)."""
-        self._reach, self._noise = reach, noise
+    def __init__(self, settings: RangeSensorConfig, seed: int, system_id: int) -> None:
+        self._settings = settings
         self._generator = np.random.default_rng([seed, _STREAM, system_id])
         self._ids: dict[str, int] = {}
         self._next_id = 0
@@ -53,29 +52,30 @@ class RangeSensor:
     ) -> RangeSample:
         """Return the scan at ``now`` (s) from ``position`` (3,) (NED, m) with ``attitude`` (body to world)."""
         s = (float(position[0]), float(position[1]), float(position[2]))
+        reach, nearest = self._settings.range, self._settings.range_min
         detections: list[Detection] = []
         detected: dict[str, int] = {}
         for obstacle in obstacles:
-            if _is_beyond(obstacle, s, self._reach):
+            if _is_beyond(obstacle, s, reach):
                 continue
-            points = visible_points(obstacle, s, self._reach, float(self._generator.uniform(0.0, math.pi / 3.0)))
+            points = visible_points(obstacle, s, reach, float(self._generator.uniform(0.0, math.pi / 3.0)))
             if not points:
                 continue
             number = self._ids.get(obstacle.name)
             if number is None:
                 number, self._next_id = self._next_id, (self._next_id + 1) % _IDS
             detected[obstacle.name] = number
-            noise = (self._noise * self._generator.standard_normal(len(points))).tolist()
+            noise = (self._settings.noise * self._generator.standard_normal(len(points))).tolist()
             for (x, y, z), error in zip(points, noise, strict=True):
                 ray = (x - s[0], y - s[1], z - s[2])
                 distance = math.hypot(*ray)
-                if distance < MIN_DISTANCE:
+                if distance < nearest:
                     continue
                 a, b, c = into_body(attitude, ray)
                 scale = max(1.0 + error / distance, 0.0)
                 detections.append(Detection(number, (scale * a, scale * b, scale * c)))
         self._ids = detected  # one that leaves and comes back is a new one to the vehicle
-        return RangeSample(now, self._reach, tuple(detections))
+        return RangeSample(now, reach, tuple(detections), range_min=nearest)
 
 
 def visible_points(obstacle: Obstacle, sensor: Vector, reach: float, turn: float) -> list[Vector]:
@@ -91,7 +91,7 @@ def visible_points(obstacle: Obstacle, sensor: Vector, reach: float, turn: float
 
 
 def _is_beyond(obstacle: Obstacle, sensor: Vector, reach: float) -> bool:
-    """Whether an obstacle is surely out of reach: a cheap check before the others."""
+    """Return True for an obstacle that is surely out of reach: a cheap check before the others."""
     radius, (a, b, c), _ = obstacle.shape.columns
     size = radius + 0.5 * math.sqrt(a * a + b * b + c * c)
     return math.dist(obstacle.position_in_world, sensor) > reach + size

@@ -28,6 +28,7 @@ class TruthLog:
         self._truth = TableWriter(self._run_dir / "truth.csv", truth_columns(number_of_uavs))
         self._obstacles: TableWriter | None = None
         self._modes: TableWriter | None = None
+        self._flown: dict[int, tuple[str, bool, bool]] = {}
         self._closed = False
 
     @property
@@ -67,9 +68,10 @@ class TruthLog:
             self._obstacles.write([float(state.time), obstacle.name, shape.kind, *map(float, numbers)])
 
     def write_mode(self, time: float, vehicle: int, mode: str, armed: bool, failsafe: bool) -> None:
-        """Append what a vehicle (its system id) flies from ``time`` (s) on."""
-        if self._closed:
+        """Append what a vehicle (its system id) flies from ``time`` (s) on, if it is not what it flew before."""
+        if self._closed or self._flown.get(vehicle) == (mode, armed, failsafe):
             return
+        self._flown[vehicle] = mode, armed, failsafe
         if self._modes is None:
             self._modes = TableWriter(self._run_dir / "modes.csv", MODE_COLUMNS)
         self._modes.write([float(time), vehicle, mode, armed, failsafe])

@@ -9,11 +9,12 @@ from typing import NamedTuple, Self
 import numpy as np
 import pybullet
 
+from gcs.config.tables import WorldConfig
 from idc_controller.parameters import SystemParameters
 from idc_controller.rotations_float import Vector, into_body
 from vehicle_sim.world.cradles import Cradles
 from vehicle_sim.world.errors import SimulationError
-from vehicle_sim.world.ground import PAD_THICKNESS, Contacts, Ground, Pose
+from vehicle_sim.world.ground import Contacts, Ground, Pose
 from vehicle_sim.world.multibody import check_supported, load_multibody
 from vehicle_sim.world.obstacle_bodies import ObstacleBodies
 from vehicle_sim.world.world_state import UavState, WorldState, flipped, quaternion_from_engine
@@ -42,7 +43,13 @@ class World:
     Raises :class:`~vehicle_sim.world.errors.UnsupportedWorld` for a system that the engine would compute wrongly.
     """
 
-    def __init__(self, parameters: SystemParameters, physics_hz: int = 500, gui: bool = False) -> None:
+    def __init__(
+        self,
+        parameters: SystemParameters,
+        physics_hz: int = 500,
+        gui: bool = False,
+        settings: WorldConfig = WorldConfig(),
+    ) -> None:
         if physics_hz <= 0:
             raise SimulationError(f"physics_hz must be positive, got {physics_hz}")
         check_supported(parameters)
@@ -52,23 +59,23 @@ class World:
         if self._client < 0:
             raise SimulationError("the physics engine does not start" + (" (is there a display?)" if gui else ""))
         try:
-            self._build()
+            self._build(settings)
         except BaseException:
             self.close()
             raise
 
-    def _build(self) -> None:
+    def _build(self, settings: WorldConfig) -> None:
         parameters, client = self.parameters, self._client
         pybullet.setGravity(0.0, 0.0, -parameters.g, physicsClientId=client)
         pybullet.setPhysicsEngineParameter(
             fixedTimeStep=1.0 / self.physics_hz, numSubSteps=0, deterministicOverlappingPairs=1,
             physicsClientId=client,
         )  # fmt: skip
-        self._ground = Ground(client, parameters.payload)
-        self._system = load_multibody(client, parameters, (0.0, 0.0, PAD_THICKNESS + parameters.payload.below))
+        self._ground = Ground(client, parameters.payload, settings.pad)
+        self._system = load_multibody(client, parameters, (0.0, 0.0, settings.pad.thickness + parameters.payload.below))
         self.obstacles = ObstacleBodies(client)
         weights = [float(m_i) * parameters.g for m_i in parameters.m]
-        self._cradles = Cradles(client, self._system.body, self._system.uavs, weights)
+        self._cradles = Cradles(client, self._system.body, self._system.uavs, weights, settings.cradles)
         self._steps = 0
         self._thrusts = (0.0,) * parameters.number_of_uavs
         self._contacts: Contacts | None = None

@@ -1,11 +1,12 @@
-"""Settings of a vehicle's autopilot."""
+"""The numbers that decide what a vehicle does on board, and how it serves its links."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 
 from gcs.config.flight_settings import DEFAULTS
-from idc_controller.settings import setting
+from idc_controller.settings import derived, setting
+from idc_controller.trajectory.settings import BrakingSettings
 
 
 @dataclass(frozen=True)
@@ -20,16 +21,11 @@ class ArmingSettings:
 
 
 @dataclass(frozen=True)
-class FailsafeSettings:
+class VehicleFailsafeSettings:
     """Defaults of the failsafe parameters, which the ground may set, and what a failsafe follows."""
 
-    setpoint_loss: float = setting(
-        DEFAULTS.failsafe.telemetry_timeout,
-        "s",
-        "COM_OF_LOSS_T: without set-points in OFFBOARD until it brakes and holds",
-        ge=0.1,
-        le=60.0,
-    )
+    setpoint_loss: float = derived(DEFAULTS.failsafe.telemetry_timeout)
+    """COM_OF_LOSS_T (s): without set-points in OFFBOARD until it brakes; ``flight.failsafe.telemetry_timeout``."""
     land_delay: float = setting(5.0, "s", "CLFT_LAND_DELAY: from that hold to the descent", ge=0.0, le=3600.0)
     link_loss: int = setting(
         10, "s", "COM_DL_LOSS_T: without a message of any ground until a holding vehicle descends", ge=5, le=300
@@ -42,7 +38,7 @@ class FailsafeSettings:
 
 @dataclass(frozen=True)
 class NavigationSettings:
-    """How the vehicle's own state is estimated while a sensor on board fails."""
+    """Estimate of the vehicle's own state while a sensor on board fails."""
 
     timeout: float = setting(0.2, "s", "without a usable sample until the navigation counts as failed", gt=0.0)
     stuck_after: int = setting(3, "", "samples equal to the digit after which a sensor counts as stuck", ge=1)
@@ -54,7 +50,7 @@ class NavigationSettings:
 
 @dataclass(frozen=True)
 class SetpointSettings:
-    """What is flown of the ground's set-points, and which are refused."""
+    """Set-points of the ground: what is flown of them, and which are refused."""
 
     hold: float = setting(
         0.1, "s", "the last set-point is flown; then the mean of the last: longer than set-points are apart", gt=0.0
@@ -81,13 +77,16 @@ class HoldSettings:
     vertical_kd: float = setting(4.5, "1/s", "vertical velocity gain", gt=0.0)
     horizontal_max: float = setting(0.35, "g", "largest horizontal acceleration", gt=0.0)
     vertical_max: float = setting(0.35, "g", "largest vertical acceleration", gt=0.0)
+    step_max: float = setting(0.1, "s", "longest time between samples that the integral covers", gt=0.0)
     descent_ramp: float = setting(1.0, "s", "until a descent has reached its speed", gt=0.0)
     land_speed: float = setting(0.5, "m/s", "MPC_LAND_SPEED: speed of the descent", ge=0.1, le=1.0)
+    braking: BrakingSettings = derived(BrakingSettings())
+    """Of a vehicle without a stop plan, as of the team: by ``guidance`` and ``motion``."""
 
 
 @dataclass(frozen=True)
 class LandDetectorSettings:
-    """What tells a vehicle in the air from one on the ground."""
+    """Conditions of a vehicle in the air and of one on the ground."""
 
     lifted: float = setting(0.15, "m", "above where it was armed: the vehicle is in the air", gt=0.0)
     vertical_speed_max: float = setting(0.1, "m/s", "vertical speed of a vehicle on the ground", gt=0.0)
@@ -102,6 +101,9 @@ class LandDetectorSettings:
     velocity_filter: float = setting(0.2, "s", "time constant of the vertical speed", gt=0.0)
     altitude_filter: float = setting(0.1, "s", "time constant of the altitude", gt=0.0)
     hover_filter: float = setting(2.0, "s", "time constant of the hover thrust", gt=0.0)
+    unloaded_share: float = setting(
+        0.5, "", "of the hover thrust beyond the own weight, below which the payload is not carried", ge=0.0, lt=1.0
+    )
     supported_thrust: float = setting(
         0.9, "", "share of the own weight below which something else supports the vehicle", gt=0.0, le=1.0
     )
@@ -111,10 +113,49 @@ class LandDetectorSettings:
 class AutopilotSettings:
     """All settings of one autopilot."""
 
-    failsafe: FailsafeSettings = field(default_factory=FailsafeSettings)
+    failsafe: VehicleFailsafeSettings = field(default_factory=VehicleFailsafeSettings)
     arming: ArmingSettings = field(default_factory=ArmingSettings)
     navigation: NavigationSettings = field(default_factory=NavigationSettings)
     setpoints: SetpointSettings = field(default_factory=SetpointSettings)
     hold: HoldSettings = field(default_factory=HoldSettings)
     land_detector: LandDetectorSettings = field(default_factory=LandDetectorSettings)
-    takeoff_altitude: float = setting(2.5, "m", "MIS_TAKEOFF_ALT, shown to the ground; AUTO.TAKEOFF is denied", ge=0.0)
+    takeoff_altitude: float = setting(
+        2.5, "m", "MIS_TAKEOFF_ALT, reported to the ground; AUTO.TAKEOFF is denied", ge=0.0, le=80.0
+    )
+
+
+@dataclass(frozen=True)
+class StreamIntervals:
+    """Default intervals of the streams: PX4's of its normal mode, or near."""
+
+    heartbeat: float = setting(1.0, "s", "HEARTBEAT of the autopilot and of the payload unit", gt=0.0)
+    sys_status: float = setting(1.0, "s", "SYS_STATUS", gt=0.0)
+    extended_sys_state: float = setting(0.2, "s", "EXTENDED_SYS_STATE", gt=0.0)
+    attitude: float = setting(0.1, "s", "ATTITUDE", gt=0.0)
+    global_position_int: float = setting(0.2, "s", "GLOBAL_POSITION_INT", gt=0.0)
+    gps_raw_int: float = setting(1.0, "s", "GPS_RAW_INT", gt=0.0)
+    home_position: float = setting(2.0, "s", "HOME_POSITION", gt=0.0)
+    battery_status: float = setting(2.0, "s", "BATTERY_STATUS", gt=0.0)
+    vfr_hud: float = setting(0.5, "s", "VFR_HUD", gt=0.0)
+
+
+@dataclass(frozen=True)
+class VehicleLinkSettings:
+    """Service of a vehicle to its peers: every address that sends it valid MAVLink."""
+
+    peer_timeout: float = setting(10.0, "s", "without a message from a peer until its streams stop", gt=0.0)
+    peers_max: int = setting(8, "", "peers served at once, beside the ground that the vehicle offers itself to", ge=1)
+    replies_max: int = setting(200, "", "answers queued for one peer; more requests at once are dropped", ge=1)
+    interval_min: float = setting(
+        0.004, "s", "shortest interval that SET_MESSAGE_INTERVAL may set: the onboard loop's period", gt=0.0
+    )
+    repeat_interval: float = setting(0.04, "s", "between the repetitions of a message whose content changed", gt=0.0)
+    repeats: int = setting(3, "", "repetitions of a message whose content changed: a datagram may be lost", ge=0)
+    setpoint_streams_max: int = setting(16, "", "senders of set-points served at once", ge=1)
+    reordering_max: float = setting(
+        1.0,
+        "s",
+        "a set-point older than the last by less was overtaken on the link; by more: its clock was set",
+        gt=0.0,
+    )
+    intervals: StreamIntervals = field(default_factory=StreamIntervals)

@@ -1,0 +1,150 @@
+"""Numbers of vehicles and world that follow from a key of the system file: the key is changed, behaviour follows."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from test_settings_followed import system
+from vehicle_bench import ACCEPTED, ARM, GROUND, OFFBOARD, Bench, attitude_target
+from world_runs import run, uav_array
+
+from gcs.config import RangeSensorConfig, read_system
+from gcs.config.tables import AirSettings, CradleSettings, PadSettings, WorldConfig
+from gcs.config.vehicle_settings import SetpointSettings, StreamIntervals
+from gcs.mission.model import Fault
+from idc_controller.geometry.sphere import Sphere
+from vehicle_sim.autopilot.airframe import Airframe
+from vehicle_sim.autopilot.autopilot import Autopilot
+from vehicle_sim.autopilot.parameter_table import vehicle_parameters
+from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
+from vehicle_sim.faults import FaultInjector
+from vehicle_sim.swarm import Swarm
+from vehicle_sim.world.obstacle_bodies import Obstacle
+from vehicle_sim.world.range_sensor import RangeSensor
+from vehicle_sim.world.sensors import Measurement
+from vehicle_sim.world.world import World
+
+LEVEL = (1.0, 0.0, 0.0, 0.0)
+
+
+def stop_of(config):
+    """What a vehicle at 3 m/s does without set-points and stop plan: the time of the loss (s), and its plan."""
+    airframe = Airframe.of_system(config.parameters(), 0, config.uav)
+    pilot = Autopilot(airframe, vehicle_parameters(airframe, 1, 250, config.onboard()), config.onboard())
+    setpoint = AttitudeSetpoint(LEVEL, (0.0, 0.0, 0.0), 0.9, 0)
+    for step in range(1000):
+        now = 0.004 * step
+        pilot.step(Measurement(now, LEVEL, (0.0, 0.0, 0.0), (0.0, 0.0, -5.0), (3.0, 0.0, 0.0)), now)
+        if step == 0:
+            pilot.enter_offboard(setpoint, now, now)
+            pilot.arm(now, force=True)
+        if pilot.hold_plan is not None:
+            return now, pilot.hold_plan
+    raise AssertionError("the vehicle does not stop")
+
+
+def test_vehicle_brakes_by_acceleration_of_motion_limits():
+    durations = [stop_of(system(motion={"acceleration": a}))[1].duration for a in (1.5, 0.5)]
+    assert durations == pytest.approx([4.0, 1.5 * 3.0 / (4.0 / 3.0 * 0.5)])
+
+
+def test_vehicle_and_team_brake_in_the_time_of_guidance():
+    config = system()
+    guidance = replace(config.guidance, braking=replace(config.guidance.braking, time=6.0))
+    config = replace(config, guidance=guidance)
+    assert stop_of(config)[1].duration == 6.0
+    assert config.braking().time == 6.0
+
+
+@pytest.mark.parametrize("timeout", [0.46, 0.9])
+def test_set_point_loss_of_vehicle_follows_telemetry_timeout_of_flight(timeout):
+    config = system()
+    config = replace(
+        config, flight=replace(config.flight, failsafe=replace(config.flight.failsafe, telemetry_timeout=timeout))
+    )
+    assert stop_of(config)[0] == pytest.approx(timeout, abs=0.005)
+    with Swarm(config, seed=1) as swarm:
+        assert swarm.vehicles[0].parameters["COM_OF_LOSS_T"] == pytest.approx(timeout)
+
+
+def test_partial_file_sets_descent_speed_of_vehicles(tmp_path):
+    path = tmp_path / "system.toml"
+    path.write_text("[autopilot.hold]\nland_speed = 0.3\n")
+    config = read_system(path)
+    assert stop_of(config)[1].descent_speed == pytest.approx(0.3)
+    with Swarm(config, seed=1) as swarm:
+        assert swarm.vehicles[3].parameters["MPC_LAND_SPEED"] == pytest.approx(0.3)
+
+
+def test_vehicle_refuses_setpoint_beyond_its_rate_limit():
+    config = read_system()
+    limited = replace(config.autopilot, setpoints=SetpointSettings(rate_max=1.0))
+    for settings, refused in ((config.autopilot, 0), (limited, 1)):
+        bench = Bench(autopilot=settings)
+        bench.send(attitude_target(rates=(0.0, 0.0, 1.5), mask=0))
+        assert bench.vehicle.refused_setpoints == refused
+
+
+def test_vehicle_streams_attitude_at_its_interval():
+    link = read_system().vehicle_link
+    counts = []
+    for interval in (0.1, 0.5):
+        bench = Bench(link=replace(link, intervals=StreamIntervals(attitude=interval)))
+        bench.send(attitude_target())
+        bench.run(2.0)
+        counts.append(len(bench.got("ATTITUDE", GROUND)))
+    assert counts == pytest.approx([20, 4], abs=1)
+
+
+def test_vehicle_with_a_low_lift_threshold_is_in_the_air_earlier():
+    heights = []
+    for lifted in (0.15, 0.6):
+        settings = read_system().autopilot
+        bench = Bench(autopilot=replace(settings, land_detector=replace(settings.land_detector, lifted=lifted)))
+        bench.streaming[GROUND, 255] = attitude_target(thrust=0.3)
+        bench.run(0.2)
+        assert bench.result(OFFBOARD) == bench.result(ARM) == ACCEPTED
+        while not bench.vehicle.autopilot.in_air:
+            bench.run(0.01)
+        heights.append(-bench.body.position[2])
+    assert heights[1] > heights[0] + 0.4
+
+
+def test_payload_stands_on_pad_of_its_thickness():
+    for thickness in (0.05, 0.2):
+        settings = WorldConfig(pad=PadSettings(thickness=thickness))
+        with World(read_system().parameters(), settings=settings) as world:
+            state = run(world, 0.2, [0.0] * 4)
+            assert state.payload_position_in_world[2] == pytest.approx(-0.25 - thickness, abs=1e-3)
+            assert world.touching_ground()
+
+
+@pytest.mark.parametrize(("factor", "held"), [(1.05, False), (1.5, True)])
+def test_cradle_opens_at_its_release_factor(factor, held):
+    config = read_system()
+    settings = WorldConfig(cradles=CradleSettings(release_factor=factor))
+    with World(config.parameters(), settings=settings) as world:
+        state = run(world, 0.01, [1.2 * config.uav.mass * 9.81] * 4)
+        assert uav_array(state, "cradled").tolist() == [held] * 4
+
+
+def test_wind_pushes_in_proportion_to_density_of_air():
+    forces = []
+    for density in (1.225, 2.45):
+        config = replace(read_system(), world=WorldConfig(air=AirSettings(density=density)))
+        wind = Fault(kind="wind", start=0.0, settings={"velocity": [3.0, 0.0, 0.0], "rise": 0.0})
+        injector = FaultInjector([wind], 1, config)
+        injector.took_off(0.0)
+        with World(config.parameters()) as world:
+            forces.append(np.array(injector.disturb(world, 1.0)[0]))
+    np.testing.assert_allclose(forces[1], 2.0 * forces[0])
+    assert forces[0][0] > 0.0
+
+
+def test_range_sensor_measures_nothing_below_its_least_distance():
+    obstacle = Obstacle("near", Sphere(0.5), (1.0, 0.0, -5.0))
+    counts = [
+        len(RangeSensor(RangeSensorConfig(range_min=least), 1, 1).scan(0.0, (0.0, 0.0, -5.0), LEVEL, [obstacle])[2])
+        for least in (0.05, 0.8)
+    ]
+    assert counts[0] > counts[1] == 0
