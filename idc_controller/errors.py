@@ -14,7 +14,7 @@ class SolverError(IdcError):
 
 
 class TrajectoryError(IdcError):
-    """No trajectory satisfies what was asked (too few points, limits that are not positive, ...)."""
+    """No trajectory satisfies the demands (too few points, limits that are not positive, ...)."""
 
 
 class ShapeError(IdcError):

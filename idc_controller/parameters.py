@@ -114,7 +114,7 @@ class SystemParameters:
         return discs + share * (self.spacing - discs)
 
     def with_payload_mass(self, m_0: float) -> SystemParameters:
-        """The same system with another payload mass (kg); the inertia scales with it."""
+        """Return the system with another payload mass (kg); the inertia scales with it."""
         return replace(self, m_0=m_0, J_0=self.J_0 * (m_0 / self.m_0))
 
     def _moment_balance(self) -> Array:

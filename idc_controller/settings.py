@@ -1,4 +1,4 @@
-"""How a setting is declared: a field of a frozen dataclass with its default, unit, meaning and range.
+"""Declaration of a setting: a field of a frozen dataclass with its default, unit, meaning and range.
 
 Every sub-package whose behaviour depends on numbers has a ``settings.py`` with such dataclasses. Each is a table of the
 system file; ``docs/settings.md`` lists them all.
@@ -13,7 +13,7 @@ DERIVED_KEY = "derived"
 
 @dataclass(frozen=True)
 class Setting:
-    """What is known of one setting beside its value; a bound that is None does not exist."""
+    """Unit, meaning and range of a setting; a bound that is None does not exist."""
 
     unit: str
     """SI, as it stands in the system file; empty for a pure number."""

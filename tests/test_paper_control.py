@@ -152,8 +152,9 @@ def test_filter_leaves_feasible_inputs_unchanged():
 def test_unconstrained_mpc_equals_the_regulator(mpc):
     s = mpc.settings
     Q, R = s.weights.state(4), s.weights.inputs(4)
-    X = solve_discrete_are(mpc.A, mpc.B, Q, R)
-    K = np.linalg.solve(R + mpc.B.T @ X @ mpc.B, mpc.B.T @ X @ mpc.A)
+    A, B = mpc.prediction.A, mpc.prediction.B
+    X = solve_discrete_are(A, B, Q, R)
+    K = np.linalg.solve(R + B.T @ X @ B, B.T @ X @ A)
     x = 0.001 * np.random.default_rng(4).normal(size=52)
     move = mpc.solve(
         mpc.F @ x, mpc.F @ x - np.eye(52)[2], np.tile(np.repeat([[14.47, 0, 0, 0]], 4, 0).ravel(), (20, 1))

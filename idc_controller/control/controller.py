@@ -31,7 +31,7 @@ class Decision:
     """Set-points for all UAVs, and how they came about."""
 
     time: float
-    """When they act (s)."""
+    """Time from which on they act (s)."""
     u: Array
     """Thrust directions (north, east) of all UAVs, then thrusts (3 N,), in the model's coordinates."""
     directions: Array
@@ -39,9 +39,9 @@ class Decision:
     thrusts: Array
     """(N,) (N)"""
     reference: Reference
-    """What was tracked."""
+    """Reference that was tracked."""
     flat: FlatReference
-    """It, from ``time`` on, one stage a period."""
+    """The reference from ``time`` on, one stage a period."""
     iterations: int
     infeasible: bool
     planner_time: float
@@ -51,7 +51,7 @@ class Decision:
     safety: SafetyReport
     """Outcome of the safety filter's last plan."""
     progress_rate: float
-    """Of the mission's progress: 1 is its own speed, 0 rest."""
+    """Rate of the mission's progress: 1 is its own speed, 0 rest."""
     detours: int
     """Detours taken so far."""
 
@@ -80,7 +80,7 @@ class IntegratedDecisionController:
         self._times = settings.period * np.append(np.arange(tracker.horizon + 1), 0.5)
 
     def reference(self, mission: PayloadTrajectory) -> Reference:
-        """What is tracked until the next decision, for the estimator; at first the mission itself."""
+        """Return the reference until the next decision, for the estimator; at first the mission itself."""
         return Reference(self.parameters, self._tracked or mission, self.load.estimate)
 
     def decide(

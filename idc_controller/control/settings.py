@@ -36,7 +36,7 @@ class MpcWeights:
 
 @dataclass(frozen=True)
 class MpcTuning:
-    """What is tuned first of the model predictive controller: table ``controller``."""
+    """Horizon, tilt limits and weights of the MPC: table ``controller``."""
 
     horizon: int = setting(20, "", "control steps of the prediction", ge=2, le=200)
     payload_tilt_limit_deg: float = setting(5.0, "deg", "soft limit of the payload's tilt", gt=0.0, lt=90.0)
@@ -99,7 +99,7 @@ class GroundControlSettings:
 
 @dataclass(frozen=True)
 class ControllerSettings:
-    """How fast the load is learnt and how far an error is answered at once."""
+    """Adaptation to the load, and the largest errors that are answered at once."""
 
     period: float = derived(1.0 / CONTROL_RATE)
     """Control period (s): of ``rates.control``."""

@@ -1,1 +1,1 @@
-"""Where the payload flies: detours round obstacles on the map, and places to come to rest."""
+"""Progress along the mission, detours round obstacles on the map, and places to come to rest."""

@@ -103,7 +103,7 @@ def find_detour(
 
 
 def _refused(space: FreeSpace, place: Array, what: str, names: Sequence[str]) -> str | None:
-    """Why the formation cannot be at ``place``; None: it can."""
+    """Return why the formation cannot be at ``place``; None: it can."""
     altitude = -place[2]
     if not space.lowest - 1e-6 <= altitude <= space.highest + 1e-6:
         return f"the {what}, {altitude:.2f} m high, is not within {space.lowest:g} to {space.highest:g} m"

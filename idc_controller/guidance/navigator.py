@@ -21,7 +21,7 @@ from idc_controller.trajectory.waypoints import WaypointTrajectory
 
 
 class HoldUp:
-    """How long the mission has been held up, when a detour is searched next, and why there is none."""
+    """Timing of the search for detours while the mission is held up, and the reason why there is none."""
 
     def __init__(self, settings: NavigatorSettings) -> None:
         self._settings = settings
@@ -30,7 +30,7 @@ class HoldUp:
         self._interval = settings.search_interval
         self._blocked_since: float | None = None
         self.reason = ""
-        """Why the last search found no detour; empty: it found one."""
+        """Reason why the last search found no detour; empty: it found one."""
 
     def clear(self) -> None:
         """Forget all but the intervals of the search."""
@@ -177,7 +177,8 @@ class Navigator:
                 return detour.waypoints, float(ahead[goal])
         # By its surface: a long wall's centre may be far.
         space = FreeSpace(bodies, self.formation, keep, self.lowest, highest, growth=growth)
-        reason = "there is no way on"
+        reason = "there is no path to the rest of the mission"
         if bodies:
-            reason = f"the way on is blocked by {names[int(np.argmin(space.clearance(position[None])[0]))]}"
+            nearest = names[int(np.argmin(space.clearance(position[None])[0]))]
+            reason = f"the path to the rest of the mission is blocked by {nearest}"
         return f"{reason}: {detour.reason}" if detour.reason.startswith("the formation at the goal") else reason

@@ -72,7 +72,7 @@ class AdaptiveGuidance(Guidance):
         self._tracked: PayloadTrajectory | None = None
         self._deflected = False
         self._restart: tuple[float, float] | None = None
-        """When another mission was given, and its progress then; until the next step."""
+        """Time at which another mission was given and its progress then (s); until the next step."""
 
     @property
     def rate(self) -> float:

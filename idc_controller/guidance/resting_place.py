@@ -1,6 +1,6 @@
-"""Where a team without set-points comes to rest and sets its load down: clear of the obstacles on the map.
+"""The place where a team without set-points comes to rest and sets its load down, clear of obstacles on the map.
 
-Vehicles without set-points detect nothing. Where the motion alone would take them to rest, an obstacle may be beside
+Vehicles without set-points detect nothing. Where their motion would take them to rest, an obstacle may be beside
 them, or below, or swing to and fro. So the stop plan is deflected beforehand: it takes longer or less long, or ends
 aside.
 """
@@ -42,7 +42,7 @@ class RestingPlace:
         self._last = self._usual
 
     def __call__(self, time: float, state: Array) -> Braking:
-        """How to brake from ``state`` (3, 3) at ``time`` (s).
+        """Return the stop from ``state`` (3, 3) at ``time`` (s).
 
         These are position, velocity and acceleration of a payload that hangs still below the UAVs: it is they that
         brake. The usual stop, if that is clear; else the last one that was chosen, while it is; else the best of many.
@@ -96,15 +96,15 @@ class _Near:
         self._growth = np.minimum(np.stack([obstacle.growth for obstacle in obstacles]), growth_max)  # (O, K)
 
     def at_their_time(self, points: Array) -> float:
-        """Of points (K, n, 3), each at its own moment."""
+        """Return the least distance (m) of points (K, n, 3), each at its own moment."""
         return self._least(points[None] - self._centres[:, :, None])
 
     def at_any_time(self, points: Array) -> float:
-        """Of points (n, 3), at all moments."""
+        """Return the least distance (m) of points (n, 3) at all moments."""
         return self._least(points - self._centres[:, :, None])
 
     def _least(self, apart: Array) -> float:
-        """Of points relative to the centres (O, K, n, 3)."""
+        """Return the least distance (m) of points relative to the centres (O, K, n, 3)."""
         if not apart.size:
             return np.inf
         distance = self._bodies.from_offsets(apart.reshape(len(apart), -1, 3)).reshape(apart.shape[:3])

@@ -8,7 +8,7 @@ from idc_controller.trajectory.settings import AvoidanceSettings, Limits
 
 @dataclass(frozen=True)
 class ProgressSettings:
-    """How the progress along the mission answers to lag and wind."""
+    """Answer of the progress along the mission to lag and wind."""
 
     stage_share: float = setting(
         0.7,
@@ -22,7 +22,7 @@ class ProgressSettings:
     lag_at_rest: float = setting(2.4, "m", "lag from which the progress rests", gt=0.0)
     rate_step: float = setting(0.05, "", "largest change of the progress rate from reference to reference", gt=0.0)
     rate_step_in_wind: float = setting(
-        0.01, "", "the same where wind limits it: foreseen for long, and a fast change would be a disturbance", gt=0.0
+        0.01, "", "the same where wind limits it: predicted for long, and a fast change would be a disturbance", gt=0.0
     )
     drag_limit: float = setting(0.45, "", "drag on the payload, over its weight, above which the rate is lowered", gt=0)
     slowest_in_wind: float = setting(
@@ -51,10 +51,10 @@ class DetourSettings:
 
 @dataclass(frozen=True)
 class NavigatorSettings:
-    """When a detour is searched, and how it is flown."""
+    """Conditions in which a detour is searched, and how it is flown."""
 
     limits: Limits = derived(Limits())
-    """Of the trajectories: table ``motion``."""
+    """Limits of the trajectories: table ``motion``."""
     margin: float = derived(AvoidanceSettings.margin)
     """Clearance to keep between hull and obstacles (m): ``avoidance.margin``."""
     spare: float = setting(0.2, "m", "more than the margin, so that the safety filter need not act on a detour", ge=0.0)
@@ -82,7 +82,7 @@ class NavigatorSettings:
 
 @dataclass(frozen=True)
 class RestingPlaceSettings:
-    """Where a team without set-points may come to rest; the defaults of the obstacles' growth are those of the map."""
+    """Choice of the place where a team without set-points comes to rest."""
 
     margin: float = derived(AvoidanceSettings.margin)
     """Clearance to keep between hull and obstacles (m): ``avoidance.margin``."""
@@ -92,7 +92,7 @@ class RestingPlaceSettings:
     growth_max: float = setting(0.5, "m", "largest growth of an uncertain obstacle that counts", ge=0.0)
     durations: tuple[float, ...] = setting((0.7, 1.3, 1.6, 2.0), "", "braking times tried, over the usual one", gt=0.0)
     aside: tuple[float, ...] = setting(
-        (0.8, 1.6, 2.4), "m", "distances tried from where the motion alone would lead", gt=0.0
+        (0.8, 1.6, 2.4), "m", "distances tried from the place to which the motion leads", gt=0.0
     )
     bearings: int = setting(8, "", "directions in which these are tried", ge=1)
     deceleration_share: float = setting(

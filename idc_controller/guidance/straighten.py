@@ -35,7 +35,7 @@ def straightened(space: FreeSpace, path: Array, settings: DetourSettings) -> Arr
 
 
 def _tightened(space: FreeSpace, points: Array) -> Array:
-    """Every corner moved towards the straight line past it, as far as free space allows."""
+    """Return the points with every corner moved towards the straight line past it, as far as free space allows."""
     points = points.copy()
     # The second point of a path out of too little clearance stays: it is where free space begins.
     first = 1 if space.is_free(points[:1])[0] else 2

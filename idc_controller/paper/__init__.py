@@ -1,1 +1,1 @@
-"""What the paper prints, line by line, for comparison with what is correct: equations, matrices, controller, filter."""
+"""The paper as printed, line by line, for comparison with what is correct: equations, controller, filter."""

@@ -39,7 +39,7 @@ def printed_accelerations(parameters: SystemParameters, state: SystemState, inpu
 
 
 def moment_residual(parameters: SystemParameters, state: SystemState, inputs: Inputs, printed: bool) -> float:
-    """How far the moment equation is from zero, with l_i q_i dOmega_i (``printed``) or with l_i hat(q_i) dOmega_i.
+    """Return the residual of the moment equation, with l_i q_i dOmega_i (``printed``) or with l_i hat(q_i) dOmega_i.
 
     In the norm (N m), at the true accelerations. l_i q_i dOmega_i is read element by element: as vectors the product
     does not exist.

@@ -38,12 +38,12 @@ class Layout:
 
     @classmethod
     def full(cls, number_of_uavs: int) -> Layout:
-        """Of the paper's state."""
+        """Return the layout of the paper's state."""
         return cls(number_of_uavs, _FULL)
 
     @classmethod
     def minimal(cls, number_of_uavs: int) -> Layout:
-        """Of the minimal state."""
+        """Return the layout of the minimal state."""
         return cls(number_of_uavs, _MINIMAL)
 
     @property
@@ -57,12 +57,12 @@ class Layout:
         return 12 + self.per_uav * self.number_of_uavs
 
     def payload(self, name: str) -> slice:
-        """Of ``r_0``, ``v_0``, ``Theta_0`` or ``omega_0``."""
+        """Return the places of ``r_0``, ``v_0``, ``Theta_0`` or ``omega_0``."""
         begin = 3 * _PAYLOAD.index(name)
         return slice(begin, begin + 3)
 
     def of_uavs(self, name: str) -> NDArray[np.int_]:
-        """Places of a UAV coordinate, (N, size of the coordinate)."""
+        """Return the places of a UAV coordinate (N, size of the coordinate)."""
         begin = 12
         for part, size in self.parts:
             if part == name:

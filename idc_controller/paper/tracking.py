@@ -11,9 +11,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import block_diag, solve_discrete_are
+from scipy.linalg import solve_discrete_are
 
 from idc_controller.arrays import Array
+from idc_controller.control.prediction import CondensedPrediction
 from idc_controller.errors import SolverError
 from idc_controller.paper.state_space import Layout, discretised, minimal
 from idc_controller.parameters import SystemParameters
@@ -39,7 +40,7 @@ class Weights:
 
     @classmethod
     def of_named_outputs(cls) -> Weights:
-        """On what the paper's y' names alone: position, attitudes and links, but no rate of anything."""
+        """Return weights on what the paper's y' names: position, attitudes and links, but no rates."""
         none = (0.0, 0.0, 0.0)
         return replace(cls(), velocity=none, rates=none, link_rate=0.0, uav_rates=none)
 
@@ -55,12 +56,12 @@ class Weights:
 
 @dataclass(frozen=True)
 class Settings:
-    """Of the paper where it states them; it does not state its input bounds."""
+    """Settings of the paper where it states them; it does not state its input bounds."""
 
     period: float = 0.05
     horizon: int = 20
     tilt_limit: float = float(np.radians(5.0))
-    """Of roll, pitch and yaw of the payload (rad), eq:consOsc."""
+    """Limit of the payload's roll, pitch and yaw (rad), eq:consOsc."""
     thrust_bounds: tuple[float, float] = (0.0, 30.0)
     torque_bound: float = 2.0
     """N m, in both directions."""
@@ -85,33 +86,23 @@ class ThrustTorqueMpc:
         s = self.settings = settings or Settings()
         N = parameters.number_of_uavs
         self.layout = Layout.minimal(N)
-        self.A, self.B = discretised(*minimal(parameters), s.period)
+        A, B = discretised(*minimal(parameters), s.period)
         Q, R = s.weights.state(N), s.weights.inputs(N)
-        Q_f = solve_discrete_are(self.A, self.B, Q, R)
+        Q_f = solve_discrete_are(A, B, Q, R)
         if s.terminal_outputs_alone:
             named = np.diag(Q) > 0.0
             Q_f = Q_f * np.outer(named, named)
         n, m, N_p = self.layout.size, 4 * N, s.horizon
-        F, H = np.zeros((N_p + 1, n, n)), np.zeros((N_p + 1, n, N_p * m))
-        F[0] = np.eye(n)
-        for k in range(N_p):
-            F[k + 1], H[k + 1] = self.A @ F[k], self.A @ H[k]
-            H[k + 1][:, k * m : (k + 1) * m] += self.B
-        self.F, self._H = F, H
-        P = block_diag(*[R] * N_p)
-        weights = [Q] * N_p + [Q_f]
-        for k in range(1, N_p + 1):
-            P += H[k].T @ weights[k] @ H[k]
-        self._gradient = np.concatenate([H[k].T @ weights[k] for k in range(1, N_p + 1)], axis=1)
+        self.prediction = prediction = CondensedPrediction(A, B, (1,) * N_p)
+        self.F, H = prediction.F, prediction.H
+        self._gradient = np.concatenate(prediction.gradients(Q, Q_f), axis=1)
         rows = np.zeros((7, n))
-        for axis in range(3):
-            rows[2 * axis, self.layout.payload("Theta_0").start + axis] = 1.0
-            rows[2 * axis + 1, self.layout.payload("Theta_0").start + axis] = -1.0
+        rows[np.arange(6), self.layout.payload("Theta_0").start + np.repeat(np.arange(3), 2)] = np.tile([1.0, -1.0], 3)
         rows[6, 2] = 1.0  # z of the payload cannot be positive
         self._rows = rows
         G = np.vstack([np.eye(N_p * m), -np.eye(N_p * m), *(rows @ H[k] for k in range(1, N_p + 1))])
         slack = np.concatenate([np.full(2 * N_p * m, -1), np.tile([0, 0, 1, 1, 2, 2, 3], N_p)])
-        self._qp = ParametricQp((P + P.T) / 2.0, G, slack, slack_linear=1e4, slack_quadratic=1e5)
+        self._qp = ParametricQp(prediction.hessian(Q, R, Q_f), G, slack, slack_linear=1e4, slack_quadratic=1e5)
         bound = np.array([s.thrust_bounds[1], *[s.torque_bound] * 3] * N)
         self.upper, self.lower = bound, np.where(np.arange(m) % 4 == 0, s.thrust_bounds[0], -bound)
         self._m = m

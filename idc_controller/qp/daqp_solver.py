@@ -7,7 +7,7 @@ from idc_controller.errors import SolverError
 from idc_controller.qp.problem import QpSolution, QuadraticProgram
 
 UNBOUNDED = 1e30
-"""What DAQP takes for no bound."""
+"""Number that DAQP takes for no bound."""
 _SOFT = 8  # DAQP's code of a constraint that may be violated
 
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from idc_controller.arrays import Array
 
 SOFT_COST = 1e6
-"""Of exceeding a soft row; DAQP's own."""
+"""Quadratic cost of exceeding a soft row; DAQP's own."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +34,7 @@ class QuadraticProgram:
 
     @property
     def is_bounded(self) -> bool:
-        """Whether variables have bounds of their own."""
+        """Return True if variables have bounds of their own."""
         return self.lower is not None or self.upper is not None
 
 

@@ -11,7 +11,7 @@ from idc_controller.errors import SolverError
 from idc_controller.qp.problem import SOFT_COST, QpSolution, QuadraticProgram
 
 UNBOUNDED = 1e20
-"""What ProxQP takes for no bound."""
+"""Number that ProxQP takes for no bound."""
 TOLERANCE = 1e-6
 ITERATIONS, INNER_ITERATIONS = 200, 100
 

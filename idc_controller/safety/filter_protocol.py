@@ -16,7 +16,7 @@ class SafetyReport:
     deviation: Array | None = None
     """States of the plan's deviation from the reference at the stages (K + 1, 5, 3), SI; None: not deflected."""
     slack: float = 0.0
-    """By how much the barrier is missed at worst over the plan (m)."""
+    """Largest violation of the barrier over the plan (m)."""
     infeasible: bool = False
     """The QP had no solution and the plan before was kept."""
     qp_count: int = 0
@@ -24,15 +24,15 @@ class SafetyReport:
     nearest: str = ""
     """Name of the obstacle with the least clearance; empty: none near."""
     lag: float = 0.0
-    """How far the plan is behind the reference, along its path (m)."""
+    """Lag of the plan behind the reference along its path (m)."""
     payload_bound: float | None = None
     """Deviation of the payload from its plan that the margins allow for (m); None: none is assumed."""
     uav_bound: float | None = None
-    """The same of the UAVs (m)."""
+    """Deviation of the UAVs that the margins allow for (m)."""
 
     @property
     def active(self) -> bool:
-        """Whether the reference was deflected."""
+        """Return True if the reference was deflected."""
         return self.deviation is not None
 
 
@@ -40,7 +40,7 @@ class SafetyFilter(Protocol):
     """Deflects the reference as far as safety demands, and no further."""
 
     report: SafetyReport
-    """Of the last step."""
+    """Outcome of the last step."""
 
     def filter(self, time: float, reference: ScaledReference, estimate: Estimate) -> PayloadTrajectory:
         """Return the trajectory to track from ``time`` (s) on; before that it is what was tracked."""

@@ -21,7 +21,7 @@ class Piece:
 
     @property
     def start(self) -> float:
-        """When the plan begins (s)."""
+        """Time at which the plan begins (s)."""
         return self.reference.start
 
 

@@ -163,7 +163,7 @@ def _absolute(ahead: Array, plan: Plan | None) -> tuple[Array, Array]:
 
 
 def _lag(start: Array, ahead: Array) -> float:
-    """How far the trajectory in force is behind the reference along its path (m)."""
+    """Return the lag (m) of the trajectory in force behind the reference along its path."""
     velocity = ahead[1, 0]
     speed = float(np.linalg.norm(velocity))
     return max(0.0, float(-start[0] @ velocity) / speed) if speed > 0.05 else float(np.linalg.norm(start[0, :2]))

@@ -1,4 +1,4 @@
-"""Where the hull and an obstacle come closest at each stage of a plan, and which plane parts them there."""
+"""Closest points of hull and obstacle at each stage of a plan, and the plane that separates them there."""
 
 from dataclasses import dataclass
 

@@ -32,7 +32,7 @@ class PlannerSettings:
         0.0002, "", "weight of the change of snap from stage to stage: the UAVs' tilt rates follow it", ge=0.0
     )
     limits: Limits = derived(Limits())
-    """Of the motion between waypoints, from which the plan's follow: table ``motion``."""
+    """Limits of the motion between waypoints, from which the plan's follow: table ``motion``."""
     acceleration_share: Triple = setting(
         (2.0, 2.0, 1.8), "", "largest acceleration of a plan over that between waypoints, x, y, z", gt=0.0
     )

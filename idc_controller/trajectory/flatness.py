@@ -55,7 +55,7 @@ class FlatForces:
     on_payload: Array
     """Estimated force of the load on the payload (K, 3) (N)."""
     on_uavs: Array
-    """The same on each of the UAVs (K, N, 3) (N)."""
+    """Estimated force of the load on each of the UAVs (K, N, 3) (N)."""
 
 
 @dataclass(frozen=True)

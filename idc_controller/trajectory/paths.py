@@ -48,7 +48,7 @@ class Circle:
     """``turns`` (may be a fraction) round ``centre`` (3,), m, NED, at ``radius``, m, and ``speed``, m/s.
 
     Begins at the point of the circle next to where the leg before ends and stops where the turns are done;
-    ``clockwise`` as seen from above. Flown more slowly where the limits ask for it. ``hold`` as in ``Leg``.
+    ``clockwise`` as seen from above. Flown more slowly where the limits demand it. ``hold`` as in ``Leg``.
     """
 
     centre: ArrayLike

@@ -14,11 +14,11 @@ class ScaledReference:
 
     trajectory: Trajectory
     start: float = 0.0
-    """When the progress is ``progress`` (s)."""
+    """Time (s) of ``progress``."""
     progress: float = 0.0
     """Path parameter (s): the trajectory's own time."""
     rate: float = 1.0
-    """Of the progress: 1 is the trajectory's own speed, 0 rest."""
+    """Rate of the progress: 1 is the trajectory's own speed, 0 rest."""
 
     def progress_at(self, time: float) -> float:
         """Return the progress (s) at ``time`` (s)."""

@@ -39,7 +39,7 @@ class Limits:
 
 @dataclass(frozen=True)
 class AvoidanceSettings:
-    """What is kept from obstacles: table ``avoidance``."""
+    """Clearance from obstacles, and how fast they are approached: table ``avoidance``."""
 
     margin: float = setting(0.5, "m", "clearance to keep between hull and obstacles", gt=0.0)
     barrier_rates: tuple[float, ...] = setting(

@@ -1,6 +1,6 @@
 """The stop plan: how every UAV comes to rest, together with the others, when it receives no set-points.
 
-All of them start from one moment of one reference and take the same time, so the payload stays level without a word
+All of them start from one moment of one reference and take the same time, so the payload stays level without messages
 between them. Along each axis the position is the quartic that takes over position, velocity and acceleration and ends
 without velocity and acceleration; a quartic is a Bezier curve of five control points, as many as fit into a message.
 
@@ -34,12 +34,12 @@ _CONTROL_POINTS = np.array(
 
 
 class Braking(NamedTuple):
-    """How to come to rest; by default in the usual time, where the motion leads."""
+    """A stop; by default in the usual time, to where the motion leads."""
 
     share: float = 1.0
-    """Of the usual time."""
+    """Duration over the usual one."""
     aside: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Where to rest, beside where the motion alone would lead (m). The acceleration then jumps at the start."""
+    """Place of rest less that to which the motion alone leads (m). The acceleration then jumps at the start."""
     settings: BrakingSettings = BrakingSettings()
 
     def duration(self, velocity: Array) -> float:
@@ -48,7 +48,7 @@ class Braking(NamedTuple):
         return self.share * max(self.settings.time, 1.5 * speed / self.settings.deceleration)
 
     def control_points(self, state: Array, duration: float) -> Array:
-        """Of the path from a ``state`` (..., 3, 3) of position, velocity and acceleration: (..., 5, 3) (m)."""
+        """Return those (..., 5, 3) (m) of the path from a ``state`` (..., 3, 3) of position, velocity, acceleration."""
         points = _CONTROL_POINTS @ (state * np.array([1.0, duration, duration**2])[:, None])
         points[..., 2:, :] += np.array(self.aside)
         return np.asarray(points)

@@ -1,4 +1,4 @@
-"""What a reference trajectory is: position to snap at many times at once, at rest before and after."""
+"""Reference trajectories: position to snap at many times at once, at rest before and after."""
 
 from __future__ import annotations
 
@@ -42,13 +42,13 @@ class Trajectory(ABC):
 
     @abstractmethod
     def stop(self, time: float) -> Trajectory:
-        """The same trajectory up to ``time`` (s), then to rest along its path as soon as its limits allow.
+        """Return the same trajectory up to ``time`` (s), then to rest along its path as soon as its limits allow.
 
         It leaves this one continuously up to snap and never comes to rest later than this one would.
         """
 
     def waypoints(self, begin: float, end: float) -> Array:
-        """Where it passes its waypoints between two times (s): (M, 3), m, NED."""
+        """Return the positions (M, 3), m, NED, at which it passes its waypoints between two times (s)."""
         return np.empty((0, 3))
 
     def position(self, time: float) -> Array:
@@ -83,7 +83,7 @@ class RestTrajectory(Trajectory):
         return result
 
     def stop(self, time: float) -> Trajectory:
-        """At rest already: ends at ``time``, s, if it would not have ended before."""
+        """Return the same rest, which ends at ``time`` (s) if it would not have ended before."""
         return RestTrajectory(self._position, self.start, min(self._end, max(self.start, time)))
 
 

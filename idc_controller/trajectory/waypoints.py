@@ -40,8 +40,8 @@ class WaypointTrajectory(Trajectory):
     Args:
         start_position: (3,), m, NED.
         legs: straight legs and circles; may be endless. A leg faster than ``limits.speed`` is flown at that.
-        limits: hold at every time. The smoothing is sized for ``limits.speed``: a speed far above what the
-            legs ask for makes corners and stops slower than they need to be.
+        limits: hold at every time. The smoothing is sized for ``limits.speed``: one far above those of the legs
+            makes corners and stops slower than they need to be.
         start: s, when the motion begins.
         corner: m, the farthest a waypoint without hold may be passed from. With hold: within 1 mm.
         kept: s (may be ``inf``) before the earliest time of a call that may still be evaluated later.
@@ -144,7 +144,7 @@ class WaypointTrajectory(Trajectory):
         self._reach(piece.marks[-1], 0.0)
 
     def _departure(self, piece: Piece, speed: float) -> float:
-        """The earliest time, on the path as sampled, at which the piece may begin."""
+        """Return the earliest time, on the path as sampled, at which the piece may begin."""
         s = self._path.smoothing
         pause = self._hold + 2.0 * s.settling if self._hold > 0.0 else 0.0
         earliest = self._arrival + pause
@@ -157,7 +157,7 @@ class WaypointTrajectory(Trajectory):
         return math.ceil(latest / s.interval - 1e-9) * s.interval
 
     def _holds(self, piece: Piece, speed: float, departure: float) -> bool:
-        """Whether limits and corners hold if the piece begins then, as far as what is before plays a part."""
+        """Return whether limits and corners hold if the piece begins then."""
         s = self._path.smoothing
         since = math.floor(self._arrival / s.interval) - 2 * s.reach
         points, first = self._path.extended(piece.path, speed, departure, since)

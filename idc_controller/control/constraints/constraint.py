@@ -1,4 +1,4 @@
-"""What a constraint on the state is to the MPC: rows G e <= h on the error about the reference (eq:stateCon)."""
+"""The interface of a constraint on the state: rows G e <= h on the error about the reference (eq:stateCon)."""
 
 from collections.abc import Sequence
 from typing import Protocol

@@ -1,4 +1,4 @@
-"""What a constraint of the safety QP is given and what it returns."""
+"""The interface of a constraint of the safety QP."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ class PlanningStep:
     free: Array
     """The deviation's states if all knots are zero (K + 1, 5, 3)."""
     acceleration: Array
-    """Of the plan before, about which the hull's shear is linear (K + 1, 3)."""
+    """Acceleration of the plan before, about which the hull's shear is linear (K + 1, 3)."""
     separations: Sequence[Separation]
 
 

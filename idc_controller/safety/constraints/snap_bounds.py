@@ -8,7 +8,7 @@ from idc_controller.safety.settings import PlannerSettings
 
 
 class SnapBounds:
-    """What the reference leaves of the snap limit; its own snap is always allowed."""
+    """The snap limit less the snap of the reference, which is always allowed."""
 
     def __init__(self, settings: PlannerSettings) -> None:
         self._limit, self._spare = settings.snap_limit, settings.snap_spare
