@@ -287,7 +287,7 @@ def test_touchdown_is_not_detected_high_above_the_ground(tmp_path):
         assert not flight.system.payload.has_touched_down(in_process.now, descent, high)
         assert flight.system.payload.has_touched_down(in_process.now, descent, low)
         assert not flight.system.payload.is_descent_stalled(in_process.now, descent, low)
-        flight.mission_trajectory._trajectory = descent
+        flight.mission_trajectory.trajectory = descent
         flight.control.estimator.estimate = still_at(5.0)
         in_process.fly()
         assert flight.reason == "the payload does not descend"

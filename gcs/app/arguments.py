@@ -7,12 +7,12 @@ CONTROLLERS = ("idc", "mpc", "paper")
 
 
 def number_of_jobs(text: str) -> int | None:
-    """An argument of flights at a time; None: as many as there are cores."""
+    """Return the number of parallel flights; None: one per core."""
     return None if text == "auto" else whole_number(text, 1, 1000)
 
 
 def whole_number(text: str, least: int, most: int) -> int:
-    """An argument that is a whole number in a range."""
+    """Return an argument that is a whole number in a range."""
     try:
         value = int(text)
     except ValueError:
@@ -23,7 +23,7 @@ def whole_number(text: str, least: int, most: int) -> int:
 
 
 def number(text: str, least: float, most: float) -> float:
-    """An argument that is a number in a range."""
+    """Return an argument that is a number in a range."""
     try:
         value = float(text)
     except ValueError:

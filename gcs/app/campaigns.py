@@ -1,4 +1,4 @@
-"""What the commands that fly campaigns share: their arguments, the run, and what is printed at the end."""
+"""Commands that fly campaigns: their common arguments, the run, and the report that is printed."""
 
 import argparse
 from pathlib import Path

@@ -56,7 +56,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _parser(command: str) -> argparse.ArgumentParser:
-    """Return the parser, with the arguments of ``command`` alone: the modules of the others are not imported."""
+    """Return the parser, with the arguments of ``command`` only: the modules of the others are not imported."""
     style = RawDescriptionRichHelpFormatter
     parser = argparse.ArgumentParser(prog="gcs", description=_DESCRIPTION, formatter_class=style)
     commands = parser.add_subparsers(required=True, metavar="COMMAND")

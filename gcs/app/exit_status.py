@@ -4,7 +4,7 @@ from enum import IntEnum
 
 
 class ExitStatus(IntEnum):
-    """What a command returns to the shell."""
+    """Exit status of a command."""
 
     DONE = 0
     """Done, and within limits."""

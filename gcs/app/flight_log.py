@@ -11,7 +11,7 @@ LOG = logging.getLogger("gcs")
 
 
 class FlightLog:
-    """Writes what has changed since the last exchange; times are the team's (s)."""
+    """Log of what has changed since the last exchange; times are the team's (s)."""
 
     def __init__(self, station: GroundStation) -> None:
         self._station = station
@@ -34,7 +34,7 @@ class FlightLog:
 
 
 class _LinkLog:
-    """The same of one vehicle and its link."""
+    """Log of one vehicle and its link."""
 
     def __init__(self, link: VehicleLink) -> None:
         self._link = link

@@ -58,7 +58,7 @@ class FlyOptions:
 
 @dataclass(frozen=True)
 class FlightResult:
-    """How a flight ended."""
+    """Result of a flight."""
 
     run_dir: Path
     mission: Mission
@@ -66,7 +66,7 @@ class FlightResult:
     reason: str
     interrupted: bool
     flown: bool
-    """Whether take-off had begun."""
+    """True if take-off had begun."""
 
     @property
     def exit_code(self) -> ExitStatus:
@@ -107,7 +107,7 @@ def _check_urls(options: FlyOptions) -> None:
 
 
 def _listens(options: FlyOptions) -> bool:
-    """Whether the vehicles offer themselves to the ground, in place of the ground knowing where they are."""
+    """Return True if the vehicles call in at an address of the ground, which does not know theirs."""
     return any(url.listens for url in options.connect)
 
 
@@ -186,7 +186,7 @@ def flight_result(
 def ground_station(
     mission: Mission, addresses: Sequence[Address | None], recorder: Recorder, controller: str = "idc"
 ) -> GroundStation:
-    """The ground station that flies ``mission`` with the vehicles of the system ids 1 .. N at ``addresses``.
+    """Return the ground station that flies ``mission`` with the vehicles of the system ids 1 .. N at ``addresses``.
 
     A vehicle whose address is None is flown from where it offers itself. ``controller``: ``idc`` avoids obstacles,
     ``mpc`` only tracks, ``paper`` corrects the thrusts by the paper's own filter.
@@ -215,7 +215,7 @@ def ground_station(
 def _swarm(
     options: FlyOptions, mission: Mission, run_dir: Path, resources: ExitStack
 ) -> tuple[Simulator | None, Sequence[Address | None]]:
-    """The vehicles' addresses, of a swarm that runs or of one that is started; None: where it offers itself."""
+    """Return the addresses of a running swarm, or start one; an address is None until the vehicle calls in."""
     if _listens(options):
         return None, [None] * mission.system.team.vehicles
     if options.connect:

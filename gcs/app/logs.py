@@ -53,7 +53,7 @@ def logging_to(arguments: argparse.Namespace) -> Iterator[None]:
 
 
 def _log_file(text: str) -> Path:
-    """An argument that names a file to append to."""
+    """Return an argument that names a file to append to."""
     try:
         with Path(text).open("a", encoding="utf-8"):
             return Path(text)
@@ -62,7 +62,7 @@ def _log_file(text: str) -> Path:
 
 
 class _StandardError(logging.StreamHandler[TextIO]):
-    """Writes to what standard error is at the time, for a progress display may have taken its place."""
+    """Handler of the present standard error, for a progress display may have taken its place."""
 
     def __init__(self) -> None:
         super().__init__(sys.stderr)

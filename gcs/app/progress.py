@@ -32,7 +32,7 @@ class FlightProgress:
         self._second = -1
 
     def update(self, flight: Flight) -> None:
-        """Called at every exchange; draws only what has changed."""
+        """Draw what has changed since the last exchange."""
         changed = flight.phase is not self._phase
         time = flight.time - flight.takeoff_time
         flown = math.isfinite(time)

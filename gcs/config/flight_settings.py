@@ -79,6 +79,8 @@ class TakeoffLandingSettings:
     clear_height: float = setting(0.3, "m", "below which the ground may carry part of the load", gt=0.0)
     landing_overshoot: float = setting(0.15, "m", "below the expected ground, where a descent aims", gt=0.0)
     slow_height: float = setting(1.0, "m", "above the ground, below which a descent is slow", gt=0.0)
+    slow_margin: float = setting(0.5, "m", "above that, from where the whole descent is slow", ge=0.0)
+    hold_speed: float = setting(0.05, "m/s", "of the reference, up to which the phase is hold, not fly", ge=0.0)
     pad_radius: float = setting(0.2, "m", "about the take-off position, in which a landing is on the pad", ge=0.0)
 
 

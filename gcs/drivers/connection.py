@@ -30,7 +30,7 @@ class Connection:
             return
 
     def receive(self) -> Iterator[tuple[bytes, Address]]:
-        """The datagrams that have come."""
+        """Return the datagrams that have come."""
         return arrived(self.socket)
 
     def wait(self, timeout: float) -> bool:

@@ -1,4 +1,4 @@
-"""Starts ``vehicle-sim`` as a process of its own, for flights that bring their own world."""
+"""Process of ``vehicle-sim``, for flights in a simulated world of their own."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class Simulator:
 def arguments_for(
     *, mission: Path, config: Path | None, vehicles: int, seed: int, run_dir: Path, realtime: bool, speed: float
 ) -> list[str]:
-    """The command line of a world for one flight."""
+    """Return the arguments of ``vehicle-sim`` for one flight."""
     arguments = ["--mission", str(mission), "--vehicles", str(vehicles), "--seed", str(seed)]
     arguments += ["--run-dir", str(run_dir), "--base-port", "0"]
     if config is not None:

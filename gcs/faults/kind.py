@@ -1,4 +1,4 @@
-"""What describes a kind of fault, and how its parameters are declared."""
+"""Kinds of fault and the declaration of their parameters."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

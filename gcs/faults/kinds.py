@@ -21,12 +21,12 @@ __all__ = ["KINDS", "read_settings", "settings_adapter"]
 
 @cache
 def settings_adapter(name: str) -> TypeAdapter[FaultSettings]:
-    """Reads the parameters of a kind of that name, which must exist."""
+    """Return what reads the parameters of the kind ``name``, which must exist."""
     return TypeAdapter(KINDS[name].settings)
 
 
 def read_settings(name: str, settings: Mapping[str, Any]) -> FaultSettings:
-    """The parameters of a fault, as the dataclass of its kind. Raises :class:`UnusableInput`."""
+    """Return the parameters of a fault, as the dataclass of its kind. Raises :class:`UnusableInput`."""
     if name not in KINDS:
         raise UnusableInput(f"fault: there is no kind '{name}'")
     try:

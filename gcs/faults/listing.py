@@ -18,7 +18,7 @@ _SHARED = tuple(field.name for field in fields(ValueFault))
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter as people read it; ``default`` empty: it must be given."""
+    """Description of a parameter; ``default`` empty: it must be given."""
 
     name: str
     type: str
@@ -29,7 +29,7 @@ class Parameter:
 
 
 def parameters(kind: Kind) -> list[Parameter]:
-    """Of a kind, in the order of its dataclass."""
+    """Return the parameters of a kind, in the order of its dataclass."""
     schema = settings_adapter(kind.name).json_schema()
     definitions = schema.get("$defs", {})
     required = schema.get("required", [])
@@ -44,7 +44,7 @@ def parameters(kind: Kind) -> list[Parameter]:
 
 
 def kinds_list() -> RenderableType:
-    """Every kind with its parameters, for the terminal, however narrow it is."""
+    """Return every kind with its parameters, for a terminal of any width."""
     width = max(len(p.name) for kind in KINDS.values() for p in parameters(kind))
     items: list[RenderableType] = []
     family = ""
@@ -65,7 +65,7 @@ def kinds_list() -> RenderableType:
 
 
 def kinds_markdown() -> str:
-    """The same for the documentation."""
+    """Return the same list as the tables of ``docs/faults.md``."""
     lines: list[str] = []
     family = ""
     for kind in KINDS.values():
@@ -81,12 +81,12 @@ def kinds_markdown() -> str:
 
 
 def _shared() -> list[Parameter]:
-    """Of all faults of values."""
+    """Return the parameters that all faults of values have."""
     return [p for p in parameters(KINDS["stuck"]) if p.name in _SHARED]
 
 
 def _own(kind: Kind) -> list[Parameter]:
-    """Without what all faults of values have."""
+    """Return the parameters of a kind without the shared ones."""
     found = parameters(kind)
     return [p for p in found if p.name not in _SHARED] if issubclass(kind.settings, ValueFault) else found
 

@@ -1,4 +1,4 @@
-"""What a run folder says of its faults."""
+"""Faults in the records of a run folder."""
 
 import json
 from pathlib import Path
@@ -8,7 +8,7 @@ FAULTS_FILE = "faults.json"
 
 
 def fault_notes(run_dir: Path) -> list[str]:
-    """One line for every fault whose time never came, or that found nothing to disturb; none without a record."""
+    """Return a line for every fault whose time never came, or that found nothing to disturb; none without a record."""
     try:
         return notes_of(json.loads((run_dir / FAULTS_FILE).read_text(encoding="utf-8")))
     except (OSError, ValueError, KeyError, TypeError):
@@ -16,7 +16,7 @@ def fault_notes(run_dir: Path) -> list[str]:
 
 
 def notes_of(record: dict[str, Any]) -> list[str]:
-    """The same of what the file holds."""
+    """Return the same from the contents of the file."""
     notes = []
     take_off = record["take_off_s"]
     for fault in record["faults"]:

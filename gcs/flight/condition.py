@@ -21,7 +21,7 @@ from idc_controller.trajectory.trajectory import Trajectory
 
 
 class Reaction(IntEnum):
-    """What the ground does, in ascending severity."""
+    """Reaction of the ground, in ascending severity."""
 
     severity: Severity
     """Severity of the alarm, unless the failsafe has another."""

@@ -34,22 +34,22 @@ GROUND_COMPONENT = mavlink.MAV_COMP_ID_MISSIONPLANNER
 
 
 class Recorder(Protocol):
-    """Where a ground station's records go."""
+    """Records of a ground station."""
 
     def datagram(self, now: float, datagram: bytes) -> None:
-        """One datagram, sent or received."""
+        """Record one datagram, sent or received."""
         ...
 
     def step(self, flight: Flight, time: float, record: StepRecord | None) -> None:
-        """One control step at team ``time``."""
+        """Record one control step at team ``time``."""
         ...
 
     def obstacles(self, obstacle_map: ObstacleMap, time: float) -> None:
-        """The obstacle map at team ``time``, once a control step."""
+        """Record the obstacle map at team ``time``, once a control step."""
         ...
 
     def alarm(self, alarm: Alarm) -> None:
-        """A new alarm."""
+        """Record a new alarm."""
         ...
 
 
@@ -79,7 +79,7 @@ class GroundStation:
 
     @property
     def ended(self) -> bool:
-        """Whether the flight is over."""
+        """True if the flight is over."""
         return self.flight.ended
 
     def raise_failsafe(self, now: float, failsafe: Failsafe, reason: str) -> None:
@@ -130,7 +130,7 @@ class GroundStation:
             self._schedule.add_latency(duration)
 
     def next_timer(self) -> float | None:
-        """When :meth:`datagrams_to_send` is to be called again (s, ground time); None: never."""
+        """Return when :meth:`datagrams_to_send` is to be called again (s, ground time); None: never."""
         if self.ended:
             return None
         return max(min(self._control.next, self._heartbeat.next, self._timesync.next, self._schedule.next_due), 0.0)

@@ -5,7 +5,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from gcs.config import MotionConfig
 from gcs.mission.model import Lissajous, Mission
 from gcs.mission.route import Circle, FlyTo, HoldForever, Land, Leg, Speed, TakeOff
 from idc_controller.arrays import Array
@@ -23,33 +22,24 @@ class MissionTrajectory:
     Times are the team's (s), positions NED (m). An endless mission has no end.
     """
 
-    def __init__(
-        self,
-        mission: Mission,
-        position: Array,
-        start: float,
-    ) -> None:
+    def __init__(self, mission: Mission, position: Array, start: float) -> None:
         self._settings = mission.system.flight.takeoff_landing
         self._motion = mission.system.motion
         self._ground = -mission.system.parameters().payload.below
         self._pad = position
         self.start = start
-        self._landing_from = math.inf
+        self.landing_from = math.inf
+        """When the final descent begins (s); inf while that is not known."""
         climb, legs = self._split(mission, position)
-        up = WaypointTrajectory(position, climb, self._vertical_limits(), start=start)
+        up = WaypointTrajectory(position, climb, self._limits(self._motion.climb_speed), start=start)
         self._climb: Trajectory | None = up
         along = up.then(lambda time, here: self._flown(mission, legs, time, here))
-        self._trajectory: Trajectory = CachedTrajectory(along.then(self._land))
+        self.trajectory: Trajectory = CachedTrajectory(along.then(self._land))
         self._braking = False
-
-    @property
-    def trajectory(self) -> Trajectory:
-        """The whole trajectory."""
-        return self._trajectory
 
     def reference(self, times: Array) -> tuple[Array, Array]:
         """Return position and velocity (K, 3) at ``times``: a descent ends on the ground, not below it."""
-        position, velocity = self._trajectory.derivatives(times, 1)
+        position, velocity = self.trajectory.derivatives(times, 1)
         on_pad = np.linalg.norm(position[:, :2] - self._pad[:2], axis=1) < self._settings.pad_radius
         lowest = np.where(on_pad, self._pad[2], self._ground)
         below = position[:, 2] > lowest
@@ -57,20 +47,15 @@ class MissionTrajectory:
         velocity[below, 2] = 0.0
         return position, velocity
 
-    @property
-    def landing_from(self) -> float:
-        """When the final descent begins (s); inf while that is not known."""
-        return self._landing_from
-
     def phase(self, time: float) -> str:
         """Return the phase at ``time``: climb, fly, hold, land."""
-        if time >= self._landing_from:
+        if time >= self.landing_from:
             return "land"
         # Evaluated at each call: the end of a lazy trajectory is known only when it is reached.
         if self._climb is not None and time < self._climb.end:
             return "climb"
-        speed = np.linalg.norm(self._trajectory.derivatives(np.array([time]), 1)[1, 0])
-        return "fly" if speed > 0.05 else "hold"
+        speed = np.linalg.norm(self.trajectory.derivatives(np.array([time]), 1)[1, 0])
+        return "fly" if speed > self._settings.hold_speed else "hold"
 
     def brake_and_land(self, followed: Trajectory, time: float) -> None:
         """Come to rest as soon as the limits allow, then land there; without effect while braking or landing.
@@ -79,11 +64,11 @@ class MissionTrajectory:
             followed: the trajectory that is flown, this one or a detour.
             time: where on it; from now on this trajectory goes on at that time.
         """
-        if self._braking or (followed is self._trajectory and time >= self._landing_from):
+        if self._braking or (followed is self.trajectory and time >= self.landing_from):
             return
         self._braking = True
         self._climb = None
-        self._trajectory = CachedTrajectory(followed.stop(time).then(self._land))
+        self.trajectory = CachedTrajectory(followed.stop(time).then(self._land))
 
     def _split(self, mission: Mission, position: Array) -> tuple[list[paths.Leg], Iterator[Leg]]:
         """Return the climb, and the legs that follow it."""
@@ -105,7 +90,7 @@ class MissionTrajectory:
         if isinstance(mission.reference, Lissajous):
             return self._figure(mission.reference, time, here)
         speeds = [step.speed for step in mission.reference.steps if isinstance(step, Speed) and step.speed]
-        limits = self._limits(max([mission.reference.speed, *speeds]))
+        limits = self._limits(max([self._motion.speed, mission.reference.speed, *speeds]))
         return WaypointTrajectory(here, self._legs(legs), limits, start=time)
 
     def _figure(self, figure: Lissajous, time: float, here: Array) -> Trajectory:
@@ -114,10 +99,10 @@ class MissionTrajectory:
         begin = curve.by_phase(np.zeros(1), 0)[0][0]
         limits = self._limits(self._motion.speed)
         there = WaypointTrajectory(here, [paths.Leg(begin, self._motion.speed)], limits, start=time)
+        m = self._motion
+        along_curve = Limits(m.curve_speed, m.curve_acceleration, m.curve_jerk, m.curve_snap)
         along = there.then(
-            lambda t, _: LissajousTrajectory(
-                curve, figure.angular_frequency, figure.duration, self._curve_limits(), start=t
-            )
+            lambda t, _: LissajousTrajectory(curve, figure.angular_frequency, figure.duration, along_curve, start=t)
         )
         return along.then(
             lambda t, end: WaypointTrajectory(end, [paths.Leg(here, self._motion.speed)], limits, start=t)
@@ -137,24 +122,16 @@ class MissionTrajectory:
                 return
 
     def _land(self, time: float, here: Array) -> Trajectory:
-        self._landing_from = time
+        self.landing_from = time
         slow = np.array([here[0], here[1], self._ground - self._settings.slow_height])
         touch = np.array([here[0], here[1], self._ground + self._settings.landing_overshoot])
-        limits = self._vertical_limits()
+        limits = self._limits(self._motion.climb_speed)
         last = paths.Leg(touch, self._motion.landing_speed)
-        if here[2] >= slow[2] - 0.5:
+        if here[2] >= slow[2] - self._settings.slow_margin:
             return WaypointTrajectory(here, [last], limits, start=time)
         down = WaypointTrajectory(here, [paths.Leg(slow, self._motion.climb_speed)], limits, start=time)
         return down.then(lambda t, low: WaypointTrajectory(low, [last], limits, start=t))
 
     def _limits(self, speed: float) -> Limits:
-        m: MotionConfig = self._motion
-        return Limits(max(speed, m.speed), m.acceleration, m.jerk, m.snap)
-
-    def _vertical_limits(self) -> Limits:
         m = self._motion
-        return Limits(m.climb_speed, m.acceleration, m.jerk, m.snap)
-
-    def _curve_limits(self) -> Limits:
-        m = self._motion
-        return Limits(m.curve_speed, m.curve_acceleration, m.curve_jerk, m.curve_snap)
+        return Limits(speed, m.acceleration, m.jerk, m.snap)

@@ -32,7 +32,7 @@ class Preflight:
         self.check_start = math.nan
         """When all had connected (s, team)."""
         self.missing = ""
-        """What the first incomplete vehicle lacks; empty: all are complete."""
+        """Data that the first incomplete vehicle lacks; empty: all are complete."""
         self._positions: dict[int, list[Array]] = {source: [] for source in (PAYLOAD, *range(len(team.links)))}
 
     def connect(self, now: float) -> bool:
@@ -60,7 +60,7 @@ class Preflight:
 
     @property
     def has_positions(self) -> bool:
-        """Whether every vehicle and the payload unit have sent a position."""
+        """True if every vehicle and the payload unit have sent a position."""
         return all(self._positions.values())
 
     @property

@@ -32,7 +32,7 @@ def linear_model(config: SystemConfig) -> LinearModel:
 
 
 def estimator(config: SystemConfig, model: LinearModel) -> Estimator:
-    """The filter for the sensors of the system file."""
+    """Return the filter for the sensors of the system file."""
     sensors = config.sensors
     noise = MeasurementNoise(
         position=sensors.position,
@@ -52,14 +52,14 @@ def perception(config: SystemConfig) -> PerceptionSettings:
 
 
 def obstacle_map(mission: Mission) -> ObstacleMap:
-    """The obstacle map of a mission, for the sensors of its system file."""
+    """Return the obstacle map of a mission, for the sensors of its system file."""
     config = mission.system
     sensors = SensorModel(config.range_sensor.noise, config.sensors.position, math.radians(config.sensors.attitude_deg))
     return ObstacleMap(map_of(mission), sensors, config.range_sensor.range, perception(config))
 
 
 def avoidance(config: SystemConfig, model: LinearModel, obstacles: ObstacleSource) -> AvoidanceFilter:
-    """The safety filter that keeps ``obstacles`` out of the hull."""
+    """Return the safety filter that keeps ``obstacles`` out of the hull."""
     planner = replace(
         config.safety.planner,
         limits=motion_limits(config),
@@ -70,7 +70,7 @@ def avoidance(config: SystemConfig, model: LinearModel, obstacles: ObstacleSourc
 
 
 def guidance(config: SystemConfig, model: LinearModel, obstacles: ObstacleSource) -> AdaptiveGuidance:
-    """The guidance that waits for the payload, and leads round ``obstacles``."""
+    """Return the guidance that waits for the payload, and leads round ``obstacles``."""
     stages = config.safety.planner.chain.times
     settings = replace(
         config.guidance.navigator,
@@ -83,13 +83,13 @@ def guidance(config: SystemConfig, model: LinearModel, obstacles: ObstacleSource
 
 
 def resting_place(config: SystemConfig, model: LinearModel, obstacles: ObstacleSource) -> RestingPlace:
-    """The choice of where a team without set-points comes to rest, clear of ``obstacles``."""
+    """Return the choice of where a team without set-points comes to rest, clear of ``obstacles``."""
     settings = replace(config.guidance.resting_place, margin=config.avoidance.margin)
     return RestingPlace(model.parameters, obstacles, settings, config.braking())
 
 
 def motion_limits(config: SystemConfig) -> Limits:
-    """The limits of the motion between waypoints."""
+    """Return the limits of the motion between waypoints."""
     motion = config.motion
     return Limits(motion.speed, motion.acceleration, motion.jerk, motion.snap)
 
@@ -101,7 +101,7 @@ def controller(
     stopwatch: Callable[[], float],
     guidance: Guidance | None = None,
 ) -> IntegratedDecisionController:
-    """The integrated decision controller with the MPC as its tracker."""
+    """Return the integrated decision controller with the MPC as its tracker."""
     period = 1.0 / config.rates.control
     mpc = replace(config.control.mpc, period=period, tuning=config.controller)
     return IntegratedDecisionController(

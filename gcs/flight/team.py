@@ -16,7 +16,7 @@ class Team:
     def __init__(self, links: Sequence[VehicleLink], parameters: SystemParameters) -> None:
         self.links = tuple(links)
         self.parameters = parameters
-        """What the controller's model assumes of them."""
+        """Parameters that the controller's model assumes."""
         self._commands: list[tuple[VehicleLink, Command]] = []
 
     def command_all(self, number: int, *parameters: float) -> None:
@@ -25,12 +25,12 @@ class Team:
 
     @property
     def answered(self) -> bool:
-        """Whether every vehicle has accepted the last command."""
+        """True if every vehicle has accepted the last command."""
         return all(command.state is CommandState.ACCEPTED for _, command in self._commands)
 
     @property
     def refusal(self) -> str | None:
-        """Which vehicle refused the last command, or did not answer it; None: none."""
+        """The vehicle that refused the last command or did not answer it, with its result; None: none."""
         for link, command in self._commands:
             if command.state is CommandState.REFUSED and command.result is not None:
                 result = mavlink.enums["MAV_RESULT"].get(command.result)
@@ -42,12 +42,12 @@ class Team:
 
     @property
     def armed(self) -> bool:
-        """Whether every vehicle is armed."""
+        """True if every vehicle is armed."""
         return all(link.status.armed for link in self.links)
 
     @property
     def disarmed(self) -> bool:
-        """Whether every vehicle is disarmed."""
+        """True if every vehicle is disarmed."""
         return not any(link.status.armed for link in self.links)
 
     @property

@@ -31,7 +31,7 @@ class RemoteClock:
         self._shortest = 0.0
 
     def add_stamp(self, boot_time: float, arrival: float, in_order: bool = False) -> None:
-        """Telemetry stamped ``boot_time`` (s, vehicle) arrived at ``arrival`` (s, ground).
+        """Take the stamp ``boot_time`` (s, vehicle) of telemetry that arrived at ``arrival`` (s, ground).
 
         ``in_order``: it was sent after all that came before.
         """
@@ -54,12 +54,12 @@ class RemoteClock:
             self.jumped_at = arrival
 
     def request(self, now: float) -> int:
-        """``ts1`` (ns) of a TIMESYNC request that goes out at ``now`` (s, ground)."""
+        """Return ``ts1`` (ns) of a TIMESYNC request that goes out at ``now`` (s, ground)."""
         self._requests.append(round(now * 1e9))
         return self._requests[-1]
 
     def add_answer(self, ts1: int, arrival: float) -> None:
-        """A TIMESYNC answer to ``ts1`` (ns) came at ``arrival`` (s, ground).
+        """Take the TIMESYNC answer to ``ts1`` (ns) that came at ``arrival`` (s, ground).
 
         Counted once, and only if it is of a :meth:`request`: others may send some from the ground's address, too.
         """
@@ -71,7 +71,7 @@ class RemoteClock:
 
     @property
     def known(self) -> bool:
-        """Whether there is an estimate."""
+        """True if there is an estimate."""
         return bool(self._leads)
 
     @property
@@ -91,7 +91,7 @@ class RemoteClock:
         return max(list(self._round_trips)[-self._settings.recent_round_trips :], default=math.inf)
 
     def least_delay(self, duration: float, now: float) -> float:
-        """Latency (s) that no datagram has undercut for ``duration`` (s) until ``now``; 0 before that is known.
+        """Return the latency (s) that no datagram has undercut for ``duration`` (s) until ``now``; 0: not known yet.
 
         Shows a growing latency sooner than :attr:`delay`. After an interruption all answers come simultaneously, the
         last of them soon after its request.

@@ -7,8 +7,6 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink.messages import Message, Received, classify
 
-MESSAGE_ID_OF_NAME: dict[str, int] = {kind.msgname: number for number, kind in mavlink.mavlink_map.items()}
-
 #: Frames are gathered into datagrams up to this size, which every usual path carries unfragmented (bytes).
 DATAGRAM_LIMIT = 1200
 
@@ -27,20 +25,18 @@ class Codec:
     Nothing a peer sends raises, and no datagram changes how the next is read. Signatures are not verified (there is
     no key): a signed frame counts as an unsigned one.
 
-    Counters: ``decoded`` messages; ``bad_frames`` with a wrong checksum, flags or contents; ``unknown_messages``
-    with an id outside the dialect; ``skipped_bytes`` outside any frame.
+    Counters: ``bad_frames`` with a wrong checksum, flags or contents; ``skipped_bytes`` outside any frame. Messages
+    with an id outside the dialect are skipped.
     """
 
     def __init__(self, system_id: int, component_id: int) -> None:
         self._mavlink = mavlink.MAVLink(None, system_id, component_id)
-        self.decoded = 0
         self.bad_frames = 0
-        self.unknown_messages = 0
         self.skipped_bytes = 0
 
     @property
     def unread(self) -> int:
-        """Grows with every datagram that holds something that cannot be read."""
+        """Number of bad frames and skipped bytes: grows with every datagram that cannot be read in full."""
         return self.bad_frames + self.skipped_bytes
 
     @property
@@ -48,13 +44,8 @@ class Codec:
         """The sender's system id in every encoded frame."""
         return self._mavlink.srcSystem
 
-    @property
-    def component_id(self) -> int:
-        """The sender's component id in every encoded frame."""
-        return self._mavlink.srcComponent
-
     def encode(self, message: Message) -> bytes:
-        """One MAVLink 2 frame. The sequence number rises by one with every call.
+        """Return a MAVLink 2 frame. The sequence number rises by one with every call.
 
         Raises ``struct.error`` or ``OverflowError`` when a field does not fit its type on the wire.
         """
@@ -63,7 +54,7 @@ class Codec:
         return frame
 
     def decode(self, datagram: bytes) -> list[Received]:
-        """All messages of one datagram, in order. Frames never reach across datagrams."""
+        """Return all messages of one datagram, in order. Frames never reach across datagrams."""
         messages: list[Received] = []
         end = len(datagram)
         position = 0
@@ -87,7 +78,6 @@ class Codec:
             if number not in _KNOWN:
                 # Its checksum cannot be verified. Accept its length only if that leads to a frame or the end.
                 if following == end or datagram[following] in (_V1, _V2):
-                    self.unknown_messages += 1
                     position = following
                 else:
                     self.skipped_bytes += 1
@@ -102,7 +92,6 @@ class Codec:
                 position += 1  # its length may be what is wrong
                 continue
             messages.append(classify(message))
-            self.decoded += 1
             position = following
         return messages
 
@@ -114,7 +103,7 @@ class Codec:
 
 
 def gather(frames: Iterable[bytes], limit: int = DATAGRAM_LIMIT) -> list[bytes]:
-    """Frames in order, joined into as few datagrams as possible of at most ``limit`` bytes each."""
+    """Return frames in order, joined into as few datagrams as possible of at most ``limit`` bytes each."""
     datagrams: list[bytes] = []
     group: list[bytes] = []
     size = 0

@@ -14,7 +14,7 @@ from idc_controller.estimation.measurements import PAYLOAD, Measurement, Positio
 
 
 class SystemIdCheck:
-    """Of N vehicles' telemetry. Vehicles are 0 .. N-1."""
+    """Check of the telemetry of N vehicles, 0 .. N-1."""
 
     def __init__(self, number_of_uavs: int, settings: IdCheckSettings | None = None) -> None:
         self._settings = settings or IdCheckSettings()
@@ -29,11 +29,11 @@ class SystemIdCheck:
 
     @property
     def swapped(self) -> dict[int, int]:
-        """Senders that are another vehicle, and which."""
+        """Senders that are another vehicle, and that vehicle."""
         return {sender: vehicle for sender, vehicle in enumerate(self._vehicle_of) if vehicle != sender}
 
     def add(self, sample: Measurement) -> None:
-        """A sample that was received as of the vehicle that is its source."""
+        """Take a sample that was received as of the vehicle that is its source."""
         if isinstance(sample, Position) and sample.source != PAYLOAD and sample.has_pose:
             self._positions[sample.source] = sample.position
 

@@ -33,12 +33,12 @@ class LinkStatistics:
         self._gaps: deque[tuple[float, set[int]]] = deque()
 
     def add_not_finite(self, component: int) -> None:
-        """A measurement of this component could not be used."""
+        """Count a measurement of ``component`` that is not finite."""
         self.not_finite += component == px4.AUTOPILOT_COMPONENT
         self.payload_not_finite += component == px4.PAYLOAD_UNIT_COMPONENT
 
     def message(self, number: int, now: float) -> bool:
-        """A message with this sequence number (0 .. 255) came; whether it was sent after all that came before."""
+        """Count a message by its sequence number (0 .. 255); return True if it was sent after all that came before."""
         self.settle(now)
         ahead = 1 if self._newest is None else (number - self._newest) % NUMBERS
         if 0 < ahead < NUMBERS - REMEMBERED:
@@ -57,6 +57,6 @@ class LinkStatistics:
         return False
 
     def settle(self, now: float) -> None:
-        """Gaps that are not filled by ``now`` (s) are losses."""
+        """Count the gaps that are not filled by ``now`` (s) as losses."""
         while self._gaps and now - self._gaps[0][0] > self._reordering_time:
             self.lost += bool(self._gaps.popleft()[1])

@@ -7,7 +7,7 @@ port, with :class:`Done`, which names the next moment at which it wants to be ca
 say to what they received, the world ticks again at the same time; otherwise it lets time go on to the earliest of what
 is due on either side.
 
-The barrier carries time alone and stands outside MAVLink, so that no fault on a link can stop the clock.
+The barrier carries only time and stands outside MAVLink, so that no fault on a link can stop the clock.
 """
 
 import struct
@@ -28,13 +28,13 @@ class Tick:
     time_us: int
 
     def encode(self) -> bytes:
-        """One datagram."""
+        """Return it as one datagram."""
         return _TICK.pack(_TICK_MAGIC, self.serial, self.time_us)
 
 
 @dataclass(frozen=True)
 class Done:
-    """The ground has answered a tick. Serial 0 asks to join."""
+    """The ground has answered a tick. Serial 0: a request to join."""
 
     serial: int
     next_us: int | None
@@ -43,13 +43,13 @@ class Done:
     """The ground will not answer again."""
 
     def encode(self) -> bytes:
-        """One datagram."""
+        """Return it as one datagram."""
         next_us = _NEVER if self.next_us is None else self.next_us
         return _DONE.pack(_DONE_MAGIC, self.serial, next_us, self.leaving)
 
 
 def decode_tick(datagram: bytes) -> Tick | None:
-    """None when the datagram is something else."""
+    """Return the tick; None: the datagram is something else."""
     if len(datagram) != _TICK.size or not datagram.startswith(_TICK_MAGIC):
         return None
     _, serial, time_us = _TICK.unpack(datagram)
@@ -57,7 +57,7 @@ def decode_tick(datagram: bytes) -> Tick | None:
 
 
 def decode_done(datagram: bytes) -> Done | None:
-    """None when the datagram is something else."""
+    """Return the answer; None: the datagram is something else."""
     if len(datagram) != _DONE.size or not datagram.startswith(_DONE_MAGIC):
         return None
     _, serial, next_us, leaving = _DONE.unpack(datagram)

@@ -30,7 +30,7 @@ class Received(NamedTuple):
     target_component: int = BROADCAST
 
     def is_for(self, system: int, component: int | None = None) -> bool:
-        """Whether it is addressed to a component (None: to any) of a system, or to everybody."""
+        """Return True if it is addressed to a component (None: to any) of a system, or to everybody."""
         return self.target_system in (BROADCAST, system) and (
             component is None or self.target_component in (BROADCAST, component)
         )

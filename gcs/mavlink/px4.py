@@ -56,12 +56,12 @@ class AutoMode(IntEnum):
 
 
 def encode_custom_mode(main: int, sub: int = 0) -> int:
-    """``custom_mode`` of a HEARTBEAT or SET_MODE: the main mode in bits 16-23, the sub-mode in bits 24-31."""
+    """Return ``custom_mode`` of a HEARTBEAT or SET_MODE: the main mode in bits 16-23, the sub-mode in bits 24-31."""
     return (main & 0xFF) << 16 | (sub & 0xFF) << 24
 
 
 def decode_custom_mode(custom_mode: int) -> tuple[int, int]:
-    """(main, sub) of a ``custom_mode``; either may be a number that PX4 does not use."""
+    """Return (main, sub) of a ``custom_mode``; either may be a number that PX4 does not use."""
     return custom_mode >> 16 & 0xFF, custom_mode >> 24 & 0xFF
 
 
@@ -77,7 +77,7 @@ MODE_LAND = encode_custom_mode(MainMode.AUTO, AutoMode.LAND)
 
 
 def mode_name(custom_mode: int) -> str:
-    """For people: ``OFFBOARD``, ``AUTO.LOITER``, or the numbers of a mode that is not known."""
+    """Return the name: ``OFFBOARD``, ``AUTO.LOITER``, or the numbers of a mode that is not known."""
     main, sub = decode_custom_mode(custom_mode)
     try:
         name = MainMode(main).name
@@ -97,7 +97,7 @@ _INTEGER_FORMATS = {
 
 
 def parameter_to_wire(value: float, parameter_type: int) -> float:
-    """The float that carries a parameter: integers keep their bytes, they are not converted.
+    """Return the float that carries a parameter: integers keep their bytes, they are not converted.
 
     Raises ``ValueError`` for a value that does not fit its type, and for the few integers (about -4 to -8 million)
     whose bytes are a signalling NaN that a float conversion would change.
@@ -118,7 +118,7 @@ def parameter_to_wire(value: float, parameter_type: int) -> float:
 
 
 def parameter_from_wire(wire: float, parameter_type: int) -> float | int:
-    """The value of a PARAM_VALUE or PARAM_SET field. Raises ``ValueError`` for a type that PX4 does not use."""
+    """Return the value of a PARAM_VALUE or PARAM_SET field. Raises ``ValueError`` for a type that PX4 does not use."""
     if parameter_type == mavlink.MAV_PARAM_TYPE_REAL32:
         return wire
     form = _INTEGER_FORMATS.get(parameter_type)

@@ -23,7 +23,7 @@ IGNORE_RATES = (
 def attitude_target(
     system_id: int, boot_time: float, direction: Sequence[float], thrust: float, thrust_max: float
 ) -> mavlink.MAVLink_set_attitude_target_message:
-    """SET_ATTITUDE_TARGET for vehicle ``system_id`` at its ``boot_time`` (s): thrust (N) along ``direction``."""
+    """Return SET_ATTITUDE_TARGET for vehicle ``system_id`` at its ``boot_time`` (s): thrust (N) along ``direction``."""
     return mavlink.MAVLink_set_attitude_target_message(
         time_boot_ms=max(round(boot_time * 1000.0), 0) & 0xFFFFFFFF,
         target_system=system_id,
@@ -40,7 +40,7 @@ def attitude_target(
 def stop_plan_message(
     boot_time: float, duration: float, control_points: Sequence[Sequence[float]]
 ) -> mavlink.MAVLink_trajectory_representation_bezier_message:
-    """TRAJECTORY_REPRESENTATION_BEZIER from a vehicle's ``boot_time`` (s) on, to rest in ``duration`` (s).
+    """Return TRAJECTORY_REPRESENTATION_BEZIER from a vehicle's ``boot_time`` (s) on, to rest in ``duration`` (s).
 
     ``control_points``: (5, 3) of its path (m, NED); heading north.
     """
@@ -71,14 +71,14 @@ class SetpointStream:
 
     @property
     def copies(self) -> int:
-        """How often to send what must arrive; once on a congested link, whose latency copies would increase."""
+        """Number of times to send what must arrive; once on a congested link, whose latency copies would increase."""
         if self._clock.lag > self._settings.congestion_lag:
             return 1
         return 1 + (self.loss > self._settings.second_copy_loss) + (self.loss > self._settings.third_copy_loss)
 
     @property
     def delay(self) -> float:
-        """From when a set-point is sent until the vehicle flies it: by its confirmations, else by round trips."""
+        """Delay from sending a set-point until the vehicle flies it: by its confirmations, else by round trips."""
         if len(self._delays) == self._settings.delays:
             # Round trips are worse: on a link that loses or reorders, those that arrive are not late.
             return median(self._delays)

@@ -7,7 +7,7 @@ from idc_controller.settings import setting
 
 @dataclass(frozen=True)
 class ClockSettings:
-    """How a vehicle's clock is estimated from TIMESYNC round trips and the stamps of its telemetry."""
+    """Estimate of a vehicle's clock from TIMESYNC round trips and the stamps of its telemetry."""
 
     round_trips: int = setting(10, "", "round trips kept: as long as the stamps, so that both are of one time", ge=4)
     slice: float = setting(0.25, "s", "of which only the stamp that came soonest is kept", gt=0.0)
@@ -23,7 +23,7 @@ class ClockSettings:
 
 @dataclass(frozen=True)
 class LinkSettings:
-    """What the ground learns of a link and how it sends over it."""
+    """Latency, loss and repetition on a link."""
 
     delays: int = setting(3, "", "set-points whose median delay is used: a growing latency must be followed", ge=1)
     stamp_error: float = setting(0.01, "s", "by which a healthy vehicle's stamps may be wrong", ge=0.0)
@@ -48,7 +48,7 @@ class LinkSettings:
 
 @dataclass(frozen=True)
 class IdCheckSettings:
-    """When two vehicles' system ids count as swapped."""
+    """Detection of swapped system ids."""
 
     distance_ratio: float = setting(
         2.0, "", "a position so many times nearer to another vehicle's estimate than to its own is the other's", gt=1.0

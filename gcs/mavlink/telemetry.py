@@ -13,7 +13,7 @@ from idc_controller.perception.scan_assembly import Detection
 
 
 def setpoint_flown(message: mavlink.MAVLink_attitude_target_message, thrust_max: float) -> Array | None:
-    """Tilt of the thrust (north, east) and thrust (N), (3,), in an ATTITUDE_TARGET; None: it has neither.
+    """Return the tilt of the thrust (north, east) and thrust (N), (3,), in an ATTITUDE_TARGET; None: it has neither.
 
     ``thrust_max`` (N) is what the vehicle means by thrust 1.
     """
@@ -25,7 +25,7 @@ def setpoint_flown(message: mavlink.MAVLink_attitude_target_message, thrust_max:
 
 
 def measurement(received: Received, uav: int, time: float) -> Measurement | None:
-    """The measurement in a message of UAV ``uav`` (0 .. N-1), true at ``time`` (s, team time).
+    """Return the measurement in a message of UAV ``uav`` (0 .. N-1), true at ``time`` (s, team time).
 
     None for messages that measure nothing and for values that cannot be measurements (not finite, no rotation). Where
     only the pose or only the motion cannot be one, that part is nan, as MAVLink has it for an unknown rate.
@@ -52,7 +52,7 @@ def measurement(received: Received, uav: int, time: float) -> Measurement | None
 
 
 def detection(message: mavlink.MAVLink_obstacle_distance_3d_message) -> Detection:
-    """The detection in an OBSTACLE_DISTANCE_3D; one in a frame other than the body's has no point (nan)."""
+    """Return the detection in an OBSTACLE_DISTANCE_3D; one in a frame other than the body's has no point (nan)."""
     is_body = message.frame == mavlink.MAV_FRAME_BODY_FRD
     point = (message.x, message.y, message.z) if is_body else (math.nan, math.nan, math.nan)
     return Detection(message.time_boot_ms, message.obstacle_id, point, message.max_distance)

@@ -11,7 +11,7 @@ DATAGRAMS_AT_ONCE = 4096
 
 
 def arrived(endpoint: socket.socket) -> Iterator[tuple[bytes, Address]]:
-    """Datagrams that a non-blocking socket holds, in order; no more than DATAGRAMS_AT_ONCE.
+    """Return the datagrams that a non-blocking socket holds, in order; no more than DATAGRAMS_AT_ONCE.
 
     A sender that is faster than the reader must not keep it from everything else.
     """

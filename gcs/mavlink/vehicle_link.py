@@ -20,7 +20,7 @@ _NAVIGATION = (mavlink.MAVLink_attitude_quaternion_message, mavlink.MAVLink_loca
 
 @dataclass
 class VehicleStatus:
-    """What a vehicle has last reported of itself."""
+    """Status that a vehicle has last reported."""
 
     base_mode: int = 0
     custom_mode: int = 0

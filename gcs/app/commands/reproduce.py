@@ -40,7 +40,7 @@ SHOWN = ("printed", "project")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The arguments of the command."""
+    """Add the arguments of the command."""
     parser.add_argument("--quick", action="store_true", help="within a minute: shorter, without the flights")
     parser.add_argument(
         "--out", type=Path, default=Path("reproduction"), metavar="DIR",
@@ -56,7 +56,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the command; returns the exit status."""
+    """Run the command, and return its exit status."""
     chosen, out = plan(arguments.quick), arguments.out
     # All that can be wrong is looked for before anything is written.
     for mission, _ in chosen.flights.values():
