@@ -50,7 +50,7 @@ def check_on_the_ground(folder, height=0.25):
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=["ctrl-c", "sigterm"])
 def test_ctrl_c_in_flight_lands_and_closes_the_records(tmp_path, number):
-    gcs = GcsProcess(short_figure(tmp_path, duration=30.0), tmp_path / "run")
+    gcs = GcsProcess(short_figure(tmp_path, duration=30.0, altitude=1.5), tmp_path / "run")
     gcs.until_phase("fly")
     gcs.process.send_signal(number)
     code, errors = gcs.end()
@@ -64,7 +64,7 @@ def test_ctrl_c_in_flight_lands_and_closes_the_records(tmp_path, number):
 
 
 def test_second_ctrl_c_ends_control_and_vehicles_land(tmp_path):
-    gcs = GcsProcess(short_figure(tmp_path, duration=30.0), tmp_path / "run")
+    gcs = GcsProcess(short_figure(tmp_path, duration=30.0, altitude=1.5), tmp_path / "run")
     gcs.until_phase("fly")
     gcs.process.send_signal(signal.SIGINT)
     gcs.until_phase("hold")  # the first one is being obeyed
@@ -76,7 +76,7 @@ def test_second_ctrl_c_ends_control_and_vehicles_land(tmp_path):
 
 
 def test_killed_simulation_ends_the_flight_with_its_reason(tmp_path):
-    gcs = GcsProcess(short_figure(tmp_path, duration=30.0), tmp_path / "run")
+    gcs = GcsProcess(short_figure(tmp_path, duration=30.0, altitude=1.5), tmp_path / "run")
     gcs.until_phase("fly")
     os.kill(gcs.child(), signal.SIGKILL)
     code, errors = gcs.end()
@@ -88,7 +88,7 @@ def test_killed_simulation_ends_the_flight_with_its_reason(tmp_path):
 
 
 def test_vehicles_hold_then_land_when_the_ground_is_killed(tmp_path):
-    mission = short_figure(tmp_path, duration=30.0)
+    mission = short_figure(tmp_path, duration=30.0, altitude=1.5)
     options = ("--lockstep", "--mission", mission, "--run-dir", tmp_path / "world", "--base-port", free_port())
     swarm = swarm_process(*options)
     try:
