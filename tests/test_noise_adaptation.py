@@ -16,7 +16,7 @@ PAYLOAD_ROWS = np.arange(50) < 10
 
 
 def adapted(innovations):
-    adaptation = NoiseAdaptation()
+    adaptation = NoiseAdaptation(3)
     for k, normalised in enumerate(innovations):
         mean_squares = np.add.reduceat(normalised**2, np.arange(0, 50, 5)) / SIZES
         adaptation.learn(0.04 * k, KEYS, normalised, mean_squares, np.ones(50, dtype=bool), PAYLOAD_ROWS)

@@ -19,6 +19,7 @@ from gcs.mavlink.vehicle_link import VehicleLink
 from idc_controller.estimation.health.channel_isolation import ChannelIsolation
 from idc_controller.estimation.measurement_model import MeasurementModel
 from idc_controller.estimation.measurements import Attitude, MeasurementNoise
+from idc_controller.estimation.settings import MeasurementModelSettings
 from idc_controller.geometry.sphere import Sphere
 from idc_controller.model.linear import LinearModel
 from idc_controller.safety.settings import PlannerSettings
@@ -131,7 +132,9 @@ def test_isolation_of_a_channel_takes_as_long_at_any_rate_of_telemetry():
         config = system(rates={"telemetry": telemetry})
         settings = config.estimation.estimator.at_rates(telemetry, config.rates.control).isolation
         isolation = ChannelIsolation(4, settings)
-        stack_of_one = MeasurementModel(LinearModel(config.parameters()), MeasurementNoise()).stack(((0, Attitude),))
+        stack_of_one = MeasurementModel(
+            LinearModel(config.parameters()), MeasurementNoise(), MeasurementModelSettings()
+        ).stack(((0, Attitude),))
         tested, accepted = np.ones(4, dtype=bool), np.zeros(4, dtype=bool)
         steps = 0
         while not isolation.isolated:

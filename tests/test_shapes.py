@@ -65,7 +65,7 @@ def test_points_inside_have_negative_distance(shape):
     assert Bodies([shape]).from_offsets(np.zeros((1, 1, 3)))[0, 0] < -0.1
 
 
-def test_distance_of_several_shapes_together_is_that_of_each_alone():
+def test_distances_of_several_shapes_equal_those_of_each_shape():
     points = points_about(EXAMPLES[0])
     shapes = [*EXAMPLES, *EXAMPLES[::-1]]
     centres = np.random.default_rng(1).uniform(-3.0, 3.0, (len(shapes), 3))

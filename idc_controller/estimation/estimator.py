@@ -37,11 +37,14 @@ class Estimator:
     """Kalman filter with memory. Times are those of the measurements' clock (s)."""
 
     def __init__(
-        self, model: LinearModel, noise: MeasurementNoise | None = None, settings: EstimatorSettings | None = None
+        self,
+        model: LinearModel,
+        noise: MeasurementNoise = MeasurementNoise(),
+        settings: EstimatorSettings = EstimatorSettings(),
     ) -> None:
         """``noise`` of the sensors."""
-        number_of_uavs, noise = model.layout.number_of_uavs, noise or MeasurementNoise()
-        self.settings = s = settings or EstimatorSettings()
+        number_of_uavs = model.layout.number_of_uavs
+        self.settings = s = settings
         self.measurement_model = MeasurementModel(model, noise, s.measurement)
         self.health = SensorHealth(number_of_uavs, noise, s)
         self._process = ProcessModel(model, s.process)

@@ -63,10 +63,7 @@ def _blocks(sizes: Indices) -> tuple[Indices, Indices, tuple[Indices, ...]]:
 class MeasurementModel:
     """Observations of every source, and measured less reference in the filter's coordinates."""
 
-    def __init__(
-        self, model: LinearModel, noise: MeasurementNoise, settings: MeasurementModelSettings | None = None
-    ) -> None:
-        floor = settings or MeasurementModelSettings()
+    def __init__(self, model: LinearModel, noise: MeasurementNoise, floor: MeasurementModelSettings) -> None:
         layout, N = model.layout, model.layout.number_of_uavs
         self.layout = layout
         self.parameters = model.parameters

@@ -56,9 +56,9 @@ class Confirmation(NamedTuple):
 class SetpointHistory:
     """Set-points of all N vehicles in order of the time at which they take effect (s)."""
 
-    def __init__(self, number_of_uavs: int, settings: SetpointHistorySettings | None = None) -> None:
+    def __init__(self, number_of_uavs: int, settings: SetpointHistorySettings = SetpointHistorySettings()) -> None:
         self._N = number_of_uavs
-        self._settings = s = settings or SetpointHistorySettings()
+        self._settings = s = settings
         self._tolerance = np.array([s.tilt_tolerance, s.tilt_tolerance, s.thrust_tolerance])
         self._entries: list[_Entry] = []
         self._jitter = np.zeros(number_of_uavs)

@@ -40,7 +40,7 @@ class _Sums:
 class WindEstimator:
     """Learns the wind from the estimated forces of one control step after the other."""
 
-    def __init__(self, areas: Array, period: float, limit: float, settings: WindSettings | None = None) -> None:
+    def __init__(self, areas: Array, period: float, limit: float, settings: WindSettings = WindSettings()) -> None:
         """Start without wind.
 
         Args:
@@ -49,7 +49,7 @@ class WindEstimator:
             limit: largest drag that is predicted (N).
             settings: of the estimate.
         """
-        self.settings = s = settings or WindSettings()
+        self.settings = s = settings
         self._coefficients = drag_coefficients(areas)
         self._limit = limit
         count = round(s.speed_max / s.spacing)

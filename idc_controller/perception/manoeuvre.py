@@ -16,8 +16,8 @@ from idc_controller.perception.settings import ManoeuvreSettings
 class ManoeuvreDetector:
     """Model mismatch and prediction error of one obstacle that was first detected at ``time`` (s)."""
 
-    def __init__(self, time: float, settings: ManoeuvreSettings | None = None) -> None:
-        self._settings = settings or ManoeuvreSettings()
+    def __init__(self, time: float, settings: ManoeuvreSettings = ManoeuvreSettings()) -> None:
+        self._settings = settings
         self._since = self._time = time
         self._mean_square = 0.5
         self.model_mismatch = 0.0

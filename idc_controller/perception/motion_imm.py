@@ -25,8 +25,8 @@ _DIAGONAL = np.arange(3)
 class MotionModels:
     """Transition and process noise of all M models, for arrays of time steps."""
 
-    def __init__(self, settings: ImmSettings | None = None) -> None:
-        self.settings = settings = settings or ImmSettings()
+    def __init__(self, settings: ImmSettings = ImmSettings()) -> None:
+        self.settings = settings
         harmonic = 2 + len(settings.singer_times)
         self.count = harmonic + len(settings.frequencies)
         self._singer, self._harmonic = slice(2, harmonic), slice(harmonic, self.count)

@@ -29,7 +29,7 @@ class ObstacleFilter:
         models: MotionModels,
         first: SurfacePoints,
         known: Shape | None = None,
-        settings: ObstacleFilterSettings | None = None,
+        settings: ObstacleFilterSettings = ObstacleFilterSettings(),
         scatter: float = 0.0,
     ) -> None:
         """Start from one frame.
@@ -41,7 +41,7 @@ class ObstacleFilter:
             settings: of the filter.
             scatter: variance of the points beyond their sensors', as known from other obstacles (m2).
         """
-        self.settings = settings or ObstacleFilterSettings()
+        self.settings = settings
         self._complexity = {"sphere": 0.0, "pole": self.settings.pole_complexity, "wall": self.settings.wall_complexity}
         self.frames = 0
         self._known = known

@@ -51,10 +51,10 @@ class ObstacleMap:
         known: Sequence[MapObstacle],
         sensors: SensorModel,
         sensor_range: float,
-        settings: PerceptionSettings | None = None,
+        settings: PerceptionSettings = PerceptionSettings(),
     ) -> None:
         """``known``: obstacles known before the flight; ``sensor_range`` of the range sensors (m)."""
-        self._settings = s = settings or PerceptionSettings()
+        self._settings = s = settings
         models = MotionModels(s.tracking.motion)
         moving = [Track(o.name, models, s, o.shape, o.centre) for o in known if o.moves]
         self._standing = [(o.name, o.shape, o.centre) for o in known if not o.moves]

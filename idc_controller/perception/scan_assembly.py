@@ -111,8 +111,8 @@ class RangeSensors:
 class ScanAssembly:
     """Collects detections until their vehicle's pose is known. Times are the team's (s)."""
 
-    def __init__(self, sensors: SensorModel, settings: ScanSettings | None = None) -> None:
-        self._sensors, self._settings = sensors, settings or ScanSettings()
+    def __init__(self, sensors: SensorModel, settings: ScanSettings = ScanSettings()) -> None:
+        self._sensors, self._settings = sensors, settings
         self.poses = PoseHistory(self._settings)
         self.range_sensors = RangeSensors(sensors.range_noise > 0.0, self._settings)
         self._waiting: dict[tuple[int, int], _Scan] = {}

@@ -20,8 +20,8 @@ from idc_controller.estimation.settings import ChannelIsolationSettings
 class ChannelIsolation:
     """Isolated channels of N vehicles; never of more than half of the vehicles, which do not fail together."""
 
-    def __init__(self, number_of_uavs: int, settings: ChannelIsolationSettings | None = None) -> None:
-        self._number_of_uavs, self._settings = number_of_uavs, settings or ChannelIsolationSettings()
+    def __init__(self, number_of_uavs: int, settings: ChannelIsolationSettings = ChannelIsolationSettings()) -> None:
+        self._number_of_uavs, self._settings = number_of_uavs, settings
         self._gate = float(chi2.ppf(self._settings.restoring_probability, 3))
         self._rejections: dict[Channel, int] = {}
         self._acceptances: dict[Channel, int] = {}

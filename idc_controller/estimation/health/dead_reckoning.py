@@ -21,8 +21,8 @@ _FROM_STEPS = 1.4826 / 2.0**0.5  # standard deviation of a sample over the media
 class DeadReckoning:
     """Compares poses and motions of N UAVs and of the payload unit."""
 
-    def __init__(self, number_of_uavs: int, settings: DeadReckoningSettings | None = None) -> None:
-        self._number_of_uavs, self._settings = number_of_uavs, settings or DeadReckoningSettings()
+    def __init__(self, number_of_uavs: int, settings: DeadReckoningSettings = DeadReckoningSettings()) -> None:
+        self._number_of_uavs, self._settings = number_of_uavs, settings
         self._checks: dict[SensorKey, _SourceCheck] = {}
 
     def add(self, measurement: Measurement) -> None:

@@ -37,9 +37,11 @@ class _Statistics:
 class InnovationMonitor:
     """Learns from the innovations of one moment after the other, and reports unsound sensors."""
 
-    def __init__(self, gate_probability: float, settings: InnovationMonitorSettings | None = None) -> None:
+    def __init__(
+        self, gate_probability: float, settings: InnovationMonitorSettings = InnovationMonitorSettings()
+    ) -> None:
         """``gate_probability`` of the innovation test: beyond it a sample counts as one at the gate."""
-        self._settings = s = settings or InnovationMonitorSettings()
+        self._settings = s = settings
         self._statistics: dict[tuple[SensorKey, int], _Statistics] = {}
         """By sensor and number of rows: now and then only one of its channels is there."""
         sizes = np.arange(1, 7)

@@ -27,9 +27,9 @@ class Reaction(Enum):
 class NoiseAdaptation:
     """Learns from the normalised innovations of one moment after the other."""
 
-    def __init__(self, payload_rejections: int = 3, settings: NoiseAdaptationSettings | None = None) -> None:
+    def __init__(self, payload_rejections: int, settings: NoiseAdaptationSettings = NoiseAdaptationSettings()) -> None:
         """``payload_rejections``: rejections of the payload unit in a row after which the prediction is at fault."""
-        self._settings, self._payload_rejections_max = settings or NoiseAdaptationSettings(), payload_rejections
+        self._settings, self._payload_rejections_max = settings, payload_rejections
         self.measurement_scale = 1.0
         """Scale of the measurement variances, 1 or more."""
         self.level = 0

@@ -17,8 +17,8 @@ class _Last:
 class StuckSensors:
     """Counts repeated values of every channel that has noise."""
 
-    def __init__(self, noise: MeasurementNoise, settings: StuckSensorSettings | None = None) -> None:
-        self._noise, self._settings = noise, settings or StuckSensorSettings()
+    def __init__(self, noise: MeasurementNoise, settings: StuckSensorSettings = StuckSensorSettings()) -> None:
+        self._noise, self._settings = noise, settings
         self._last: dict[SensorKey, _Last] = {}
 
     def check(self, measurement: Measurement) -> tuple[bool, bool]:
