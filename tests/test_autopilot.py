@@ -169,7 +169,7 @@ def test_modes_that_cannot_be_flown_are_refused_and_change_nothing(flying: Fligh
 
 
 def test_hover_thrust_is_learned_in_flight(flying: Flight) -> None:
-    assert flying.pilot.hover_thrust == pytest.approx(flying.body.mass * AIRFRAME.g, rel=0.04)
+    assert flying.pilot.state.land.hover_thrust == pytest.approx(flying.body.mass * AIRFRAME.g, rel=0.04)
 
 
 # Failsafes
@@ -211,7 +211,7 @@ def test_setpoint_loss_ends_in_gentle_descent_and_disarming(flying: Flight) -> N
             assert flying.pilot.landed_state == mavlink.MAV_LANDED_STATE_LANDING
     assert flying.body.position[2] == 0.0
     assert 0.4 < fastest < 0.65
-    assert not flying.pilot.failsafe and not flying.pilot.in_air
+    assert not flying.pilot.failsafe and not flying.pilot.state.land.in_air
 
 
 def test_hold_and_landing_complete_with_noise() -> None:
@@ -262,11 +262,11 @@ def test_setpoint_loss_of_vehicle_supported_by_its_link_holds_before_disarming()
     flight.ground_is_there = False
     flight.run(1.0)
     assert flight.pilot.armed and flight.pilot.failsafe
-    assert flight.pilot.attitude_target[2] == pytest.approx(0.8 * flight.hover, rel=0.1)
+    assert flight.pilot.state.actuation.target[2] == pytest.approx(0.8 * flight.hover, rel=0.1)
     flight.run(4.0)
     assert flight.pilot.armed
     flight.run(2.0)  # it would sink, and cannot: found out as after any descent
-    assert not flight.pilot.armed and not flight.pilot.in_air
+    assert not flight.pilot.armed and not flight.pilot.state.land.in_air
 
 
 def test_hold_commanded_during_lift_off_keeps_thrust() -> None:
@@ -276,11 +276,11 @@ def test_hold_commanded_during_lift_off_keeps_thrust() -> None:
     flight.target = setpoint(thrust=0.8 * flight.hover)
     assert flight.pilot.arm(flight.body.now).text == ""
     flight.run(1.0)
-    assert not flight.pilot.in_air
+    assert not flight.pilot.state.land.in_air
     assert flight.pilot.enter_mode(px4.MODE_HOLD, flight.body.now).text == ""
     flight.run(0.1)
     assert flight.pilot.armed
-    assert flight.pilot.attitude_target[2] == pytest.approx(0.8 * flight.hover, rel=0.1)
+    assert flight.pilot.state.actuation.target[2] == pytest.approx(0.8 * flight.hover, rel=0.1)
 
 
 def test_failure_of_one_sensor_leaves_others_valid(flying: Flight) -> None:
@@ -288,10 +288,10 @@ def test_failure_of_one_sensor_leaves_others_valid(flying: Flight) -> None:
     flying.body.measure = lambda: measure()._replace(position=(math.nan, 0.0, 0.0))
     flying.target = setpoint(tuple(quaternion_from_euler(0.1, 0.0, 0.0)), thrust=flying.hover)
     flying.run(2.0)
-    seen = flying.pilot.measurement
+    seen = flying.pilot.state.navigation.estimate
     assert seen is not None and seen.position[0] == pytest.approx(known, abs=0.1)
     assert euler_from_quaternion(np.array(seen.attitude))[0] == pytest.approx(0.1, abs=0.02)
-    assert not flying.pilot.is_navigating(flying.body.now)
+    assert not flying.pilot.state.navigation.is_valid(flying.body.now)
 
 
 def test_attitude_is_integrated_from_rates_when_lost_on_board(flying: Flight) -> None:
@@ -326,10 +326,10 @@ def test_landing_by_setpoints_is_detected(flying: Flight) -> None:
     flying.target = setpoint(thrust=flying.hover * 0.99)
     while flying.body.position[2] < 0.0:
         flying.run(0.1)
-    assert flying.pilot.in_air
+    assert flying.pilot.state.land.in_air
     flying.target = setpoint(thrust=0.05)
     flying.run(1.0)
-    assert not flying.pilot.in_air and flying.pilot.armed
+    assert not flying.pilot.state.land.in_air and flying.pilot.armed
     assert flying.pilot.disarm().result == mavlink.MAV_RESULT_ACCEPTED
 
 

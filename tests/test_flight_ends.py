@@ -221,8 +221,8 @@ def test_link_loss_of_one_vehicle_lands_all_of_them(tmp_path, telemetry, command
 
     def plans_followed(flight):
         for vehicle in flight.swarm.vehicles:
-            if (plan := vehicle.autopilot.hold_plan) is not None:
-                followed.setdefault(vehicle.system_id, plan.start)
+            if (hold := vehicle.autopilot.state.hold) is not None:
+                followed.setdefault(vehicle.system_id, hold.plan.start)
 
     with InProcessFlight(short_figure(tmp_path, duration=20.0), tmp_path / "run", seed=1200, faults=cut) as flight:
         flight.fly(plans_followed)

@@ -70,7 +70,7 @@ def state(vehicle):
     """State of a vehicle that hostile commands could change."""
     autopilot, table = vehicle.autopilot, vehicle.parameters
     return (
-        autopilot.changes, autopilot.armed, autopilot.mode, autopilot.failsafe, autopilot._state.stop_plan,
+        autopilot.changes, autopilot.armed, autopilot.mode, autopilot.failsafe, autopilot.state.stop_plan,
         [table.by_index(i).value for i in range(len(table))],
     )  # fmt: skip
 

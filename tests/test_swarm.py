@@ -219,7 +219,7 @@ def test_time_advances_in_whole_physics_steps():
         assert swarm.time == 0.012
         swarm.advance_to(0.02)
         assert swarm.time == 0.02
-        assert swarm.vehicles[0].autopilot.measurement.time == 0.02
+        assert swarm.vehicles[0].autopilot.state.navigation.estimate.time == 0.02
 
 
 def test_truth_is_written_50_times_a_second_or_more_at_any_physics_rate(tmp_path):
@@ -244,7 +244,7 @@ def test_fault_injector_acts_on_samples_and_datagrams():
     with Swarm(CONFIG, seed=1, ground_address=GROUND, faults=Disturbed()) as swarm:
         ground = ground_of(CONFIG)
         exchange(swarm, ground, 0.25)
-        assert swarm.vehicles[1].autopilot.measurement is None
+        assert swarm.vehicles[1].autopilot.state.navigation.estimate is None
         received = {i: len([m for m in ground.messages if m.get_srcSystem() == i]) for i in (1, 2, 3, 4)}
         assert received[1] > received[2] > received[3] == 1  # everything, all but samples, a heartbeat
         assert received[4] == 0

@@ -36,7 +36,7 @@ def test_controlled_vehicle_refuses_commands_of_foreign_systems(flying: Bench) -
         assert flying.vehicle.refused_setpoints == refused + 1
     flying.vehicle.step(flying.body.measure(), flying.now)
     assert flying.vehicle.autopilot.armed and flying.vehicle.autopilot.mode == px4.MODE_OFFBOARD
-    assert flying.vehicle.autopilot.attitude_target[2] == pytest.approx(HOVER)
+    assert flying.vehicle.autopilot.state.actuation.target[2] == pytest.approx(HOVER)
     assert flying.vehicle.parameters["COM_OF_LOSS_T"] == pytest.approx(VehicleFailsafeSettings.setpoint_loss)
     assert flying.result(command(512, mavlink.MAVLINK_MSG_ID_HOME_POSITION), STRANGER) == ACCEPTED
 
@@ -71,7 +71,7 @@ def test_second_ground_may_take_control_after_setpoint_timeout(flying: Bench) ->
     flying.streaming[GROUND, 255] = attitude_target(thrust=0.0)
     flying.run(0.3)
     assert not flying.vehicle.autopilot.failsafe
-    assert flying.vehicle.autopilot.attitude_target[2] == pytest.approx(HOVER)
+    assert flying.vehicle.autopilot.state.actuation.target[2] == pytest.approx(HOVER)
     assert flying.result(command(21), GROUND, 255) == DENIED
 
 
@@ -80,7 +80,7 @@ def test_setpoints_of_foreign_system_are_ignored_before_control(bench: Bench) ->
     bench.run(0.3)
     assert bench.result(OFFBOARD) == ACCEPTED and bench.result(ARM) == ACCEPTED
     bench.run(0.3)
-    assert bench.vehicle.autopilot.attitude_target[2] == pytest.approx(0.1)
+    assert bench.vehicle.autopilot.state.actuation.target[2] == pytest.approx(0.1)
 
 
 def test_mutated_datagrams_neither_raise_nor_command(flying: Bench) -> None:
@@ -112,7 +112,7 @@ def test_mutated_datagrams_neither_raise_nor_command(flying: Bench) -> None:
             vehicle.datagrams_to_send(now)
     assert vehicle.autopilot.armed and vehicle.autopilot.mode == px4.MODE_OFFBOARD
     assert vehicle.autopilot.changes == before
-    assert vehicle.autopilot.attitude_target[2] == pytest.approx(HOVER)
+    assert vehicle.autopilot.state.actuation.target[2] == pytest.approx(HOVER)
     assert vehicle.parameters["COM_OF_LOSS_T"] == pytest.approx(VehicleFailsafeSettings.setpoint_loss)
 
 

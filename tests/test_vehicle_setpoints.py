@@ -61,7 +61,7 @@ def test_invalid_setpoints_are_ignored(flying: Bench, message: Any) -> None:
 def test_type_masks_of_setpoints_are_followed(flying: Bench, message: Any, target: Any) -> None:
     flying.send(message)
     flying.body.command = flying.vehicle.step(flying.body.measure(), flying.now)
-    attitude, rates, thrust = flying.vehicle.autopilot.attitude_target
+    attitude, rates, thrust = flying.vehicle.autopilot.state.actuation.target
     assert attitude == (None if target[0] is None else pytest.approx(target[0], abs=1e-6))
     assert rates == pytest.approx(target[1], abs=1e-6) and thrust == pytest.approx(target[2], abs=1e-6)
 
@@ -70,7 +70,7 @@ def test_reordered_setpoints_are_dropped_but_not_after_clock_step(flying: Bench)
     def thrust_after(stamp: int, thrust: float) -> float:
         flying.send(attitude_target(stamp=stamp, thrust=thrust))
         flying.vehicle.step(flying.body.measure(), flying.now)
-        return flying.vehicle.autopilot.attitude_target[2]
+        return flying.vehicle.autopilot.state.actuation.target[2]
 
     assert thrust_after(5000, 0.2) == pytest.approx(0.2)
     assert thrust_after(4950, 0.3) == pytest.approx(0.2)

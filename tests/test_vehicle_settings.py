@@ -38,8 +38,8 @@ def stop_of(config):
         if step == 0:
             pilot.enter_offboard(setpoint, now, now)
             pilot.arm(now, force=True)
-        if pilot.hold_plan is not None:
-            return now, pilot.hold_plan
+        if pilot.state.hold is not None:
+            return now, pilot.state.hold.plan
     raise AssertionError("the vehicle does not stop")
 
 
@@ -104,7 +104,7 @@ def test_vehicle_with_a_low_lift_threshold_is_in_the_air_earlier():
         bench.streaming[GROUND, 255] = attitude_target(thrust=0.3)
         bench.run(0.2)
         assert bench.result(OFFBOARD) == bench.result(ARM) == ACCEPTED
-        while not bench.vehicle.autopilot.in_air:
+        while not bench.vehicle.autopilot.state.land.in_air:
             bench.run(0.01)
         heights.append(-bench.body.position[2])
     assert heights[1] > heights[0] + 0.4

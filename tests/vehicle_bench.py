@@ -99,4 +99,4 @@ class Bench:
         self.run(1.0)
         self.streaming[GROUND, 255] = attitude_target(thrust=HOVER)
         self.run(0.2)
-        assert self.vehicle.autopilot.in_air
+        assert self.vehicle.autopilot.state.land.in_air

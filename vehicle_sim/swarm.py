@@ -61,7 +61,7 @@ class _Uav:
         )
         vehicle.relay(faults.payload_sample(number, payload_sample))
         self._command = vehicle.step(faults.own_sample(number, sample), now)
-        vehicle.report(faults.reported_sample(number, vehicle.autopilot.reported_measurement))
+        vehicle.report(faults.reported_sample(number, vehicle.autopilot.state.navigation.reported))
 
     def scan(self, state: UavState, obstacles: Sequence[ObstacleBody], faults: FaultInjector, now: float) -> None:
         """Scan for obstacles."""

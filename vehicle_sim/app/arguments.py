@@ -1,7 +1,5 @@
 """The command line of ``vehicle-sim``: its options and what they may be."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Callable
 from functools import partial

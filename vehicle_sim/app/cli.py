@@ -1,7 +1,5 @@
 """The command ``vehicle-sim``."""
 
-from __future__ import annotations
-
 import sys
 
 from gcs.app.logs import logging_to

@@ -1,7 +1,5 @@
 """When a simulator has to end: a signal, or the process that started it has ended."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import select

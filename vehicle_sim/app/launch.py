@@ -1,7 +1,5 @@
 """From options to a running simulator: reads what is to be simulated, opens everything or nothing, runs a driver."""
 
-from __future__ import annotations
-
 import contextlib
 import dataclasses
 import os

@@ -1,7 +1,5 @@
 """Lockstep: the swarm and one ground station share a virtual clock; see :mod:`gcs.mavlink.lockstep`."""
 
-from __future__ import annotations
-
 import contextlib
 import time
 from collections.abc import Iterator

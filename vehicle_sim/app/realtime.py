@@ -1,7 +1,5 @@
 """Real time: the swarm on the machine's monotonic clock, its vehicles on UDP sockets."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 

@@ -1,10 +1,9 @@
 """The UDP sockets of a swarm: one for each vehicle, and in lockstep one for the clock."""
 
-from __future__ import annotations
-
 import contextlib
 import socket
 from collections.abc import Iterator
+from typing import Self
 
 from gcs.mavlink.address import Address
 from gcs.mavlink.udp import RECEIVE_BUFFER, arrived
@@ -43,7 +42,7 @@ class SwarmSockets:
         """Close all; harmless when they are closed."""
         self._opened.close()
 
-    def __enter__(self) -> SwarmSockets:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:

@@ -1,7 +1,5 @@
 """The log of a swarm: modes and failsafes of its vehicles as they change."""
 
-from __future__ import annotations
-
 import logging
 
 from gcs.mavlink import px4

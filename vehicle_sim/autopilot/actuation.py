@@ -1,7 +1,5 @@
 """From an attitude target to rotor speeds."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """What a command to the autopilot is answered with."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink

@@ -1,7 +1,5 @@
 """Prearm checks."""
 
-from __future__ import annotations
-
 import math
 
 from gcs.mavlink import px4

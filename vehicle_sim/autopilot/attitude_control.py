@@ -1,7 +1,5 @@
 """The onboard attitude and rate loop, in plain floats: it runs hundreds of times a second on every vehicle."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from idc_controller.rotations_float import IDENTITY, Quaternion, Vector, half_rotation

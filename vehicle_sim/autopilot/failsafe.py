@@ -1,7 +1,5 @@
 """A vehicle's failsafes: condition, parameter, action, as one table; ``docs/architecture.md`` mirrors it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

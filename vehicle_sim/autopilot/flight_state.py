@@ -1,7 +1,5 @@
 """The state of a vehicle's flight, and the transitions that modes, failsafes and arming share."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field, replace
 
@@ -40,7 +38,7 @@ class FlightState:
     """The custom mode that was commanded."""
     armed: bool = False
     failsafe: bool = False
-    """Whether it flies otherwise than commanded."""
+    """The vehicle flies otherwise than commanded."""
     hold: HoldController | None = None
     """How it brakes, holds and descends; None: it does not."""
     stop_plan: StopPlan | None = None
@@ -65,22 +63,22 @@ class FlightState:
         return self.parameters[px4.PARAM_SETPOINT_LOSS]
 
     def has_fresh_setpoints(self, now: float) -> bool:
-        """Whether the set-points of OFFBOARD have not stopped."""
+        """Return True if the set-points of OFFBOARD have not stopped."""
         return now - self.setpoints.last_time < self.setpoint_loss_time - TIME_TOLERANCE
 
     @property
     def is_descending(self) -> bool:
-        """Whether it follows a plan to the ground."""
+        """Return True if it follows a plan to the ground."""
         return self.hold is not None and self.hold.plan.is_descending(self.now)
 
     @property
     def is_up(self) -> bool:
-        """Whether it is off the ground, or upright on its link only because its rotors turn."""
+        """Return True if it is off the ground, or upright on its link only because its rotors turn."""
         supported = self.settings.land_detector.supported_thrust * (self.airframe.mass * self.airframe.g)
         return self.land.in_air or self.actuation.thrust > supported
 
     def is_supported(self, now: float) -> bool:
-        """Whether it would sink, but the payload under it stands on the ground."""
+        """Return True if it would sink, but the payload under it stands on the ground."""
         sinks = self.hold is not None and self.hold.plan.is_at_descent_speed(now)
         return sinks and self.land.touching
 

@@ -5,8 +5,6 @@ follow the stop plan that came with the last set-point, which the ground made fo
 without one plans from its state at the moment of the loss.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property
@@ -87,11 +85,11 @@ class HoldPlan:
         return position, position.derivative(), position.derivative(2)
 
     def is_descending(self, now: float) -> bool:
-        """Whether the descent has begun."""
+        """Return True if the descent has begun."""
         return now > self.descent_start
 
     def is_at_descent_speed(self, now: float) -> bool:
-        """Whether the descent has reached its speed."""
+        """Return True if the descent has reached its speed."""
         return now - self.descent_start > self.descent_ramp
 
 

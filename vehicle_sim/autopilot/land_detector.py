@@ -1,7 +1,5 @@
 """Detection of take-off and touchdown, and the hover thrust, from a vehicle's own motion and thrust."""
 
-from __future__ import annotations
-
 import math
 
 from gcs.config.vehicle_settings import LandDetectorSettings

@@ -2,8 +2,6 @@
 :mod:`.hold_control`.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """A vehicle's estimate of its own state, also while a sensor on board fails."""
 
-from __future__ import annotations
-
 import math
 
 from gcs.config.vehicle_settings import NavigationSettings
@@ -36,7 +34,7 @@ class Navigation:
         return self._known
 
     def is_valid(self, now: float) -> bool:
-        """Whether usable samples come."""
+        """Return True if usable samples come."""
         return now - self.measured_at <= self._settings.timeout
 
     @property

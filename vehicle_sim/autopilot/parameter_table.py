@@ -1,7 +1,5 @@
 """A vehicle's parameters, as the MAVLink parameter protocol shows them."""
 
-from __future__ import annotations
-
 import math
 import struct
 from dataclasses import dataclass

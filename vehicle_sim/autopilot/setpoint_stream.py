@@ -1,7 +1,5 @@
 """What a vehicle flies of the set-points that come, and while none come."""
 
-from __future__ import annotations
-
 import math
 from collections import deque
 

@@ -1,7 +1,5 @@
 """Set-points and stop plans read from messages, or the reason why they cannot be flown."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -1,9 +1,7 @@
 """A fault of a flight: its parameters, its schedule, its random numbers, and what it has done."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -30,7 +28,7 @@ class ActiveFault:
     disturbed: int = 0
 
     @classmethod
-    def of(cls, number: int, fault: Fault, seed: int, team: int) -> ActiveFault:
+    def of(cls, number: int, fault: Fault, seed: int, team: int) -> Self:
         """Return a mission's fault, ready to fly. Raises :class:`gcs.errors.UnusableInput`."""
         settings = read_settings(fault.kind, fault.settings)
         vehicles = tuple(range(1, team + 1)) if fault.vehicles is None else fault.vehicles

@@ -1,7 +1,5 @@
 """The faults of a flight: every sample and datagram goes through them in the mission's order."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import TypeVar
 

@@ -1,7 +1,5 @@
 """The MAVLink frames of a datagram, as far as faults have to know them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import NamedTuple
 

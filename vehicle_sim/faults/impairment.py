@@ -1,7 +1,5 @@
 """One fault on one direction of one vehicle's link: datagrams in, datagrams out, some delayed, some lost."""
 
-from __future__ import annotations
-
 import heapq
 from collections.abc import Sequence
 from typing import ClassVar
@@ -18,7 +16,7 @@ Datagram = tuple[bytes, Address]
 
 
 class LinkImpairment:
-    """Datagrams pass unchanged; a kind of fault overrides :meth:`disturb`."""
+    """Datagrams pass unchanged; a kind of fault overrides :meth:`_disturb`."""
 
     direction: ClassVar[Direction | None] = None
     """Of a kind that is bound to one direction; None: the mission's."""
@@ -42,7 +40,7 @@ class LinkImpairment:
         else:
             for datagram in datagrams:
                 fault.seen += 1
-                fault.disturbed += self.disturb(datagram, moment, now, out)
+                fault.disturbed += self._disturb(datagram, moment, now, out)
         while self._delayed and self._delayed[0][0] <= now + TOLERANCE:
             out.append(heapq.heappop(self._delayed)[2])
         return out
@@ -51,8 +49,8 @@ class LinkImpairment:
         """Return when the next delayed datagram is due (s)."""
         return self._delayed[0][0] if self._delayed else None
 
-    def disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
-        """Append what goes on now to ``out``, :meth:`delay` the rest; return whether the datagram was disturbed."""
+    def _disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
+        """Append what goes on now to ``out``, :meth:`delay` the rest; return True for a disturbed datagram."""
         out.append(datagram)
         return False
 

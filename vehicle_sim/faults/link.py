@@ -1,7 +1,5 @@
 """Impairments of a link, one class a kind of fault."""
 
-from __future__ import annotations
-
 from gcs.faults import link as kinds
 from vehicle_sim.faults.frames import frames
 from vehicle_sim.faults.impairment import Datagram, GilbertElliottProcess, LinkImpairment, OrderedImpairment
@@ -11,8 +9,7 @@ from vehicle_sim.faults.schedule import TOLERANCE, Moment
 class PacketLoss(LinkImpairment):
     """Loss of each datagram with a probability."""
 
-    def disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
-        """Lose the datagram or pass it on."""
+    def _disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
         if self.random() < self.fault.settings.probability:
             return True
         out.append(datagram)
@@ -24,8 +21,7 @@ class BurstLoss(LinkImpairment):
 
     _state: GilbertElliottProcess | None = None
 
-    def disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
-        """Lose the datagram or pass it on."""
+    def _disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
         settings: kinds.BurstLoss = self.fault.settings
         if self._state is None:
             self._state = GilbertElliottProcess(self.generator.spawn(1)[0], settings.gap, settings.burst)
@@ -39,8 +35,7 @@ class BurstLoss(LinkImpairment):
 class Latency(OrderedImpairment):
     """Delay of all datagrams."""
 
-    def disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
-        """Delay the datagram."""
+    def _disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
         self.delay_in_order(datagram, now + self.fault.settings.delay)
         return True
 
@@ -48,8 +43,7 @@ class Latency(OrderedImpairment):
 class Jitter(OrderedImpairment):
     """Random delays, the order kept."""
 
-    def disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
-        """Delay the datagram by a random time."""
+    def _disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
         self.delay_in_order(datagram, now + self.fault.settings.spread * self.random())
         return True
 
@@ -57,8 +51,7 @@ class Jitter(OrderedImpairment):
 class Reordering(LinkImpairment):
     """Delay of some datagrams, which later ones overtake."""
 
-    def disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
-        """Delay the datagram or pass it on."""
+    def _disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
         if self.random() < self.fault.settings.probability:
             self.delay(datagram, now + self.fault.settings.delay)
             return True
@@ -69,8 +62,7 @@ class Reordering(LinkImpairment):
 class Duplication(LinkImpairment):
     """Some datagrams twice."""
 
-    def disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
-        """Pass the datagram on, perhaps twice."""
+    def _disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
         out.append(datagram)
         if self.random() >= self.fault.settings.probability:
             return False
@@ -81,8 +73,7 @@ class Duplication(LinkImpairment):
 class Corruption(LinkImpairment):
     """Replacement of bytes."""
 
-    def disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
-        """Change bytes or pass the datagram on."""
+    def _disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
         settings: kinds.Corruption = self.fault.settings
         if self.random() >= settings.probability or not datagram[0]:
             out.append(datagram)
@@ -98,8 +89,7 @@ class Corruption(LinkImpairment):
 class BadChecksum(LinkImpairment):
     """Wrong checksums."""
 
-    def disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
-        """Change the checksums or pass the datagram on."""
+    def _disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
         if self.random() >= self.fault.settings.probability:
             out.append(datagram)
             return False
@@ -113,8 +103,7 @@ class BadChecksum(LinkImpairment):
 class Truncation(LinkImpairment):
     """Datagrams cut off."""
 
-    def disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
-        """Cut the datagram off or pass it on."""
+    def _disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
         if self.random() >= self.fault.settings.probability or len(datagram[0]) < 2:
             out.append(datagram)
             return False
@@ -127,8 +116,7 @@ class BandwidthCap(OrderedImpairment):
 
     _free_at = 0.0
 
-    def disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
-        """Queue the datagram, or lose it when the queue is full."""
+    def _disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
         settings: kinds.BandwidthCap = self.fault.settings
         begin = max(now, self._free_at)
         if (begin - now) * settings.rate + len(datagram[0]) > settings.queue:
@@ -141,16 +129,14 @@ class BandwidthCap(OrderedImpairment):
 class Partition(LinkImpairment):
     """Loss of every datagram."""
 
-    def disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
-        """Lose the datagram."""
+    def _disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
         return True
 
 
 class Stall(OrderedImpairment):
     """Delay of all datagrams until the fault ends."""
 
-    def disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
-        """Delay the datagram to the end of the fault."""
+    def _disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
         self.delay_in_order(datagram, self.fault.schedule.end_after(now))
         return True
 
@@ -158,8 +144,7 @@ class Stall(OrderedImpairment):
 class Flapping(LinkImpairment):
     """Loss of every datagram while the link is down."""
 
-    def disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
-        """Lose the datagram or pass it on."""
+    def _disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
         settings: kinds.Flapping = self.fault.settings
         if (moment.elapsed + TOLERANCE) % (settings.down + settings.up) < settings.down:
             return True

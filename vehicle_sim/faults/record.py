@@ -1,7 +1,5 @@
 """What the faults of a flight did: ``faults.json`` in the run folder."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,8 +1,7 @@
 """One fault on the samples of one vehicle: what it measures, reports, relays and detects."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
+from typing import Self
 
 from gcs.config import SystemConfig
 from vehicle_sim.faults.active import ActiveFault
@@ -22,7 +21,7 @@ class SampleImpairment:
         self.fault = fault
 
     @classmethod
-    def of_vehicles(cls, fault: ActiveFault, system: SystemConfig) -> Mapping[int, SampleImpairment]:
+    def of_vehicles(cls, fault: ActiveFault, system: SystemConfig) -> Mapping[int, Self]:
         """Return the impairment of each vehicle that the fault disturbs."""
         return {vehicle: cls(fault, vehicle, system) for vehicle in fault.vehicles}
 

@@ -1,7 +1,5 @@
 """When a fault is active: once or periodically, from take-off on."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

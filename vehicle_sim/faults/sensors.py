@@ -1,7 +1,5 @@
 """Impairments of the sensors, one class a kind of fault."""
 
-from __future__ import annotations
-
 import math
 
 from gcs.config import SystemConfig

@@ -1,7 +1,5 @@
 """Impairments of timing: message rates, clocks, and stamps."""
 
-from __future__ import annotations
-
 import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
@@ -40,8 +38,7 @@ class MessageFilter(LinkImpairment):
         """Return whether a message goes on."""
         raise NotImplementedError
 
-    def disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
-        """Pass on the messages that are kept."""
+    def _disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
         data = datagram[0]
         found = list(frames(data))
         kept = [frame for frame in found if self.keeps(frame)]

@@ -1,9 +1,8 @@
 """Impairments of values: a fault changes the three numbers of one channel of one vehicle."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
+from typing import Self
 
 import numpy as np
 
@@ -106,7 +105,7 @@ class ValueImpairment(SampleImpairment):
         self._last: tuple[Measurement, Measurement] | None = None
 
     @classmethod
-    def of_vehicles(cls, fault: ActiveFault, system: SystemConfig) -> Mapping[int, SampleImpairment]:
+    def of_vehicles(cls, fault: ActiveFault, system: SystemConfig) -> Mapping[int, Self]:
         """Return the impairment of each vehicle; at the source of the payload's data, one for all of them."""
         settings: kinds.ValueFault = fault.settings
         if settings.at_source and settings.channel.startswith("payload_"):
@@ -157,7 +156,7 @@ class SwappedVehicles(SampleImpairment):
         self._latest: dict[int, ReportedState] = {}
 
     @classmethod
-    def of_vehicles(cls, fault: ActiveFault, system: SystemConfig) -> Mapping[int, SampleImpairment]:
+    def of_vehicles(cls, fault: ActiveFault, system: SystemConfig) -> Mapping[int, Self]:
         """Return the one impairment for both vehicles."""
         vehicle = fault.vehicles[0]
         return dict.fromkeys((vehicle, fault.settings.other), cls(fault, vehicle, system))

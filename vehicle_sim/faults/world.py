@@ -6,8 +6,6 @@ made of its silhouettes along its axes, as of a box; a UAV's product c_d A is th
 from all sides. The wind acts on neither thrust, torques nor links. Without a wind fault there is no air at all.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

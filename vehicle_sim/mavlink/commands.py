@@ -1,7 +1,5 @@
 """MAVLink commands to a vehicle: who may give them, what each does, and the answer."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

@@ -1,7 +1,5 @@
 """Who may command a vehicle: the ground whose set-points fly it, and while they come nobody else."""
 
-from __future__ import annotations
-
 from gcs.config.vehicle_settings import VehicleLinkSettings
 from gcs.mavlink.address import Address
 from vehicle_sim.autopilot.answer import Answer, rejected_for_now
@@ -45,12 +43,12 @@ class ControlOwner:
         return owner if stream is not None and self._is_fresh(stream.time, now) else None
 
     def is_stranger(self, sender: Sender, now: float) -> bool:
-        """Whether another ground is in control."""
+        """Return True if another ground is in control."""
         owner = self._owner
         return owner is not None and owner != sender and self.in_control(now) is not None
 
     def is_stranger_at_its_address(self, sender: Sender, now: float) -> bool:
-        """Whether another ground is in control, and is reached at the same address."""
+        """Return True if another ground is in control, and is reached at the same address."""
         owner = self._owner
         return owner is not None and owner[0] == sender[0] and self.is_stranger(sender, now)
 
@@ -86,7 +84,7 @@ class ControlOwner:
         return answer
 
     def _is_fresh(self, time: float, now: float) -> bool:
-        return now - time < self._autopilot.setpoint_loss_time
+        return now - time < self._autopilot.state.setpoint_loss_time
 
     def _forget_silent(self, now: float) -> None:
         for sender, stream in tuple(self._streams.items()):

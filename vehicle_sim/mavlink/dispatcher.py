@@ -1,7 +1,5 @@
 """Which service of a vehicle handles which message."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import NamedTuple, TypeVar
 

@@ -1,7 +1,5 @@
 """TIMESYNC and PING: what a vehicle answers so that others can measure its clock and the link to it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink

@@ -1,7 +1,5 @@
 """The MAVLink parameter protocol of a vehicle, in PX4's byte-wise flavour."""
 
-from __future__ import annotations
-
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink import px4

@@ -1,7 +1,5 @@
 """One peer of a vehicle: what it is sent, and when."""
 
-from __future__ import annotations
-
 import math
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
@@ -76,7 +74,7 @@ class Stream:
             self.due = min(self.due, now + repeat_interval)
 
     def is_new(self, message: Message) -> bool:
-        """Whether a message is not of the sample that was sent last."""
+        """Return True if a message is not of the sample that was sent last."""
         if not isinstance(message, _OF_ONE_SAMPLE):
             return True
         stamp, self.last_stamp = self.last_stamp, message.time_boot_ms
@@ -101,7 +99,7 @@ class Peer:
 
     @property
     def is_streaming(self) -> bool:
-        """Whether it gets everything; one that never answered gets heartbeats only."""
+        """Return True if it gets everything; one that never answered gets heartbeats only."""
         return len(self._streams) > 1
 
     def start_streams(self) -> None:

@@ -1,7 +1,5 @@
 """The peers of a vehicle: who is in contact with it, who is added, who is removed."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
 

@@ -1,7 +1,5 @@
 """Set-points and stop plans: from messages to the ground in control, or refused."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
@@ -38,7 +36,7 @@ class SetpointServer:
             self.refused += 1
             return
         try:
-            setpoint = read_setpoint(message, self._autopilot.settings.setpoints)
+            setpoint = read_setpoint(message, self._autopilot.state.settings.setpoints)
         except SetpointError:
             self.refused += 1
             return
@@ -51,7 +49,7 @@ class SetpointServer:
         if self._owner.in_control(now) != request.sender:
             return
         try:
-            plan = read_stop_plan(message, self._autopilot.settings.setpoints)
+            plan = read_stop_plan(message, self._autopilot.state.settings.setpoints)
         except SetpointError:
             self.refused += 1
             return

@@ -1,7 +1,5 @@
 """The messages a vehicle streams, each built from the vehicle's state on demand."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
 
@@ -83,7 +81,7 @@ class Telemetry:
         }
 
     def knows(self, component: int, message_id: int) -> bool:
-        """Whether a component of this vehicle has such a message."""
+        """Return True if a component of this vehicle has such a message."""
         return (component, message_id) in self._builders
 
     def build(self, component: int, message_id: int, now: float) -> Built:
@@ -109,7 +107,7 @@ class Telemetry:
             state = mavlink.MAV_STATE_CRITICAL
         elif autopilot.armed:
             state = mavlink.MAV_STATE_ACTIVE
-        elif autopilot.measurement is None:
+        elif autopilot.state.navigation.estimate is None:
             state = mavlink.MAV_STATE_BOOT
         if autopilot.armed:
             base_mode |= mavlink.MAV_MODE_FLAG_SAFETY_ARMED
@@ -126,7 +124,7 @@ class Telemetry:
             present |= _RANGE_SENSOR
             if self.scan.works:
                 health |= _RANGE_SENSOR
-        if self._autopilot.is_navigating(now):
+        if self._autopilot.state.navigation.is_valid(now):
             health |= _SENSORS
         if self._autopilot.arming_problem(now) is None:
             health |= _PREARM
@@ -199,8 +197,8 @@ class Telemetry:
 
     def _attitude_target(self, now: float) -> Built:
         """Stamped with the moment at which it began to act, as PX4 does it."""
-        attitude, rates, thrust = self._autopilot.attitude_target
-        since = max(self._autopilot.target_since, self._boot_time)
+        attitude, rates, thrust = self._autopilot.state.actuation.target
+        since = max(self._autopilot.state.actuation.target_since, self._boot_time)
         mask = 0 if attitude is not None else mavlink.ATTITUDE_TARGET_TYPEMASK_ATTITUDE_IGNORE
         return (
             mavlink.MAVLink_attitude_target_message(
@@ -215,7 +213,7 @@ class Telemetry:
         v_n, v_e, v_d = measured.velocity
         speed = math.hypot(v_n, v_e)
         heading = round(math.degrees(euler_of(measured.attitude)[2])) % 360
-        throttle = round(100.0 * self._autopilot.attitude_target[2])
+        throttle = round(100.0 * self._autopilot.state.actuation.target[2])
         altitude = self._home.altitude - measured.position[2]
         return (mavlink.MAVLink_vfr_hud_message(speed, speed, heading, throttle, altitude, -v_d),)
 
@@ -257,12 +255,12 @@ class Telemetry:
     @property
     def _own_attitude(self) -> Measurement | None:
         """The sample whose attitude and rates are sent."""
-        return self._autopilot.reported_measurement if self.reported is None else self.reported.attitude
+        return self._autopilot.state.navigation.reported if self.reported is None else self.reported.attitude
 
     @property
     def _own_position(self) -> Measurement | None:
         """The sample whose position and velocity are sent."""
-        return self._autopilot.reported_measurement if self.reported is None else self.reported.position
+        return self._autopilot.state.navigation.reported if self.reported is None else self.reported.position
 
     @property
     def _own_state(self) -> Measurement | None:

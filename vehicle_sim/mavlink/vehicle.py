@@ -1,7 +1,5 @@
 """One vehicle on the wire: bytes in, bytes out, and the onboard loop behind them. No socket, no clock."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 
@@ -129,7 +127,7 @@ class Vehicle:
     def datagrams_to_send(self, now: float) -> list[tuple[bytes, Address]]:
         """All that is due at ``now`` (s), each with its address."""
         self._latest = max(self._latest, now)
-        if self.autopilot.changes != self._sent_changes or self.autopilot.has_notices():
+        if self.autopilot.changes != self._sent_changes or self.autopilot.state.notices:
             self._send_changes()
         return self._peers.datagrams_to_send(self.telemetry, now)
 

@@ -1,7 +1,5 @@
 """Whether there is a display. The physics engine ends the process when it cannot open its window."""
 
-from __future__ import annotations
-
 import ctypes
 import ctypes.util
 import os

@@ -1,7 +1,5 @@
 """Keeps what the physics engine prints, below Python's streams, out of what people and programs read."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import sys

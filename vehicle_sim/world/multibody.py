@@ -4,8 +4,6 @@ The body frames in the engine are forward-left-up, with their origin at the cent
 origin at the attachment point and its z axis along the link, towards the UAV.
 """
 
-from __future__ import annotations
-
 import tempfile
 from pathlib import Path
 from typing import NamedTuple

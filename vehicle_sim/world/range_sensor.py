@@ -4,8 +4,6 @@ It reports where points are and which of them belong together, under numbers of 
 what an obstacle is, how large, how fast, or what it is called.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple

@@ -4,8 +4,6 @@ Rotors stand in PX4's X layout, seen in the FRD body frame: 1 front right, 2 rea
 seen from above), 3 front left, 4 rear right (clockwise).
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """What vehicles and the payload's navigation unit measure: the truth with white noise on every channel."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -33,7 +31,7 @@ class Measurement(NamedTuple):
     velocity: tuple[float, float, float]
 
     def is_usable(self) -> bool:
-        """Whether every number is one, and none beyond what could be sent."""
+        """Return True if every number is one, and none beyond what could be sent."""
         total = sum(self.attitude) + sum(self.rates) + sum(self.position) + sum(self.velocity)
         return _is_number(total) and math.isfinite(self.time)
 

@@ -5,8 +5,6 @@ turn about the first axis, so a vector and the vector part of a quaternion chang
 The engine's quaternions are x-first. Nothing outside the world modules sees either.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
