@@ -170,6 +170,7 @@ def test_uav_velocities_are_the_derivative_of_the_positions():
     np.testing.assert_allclose((ahead - behind) / (2 * h), uav_velocities(parameters, state), atol=1e-6)
 
 
+@pytest.mark.slow
 def test_rk4_step_is_of_fourth_order_and_stays_on_the_manifold():
     rng = np.random.default_rng(7)
     parameters = make_parameters(4, rng=rng)

@@ -230,6 +230,7 @@ def test_formation_in_world_is_hull_in_hover_when_hovering():
     np.testing.assert_allclose(points, formation.hull_points(np.zeros((1, 3)))[0] + state.r_0, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_filter_of_the_paper_does_not_sink_onto_a_sphere():
     parameters = system()
     above = PlantState.hovering(parameters, np.array([0.0, 0.0, -6.0]))  # the reference is at -5

@@ -223,6 +223,7 @@ def test_disturbance_leaves_mission_unchanged_without_near_obstacles():
     assert not avoided.report.active
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("when", [4.0, 6.5, 12.0])
 def test_abort_stops_safely_and_smoothly(when):
     """On the path, while it is deflected, and beside the obstacle: a rest near by follows."""
@@ -264,6 +265,7 @@ def test_team_at_rest_evades_approaching_obstacle():
     np.testing.assert_allclose(flown.path[0, -1], [0.0, 0.0, -5.0], atol=0.1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("margin", [0.25, 0.75, 1.0])
 def test_commanded_margin_is_kept(margin):
     flown = fly(avoidance([sphere("s", (9.0, 0.2, -5.2))], margin=margin), straight(16.0), 40.0)
@@ -272,6 +274,7 @@ def test_commanded_margin_is_kept(margin):
     check_arrived(flown)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n", [3, 8])
 def test_obstacles_are_avoided_with_any_number_of_uavs(n):
     flown = fly(avoidance([sphere("s", (9.0, 0.2, -5.0)), pole("p", 13.0, 3.2)], n=n), straight(17.0), 50.0)

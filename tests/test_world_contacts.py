@@ -81,6 +81,7 @@ def test_discs_that_meet_count():
         assert world.contacts().pairs == 1
 
 
+@pytest.mark.slow
 def test_toppled_system_on_the_ground_counts():
     parameters = system(4)
     with World(parameters) as world:
