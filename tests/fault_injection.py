@@ -56,7 +56,7 @@ def sent(disturbed, count, gap=0.02, vehicle=1, message=lambda i: i.to_bytes(4, 
         if i < count and now == due[i]:
             data = message(i)
             serials[i] = now
-            batch = [(data, i)]  # the address tells which one it is
+            batch = [(data, i)]  # the address identifies it
             i += 1
         arrived += [(n, serials[n] - TAKE_OFF, now - TAKE_OFF, data) for data, n in cross(vehicle, batch, now)]
 

@@ -1,4 +1,4 @@
-"""Fault campaigns: the file, and the flights that it asks for."""
+"""Fault campaigns: the file, and the flights that it lists."""
 
 import dataclasses
 import tomllib

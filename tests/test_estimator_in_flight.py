@@ -156,6 +156,6 @@ def test_disturbance_force_is_estimated_without_offset(tmp_path, force):
     estimate, truth = flight.compared[-1][1:]
     assert estimate.force == pytest.approx(force, abs=0.3)
     assert estimate.x[LAYOUT.r_0] == pytest.approx(truth[LAYOUT.r_0], abs=0.01)
-    asked, _ = flight.flight.reference(np.array([estimate.time]))
-    assert truth[LAYOUT.r_0] == pytest.approx(asked[0], abs=0.1)
+    reference, _ = flight.flight.reference(np.array([estimate.time]))
+    assert truth[LAYOUT.r_0] == pytest.approx(reference[0], abs=0.1)
     assert any(record.covariance_reset for record in flight.innovations)

@@ -235,7 +235,7 @@ def test_filter_tracks_moving_sphere(name, record_property):
     limited = rows[:, 4] > 0.45
     assert np.mean((rows[:, 2] < 2.5 * rows[:, 4]) | limited) > 0.85
     assert np.mean(rows[:, 0] < 3.0 * rows[:, 3] + 0.03) > 0.95
-    # Larger bodies only for what was misjudged before: it stood, and went off again.
+    # Growth only after a prediction error: the obstacle stopped, and started again.
     assert rows[:, 4].max() <= (0.5 if limit is not None else 1.5)
     if name == "stop and go":
         assert rows[:, 4].max() > 0.7

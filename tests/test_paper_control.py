@@ -123,7 +123,7 @@ def test_negative_poles_are_insufficient():
 
 
 def test_printed_list_of_lie_derivatives_contradicts_itself():
-    """For r = 2 the paper asks L_g L_f h to be zero and not to be; that L_g h = 0 it does not ask."""
+    """For r = 2 the paper requires L_g L_f h to be both zero and nonzero, and does not require L_g h = 0."""
     r = 2
     nonzero, zero_as_printed = r - 1, range(1, r)  # powers of L_f; the printed list begins with L_g L_f h
     assert nonzero in zero_as_printed

@@ -87,7 +87,7 @@ def test_hover_modes(n):
 
 
 def forced(parameters, hz, seconds, law):
-    """World and Runge-Kutta side by side under ``law(time) -> (world forces on UAVs, thrusts, torques)``.
+    """World and Runge-Kutta in parallel under ``law(time) -> (world forces on UAVs, thrusts, torques)``.
 
     Runge-Kutta takes the law as it is; the world takes it at the beginning of each step, as any controller would.
     Yields pairs every 0.1 s.

@@ -21,11 +21,11 @@ _DISTRIBUTION = "cooplift"
 
 
 def open_run_folder(mission_name: str, run_dir: Path | str | None = None, parent: Path | str = "runs") -> Path:
-    """Make the folder for the records of one flight, and claim it by an empty manifest.
+    """Make the folder for the records of one flight, and lock it by an empty manifest.
 
     Without ``run_dir`` it is ``<parent>/<mission_name>-<number>`` with the next free number; flights that
-    start side by side never get the same one. ``run_dir`` is made if it is absent. Raises
-    :class:`UnusableInput` if the folder is not empty, is claimed by another flight at the same moment, or
+    start in parallel never get the same one. ``run_dir`` is made if it is absent. Raises
+    :class:`UnusableInput` if the folder is not empty, is locked by another flight at the same time, or
     cannot be written.
     """
     folder = Path(run_dir) if run_dir is not None else _numbered(Path(parent), _plain(mission_name))

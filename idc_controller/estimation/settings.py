@@ -79,7 +79,7 @@ class ChannelIsolationSettings(SampledSettings):
 
     rejection_time: float = setting(0.48, "s", "of rejections less acceptances until a channel is isolated", gt=0.0)
     acceptance_time: float = setting(1.0, "s", "of consistent samples in a row until it is restored", gt=0.0)
-    restoring_probability: float = setting(0.999, "", "share of sound samples that are consistent", gt=0.0, lt=1.0)
+    restoring_probability: float = setting(0.999, "", "share of nominal samples that are consistent", gt=0.0, lt=1.0)
     unusable_time: float = setting(0.5, "s", "for which a missing, stuck or rejected pose is unusable", ge=0.0)
     rejections = SampleCount("rejection_time")
     """Rejections less acceptances after which a channel is isolated."""
@@ -179,7 +179,7 @@ class WindSettings:
 class InnovationMonitorSettings(SampledSettings):
     """Detection of bias and noise by the innovations of one sensor over about a second."""
 
-    false_alarm: float = setting(1e-10, "", "probability per sample of an alarm of a sound sensor", gt=0.0, lt=1.0)
+    false_alarm: float = setting(1e-10, "", "probability per sample of an alarm of a nominal sensor", gt=0.0, lt=1.0)
     memory: float = setting(1.0, "s", "of the running means", gt=0.0)
     rejections: int = setting(3, "", "rejections within the time below that are an alarm", ge=1)
     rejection_time: float = setting(1.0, "s", "in which they are counted", gt=0.0)
@@ -192,7 +192,7 @@ class InnovationMonitorSettings(SampledSettings):
 class EstimatorSettings:
     """All settings of the estimator, by part."""
 
-    gate_probability: float = setting(1.0 - 1e-6, "", "share of sound measurements accepted", gt=0.0, lt=1.0)
+    gate_probability: float = setting(1.0 - 1e-6, "", "share of nominal measurements accepted", gt=0.0, lt=1.0)
     history: float = setting(1.0, "s", "by which a measurement may be late and is still used", gt=0.0)
     simultaneous: float = setting(0.002, "s", "within which measurements are of one moment", ge=0.0)
     payload_timeout: float = setting(0.3, "s", "without the payload unit until a payload on ground is held", gt=0.0)

@@ -162,7 +162,7 @@ def first_conflict(
 
 
 class _Bodies:
-    """The obstacles' sizes side by side: a box with half edges, rounded horizontally or in all directions."""
+    """The obstacles' sizes as arrays: a box with half edges, rounded horizontally or in all directions."""
 
     def __init__(self, shapes: Sequence[Shape]) -> None:
         self._take(np.array([shape.upright_bounds for shape in shapes]).reshape(len(shapes), 7))

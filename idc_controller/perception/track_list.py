@@ -97,19 +97,19 @@ class TrackList:
             return []
         kept, deleted = [], []
         for track in self.tracks:
-            silence = now - track.last_detected
+            undetected = now - track.last_detected
             on_map = track.map_shape is not None
-            if silence <= s.tentative_time or track.is_retained or (on_map and track.is_deleted):
+            if undetected <= s.tentative_time or track.is_retained or (on_map and track.is_deleted):
                 kept.append(track)
             elif not track.is_confirmed:
                 pass
-            elif silence > s.delete_after and in_field_of_view(track):
+            elif undetected > s.delete_after and in_field_of_view(track):
                 deleted.append(track.name)
                 self._deleted.append((now, track))
                 if on_map:
                     track.is_deleted = True
                     kept.append(track)
-            elif on_map or track.is_static or silence <= s.forget_after:
+            elif on_map or track.is_static or undetected <= s.forget_after:
                 kept.append(track)
         self.tracks = kept
         return deleted

@@ -28,7 +28,7 @@ PIECE_SLOWER = 0.93
 
 @dataclass(frozen=True, eq=False)
 class _Corner:
-    """A waypoint without hold whose passage the next piece may still change."""
+    """A waypoint without hold whose corner the next piece may still change."""
 
     time: float  # of the path as sampled, s since its beginning
     mark: Mark

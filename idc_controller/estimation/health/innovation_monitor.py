@@ -1,7 +1,7 @@
 """Monitoring of each sensor's innovations over time: biases far below the gate, noise, and repeated rejections.
 
-Innovations of a sound filter, normalised by their covariance, are independent and normal with variance 1. Running means
-over about a second show what no single sample does.
+Innovations of a consistent filter, normalised by their covariance, are independent and normal with variance 1. Running
+means over about a second show what no single sample does.
 """
 
 from collections import defaultdict, deque
@@ -35,7 +35,7 @@ class _Statistics:
 
 
 class InnovationMonitor:
-    """Learns from the innovations of one moment after the other, and reports unsound sensors."""
+    """Learns from the innovations of one moment after the other, and reports inconsistent sensors."""
 
     def __init__(
         self, gate_probability: float, settings: InnovationMonitorSettings = InnovationMonitorSettings()

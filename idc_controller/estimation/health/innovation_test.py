@@ -27,7 +27,7 @@ class InnovationTest:
 
 
 class InnovationGate:
-    """Gate that a share ``probability`` of sound measurements passes."""
+    """Gate that a share ``probability`` of nominal measurements passes."""
 
     def __init__(self, probability: float) -> None:
         self._limits = chi2.ppf(probability, np.arange(7))
