@@ -17,7 +17,7 @@ from gcs.drivers.connection import Connection
 from gcs.drivers.interrupt import Interrupt
 from gcs.drivers.lockstep import run_in_lockstep
 from gcs.drivers.realtime import run_in_real_time
-from gcs.drivers.simulator import Simulator, arguments_for
+from gcs.drivers.simulator import Simulator
 from gcs.errors import GcsError, UnusableInput
 from gcs.flight import stack
 from gcs.flight.alarms import AlarmLog
@@ -220,19 +220,13 @@ def _swarm(
         return None, [None] * mission.system.team.vehicles
     if options.connect:
         return None, [url.address for url in options.connect]
-    simulator = Simulator(
-        arguments_for(
-            mission=options.mission,
-            config=options.config,
-            vehicles=mission.system.team.vehicles,
-            seed=mission.seed,
-            run_dir=run_dir,
-            realtime=options.realtime,
-            speed=options.speed,
-        ),
-        mission.system.drivers,
-    )
-    resources.enter_context(simulator)
+    arguments = ["--mission", str(options.mission), "--vehicles", str(mission.system.team.vehicles)]
+    arguments += ["--seed", str(mission.seed), "--run-dir", str(run_dir), "--base-port", "0"]
+    if options.config is not None:
+        arguments += ["--config", str(options.config)]
+    in_real_time = ["--realtime", "--speed", str(options.speed)]
+    arguments += in_real_time if options.realtime else ["--lockstep", "--ground-port", "0"]
+    simulator = resources.enter_context(Simulator(arguments, mission.system.drivers))
     return simulator, simulator.vehicles
 
 

@@ -6,7 +6,6 @@ import re
 import subprocess
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 from types import TracebackType
 
 from gcs.drivers.settings import DriverSettings
@@ -74,15 +73,3 @@ class Simulator:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
-
-
-def arguments_for(
-    *, mission: Path, config: Path | None, vehicles: int, seed: int, run_dir: Path, realtime: bool, speed: float
-) -> list[str]:
-    """Return the arguments of ``vehicle-sim`` for one flight."""
-    arguments = ["--mission", str(mission), "--vehicles", str(vehicles), "--seed", str(seed)]
-    arguments += ["--run-dir", str(run_dir), "--base-port", "0"]
-    if config is not None:
-        arguments += ["--config", str(config)]
-    arguments += ["--realtime", "--speed", str(speed)] if realtime else ["--lockstep", "--ground-port", "0"]
-    return arguments

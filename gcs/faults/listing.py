@@ -1,6 +1,5 @@
 """The kinds of fault for people: as a list on the terminal, and as tables of the documentation."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -140,13 +139,10 @@ def _type(entry: dict[str, Any], definitions: dict[str, Any]) -> str:
 
 
 def _range(entry: dict[str, Any]) -> str:
-    return ", ".join(_bounds(entry))
-
-
-def _bounds(entry: dict[str, Any]) -> Iterator[str]:
-    for key, sign in (("minimum", ">="), ("exclusiveMinimum", ">"), ("maximum", "<="), ("exclusiveMaximum", "<")):
-        if key in entry and entry.get("type") in ("number", "integer"):
-            yield f"{sign} {entry[key]:g}"
+    if entry.get("type") not in ("number", "integer"):
+        return ""
+    signs = {"minimum": ">=", "exclusiveMinimum": ">", "maximum": "<=", "exclusiveMaximum": "<"}
+    return ", ".join(f"{sign} {entry[key]:g}" for key, sign in signs.items() if key in entry)
 
 
 def _value(value: Any) -> str:

@@ -31,6 +31,9 @@ from idc_controller.perception.obstacle_map import ObstacleMap
 
 GROUND_SYSTEM = 255
 GROUND_COMPONENT = mavlink.MAV_COMP_ID_MISSIONPLANNER
+_HEARTBEAT = mavlink.MAVLink_heartbeat_message(
+    mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, mavlink.MAV_STATE_ACTIVE, 3
+)
 
 
 class Recorder(Protocol):
@@ -96,7 +99,7 @@ class GroundStation:
         messages: list[list[Message]] = [[] for _ in self.links]
         if self._heartbeat.is_due(now):
             for queue in messages:
-                queue.append(_heartbeat())
+                queue.append(_HEARTBEAT)
         if self._timesync.is_due(now):
             for link, queue in zip(self.links, messages, strict=True):
                 queue.append(mavlink.MAVLink_timesync_message(0, link.clock.request(now)))
@@ -189,9 +192,3 @@ class GroundStation:
             thrust_max = link.status.parameters[px4.PARAM_THRUST_MAX]
             messages.append(attitude_target(link.system_id, link.setpoints.stamp(now), direction, thrust, thrust_max))
         return messages
-
-
-def _heartbeat() -> Message:
-    return mavlink.MAVLink_heartbeat_message(
-        mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, mavlink.MAV_STATE_ACTIVE, 3
-    )
