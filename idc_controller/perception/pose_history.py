@@ -1,29 +1,13 @@
 """Poses of the vehicles over the last second, measured and estimated, by which their scans are placed."""
 
-from collections import deque
-from typing import TypeVar
+from collections import defaultdict, deque
 
 import numpy as np
 
 from idc_controller.arrays import Array
-from idc_controller.estimation.measurements import Attitude, Measurement, Position
+from idc_controller.estimation.measurements import Attitude, Measurement, Position, SensorKey
 from idc_controller.perception.settings import ScanSettings
 from idc_controller.rotations import quaternion_product
-
-_Pose = TypeVar("_Pose", Attitude, Position)
-
-
-class _Samples:
-    def __init__(self, length: int) -> None:
-        self._length = length
-        self.attitudes: dict[int, deque[Attitude]] = {}
-        self.positions: dict[int, deque[Position]] = {}
-
-    def add(self, sample: Measurement) -> None:
-        if isinstance(sample, Attitude):
-            self.attitudes.setdefault(sample.source, deque(maxlen=self._length)).append(sample)
-        else:
-            self.positions.setdefault(sample.source, deque(maxlen=self._length)).append(sample)
 
 
 class PoseHistory:
@@ -31,28 +15,30 @@ class PoseHistory:
 
     def __init__(self, settings: ScanSettings) -> None:
         self._gap = settings.pose_gap
-        self._measured, self._estimated = _Samples(settings.poses), _Samples(settings.poses)
+        self._measured, self._estimated = (
+            defaultdict[SensorKey, deque[Measurement]](lambda: deque(maxlen=settings.poses)) for _ in range(2)
+        )
 
     def add_measured(self, sample: Measurement) -> None:
         """Add a measured position or attitude of a vehicle; those of the payload are passed over."""
         if sample.source >= 0 and sample.has_pose:
-            self._measured.add(sample)
+            self._measured[sample.source, type(sample)].append(sample)
 
     def add_estimated(self, sample: Measurement) -> None:
         """Add an estimated position or attitude of a vehicle."""
-        self._estimated.add(sample)
+        self._estimated[sample.source, type(sample)].append(sample)
 
     @property
     def uavs(self) -> tuple[int, ...]:
         """Vehicles (0 .. N-1) with a measured position."""
-        return tuple(self._measured.positions)
+        return tuple(source for source, kind in self._measured if kind is Position)
 
     def position(self, uav: int, time: float, within: float) -> Array | None:
         """Return the last measured position (3,) (NED, m), None if it is not ``within`` that time of ``time`` (s)."""
-        history = self._measured.positions.get(uav)
+        history = self._measured.get((uav, Position))
         if not history or not abs(time - history[-1].time) <= within:
             return None
-        return history[-1].position
+        return history[-1].pose
 
     def pose(
         self, uav: int, time: float, estimated_position: bool, estimated_attitude: bool
@@ -62,22 +48,22 @@ class PoseHistory:
         ``estimated_position`` and ``estimated_attitude``: take the estimated ones instead of the measured ones.
         """
         measured, estimated = self._measured, self._estimated
-        attitudes, positions = estimated.attitudes.get(uav), estimated.positions.get(uav)
-        attitude = self._nearest(attitudes if estimated_attitude else measured.attitudes.get(uav), time)
-        position = self._nearest(positions if estimated_position else measured.positions.get(uav), time)
+        attitudes, positions = estimated.get((uav, Attitude)), estimated.get((uav, Position))
+        attitude = self._nearest(attitudes if estimated_attitude else measured.get((uav, Attitude)), time)
+        position = self._nearest(positions if estimated_position else measured.get((uav, Position)), time)
         if attitude is None or position is None:
             return None
         turning = attitude if attitude.has_motion else self._nearest(attitudes, time)
         moving = position if position.has_motion else self._nearest(positions, time)
-        quaternion, place = attitude.quaternion, position.position
+        quaternion, place = attitude.pose, position.pose
         if turning is not None and abs(dt := time - attitude.time) > 1e-4:
-            quaternion = quaternion_product(quaternion, np.append(1.0, 0.5 * dt * turning.rates))
+            quaternion = quaternion_product(quaternion, np.append(1.0, 0.5 * dt * turning.motion))
             quaternion = quaternion / np.linalg.norm(quaternion)
         if moving is not None:
-            place = place + (time - position.time) * moving.velocity
+            place = place + (time - position.time) * moving.motion
         return place, quaternion
 
-    def _nearest(self, history: deque[_Pose] | None, time: float) -> _Pose | None:
+    def _nearest(self, history: deque[Measurement] | None, time: float) -> Measurement | None:
         if not history:
             return None
         found = history[-1]
