@@ -73,6 +73,13 @@ class SystemParameters:
                 raise ParameterError(f"{name} must be symmetric and positive definite")
         if np.linalg.matrix_rank(self._moment_balance()) < 3:
             raise ParameterError("the attachment points lie on one line: the payload would tip")
+        share = self.payload_share
+        if np.any(share <= 0.0):
+            i = int(np.argmin(share))
+            raise ParameterError(
+                f"link {i + 1} would bear {100.0 * share[i]:.1f} % of the payload's weight (limit: more than 0): the "
+                f"centre of mass lies too far to one side of the attachment points"
+            )
         hover = self.hover_thrust
         if np.any(hover <= 0.0) or np.any(hover >= self.thrust_max):
             raise ParameterError(

@@ -33,6 +33,7 @@ def systems():
     for n in (3, 4, 6):
         yield pytest.param(CONFIG.with_vehicles(n).parameters(), id=str(n))
     yield pytest.param(replace(CONFIG.parameters(), p=UNSYMMETRIC), id="unsymmetric")
+    yield pytest.param(read_system(MISSIONS / "l_payload.toml").parameters(), id="mesh")
     yield pytest.param(replace(CONFIG.parameters(), l=np.array([3.2, 2.0, 2.6, 3.8])), id="links")
 
 

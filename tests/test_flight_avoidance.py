@@ -182,3 +182,14 @@ def test_flight_keeps_clear_of_tilted_box_on_the_map_and_of_unknown_moving_capsu
     result = flown(tmp_path, TILTED)
     assert result.exit_code == ExitStatus.DONE, result.reason
     check_safe(result.summary)
+
+
+def test_l_shaped_payload_is_flown_between_obstacles_within_the_limits_of_the_box(tmp_path):
+    """Its centre of mass is 0.1 m off its middle."""
+    code, summary = gcs_fly(MISSIONS / "l_payload_course.toml", tmp_path / "run", "--seed", 4, "--no-pictures")
+    assert code == 0, summary
+    assert summary["completed"] and summary["contacts"] == 0
+    assert summary["position_rmse_m"]["total"] <= 0.05
+    assert max(summary["payload_tilt_max_deg"].values()) <= 5.0
+    assert summary["clearance_min_m"] >= 0.5
+    assert summary["landing"]["on_ground"] and summary["landing"]["tilt_deg"] < 1.0

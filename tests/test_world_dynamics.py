@@ -5,15 +5,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from mission_files import MISSIONS
 from nonlinear_motion import hover_inputs, hover_state, rk4_step, uav_positions, uav_velocities
 from paper_system import system
 from world_runs import angle_between, link_lengths, place, run, uav_array, unequal
 
+from gcs.config import read_system
 from idc_controller.model.nonlinear import Inputs, accelerations, thrust_forces
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
 from vehicle_sim.world.errors import UnsupportedWorld
 from vehicle_sim.world.multibody import MAX_VEHICLES
 from vehicle_sim.world.world import World
+
+L_PAYLOAD = read_system(MISSIONS / "l_payload.toml").parameters()
 
 
 def displaced(parameters, y, altitude=20.0):
@@ -131,7 +135,7 @@ def world_force_law(parameters, seed=0):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("parameters", [system(3), system(6), unequal()], ids=["3", "6", "unequal"])
+@pytest.mark.parametrize("parameters", [system(3), system(6), unequal(), L_PAYLOAD], ids=["3", "6", "unequal", "L"])
 def test_forced_motion_agrees_with_an_independent_integration(parameters):
     pairs = list(forced(parameters, 1000, 5.0, world_force_law(parameters)))
     path = np.array([world.payload_position_in_world for world, _ in pairs])
@@ -219,10 +223,10 @@ def test_parameters_that_engine_cannot_simulate_are_refused():
     assert MAX_VEHICLES >= 8
     with pytest.raises(UnsupportedWorld, match=f"{MAX_VEHICLES + 1} vehicles"):
         World(system(MAX_VEHICLES + 1))
-    oblique = np.diag([0.29, 0.29, 0.55])
-    oblique[0, 1] = oblique[1, 0] = 0.05
-    with pytest.raises(UnsupportedWorld, match="J_0"):
-        World(replace(system(), J_0=oblique))
+    oblique = np.tile(np.diag([0.01, 0.01, 0.01]), (4, 1, 1))
+    oblique[2, 0, 1] = oblique[2, 1, 0] = 0.001
+    with pytest.raises(UnsupportedWorld, match=r"J\[2\]"):
+        World(replace(system(), J=oblique))
     with pytest.raises(UnsupportedWorld, match="J_0"):
         World(replace(system(), J_0=np.diag([0.1, 0.1, 0.55])))
 

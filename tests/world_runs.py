@@ -64,8 +64,9 @@ def place(world, state):
     R_0 = state.R_0
     payload_quaternion = quaternion_to_engine(state.quaternion_0.tolist())
     pybullet.resetBasePositionAndOrientation(
-        system.body, flipped(state.r_0.tolist()), payload_quaternion, physicsClientId=client
-    )
+        system.body, flipped(state.r_0.tolist()),
+        _product(payload_quaternion, _conjugate(system.payload_in_axes)), physicsClientId=client,
+    )  # fmt: skip
     pybullet.resetBaseVelocity(
         system.body, flipped(state.r_0_dot.tolist()), flipped((R_0 @ state.omega_0).tolist()),
         physicsClientId=client,

@@ -15,6 +15,8 @@ FORMATS = (".stl", ".obj", ".ply")
 LARGEST_FILE = 20e6  # bytes
 THINNEST = 1e-3
 """Least edge of the bounding box over its largest."""
+MOST_CORNERS = 2000
+"""Of the convex hull."""
 
 
 class UnusableMesh(Exception):

@@ -14,6 +14,7 @@ from typing import Annotated, Any, Union, get_args, get_origin, get_type_hints
 
 from pydantic import AfterValidator, ConfigDict, Field, create_model
 
+from gcs.config.payload_mesh import PayloadMesh
 from idc_controller.errors import ParameterError
 from idc_controller.settings import DERIVED_KEY, METADATA_KEY, Setting
 
@@ -71,6 +72,8 @@ def table_of(values: Any) -> dict[str, Any]:
 
 
 def _plain(value: Any) -> Any:
+    if isinstance(value, PayloadMesh):
+        return value.path.name
     return [_plain(item) for item in value] if isinstance(value, tuple) else value
 
 
@@ -108,6 +111,8 @@ def _bounds(setting: Setting) -> dict[str, Any]:
 
 def _bounded(hint: Any, bounds: dict[str, Any]) -> Any:
     """Return the type ``hint`` with ``bounds`` on every number in it, and tables as the types they are read by."""
+    if hasattr(hint, "__get_pydantic_core_schema__"):  # reads itself
+        return hint
     if isinstance(hint, type) and dataclasses.is_dataclass(hint):
         return table_type(hint)
     if hint in (int, float):

@@ -34,10 +34,10 @@ from gcs.config.vehicle_settings import AutopilotSettings, VehicleLinkSettings
 from gcs.drivers.settings import DriverSettings
 from gcs.errors import UnusableInput
 from gcs.mavlink.settings import MavlinkSettings
+from idc_controller.arrays import Array
 from idc_controller.control.settings import MpcTuning
 from idc_controller.errors import ParameterError
 from idc_controller.parameters import SystemParameters, polygon_attachments
-from idc_controller.payload_hull import PayloadHull
 from idc_controller.perception.settings import PerceptionSettings
 from idc_controller.trajectory.settings import AvoidanceSettings, BrakingSettings
 
@@ -72,18 +72,14 @@ class SystemConfig:
 
         Raises :class:`idc_controller.errors.ParameterError` when it could not fly; :func:`read_system` has checked it.
         """
-        n, hull = self.team.vehicles, PayloadHull.box(self.payload.size)
-        if self.team.attachments is not None:
-            p = np.array(self.team.attachments)
-        else:
-            p = polygon_attachments(n, self.team.spacing, -hull.above)
+        n = self.team.vehicles
         return SystemParameters(
             m_0=self.payload.mass,
-            J_0=np.diag(self.payload.inertia),
-            payload=hull,
+            J_0=self.payload.inertia_tensor,
+            payload=self.payload.hull,
             m=np.full(n, self.uav.mass),
             J=np.tile(np.diag(self.uav.inertia), (n, 1, 1)),
-            p=p,
+            p=self.attachment_points(),
             l=np.full(n, self.team.link_length),
             disc_radius=self.uav.disc_radius,
             thrust_max=self.uav.thrust_max,
@@ -91,6 +87,17 @@ class SystemConfig:
             attitude_kp=self.uav.attitude_kp,
             attitude_kd=self.uav.attitude_kd,
         )
+
+    def attachment_points(self) -> Array:
+        """Return the attachment points about the payload's centre of mass (N, 3) (m)."""
+        if self.team.attachments is not None:
+            return np.array(self.team.attachments) - self.payload.centre_of_mass
+        return polygon_attachments(self.team.vehicles, self.team.spacing, -self.payload.hull.above)
+
+    def attachment_problems(self) -> list[str]:
+        """Return a line for each attachment point off the surface of a mesh; at a box there may be outriggers."""
+        mesh = self.payload.mesh
+        return [] if mesh is None else mesh.misplaced(self.attachment_points())
 
     def true_parameters(self) -> SystemParameters:
         """Return the system of the simulated world: ``world.payload_mass_factor`` scales the payload's mass."""
@@ -118,6 +125,8 @@ class SystemConfig:
                 f"{vehicles} vehicles: team.attachments of the system file is for {self.team.vehicles} of them"
             )
         changed = replace(self, team=replace(self.team, vehicles=vehicles))
+        if problems := changed.attachment_problems():
+            raise UnusableInput(f"{vehicles} vehicles: {problems[0]}")
         try:
             changed.true_parameters()
         except ParameterError as error:
@@ -170,6 +179,10 @@ def _disagreements(config: SystemConfig, file: TomlFile) -> list[str]:
             found.append((key, f"{rate} Hz is faster than telemetry, {rates.telemetry} Hz"))
     if team.attachments is not None and len(team.attachments) != team.vehicles:
         found.append((("team", "attachments"), f"{len(team.attachments)} points for {team.vehicles} vehicles"))
+    found += [(("team", "attachments"), problem) for problem in config.attachment_problems()]
+    if config.payload.mesh is not None:
+        given = file.data["payload"]
+        found += [(("payload", key), "follows from mesh: leave it out") for key in ("size", "inertia") if key in given]
     if motion.speed > motion.speed_max:
         found.append((("motion", "speed"), f"{motion.speed} is more than speed_max, {motion.speed_max}"))
     return [file.problem(key, reason) for key, reason in found]

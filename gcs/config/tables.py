@@ -6,7 +6,12 @@ Table I of the paper.
 
 from dataclasses import dataclass, field
 
+import numpy as np
+
+from gcs.config.payload_mesh import PayloadMesh
+from idc_controller.arrays import Array
 from idc_controller.control.settings import CONTROL_RATE
+from idc_controller.payload_hull import PayloadHull
 from idc_controller.settings import setting
 from idc_controller.trajectory.settings import Limits
 
@@ -15,13 +20,36 @@ Vector = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class PayloadConfig:
-    """The payload: a box."""
+    """The payload: a box, or the body of a mesh, from which size and inertia follow."""
 
     mass: float = setting(3.1, "kg", "mass in the controller's model", gt=0.0)
-    inertia: Vector = setting(
-        (0.29, 0.29, 0.55), "kg m2", "principal moments of inertia about the payload's axes", gt=0.0
+    inertia: Vector | None = setting(
+        (0.29, 0.29, 0.55), "kg m2", "principal moments of inertia about the axes of the box", gt=0.0
     )
-    size: Vector = setting((1.0, 1.0, 0.5), "m", "edges of the box", gt=0.0)
+    size: Vector | None = setting((1.0, 1.0, 0.5), "m", "edges of the box", gt=0.0)
+    mesh: PayloadMesh | None = setting(
+        None, "", "STL, OBJ or PLY file of a body of one density, in place of the box; axes forward-right-down"
+    )
+
+    def __post_init__(self) -> None:
+        if self.mesh is not None:
+            object.__setattr__(self, "size", None)
+            object.__setattr__(self, "inertia", None)
+
+    @property
+    def hull(self) -> PayloadHull:
+        """Its convex hull about the centre of mass."""
+        return PayloadHull.box(np.array(self.size)) if self.mesh is None else PayloadHull(self.mesh.vertices)
+
+    @property
+    def inertia_tensor(self) -> Array:
+        """Its inertia about the centre of mass (3, 3) (kg m2)."""
+        return np.diag(np.array(self.inertia)) if self.mesh is None else self.mass * self.mesh.inertia
+
+    @property
+    def centre_of_mass(self) -> Array:
+        """The centre of mass (3,) (m) in the coordinates of the attachment points: the mesh's, or the box's."""
+        return np.zeros(3) if self.mesh is None else self.mesh.centre_of_mass
 
 
 @dataclass(frozen=True)
@@ -50,7 +78,9 @@ class TeamConfig:
     )
     link_length: float = setting(3.2, "m", "length of a link", gt=0.0)
     attachments: tuple[Vector, ...] | None = setting(
-        None, "m", "attachment points in the payload frame, one for each UAV, in place of the polygon"
+        None,
+        "m",
+        "one attachment point a UAV in place of the polygon: from the centre of the box, or in the mesh's coordinates",
     )
 
 

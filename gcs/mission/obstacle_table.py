@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Union, get_type_hints
 import numpy as np
 from pydantic import AfterValidator, Field, ValidationInfo
 
-from gcs.config.mesh_file import UnusableMesh, read_mesh
+from gcs.config.mesh_file import MOST_CORNERS, UnusableMesh, read_mesh
 from gcs.config.tables import Vector
 from gcs.config.validate import Positive, strict
 from gcs.mission.model import Name, Obstacle
@@ -20,7 +20,6 @@ from idc_controller.geometry.shapes import SHAPES
 
 CONVEX = 0.95
 """Share of its hull that a mesh must fill; with less the hull would take too much of the free space."""
-MOST_CORNERS = 2000
 
 
 def read_hull(path: Path) -> MeshHull:

@@ -78,7 +78,8 @@ class RunData:
     @property
     def payload(self) -> PayloadHull:
         """The payload's hull."""
-        return PayloadHull.box(self.setting("payload", "size"))
+        mesh = self.setting("payload", "mesh")
+        return PayloadHull.box(self.setting("payload", "size")) if mesh is None else PayloadHull(mesh["vertices"])
 
     @property
     def pad(self) -> PadSettings:

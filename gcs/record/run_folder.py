@@ -142,16 +142,16 @@ def versions() -> dict[str, str]:
 def to_json(value: Any) -> Any:
     """The same value in terms of strict JSON.
 
-    Dataclasses and mappings become objects, arrays, sequences and sets become lists, paths and dates text,
-    enumeration members their names; NaN becomes null and infinity the text ``inf`` or ``-inf``; anything else
-    its ``str``.
+    Dataclasses (their fields that are in the ``repr``) and mappings become objects, arrays, sequences and sets become
+    lists, paths and dates text, enumeration members their names; NaN becomes null and infinity the text ``inf`` or
+    ``-inf``; anything else its ``str``.
     """
     if value is None or (isinstance(value, (bool, str)) and not isinstance(value, enum.Enum)):
         return value
     if isinstance(value, enum.Enum):
         return value.name
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        return {field.name: to_json(getattr(value, field.name)) for field in dataclasses.fields(value)}
+        return {field.name: to_json(getattr(value, field.name)) for field in dataclasses.fields(value) if field.repr}
     if isinstance(value, (np.ndarray, np.generic)):
         return to_json(value.tolist())
     if isinstance(value, int):

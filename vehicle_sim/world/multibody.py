@@ -5,13 +5,17 @@ origin at the attachment point and its z axis along the link, towards the UAV.
 """
 
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 import pybullet
-from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
+from scipy.spatial import ConvexHull, HalfspaceIntersection
+from scipy.spatial.transform import Rotation
 
+from idc_controller.arrays import Array
 from idc_controller.parameters import SystemParameters
 from idc_controller.payload_hull import PayloadHull
 from vehicle_sim.world.errors import UnsupportedWorld
@@ -24,6 +28,7 @@ MAX_VEHICLES = (MAX_COORDINATES - 7) // 8
 LINK_RADIUS = 0.01  # m, of the links' collision shape
 DISC_THICKNESS = 0.04  # m, of the UAVs' collision shape
 PAYLOAD_FILE = "payload.obj"
+_HULL_MARGIN = 0.001  # m, that the engine adds about a hull; unlike a box's it lies outside
 
 # A link without mass needs some inertia, or the engine diverges; 1e-6 kg m2 across it is below any measurable effect.
 # Along its axis, where no joint or force turns it, more costs nothing: it keeps contacts from spinning the link up
@@ -42,6 +47,10 @@ class Multibody(NamedTuple):
     body: int
     links: tuple[int, ...]
     uavs: tuple[int, ...]
+    payload_moments: tuple[float, ...]
+    """The payload's principal moments of inertia (3,) (kg m2)."""
+    payload_in_axes: tuple[float, float, float, float]
+    """Payload frame to principal axes, x-first: the engine's attitude of the payload is that of its principal axes."""
 
 
 def check_supported(parameters: SystemParameters) -> None:
@@ -51,17 +60,36 @@ def check_supported(parameters: SystemParameters) -> None:
         raise UnsupportedWorld(
             f"{n} vehicles: the physics engine is wrong beyond {MAX_VEHICLES} ({MAX_COORDINATES} coordinates)"
         )
-    for name, inertia in [("J_0", parameters.J_0), *((f"J[{i}]", J) for i, J in enumerate(parameters.J))]:
-        diagonal = np.diag(inertia)
-        if np.any(inertia != np.diag(diagonal)):
-            raise UnsupportedWorld(f"{name}: the world takes no products of inertia")
+    for i, inertia in enumerate(parameters.J):
+        if np.any(inertia != np.diag(np.diag(inertia))):
+            raise UnsupportedWorld(f"J[{i}]: the world takes no products of inertia of a UAV")
+    payload = principal_axes(parameters.J_0)[0]
+    for name, moments in [("J_0", payload), *((f"J[{i}]", np.diag(J)) for i, J in enumerate(parameters.J))]:
         # A rigid body's moments of inertia obey the triangle inequality; the engine corrects others without a message.
-        if 2 * diagonal.max() > diagonal.sum() * (1 + 1e-9):
-            raise UnsupportedWorld(f"{name}: no rigid body has the moments of inertia {diagonal.tolist()}")
+        if 2 * moments.max() > moments.sum() * (1 + 1e-9):
+            raise UnsupportedWorld(f"{name}: no rigid body has the moments of inertia {moments.tolist()}")
+
+
+def principal_axes(inertia: Array) -> tuple[Array, Array]:
+    """Return the principal moments (3,) of ``inertia`` (3, 3) and its axes (3, 3), columns nearest to its frame's."""
+    moments, axes = np.linalg.eigh(inertia)
+    order = linear_sum_assignment(-np.abs(axes))[1]
+    axes = axes[:, order] * np.where(np.diag(axes[:, order]) < 0.0, -1.0, 1.0)
+    if np.linalg.det(axes) < 0.0:
+        axes[:, np.argmin(np.diag(axes))] *= -1.0
+    return moments[order], axes
+
+
+def _payload_axes(parameters: SystemParameters) -> tuple[Array, Rotation]:
+    """Return the payload's principal moments, and the rotation from its principal axes to forward-left-up."""
+    up = np.diag([1.0, -1.0, -1.0])
+    moments, axes = principal_axes(up @ parameters.J_0 @ up)
+    return moments, Rotation.from_matrix(axes)
 
 
 def urdf_text(parameters: SystemParameters) -> str:
     """The system as URDF. Attachment points outside the payload's box stand on outriggers without mass or shape."""
+    moments, axes = _payload_axes(parameters)
     edges = parameters.payload.box_edges
     if edges is None:
         shape = f'<mesh filename="{PAYLOAD_FILE}"/>'
@@ -70,7 +98,7 @@ def urdf_text(parameters: SystemParameters) -> str:
     parts = [
         '<?xml version="1.0"?>',
         '<robot name="cooplift">',
-        _link("payload", parameters.m_0, np.diag(parameters.J_0), shape),
+        _link("payload", parameters.m_0, moments, shape, axes=axes.as_euler("xyz").tolist()),
     ]
     for i, (p_i, l_i, m_i, J_i) in enumerate(
         zip(parameters.p, parameters.l, parameters.m, parameters.J, strict=True), start=1
@@ -129,26 +157,32 @@ def load_multibody(client: int, parameters: SystemParameters, position: tuple[fl
                 body, part, localInertiaDiagonal=(_LINK_INERTIA, _LINK_INERTIA, _LINK_AXIAL_INERTIA),
                 physicsClientId=client,
             )  # fmt: skip
-    return Multibody(body, links, tuple(index[f"uav{i}"] for i in numbers))
+    moments, axes = _payload_axes(parameters)
+    uavs = tuple(index[f"uav{i}"] for i in numbers)
+    return Multibody(body, links, uavs, tuple(moments.tolist()), tuple(axes.inv().as_quat().tolist()))
 
 
 def _payload_text(payload: PayloadHull) -> str:
-    """The vertices of the payload's hull, and faces without which the engine's reader takes none, as OBJ."""
-    import trimesh  # half a second, spent only where there is a mesh
-
-    hull = trimesh.convex.convex_hull(payload.vertices * (1.0, -1.0, -1.0))
-    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in hull.vertices.tolist()]
-    lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in hull.faces.tolist()]
+    """Return the hull less the engine's margin as OBJ: vertices, and the faces that its reader needs."""
+    faces = ConvexHull(payload.vertices * (1.0, -1.0, -1.0)).equations
+    faces[:, 3] = np.minimum(faces[:, 3] + _HULL_MARGIN, 0.5 * faces[:, 3])
+    vertices = np.unique(HalfspaceIntersection(faces, np.zeros(3)).intersections.round(9), axis=0)
+    hull = ConvexHull(vertices)
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in vertices.tolist()]
+    lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in hull.simplices.tolist()]
     return "\n".join([*lines, ""])
 
 
-def _link(name: str, mass: float, inertia: NDArray[np.float64], shape: str, shape_z: float = 0.0) -> str:
+def _link(
+    name: str, mass: float, inertia: Array, shape: str, shape_z: float = 0.0, axes: Sequence[float] = (0.0, 0.0, 0.0)
+) -> str:
     ixx, iyy, izz = (float(value) for value in inertia)
     geometry = f'<origin xyz="0 0 {float(shape_z)!r}"/>\n<geometry>\n{shape}\n</geometry>'
     return "\n".join(
         [
             f'<link name="{name}">',
             "<inertial>",
+            f'<origin rpy="{" ".join(map(repr, axes))}"/>',
             f'<mass value="{float(mass)!r}"/>',
             f'<inertia ixx="{ixx!r}" ixy="0" ixz="0" iyy="{iyy!r}" iyz="0" izz="{izz!r}"/>',
             "</inertial>",

@@ -6,7 +6,6 @@ All that crosses this boundary is SI, north-east-down, forward-right-down, quate
 from collections.abc import Sequence
 from typing import NamedTuple, Self
 
-import numpy as np
 import pybullet
 
 from gcs.config.tables import WorldConfig
@@ -17,7 +16,7 @@ from vehicle_sim.world.errors import SimulationError
 from vehicle_sim.world.ground import Contacts, Ground, Pose
 from vehicle_sim.world.multibody import check_supported, load_multibody
 from vehicle_sim.world.obstacle_bodies import ObstacleBodies
-from vehicle_sim.world.world_state import UavState, WorldState, flipped, quaternion_from_engine
+from vehicle_sim.world.world_state import UavState, WorldState, flipped, product, quaternion_from_engine
 
 _ORIGIN = (0.0, 0.0, 0.0)
 
@@ -131,8 +130,8 @@ class World:
         parameters, client, body = self.parameters, self._client, self._system.body
         share = mass / parameters.m_0
         pybullet.changeDynamics(body, -1, mass=mass, physicsClientId=client)
-        # After the mass: with that alone the engine takes the inertia of a homogeneous box.
-        inertia = tuple(share * float(J) for J in np.diag(parameters.J_0))
+        # After the mass: with that alone the engine takes the inertia of the collision shape's box.
+        inertia = tuple(share * moment for moment in self._system.payload_moments)
         pybullet.changeDynamics(body, -1, localInertiaDiagonal=inertia, physicsClientId=client)
 
     def state(self) -> WorldState:
@@ -188,8 +187,9 @@ class World:
         which the engine takes the next forces. Hence after every step, whether the state is read or not.
         """
         body, client = self._system.body, self._client
+        position, attitude = pybullet.getBasePositionAndOrientation(body, client)
         return _Reading(
-            pybullet.getBasePositionAndOrientation(body, client),
+            (position, product(attitude, self._system.payload_in_axes)),
             pybullet.getBaseVelocity(body, client),
             pybullet.getLinkStates(body, self._system.uavs, 1, 1, client),
         )

@@ -57,6 +57,18 @@ def quaternion_from_engine(q: Sequence[float]) -> Quaternion:
     return q[3], q[0], -q[1], -q[2]
 
 
+def product(a: Sequence[float], b: Sequence[float]) -> Quaternion:
+    """Return the product of two x-first quaternions of the engine."""
+    ax, ay, az, aw = a
+    bx, by, bz, bw = b
+    return (
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+        aw * bw - ax * bx - ay * by - az * bz,
+    )
+
+
 def quaternion_to_engine(q: Sequence[float]) -> Quaternion:
     """The inverse of :func:`quaternion_from_engine`."""
     return q[1], -q[2], -q[3], q[0]

@@ -70,7 +70,13 @@ def read_base(path: Path, config: Path | None = None) -> BaseMission:
         files[name] = text
         return name
 
-    system = copied(Path("system.toml"), tables_text(mission.system.tables()))
+    system_tables = mission.system.tables()
+    if mesh := mission.system.payload.mesh:
+        from trimesh.exchange.obj import export_obj  # half a second, spent only where there is a mesh
+
+        text = export_obj(mesh.surface, include_normals=False, digits=17)
+        system_tables["payload"]["mesh"] = copied(Path("payload.obj"), text)
+    system = copied(Path("system.toml"), tables_text(system_tables))
     tables = {**tables, "mission": {**tables["mission"], "system": system}}
     if "file" in tables["reference"]:
         source = path.parent / tables["reference"]["file"]
