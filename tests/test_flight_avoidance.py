@@ -186,8 +186,12 @@ def test_flight_keeps_clear_of_tilted_box_on_the_map_and_of_unknown_moving_capsu
 
 def test_l_shaped_payload_is_flown_between_obstacles_within_the_limits_of_the_box(tmp_path):
     """Its centre of mass is 0.1 m off its middle."""
-    code, summary = gcs_fly(MISSIONS / "l_payload_course.toml", tmp_path / "run", "--seed", 4, "--no-pictures")
-    assert code == 0, summary
+    mission = read_mission(MISSIONS / "l_payload_course.toml")
+    with InProcessFlight(mission, tmp_path / "run", seed=4, obstacles=mission.obstacles) as flight:
+        flight.fly()
+        result = flight.result()
+    summary = result.summary
+    assert result.exit_code == ExitStatus.DONE, result.reason
     assert summary["completed"] and summary["contacts"] == 0
     assert summary["position_rmse_m"]["total"] <= 0.05
     assert max(summary["payload_tilt_max_deg"].values()) <= 5.0
