@@ -16,7 +16,3 @@ class UnusableInput(GcsError):
     def __init__(self, *reasons: str) -> None:
         super().__init__(*reasons[:1])
         self.reasons = reasons
-
-
-class FlightAborted(GcsError):
-    """A flight that could not be begun or ended early, safely: exit code 1."""
