@@ -67,7 +67,7 @@ class FlightRecorder:
         x = estimate.x
         attitude = quaternion_from_euler(*x[6:9])
         self._estimate.write([estimate.time, *x[0:3], *attitude, *x[3:6], *x[9:12], *estimate.force])
-        milliseconds = (record.estimator_time * 1e3, decision.planner_time * 1e3, decision.tracker_time * 1e3)
+        milliseconds = (record.estimator_time * 1e3, *(1e3 * part for part in decision.compute_time))
         self._steps.write(
             [time, *milliseconds, (record.estimator_time + record.controller_time) * 1e3, decision.iterations,
              decision.infeasible]

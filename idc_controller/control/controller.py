@@ -7,6 +7,7 @@ and deflects it to keep obstacles out of the hull.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,6 +25,13 @@ from idc_controller.safety.filter_protocol import SafetyFilter, SafetyReport
 from idc_controller.trajectory.flatness import FlatReference, PayloadTrajectory
 from idc_controller.trajectory.reference import Reference
 from idc_controller.trajectory.trajectory import Trajectory
+
+
+class ComputeTime(NamedTuple):
+    """Time spent in parts of a step, by the stopwatch that the caller gave (s)."""
+
+    planner: float
+    tracker: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,10 +52,7 @@ class Decision:
     """The reference from ``time`` on, one stage a period."""
     iterations: int
     infeasible: bool
-    planner_time: float
-    """Spent in the safety filter, by the stopwatch that the caller gave (s)."""
-    tracker_time: float
-    """Spent in the tracker (s)."""
+    compute_time: ComputeTime
     safety: SafetyReport
     """Outcome of the safety filter's last plan."""
     progress_rate: float
@@ -136,8 +141,7 @@ class IntegratedDecisionController:
             flat=stages,
             iterations=output.iterations,
             infeasible=output.infeasible,
-            planner_time=planned - begin,
-            tracker_time=tracked - ready,
+            compute_time=ComputeTime(planned - begin, tracked - ready),
             safety=self.safety.report,
             progress_rate=self.guidance.rate,
             detours=self.guidance.detours,
