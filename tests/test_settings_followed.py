@@ -14,8 +14,10 @@ from gcs.drivers.connection import Connection
 from gcs.drivers.interrupt import Interrupt
 from gcs.drivers.lockstep import run_in_lockstep
 from gcs.flight import stack
+from gcs.flight.mission_trajectory import MissionTrajectory
 from gcs.mavlink.requests import CommandState
 from gcs.mavlink.vehicle_link import VehicleLink
+from gcs.mission.read import read_mission
 from idc_controller.estimation.health.channel_isolation import ChannelIsolation
 from idc_controller.estimation.measurement_model import MeasurementModel
 from idc_controller.estimation.measurements import Attitude, MeasurementNoise
@@ -168,3 +170,19 @@ def test_world_without_ticks_is_lost_after_the_time_of_the_file(tmp_path):
     with closing(Connection()) as ground, closing(Connection()) as world:
         run_in_lockstep(station, ground, world.socket.getsockname(), Interrupt(), read_system(path).drivers)
     assert reasons == ["the simulated world does not answer for 0.05 s"]
+
+
+def test_waypoints_are_passed_within_the_corner_of_the_motion(tmp_path):
+    path = tmp_path / "corner.toml"
+    path.write_text(
+        '[mission]\nname = "corner"\nseed = 1\n[reference]\nkind = "waypoints"\nspeed = 1.5\n'
+        "points = [[6.0, 0.0, -3.0], [6.0, 6.0, -3.0], [0.0, 6.0, -3.0]]\n"
+    )
+    mission, distances = read_mission(path), []
+    for corner in (0.2, 0.05):
+        flown = MissionTrajectory(
+            replace(mission, system=system(motion={"corner": corner})), np.zeros(3), 0.0
+        ).trajectory
+        positions = flown.derivatives(np.arange(0.0, 40.0, 0.01), 0)[0]
+        distances.append(np.linalg.norm(positions - [6.0, 6.0, -3.0], axis=1).min())
+    assert distances[1] <= 0.051 < distances[0] <= 0.201

@@ -13,7 +13,7 @@ from idc_controller.arrays import Array
 from idc_controller.control.settings import CONTROL_RATE
 from idc_controller.payload_hull import PayloadHull
 from idc_controller.settings import setting
-from idc_controller.trajectory.settings import Limits
+from idc_controller.trajectory.settings import CORNER, Limits
 
 Vector = tuple[float, float, float]
 
@@ -127,6 +127,7 @@ class MotionConfig:
     acceleration: float = setting(Limits.acceleration, "m/s2", "acceleration between waypoints", gt=0.0)
     jerk: float = setting(Limits.jerk, "m/s3", "jerk between waypoints", gt=0.0)
     snap: float = setting(Limits.snap, "m/s4", "snap between waypoints", gt=0.0)
+    corner: float = setting(CORNER, "m", "distance within which a waypoint without hold is passed", gt=0.0)
     climb_speed: float = setting(1.0, "m/s", "vertical speed of take-off and descent", gt=0.0)
     landing_speed: float = setting(0.3, "m/s", "vertical speed at touch-down", gt=0.0)
     curve_speed: float = setting(5.0, "m/s", "speed on figure eights, which turn all the time", gt=0.0)

@@ -91,7 +91,7 @@ class MissionTrajectory:
             return self._figure(mission.reference, time, here)
         speeds = [step.speed for step in mission.reference.steps if isinstance(step, Speed) and step.speed]
         limits = self._limits(max([self._motion.speed, mission.reference.speed, *speeds]))
-        return WaypointTrajectory(here, self._legs(legs), limits, start=time)
+        return WaypointTrajectory(here, self._legs(legs), limits, start=time, corner=self._motion.corner)
 
     def _figure(self, figure: Lissajous, time: float, here: Array) -> Trajectory:
         """Return the trajectory to the curve's beginning, along it, and back to ``here``."""

@@ -9,6 +9,9 @@ from idc_controller.arrays import Array
 from idc_controller.errors import TrajectoryError
 from idc_controller.settings import derived, setting
 
+CORNER = 0.2
+"""Distance (m) within which the default system passes a waypoint without hold: ``motion.corner``."""
+
 
 @dataclass(frozen=True)
 class Limits:

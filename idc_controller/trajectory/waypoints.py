@@ -17,7 +17,7 @@ from idc_controller.arrays import Array
 from idc_controller.errors import TrajectoryError
 from idc_controller.trajectory.paths import Circle, Leg, Mark, Piece, pieces
 from idc_controller.trajectory.sampled_path import SampledPath, at_half_intervals, distance_to_line
-from idc_controller.trajectory.settings import Limits
+from idc_controller.trajectory.settings import CORNER, Limits
 from idc_controller.trajectory.smoothing import Smoothing, smoothing_for
 from idc_controller.trajectory.spline import SplineTrajectory, within_limits
 from idc_controller.trajectory.trajectory import Trajectory, checked_times, finite, point, positive
@@ -57,7 +57,7 @@ class WaypointTrajectory(Trajectory):
         legs: Iterable[Leg | Circle],
         limits: Limits,
         start: float = 0.0,
-        corner: float = 0.2,
+        corner: float = CORNER,
         kept: float = 60.0,
     ) -> None:
         self._limits = limits
