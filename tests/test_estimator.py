@@ -41,7 +41,7 @@ def started():
     estimator = Estimator(MODEL)
     x = REFERENCE.at(np.zeros(1)).x[0]
     estimator.start(0.0, x)
-    estimator.add_setpoint(0.0, REFERENCE.at(np.zeros(1)).u[0])
+    estimator.setpoints.add(0.0, REFERENCE.at(np.zeros(1)).u[0])
     return estimator
 
 
@@ -219,7 +219,7 @@ def test_estimator_isolates_worse_fitting_part_of_inconsistent_group(of_payload,
     ]
     estimator, estimate, _ = run(corrupted)
     assert estimator.health.isolated_groups == {SensorGroup(of_payload, Position): isolated}
-    assert estimator.unusable_poses(Position) == (set() if of_payload else {0, 1, 2, 3})
+    assert estimator.health.unusable_poses(Position, estimator.time) == (set() if of_payload else {0, 1, 2, 3})
     error = np.abs(estimate.x - REFERENCE.at(np.zeros(1)).x[0])
     assert max(error[:12].max(), error[LAYOUT.s].max()) < 0.02
 
@@ -301,11 +301,11 @@ def test_setpoint_not_flown_counts_as_lost():
     sent = [hover + 0.01 * k for k in range(4)]
     second = [2, 3, 9]  # vehicle 2's part of a set-point
     for k, u in enumerate(sent):
-        lost.add_setpoint(0.1 + 0.05 * k, u)
+        lost.setpoints.add(0.1 + 0.05 * k, u)
         flown = u.copy()
         if k == 2:
             flown[second] = sent[1][second]  # it still flies the one before
-        other.add_setpoint(0.1 + 0.05 * k, flown)
+        other.setpoints.add(0.1 + 0.05 * k, flown)
     for estimator in (lost, other):
         for samples in samples_of(0.28):
             for measurement in samples:

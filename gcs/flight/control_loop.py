@@ -76,7 +76,7 @@ class ControlLoop:
 
     def send(self, record: StepRecord, effective: float, leaves: Array) -> None:
         """Take over the set-points of a step in the air, which leave at ``leaves`` (N,) and act at ``effective``."""
-        self.estimator.add_setpoint(effective, record.decision.u, leaves)
+        self.estimator.setpoints.add(effective, record.decision.u, leaves)
         self.stop_plan = stop_plan(
             self.controller.parameters, record.decision.flat, effective, record.estimate.x, self._brake
         )

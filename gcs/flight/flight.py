@@ -227,7 +227,7 @@ class Flight:
         assert self._pad is not None
         rest = Reference(self.control.controller.parameters, self._pad, self.control.controller.load.estimate)
         self.control.estimator.start(time, rest.at(np.array([time])).x[0])
-        self.control.estimator.add_setpoint(time, None)
+        self.control.estimator.setpoints.add(time, None)
         self.takeoff_time = time
         self.phase = Phase.SPOOL_UP
 
@@ -300,5 +300,5 @@ class Flight:
             float(estimate.x[layout.Theta][2]),
             SpoolDown(time, self._settings.takeoff_landing),
         )
-        self.control.estimator.add_setpoint(estimate.time, None)
+        self.control.estimator.setpoints.add(estimate.time, None)
         self.phase = Phase.SPOOL_DOWN

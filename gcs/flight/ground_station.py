@@ -168,12 +168,13 @@ class GroundStation:
             {i for i, link in enumerate(self.links) if not link.status.obstacle_sensing_valid}, time
         )
         noise = math.sqrt(estimator.health.adaptation.measurement_scale)
-        obstacle_map.update(time, noise, estimator.unusable_poses(Position), estimator.unusable_poses(Attitude))
+        unusable = [estimator.health.unusable_poses(kind, estimator.time) for kind in (Position, Attitude)]
+        obstacle_map.update(time, noise, *unusable)
         self._recorder.obstacles(obstacle_map, time)
 
     def _compare(self, record: StepRecord) -> None:
         """Compare estimated vehicle states with what each system id sends; place the detections by them."""
-        estimated = self.flight.control.estimator.vehicles(record.estimate)
+        estimated = self.flight.control.estimator.measurement_model.vehicles(record.estimate.time, record.estimate.x)
         self._id_check.compare(estimated)
         if (obstacle_map := self.flight.system.obstacle_map) is not None:
             for sample in estimated:

@@ -51,11 +51,12 @@ class Estimator:
         self._filter = ErrorStateFilter(self._process)
         self._update = MeasurementUpdate(self.measurement_model, self.health, s)
         self._replay = ReplayBuffer(s.history, s.simultaneous)
-        self._setpoints = SetpointHistory(number_of_uavs, s.setpoints)
+        self.setpoints = SetpointHistory(number_of_uavs, s.setpoints)
+        """Set-points in force; their confirmations go by :meth:`confirm_setpoint`."""
 
     def start(self, time: float, x: Array) -> None:
         """Begin at ``time`` (s) from the state ``x`` (12 + 11 N,) of a team on the ground."""
-        self._setpoints.clear()
+        self.setpoints.clear()
         self.health.start()
         P = self._process.initial_covariance(self.settings.initial)
         full = np.concatenate([x, np.zeros(self._process.size - len(x))])
@@ -66,26 +67,14 @@ class Estimator:
         """Time of the last measurement that was applied (s)."""
         return self._replay.time
 
-    def add_setpoint(self, effective: float, u: Array | None, sent_at: Array | None = None) -> None:
-        """Add set-points, see :meth:`SetpointHistory.add`."""
-        self._setpoints.add(effective, u, sent_at)
-
     def confirm_setpoint(
         self, uav: int, since: float, until: float, reported: Array, jitter: float = 0.0, latency_max: float = np.inf
     ) -> Confirmation | None:
         """Take a vehicle's report of the set-point it flew, see :meth:`SetpointHistory.confirm`."""
-        confirmation = self._setpoints.confirm(uav, since, until, reported, jitter, latency_max)
+        confirmation = self.setpoints.confirm(uav, since, until, reported, jitter, latency_max)
         if confirmation is not None and confirmation.corrected_from is not None:
             self._replay.rewind(confirmation.corrected_from)
         return confirmation
-
-    def unusable_poses(self, kind: type[Measurement]) -> frozenset[int]:
-        """Return the UAVs whose pose of this ``kind`` may not be used now, see :class:`SensorHealth`."""
-        return self.health.unusable_poses(kind, self.time)
-
-    def vehicles(self, estimate: Estimate) -> list[Measurement]:
-        """Return positions and attitudes of the UAVs as estimated."""
-        return self.measurement_model.vehicles(estimate.time, estimate.x)
 
     def add(self, measurement: Measurement) -> Measurement | None:
         """Take a measurement; return what may be used of it: nothing where it is stuck or too old."""
@@ -117,7 +106,7 @@ class Estimator:
             if group not in self.health.isolated_groups:
                 self._isolate(group, time, reference)
         estimate = self._advance(time, reference)
-        self._setpoints.forget(self._replay.forget())
+        self.setpoints.forget(self._replay.forget())
         return estimate
 
     def _isolate(self, group: SensorGroup, time: float, reference: Reference) -> None:
@@ -146,7 +135,7 @@ class Estimator:
         pending = self._replay.pending()
         time = max(time, last.time, pending[-1].time if pending else time)
         times = [moment.time for moment in pending]
-        interval = PropagationInterval(process, last.time, times, time, self._setpoints, reference)
+        interval = PropagationInterval(process, last.time, times, time, self.setpoints, reference)
         kf.start(last.x, last.P, interval)
         health.restore(last.health)
         innovations = []
