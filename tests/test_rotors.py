@@ -14,6 +14,13 @@ MIXER = Mixer(GEOMETRY)
 TORQUE = st.floats(-5.0, 5.0)
 
 
+def wrench_of(f_1, f_2, f_3, f_4):
+    """Thrust (N) and body torques (N m, FRD) of four rotor forces (N)."""
+    a, c = GEOMETRY.lever, GEOMETRY.torque_to_thrust
+    total = f_1 + f_2 + f_3 + f_4
+    return total, a * (-f_1 + f_2 + f_3 - f_4), a * (f_1 - f_2 + f_3 - f_4), c * (f_1 + f_2 - f_3 - f_4)
+
+
 def wrench_by_cross_products(forces: np.ndarray) -> np.ndarray:
     """Independent of the module's formulas: rotor positions and turning senses of PX4's X layout."""
     places = 0.17 / math.sqrt(2) * np.array([[1, 1, 0], [-1, -1, 0], [1, -1, 0], [-1, 1, 0]])
@@ -23,16 +30,20 @@ def wrench_by_cross_products(forces: np.ndarray) -> np.ndarray:
     return np.array([forces.sum(), *torque])
 
 
-def test_wrench_is_that_of_the_x_layout() -> None:
+def test_rotors_have_the_wrench_of_the_x_layout() -> None:
     forces = np.array([1.0, 2.0, 3.5, 0.25])
-    assert GEOMETRY.wrench(*forces) == pytest.approx(wrench_by_cross_products(forces))
+    rotors = Rotors(GEOMETRY, 0.05, 0.002)
+    w_1, w_2, w_3, w_4 = np.sqrt(forces / GEOMETRY.k_f).tolist()
+    rotors.speeds = w_1, w_2, w_3, w_4
+    assert rotors.advance(rotors.speeds) == pytest.approx(wrench_by_cross_products(forces))
+    assert wrench_of(*forces) == pytest.approx(wrench_by_cross_products(forces))
 
 
 @given(st.floats(5.0, 25.0), st.floats(-0.2, 0.2), st.floats(-0.2, 0.2), st.floats(-0.01, 0.01))
 def test_mixer_inverts_the_map_inside_the_limits(thrust: float, x: float, y: float, z: float) -> None:
     speeds = np.array(MIXER.rotor_speeds(thrust, x, y, z))
     assert np.all(speeds <= 1000.0)
-    assert GEOMETRY.wrench(*(GEOMETRY.k_f * speeds**2)) == pytest.approx((thrust, x, y, z), abs=1e-9)
+    assert wrench_of(*(GEOMETRY.k_f * speeds**2)) == pytest.approx((thrust, x, y, z), abs=1e-9)
 
 
 @given(st.floats(-5.0, 40.0), TORQUE, TORQUE, TORQUE)
@@ -41,7 +52,7 @@ def test_saturation_keeps_thrust_and_the_direction_of_roll_and_pitch(
 ) -> None:
     forces = np.array(MIXER.forces(thrust, x, y, z))
     assert np.all(forces >= -1e-9) and np.all(forces <= 7.5 + 1e-9)
-    total, tau_x, tau_y, tau_z = GEOMETRY.wrench(*forces)
+    total, tau_x, tau_y, tau_z = wrench_of(*forces)
     assert total == pytest.approx(min(max(thrust, 0.0), 30.0), abs=1e-9)
     assert tau_x * y == pytest.approx(tau_y * x, abs=1e-9)
     for got, wanted in ((tau_x, x), (tau_y, y), (tau_z, z)):
@@ -53,8 +64,8 @@ def test_yaw_never_costs_roll_or_pitch_and_is_the_largest_that_fits(
     thrust: float, x: float, y: float, z: float
 ) -> None:
     forces = MIXER.forces(thrust, x, y, z)
-    without = GEOMETRY.wrench(*MIXER.forces(thrust, x, y, 0.0))
-    wrench = GEOMETRY.wrench(*forces)
+    without = wrench_of(*MIXER.forces(thrust, x, y, 0.0))
+    wrench = wrench_of(*forces)
     assert wrench[1:3] == pytest.approx(without[1:3], abs=1e-9)
     if abs(wrench[3]) < abs(z) - 1e-9:  # given up in part: then a rotor is at its limit
         assert min(min(forces), 7.5 - max(forces)) == pytest.approx(0.0, abs=1e-9)
@@ -64,7 +75,7 @@ def test_rotor_lag_is_exact_at_any_step() -> None:
     command = (700.0, 400.0, 900.0, 0.0)
 
     def motion(t: float, state: np.ndarray) -> np.ndarray:
-        speeds, impulse = state[:4], GEOMETRY.wrench(*(GEOMETRY.k_f * state[:4] ** 2))
+        speeds, impulse = state[:4], wrench_of(*(GEOMETRY.k_f * state[:4] ** 2))
         return np.concatenate([(np.array(command) - speeds) / 0.05, impulse])
 
     exact = solve_ivp(motion, (0.0, 0.08), [600.0] * 4 + [0.0] * 4, rtol=1e-11, atol=1e-11).y[:, -1]

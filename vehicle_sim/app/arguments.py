@@ -48,7 +48,7 @@ class _Parser(argparse.ArgumentParser):
 
 
 def parse(argv: list[str] | None) -> argparse.Namespace:
-    """The options; raises :class:`UnusableInput` for what cannot be. ``--help`` and ``--version`` exit."""
+    """Return the options; raises :class:`UnusableInput` for what cannot be. ``--help`` and ``--version`` exit."""
     parser = _Parser(
         prog="vehicle-sim", description=_DESCRIPTION, epilog=_EPILOG, allow_abbrev=False,
         formatter_class=RawDescriptionRichHelpFormatter,

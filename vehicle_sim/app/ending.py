@@ -1,4 +1,4 @@
-"""When a simulator has to end: a signal, or the process that started it has ended."""
+"""End of a simulator: on a signal, or when the process that started it has ended."""
 
 import contextlib
 import os
@@ -18,7 +18,7 @@ class _HasFileno(Protocol):
 
 
 class Ending:
-    """Says when to end, and waits for datagrams so that the end is not missed.
+    """The request to end, and a wait for datagrams that does not miss it.
 
     ``requested``: end now, with the exit status ``status``. ``parent_gone``: let the vehicles land, then end.
     ``has_parent``: another process owns this one and has ended when ``parent``, a pipe from it, is at its end.

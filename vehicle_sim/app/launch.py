@@ -71,7 +71,7 @@ def _run(options: Namespace, arguments: list[str], started: contextlib.ExitStack
     if options.run_dir is not None:
         swarm.record(_truth_log(options, arguments, seed, mission, config))
     if injector is not None:
-        started.callback(_tell_faults, options, injector, swarm)
+        started.callback(_report_faults, options, injector, swarm)
     driver: LockstepDriver | RealTimeDriver
     if options.lockstep:
         driver = LockstepDriver(swarm, sockets, ending)
@@ -98,7 +98,7 @@ def _read(options: Namespace) -> tuple[Mission | None, SystemConfig]:
 
 
 def _ground_address(options: Namespace) -> Address | None:
-    """Where the vehicles offer themselves."""
+    """Return the address at which the vehicles offer themselves."""
     port = GROUND_PORT if options.ground_port is None else options.ground_port
     return None if options.lockstep or port == 0 else ("127.0.0.1", port)
 
@@ -116,8 +116,8 @@ def _truth_log(
     return TruthLog(folder, config.team.vehicles)
 
 
-def _tell_faults(options: Namespace, injector: FaultInjector, swarm: Swarm) -> None:
-    """What the faults did: on record, and for people what did not happen."""
+def _report_faults(options: Namespace, injector: FaultInjector, swarm: Swarm) -> None:
+    """Record what the faults did, and print for people what did not happen."""
     if options.run_dir is not None:
         record_faults(options.run_dir, injector, swarm.time)
     if not options.with_parent:

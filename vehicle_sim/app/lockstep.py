@@ -56,7 +56,7 @@ class LockstepDriver:
                 return
 
     def _wait_for_ground(self) -> Address | None:
-        """The ground of the latest join request; None when the end came first."""
+        """Return the ground of the latest join request; None when the end came first."""
         ending = self._ending
         while not ending.requested and not ending.parent_gone:
             for _ in self._from_ground(None):
@@ -69,7 +69,7 @@ class LockstepDriver:
         return None
 
     def _from_ground(self, ground: Address | None) -> Iterator[Done]:
-        """What ``ground`` has to say about the clock; who else would like to join is kept for later."""
+        """Yield what ``ground`` answers to ticks; the join request of another ground is kept for later."""
         for datagram, sender in arrived(self._clock):
             done = decode_done(datagram)
             if done is None:
@@ -104,7 +104,7 @@ class LockstepDriver:
                 self._time_us = next_us
 
     def _answer(self, ground: Address) -> Done | None:
-        """The ground's answer to the last tick; None when there is none in time, or the end comes."""
+        """Return the ground's answer to the last tick; None when there is none in time, or the end comes."""
         ending = self._ending
         deadline = time.monotonic() + self._answer_time
         while not ending.requested and not ending.parent_gone:

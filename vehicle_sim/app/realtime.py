@@ -40,7 +40,7 @@ class RealTimeClock:
         return now
 
     def wall_until(self, then: float) -> float:
-        """Seconds of wall time until ``then``, not less than 0."""
+        """Return the wall time (s) until ``then``, not less than 0."""
         return max(0.0, (then - self.now()) / self._speed)
 
 

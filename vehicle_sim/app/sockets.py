@@ -28,12 +28,12 @@ class SwarmSockets:
             self._opened = opened.pop_all()
 
     def send(self, vehicle: int, datagram: bytes, address: Address) -> None:
-        """From the endpoint of a vehicle (its system id). What cannot be sent is lost, as anything may be over UDP."""
+        """Send from the endpoint of a vehicle (its system id). What cannot be sent is lost, as may be over UDP."""
         with contextlib.suppress(OSError):
             self.vehicles[vehicle - 1].sendto(datagram, address)
 
     def received(self) -> Iterator[tuple[int, bytes, Address]]:
-        """All that has arrived: the vehicle's system id, bytes, sender; vehicle by vehicle, each in order."""
+        """Yield all that has arrived: the vehicle's system id, bytes, sender; vehicle by vehicle, each in order."""
         for vehicle, endpoint in enumerate(self.vehicles, start=1):
             for datagram, sender in arrived(endpoint):
                 yield vehicle, datagram, sender
@@ -50,7 +50,7 @@ class SwarmSockets:
 
 
 def url(endpoint: socket.socket) -> str:
-    """Where the socket listens."""
+    """Return the address at which the socket listens."""
     host, port = endpoint.getsockname()
     return f"udp://{host}:{port}"
 

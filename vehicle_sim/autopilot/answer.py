@@ -1,4 +1,4 @@
-"""What a command to the autopilot is answered with."""
+"""Answers of the autopilot to commands."""
 
 from typing import NamedTuple
 
@@ -16,10 +16,10 @@ ACCEPTED = Answer(mavlink.MAV_RESULT_ACCEPTED)
 
 
 def denied(text: str) -> Answer:
-    """A command that the vehicle does not obey."""
+    """Return the answer to a command that the vehicle refuses."""
     return Answer(mavlink.MAV_RESULT_DENIED, text)
 
 
 def rejected_for_now(text: str) -> Answer:
-    """A command that may succeed later."""
+    """Return the answer to a command that may succeed later."""
     return Answer(mavlink.MAV_RESULT_TEMPORARILY_REJECTED, text)

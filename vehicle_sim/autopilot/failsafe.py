@@ -9,7 +9,7 @@ from vehicle_sim.autopilot.flight_state import FlightState
 
 @dataclass(frozen=True)
 class Failsafe:
-    """What happens when a condition holds; in flight the vehicle is then in failsafe, until a ground commands it."""
+    """Condition and action; in flight the vehicle is then in failsafe, until a ground commands it."""
 
     name: str
     parameter: str

@@ -1,4 +1,4 @@
-"""What a vehicle flies of the set-points that come, and while none come."""
+"""The set-point that a vehicle flies, also in a gap of them."""
 
 import math
 from collections import deque
@@ -22,11 +22,11 @@ class SetpointStream:
 
     @property
     def last_time(self) -> float:
-        """When the last one came; -inf: there is none."""
+        """Time of the last one; -inf: there is none."""
         return self._recent[-1][0] if self._recent else -math.inf
 
     def add(self, setpoint: AttitudeSetpoint, now: float) -> None:
-        """One has come."""
+        """Take a set-point."""
         recent = self._recent
         recent.append((now, setpoint))
         while now - recent[0][0] > self._settings.mean_over:
@@ -34,7 +34,7 @@ class SetpointStream:
         self._mean = None
 
     def at(self, now: float) -> AttitudeSetpoint | None:
-        """What to fly; None: nothing has come."""
+        """Return the set-point to fly; None: none has come."""
         if not self._recent:
             return None
         time, last = self._recent[-1]

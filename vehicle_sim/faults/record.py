@@ -1,4 +1,4 @@
-"""What the faults of a flight did: ``faults.json`` in the run folder."""
+"""Record of the faults of a flight: ``faults.json`` in the run folder."""
 
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ def record_faults(folder: Path, injector: FaultInjector, end: float) -> Path:
 
 
 def faults_record(injector: FaultInjector, end: float) -> dict[str, Any]:
-    """Return what the file holds."""
+    """Return the content of the file."""
     take_off = injector.faults[0].schedule.take_off if injector.faults else None
     return {
         "take_off_s": take_off,

@@ -1,4 +1,4 @@
-"""When a fault is active: once or periodically, from take-off on."""
+"""Schedule of a fault: active once or periodically, from take-off on."""
 
 import math
 from typing import NamedTuple
@@ -24,7 +24,7 @@ class Schedule:
         self._every = every
         self._last = 0 if every is None else math.inf if times is None else times - 1
         self.take_off: float | None = None
-        """When the first vehicle lifted off (s); None: not yet, and no fault is active."""
+        """Time at which the first vehicle lifted off (s); None: not yet, and no fault is active."""
 
     def at(self, now: float) -> Moment | None:
         """Return where ``now`` (s) is in the fault; None: the fault is not active."""

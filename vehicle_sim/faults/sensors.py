@@ -12,7 +12,7 @@ from vehicle_sim.world.sensors import Measurement, ReportedState
 
 
 class _Lost(SampleImpairment):
-    """A measurement that is missing from the telemetry, and frozen on board where the vehicle has lost it, too."""
+    """A measurement that is missing from the telemetry, and stuck on board where the vehicle has lost it, too."""
 
     def __init__(self, fault: ActiveFault, vehicle: int, system: SystemConfig) -> None:
         super().__init__(fault, vehicle, system)

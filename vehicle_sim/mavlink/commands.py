@@ -1,4 +1,4 @@
-"""MAVLink commands to a vehicle: who may give them, what each does, and the answer."""
+"""MAVLink commands to a vehicle: the ground that may send them, their execution, and the answer."""
 
 import math
 from collections.abc import Callable
@@ -14,7 +14,7 @@ from vehicle_sim.mavlink.dispatcher import Dispatcher, Request
 from vehicle_sim.mavlink.peer import Peer
 from vehicle_sim.mavlink.telemetry import Telemetry
 
-#: Commands that only ask, or concern the asker's own link: anybody may give them.
+#: Requests of information, or about the sender's own link: every ground may send them.
 _HARMLESS = (
     mavlink.MAV_CMD_REQUEST_MESSAGE,
     mavlink.MAV_CMD_SET_MESSAGE_INTERVAL,
@@ -149,5 +149,5 @@ def _explain(answer: Answer, peer: Peer) -> None:
 
 
 def _whole(value: float, limit: int = 256) -> int | None:
-    """A parameter that must be a whole number from 0 to below the limit; None if it is not (NaN, 2.5, -1)."""
+    """Return a whole number from 0 to below the limit; None for any other parameter (NaN, 2.5, -1)."""
     return int(value) if 0.0 <= value < limit and value == int(value) else None

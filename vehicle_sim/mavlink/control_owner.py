@@ -1,4 +1,4 @@
-"""Who may command a vehicle: the ground whose set-points fly it, and while they come nobody else."""
+"""Control of a vehicle: the ground whose set-points fly it commands it, and while they come no other."""
 
 from gcs.config.vehicle_settings import VehicleLinkSettings
 from gcs.mavlink.address import Address
@@ -11,7 +11,7 @@ Sender = tuple[Address, int]
 
 
 class _Stream:
-    """The set-points of one sender: the last two."""
+    """The last two set-points of one sender."""
 
     __slots__ = ("last", "previous_time", "time")
 
@@ -35,7 +35,7 @@ class ControlOwner:
         self._owner: Sender | None = None
 
     def in_control(self, now: float) -> Sender | None:
-        """The ground whose set-points fly the vehicle, None if there is none."""
+        """Return the ground whose set-points fly the vehicle, None if there is none."""
         owner = self._owner
         if owner is None or not (self._autopilot.wants_setpoints or self._autopilot.armed):
             return None
@@ -53,7 +53,7 @@ class ControlOwner:
         return owner is not None and owner[0] == sender[0] and self.is_stranger(sender, now)
 
     def take(self, setpoint: AttitudeSetpoint, sender: Sender, now: float) -> None:
-        """A sane set-point of a sender that is no stranger. One that was overtaken by a later one is dropped."""
+        """Take a valid set-point, unless another ground is in control. One overtaken by a later one is dropped."""
         stream = self._streams.get(sender)
         if stream is None:
             self._forget_silent(now)
@@ -71,7 +71,7 @@ class ControlOwner:
             self._autopilot.follow(setpoint, now)
 
     def enter_offboard(self, sender: Sender, now: float) -> Answer:
-        """OFFBOARD on the sender's own set-points, of which two must have come in time."""
+        """Enter OFFBOARD on the sender's own set-points, of which two must have come in time."""
         stream = self._streams.get(sender)
         if (
             stream is None

@@ -1,4 +1,4 @@
-"""Which service of a vehicle handles which message."""
+"""The services of a vehicle by the messages that they handle."""
 
 from collections.abc import Callable
 from typing import NamedTuple, TypeVar
@@ -11,7 +11,7 @@ M = TypeVar("M", bound=Message)
 
 
 class Request(NamedTuple):
-    """Where and when (s) a message came from; answers go to ``peer``, addressed to sender and ``component``."""
+    """Sender and time (s) of a message; answers go to ``peer``, addressed to sender and ``component``."""
 
     sender: Sender
     component: int

@@ -1,4 +1,4 @@
-"""TIMESYNC and PING: what a vehicle answers so that others can measure its clock and the link to it."""
+"""TIMESYNC and PING: answers by which others measure a vehicle's clock and the link to it."""
 
 from collections.abc import Callable
 

@@ -1,4 +1,4 @@
-"""One peer of a vehicle: what it is sent, and when."""
+"""One peer of a vehicle, and its streams."""
 
 import math
 
@@ -67,7 +67,7 @@ class Stream:
         self.last_stamp: int | None = None
 
     def advance(self, now: float, repeat_interval: float) -> None:
-        """To the next multiple of the interval; sooner while repetitions are due, ``repeat_interval`` (s) apart."""
+        """Set the due time to the next multiple of the interval; sooner while repetitions are due (interval in s)."""
         self.due = (math.floor((now + TIME_TOLERANCE) / self.interval) + 1) * self.interval
         if self.repeats:
             self.repeats -= 1
@@ -103,17 +103,17 @@ class Peer:
         return len(self._streams) > 1
 
     def start_streams(self) -> None:
-        """All streams at their default rates."""
+        """Start all streams at their default rates."""
         self._streams = [Stream(*key, interval) for key, interval in self._defaults.items()]
         self.next_due = -math.inf
 
     def offer(self) -> None:
-        """Heartbeats only, for an address that has not answered."""
+        """Send heartbeats only, to an address that has not answered."""
         self._streams = [Stream(_AUTOPILOT, _HEARTBEAT, self._defaults[_AUTOPILOT, _HEARTBEAT])]
         self.next_due = -math.inf
 
     def set_interval(self, message_id: int, interval: float) -> None:
-        """Interval (s) of an autopilot message on this link; 0 restores the default, infinity stops it."""
+        """Set the interval (s) of an autopilot message on this link; 0 restores the default, infinity stops it."""
         key = _AUTOPILOT, message_id
         if interval == 0.0:
             interval = self._defaults.get(key, math.inf)
@@ -142,7 +142,7 @@ class Peer:
             self.reply(mavlink.MAVLink_statustext_message(severity, data[start : start + _TEXT_LIMIT]))
 
     def datagrams(self, telemetry: Telemetry, now: float) -> list[bytes]:
-        """Replies and what is due, in as few datagrams as possible."""
+        """Return replies and what is due, in as few datagrams as possible."""
         if now + TIME_TOLERANCE < self.next_due:
             return []
         frames = self._replies

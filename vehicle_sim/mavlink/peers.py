@@ -1,4 +1,4 @@
-"""The peers of a vehicle: who is in contact with it, who is added, who is removed."""
+"""The peers of a vehicle: added when they send valid MAVLink, removed after a timeout."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -40,7 +40,7 @@ class Peers:
         return peer
 
     def datagrams_to_send(self, telemetry: Telemetry, now: float) -> list[tuple[bytes, Address]]:
-        """All that is due at ``now`` (s), each with its address."""
+        """Return all that is due at ``now`` (s), each with its address."""
         out: list[tuple[bytes, Address]] = []
         for peer in tuple(self._peers.values()):
             if now + TIME_TOLERANCE < peer.next_due:
@@ -54,7 +54,7 @@ class Peers:
 
     @property
     def next_due(self) -> float:
-        """When something is to be sent (s); -inf: at once, inf: never as things are."""
+        """Time at which something is to be sent (s); -inf: at once, inf: never."""
         return min((peer.next_due for peer in self._peers.values()), default=math.inf)
 
     def repeat(self, *message_ids: int) -> None:

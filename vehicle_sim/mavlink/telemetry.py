@@ -62,8 +62,8 @@ class Telemetry:
             (_OWN, mavlink.MAVLINK_MSG_ID_HEARTBEAT): self._heartbeat,
             (_OWN, mavlink.MAVLINK_MSG_ID_SYS_STATUS): self._sys_status,
             (_OWN, mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE): self._extended_sys_state,
-            (_OWN, mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION): self._attitude_quaternion,
-            (_OWN, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED): self._local_position,
+            (_OWN, mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION): lambda now: self._attitude_of(self._own_attitude),
+            (_OWN, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED): lambda now: self._position_of(self._own_position),
             (_OWN, mavlink.MAVLINK_MSG_ID_ATTITUDE): self._attitude,
             (_OWN, mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT): self._global_position,
             (_OWN, mavlink.MAVLINK_MSG_ID_GPS_RAW_INT): self._gps_raw,
@@ -76,8 +76,8 @@ class Telemetry:
             (_OWN, mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION): self._autopilot_version,
             (_OWN, mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D): self._obstacles,
             (unit, mavlink.MAVLINK_MSG_ID_HEARTBEAT): self._payload_heartbeat,
-            (unit, mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION): self._payload_attitude,
-            (unit, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED): self._payload_position,
+            (unit, mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION): lambda now: self._attitude_of(self.payload),
+            (unit, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED): lambda now: self._position_of(self.payload),
         }
 
     def knows(self, component: int, message_id: int) -> bool:
@@ -89,7 +89,7 @@ class Telemetry:
         return self._builders[component, message_id](now)
 
     def time_boot_ms(self, time: float) -> int:
-        """The stamp of a time (s)."""
+        """Return the stamp of a time (s)."""
         return round((self._clock(time) - self._boot_time) * 1e3) & 0xFFFFFFFF
 
     # The autopilot
@@ -134,12 +134,6 @@ class Telemetry:
         return (
             mavlink.MAVLink_extended_sys_state_message(mavlink.MAV_VTOL_STATE_UNDEFINED, self._autopilot.landed_state),
         )
-
-    def _attitude_quaternion(self, now: float) -> Built:
-        return self._attitude_of(self._own_attitude)
-
-    def _local_position(self, now: float) -> Built:
-        return self._position_of(self._own_position)
 
     def _attitude(self, now: float) -> Built:
         measured = self._own_attitude
@@ -282,12 +276,6 @@ class Telemetry:
                 mavlink.MAV_TYPE_ONBOARD_CONTROLLER, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, mavlink.MAV_STATE_ACTIVE, 3
             ),
         )
-
-    def _payload_attitude(self, now: float) -> Built:
-        return self._attitude_of(self.payload)
-
-    def _payload_position(self, now: float) -> Built:
-        return self._position_of(self.payload)
 
     # Shared
 

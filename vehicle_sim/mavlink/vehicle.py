@@ -82,7 +82,7 @@ class Vehicle:
     # The simulator's side
 
     def step(self, measurement: Measurement | None, now: float) -> Four:
-        """One step of the onboard loop: rotor-speed commands (rad/s), in the order of :mod:`vehicle_sim.world.rotors`.
+        """Take one step of the onboard loop: rotor speeds (rad/s) in the order of :mod:`vehicle_sim.world.rotors`.
 
         ``measurement`` is what the vehicle's sensor delivered, None if it delivered nothing.
         """
@@ -111,7 +111,7 @@ class Vehicle:
     # The wire's side
 
     def receive(self, datagram: bytes, sender: Address, now: float) -> None:
-        """Whatever came from an address. Never raises for anything that a datagram can hold."""
+        """Take what came from an address. Never raises for anything that a datagram can hold."""
         self._latest = max(self._latest, now)
         for received in self._decoder.decode(datagram):
             if received.system in (BROADCAST, self.system_id):
@@ -125,14 +125,14 @@ class Vehicle:
                 self._dispatcher.dispatch(received.message, request)
 
     def datagrams_to_send(self, now: float) -> list[tuple[bytes, Address]]:
-        """All that is due at ``now`` (s), each with its address."""
+        """Return all that is due at ``now`` (s), each with its address."""
         self._latest = max(self._latest, now)
         if self.autopilot.changes != self._sent_changes or self.autopilot.state.notices:
             self._send_changes()
         return self._peers.datagrams_to_send(self.telemetry, now)
 
     def next_timer(self) -> float | None:
-        """When :meth:`datagrams_to_send` has something to do (s; in the past: at once). None: never as things are."""
+        """Return when :meth:`datagrams_to_send` has something to do (s; in the past: at once), None: never."""
         due = self._peers.next_due
         if due == -math.inf:
             return self._latest if math.isfinite(self._latest) else 0.0

@@ -1,4 +1,4 @@
-"""Whether there is a display. The physics engine ends the process when it cannot open its window."""
+"""Check of the display: the physics engine ends the process when it cannot open its window."""
 
 import ctypes
 import ctypes.util
@@ -9,7 +9,7 @@ from vehicle_sim.world.errors import SimulationError
 
 
 def check_display() -> None:
-    """Raises :class:`SimulationError` where no window can be opened."""
+    """Raise :class:`SimulationError` where no window can be opened."""
     if not sys.platform.startswith("linux"):
         return
     name = os.environ.get("DISPLAY")

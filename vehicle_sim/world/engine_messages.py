@@ -1,4 +1,4 @@
-"""Keeps what the physics engine prints, below Python's streams, out of what people and programs read."""
+"""Output of the physics engine, below Python's streams, kept out of what people and programs read."""
 
 import contextlib
 import os
@@ -10,7 +10,7 @@ _OUTPUT, _ERRORS = 1, 2
 
 @contextlib.contextmanager
 def messages_of_engine_aside() -> Iterator[None]:
-    """What is printed to standard output meanwhile goes to standard error."""
+    """Redirect standard output to standard error."""
     sys.stdout.flush()
     with _redirected(_OUTPUT, os.dup(_ERRORS)):
         yield

@@ -46,16 +46,6 @@ class RotorGeometry:
         """Distance of a rotor from the roll and from the pitch axis (m)."""
         return self.arm_length / math.sqrt(2.0)
 
-    def wrench(self, f_1: float, f_2: float, f_3: float, f_4: float) -> Four:
-        """Thrust (N) and body torques (N m, FRD) of four rotor forces (N)."""
-        a, c = self.lever, self.torque_to_thrust
-        return (
-            f_1 + f_2 + f_3 + f_4,
-            a * (-f_1 + f_2 + f_3 - f_4),
-            a * (f_1 - f_2 + f_3 - f_4),
-            c * (f_1 + f_2 - f_3 - f_4),
-        )
-
 
 class Mixer:
     """Thrust and torques to rotor speeds, within what four rotors can do.

@@ -1,4 +1,4 @@
-"""What vehicles and the payload's navigation unit measure: the truth with white noise on every channel."""
+"""Navigation sensors of vehicles and payload: the truth with white noise on every channel."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -31,7 +31,7 @@ class Measurement(NamedTuple):
     velocity: tuple[float, float, float]
 
     def is_usable(self) -> bool:
-        """Return True if every number is one, and none beyond what could be sent."""
+        """Return True if every number is finite and of a size that could be sent."""
         total = sum(self.attitude) + sum(self.rates) + sum(self.position) + sum(self.velocity)
         return _is_number(total) and math.isfinite(self.time)
 
@@ -89,7 +89,7 @@ class NavigationSensor:
         position: Sequence[float],
         velocity: Sequence[float],
     ) -> Measurement:
-        """A sample of the truth at ``now`` (s); arguments as in :class:`Measurement`, numpy rows or tuples."""
+        """Return a sample of the truth at ``now`` (s); arguments as in :class:`Measurement`, numpy rows or tuples."""
         n = self._normals
         noise = self._noise
         w, x, y, z = attitude

@@ -1,4 +1,4 @@
-"""``truth.csv``, ``obstacles.csv`` and ``modes.csv``: what really happened, written by the world and by nobody else."""
+"""``truth.csv``, ``obstacles.csv`` and ``modes.csv``: the true state, written by the world."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ _ORIGIN = (0.0, 0.0, 0.0)
 
 
 class _Reading(NamedTuple):
-    """What the engine says after a step, in its own frames: pose and velocities of the payload, states of the UAVs."""
+    """State of the engine after a step, in its own frames: pose and velocities of the payload, states of the UAVs."""
 
     payload: Pose
     payload_velocity: tuple[Vector, Vector]
@@ -213,7 +213,7 @@ class World:
 
 
 def _half_a_step_on(before: Sequence[float], now: Sequence[float]) -> Vector:
-    """A velocity at the end of a step, from those of the middles of the last two steps."""
+    """Return a velocity at the end of a step, from those of the middles of the last two steps."""
     x, y, z = now
     a, b, c = before
     return (x + 0.5 * (x - a), y + 0.5 * (y - b), z + 0.5 * (z - c))
