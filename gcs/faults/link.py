@@ -17,7 +17,7 @@ class PacketLoss(FaultSettings):
 
 @kind("burst_loss", "link", direction="both")
 class BurstLoss(FaultSettings):
-    """Datagrams are lost in bursts (Gilbert-Elliott): a good and a bad state by turns, of exponential lengths."""
+    """Datagrams are lost in bursts (Gilbert-Elliott): a good and a bad state alternate, with exponential durations."""
 
     burst: Annotated[float, parameter("mean length of the bad state", "s", gt=0.0, le=1e3)] = 0.5
     gap: Annotated[float, parameter("mean length of the good state", "s", gt=0.0, le=1e4)] = 5.0
@@ -29,7 +29,7 @@ class BurstLoss(FaultSettings):
 class Latency(FaultSettings):
     """Datagrams arrive later, in their order."""
 
-    delay: Annotated[float, parameter("how much later", "s", ge=0.0, le=_Delay)]
+    delay: Annotated[float, parameter("delay", "s", ge=0.0, le=_Delay)]
 
 
 @kind("jitter", "link", direction="both")
@@ -52,7 +52,7 @@ class Duplication(FaultSettings):
     """Some datagrams arrive twice."""
 
     probability: _Chance
-    delay: Annotated[float, parameter("how much later the second one comes", "s", ge=0.0, le=_Delay)] = 0.0
+    delay: Annotated[float, parameter("delay of the second one", "s", ge=0.0, le=_Delay)] = 0.0
 
 
 @kind("corruption", "link", direction="both")
@@ -60,7 +60,7 @@ class Corruption(FaultSettings):
     """Some bytes of some datagrams are replaced by other ones, anywhere."""
 
     probability: _Chance
-    bytes: Annotated[int, parameter("how many are replaced", ge=1, le=1000)] = 1
+    bytes: Annotated[int, parameter("number of bytes replaced", ge=1, le=1000)] = 1
 
 
 @kind("bad_checksum", "link", direction="both")
@@ -72,7 +72,7 @@ class BadChecksum(FaultSettings):
 
 @kind("truncation", "link", direction="both")
 class Truncation(FaultSettings):
-    """Some datagrams are cut off anywhere."""
+    """Some datagrams are truncated at a random byte."""
 
     probability: _Chance
 
@@ -82,22 +82,22 @@ class BandwidthCap(FaultSettings):
     """Datagrams wait for those before them to pass, and are lost when too many wait."""
 
     rate: Annotated[float, parameter("of each direction of a vehicle's link", "bytes/s", gt=0.0, le=1e9)]
-    queue: Annotated[int, parameter("what may wait", "bytes", ge=1, le=10**9)] = 8192
+    queue: Annotated[int, parameter("bytes that may wait", "bytes", ge=1, le=10**9)] = 8192
 
 
 @kind("partition", "link", direction="both")
 class Partition(FaultSettings):
-    """Nothing passes, in both directions or in one."""
+    """No datagram passes, in both directions or in one."""
 
 
 @kind("stall", "link", direction="both", bounded=True)
 class Stall(FaultSettings):
-    """Nothing passes for the duration; then all delayed datagrams arrive at once."""
+    """No datagram passes for the duration; then all delayed ones arrive at once."""
 
 
 @kind("flapping", "link", direction="both")
 class Flapping(FaultSettings):
-    """The link is down and up by turns, down first; what is sent while it is down is lost."""
+    """The link is down and up alternately, down first; what is sent while it is down is lost."""
 
     down: Annotated[float, parameter("length of each outage", "s", gt=0.0, le=1e4)]
     up: Annotated[float, parameter("time between outages", "s", gt=0.0, le=1e4)]

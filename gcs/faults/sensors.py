@@ -7,7 +7,7 @@ from gcs.faults.kind import FaultSettings, kind, parameter
 _Vector = tuple[float, float, float]
 _Onboard = Annotated[
     bool,
-    parameter("true: lost on board, too, where the other sensors must do; false: only in the telemetry"),
+    parameter("true: lost on board, too, where the other sensors are used; false: only in the telemetry"),
 ]
 
 
@@ -22,9 +22,9 @@ class PositionLost(FaultSettings):
 class PositionGlitch(FaultSettings):
     """The measured position jumps away and back, level, in random directions, and the vehicle flies by it."""
 
-    size: Annotated[float, parameter("how far", "m", gt=0.0, le=1e5)]
-    rate: Annotated[float, parameter("how often, on average", "1/s", gt=0.0, le=100.0)] = 0.5
-    hold: Annotated[float, parameter("how long it stays away", "s", gt=0.0, le=1e3)] = 0.2
+    size: Annotated[float, parameter("distance", "m", gt=0.0, le=1e5)]
+    rate: Annotated[float, parameter("mean rate", "1/s", gt=0.0, le=100.0)] = 0.5
+    hold: Annotated[float, parameter("duration of a jump", "s", gt=0.0, le=1e3)] = 0.2
 
 
 @kind("position_drift", "sensors")
@@ -50,7 +50,7 @@ class RatesLost(FaultSettings):
 
 @kind("payload_unit_lost", "sensors")
 class PayloadUnitLost(FaultSettings):
-    """The vehicles no longer get anything of the payload's navigation unit that they could relay."""
+    """The vehicles receive nothing from the payload's navigation unit, and relay nothing."""
 
 
 @kind("obstacle_sensing_lost", "sensors")

@@ -7,30 +7,30 @@ from gcs.faults.kind import FaultSettings, kind, parameter
 
 @kind("low_rate", "timing", direction="telemetry")
 class LowRate(FaultSettings):
-    """Of the stream of measurements (telemetry) or of set-points (command), only an even share comes."""
+    """Of the stream of measurements (telemetry) or of set-points (command), only an even share arrives."""
 
-    share: Annotated[float, parameter("of the messages that come; 0.5: half rate", gt=0.0, le=1.0)] = 0.5
+    share: Annotated[float, parameter("of the messages that arrive; 0.5: half rate", gt=0.0, le=1.0)] = 0.5
 
 
 @kind("clock_skew", "timing")
 class ClockSkew(FaultSettings):
-    """A vehicle's clock runs fast or slow; the error that has grown stays when the fault ends."""
+    """A vehicle's clock runs fast or slow; the error remains when the fault ends."""
 
-    rate: Annotated[float, parameter("seconds gained a second", "s/s", ge=-0.5, le=0.5)]
+    rate: Annotated[float, parameter("seconds gained per second", "s/s", ge=-0.5, le=0.5)]
 
 
 @kind("clock_step", "timing")
 class ClockStep(FaultSettings):
-    """A vehicle's clock is off by a constant; it is right again when the fault ends."""
+    """A vehicle's clock is off by a constant; the offset ends with the fault."""
 
-    step: Annotated[float, parameter("what it is ahead", "s", ge=-1e6, le=1e6)]
+    step: Annotated[float, parameter("offset, positive: ahead", "s", ge=-1e6, le=1e6)]
 
 
 @kind("stale_stamps", "timing")
 class StaleStamps(FaultSettings):
     """Measurements are reported with the stamps of an earlier time."""
 
-    age: Annotated[float, parameter("how much earlier", "s", gt=0.0, le=1e3)]
+    age: Annotated[float, parameter("difference", "s", gt=0.0, le=1e3)]
 
 
 @kind("stamp_wrap", "timing")
@@ -42,4 +42,4 @@ class StampWrap(FaultSettings):
 
 @kind("ground_hang", "timing")
 class GroundHang(FaultSettings):
-    """Of all that the ground sends, only its heartbeat comes: as if it hung."""
+    """Of the ground's messages only the heartbeat arrives, as if its program hung."""

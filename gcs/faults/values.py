@@ -49,7 +49,7 @@ class Bias(ValueFault):
 
 @kind("drift", "values")
 class Drift(ValueFault):
-    """What is added grows with the time since the fault began."""
+    """The added amount grows with the time since the start of the fault."""
 
     rate: Annotated[float, parameter("on each of the axes", "channel's/s", ge=-_Amount, le=_Amount)]
 
@@ -58,12 +58,12 @@ class Drift(ValueFault):
 class Scale(ValueFault):
     """Values are multiplied."""
 
-    factor: Annotated[float, parameter("by this", ge=-1e3, le=1e3)]
+    factor: Annotated[float, parameter("factor", ge=-1e3, le=1e3)]
 
 
 @kind("stuck", "values")
 class Stuck(ValueFault):
-    """Values stay what they were when the fault began; stamps go on."""
+    """Values remain those at the start of the fault; time stamps continue."""
 
 
 @kind("spikes", "values")
@@ -76,9 +76,9 @@ class Spikes(ValueFault):
 
 @kind("not_a_number", "values")
 class NotANumber(ValueFault):
-    """Values are NaN or infinite. Messages of whole numbers, which cannot say so, are not sent."""
+    """Values are NaN or infinite. Messages with integer fields, which have no such value, are not sent."""
 
-    value: Annotated[Literal["nan", "inf", "-inf"], parameter("which")] = "nan"
+    value: Annotated[Literal["nan", "inf", "-inf"], parameter("the value")] = "nan"
     probability: Annotated[float, parameter("of a sample", ge=0.0, le=1.0)] = 1.0
 
 
@@ -86,7 +86,7 @@ class NotANumber(ValueFault):
 class Quantisation(ValueFault):
     """Values are rounded coarsely."""
 
-    step: Annotated[float, parameter("to multiples of this", "channel's", gt=0.0, le=_Amount)]
+    step: Annotated[float, parameter("step between values", "channel's", gt=0.0, le=_Amount)]
 
 
 @kind("flipped_sign", "values")
@@ -108,7 +108,7 @@ class Noise(ValueFault):
 
 @kind("intermittent", "values")
 class Intermittent(ValueFault):
-    """Values are stuck and true in turn, for random times; true first."""
+    """Values are stuck and true alternately, for random times; true first."""
 
     good: Annotated[float, parameter("mean time of true values", "s", gt=0.0, le=1e4)] = 1.0
     stuck: Annotated[float, parameter("mean time of the last value", "s", gt=0.0, le=1e4)] = 0.5
