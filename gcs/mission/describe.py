@@ -1,4 +1,4 @@
-"""What will be flown, for people: the answer of ``gcs check``."""
+"""Description of a mission for people: the output of ``gcs check``."""
 
 import math
 from collections.abc import Iterable
@@ -20,7 +20,7 @@ COUNTED_LEGS = 20_000
 
 
 def describe(mission: Mission) -> RenderableType:
-    """What the mission is, leg by leg, with lengths, an estimate of the time, and what is left out."""
+    """Return the mission leg by leg, with lengths, an estimate of the time, and what is left out."""
     home, team = mission.home, mission.system.team
     parts: list[RenderableType] = [
         Text(f"{mission.name}  ({mission.path})", style="bold"),
@@ -53,7 +53,7 @@ def _route(route: Route, motion: MotionConfig) -> list[RenderableType]:
     length = time = 0.0
     count, last = 0, None
     start: Position = (0.0, 0.0, -RESTING_ALTITUDE)
-    for leg in _legs_to_tell(route):
+    for leg in _shown_legs(route):
         count, last = count + 1, leg
         leg_length, leg_time, end = _measure(leg, start, motion)
         length, time = length + leg_length, time + leg_time
@@ -74,8 +74,8 @@ def _route(route: Route, motion: MotionConfig) -> list[RenderableType]:
     return [table, *more, Text(summary)]
 
 
-def _legs_to_tell(route: Route) -> list[Leg]:
-    """All the legs; of an endless route those before an item is flown for the second time."""
+def _shown_legs(route: Route) -> list[Leg]:
+    """Return all legs; of an endless route those before an item is flown for the second time."""
     legs = list(islice(route.legs(), COUNTED_LEGS))
     if isinstance(legs[-1], Land | HoldForever):
         return legs
@@ -102,7 +102,7 @@ def _action(leg: Leg) -> str:
 
 
 def _measure(leg: Leg, start: Position, motion: MotionConfig) -> tuple[float, float, Position]:
-    """Length (m), time (s) and end of a leg. Every leg is taken to start and end at rest: an upper estimate."""
+    """Return length (m), time (s) and end of a leg, as an upper estimate: from rest to rest."""
     if isinstance(leg, Circle):
         length = math.tau * leg.radius * leg.turns
         speed = min(leg.speed, math.sqrt(motion.acceleration * leg.radius))
@@ -117,7 +117,7 @@ def _measure(leg: Leg, start: Position, motion: MotionConfig) -> tuple[float, fl
 
 
 def _time(length: float, speed: float, motion: MotionConfig) -> float:
-    """Time from rest to rest at a bounded acceleration (s)."""
+    """Return the time from rest to rest at a bounded acceleration (s)."""
     if length < speed**2 / motion.acceleration:
         return 2.0 * math.sqrt(length / motion.acceleration)
     return length / speed + speed / motion.acceleration
@@ -154,9 +154,12 @@ def _fault(fault: Fault) -> str:
 def _limits(limits: Limits | None) -> Iterable[str]:
     if limits is None:
         return
-    if limits.position_rmse is not None:
-        yield f"limit: position RMSE {limits.position_rmse:g} m after {limits.settle:g} s"
-    if limits.payload_tilt_deg is not None:
-        yield f"limit: payload tilt {limits.payload_tilt_deg:g} deg"
-    if limits.clearance is not None:
-        yield f"limit: clearance {limits.clearance:g} m"
+    for name, limit, unit in (
+        ("position RMSE", limits.position_rmse, f"m after {limits.settle:g} s"),
+        ("payload tilt", limits.payload_tilt_deg, "deg"),
+        ("clearance", limits.clearance, "m"),
+        ("separation of the UAVs", limits.uav_separation, "m"),
+        ("touchdown speed", limits.touchdown_speed, "m/s"),
+    ):
+        if limit is not None:
+            yield f"limit: {name} {limit:g} {unit}"

@@ -2,7 +2,9 @@
 
 import math
 from collections.abc import Iterator
+from graphlib import CycleError, TopologicalSorter
 from itertools import islice
+from operator import itemgetter
 
 from gcs.mission.fence import Fence
 from gcs.mission.route import (
@@ -31,7 +33,7 @@ WAYPOINTS = (Climb, Go, Turn, Stay, Descend, Return)
 
 
 def check_flow(route: Route, fence: Fence) -> tuple[list[str], list[str]]:
-    """Problems and notes, one line each without the file's name."""
+    """Return problems and notes, one line each without the file's name."""
     steps = route.steps
     if not any(isinstance(step, Climb | Go | Turn | Stay) for step in steps):
         return ["mission: there is no waypoint"], []
@@ -50,7 +52,7 @@ def check_flow(route: Route, fence: Fence) -> tuple[list[str], list[str]]:
 
 
 def _next(steps: tuple[Step, ...], index: int, through_landing: bool) -> list[int]:
-    """Indices that may follow a step; ``len(steps)`` is the end."""
+    """Return the indices that may follow a step; ``len(steps)`` is the end."""
     match steps[index]:
         case Jump(target=target, repeats=repeats):
             return [target] if repeats is None else [target, index + 1]
@@ -73,25 +75,13 @@ def _reached(steps: tuple[Step, ...], through_landing: bool) -> set[int]:
 
 
 def _loop_without_waypoint(steps: tuple[Step, ...]) -> Jump | None:
-    """A jump that closes a loop in which nothing is flown, by depth-first search; None if there is none."""
-    done, open_ = set[int](), set[int]()
-    for start in range(len(steps)):
-        stack = [(start, False)]
-        while stack:
-            index, leaving = stack.pop()
-            if leaving:
-                open_.discard(index)
-                done.add(index)
-                continue
-            if index >= len(steps) or index in done or index in open_ or isinstance(steps[index], WAYPOINTS):
-                continue
-            open_.add(index)
-            stack.append((index, True))
-            for after in _next(steps, index, through_landing=True):
-                step = steps[index]
-                if after in open_ and isinstance(step, Jump):
-                    return step
-                stack.append((after, False))
+    """Return the jump that closes a loop in which nothing is flown; None if there is none."""
+    idle = [i for i, step in enumerate(steps) if not isinstance(step, WAYPOINTS)]
+    try:
+        TopologicalSorter({i: _next(steps, i, through_landing=True) for i in idle}).prepare()
+    except CycleError as error:
+        loop = [(i, steps[i]) for i in error.args[1]]
+        return max(((i, step) for i, step in loop if isinstance(step, Jump) and step.target <= i), key=itemgetter(0))[1]
     return None
 
 

@@ -1,4 +1,4 @@
-"""A file that only grows, record by record, and never disturbs a flight."""
+"""A file that only grows, record by record; its failure never ends a flight."""
 
 import contextlib
 import os
@@ -29,11 +29,6 @@ class AppendOnlyFile:
         except OSError as error:
             raise UnusableInput(f"{self.path}: cannot be written: {error.strerror}") from None
         self._whole = 0
-
-    @property
-    def closed(self) -> bool:
-        """Whether ``close()`` was called."""
-        return self._file.closed
 
     def append(self, record: bytes) -> None:
         """Append one record; does nothing once the file is closed or has failed."""

@@ -40,10 +40,7 @@ def report(run_dir: Path | str) -> list[Path]:
     }
     if run.number_of_uavs:
         drawings |= {"thrust": draw_thrust, "separation": draw_separation}
-    pictures = []
-    for name, draw in drawings.items():
-        pictures.append(save_picture(draw(run), run.folder / f"{name}.png", _DPI))
-    return pictures
+    return [save_picture(draw(run), run.folder / f"{name}.png", _DPI) for name, draw in drawings.items()]
 
 
 def save_picture(figure: Figure, path: Path, dpi: int) -> Path:
@@ -56,7 +53,7 @@ def save_picture(figure: Figure, path: Path, dpi: int) -> Path:
 
 
 def draw_position(run: RunData) -> Figure:
-    """The payload's position and its reference over time, axis by axis, and the error."""
+    """Return the payload's position and its reference over time, axis by axis, and the error."""
     figure, axes = _rows(run, "Payload position", 4, height=8.5)
     reference = run.reference_position
     for i, (ax, name) in enumerate(zip(axes, ("north", "east", "down"), strict=False)):
@@ -78,7 +75,7 @@ def draw_position(run: RunData) -> Figure:
 
 
 def draw_payload_angles(run: RunData) -> Figure:
-    """The payload's roll, pitch and yaw over time, with the limit that they are held to."""
+    """Return the payload's roll, pitch and yaw over time, with their limit."""
     figure, axes = _rows(run, "Payload attitude", 3, height=7.0)
     limit = _limit(run, "payload_tilt_deg")
     for ax, name, angle in zip(axes, ("roll", "pitch", "yaw"), payload_angles(run).T, strict=True):
@@ -93,7 +90,7 @@ def draw_payload_angles(run: RunData) -> Figure:
 
 
 def draw_top_view(run: RunData) -> Figure:
-    """The flight from above: path, reference and obstacles, north up."""
+    """Return the flight from above: path, reference and obstacles, north up."""
     figure = _figure(run, "Top view", (8.0, 8.2))
     ax = figure.add_subplot()
     for number, obstacle in enumerate(run.obstacles):
@@ -120,7 +117,7 @@ def draw_top_view(run: RunData) -> Figure:
 
 
 def draw_thrust(run: RunData) -> Figure:
-    """Each UAV's thrust over time."""
+    """Return the thrust of each UAV over time."""
     figure, (ax,) = _rows(run, "Thrust", 1, height=4.2)
     for i, thrust in enumerate(run.thrust.T):
         ax.plot(run.time, thrust, color=SERIES[i % len(SERIES)], lw=1.1, label=f"UAV {i + 1}")
@@ -131,7 +128,7 @@ def draw_thrust(run: RunData) -> Figure:
 
 
 def draw_separation(run: RunData) -> Figure:
-    """How near the UAVs came to each other, and the formation to each obstacle, over time."""
+    """Return the separation of the UAVs, and the clearance to each obstacle, over time."""
     title = "UAV separation and clearance" if run.obstacles else "UAV separation"
     figure, axes = _rows(run, title, 2 if run.obstacles else 1, height=6.4 if run.obstacles else 4.2)
     if run.number_of_uavs > 1:
@@ -154,7 +151,7 @@ def _draw_floor(ax: Axes, limit: float | None) -> None:
 
 
 def _draw_obstacle(ax: Axes, obstacle: ObstacleTrack, label: str | None) -> None:
-    """The obstacle where it stood first, solid; where it went, a line and its last place, faint."""
+    """Draw an obstacle at its first place, solid; of a moving one its track, and its last place, faint."""
     track = obstacle.position[np.all(np.isfinite(obstacle.position), axis=1)]
     if len(track) == 0:
         return
@@ -191,7 +188,7 @@ def _rows(run: RunData, title: str, rows: int, height: float) -> tuple[Figure, l
 
 
 def _legend(ax: Axes) -> None:
-    """One line above the axes, where no curve runs."""
+    """Draw the legend as one line above the axes, where no curve runs."""
     handles, labels = ax.get_legend_handles_labels()
     if handles:
         ax.legend(

@@ -17,7 +17,7 @@ _SIGNATURE_LENGTH = 13
 
 
 def frames_in(datagram: bytes) -> Iterator[bytes]:
-    """The MAVLink 1 and 2 frames in a datagram, by their length fields (checksums are not looked at).
+    """Yield the MAVLink 1 and 2 frames in a datagram, by their length fields: checksums are not verified.
 
     Bytes that belong to no frame, as a damaged datagram may hold, are left out.
     """
@@ -37,21 +37,14 @@ def frames_in(datagram: bytes) -> Iterator[bytes]:
 
 
 class TelemetryLog(AppendOnlyFile):
-    """Writes a tlog.
-
-    ``start_epoch`` is the wall-clock time (s since 1970, UTC) of flight time 0; with a given one the file
-    repeats to the byte.
-    """
+    """Writes a tlog; ``start_epoch`` is the wall-clock time (s since 1970, UTC) of flight time 0."""
 
     def __init__(self, path: Path | str, start_epoch: float) -> None:
         super().__init__(path)
         self._start_us = round(start_epoch * 1e6)
-        self.frames = 0
 
     def write(self, now: float, datagram: bytes) -> None:
         """Record a datagram that was sent or received at flight time ``now`` (s): one record a frame."""
         stamp = _STAMP.pack((self._start_us + round(now * 1e6)) & ~0x3)
-        frames = list(frames_in(datagram))
-        if frames:
-            self.append(b"".join(stamp + frame for frame in frames))
-            self.frames += len(frames)
+        if records := b"".join(stamp + frame for frame in frames_in(datagram)):
+            self.append(records)
