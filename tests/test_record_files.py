@@ -126,16 +126,15 @@ def test_manifest_holds_what_was_flown(tmp_path) -> None:
     folder = open_run_folder("hover", tmp_path / "run")
     mission = Outer("hover", (Inner(np.array([[1.0, np.nan]]), Kind.POLE, math.inf),))
     path = write_manifest(
-        folder, command=["gcs", "fly", "hover.toml"], seed=7, mission=mission, system={"m_0": np.float64(3.1)},
-        start=datetime(2026, 1, 2, 3, 4, 5, tzinfo=UTC), extra={"vehicles": np.int64(4)},
+        folder, command=["gcs", "fly", "hover.toml"], seed=7, mission=mission,
+        system={"m_0": np.float64(3.1), "n": np.int64(4)}, start=datetime(2026, 1, 2, 3, 4, 5, tzinfo=UTC),
     )  # fmt: skip
     assert path == folder / "manifest.json"
     content = json.loads(path.read_text(), parse_constant=pytest.fail)
     assert content["command"] == ["gcs", "fly", "hover.toml"]
     assert content["seed"] == 7
     assert content["start"] == "2026-01-02T03:04:05+00:00"
-    assert content["system"] == {"m_0": 3.1}
-    assert content["vehicles"] == 4
+    assert content["system"] == {"m_0": 3.1, "n": 4}
     assert content["mission"] == {
         "name": "hover", "inner": [{"values": [[1.0, None]], "kind": "POLE", "speed": "inf"}],
     }  # fmt: skip

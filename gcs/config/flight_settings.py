@@ -100,7 +100,7 @@ class TimingSettings:
 
 @dataclass(frozen=True)
 class FlightSettings:
-    """All of the above."""
+    """Settings of a flight."""
 
     failsafe: FailsafeSettings = field(default_factory=FailsafeSettings)
     monitor: MonitorSettings = field(default_factory=MonitorSettings)

@@ -1,4 +1,4 @@
-"""The schema of declared settings: a type that pydantic validates strictly, and a listing for people.
+"""Schema of declared settings: a type that pydantic validates strictly, and a listing.
 
 A table of the system file is a frozen dataclass whose fields are declared with
 :func:`idc_controller.settings.setting`; a field that is such a dataclass itself is a table within the table. Other

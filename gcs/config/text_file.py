@@ -1,4 +1,4 @@
-"""Read a text file whole, or say in one line why not."""
+"""Text files, read whole."""
 
 from pathlib import Path
 
@@ -9,7 +9,7 @@ SIZE_LIMIT = 8_000_000
 
 
 def read_text(path: Path) -> str:
-    """Text of a UTF-8 file, with or without a byte order mark. Line ends as in the file.
+    """Return the text of a UTF-8 file, with or without a byte order mark. Line ends as in the file.
 
     Raises :class:`UnusableFile` when it cannot be read, is too large, or is not text.
     """

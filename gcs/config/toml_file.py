@@ -26,14 +26,14 @@ class TomlFile:
     """Line (from 1) of every table header and key; arrays of tables carry their index: ("obstacle", 0, "radius")."""
 
     def line(self, key: Sequence[str | int]) -> int:
-        """Line of a key, or of the nearest table around it."""
+        """Return the line of a key, or of the nearest table around it."""
         for end in range(len(key), 0, -1):
             if tuple(key[:end]) in self.lines:
                 return self.lines[tuple(key[:end])]
         return 1
 
     def problem(self, key: Sequence[str | int], reason: str) -> str:
-        """One line: file, line, table.key, reason."""
+        """Return a message of one line: file, line, table.key, reason."""
         return f"{self.path}: line {self.line(key)}: {dotted(key)}: {reason}"
 
     def validated(self, adapter: TypeAdapter[T], data: dict[str, Any] | None = None, under: Key = ()) -> T:

@@ -1,4 +1,4 @@
-"""Items to a route: what each command means here, and what cannot be flown.
+"""Compilation of mission items into a route.
 
 To add a mission command, add a function to :data:`_COMMANDS` that returns the item's :class:`~gcs.mission.route.Step`.
 Meanings: https://mavlink.io/en/messages/common.html#mav_commands and
@@ -17,6 +17,7 @@ from gcs.mission.flow import check_flow
 from gcs.mission.items import (
     AMSL_FRAMES,
     CONDITION_GATE,
+    FARTHEST,
     FENCE_AND_RALLY,
     FRAMES,
     LEFT_OUT,
@@ -30,12 +31,12 @@ from gcs.mission.model import RESTING_ALTITUDE
 from gcs.mission.route import Climb, Descend, Go, Jump, Place, Return, Route, Speed, Stay, Step, Turn, Wait
 
 LOITER_RADIUS = 5.0
-"""m, of loiter turns that give none."""
+"""m, of loiter turns without a radius."""
 
 
 @dataclass
 class _Context:
-    """What the commands need to know of the file, and where they leave their notes."""
+    """The file that is compiled, the targets of its jumps, and the notes on it."""
 
     file: WaypointFile
     motion: MotionConfig
@@ -48,7 +49,7 @@ class _Context:
 
 
 def compile_route(path: Path, file: WaypointFile, motion: MotionConfig, speed: float) -> tuple[Route, tuple[str, ...]]:
-    """The route of a waypoint file and notes on what is left out, capped or added.
+    """Return the route of a waypoint file and notes on what is left out, capped or added.
 
     ``speed`` (m/s) is flown where the file does not say. Raises :class:`UnusableFile` with every reason found.
     """
@@ -73,7 +74,7 @@ def compile_route(path: Path, file: WaypointFile, motion: MotionConfig, speed: f
 
 
 def _number_items(items: tuple[MissionItem, ...], context: _Context, path: Path, problems: list[str]) -> None:
-    """Find where jumps lead: by number and by tag, each of which may appear only once."""
+    """Find the targets of jumps: by number and by tag, each of which may appear only once."""
     for index, item in enumerate(items):
         kinds = [(context.index_of_number, item.number, "number")]
         if item.command == mavlink.MAV_CMD_JUMP_TAG:
@@ -87,7 +88,7 @@ def _number_items(items: tuple[MissionItem, ...], context: _Context, path: Path,
 
 
 def _step(item: MissionItem, context: _Context) -> Step | None:
-    """The step of an item; None and a note when it is left out."""
+    """Return the step of an item; None, and a note, if it is left out."""
     if item.frame not in FRAMES:
         raise ItemError("frame", f"{frame_name(item.frame)}, is not supported in a mission")
     if item.command in FENCE_AND_RALLY:
@@ -104,7 +105,7 @@ def _step(item: MissionItem, context: _Context) -> Step | None:
 
 
 def _joined(items: tuple[MissionItem, ...], steps: list[Step | None], context: _Context) -> tuple[Step, ...]:
-    """Steps without those left out, jump targets moved to match, and a hold where an item does not continue."""
+    """Return the steps that are flown, jump targets moved to match, and a hold where autocontinue is off."""
     joined: list[Step] = []
     index_of_item = []
     for item, step in zip(items, steps, strict=True):
@@ -124,7 +125,7 @@ def _joined(items: tuple[MissionItem, ...], steps: list[Step | None], context: _
 
 
 def _place(item: MissionItem, context: _Context) -> Place:
-    """Latitude, longitude and altitude of an item about home; what is not given stays open."""
+    """Return the place of an item about home; what is not given stays open."""
     latitude, longitude, altitude = item.params[4:7]
     if (latitude is None) != (longitude is None):
         raise ItemError("latitude, longitude", "one is given without the other")
@@ -140,8 +141,8 @@ def _place(item: MissionItem, context: _Context) -> Place:
         if altitude < RESTING_ALTITUDE:
             reason = f"{altitude:.2g} m: on the ground, where the payload's centre is at {RESTING_ALTITUDE} m"
             raise ItemError("altitude", reason)
-        if altitude > 10_000.0:
-            raise ItemError("altitude", f"{altitude:.6g} m above home: nothing flies there")
+        if altitude > FARTHEST:
+            raise ItemError("altitude", f"{altitude:.6g} m above home (limit {FARTHEST:g} m)")
     if here:
         return Place(None, altitude)
     assert latitude is not None and longitude is not None  # for the type checker: `here` covers None
@@ -152,7 +153,7 @@ def _above_home(item: MissionItem, altitude: float, context: _Context) -> float:
     if item.frame not in AMSL_FRAMES:
         return altitude
     if context.file.home.altitude is None:
-        raise ItemError("altitude", "is above mean sea level, and the file does not say how high home is")
+        raise ItemError("altitude", "is above mean sea level, but home has no altitude: use a frame above home")
     return altitude - context.file.home.altitude
 
 
@@ -200,8 +201,8 @@ def _loiter_turns(item: MissionItem, context: _Context) -> Step:
     if not radius:
         context.note(item, f"no radius given: flown with {LOITER_RADIUS:g} m")
         radius = LOITER_RADIUS
-    if abs(radius) > 10_000.0:
-        raise ItemError("param 3 (radius)", f"{radius:g} m")
+    if abs(radius) > FARTHEST:
+        raise ItemError("param 3 (radius)", f"{radius:g} m (limit {FARTHEST:g} m)")
     return Turn(item.label, _place(item, context), abs(radius), turns, radius > 0.0)
 
 
@@ -221,13 +222,13 @@ def _take_off(item: MissionItem, context: _Context) -> Step:
     _note_heading(item, context)
     place = _place(item, context)
     if place.altitude is None:
-        raise ItemError("altitude", "not given: how high to take off")
+        raise ItemError("altitude", "not given: a take-off needs one")
     return Climb(item.label, place)
 
 
 def _delay(item: MissionItem, context: _Context) -> Step:
     if item.params[0] is None or item.params[0] < 0.0:
-        raise ItemError("param 1", "a delay in seconds is needed; until a time of day is not supported")
+        raise ItemError("param 1", "not given: a delay in seconds is needed; a time of day is not supported")
     return Wait(item.label, item.params[0])
 
 

@@ -38,7 +38,7 @@ class MissionItem:
 
     @property
     def label(self) -> str:
-        """Line or item, and command."""
+        """Line or item with its command, for messages."""
         return f"{self.where} ({command_name(self.command)})"
 
 

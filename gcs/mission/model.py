@@ -49,9 +49,9 @@ class Lissajous:
 
 @dataclass(frozen=True)
 class Obstacle:
-    """An obstacle: its shape, and where its centre is (NED, m), without the displacement by its ``motion``.
+    """An obstacle: its shape, and the position of its centre (NED, m) without the displacement by its ``motion``.
 
-    ``known``: it is on the map; otherwise only range sensors show it.
+    ``known``: it is on the map; otherwise only range sensors detect it.
     """
 
     name: str
@@ -85,7 +85,7 @@ class Fault:
 @strict
 @dataclass(frozen=True)
 class Limits:
-    """What the flight is held to; None: not held to it. m, s, deg, m/s."""
+    """Limits of the flight (m, s, deg, m/s); None: no limit."""
 
     position_rmse: Positive | None = None
     settle: NotNegative = 10.0

@@ -1,1 +1,1 @@
-"""What a flight leaves behind: records, summary, pictures."""
+"""Records of a flight: its run folder, summary and pictures."""

@@ -58,7 +58,7 @@ def clearance_over_time(
     payload_vertices: ArrayLike = DEFAULT_PAYLOAD.vertices,
     disc_radius: float = 0.3,
 ) -> Array:
-    """Distance between formation and obstacles (T, number of obstacles) (m); 0 where they meet.
+    """Return the distance between formation and obstacles (T, number of obstacles) (m); 0 where they meet.
 
     Shapes: (T, 3), w-first (T, 4), (T, N, 3), w-first (T, N, 4), (V, 3), NED, quaternions body to world. A row or an
     obstacle position that is not finite gives NaN.

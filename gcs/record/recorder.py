@@ -1,4 +1,4 @@
-"""Writes a flight's records while it goes on: telemetry log, reference, estimate, control steps."""
+"""Recorder of a flight: telemetry log, reference, estimate, control steps, alarms."""
 
 from __future__ import annotations
 
@@ -53,11 +53,11 @@ class FlightRecorder:
         self.last_time = 0.0
 
     def datagram(self, now: float, datagram: bytes) -> None:
-        """One datagram, sent or received."""
+        """Record a datagram, sent or received."""
         self._tlog.write(now, datagram)
 
     def step(self, flight: Flight, time: float, record: StepRecord | None) -> None:
-        """One control step at team ``time`` (s)."""
+        """Record a control step at team ``time`` (s)."""
         self.last_time = time
         if not math.isnan(flight.takeoff_time):
             self._write_reference(flight, time)
@@ -79,21 +79,11 @@ class FlightRecorder:
         position, _, acceleration = decision.flat.payload[:3, 0]
         safety = decision.safety
         bounds = (math.nan if b is None else b for b in (safety.payload_bound, safety.uav_bound))
-        self._plan.write(
-            [
-                time,
-                *position,
-                *acceleration,
-                safety.slack,
-                safety.lag,
-                decision.progress_rate,
-                decision.detours,
-                *bounds,
-            ]
-        )
+        progress = (safety.slack, safety.lag, decision.progress_rate, decision.detours)
+        self._plan.write([time, *position, *acceleration, *progress, *bounds])
 
     def obstacles(self, obstacle_map: ObstacleMap, time: float) -> None:
-        """Tracked obstacles at team ``time`` (s); ten times a second, once there are any."""
+        """Record the tracked obstacles at team ``time`` (s); ten times a second, once there are any."""
         if time < self._next_obstacles - _GRID_TOLERANCE:
             return
         self._next_obstacles = (math.floor(time / OBSTACLE_INTERVAL + _GRID_TOLERANCE) + 1) * OBSTACLE_INTERVAL
@@ -107,7 +97,7 @@ class FlightRecorder:
             )  # fmt: skip
 
     def alarm(self, alarm: Alarm) -> None:
-        """A new alarm."""
+        """Record a new alarm."""
         code = alarm.code
         self._alarms.write([round(alarm.time, 6), alarm.source, code.code, code.severity.name.lower(), alarm.text])
 

@@ -1,4 +1,4 @@
-"""Reading the records of a run folder, finished or cut off."""
+"""The records of a run folder, finished or cut off, as arrays."""
 
 import json
 from collections import Counter
@@ -35,7 +35,7 @@ SUMMARY = "summary.json"
 
 @dataclass(frozen=True, eq=False)
 class RunData:
-    """What a run folder holds about a flight: T rows of N UAVs. NED, SI, w-first quaternions body to world.
+    """The records of a flight: T rows of N UAVs. NED, SI, w-first quaternions body to world.
 
     ``source`` is ``truth``, or ``estimate`` when the folder has no truth; N is 0 then and ``contacts`` is
     None. ``reference`` and ``steps`` are the tables, None when absent; ``manifest`` and ``summary`` the JSON
@@ -88,13 +88,13 @@ class RunData:
         return PadSettings(**found) if isinstance(found, Mapping) else PadSettings()
 
     def uav_separation(self) -> Array:
-        """Smallest distance between the centres of two UAVs (T,) (m)."""
+        """Return the smallest distance between the centres of two UAVs (T,) (m)."""
         first, second = np.triu_indices(self.number_of_uavs, k=1)
         between = self.uav_position[:, first] - self.uav_position[:, second]
         return np.asarray(np.min(np.linalg.norm(between, axis=-1), axis=1, initial=np.inf))
 
     def clearance(self) -> Array:
-        """Distance from the formation to each obstacle (T, number of obstacles) (m), NaN where unknown."""
+        """Return the distance from the formation to each obstacle (T, number of obstacles) (m), NaN where unknown."""
         return clearance_over_time(
             self.payload_position,
             self.payload_quaternion,
@@ -107,7 +107,7 @@ class RunData:
 
 
 def position_error(run: RunData) -> tuple[Array, Array]:
-    """Times (K,) (s) within the reference's span, and position minus reference then (K, 3) (m)."""
+    """Return times (K,) (s) within the reference's span, and position minus reference then (K, 3) (m)."""
     if run.reference is None or len(run.reference["time_s"]) == 0:
         return np.empty(0), np.empty((0, 3))
     at = run.reference["time_s"]
@@ -118,7 +118,7 @@ def position_error(run: RunData) -> tuple[Array, Array]:
 
 
 def read_run(run_dir: Path | str) -> RunData:
-    """Read what a run folder holds; files and rows that a cut-off flight did not write are just absent.
+    """Read a run folder; files and rows that a cut-off flight did not write are just absent.
 
     T is 0 where nothing was recorded. Raises :class:`UnusableInput` for a folder that is not a run and for a
     damaged file.
@@ -168,7 +168,7 @@ def read_run(run_dir: Path | str) -> RunData:
 
 
 def _table(path: Path, columns: tuple[str, ...] = ("time_s",)) -> Table | None:
-    """A table, or None if it is absent or was cut off before its header was written."""
+    """Return a table, None if it is absent or was cut off before its header was written."""
     if not path.exists() or path.stat().st_size == 0:
         return None
     table = read_table(path)
@@ -183,7 +183,7 @@ def _check_columns(path: Path, table: Mapping[str, object], columns: tuple[str, 
 
 
 def _obstacles(path: Path, time: Array) -> tuple[ObstacleTrack, ...]:
-    """The obstacles over the times of the truth; NaN where a cut-off flight left no row."""
+    """Return the obstacles over the times of the truth; NaN where a cut-off flight left no row."""
     if not path.exists() or path.stat().st_size == 0:
         return ()
     table = read_text_table(path)

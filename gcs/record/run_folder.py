@@ -23,10 +23,9 @@ _DISTRIBUTION = "cooplift"
 def open_run_folder(mission_name: str, run_dir: Path | str | None = None, parent: Path | str = "runs") -> Path:
     """Make the folder for the records of one flight, and lock it by an empty manifest.
 
-    Without ``run_dir`` it is ``<parent>/<mission_name>-<number>`` with the next free number; flights that
-    start in parallel never get the same one. ``run_dir`` is made if it is absent. Raises
-    :class:`UnusableInput` if the folder is not empty, is locked by another flight at the same time, or
-    cannot be written.
+    Without ``run_dir`` it is ``<parent>/<mission_name>-<number>`` with the next free number; parallel flights never get
+    the same one. Raises :class:`UnusableInput` if the folder is not empty, is locked by another flight at the same
+    moment, or cannot be written.
     """
     folder = Path(run_dir) if run_dir is not None else _numbered(Path(parent), _plain(mission_name))
     make_folder(folder)
@@ -42,7 +41,7 @@ def open_run_folder(mission_name: str, run_dir: Path | str | None = None, parent
 
 
 def make_folder(folder: Path | str) -> Path:
-    """Make a folder, with those above it, if it is absent; raises :class:`UnusableInput` where it cannot."""
+    """Make a folder, with those above it, if it is absent. Raises :class:`UnusableInput` if it cannot be made."""
     folder = Path(folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -75,7 +74,7 @@ def _unwritable(folder: Path, error: OSError) -> UnusableInput:
 
 
 def _plain(mission_name: str) -> str:
-    """The mission's name as a file name: letters, digits, _ and -; at most 60 characters."""
+    """Return the mission's name as a file name: letters, digits, _ and -; at most 60 characters."""
     return re.sub(r"[^\w-]+", "-", mission_name).strip("-")[:60] or "mission"
 
 
@@ -87,12 +86,10 @@ def write_manifest(
     mission: object,
     system: object,
     start: datetime | str,
-    extra: Mapping[str, object] | None = None,
 ) -> Path:
-    """Write ``manifest.json``: what was flown, with what, and when it began (by the caller's clock).
+    """Write ``manifest.json``: mission and system as read, versions, and the time of the start.
 
-    ``mission`` and ``system`` are given as read; dataclasses become objects, see :func:`to_json`. Raises
-    :class:`UnusableInput` if the file cannot be written.
+    Raises :class:`UnusableInput` if the file cannot be written.
     """
     content = {
         "command": list(command),
@@ -101,16 +98,15 @@ def write_manifest(
         "versions": versions(),
         "mission": mission,
         "system": system,
-        **(extra or {}),
     }
     return write_json(Path(folder) / MANIFEST, content)
 
 
 def write_json(path: Path | str, content: object) -> Path:
-    """Write strict JSON (see :func:`to_json`) in one go; raises :class:`UnusableInput` where it cannot."""
+    """Write strict JSON (see :func:`to_json`). Raises :class:`UnusableInput` if the file cannot be written."""
     path = Path(path)
     text = json.dumps(to_json(content), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
-    # Whoever looks, or a killed process, finds the old file or the new one, never half of it.
+    # Readers, and those after a killed process, find the old file or the new one, never half of it.
     draft = path.with_name(path.name + ".part")
     try:
         draft.write_text(text, encoding="utf-8")
@@ -140,7 +136,7 @@ def versions() -> dict[str, str]:
 
 
 def to_json(value: Any) -> Any:
-    """The same value in terms of strict JSON.
+    """Return the same value in terms of strict JSON.
 
     Dataclasses (their fields that are in the ``repr``) and mappings become objects, arrays, sequences and sets become
     lists, paths and dates text, enumeration members their names; NaN becomes null and infinity the text ``inf`` or

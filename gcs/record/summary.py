@@ -58,7 +58,7 @@ def summarise(
         "uav_separation": separation,
         "touchdown_speed": None if landing is None else landing["speed_mps"],
     }
-    return _rounded_table(
+    summary: dict[str, Any] = _rounded(
         {
             "completed": completed,
             "outcome": outcome,
@@ -80,6 +80,7 @@ def summarise(
             },
         }
     )
+    return summary
 
 
 def write_summary(run_dir: Path | str, summary: Mapping[str, Any]) -> Path:
@@ -130,11 +131,7 @@ def payload_tilt_max(run: RunData) -> dict[str, float | None]:
 
 def _step_times(steps: Table | None) -> dict[str, float | None]:
     total = steps["total_ms"] if steps is not None else np.empty(0)
-    return {
-        "p50": _percentile(total, 50.0),
-        "p99": _percentile(total, 99.0),
-        "max": _percentile(total, 100.0),
-    }
+    return {name: _percentile(total, percent) for name, percent in (("p50", 50.0), ("p99", 99.0), ("max", 100.0))}
 
 
 def _solver(steps: Table | None) -> dict[str, float | int | None]:
@@ -163,13 +160,9 @@ def _held(name: str, figure: float | None, limit: float, obstacles: bool) -> boo
     return figure >= limit if name in ("clearance", "uav_separation") else figure <= limit
 
 
-def _rounded_table(table: dict[str, Any]) -> dict[str, Any]:
-    return {key: _rounded(item) for key, item in table.items()}
-
-
 def _rounded(value: Any) -> Any:
     if isinstance(value, dict):
-        return _rounded_table(value)
+        return {key: _rounded(item) for key, item in value.items()}
     if isinstance(value, list):
         return [_rounded(item) for item in value]
     if isinstance(value, float):

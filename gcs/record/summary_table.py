@@ -13,7 +13,7 @@ _COLOUR_OF_OUTCOME = {"completed": "green", "aborted": "yellow", "collided": "re
 
 
 def summary_table(summary: Mapping[str, Any], run_dir: Path | str, pictures: Sequence[Path] = ()) -> RenderableType:
-    """What ``rich`` prints at the end of a flight: each figure, its limit, and where the records are."""
+    """Return what ``gcs fly`` prints at the end: each figure, its limit, and the folder of the records."""
     limits = summary["limits"]
     rmse, tilt = summary["position_rmse_m"], summary["payload_tilt_max_deg"]
     steps, solver = summary["step_time_ms"], summary["solver"]
