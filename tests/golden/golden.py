@@ -38,6 +38,7 @@ from flight_in_process import InProcessFlight  # noqa: E402
 from threadpoolctl import threadpool_limits  # noqa: E402
 
 from gcs.flight.failsafe import Failsafe  # noqa: E402
+from gcs.mission.read import read_mission  # noqa: E402
 
 CHECKSUMS = HERE / "checksums.json"
 MISSIONS = HERE / "missions"
@@ -50,11 +51,15 @@ _STAMP_LENGTH = 8
 
 @dataclass(frozen=True)
 class Golden:
-    """One flight: a mission file, tables appended to it, a seed, and what is done to the flight at each exchange."""
+    """One flight: a mission file, tables appended to it, a seed, and what is done to the flight at each exchange.
+
+    ``detected``: the mission's obstacles are in the world, too, where the range sensors detect them.
+    """
 
     mission: Path
     tables: str = ""
     seed: int = 1
+    detected: bool = False
     on_exchange: Callable[[InProcessFlight], None] = lambda flight: None
 
 
@@ -74,6 +79,7 @@ GOLDEN = {
     "spheres_1": Golden(MISSIONS / "spheres.toml", seed=1),
     "spheres_2": Golden(MISSIONS / "spheres.toml", seed=2),
     "spheres_3": Golden(MISSIONS / "spheres.toml", seed=3),
+    "spheres_detected": Golden(MISSIONS / "spheres.toml", detected=True),
     "poles": Golden(MISSIONS / "poles.toml"),
     "square": Golden(MISSIONS / "square.waypoints"),
     "delivery": Golden(HERE.parents[1] / "missions" / "fenced_delivery.plan"),
@@ -110,7 +116,8 @@ def fly(name: str, records: Path | None = None) -> tuple[str, dict[str, str], li
             text = golden.mission.read_text(encoding="utf-8")
             text = text.replace('"../../../missions/system.toml"', json.dumps(str(system)))
             mission.write_text(text + golden.tables, encoding="utf-8")
-        with InProcessFlight(mission, folder, seed=golden.seed) as flight:
+        obstacles = read_mission(mission).obstacles if golden.detected else ()
+        with InProcessFlight(mission, folder, seed=golden.seed, obstacles=obstacles) as flight:
             flight.fly(golden.on_exchange)
         differences = []
         if records is not None:
