@@ -1,4 +1,4 @@
-"""What only a plan has: surveys, fences, rally points."""
+"""Parts that only a plan has: surveys, fences, rally points."""
 
 import math
 from pathlib import Path
@@ -20,6 +20,7 @@ from mission_files import (
     survey,
 )
 
+from gcs.mission.fence import Fence
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.pole import Pole
 
@@ -80,3 +81,13 @@ def test_walls_are_inside_their_polygon(tmp_path: Path) -> None:
 def test_rally_points_are_noted_as_unsupported(tmp_path: Path) -> None:
     mission = read(tmp_path, plan(TAKE_OFF, A, RETURN, rallyPoints__points=[[47, 8, 1]]))
     assert mission.notes[0].startswith("rallyPoints: 1 left out")
+
+
+def test_line_that_leaves_the_inclusion_area_crosses_the_fence() -> None:
+    notched = ((0.0, 0.0), (0.0, 10.0), (10.0, 10.0), (10.0, 0.0), (5.0, 5.0))
+    fence = Fence(boundary=notched)
+    start, end = (9.0, 2.0, -5.0), (1.0, 2.0, -5.0)
+    assert fence.violation(start) is None and fence.violation(end) is None
+    assert fence.crossings(start, end) == ["the fence's inclusion area"]
+    assert fence.crossings(start, (9.0, 8.0, -5.0)) == []
+    assert fence.crossings(start, start) == []
