@@ -334,3 +334,13 @@ def test_landing_by_setpoints_is_detected(flying: Flight) -> None:
 
 
 # Plans and sensors
+
+
+def test_arming_is_refused_in_offboard_when_setpoints_have_stopped() -> None:
+    flight = Flight()
+    flight.run(0.02)
+    assert flight.pilot.enter_offboard(flight.target, flight.body.now, flight.body.now).text == ""
+    flight.ground_is_there = False
+    flight.run(0.4)
+    assert "OFFBOARD without set-points" in flight.pilot.arm(flight.body.now + 0.1).text
+    assert not flight.pilot.armed
