@@ -214,3 +214,34 @@ def test_every_sub_package_is_in_the_table():
 
 def test_sub_packages_have_no_cycle():
     [*TopologicalSorter({package: allowed.split() for package, allowed in ALLOWED.items()}).static_order()]
+
+
+def attributes(definition):
+    """Names of the attributes that a class declares or that its methods assign."""
+    declared = {n.target.id for n in definition.body if isinstance(n, ast.AnnAssign) and isinstance(n.target, ast.Name)}
+    assigned = {
+        n.attr
+        for n in ast.walk(definition)
+        if isinstance(n, ast.Attribute) and isinstance(n.ctx, ast.Store) and getattr(n.value, "id", "") == "self"
+    }
+    return declared | assigned
+
+
+def is_record(definition):
+    """An immutable table of values: settings, or a row of results."""
+    return any("frozen=True" in ast.unparse(d) for d in definition.decorator_list) or any(
+        getattr(base, "id", "") == "NamedTuple" for base in definition.bases
+    )
+
+
+def test_classes_with_a_state_have_a_dozen_attributes_or_a_reason():
+    definitions = {
+        (path.relative_to(ROOT), definition)
+        for package in FORBIDDEN
+        for path in (ROOT / package).rglob("*.py")
+        for definition in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(definition, ast.ClassDef) and not is_record(definition)
+    }
+    many = [(path, definition) for path, definition in definitions if len(attributes(definition)) > 12]
+    reason = "More than a dozen attributes"
+    assert [f"{path}: {c.name}" for path, c in many if reason not in (ast.get_docstring(c) or "")] == []

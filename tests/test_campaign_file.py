@@ -4,6 +4,7 @@ import dataclasses
 import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
 from flight_in_process import short_figure
 from small_campaign import CAMPAIGN, campaign_file, flights
@@ -153,3 +154,12 @@ def test_campaign_file_is_refused_with_reasons_of_its_mission(tmp_path):
     with pytest.raises(UnusableFile) as raised:
         read_campaign(path)
     assert any("short_figure.toml: line" in reason for reason in raised.value.reasons)
+
+
+def test_mission_made_of_another_takes_the_mesh_of_an_obstacle_along(tmp_path):
+    base = read_base(MISSIONS / "unknown_rock.toml")
+    base.write_files(tmp_path)
+    (tmp_path / "made.toml").write_text(base.text("made"))
+    made, read = (read_mission(path).obstacles[0] for path in (tmp_path / "made.toml", MISSIONS / "unknown_rock.toml"))
+    corners = [np.array(sorted(obstacle.shape.file.corners)) for obstacle in (made, read)]
+    np.testing.assert_allclose(*corners, atol=1e-9)

@@ -9,7 +9,7 @@ import pytest
 from standing_obstacles import StandingObstacles
 
 from gcs.campaign.scenarios.judgement import least_separation
-from gcs.config import read_system
+from gcs.config import UnusableFile, read_system
 from gcs.drivers.connection import Connection
 from gcs.drivers.interrupt import Interrupt
 from gcs.drivers.lockstep import run_in_lockstep
@@ -61,6 +61,22 @@ def test_detours_are_searched_above_ground_whatever_the_height_of_the_payload():
         built(stack.guidance, system(payload={"size": (1.0, 1.0, height)})).navigator.lowest for height in (0.5, 1.0)
     ]
     assert lowest == pytest.approx([0.35, 0.6])
+
+
+def test_lowest_waypoint_and_landing_follow_the_height_of_the_payload_and_of_the_pad(tmp_path):
+    (tmp_path / "system.toml").write_text("[payload]\nsize = [1.0, 1.0, 1.0]\n[world.pad]\nthickness = 0.2\n")
+    path = tmp_path / "hop.toml"
+    points = '[mission]\nname = "hop"\n[reference]\nkind = "waypoints"\npoints = [[5.0, 0.0, {z}]]\n'
+    path.write_text(points.format(z=-0.75))
+    *_, landing = read_mission(path).reference.legs()
+    assert landing.position[2] == pytest.approx(-0.7)
+    path.write_text(points.format(z=-0.65))
+    with pytest.raises(UnusableFile, match=r"hop.toml: line 5: reference.points.*limit -0.7 m"):
+        read_mission(path)
+    figure = '[mission]\nname = "figure"\n[reference]\nkind = "lissajous"\namplitude = [6.0, 3.0]\n'
+    path.write_text(figure + "angular_frequency = 0.5\naltitude = 0.65\nduration = 30.0\n")
+    with pytest.raises(UnusableFile, match=r"hop.toml: line 7: reference.altitude: 0.65 m .*limit 0.7 m"):
+        read_mission(path)
 
 
 def test_stop_without_setpoints_keeps_farther_off_with_a_larger_margin():

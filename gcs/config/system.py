@@ -88,6 +88,11 @@ class SystemConfig:
             attitude_kd=self.uav.attitude_kd,
         )
 
+    @property
+    def resting_altitude(self) -> float:
+        """Height of the payload's centre of mass above home when it is on the pad (m); nothing is flown below."""
+        return self.world.pad.thickness + self.payload.hull.below
+
     def attachment_points(self) -> Array:
         """Return the attachment points about the payload's centre of mass (N, 3) (m)."""
         if self.team.attachments is not None:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from pymavlink.dialects.v20 import common as mavlink
 
-from gcs.config import MotionConfig, UnusableFile
+from gcs.config import SystemConfig, UnusableFile
 from gcs.mission.flow import check_flow
 from gcs.mission.items import (
     AMSL_FRAMES,
@@ -27,7 +27,6 @@ from gcs.mission.items import (
     command_name,
     frame_name,
 )
-from gcs.mission.model import RESTING_ALTITUDE
 from gcs.mission.route import Climb, Descend, Go, Jump, Place, Return, Route, Speed, Stay, Step, Turn, Wait
 
 LOITER_RADIUS = 5.0
@@ -39,7 +38,7 @@ class _Context:
     """The file that is compiled, the targets of its jumps, and the notes on it."""
 
     file: WaypointFile
-    motion: MotionConfig
+    system: SystemConfig
     notes: list[str] = field(default_factory=list)
     index_of_number: dict[int, int] = field(default_factory=dict)
     index_of_tag: dict[int, int] = field(default_factory=dict)
@@ -48,12 +47,12 @@ class _Context:
         self.notes.append(f"{item.label}: {text}")
 
 
-def compile_route(path: Path, file: WaypointFile, motion: MotionConfig, speed: float) -> tuple[Route, tuple[str, ...]]:
+def compile_route(path: Path, file: WaypointFile, system: SystemConfig, speed: float) -> tuple[Route, tuple[str, ...]]:
     """Return the route of a waypoint file and notes on what is left out, capped or added.
 
     ``speed`` (m/s) is flown where the file does not say. Raises :class:`UnusableFile` with every reason found.
     """
-    context = _Context(file, motion)
+    context = _Context(file, system)
     problems: list[str] = []
     _number_items(file.items, context, path, problems)
     steps: list[Step | None] = []
@@ -66,7 +65,7 @@ def compile_route(path: Path, file: WaypointFile, motion: MotionConfig, speed: f
         steps.append(step)
     if problems:
         raise UnusableFile(problems)
-    route = Route(_joined(file.items, steps, context), speed, RESTING_ALTITUDE)
+    route = Route(_joined(file.items, steps, context), speed, system.resting_altitude)
     problems, notes = check_flow(route, file.fence)
     if problems:
         raise UnusableFile([f"{path}: {problem}" for problem in problems])
@@ -138,8 +137,9 @@ def _place(item: MissionItem, context: _Context) -> Place:
         altitude = _above_home(item, altitude, context)
         if altitude < 0.0:
             raise ItemError("altitude", f"below ground: {-altitude:.6g} m lower than home")
-        if altitude < RESTING_ALTITUDE:
-            reason = f"{altitude:.2g} m: on the ground, where the payload's centre is at {RESTING_ALTITUDE} m"
+        if altitude < context.system.resting_altitude:
+            resting = context.system.resting_altitude
+            reason = f"{altitude:.2g} m: on the ground, where the payload's centre is at {resting:g} m"
             raise ItemError("altitude", reason)
         if altitude > FARTHEST:
             raise ItemError("altitude", f"{altitude:.6g} m above home (limit {FARTHEST:g} m)")
@@ -247,9 +247,9 @@ def _change_speed(item: MissionItem, context: _Context) -> Step | None:
         return Speed(item.label, None)
     if speed <= 0.0:
         raise ItemError("param 2 (speed)", f"{speed:g} m/s: the payload would never arrive")
-    if speed > context.motion.speed_max:
-        context.note(item, f"{speed:g} m/s capped to speed_max, {context.motion.speed_max:g} m/s")
-        speed = context.motion.speed_max
+    if speed > context.system.motion.speed_max:
+        context.note(item, f"{speed:g} m/s capped to speed_max, {context.system.motion.speed_max:g} m/s")
+        speed = context.system.motion.speed_max
     return Speed(item.label, speed)
 
 

@@ -10,9 +10,9 @@ from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
-from gcs.config import MotionConfig
+from gcs.config import MotionConfig, SystemConfig
 from gcs.faults import KINDS
-from gcs.mission.model import RESTING_ALTITUDE, Fault, Limits, Lissajous, Mission
+from gcs.mission.model import Fault, Limits, Lissajous, Mission
 from gcs.mission.route import Circle, FlyTo, HoldForever, Land, Leg, Position, Route, TakeOff
 
 SHOWN_LEGS = 40
@@ -32,7 +32,7 @@ def describe(mission: Mission) -> RenderableType:
     if isinstance(mission.reference, Lissajous):
         parts.append(_lissajous(mission.reference))
     else:
-        parts += _route(mission.reference, mission.system.motion)
+        parts += _route(mission.reference, mission.system)
     parts += [Text(line) for line in (*_surroundings(mission), *_limits(mission.limits))]
     parts += [Text(f"note: {note}", style="yellow") for note in mission.notes]
     return Group(*parts)
@@ -48,14 +48,14 @@ def _lissajous(curve: Lissajous) -> Text:
     )
 
 
-def _route(route: Route, motion: MotionConfig) -> list[RenderableType]:
+def _route(route: Route, system: SystemConfig) -> list[RenderableType]:
     table = Table("", "leg", "north", "east", "altitude", "m/s", "length (m)", "time (s)", "from")
     length = time = 0.0
     count, last = 0, None
-    start: Position = (0.0, 0.0, -RESTING_ALTITUDE)
+    start: Position = (0.0, 0.0, -system.resting_altitude)
     for leg in _shown_legs(route):
         count, last = count + 1, leg
-        leg_length, leg_time, end = _measure(leg, start, motion)
+        leg_length, leg_time, end = _measure(leg, start, system.motion)
         length, time = length + leg_length, time + leg_time
         if count <= SHOWN_LEGS:
             speed = f"{leg.speed:g}" if isinstance(leg, FlyTo | Circle) else ""

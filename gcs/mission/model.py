@@ -13,9 +13,6 @@ from gcs.mission.motion import AnyMotion
 from gcs.mission.route import Route
 from idc_controller.geometry.shape import Shape
 
-RESTING_ALTITUDE = 0.30
-"""Height of the payload's centre above home when it is on the pad (m); nothing is flown below."""
-
 Name = Annotated[str, Field(min_length=1, max_length=200)]
 
 
@@ -42,7 +39,7 @@ class Lissajous:
 
     amplitude: tuple[NotNegative, NotNegative]
     angular_frequency: Positive
-    altitude: Annotated[float, Field(ge=RESTING_ALTITUDE)]
+    altitude: float
     duration: Positive
     kind: Literal["lissajous"] = "lissajous"
 

@@ -10,7 +10,7 @@ from gcs.config.validate import Key
 from gcs.mission.compile import compile_route
 from gcs.mission.model import DEFAULT_HOME, Home, Lissajous, Mission
 from gcs.mission.plan import read_plan
-from gcs.mission.toml_mission import DEFAULT_SEED, check_faults, points_route, read_mission_file
+from gcs.mission.toml_mission import DEFAULT_SEED, check_with_system, points_route, read_mission_file
 from gcs.mission.wpl import read_wpl
 
 _SUFFIXES = {".waypoints": "wpl", ".txt": "wpl", ".plan": "plan", ".json": "plan", ".toml": "toml"}
@@ -53,7 +53,7 @@ def _from_waypoints(path: Path, text: str, system: SystemConfig, speed: float) -
     if kind == "toml":
         raise UnusableFile([f"{path}: neither a QGC WPL file nor a QGroundControl plan"])
     file = read_wpl(path, text) if kind == "wpl" else read_plan(path, text)
-    route, notes = compile_route(path, file, system.motion, speed)
+    route, notes = compile_route(path, file, system, speed)
     altitude = file.home.altitude
     if altitude is None:
         altitude = DEFAULT_HOME.altitude
@@ -68,7 +68,7 @@ def _from_toml(path: Path, config: Path | None) -> Mission:
     if config is None and table.mission.system is not None:
         _beside(file, ("mission", "system"), table.mission.system)
     system = _system(path, table.mission.system, config)
-    check_faults(file, table, system)
+    check_with_system(file, table, system)
     reference, capped = table.reference, tuple[str, ...]()
     if isinstance(reference, Lissajous):
         mission = Mission(path.stem, path, DEFAULT_SEED, system, reference)
@@ -78,7 +78,7 @@ def _from_toml(path: Path, config: Path | None) -> Mission:
             capped = (f"reference.speed: {speed:g} m/s capped to speed_max, {system.motion.speed_max:g} m/s",)
             speed = system.motion.speed_max
         if reference.file is None:
-            mission = Mission(path.stem, path, DEFAULT_SEED, system, points_route(file, reference, speed))
+            mission = Mission(path.stem, path, DEFAULT_SEED, system, points_route(file, reference, speed, system))
         else:
             waypoints = _beside(file, ("reference", "file"), reference.file)
             mission = _from_waypoints(waypoints, read_text(waypoints), system, speed)

@@ -17,7 +17,7 @@ from gcs.config.toml_file import TomlFile, read_toml
 from gcs.config.validate import NotNegative, Positive, strict
 from gcs.mission.faults import fault_data, fault_problems, parameter_problems
 from gcs.mission.items import FARTHEST, ITEM_LIMIT
-from gcs.mission.model import RESTING_ALTITUDE, Fault, Limits, Lissajous, Name
+from gcs.mission.model import Fault, Limits, Lissajous, Name
 from gcs.mission.motion import WaypointsMotion
 from gcs.mission.obstacle_table import ObstacleTable
 from gcs.mission.route import Descend, Go, Place, Route, Step
@@ -93,37 +93,43 @@ def read_mission_file(path: Path) -> tuple[TomlFile, MissionFile]:
     return file, mission
 
 
-def points_route(file: TomlFile, table: WaypointsTable, speed: float) -> Route:
+def points_route(file: TomlFile, table: WaypointsTable, speed: float, system: SystemConfig) -> Route:
     """Return the route through ``points``. Raises :class:`UnusableFile` for points that cannot be flown to."""
     points = table.points or ()
+    lowest = -system.resting_altitude
     problems = []
     for i, (x, y, z) in enumerate(points):
-        if z > -RESTING_ALTITUDE:
-            reason = f"z = {z:g} m is below ground (limit {-RESTING_ALTITUDE:g} m, down is positive)"
+        if z > lowest:
+            reason = f"z = {z:g} m is below ground (limit {lowest:g} m, down is positive)"
             problems.append(file.problem(("reference", "points", i), reason))
         if max(abs(x), abs(y), abs(z)) > FARTHEST:
             reason = f"[{x:g}, {y:g}, {z:g}] is more than {FARTHEST / 1000.0:g} km from home"
             problems.append(file.problem(("reference", "points", i), reason))
     if problems:
         raise UnusableFile(problems)
-    return route_through(points, speed, table.hold or 0.0, return_home=table.return_home is not False)
+    return route_through(points, speed, system, table.hold or 0.0, return_home=table.return_home is not False)
 
 
-def route_through(points: Sequence[Vector], speed: float, hold: float = 0.0, *, return_home: bool = True) -> Route:
+def route_through(
+    points: Sequence[Vector], speed: float, system: SystemConfig, hold: float = 0.0, *, return_home: bool = True
+) -> Route:
     """Return the route from the pad through ``points`` (NED, m) at ``speed`` (m/s), to the pad or the last one."""
     steps: list[Step] = [Go(f"point {i}", Place((x, y), -z), hold) for i, (x, y, z) in enumerate(points, start=1)]
     if not return_home:
         steps.append(Descend("end of mission", Place()))
-    return Route(tuple(steps), speed, RESTING_ALTITUDE)
+    return Route(tuple(steps), speed, system.resting_altitude)
 
 
-def check_faults(file: TomlFile, mission: MissionFile, system: SystemConfig) -> None:
-    """Raise :class:`UnusableFile` for faults that do not agree with themselves or with the system."""
+def check_with_system(file: TomlFile, mission: MissionFile, system: SystemConfig) -> None:
+    """Raise :class:`UnusableFile` for an altitude or for faults that do not agree with the system."""
     problems = [
         file.problem(("fault", i, key), reason)
         for i, fault in enumerate(mission.fault)
         for key, reason in fault_problems(fault, system)
     ]
+    if isinstance(mission.reference, Lissajous) and mission.reference.altitude < system.resting_altitude:
+        reason = f"{mission.reference.altitude:g} m is on the ground (limit {system.resting_altitude:g} m)"
+        problems.append(file.problem(("reference", "altitude"), reason))
     if problems:
         raise UnusableFile(problems)
 

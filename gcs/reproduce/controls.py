@@ -91,7 +91,7 @@ class PaperControl(Control):
         self.variant, self.spheres, self.margin = variant, tuple(spheres), margin
         self._mpc = ThrustTorqueMpc(parameters, Settings(weights=weights, terminal_outputs_alone=outputs))
         self._plant, self._formation = Plant(parameters), Formation(parameters)
-        self._A_v, self._G = linear_acceleration(parameters)
+        self._linear = linear_acceleration(parameters)
         self._hover = np.column_stack([parameters.hover_thrust, np.zeros((parameters.number_of_uavs, 3))]).ravel()
         self._u = self._hover
 
@@ -129,7 +129,8 @@ class PaperControl(Control):
             return np.zeros((0, len(self._hover))), np.zeros(0)
         if self.variant.acceleration == "linear":
             # All deviations are small in eq:disSys; the payload's position does not enter.
-            a, G = self._A_v @ x, self._G
+            A_v, G = self._linear
+            a = A_v @ x
         else:
             a, G = nonlinear_acceleration(self._plant, state)
         uavs = self._plant.uav_positions(state)

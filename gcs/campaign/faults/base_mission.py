@@ -1,13 +1,14 @@
 """Missions made of a mission: with another seed, with faults, with other limits, as files that ``gcs fly`` repeats."""
 
 import dataclasses
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from gcs.campaign.folder import digest, write_text
 from gcs.campaign.toml_text import tables_text
+from gcs.config.mesh_file import read_mesh
 from gcs.config.system import SystemConfig
 from gcs.config.text_file import read_text
 from gcs.config.toml_file import read_toml
@@ -70,19 +71,28 @@ def read_base(path: Path, config: Path | None = None) -> BaseMission:
         files[name] = text
         return name
 
-    system_tables = mission.system.tables()
-    if mesh := mission.system.payload.mesh:
+    def copied_mesh(file: Path) -> str:
         from trimesh.exchange.obj import export_obj  # half a second, spent only where there is a mesh
 
-        text = export_obj(mesh.surface, include_normals=False, digits=17)
-        system_tables["payload"]["mesh"] = copied(Path("payload.obj"), text)
+        return copied(file.with_suffix(".obj"), export_obj(read_mesh(file), include_normals=False, digits=17))
+
+    system_tables = mission.system.tables()
+    if mesh := mission.system.payload.mesh:
+        system_tables["payload"]["mesh"] = copied_mesh(mesh.path)
     system = copied(Path("system.toml"), tables_text(system_tables))
+    if obstacles := tables.get("obstacle"):
+        tables = {**tables, "obstacle": [_with_mesh(table, path.parent, copied_mesh) for table in obstacles]}
     tables = {**tables, "mission": {**tables["mission"], "system": system}}
     if "file" in tables["reference"]:
         source = path.parent / tables["reference"]["file"]
         file = copied(source, read_text(source))
         tables["reference"] = {**tables["reference"], "file": file}
     return BaseMission(mission.name, mission.seed, mission.system, tables, files)
+
+
+def _with_mesh(obstacle: dict[str, Any], folder: Path, copied: Callable[[Path], str]) -> dict[str, Any]:
+    """Return the table of an obstacle; if its shape is a mesh file in ``folder``, with the name of the copy."""
+    return {**obstacle, "file": copied(folder / obstacle["file"])} if "file" in obstacle else obstacle
 
 
 def fault_table(fault: Fault | Mapping[str, Any]) -> dict[str, Any]:

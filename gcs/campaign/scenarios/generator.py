@@ -21,7 +21,7 @@ from gcs.campaign.scenarios.schedule import Schedule
 from gcs.campaign.toml_text import mission_text
 from gcs.config import SystemConfig, read_system
 from gcs.errors import GcsError
-from gcs.mission.model import RESTING_ALTITUDE, Limits, Lissajous, Mission, Obstacle
+from gcs.mission.model import Limits, Lissajous, Mission, Obstacle
 from gcs.mission.motion import AnyMotion
 from gcs.mission.route import Route
 from gcs.mission.toml_mission import route_through
@@ -128,7 +128,7 @@ class _Draft:
             points.append((round(north, 3), round(east, 3), -round(altitude, 3)))
         speed = self._uniform(1.0, 1.5)
         self.reference = {"points": points, "speed": speed, "return_home": False}
-        self._lay(route_through(points, speed, return_home=False))
+        self._lay(route_through(points, speed, self._system, return_home=False))
 
     def _lay_figure(self) -> None:
         """Lay a lap and a half of a figure eight at up to 2.5 m/s."""
@@ -227,7 +227,9 @@ class _Draft:
         formation = BoundingCylinder.of(self._system.parameters(), LINK_TILT)
         static = [(o.shape, np.array(o.position)) for o in self.obstacles if o.motion is None]
         moving = [(o, o.motion) for o in self.obstacles if o.motion is not None]
-        heights = np.arange(self.schedule.goal[2], -RESTING_ALTITUDE, 0.5)  # from the path down to the ground
+        heights = np.arange(
+            self.schedule.goal[2], -self._system.resting_altitude, 0.5
+        )  # from the path down to the ground
         ends = [[x, y, z] for x, y, _ in (self._path[0], self.schedule.goal) for z in heights]
         waypoints = self.reference["points"] if isinstance(self.reference, dict) else []
         return (

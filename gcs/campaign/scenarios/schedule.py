@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcs.flight.mission_trajectory import MissionTrajectory
-from gcs.mission.model import RESTING_ALTITUDE, Mission
+from gcs.mission.model import Mission
 
 Array = NDArray[np.float64]
 
@@ -25,7 +25,7 @@ class Schedule:
 
     def __init__(self, mission: Mission) -> None:
         """Raises :class:`ValueError` for a mission that lasts longer than an hour."""
-        pad = np.array([PAD_OFFSET, -PAD_OFFSET, -RESTING_ALTITUDE])
+        pad = np.array([PAD_OFFSET, -PAD_OFFSET, -mission.system.resting_altitude])
         mission_trajectory = MissionTrajectory(mission, pad, 0.0)
         parameters, spool_up = mission.system.parameters(), mission.system.flight.takeoff_landing.spool_up_time
         own_weight = parameters.m * parameters.g / parameters.hover_thrust
