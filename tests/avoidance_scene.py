@@ -134,7 +134,7 @@ def avoidance(obstacles, n=4, margin=0.5, speed=1.5, **settings):
 
 @dataclass
 class Flown:
-    """What a flight came to."""
+    """Result of a flight."""
 
     avoidance: Avoidance
     mission: WaypointTrajectory

@@ -1,4 +1,4 @@
-"""What strangers and damaged links put on the wire beside a flight: random, damaged, forged and hostile datagrams."""
+"""Random, damaged, forged and hostile datagrams of foreign systems and damaged links, beside a flight."""
 
 import random
 import struct
@@ -14,7 +14,7 @@ REMEMBERED = 64  # genuine datagrams that may be imitated
 
 
 def offset_of(kind, name):
-    """Where a field lies in a message's payload on the wire."""
+    """Offset of a field in a message's payload on the wire."""
     codes = kind.native_format.decode().lstrip("<")
     before = kind.ordered_fieldnames.index(name)
     return sum(
@@ -56,19 +56,19 @@ class HostileTraffic:
     """Draws datagrams, each with the address it comes from; none of them may be obeyed.
 
     ``genuine``: what one sender has sent lately from ``address``, to be imitated; from there comes only what has no
-    right checksum. ``strangers``: (address, system) of those who send the rest; another system may share the address.
+    right checksum. ``foreign``: (address, system) of the systems that send the rest; several may share an address.
     ``hostile``: messages to choose from. ``target_system``: whom all that is addressed is for.
     """
 
-    def __init__(self, seed, genuine, address, strangers, hostile, target_system):
+    def __init__(self, seed, genuine, address, foreign, hostile, target_system):
         self._random = random.Random(seed)
         self._genuine = genuine
         self._address = address
-        self._strangers = strangers
-        self._elsewhere = [stranger for stranger, _ in strangers if stranger != address]
+        self._foreign = foreign
+        self._elsewhere = [other for other, _ in foreign if other != address]
         self._hostile = hostile
         self._target_system = target_system
-        self._writers = {system: mavlink.MAVLink(None, system, 1) for _, system in strangers}
+        self._writers = {system: mavlink.MAVLink(None, system, 1) for _, system in foreign}
         self._reader = Codec(254, 1)
         self._kinds = tuple(mavlink.mavlink_map.values())
         self._makers = (
@@ -110,7 +110,7 @@ class HostileTraffic:
     def _forged(self):
         """A genuine frame with other contents and a right checksum."""
         draw = self._random
-        address, system = draw.choice(self._strangers)
+        address, system = draw.choice(self._foreign)
         frame = draw.choice(_frames(draw.choice(self._genuine)))
         for _ in range(draw.randrange(9)):
             frame[draw.randrange(10, len(frame) - 2)] = draw.choice((0, 1, 0x7F, 0x80, 0xFF, draw.randrange(256)))
@@ -122,11 +122,11 @@ class HostileTraffic:
         return bytes(frame), address
 
     def _hostile_message(self):
-        address, system = self._random.choice(self._strangers)
+        address, system = self._random.choice(self._foreign)
         return self._random.choice(self._hostile).pack(self._writers[system]), address
 
     def _any_message(self):
-        address, system = self._random.choice(self._strangers)
+        address, system = self._random.choice(self._foreign)
         kind = self._random.choice(self._kinds)
         contents = self._random.randbytes(kind.unpacker.size)
         return with_random_contents(kind, contents, self._target_system, self._writers[system]), address

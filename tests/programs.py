@@ -61,7 +61,7 @@ def swarm_process(*arguments):
 
 
 def addresses_of(process):
-    """What it prints until it is ready: {"clock" or "vehicle 1" ...: url}."""
+    """Addresses that the simulator prints until it is ready: {"clock" or "vehicle 1" ...: url}."""
     urls = {}
     for line in process.stdout:
         if line.strip() == "ready":

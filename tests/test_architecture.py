@@ -173,7 +173,7 @@ def test_sub_package_imports_only_what_the_table_allows(package):
 
 @pytest.mark.parametrize("path", SETTINGS, ids=lambda path: path.parts[-2])
 def test_settings_module_imports_mathematics_only(path):
-    """What gcs.config assembles must not need it."""
+    """gcs.config assembles these modules, so they must not import it."""
     assert all(name.startswith("idc_controller.") for name, _ in sub_packages_imported(path))
 
 

@@ -1,4 +1,4 @@
-"""What the faults of a link do to datagrams."""
+"""Effects of the link's faults on datagrams."""
 
 import itertools
 import math

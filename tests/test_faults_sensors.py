@@ -1,4 +1,4 @@
-"""What the faults of sensors do to samples."""
+"""Effects of the sensors' faults on samples."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""What the faults of timing do to datagrams, clocks and stamps."""
+"""Effects of timing faults on datagrams, clocks and stamps."""
 
 import math
 

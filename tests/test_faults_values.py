@@ -1,4 +1,4 @@
-"""What the faults of values do to samples."""
+"""Effects of value faults on samples."""
 
 import math
 

@@ -85,7 +85,7 @@ def test_at_rest_hull_is_the_exact_one_to_within_the_rims_polygons(n):
 
 @pytest.mark.parametrize("n", TEAMS)
 def test_discs_and_payload_supports_bound_the_exact_hull(n):
-    """What the planner's rows are made of is never below the true extent, but for the links' own second order."""
+    """The supports in the planner's rows are never below the true extent, but for the links' own second order."""
     parameters, formation = system(n), Formation(system(n))
     rng = np.random.default_rng(10 + n)
     a = accelerations(rng, 60)

@@ -1,4 +1,4 @@
-"""Strangers and damaged links beside a flight: nothing crashes, no command is obeyed, and the flight is the same."""
+"""Foreign systems and damaged links beside a flight: no crash, no command accepted, and the flight is the same."""
 
 from random import Random
 

@@ -1,4 +1,4 @@
-"""How the payload came down, and when the vehicles stopped: on records that are written by hand."""
+"""Landing of the payload and stops of the vehicles, from records that are written by hand."""
 
 from __future__ import annotations
 

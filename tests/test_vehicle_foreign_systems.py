@@ -1,4 +1,4 @@
-"""Who may command a vehicle, and how little all others can do to it."""
+"""Control of a vehicle: one system may command it, and the messages of others change nothing."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ LEVEL = (1.0, 0.0, 0.0, 0.0)
 
 
 def stop_of(config):
-    """What a vehicle at 3 m/s does without set-points and stop plan: the time of the loss (s), and its plan."""
+    """Stop of a vehicle at 3 m/s without set-points and stop plan: the time of the loss (s), and its plan."""
     airframe = Airframe.of_system(config.parameters(), 0, config.uav)
     pilot = Autopilot(airframe, vehicle_parameters(airframe, 1, 250, config.onboard()), config.onboard())
     setpoint = AttitudeSetpoint(LEVEL, (0.0, 0.0, 0.0), 0.9, 0)

@@ -1,4 +1,4 @@
-"""What a vehicle streams, to whom, and when."""
+"""Telemetry streams of a vehicle: messages, rates and addressees."""
 
 from __future__ import annotations
 

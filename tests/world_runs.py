@@ -1,4 +1,4 @@
-"""What the tests of the PyBullet world share."""
+"""Helpers shared by the tests of the PyBullet world."""
 
 import math
 from dataclasses import replace

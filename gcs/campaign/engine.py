@@ -43,7 +43,7 @@ class FlightPlan:
 
 
 class PlanGenerator(ABC):
-    """What a campaign flies, and how it is reported."""
+    """The flights of a campaign, and the columns and conditions of its report."""
 
     what: str = "flights"
     passed_means: str = "within their limits"
@@ -52,11 +52,11 @@ class PlanGenerator(ABC):
     optional: ClassVar[tuple[str, ...]] = ()
     """Those of ``columns`` that results of earlier versions lack."""
     shown: ClassVar[tuple[tuple[str, str, str], ...]]
-    """What is printed of each flight: title, column and unit."""
+    """Columns printed of each flight: title, column and unit."""
 
     @property
     def settings(self) -> Mapping[str, Any] | None:
-        """What another campaign in the same folder would have to share; None: anything."""
+        """Settings that another campaign in the same folder must share; None: any."""
         return None
 
     @abstractmethod

@@ -25,7 +25,7 @@ BROKEN_OFF = "flight broken off: "
 
 @dataclass(frozen=True)
 class FlownProcess:
-    """How a ``gcs fly`` ended: its summary, empty if it has none, its standard error, and its wall time (s)."""
+    """Result of a ``gcs fly``: its summary, empty if it has none, its standard error, and its wall time (s)."""
 
     exit_code: int
     summary: dict[str, Any]

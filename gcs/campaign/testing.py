@@ -54,11 +54,11 @@ class FlownWithFaults:
     outcome: str
     """One of :data:`gcs.campaign.faults.judgement.VERDICTS`."""
     reason: str
-    """Why it was aborted; else empty."""
+    """Reason of an abort; else empty."""
 
     @property
     def within_limits(self) -> bool:
-        """Whether it was completed within its limits."""
+        """True if the flight was completed within its limits."""
         return self.outcome == "within limits"
 
     @property

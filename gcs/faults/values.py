@@ -21,7 +21,7 @@ _Amount = 1e5
 
 @dataclass(frozen=True, kw_only=True)
 class ValueFault(FaultSettings):
-    """What all but :class:`SwappedVehicles` have."""
+    """Settings that all but :class:`SwappedVehicles` share."""
 
     channel: Annotated[Channel, parameter("what is disturbed")]
     axes: Annotated[Axes, parameter("of the channel", min_length=1, max_length=3)] = ("x", "y", "z")

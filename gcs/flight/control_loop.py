@@ -58,7 +58,7 @@ class ControlLoop:
         self._stopwatch, self._brake = stopwatch, brake
         self._stop_plans: deque[StopPlan] = deque(maxlen=STOP_PLANS)
         self.stop_plan: StopPlan | None = None
-        """How all vehicles stop when set-points are lost; it goes out with the set-points."""
+        """Stop of all vehicles when set-points are lost; it goes out with the set-points."""
         self._estimator_time = 0.0
 
     def estimate(self, effective: float, trajectory: Trajectory) -> Estimate:

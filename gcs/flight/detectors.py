@@ -94,7 +94,7 @@ class MonitorAlarm(AlarmCode):
 
 @dataclass(frozen=True, eq=False)
 class MonitorStep:
-    """What a detector looks at in one control step: team ``time`` and ground time ``now`` (s)."""
+    """Inputs of a detector in one control step: team ``time`` and ground time ``now`` (s)."""
 
     time: float
     now: float

@@ -1,4 +1,4 @@
-"""What ends or changes a flight: one table of conditions, thresholds, reactions, severities and alarm codes.
+"""Failsafes, which end or change a flight: one table of conditions, thresholds, reactions, severities and alarm codes.
 
 Whoever ends or changes a flight raises a member of :class:`Failsafe`; the more severe reaction wins. To add one, add a
 member here, with its condition. ``docs/failsafes.md`` is made from this table.

@@ -197,7 +197,7 @@ def uncontrollable_modes(A: Array, B: Array, tolerance: float = 1e-6) -> list[co
 
 
 def relative_degrees(A: Array, B: Array, C: Array, tolerance: float = 1e-9) -> NDArray[np.int_]:
-    """Which derivative of each output (p) of y = C x each input (m) reaches first, (p, m); 0: none.
+    """Return the least derivative of each output (p) of y = C x that each input (m) reaches, (p, m); 0: none.
 
     The first k with C A^(k-1) B other than zero, measured against the largest of that order; within n, by Cayley and
     Hamilton none comes later.

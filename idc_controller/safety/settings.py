@@ -94,7 +94,7 @@ class PlannerSettings:
 
 @dataclass(frozen=True)
 class FilterSettings:
-    """Which obstacles take part in a plan, and how plans follow each other."""
+    """Obstacles that take part in a plan, and the succession of plans."""
 
     watch: float = setting(2.5, "m", "obstacles that come closer to the hull than this take part in the QP", gt=0.0)
     memory: float = setting(2.5, "s", "how long plans of the past are kept: late measurements refer to them", gt=0.0)

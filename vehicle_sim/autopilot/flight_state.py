@@ -40,7 +40,7 @@ class FlightState:
     failsafe: bool = False
     """The vehicle flies otherwise than commanded."""
     hold: HoldController | None = None
-    """How it brakes, holds and descends; None: it does not."""
+    """Controller of the stop, hold and descent in progress; None: there is none."""
     stop_plan: StopPlan | None = None
     """The newest of the ground in control."""
     link_time: float = -math.inf

@@ -22,7 +22,7 @@ AT_REST: Vector = (0.0, 0.0, 0.0)
 
 
 class PlannedState(NamedTuple):
-    """Where a plan wants the vehicle: m, m/s, m/s2 in the world (NED)."""
+    """Reference that a plan gives the vehicle: m, m/s, m/s2 in the world (NED)."""
 
     position: Vector
     velocity: Vector

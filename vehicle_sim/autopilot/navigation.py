@@ -39,7 +39,7 @@ class Navigation:
 
     @property
     def reported(self) -> Measurement | None:
-        """What to send of it: rates that were not measured are NaN, as MAVLink has it."""
+        """The estimate as telemetry sends it: rates that were not measured are NaN, as in MAVLink."""
         if self._known is None or self._has_rates:
             return self._known
         return self._known._replace(rates=(math.nan, math.nan, math.nan))

@@ -29,7 +29,7 @@ class SetpointError(SimulationError):
 
 
 class AttitudeSetpoint(NamedTuple):
-    """What the attitude loop is to follow.
+    """Set-point of the attitude loop.
 
     ``attitude``: unit quaternion body to world, or None to control the rates alone; ``rates`` in the body frame
     (rad/s, those not given are zero); ``thrust`` 0 .. 1 of the largest, or None to keep the last one;
@@ -79,7 +79,7 @@ def read_setpoint(message: mavlink.MAVLink_set_attitude_target_message, limits: 
 
 
 class StopPlan(NamedTuple):
-    """How to come to rest if no set-point follows; see :class:`~vehicle_sim.autopilot.hold_control.HoldPlan`.
+    """The stop to fly if no set-point follows; see :class:`~vehicle_sim.autopilot.hold_control.HoldPlan`.
 
     ``start`` in the vehicle's boot time (s), ``duration`` in s, five ``control_points`` in NED (m), ``yaw`` in rad.
     """

@@ -53,7 +53,7 @@ class Telemetry:
         self._boot_time = boot_time
         self._clock = clock
         self.reported: ReportedState | None = None
-        """What is sent of the vehicle's own state instead of its estimate; None: the estimate."""
+        """Sample that is sent of the vehicle's own state instead of its estimate; None: the estimate."""
         self.payload: Measurement | None = None
         self.scan: RangeSample | None = None
         self._scan_messages: tuple[RangeSample | None, Built] = (None, ())

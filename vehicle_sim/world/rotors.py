@@ -16,7 +16,7 @@ IDLE: Four = (0.0, 0.0, 0.0, 0.0)
 
 @dataclass(frozen=True)
 class RotorGeometry:
-    """What the mixer and the rotors share.
+    """Parameters that the mixer and the rotors share.
 
     - ``thrust_max`` of all four rotors together at ``rotor_speed_max`` (N, rad/s)
     - ``arm_length`` from the centre to a rotor (m)

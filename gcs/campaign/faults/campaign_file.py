@@ -40,7 +40,7 @@ class CampaignTable:
 @strict
 @dataclass(frozen=True)
 class SweptTable:
-    """What a ``[[fault]]`` of a campaign has beside what one of a mission has."""
+    """Keys that a ``[[fault]]`` of a campaign has beside those of a mission's."""
 
     name: Name
     severity: Severity | None = None

@@ -17,7 +17,7 @@ from gcs.record.tables import ALARMS, read_text_table
 WITHIN, OUTSIDE, ABORTED, COLLIDED, FAILED, NOT_FLOWN = VERDICTS = (
     "within limits", "outside limits", "aborted", "collided", "failed", "not flown",
 )  # fmt: skip
-"""How a flight ended, from good to bad; ``aborted``: set down safely before the mission was done."""
+"""Verdicts on a flight, from good to bad; ``aborted``: set down safely before the mission was done."""
 
 WITHIN_LIMITS, SAFE = REQUIREMENTS = ("within limits", "safe")
 """Conditions of a pass: completed within its limits; or set down safely in any phase, with its limits held."""

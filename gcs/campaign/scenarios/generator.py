@@ -285,7 +285,7 @@ def _rounded(place: Array) -> tuple[float, float, float]:
 
 @dataclass(frozen=True)
 class _Contents:
-    """What a kind of scenario consists of.
+    """Contents of a kind of scenario.
 
     ``figure_share``: share of scenarios on a figure eight. ``obstacles``: least and largest number, and what to add.
     """

@@ -50,7 +50,7 @@ class Variant:
 
 @dataclass(frozen=True)
 class Study:
-    """What is flown, and what the picture's axis means. ``seeds`` is the number of flights of each kind by default."""
+    """Flights of a study, and the quantity on its picture's axis. ``seeds``: flights of each kind by default."""
 
     name: str
     about: str

@@ -16,7 +16,7 @@ class StateConstraint(Protocol):
     G: Array
     """On the error (c, 12 + 11 N), in force components."""
     slack: NDArray[np.int_]
-    """Which of the constraint's own slacks, from 0, each row may be exceeded by (c,)."""
+    """Index of the constraint's own slack, from 0, by which each row may be exceeded (c,)."""
 
     def h(self, reference: FlatReference, stages: Sequence[int]) -> Array:
         """Return the bounds at ``stages`` of the reference (S, c)."""
