@@ -57,7 +57,7 @@ def event_counts(numbers, interval=0.01):
     [
         ([*range(200, 600)], (0, 0, 0)),
         ([*range(10), *range(11, 300)], (1, 0, 0)),
-        ([*range(10), *range(25, 300)], (1, 0, 0)),  # what is lost together
+        ([*range(10), *range(25, 300)], (1, 0, 0)),  # consecutive losses
         ([0, 1, 3, 2, 4, 5], (0, 1, 0)),
         ([0, 1, 4, 5, 2, 3, 6], (0, 2, 0)),
         ([0, 1, 1, 2, 3, 2, 3, 4], (0, 0, 3)),

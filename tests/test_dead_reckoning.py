@@ -84,7 +84,7 @@ def spikes(p, v, rng):
         lambda source, elapsed, p, v, rng: (p + 0.1 * elapsed * NORTH, v),
         lambda source, elapsed, p, v, rng: (np.full(3, np.nan), v),
     ],
-    ids=["sound", "noise times 5", "spikes", "two of four", "the payload unit, too", "unknown"],
+    ids=["nominal", "noise times 5", "spikes", "two of four", "the payload unit, too", "unknown"],
 )
 def test_valid_or_noisy_positions_are_consistent(spoil, seed):
     assert inconsistent_after(30.0, spoil, seed) is None

@@ -1,4 +1,4 @@
-"""Ways round obstacles for the whole formation: geometry against an independent distance library."""
+"""Detours of the whole formation round obstacles: geometry against an independent distance library."""
 
 import math
 from itertools import pairwise

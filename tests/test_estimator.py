@@ -105,7 +105,7 @@ def test_covariance_grows_with_missing_measurements():
         sigma = np.sqrt(np.diag(estimate.covariance))[: LAYOUT.size]
         truth = REFERENCE.at(np.zeros(1)).x[0]
         assert np.all(np.abs(estimate.x - truth) < 5.0 * sigma + 1e-9)
-        # A vehicle that is not measured gets no noise of its own force either.
+        # A vehicle that is not measured gets no process noise of its disturbance force either.
         unsure, sure = (np.diag(e.covariance)[: LAYOUT.size] for e in (estimate, full))
         assert np.all(unsure >= sure * (1.0 - 1e-9))
     assert len(innovations) == 100
@@ -140,7 +140,7 @@ def test_estimator_uses_relayed_payload_sample_once():
 
 def test_estimator_ignores_one_corrupted_relay():
     moments = samples_of(1.0)
-    _, sound, _ = run(moments)
+    _, nominal, _ = run(moments)
 
     def with_corrupted_relay(k, samples):
         out = [(k, s) for s in samples]
@@ -150,21 +150,21 @@ def test_estimator_ignores_one_corrupted_relay():
         return out
 
     _, corrupted, _ = run(moments, with_corrupted_relay)
-    assert corrupted.x == pytest.approx(sound.x, abs=1e-12)
+    assert corrupted.x == pytest.approx(nominal.x, abs=1e-12)
 
 
 @pytest.mark.parametrize("offset", [0.5, 50.0, np.nan, np.inf])
 def test_estimator_rejects_outliers(offset):
     rng = np.random.default_rng(9)
     moments = samples_of(1.0)
-    _, sound, _ = run(moments)
+    _, nominal, _ = run(moments)
     _, estimate, innovations = run(
         [*moments[:40], *[[sample(1, Position, s[0].time, rng, offset), *s[:4], *s[6:]] for s in moments[40:]]]
     )
     if np.isfinite(offset):  # what is not finite is not tested
         assert all((1, Position) in record.rejected for record in innovations[40:])
     sigma = np.sqrt(np.diag(estimate.covariance))[: LAYOUT.size]
-    assert np.all(np.abs(estimate.x - sound.x) < 3.0 * sigma)
+    assert np.all(np.abs(estimate.x - nominal.x) < 3.0 * sigma)
 
 
 def corrupted(s, **parts):

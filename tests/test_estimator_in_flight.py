@@ -87,7 +87,7 @@ def test_innovations_are_within_their_covariance_in_flight(flown):
     inside = (nis > chi2.ppf(0.025, dof)) & (nis < chi2.ppf(0.975, dof))
     assert inside.mean() > 0.92
     assert sum(len(record.rejected) for record in records) <= 3
-    # White: what one innovation says of the next is nothing.
+    # Whiteness: successive normalised innovations are uncorrelated.
     centred = nis / dof - np.mean(nis / dof)
     assert abs(np.mean(centred[1:] * centred[:-1]) / np.mean(centred**2)) < 0.1
 
@@ -139,7 +139,7 @@ def test_figure_eight_is_flown_and_estimate_has_no_offset_with_ten_percent_paylo
     last = [estimate for estimate, _ in flight.in_the_air()][-60:]
     excess = np.mean([estimate.mass_excess + 0.0 for estimate in last])
     force = np.mean([estimate.force for estimate in last], axis=0)
-    # Part of a mass looks like a steady force down: together they make up the weight.
+    # Excess mass and a constant disturbance force down are hardly observable apart: their sum is the excess weight.
     weight = excess * P.g + force[2]
     assert weight == pytest.approx((factor - 1.0) * P.m_0 * P.g, abs=0.15)
     assert np.abs(force[:2]).max() < 0.3

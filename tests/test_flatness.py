@@ -39,9 +39,9 @@ def systems():
 
 @pytest.mark.parametrize("p", list(systems()))
 @pytest.mark.parametrize("load", [Load(3.1, np.zeros(3)), Load(2.7, np.array([1.0, -2.0, 0.5]))], ids=["plain", "load"])
-@pytest.mark.parametrize("own", [False, True], ids=["", "own forces"])
-def test_reference_solves_the_nonlinear_dynamics_exactly(p, load, own):
-    on_uavs = own * np.linspace([-0.8, 0.5, 0.0], [0.7, 0.2, 0.0], p.number_of_uavs)
+@pytest.mark.parametrize("per_vehicle", [False, True], ids=["", "per-vehicle forces"])
+def test_reference_solves_the_nonlinear_dynamics_exactly(p, load, per_vehicle):
+    on_uavs = per_vehicle * np.linspace([-0.8, 0.5, 0.0], [0.7, 0.2, 0.0], p.number_of_uavs)
     load = replace(load, uav_force=on_uavs)
     flat = flat_reference(p, Wave(), TIMES, load)
     true = p.with_payload_mass(load.mass)

@@ -38,7 +38,7 @@ def surface(shape):
 
 
 def least_distance(first, second):
-    """Distance of two convex hulls of points, (P, 3) and (Q, 3), as a quadratic programme in the convex weights."""
+    """Distance of two convex hulls of points, (P, 3) and (Q, 3), as a QP in the convex weights."""
     n, m = len(first), len(second)
     D = np.hstack([first.T, -second.T])
     sums = np.zeros((2, n + m))

@@ -13,13 +13,13 @@ GATE = 1.0 - 1e-6
 REJECTIONS = InnovationMonitorSettings().rejections
 
 
-def findings(samples, *, changed=lambda k, i, white: white, rejected=lambda k: ()):
+def findings(samples, *, changed=lambda k, i, nu: nu, rejected=lambda k: ()):
     """Return sensor and finding with the time of its first report, after so many moments of normal innovations."""
     random, monitor, found = np.random.default_rng(5), InnovationMonitor(GATE), {}
     for k in range(samples):
         time = 0.04 * k
-        white = [changed(k, i, random.standard_normal(size)) for i, size in enumerate(SIZES)]
-        monitor.learn(time, KEYS, white, rejected(k))
+        nu = [changed(k, i, random.standard_normal(size)) for i, size in enumerate(SIZES)]
+        monitor.learn(time, KEYS, nu, rejected(k))
         for key, names in monitor.findings(time).items():
             for name in names:
                 found.setdefault((key, name), time)
@@ -32,7 +32,7 @@ def test_monitor_has_no_finding_for_consistent_innovations_and_single_rejections
 
 
 def test_monitor_has_no_finding_for_single_outliers():
-    assert findings(2000, changed=lambda k, i, white: white + 1e6 * (i == 1 and k % 100 == 50)) == {}
+    assert findings(2000, changed=lambda k, i, nu: nu + 1e6 * (i == 1 and k % 100 == 50)) == {}
 
 
 def test_monitor_finds_repeated_rejections():
@@ -43,20 +43,20 @@ def test_monitor_finds_repeated_rejections():
 @pytest.mark.parametrize("which", [0, 1])
 def test_monitor_finds_bias_far_below_the_gate(which):
     push = np.array([0.0, 0.0, 1.5, 0.0, 0.0, 0.0])
-    found = findings(300, changed=lambda k, i, white: white + push if i == which and k >= 100 else white)
+    found = findings(300, changed=lambda k, i, nu: nu + push if i == which and k >= 100 else nu)
     assert {key for key, _ in found} == {KEYS[which]}
     assert 4.0 < found[KEYS[which], Finding.BIASED] < 6.5
 
 
 def test_monitor_finds_noise_of_one_sensor():
-    found = findings(300, changed=lambda k, i, white: white * (2.0 if i == 2 and k >= 100 else 1.0))
+    found = findings(300, changed=lambda k, i, nu: nu * (2.0 if i == 2 and k >= 100 else 1.0))
     assert {key for key, _ in found} == {KEYS[2]}
     assert 4.0 < found[KEYS[2], Finding.NOISY] < 6.0
 
 
 def test_monitor_allows_attitudes_larger_innovations():
-    assert findings(300, changed=lambda k, i, white: white * (1.5 if i == 3 else 1.0)) == {}
-    assert (KEYS[3], Finding.NOISY) in findings(300, changed=lambda k, i, white: white * (3.0 if i == 3 else 1.0))
+    assert findings(300, changed=lambda k, i, nu: nu * (1.5 if i == 3 else 1.0)) == {}
+    assert (KEYS[3], Finding.NOISY) in findings(300, changed=lambda k, i, nu: nu * (3.0 if i == 3 else 1.0))
 
 
 def test_monitor_forgets_attitudes_of_uavs_only():
@@ -70,8 +70,8 @@ def test_monitor_forgets_attitudes_of_uavs_only():
 def test_monitor_treats_single_channel_by_itself():
     rng, monitor, key = np.random.default_rng(4), InnovationMonitor(GATE), (1, Position)
     for k in range(200):
-        white = rng.standard_normal(6) if k < 50 else rng.standard_normal(3) + (2.0 if k >= 100 else 0.0)
-        monitor.learn(0.04 * k, [key], [white], [])
+        nu = rng.standard_normal(6) if k < 50 else rng.standard_normal(3) + (2.0 if k >= 100 else 0.0)
+        monitor.learn(0.04 * k, [key], [nu], [])
         found = monitor.findings(0.04 * k)
         if k < 100:
             assert found == {}

@@ -104,8 +104,8 @@ def with_invalid_sensors(kind):
         elif k % 2 == 0:
             for uav, messages in enumerate(stuck):
                 # How many points there are, and under which number, may still follow what is in field of view.
-                for message in messages[: 3 + k // 2 % 4] if kind == "frozen values" else messages:
-                    message.obstacle_id += kind == "frozen values"
+                for message in messages[: 3 + k // 2 % 4] if kind == "stuck points" else messages:
+                    message.obstacle_id += kind == "stuck points"
                     message.time_boot_ms = round(t * 1e3)
                     if kind == "nan":
                         message.x = np.nan
@@ -126,14 +126,14 @@ def test_sensing_is_not_lost_with_one_valid_sensor():
     assert m.predict(np.array([4.0])) == []
 
 
-@pytest.mark.parametrize("kind", ["nan", "frozen", "frozen values", "broken"])
+@pytest.mark.parametrize("kind", ["nan", "stuck", "stuck points", "broken"])
 def test_sensing_lost_is_detected_and_tracks_are_retained(kind):
     lost = [m.sensing_lost for m in with_invalid_sensors(kind)]
     assert not lost[0] and all(lost[20:])
     *_, last = with_invalid_sensors(kind)
     (left,) = last.predict(np.array([4.0]))
     # The first stuck scan is used, with the attitude of the second.
-    assert "frozen" in kind or np.linalg.norm(left.positions[0] - [5.0, 0.0, -6.0]) < 0.3
+    assert "stuck" in kind or np.linalg.norm(left.positions[0] - [5.0, 0.0, -6.0]) < 0.3
 
 
 def test_track_deleted_before_sensing_loss_is_restored():

@@ -164,7 +164,7 @@ def test_unconstrained_mpc_equals_the_regulator(mpc):
 
 
 def test_stage_zero_cannot_be_constrained(mpc):
-    """A tilt of 6 degrees has no solution as printed, whatever is done; the corrected programme has one."""
+    """A tilt of 6 degrees has no solution as printed, whatever is done; the corrected QP has one."""
     x = np.zeros(52)
     x[2], x[mpc.layout.payload("Theta_0").start] = -5.0, np.radians(6.0)
     wanted = np.zeros(52)

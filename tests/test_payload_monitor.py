@@ -14,8 +14,8 @@ PARAMETERS = read_system(MISSIONS / "system.toml").parameters()
 HALF = PARAMETERS.payload.below
 
 
-def touched(heights, velocities, below):
-    """After how many control steps it is noticed; the reference is ``below`` (m) the ground. None: not at all."""
+def steps_to_touchdown(heights, velocities, below):
+    """Return the control step of touch-down detection, the reference ``below`` (m) the ground; None: not detected."""
     monitor = PayloadMonitor(PARAMETERS)
     descent = RestTrajectory(np.array([0.0, 0.0, -HALF + below]), 0.0)
     for k, (height, velocity) in enumerate(zip(heights, velocities, strict=True)):
@@ -27,14 +27,14 @@ def touched(heights, velocities, below):
 
 
 def test_touchdown_is_detected_where_the_reference_sinks_on():
-    assert touched([0.05] * 6, [0.0] * 6, below=0.1) == 4
+    assert steps_to_touchdown([0.05] * 6, [0.0] * 6, below=0.1) == 4
 
 
 def test_touchdown_is_detected_of_a_payload_that_bounces_on_its_pad():
-    assert touched([0.05, 0.06, 0.04, 0.05, 0.05], [0.2, -0.1, 0.2, -0.15, 0.1], below=0.05) == 4
+    assert steps_to_touchdown([0.05, 0.06, 0.04, 0.05, 0.05], [0.2, -0.1, 0.2, -0.15, 0.1], below=0.05) == 4
 
 
 @pytest.mark.parametrize(("height", "velocity"), [(0.3, 0.2), (0.05, 0.2), (1.5, 0.0)])
 def test_touchdown_is_not_detected_while_the_payload_follows_its_reference_or_is_high(height, velocity):
     below = 0.3 if height > 1.0 else -height + 0.02
-    assert touched([height] * 20, [velocity] * 20, below) is None
+    assert steps_to_touchdown([height] * 20, [velocity] * 20, below) is None

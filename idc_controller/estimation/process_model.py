@@ -35,9 +35,9 @@ class ProcessModel:
         return F, B
 
     def per_vehicle_noise(self, measured: Indices) -> Array:
-        """Return the variances (n,) added to the own forces of the UAVs ``measured`` (K,) from sample to sample.
+        """Return the variances (n,) added to the disturbance forces of the UAVs ``measured`` (K,) between samples.
 
-        A UAV with a wrong attitude estimate pulls aside. Of one that is measured less nothing is learnt.
+        A UAV with a wrong attitude estimate pulls aside. The force of one that is not measured is not adapted.
         """
         added = np.zeros(self.size)
         added[self.uav_force].reshape(-1, 2)[measured] = self._densities.per_vehicle_force**2

@@ -18,7 +18,7 @@ class ProcessNoiseSettings:
     thrust: float = setting(0.012, "N/s/sqrt(s)", "noise of the derivative of a UAV's thrust", ge=0.0)
     force: float = setting(0.05, "N/sqrt(s)", "random walk of the disturbance force on the payload", ge=0.0)
     uav_force: float = setting(0.01, "N/sqrt(s)", "random walk of the disturbance force common to the UAVs", ge=0.0)
-    per_vehicle_force: float = setting(0.01, "N", "change of each UAV's own force from sample to sample", ge=0.0)
+    per_vehicle_force: float = setting(0.01, "N", "change of each UAV's disturbance force between samples", ge=0.0)
     mass: float = setting(0.005, "kg/sqrt(s)", "random walk of the payload's mass", ge=0.0)
 
 

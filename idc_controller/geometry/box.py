@@ -88,7 +88,7 @@ class Wall(Shape):
         return PlanView(shapely.Polygon(signs * (np.array(self.size[:2]) / 2.0) @ self.rotation[:2, :2].T), 0.0)
 
     def visible_points(self, sensor: Vector, reach: float, turn: float) -> list[Vector]:
-        """Points of the surface that a range sensor hits: corners and middle of the faces that it sees."""
+        """Points of the surface that a range sensor hits: corners and middle of the faces in its field of view."""
         cosine, sine = math.cos(self.yaw), math.sin(self.yaw)
         a, b, c = sensor
         local = (cosine * a + sine * b, cosine * b - sine * a, c)

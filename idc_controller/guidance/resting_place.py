@@ -44,7 +44,7 @@ class RestingPlace:
     def __call__(self, time: float, state: Array) -> Braking:
         """Return the stop from ``state`` (3, 3) at ``time`` (s).
 
-        These are position, velocity and acceleration of a payload that hangs still below the UAVs: it is they that
+        These are position, velocity and acceleration of a payload that hangs at rest below the UAVs, which
         brake. The usual stop, if that is clear; else the last one that was chosen, while it is; else the best of many.
         """
         times = time + np.linspace(0.0, self.settings.look_ahead, self.settings.samples)

@@ -17,7 +17,7 @@ ITERATIONS, INNER_ITERATIONS = 200, 100
 
 
 class ProxqpSolver:
-    """Adapter; see :class:`~idc_controller.qp.problem.QpSolver`. Programs with the same H and G objects start warm.
+    """Adapter; see :class:`~idc_controller.qp.problem.QpSolver`. QPs with the same H and G objects start warm.
 
     Args:
         duality_gap: largest one of a solution. None: only the residuals of feasibility and stationarity are checked,

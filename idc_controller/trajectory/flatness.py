@@ -8,7 +8,7 @@ they share the tension m_0 |w| so that no moment acts on the payload, and the fo
 
     F_i = m_i (a_i - g e3) - T_i q - d_i,   a_i = a - l_i q''.   (d_i: the force on the UAV)
 
-No linearisation is made, so a linear controller about this reference only sees errors, not the manoeuvre.
+No linearisation is made, so a linear controller about this reference acts on errors only, not on the manoeuvre.
 """
 
 from __future__ import annotations
@@ -78,10 +78,10 @@ class FlatReference:
 
 @dataclass(frozen=True, eq=False)
 class Load:
-    """Estimates of the payload, its mass (kg) and a steady ``force`` on it (3,), and of the wind.
+    """Estimates of the payload, its mass (kg) and a constant disturbance ``force`` on it (3,), and of the wind.
 
     ``uav_force``: level force on each of the UAVs (N, 3), or one that is the same for all (3,). Forces in N, NED.
-    ``air``: its drag comes on top of the steady forces and changes with the velocity; None: there is none.
+    ``air``: its drag comes on top of the constant forces and changes with the velocity; None: there is none.
     """
 
     mass: float

@@ -84,15 +84,15 @@ class LissajousTrajectory(Trajectory):
         duration = positive(duration, "duration")
         start = finite(start, "start")
         _check_full_rate(curve, rate, limits)
-        still = np.zeros(4)
+        rest = np.zeros(4)
         cruise = np.array([rate, 0.0, 0.0, 0.0])
         # A little gentler at first, so that it can always stop while it gathers speed.
-        up, phase = _shortest_ramp(curve, _gentler(curve, rate, limits), 0.0, still, cruise)
-        down, _ = _shortest_ramp(curve, limits, phase + rate * duration, cruise, still)
+        up, phase = _shortest_ramp(curve, _gentler(curve, rate, limits), 0.0, rest, cruise)
+        down, _ = _shortest_ramp(curve, limits, phase + rate * duration, cruise, rest)
         self.full_rate = (start + up, start + up + duration)
         """Times, s, between which the phase runs at the full rate."""
         knots = np.array([start, *self.full_rate, self.full_rate[1] + down])
-        self._set_phase(_phase(knots, [still, cruise, cruise, still], 0.0))
+        self._set_phase(_phase(knots, [rest, cruise, cruise, rest], 0.0))
 
     def _set_phase(self, phase: PPoly) -> None:
         # Phase and four derivatives as one polynomial with values (5,): evaluated at once.

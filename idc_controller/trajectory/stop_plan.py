@@ -79,7 +79,7 @@ def stop_plan(
     """From the first instant of the reference ``flat``, which is ``time`` (s), to rest.
 
     ``x`` (12 + 11 N,) is the state then; None: that of the reference. ``choose`` says how to brake, by the time and
-    position, velocity and acceleration (3, 3) of a payload that hangs still below the UAVs.
+    position, velocity and acceleration (3, 3) of a payload that hangs at rest below the UAVs.
     """
     links = flat.links
     position, velocity, acceleration = flat.payload[:3, 0]

@@ -45,7 +45,7 @@ class Autopilot:
         self._shown: tuple[int, bool, bool, int] | None = None
         self.changes = 0
 
-    # What the ground sees
+    # Interface to the ground
 
     @property
     def armed(self) -> bool:

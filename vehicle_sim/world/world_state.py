@@ -2,7 +2,7 @@
 
 The engine's world is north-west-up and its bodies are forward-left-up. Both differ from the project's frames by half a
 turn about the first axis, so a vector and the vector part of a quaternion change the same way: (x, -y, -z).
-The engine's quaternions are x-first. Nothing outside the world modules sees either.
+The engine's quaternions are x-first. Both stay inside the world modules.
 """
 
 from collections.abc import Sequence

@@ -18,7 +18,7 @@ from idc_controller.estimation.settings import ChannelIsolationSettings
 
 
 class ChannelIsolation:
-    """Isolated channels of N vehicles; never of more than half of the vehicles, which do not fail together."""
+    """Isolated channels of N vehicles; never of more than half of the vehicles, which do not fail simultaneously."""
 
     def __init__(self, number_of_uavs: int, settings: ChannelIsolationSettings = ChannelIsolationSettings()) -> None:
         self._number_of_uavs, self._settings = number_of_uavs, settings

@@ -54,9 +54,9 @@ class NoiseAdaptation:
     def react(self, time: float, keys: Sequence[SensorKey], test: InnovationTest) -> Reaction:
         """Return how the filter reacts to rejections, and inflate the measurement noise where that is the reaction.
 
-        Sound sensors do not fail together, so most sources of three or more are right. The payload unit, which senses
-        first what pushes the payload, is right when it persists. Otherwise a filter that kept to its prediction would
-        reject every measurement from here on.
+        Sensors rarely fail simultaneously, so most sources of three or more are right. The payload unit, which measures
+        a disturbance of the payload first, is right when it persists. Otherwise a filter that kept to its prediction
+        would reject every measurement from here on.
         """
         if test.accepted.all():
             self._payload_rejections = 0
