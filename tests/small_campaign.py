@@ -3,7 +3,7 @@
 from flight_in_process import short_figure
 
 from gcs.campaign.faults.campaign_file import read_campaign
-from gcs.campaign.faults.sweep import FaultFlights
+from gcs.campaign.faults.plans import FaultFlights
 
 CAMPAIGN = """
 [campaign]

@@ -13,7 +13,7 @@ from gcs.app.cli import main
 from gcs.campaign.engine import Campaign
 from gcs.campaign.faults.base_mission import read_base
 from gcs.campaign.faults.campaign_file import read_campaign
-from gcs.campaign.faults.sweep import FaultFlights
+from gcs.campaign.faults.plans import FaultFlights
 from gcs.config import UnusableFile
 from gcs.mission.model import Fault, Limits
 from gcs.mission.read import read_mission

@@ -11,9 +11,9 @@ from small_campaign import OUTSIDE, SUMMARY, campaign_file
 from gcs.campaign.engine import Campaign
 from gcs.campaign.faults.campaign_file import read_campaign
 from gcs.campaign.faults.judgement import COLUMNS, NOT_FLOWN, VERDICTS, first_start, stop_time, team_stop
+from gcs.campaign.faults.plans import FaultFlights
 from gcs.campaign.faults.rates import interval, rates_of
 from gcs.campaign.faults.report import draw_matrix, report
-from gcs.campaign.faults.sweep import FaultFlights
 from gcs.campaign.process_pool import FlownProcess
 
 

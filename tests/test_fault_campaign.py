@@ -16,7 +16,7 @@ from gcs.app.cli import main
 from gcs.campaign import engine
 from gcs.campaign.engine import Campaign
 from gcs.campaign.faults.campaign_file import read_campaign
-from gcs.campaign.faults.sweep import FaultFlights
+from gcs.campaign.faults.plans import FaultFlights
 from gcs.campaign.folder import folder_lock
 from gcs.campaign.process_pool import FlownProcess
 from gcs.errors import UnusableInput

@@ -12,8 +12,9 @@ from gcs.campaign.engine import Campaign
 from gcs.campaign.result import Result, read_result
 from gcs.campaign.scenarios.judgement import COLUMNS, OPTIONAL
 from gcs.campaign.scenarios.moving import top_speed
+from gcs.campaign.studies.plans import StudyFlights
 from gcs.campaign.studies.report import draw_study
-from gcs.campaign.studies.study import MOVING, STUDIES, STUDY_COLUMNS, StudyFlights
+from gcs.campaign.studies.study import MOVING, STUDIES, STUDY_COLUMNS
 from gcs.campaign.tables import extreme
 from gcs.campaign.toml_text import system_text
 from gcs.config import read_system

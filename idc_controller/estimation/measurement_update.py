@@ -3,7 +3,7 @@
 import numpy as np
 
 from idc_controller.estimation.estimate import InnovationRecord
-from idc_controller.estimation.health.innovation_test import InnovationGate
+from idc_controller.estimation.health.innovation_gate import InnovationGate
 from idc_controller.estimation.health.noise_adaptation import Reaction
 from idc_controller.estimation.health.sensor_health import SensorHealth
 from idc_controller.estimation.measurement_model import MeasurementModel

@@ -21,10 +21,9 @@ TIME_TOLERANCE = 1e-6  # s: sums of steps are not exact
 
 @dataclass(eq=False)
 class FlightState:
-    """One vehicle's flight.
+    """The state that all parts of the autopilot share: parts with a state of their own, and that of the flight.
 
-    More than a dozen attributes, because it is what all parts of the autopilot share: six parts that hold a state of
-    their own, and the state of the flight itself.
+    One class, since every transition of mode, failsafe and arming reads and writes across it.
     """
 
     airframe: Airframe

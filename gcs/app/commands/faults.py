@@ -8,7 +8,7 @@ from rich.console import Console
 from gcs.app.campaigns import add_campaign_arguments, run_campaign
 from gcs.app.exit_status import ExitStatus
 from gcs.campaign.faults.campaign_file import read_campaign
-from gcs.campaign.faults.sweep import FaultFlights
+from gcs.campaign.faults.plans import FaultFlights
 from gcs.campaign.folder import plain
 from gcs.errors import UnusableInput
 from gcs.faults.listing import kinds_list

@@ -6,7 +6,8 @@ from pathlib import Path
 
 from gcs.app.arguments import whole_number
 from gcs.app.campaigns import add_campaign_arguments, run_campaign
-from gcs.campaign.studies.study import STUDIES, StudyFlights
+from gcs.campaign.studies.plans import StudyFlights
+from gcs.campaign.studies.study import STUDIES
 
 DESCRIPTION = """\
 Flies the same missions again with one parameter changed at a time, and reports what depends on it:

@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, TypeAdapter
 
 from gcs.campaign.faults.base_mission import BaseMission, read_base
-from gcs.campaign.faults.sweep import CLEAN, Case, SweptFault, label
+from gcs.campaign.faults.cases import CLEAN, Case, SweptFault, label
 from gcs.config import UnusableFile
 from gcs.config.toml_file import TomlFile, read_toml
 from gcs.config.validate import Key, NotNegative, strict

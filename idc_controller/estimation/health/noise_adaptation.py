@@ -11,7 +11,7 @@ from enum import Enum
 import numpy as np
 
 from idc_controller.arrays import Array, Mask
-from idc_controller.estimation.health.innovation_test import InnovationTest
+from idc_controller.estimation.health.innovation_gate import InnovationTest
 from idc_controller.estimation.measurements import PAYLOAD, SensorKey
 from idc_controller.estimation.settings import NoiseAdaptationSettings
 
