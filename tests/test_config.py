@@ -1,5 +1,6 @@
 """The system file: read strictly, every error with its line."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -171,6 +172,21 @@ def test_wrong_file_is_refused_with_line_and_key(tmp_path: Path, old: str, new: 
     assert matching, caught.value.reasons
     assert matching[0].startswith(f"{path}: line {line_of(at)}: ")
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("[safety.planner]\nlimit_interval = 100", "safety.planner: limit_interval 100 is longer than the horizon"),
+        ("[safety.planner]\nblocks = []", "longer than the horizon, 0 stages"),
+        ("[range_sensor]\nrange_min = 10.0", "line 2: range_sensor.range_min: 10.0 m is not below range, 10.0 m"),
+    ],
+)
+def test_settings_that_do_not_agree_are_refused(tmp_path: Path, text: str, reason: str) -> None:
+    path = tmp_path / "system.toml"
+    path.write_text(text + "\n")
+    with pytest.raises(UnusableFile, match=re.escape(reason)):
+        read_system(path)
 
 
 def test_file_with_several_errors_reports_every_reason(tmp_path: Path) -> None:

@@ -182,6 +182,12 @@ def flipped_face() -> trimesh.Trimesh:
     return trimesh.Trimesh(box.vertices, faces, process=False)
 
 
+def overlapping_boxes() -> trimesh.Trimesh:
+    boxes = [trimesh.creation.box((1.0, 1.0, 0.5)) for _ in range(2)]
+    boxes[1].apply_translation((0.5, 0.0, 0.0))
+    return trimesh.util.concatenate(boxes)
+
+
 @pytest.mark.parametrize(
     ("mesh", "team", "name", "payload", "key", "reason"),
     [
@@ -194,6 +200,8 @@ def flipped_face() -> trimesh.Trimesh:
         (trimesh.creation.box((1000, 1000, 500)), "", "body.ply", "", "payload.mesh", "1e+03 x 1e+03 x 500 m (limit"),
         (trimesh.creation.box((0.01, 0.01, 0.01)), "", "body.ply", "", "payload.mesh", "0.01 x 0.01 x 0.01 m (limit"),
         (trimesh.creation.icosphere(5), "", "body.ply", "", "payload.mesh", "corners (limit 2000)"),
+        (overlapping_boxes(), "", "body.ply", "", "payload.mesh", "has 2 closed surfaces (limit 1)"),
+        (trimesh.creation.box((1, 1, 0.5)), "attachments = []", "body.ply", "", "team.attachments", "0 points for 4"),
         (wedge(), "", "body.ply", "size = [1.0, 1.0, 0.5]", "payload.size", "follows from mesh"),
         (wedge(), "", "body.ply", "inertia = [0.3, 0.3, 0.5]", "payload.inertia", "follows from mesh"),
         (trimesh.creation.icosphere(3, 0.8), "", "body.ply", "", "team.attachments",
@@ -224,6 +232,12 @@ def test_another_number_of_vehicles_is_refused_where_the_polygon_misses_the_mesh
     assert config.with_vehicles(3).parameters().number_of_uavs == 3
     with pytest.raises(UnusableInput, match=r"8 vehicles: point 1 at .* off the surface"):
         config.with_vehicles(8)
+
+
+def test_mesh_keeps_its_name_in_the_tables_of_the_system(tmp_path: Path) -> None:
+    (tmp_path / "parts").mkdir()
+    system = read_system(system_of(tmp_path, trimesh.creation.box((1.2, 1.2, 0.3)), name="parts/body.ply"))
+    assert system.tables()["payload"]["mesh"] == "parts/body.ply"
 
 
 def test_run_records_the_hull_of_the_payload(tmp_path: Path) -> None:

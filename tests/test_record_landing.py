@@ -101,6 +101,13 @@ def test_payload_beside_a_smaller_pad_is_not_set_down_at_its_height(tmp_path):
     assert found == [True, False]
 
 
+@pytest.mark.parametrize("system", [None, {"world": {"pad": {"thickness": 0.05, "colour": "red"}}, "payload": None}])
+def test_run_of_another_version_is_read_with_the_default_sizes(tmp_path, system):
+    run = write_flight(tmp_path / "run", flight())
+    (run / "manifest.json").write_text(json.dumps({"system": system}))
+    assert landing_figures(read_run(run))["on_ground"]
+
+
 @pytest.mark.parametrize(
     ("rows", "landed", "completed", "outcome"),
     [

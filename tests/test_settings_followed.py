@@ -18,6 +18,7 @@ from gcs.flight.mission_trajectory import MissionTrajectory
 from gcs.mavlink.requests import CommandState
 from gcs.mavlink.vehicle_link import VehicleLink
 from gcs.mission.read import read_mission
+from idc_controller.control.constraints.uav_separation import UavSeparation
 from idc_controller.estimation.health.channel_isolation import ChannelIsolation
 from idc_controller.estimation.measurement_model import MeasurementModel
 from idc_controller.estimation.measurements import Attitude, MeasurementNoise
@@ -77,6 +78,13 @@ def test_lowest_waypoint_and_landing_follow_the_height_of_the_payload_and_of_the
     path.write_text(figure + "angular_frequency = 0.5\naltitude = 0.65\nduration = 30.0\n")
     with pytest.raises(UnusableFile, match=r"hop.toml: line 7: reference.altitude: 0.65 m .*limit 0.7 m"):
         read_mission(path)
+
+
+def test_neighbours_at_the_spacing_itself_are_kept_apart():
+    config = system()
+    mpc = replace(config.control.mpc, neighbour_share=1.0)
+    rows = UavSeparation(LinearModel(config.parameters()), mpc)
+    assert len(rows.G) == 4  # the sides of the square, not its diagonals
 
 
 def test_stop_without_setpoints_keeps_farther_off_with_a_larger_margin():

@@ -28,6 +28,7 @@ class PayloadMesh:
     """
 
     path: Path
+    name: str  # of the file, as the system file has it
     volume: float  # m3
     centre_of_mass: Array  # (3,) m, in the coordinates of the file
     inertia: Array  # (3, 3) m2, about the centre of mass, of 1 kg
@@ -35,9 +36,9 @@ class PayloadMesh:
     surface: trimesh.Trimesh = field(repr=False)  # in the coordinates of the file
 
     @classmethod
-    def read(cls, path: Path) -> PayloadMesh:
+    def read(cls, path: Path, name: str) -> PayloadMesh:
         """Read and check a mesh file. Raises :class:`UnusableMesh`."""
-        mesh, name = read_mesh(path), path.name
+        mesh = read_mesh(path)
         middle, extents = mesh.bounds.mean(axis=0), mesh.extents
         edges = " x ".join(f"{edge:.3g}" for edge in extents)
         if not SMALLEST <= extents.max() <= LARGEST:
@@ -45,6 +46,8 @@ class PayloadMesh:
                 f"'{name}' is {edges} m (limit of the longest edge {SMALLEST} .. {LARGEST:g} m): its unit is the metre"
             )
         # About the middle first: integrals about a distant origin would lose digits.
+        if mesh.body_count != 1:
+            raise UnusableMesh(f"'{name}' has {mesh.body_count} closed surfaces (limit 1): join them to one")
         body = mesh.copy()
         body.apply_translation(-middle)
         properties = body.mass_properties
@@ -55,8 +58,17 @@ class PayloadMesh:
             raise UnusableMesh(f"the hull of '{name}' has {len(vertices)} corners (limit {MOST_CORNERS}); simplify it")
         inertia = np.array(properties.inertia) / properties.volume
         return cls(
-            path, float(properties.volume), properties.center_mass + middle, (inertia + inertia.T) / 2.0, vertices, mesh
+            path,
+            name,
+            float(properties.volume),
+            properties.center_mass + middle,
+            (inertia + inertia.T) / 2.0,
+            vertices,
+            mesh,
         )
+
+    def __str__(self) -> str:
+        return self.name
 
     def misplaced(self, points: Array) -> list[str]:
         """Return what is wrong with attachment ``points`` (N, 3) about the centre of mass (m), a line for each."""
@@ -65,7 +77,7 @@ class PayloadMesh:
         at = points + self.centre_of_mass
         on, distances, _ = trimesh.proximity.closest_point_naive(self.surface, at)
         return [
-            f"point {i + 1} at {_text(at[i])} m is {distances[i]:.3f} m off the surface of '{self.path.name}' "
+            f"point {i + 1} at {_text(at[i])} m is {distances[i]:.3f} m off the surface of '{self.name}' "
             f"(limit {ON_SURFACE} m); the nearest point on it is {_text(on[i])} m"
             for i in np.flatnonzero(distances > ON_SURFACE).tolist()
         ]
@@ -78,7 +90,7 @@ class PayloadMesh:
     @classmethod
     def _beside(cls, name: str, info: ValidationInfo) -> PayloadMesh:
         try:
-            return cls.read(Path((info.context or {}).get("folder", "")) / name)
+            return cls.read(Path((info.context or {}).get("folder", "")) / name, name)
         except UnusableMesh as error:
             raise ValueError(error) from error
 

@@ -14,7 +14,6 @@ from typing import Annotated, Any, Union, get_args, get_origin, get_type_hints
 
 from pydantic import AfterValidator, ConfigDict, Field, create_model
 
-from gcs.config.payload_mesh import PayloadMesh
 from idc_controller.errors import ParameterError
 from idc_controller.settings import DERIVED_KEY, METADATA_KEY, Setting
 
@@ -71,9 +70,14 @@ def table_of(values: Any) -> dict[str, Any]:
     return table
 
 
+def _reads_itself(hint: Any) -> bool:
+    """Return True for a type that is read from a text, and is that text again by ``str``."""
+    return hasattr(hint, "__get_pydantic_core_schema__")
+
+
 def _plain(value: Any) -> Any:
-    if isinstance(value, PayloadMesh):
-        return value.path.name
+    if _reads_itself(type(value)):
+        return str(value)
     return [_plain(item) for item in value] if isinstance(value, tuple) else value
 
 
@@ -111,7 +115,7 @@ def _bounds(setting: Setting) -> dict[str, Any]:
 
 def _bounded(hint: Any, bounds: dict[str, Any]) -> Any:
     """Return the type ``hint`` with ``bounds`` on every number in it, and tables as the types they are read by."""
-    if hasattr(hint, "__get_pydantic_core_schema__"):  # reads itself
+    if _reads_itself(hint):
         return hint
     if isinstance(hint, type) and dataclasses.is_dataclass(hint):
         return table_type(hint)

@@ -96,7 +96,7 @@ class SystemConfig:
     def attachment_points(self) -> Array:
         """Return the attachment points about the payload's centre of mass (N, 3) (m)."""
         if self.team.attachments is not None:
-            return np.array(self.team.attachments) - self.payload.centre_of_mass
+            return np.reshape(self.team.attachments, (-1, 3)) - self.payload.centre_of_mass
         return polygon_attachments(self.team.vehicles, self.team.spacing, -self.payload.hull.above)
 
     def attachment_problems(self) -> list[str]:
@@ -188,6 +188,9 @@ def _disagreements(config: SystemConfig, file: TomlFile) -> list[str]:
     if config.payload.mesh is not None:
         given = file.data["payload"]
         found += [(("payload", key), "follows from mesh: leave it out") for key in ("size", "inertia") if key in given]
+    if config.range_sensor.range_min >= config.range_sensor.range:
+        reason = f"{config.range_sensor.range_min} m is not below range, {config.range_sensor.range} m"
+        found.append((("range_sensor", "range_min"), reason))
     if motion.speed > motion.speed_max:
         found.append((("motion", "speed"), f"{motion.speed} is more than speed_max, {motion.speed_max}"))
     return [file.problem(key, reason) for key, reason in found]

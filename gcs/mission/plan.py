@@ -132,7 +132,8 @@ def read_plan(path: Path, text: str) -> WaypointFile:
 
     def problem(key: Key, reason: str) -> str:
         if key[:2] == ("mission", "items") and len(key) > 2:  # as notes and later errors name it
-            return f"{path}: item {int(key[2]) + 1}: {dotted(key[3:])}: {reason}"
+            places = [f"item {int(key[2]) + 1}", *([dotted(key[3:])] if key[3:] else [])]
+            return f"{path}: {': '.join(places)}: {reason}"
         return f"{path}: {dotted(key)}: {reason}"
 
     plan = validated(TypeAdapter(_Plan), _parse(path, text), problem)

@@ -3,7 +3,7 @@
 import json
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
@@ -72,7 +72,7 @@ class RunData:
 
     def setting(self, table: str, key: str) -> Any:
         """Return the value of a key of the system file, by the manifest; where that has none, its default."""
-        value = self.manifest.get("system", {}).get(table, {}).get(key)
+        value = ((self.manifest.get("system") or {}).get(table) or {}).get(key)
         return getattr(getattr(SystemConfig(), table), key) if value is None else value
 
     @property
@@ -85,7 +85,12 @@ class RunData:
     def pad(self) -> PadSettings:
         """The pad about home, on which the payload is before take-off."""
         found = self.setting("world", "pad")
-        return PadSettings(**found) if isinstance(found, Mapping) else PadSettings()
+        known = {field.name for field in fields(PadSettings)}
+        return (
+            PadSettings(**{key: value for key, value in found.items() if key in known})
+            if isinstance(found, Mapping)
+            else found
+        )
 
     def uav_separation(self) -> Array:
         """Return the smallest distance between the centres of two UAVs (T,) (m)."""

@@ -90,6 +90,11 @@ class PlannerSettings:
     def __post_init__(self) -> None:
         if any(not rate > 0.0 for rate in self.barrier_rates):
             raise ParameterError(f"barrier rates {self.barrier_rates} must be real and positive")
+        if self.limit_interval > sum(self.blocks):
+            raise ParameterError(
+                f"limit_interval {self.limit_interval} is longer than the horizon, {sum(self.blocks)} stages (the sum "
+                f"of blocks): the plan's limits would be kept nowhere"
+            )
 
 
 @dataclass(frozen=True)

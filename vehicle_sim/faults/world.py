@@ -1,9 +1,9 @@
 """Faults of the world: wind, by a simple model of drag, and a load that changes.
 
 Drag is quadratic in the air's velocity against the body, along that velocity, at the centre of mass:
-F = 1/2 rho c_d A |u| u. The payload's area across the wind is
-made of its silhouettes along its axes, as of a box; a UAV's product c_d A is the same
-from all sides. The wind acts on neither thrust, torques nor links. Without a wind fault there is no air at all.
+F = 1/2 rho c_d A |u| u. The payload's area across the wind is made of its silhouettes along its
+axes, as of a box; a UAV's product c_d A is the same from all sides. The wind acts on neither thrust, torques nor links.
+Without a wind fault there is no air at all.
 """
 
 import math

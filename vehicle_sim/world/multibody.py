@@ -88,7 +88,7 @@ def _payload_axes(parameters: SystemParameters) -> tuple[Array, Rotation]:
 
 
 def urdf_text(parameters: SystemParameters) -> str:
-    """The system as URDF. Attachment points outside the payload's box stand on outriggers without mass or shape."""
+    """Return the system as URDF. Attachment points off the payload's hull are on outriggers without mass or shape."""
     moments, axes = _payload_axes(parameters)
     edges = parameters.payload.box_edges
     if edges is None:

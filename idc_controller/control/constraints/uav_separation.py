@@ -23,7 +23,7 @@ class UavSeparation:
         rows, bounds = [], []
         for (i, j), d in apart.items():
             distance = float(np.linalg.norm(d))
-            if distance < settings.neighbour_share * p.spacing:
+            if distance < settings.neighbour_share * p.spacing + 1e-9:
                 rows.append(-(d / distance) @ (C[3 * i : 3 * i + 3] - C[3 * j : 3 * j + 3]))
                 bounds.append(max(distance - self.distance, 0.0))
         self.G, self._h = np.array(rows), np.array(bounds)
