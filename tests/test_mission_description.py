@@ -1,4 +1,4 @@
-"""The missions of this project, and the description of a mission for people."""
+"""The missions of this project, and the description of a mission for the operator."""
 
 import math
 from pathlib import Path

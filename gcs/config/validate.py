@@ -66,7 +66,7 @@ def validated(
 
 
 def dotted(key: Sequence[str | int]) -> str:
-    """Return ``obstacle[1].radius``: arrays are counted from 1, as people count their tables."""
+    """Return ``obstacle[1].radius``: arrays are counted from 1, as users count their tables."""
     text = ""
     for part in key:
         text += f"[{part + 1}]" if isinstance(part, int) else f".{part}"

@@ -52,7 +52,7 @@ KINDS: dict[str, Kind] = {}
 def kind(
     name: str, family: Family, *, direction: Direction | None = None, of_vehicles: bool = True, bounded: bool = False
 ) -> Callable[[type[S]], type[S]]:
-    """Class decorator that makes the parameters of a kind a dataclass; the docstring is what people read."""
+    """Class decorator that makes the parameters of a kind a dataclass; the docstring is its text in the listings."""
 
     def register(cls: type[S]) -> type[S]:
         settings = strict(dataclass(frozen=True, kw_only=True)(cls))

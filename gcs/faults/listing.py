@@ -1,4 +1,4 @@
-"""The kinds of fault for people: as a list on the terminal, and as tables of the documentation."""
+"""The kinds of fault as text: as a list on the terminal, and as tables of the documentation."""
 
 from dataclasses import dataclass, fields
 from typing import Any

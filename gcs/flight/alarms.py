@@ -1,4 +1,4 @@
-"""Alarms: codes with a MAVLink severity and a text for people, and the log of those that were raised."""
+"""Alarms: codes with a MAVLink severity and a text for the operator, and the log of those that were raised."""
 
 import math
 from collections.abc import Callable

@@ -96,7 +96,7 @@ class Trigger:
     """A condition that holds."""
 
     reason: str
-    """For people: what is wrong, the value, the limit."""
+    """For the operator: what is wrong, the value, the limit."""
     vehicles: tuple[int, ...] = ()
     """Indices of the vehicles (0 .. N-1) that are its cause; empty: the whole team."""
     cut_off: float = 0.0

@@ -40,27 +40,27 @@ class MonitorAlarm(AlarmCode):
         self.scope = scope
 
     # fmt: off
-    TELEMETRY_TIMEOUT = (Scope.IN_AIR, Severity.WARNING, "check its link",
+    TELEMETRY_TIMEOUT = (Scope.IN_AIR, Severity.WARNING, "check its MAVLink link",
         "{missed_samples} telemetry periods passed without attitude or position of a vehicle, or without the payload")
     RANGE_SENSOR_FAILED = (Scope.IN_AIR, Severity.WARNING, "check the sensor",
         "a vehicle reports that its range sensor does not work")
-    LINK_LATENCY = (Scope.IN_AIR, Severity.WARNING, "check the link for congestion",
+    LINK_LATENCY = (Scope.IN_AIR, Severity.WARNING, "check the MAVLink link for congestion",
         "datagrams usually take more than {latency_periods} control periods one way (`TIMESYNC`)")
-    LINK_JITTER = (Scope.IN_AIR, Severity.WARNING, "check the link for congestion",
+    LINK_JITTER = (Scope.IN_AIR, Severity.WARNING, "check the MAVLink link for congestion",
         "their latency varies by more than {jitter_periods} control periods")
     CLOCK_ERROR = (Scope.IN_AIR, Severity.WARNING, "check its clock",
         "a vehicle's clock has moved by more than {clock_error} s within {clock_window:g} s")
-    MESSAGES_LOST = (Scope.IN_AIR, Severity.WARNING, "check the link",
+    MESSAGES_LOST = (Scope.IN_AIR, Severity.WARNING, "check the MAVLink link",
         "sequence numbers are missing, {event_count} times in {event_window:g} s")
-    MESSAGES_REORDERED = (Scope.IN_AIR, Severity.WARNING, "check the link",
+    MESSAGES_REORDERED = (Scope.IN_AIR, Severity.WARNING, "check the MAVLink link",
         "messages were overtaken by later ones, {event_count} times in {event_window:g} s")
-    MESSAGES_DUPLICATED = (Scope.IN_AIR, Severity.WARNING, "look for a loop in the routing",
+    MESSAGES_DUPLICATED = (Scope.IN_AIR, Severity.WARNING, "check the routing for a loop",
         "messages came twice, {event_count} times in {event_window:g} s")
-    MESSAGES_CORRUPTED = (Scope.IN_AIR, Severity.WARNING, "check the link",
+    MESSAGES_CORRUPTED = (Scope.IN_AIR, Severity.WARNING, "check the MAVLink link",
         "datagrams could not be decoded, {event_count} in {event_window:g} s")
     VALUES_NOT_FINITE = (Scope.IN_AIR, Severity.WARNING, "check the sensors",
         "measurements are not finite, {event_count} in {event_window:g} s")
-    SETPOINTS_LOST = (Scope.IN_AIR, Severity.WARNING, "check the link",
+    SETPOINTS_LOST = (Scope.IN_AIR, Severity.WARNING, "check the MAVLink link",
         "by what a vehicle reports to fly, set-points were lost, {event_count} times in {setpoint_window:g} s")
     ID_SWAP = (Scope.CLEAR_OF_GROUND, Severity.ERROR, "check the system ids",
         "a vehicle sends the data of another one, for which they are taken from then on")
@@ -73,17 +73,17 @@ class MonitorAlarm(AlarmCode):
         "round; or an attitude does not follow from its rates: the inconsistent ones are isolated from then on")
     MEASUREMENTS_REJECTED = (Scope.CLEAR_OF_GROUND, Severity.WARNING, "check the sensor",
         "three samples of a channel in 1 s failed the innovation test (eight of a UAV's attitude)")
-    INNOVATION_BIAS = (Scope.CLEAR_OF_GROUND, Severity.WARNING, "check the sensor; look for wind",
+    INNOVATION_BIAS = (Scope.CLEAR_OF_GROUND, Severity.WARNING, "check the sensor; check for wind",
         "the mean innovation of a channel over a second is not zero (p = 1e-10)")
     INNOVATION_NOISE = (Scope.CLEAR_OF_GROUND, Severity.WARNING, "check the sensor",
         "the mean square innovation of a channel over a second is too large (p = 1e-10)")
     SENSOR_NOISE = (Scope.CLEAR_OF_GROUND, Severity.WARNING, "correct the system file",
         "the variances of all sensors are more than {noise_factor:g} times those of the system file")
-    COVARIANCE_RESET = (Scope.CLEAR_OF_GROUND, Severity.WARNING, "look for gusts or a lost load",
+    COVARIANCE_RESET = (Scope.CLEAR_OF_GROUND, Severity.WARNING, "check for gusts or a lost load",
         "most measurements, or the payload's, rejected the prediction, {event_count} times in {event_window:g} s")
-    DISTURBANCE_FORCE = (Scope.CLEAR_OF_GROUND, Severity.WARNING, "look for wind or a wrong mass",
+    DISTURBANCE_FORCE = (Scope.CLEAR_OF_GROUND, Severity.WARNING, "check for wind or a wrong mass",
         "the force on the payload is not the model's (p = 1e-10)")
-    PROCESS_NOISE = (Scope.CLEAR_OF_GROUND, Severity.WARNING, "look for gusts",
+    PROCESS_NOISE = (Scope.CLEAR_OF_GROUND, Severity.WARNING, "check for gusts",
         "forces change so quickly that the process noise is at its largest")
     VEHICLE_MAP_OFFSET = (Scope.ALWAYS, Severity.WARNING, "check its position and range sensor",
         "a vehicle detects a standing obstacle of the map more than 0.2 m from where it was, for 0.4 s")

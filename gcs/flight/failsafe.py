@@ -223,9 +223,9 @@ class Failsafe(AlarmCode):
     # fmt: off
     INTERRUPTED = (Check.EVENT, None, Reaction.BRAKE_AND_LAND, "none",
         "the user has interrupted the flight (SIGINT, SIGTERM)", Severity.NOTICE)
-    INTERRUPTED_TWICE = (Check.EVENT, None, Reaction.END_CONTROL, "watch the vehicles land",
+    INTERRUPTED_TWICE = (Check.EVENT, None, Reaction.END_CONTROL, "stay clear until the vehicles have landed",
         "the user has interrupted the flight again")
-    SIMULATION_LOST = (Check.EVENT, None, Reaction.END_CONTROL, "read its messages",
+    SIMULATION_LOST = (Check.EVENT, None, Reaction.END_CONTROL, "see the output of vehicle-sim",
         "vehicle-sim has ended, or does not answer")
     CONNECT_TIMEOUT = (Check.CONNECT, _connect_timeout, Reaction.REFUSE,
         "check the vehicle's power, address and system id",
@@ -233,38 +233,39 @@ class Failsafe(AlarmCode):
     PARAMETER_MISMATCH = (Check.PREFLIGHT, _parameter_mismatch, Reaction.REFUSE,
         "correct the system file or the vehicle",
         "a parameter of a vehicle differs from the system file by more than {parameter_tolerance}, relative")
-    ALREADY_ARMED = (Check.PREFLIGHT, _already_armed, Reaction.REFUSE, "disarm it; look for another ground station",
+    ALREADY_ARMED = (Check.PREFLIGHT, _already_armed, Reaction.REFUSE, "disarm it; check for another ground station",
         "a vehicle is armed")
-    PREARM_CHECK_FAILED = (Check.PREFLIGHT, _prearm_check_failed, Reaction.REFUSE, "follow its text",
+    PREARM_CHECK_FAILED = (Check.PREFLIGHT, _prearm_check_failed, Reaction.REFUSE, "act on its STATUSTEXT",
         "a vehicle fails its pre-arm checks")
     POSITION_UNKNOWN = (Check.PREFLIGHT, _position_unknown, Reaction.REFUSE, "check its navigation",
         "a vehicle or the payload unit has sent no position within {connect_timeout:g} s")
     MISPLACED = (Check.PREFLIGHT, _misplaced, Reaction.REFUSE, "place it, or check its position",
         "a vehicle is more than {placement_tolerance} m from its place over the payload")
-    ARMING_FAILED = (Check.COMMAND, _sequence_failed(Phase.ARM), Reaction.DISARM, "follow its text",
+    ARMING_FAILED = (Check.COMMAND, _sequence_failed(Phase.ARM), Reaction.DISARM, "act on its STATUSTEXT",
         "a vehicle refuses OFFBOARD or arming, or all are not armed within {arm_timeout:g} s")
     DISARMING_FAILED = (Check.COMMAND, _sequence_failed(Phase.DISARM), Reaction.END_CONTROL,
-        "keep away; disarm by hand",
+        "stay clear; disarm with the RC or kill switch",
         "a vehicle refuses to disarm, or not all are disarmed within {disarm_timeout:g} s")
     LANDING_UNCONFIRMED = (Check.COMMAND, _sequence_failed(Phase.AUTONOMOUS_LANDING), Reaction.END_CONTROL,
-        "look for the vehicles",
+        "locate the vehicles; stay clear",
         "not all vehicles have reported that they have landed within {landing_timeout:g} s")
     STATES_UNKNOWN = (Check.LINK, _states_unknown, Reaction.AUTONOMOUS_LANDING, "check their sensors",
         "position and attitude of two or more vehicles cannot be estimated")
-    ALL_TELEMETRY_LOST = (Check.LINK, _all_telemetry_lost, Reaction.AUTONOMOUS_LANDING, "check the ground's radio",
+    ALL_TELEMETRY_LOST = (Check.LINK, _all_telemetry_lost, Reaction.AUTONOMOUS_LANDING,
+        "check the ground's telemetry radio",
         "no vehicle has sent telemetry for {telemetry_timeout} s")
-    TELEMETRY_LOST = (Check.LINK, _telemetry_lost, Reaction.AUTONOMOUS_LANDING, "check its link",
+    TELEMETRY_LOST = (Check.LINK, _telemetry_lost, Reaction.AUTONOMOUS_LANDING, "check its MAVLink link",
         "one vehicle has sent no telemetry for {telemetry_timeout} s")
     LINK_LATENCY_EXCEEDED = (Check.LINK, _link_latency_exceeded, Reaction.AUTONOMOUS_LANDING,
-        "check its link for congestion",
+        "check its MAVLink link for congestion",
         "datagrams of one vehicle usually, or all for {latency_window} s, take more than {latency_limit} s one way")
-    DISARMED_IN_FLIGHT = (Check.LINK, _disarmed_in_flight, Reaction.AUTONOMOUS_LANDING, "follow its text",
+    DISARMED_IN_FLIGHT = (Check.LINK, _disarmed_in_flight, Reaction.AUTONOMOUS_LANDING, "act on its STATUSTEXT",
         "a vehicle has disarmed itself")
-    OFFBOARD_LEFT = (Check.LINK, _offboard_left, Reaction.AUTONOMOUS_LANDING, "follow its text",
+    OFFBOARD_LEFT = (Check.LINK, _offboard_left, Reaction.AUTONOMOUS_LANDING, "act on its STATUSTEXT",
         "a vehicle no longer flies the ground's set-points")
     TELEMETRY_INCOMPLETE = (Check.LINK, _telemetry_incomplete, Reaction.AUTONOMOUS_LANDING, "check their sensors",
         "two or more vehicles have sent no position or no attitude for {telemetry_timeout} s")
-    DATA_LINK_LOST = (Check.STEP, _data_link_lost, Reaction.END_CONTROL, "watch the vehicles land",
+    DATA_LINK_LOST = (Check.STEP, _data_link_lost, Reaction.END_CONTROL, "stay clear until the vehicles have landed",
         "no message of any vehicle for {data_link_timeout:g} s, once the descent has been commanded")
     OBSTACLE_SENSING_LOST = (Check.IN_AIR, _obstacle_sensing_lost, Reaction.BRAKE_AND_LAND, "check the range sensors",
         "no vehicle detects obstacles, or what all of them detect is impossible")
@@ -272,7 +273,8 @@ class Failsafe(AlarmCode):
         "all vehicles detect the obstacles of the map away from their places")
     NO_PATH = (Check.IN_AIR, _no_path, Reaction.BRAKE_AND_LAND, "replan the mission",
         "the search for a detour has found none for long (`give_up` of the navigator)")
-    PAYLOAD_CONTROL_LOST = (Check.ESTIMATE, _payload_control_lost, Reaction.AUTONOMOUS_LANDING, "check links and load",
+    PAYLOAD_CONTROL_LOST = (Check.ESTIMATE, _payload_control_lost, Reaction.AUTONOMOUS_LANDING,
+        "check the rigid links and the load",
         "the payload is tilted by more than {tilt_limit:.2f} rad, or its state is unknown, for {tilt_time} s")
     DESCENT_STALLED = (Check.ESTIMATE, _descent_stalled, Reaction.AUTONOMOUS_LANDING, "check wind, load and positions",
         "the payload is still high {descent_timeout:g} s after the planned end of its descent")

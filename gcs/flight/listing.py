@@ -45,7 +45,7 @@ one. Before arming every reaction but `END_CONTROL` is `REFUSE`, and until the c
 What the detectors in `gcs/flight/detectors.py` find changes nothing by itself. With the failsafes they are the codes of
 `alarms.csv` in the run folder; severities are those of MAV_SEVERITY. "Clear of the ground" is 0.3 m above it.
 
-| code | meaning | looked for | severity | what to do |
+| code | meaning | evaluated | severity | what to do |
 |---|---|---|---|---|
 {alarms}
 """

@@ -4,7 +4,7 @@ from enum import Enum
 
 
 class Phase(Enum):
-    """Phase of a flight; the value is shown to people."""
+    """Phase of a flight; the value is shown to the operator."""
 
     CONNECT = "connect"
     CHECK = "check"

@@ -1,4 +1,4 @@
-"""Description of a mission for people: the output of ``gcs check``."""
+"""Description of a mission for the operator: the output of ``gcs check``."""
 
 import math
 from collections.abc import Iterable

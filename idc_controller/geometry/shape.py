@@ -143,7 +143,7 @@ class Shape(ABC):
     @property
     @abstractmethod
     def dimensions(self) -> str:
-        """Sizes in words, for people."""
+        """Sizes in words, for the operator."""
 
     @abstractmethod
     def geometry(self) -> coal.ShapeBase:

@@ -117,7 +117,7 @@ def _truth_log(
 
 
 def _report_faults(options: Namespace, injector: FaultInjector, swarm: Swarm) -> None:
-    """Record what the faults did, and print for people what did not happen."""
+    """Record what the faults affected, and print notes on those that affected nothing."""
     if options.run_dir is not None:
         record_faults(options.run_dir, injector, swarm.time)
     if not options.with_parent:

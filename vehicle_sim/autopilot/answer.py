@@ -6,7 +6,7 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 
 class Answer(NamedTuple):
-    """A command's outcome: a MAV_RESULT, and for people the reason of a refusal."""
+    """A command's outcome: a MAV_RESULT, and the reason of a refusal, as STATUSTEXT."""
 
     result: int
     text: str = ""

@@ -80,7 +80,7 @@ class Autopilot:
         return arming_problem(self.state, now)
 
     def take_notices(self) -> list[str]:
-        """Return the texts for people since the last call."""
+        """Return the STATUSTEXTs to the operator since the last call."""
         notices, self.state.notices = self.state.notices, []
         return notices
 

@@ -17,7 +17,7 @@ class Failsafe:
     condition: Callable[[FlightState, float], bool]
     action: Callable[[FlightState, float], None]
     notice: str
-    """Text for people; empty: none."""
+    """STATUSTEXT to the operator; empty: none."""
 
 
 def check_failsafes(state: FlightState, now: float) -> None:

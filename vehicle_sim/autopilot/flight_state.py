@@ -47,7 +47,7 @@ class FlightState:
     now: float = -math.inf
     """Of the last step (s)."""
     notices: list[str] = field(default_factory=list)
-    """Texts for people, not sent yet."""
+    """STATUSTEXTs to the operator, not sent yet."""
 
     @property
     def flown_mode(self) -> int:

@@ -136,7 +136,7 @@ class Peer:
             self.next_due = -math.inf
 
     def send_statustext(self, text: str, severity: int = mavlink.MAV_SEVERITY_WARNING) -> None:
-        """Send a text for people, in pieces of a STATUSTEXT's length."""
+        """Send a text to the operator as STATUSTEXT, in pieces of its length."""
         data = text.encode("ascii", "replace")
         for start in range(0, len(data), _TEXT_LIMIT):
             self.reply(mavlink.MAVLink_statustext_message(severity, data[start : start + _TEXT_LIMIT]))

@@ -1,4 +1,4 @@
-"""Output of the physics engine, below Python's streams, kept out of what people and programs read."""
+"""Output of the physics engine, below Python's streams, kept out of the program's output."""
 
 import contextlib
 import os

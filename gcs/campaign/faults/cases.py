@@ -50,7 +50,7 @@ class Case:
 
 
 def label(values: Mapping[str, Any]) -> str:
-    """Return a severity for people: ``probability 0.3``."""
+    """Return a severity as text: ``probability 0.3``."""
     return ", ".join(f"{key} {_value(value)}" for key, value in values.items())
 
 
