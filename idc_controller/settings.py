@@ -58,7 +58,7 @@ class SampledSettings:
     """Settings of what counts samples: times are declared, the counts follow from the ``rate``."""
 
     rate: float = derived(25.0)
-    """Of the samples (Hz)."""
+    """Rate of the samples (Hz)."""
 
 
 @dataclass(frozen=True)

@@ -146,7 +146,7 @@ class Flown:
     seams: list = field(default_factory=list)
     """Largest step of position to snap where one plan follows another (5,)."""
     ends_at: float = np.nan
-    """When the mission's end was reached (s)."""
+    """Time at which the mission's end was reached (s)."""
 
     @property
     def path(self):

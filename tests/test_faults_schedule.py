@@ -1,4 +1,4 @@
-"""When a fault acts, on whom, and in what order with others."""
+"""Schedule of faults: times, vehicles, and the order of several."""
 
 import itertools
 

@@ -1,4 +1,4 @@
-"""When a detour is searched, its path, and the reason reported when there is none."""
+"""Conditions of a search for a detour, its path, and the reason reported when there is none."""
 
 import numpy as np
 import pytest

@@ -338,6 +338,6 @@ def test_equal_scenes_give_equal_flights():
 
 
 def test_scene_predicts_positions_at_several_times():
-    """Of the tests' own making: obstacles at several moments."""
+    """Helper of the tests: obstacles at several moments."""
     (predicted,) = Scene([swinging("s", (1.0, 2.0, 3.0), (0.5, 0.0, 0.0))]).predict(np.array([0.0, np.pi / 2]))
     np.testing.assert_allclose(predicted.positions, [[1.0, 2.0, 3.0], [1.5, 2.0, 3.0]])

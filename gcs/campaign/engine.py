@@ -48,7 +48,7 @@ class PlanGenerator(ABC):
     what: str = "flights"
     passed_means: str = "within their limits"
     columns: ClassVar[tuple[str, ...]]
-    """Of a stored result."""
+    """Columns of a stored result."""
     optional: ClassVar[tuple[str, ...]] = ()
     """Those of ``columns`` that results of earlier versions lack."""
     shown: ClassVar[tuple[tuple[str, str, str], ...]]

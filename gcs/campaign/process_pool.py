@@ -34,7 +34,7 @@ class FlownProcess:
 
     @property
     def reason(self) -> str:
-        """Why the flight was aborted, or not flown at all; else empty."""
+        """Reason why the flight was aborted or not flown; else empty."""
         lines = [line for line in self.messages.strip().splitlines() if line.strip()]
         for line in lines:
             if line.startswith(BROKEN_OFF):

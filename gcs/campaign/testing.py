@@ -87,7 +87,7 @@ class FaultFlights:
         self.folder = folder
         self._beside, self._shown_from = beside, shown_from
         self.log: list[str] = []
-        """Of every flight how it ended, where its run folder is, and the command that repeats it."""
+        """Verdict, run folder and replay command of every flight."""
         self._count = 0
 
     @overload

@@ -16,7 +16,7 @@ LARGEST_FILE = 20e6  # bytes
 THINNEST = 1e-3
 """Least edge of the bounding box over its largest."""
 MOST_CORNERS = 2000
-"""Of the convex hull."""
+"""Largest number of corners of the convex hull."""
 
 
 class UnusableMesh(Exception):

@@ -81,7 +81,7 @@ class HoldSettings:
     descent_ramp: float = setting(1.0, "s", "until a descent has reached its speed", gt=0.0)
     land_speed: float = setting(0.5, "m/s", "MPC_LAND_SPEED: speed of the descent", ge=0.1, le=1.0)
     braking: BrakingSettings = derived(BrakingSettings())
-    """Of a vehicle without a stop plan, as of the team: by ``guidance`` and ``motion``."""
+    """Braking of a vehicle without a stop plan, as of the team: by ``guidance`` and ``motion``."""
 
 
 @dataclass(frozen=True)

@@ -40,7 +40,7 @@ class Alarm:
     """One row of ``alarms.csv``."""
 
     time: float
-    """When it was raised (s, team time)."""
+    """Time at which it was raised (s, team time)."""
     source: str
     """``vehicle 3``, ``payload``, ``team``, or an obstacle's name."""
     code: AlarmCode

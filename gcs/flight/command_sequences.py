@@ -14,7 +14,7 @@ class CommandSequence(ABC):
 
     done = False
     problem = ""
-    """Why it has failed; empty: it has not."""
+    """Reason of a failure; empty: none."""
     descent_pending = False
     """True while a descent is still to be commanded."""
 

@@ -53,7 +53,7 @@ class Reaction(IntEnum):
 
 
 class Check(Enum):
-    """When a condition is evaluated."""
+    """Moments at which a condition is evaluated."""
 
     EVENT = "when it happens"
     CONNECT = "while connecting"

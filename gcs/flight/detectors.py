@@ -23,7 +23,7 @@ from idc_controller.estimation.settings import InnovationMonitorSettings
 
 
 class Scope(Enum):
-    """When a detector runs."""
+    """Phases in which a detector runs."""
 
     ALWAYS = "always"
     IN_AIR = "in the air"

@@ -288,9 +288,9 @@ class FailsafeState:
         self.system, self.alarms = system, alarms
         self.reaction = Reaction.NONE
         self.reason = ""
-        """Why the flight was ended early, the first reason; empty: it was not."""
+        """First reason for which the flight was ended early; empty: none."""
         self.time = math.nan
-        """When that was found (s, team time)."""
+        """Time of that reason (s, team time)."""
         self.raised: set[Failsafe] = set()
 
     @property

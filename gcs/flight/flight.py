@@ -58,7 +58,7 @@ class Flight:
         self.time = 0.0
         """Team time of the last control step."""
         self.takeoff_time = math.nan
-        """When the rotors began to spool up; nan before."""
+        """Time at which the rotors began to spool up; nan before."""
         self.mission_trajectory: MissionTrajectory | None = None
         """None until the climb begins."""
         self._pad: Trajectory | None = None
@@ -87,7 +87,7 @@ class Flight:
 
     @property
     def reason(self) -> str:
-        """Why the flight was ended early; empty: it was not."""
+        """Reason for which the flight was ended early; empty: none."""
         return self.failsafes.reason
 
     @property

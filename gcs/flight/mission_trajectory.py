@@ -29,7 +29,7 @@ class MissionTrajectory:
         self._pad = position
         self.start = start
         self.landing_from = math.inf
-        """When the final descent begins (s); inf while that is not known."""
+        """Time at which the final descent begins (s); inf while that is not known."""
         climb, legs = self._split(mission, position)
         up = WaypointTrajectory(position, climb, self._limits(self._motion.climb_speed), start=start)
         self._climb: Trajectory | None = up

@@ -28,9 +28,9 @@ class Preflight:
     def __init__(self, team: Team, settings: FlightSettings = DEFAULTS) -> None:
         self._team, self._settings = team, settings
         self.connect_start = math.nan
-        """When the first attempt to connect was made (s, ground)."""
+        """Time of the first attempt to connect (s, ground)."""
         self.check_start = math.nan
-        """When all had connected (s, team)."""
+        """Time at which all had connected (s, team)."""
         self.missing = ""
         """Data that the first incomplete vehicle lacks; empty: all are complete."""
         self._positions: dict[int, list[Array]] = {source: [] for source in (PAYLOAD, *range(len(team.links)))}

@@ -11,7 +11,7 @@ from idc_controller.arrays import Array
 
 
 class SetpointSchedule:
-    """When set-points leave and act; times are the ground's (s)."""
+    """Times at which set-points are sent and take effect; times are the ground's (s)."""
 
     def __init__(self, settings: TimingSettings = DEFAULTS.timing) -> None:
         self._simultaneous = settings.simultaneous
@@ -19,7 +19,7 @@ class SetpointSchedule:
         self.latency = 0.0
         """Compute latency: from the beginning of a control step until its set-points are sent."""
         self._waiting: list[tuple[float, int, list[Message]]] = []
-        """When they are due, the vehicle's index, the messages."""
+        """Time at which they are due, the vehicle's index, the messages."""
 
     def add_latency(self, duration: float) -> None:
         """Take the compute latency of one control step."""
@@ -48,5 +48,5 @@ class SetpointSchedule:
 
     @property
     def next_due(self) -> float:
-        """When something is due next; inf: nothing waits."""
+        """Time at which the next message is due; inf: none waits."""
         return min((due for due, _, _ in self._waiting), default=math.inf)

@@ -20,11 +20,11 @@ class RemoteClock:
         self._lead = -math.inf
         self._newest = -math.inf
         self.set_back = 0.0
-        """By how much it has been set back in all (s)."""
+        """Sum of all steps back (s)."""
         self.jumped_at = -math.inf
-        """When its offset last changed at once (s, ground): it was set, or datagrams come otherwise than before."""
+        """Time of its offset's last step (s, ground): it was set, or datagrams come otherwise than before."""
         self.lag = 0.0
-        """By how much later (s) the last stamp came than the soonest of the last second."""
+        """Delay (s) of the last stamp beyond the least delay of the last second."""
         self._requests: deque[int] = deque(maxlen=settings.open_requests)
         self._round_trips: deque[float] = deque(maxlen=settings.round_trips)
         self._arrivals: deque[float] = deque(maxlen=settings.round_trips)
@@ -81,7 +81,7 @@ class RemoteClock:
 
     @property
     def spread(self) -> float:
-        """By how much that time varies (s), apart from the worst quarter."""
+        """Variation of the latency (s), apart from the worst quarter of the round trips."""
         trips = sorted(self._round_trips)
         return (trips[3 * (len(trips) - 1) // 4] - trips[0]) / 2.0 if trips else 0.0
 

@@ -38,7 +38,7 @@ class Done:
 
     serial: int
     next_us: int | None
-    """When the ground wants to be called at the latest (us); None: only when something arrives."""
+    """Latest time of the ground's next call (us); None: only when something arrives."""
     leaving: bool = False
     """The ground will not answer again."""
 

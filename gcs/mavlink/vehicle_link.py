@@ -76,19 +76,19 @@ class VehicleLink:
         self.requests = Requests(system_id, self.status.parameters, settings)
         self.setpoints = SetpointStream(self.clock, self.status.parameters, settings)
         self.received_at = -math.inf
-        """When any message came last."""
+        """Time of the last message of any kind."""
         self.attitude_received_at = -math.inf
         self.position_received_at = -math.inf
         self.payload_received_at = -math.inf
 
     @property
     def telemetry_received_at(self) -> float:
-        """When its own attitude or position came last."""
+        """Time of its last attitude or position."""
         return max(self.attitude_received_at, self.position_received_at)
 
     @property
     def complete_telemetry_received_at(self) -> float:
-        """When the staler of its own attitude and position came last."""
+        """Time of its last attitude or of its last position, the earlier of the two."""
         return min(self.attitude_received_at, self.position_received_at)
 
     def handle(self, received: Received, now: float) -> None:

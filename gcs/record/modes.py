@@ -1,4 +1,4 @@
-"""When the vehicles left OFFBOARD: from ``modes.csv`` of a run folder."""
+"""Times at which the vehicles left OFFBOARD, from ``modes.csv`` of a run folder."""
 
 from pathlib import Path
 

@@ -53,7 +53,7 @@ class ShapedFigure:
     full_rate: float
     """Time from which on the phase runs at its full rate (s)."""
     meets: float
-    """When the payload first comes to (6, 0, -5) (s)."""
+    """Time at which the payload first reaches (6, 0, -5) (s)."""
 
 
 @cache

@@ -64,7 +64,7 @@ class Flown:
     infeasible_tracking: int = 0
     infeasible_avoidance: int = 0
     lost_at: float | None = None
-    """When the payload tipped over or flew away (s); None: never."""
+    """Time at which the payload tipped over or flew away (s); None: never."""
 
     @cached_property
     def angles(self) -> Array:

@@ -39,6 +39,6 @@ class Estimate:
     mass_excess: float
     """Payload mass less nominal (kg)."""
     covariance: Array
-    """Of x, forces (3 + 2 N) and mass excess (12 + 13 N + 4,) squared."""
+    """Covariance of x, forces (3 + 2 N) and mass excess (12 + 13 N + 4,) squared."""
     innovations: tuple[InnovationRecord, ...] = ()
-    """Of the moments that were applied since the estimate before, in order of time; replayed ones come again."""
+    """Innovations applied since the last estimate, in order of time; those replayed come again."""

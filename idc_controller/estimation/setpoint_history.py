@@ -18,11 +18,11 @@ class _Entry:
 
     effective: float
     sent_at: Array
-    """When they are sent to each vehicle (N,) (s)."""
+    """Times at which they are sent to each vehicle (N,) (s)."""
     sent: Array | None
     flown: Array | None
     starts: Array
-    """When they take effect on each vehicle (N,) (s)."""
+    """Times at which they take effect on each vehicle (N,) (s)."""
     confirmed: Mask
     """Vehicles (N,) that have reported that, or that they never flew them."""
     exact: bool = True

@@ -135,7 +135,7 @@ class SetpointHistorySettings(SampledSettings):
     """Matching of commanded set-points with those the vehicles report to have flown."""
 
     rate: float = derived(20.0)
-    """Of the set-points (Hz)."""
+    """Rate of the set-points (Hz)."""
     loss_min: float = setting(0.005, "", "least probability with which a set-point is lost on its link", gt=0.0, le=1.0)
     loss_memory: float = setting(1.0, "s", "of the running mean of the loss", gt=0.0)
     loss_time_max: float = setting(1.0, "s", "of lost set-points in a row that is noticed", gt=0.0)

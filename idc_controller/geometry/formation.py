@@ -23,7 +23,7 @@ from idc_controller.rotations import rotation_from_quaternion
 _LINEAR_SEARCH = 32
 """Up to so many points the distance library looks at all of them, so that their order and facets do not matter."""
 _MOST_CORNERS = 16
-"""Of a payload's hull that is planned with as it is: the rest of the linear search is for the discs."""
+"""Corners, at most, of a payload's hull that is planned with as it is: the rest of the linear search is for discs."""
 
 
 def formation_points(

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     import trimesh
 
 _HEADINGS = np.radians(np.arange(0.0, 90.0, 5.0))
-"""Of the upright box that is to hold a body: the smallest plan view is taken."""
+"""Headings tried for the upright box that is to hold a body: the smallest plan view is taken."""
 _MOST_POINTS = 9
 """That a range sensor hits on one body."""
 _GRAZING = 0.05

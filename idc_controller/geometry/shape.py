@@ -19,7 +19,7 @@ from idc_controller.errors import ShapeError
 Vector = tuple[float, float, float]
 
 _CIRCLE_SEGMENTS = 32
-"""Of a quarter of a circle, where a plan view is drawn as a polygon."""
+"""Segments of a quarter of a circle, where a plan view is drawn as a polygon."""
 
 
 LENGTH: Mapping[str, str] = {"unit": "m"}

@@ -20,11 +20,11 @@ class SensorModel:
     """Standard deviations of the sensors by which points are placed."""
 
     range_noise: float
-    """Along the line of sight (m)."""
+    """Standard deviation along the line of sight (m)."""
     position: float
-    """Of a vehicle's position, every axis (m)."""
+    """Standard deviation of a vehicle's position, every axis (m)."""
     attitude: float
-    """Of its attitude, every axis (rad)."""
+    """Standard deviation of its attitude, every axis (rad)."""
 
 
 @dataclass(frozen=True)
@@ -36,9 +36,9 @@ class Detection:
     obstacle: int
     """The vehicle's own number for the obstacle that the point belongs to."""
     point: Point
-    """In the vehicle's body frame, forward-right-down (m)."""
+    """Position in the vehicle's body frame, forward-right-down (m)."""
     max_range: float
-    """Of the sensor (m)."""
+    """Range of the sensor (m)."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -97,7 +97,7 @@ class ManoeuvreSettings(SampledSettings):
     """Manoeuvres that no motion model contains, and the growth of predictions for them."""
 
     rate: float = derived(10.0)
-    """Of the scans (Hz)."""
+    """Rate of the scans (Hz)."""
     mismatch_begin: float = setting(0.9, "", "mean squared innovation (usually 0.5) from which on models fail", gt=0.0)
     mismatch_full: float = setting(1.5, "", "from which on they mismatch wholly", gt=0.0)
     mismatch_acceleration: float = setting(2.0, "m/s2", "standard deviation of the acceleration then", ge=0.0)

@@ -22,7 +22,7 @@ class Track:
     models: MotionModels
     settings: PerceptionSettings
     map_shape: Shape | None = None
-    """Of an obstacle of the map."""
+    """Shape of an obstacle of the map."""
     map_centre: Array = field(default_factory=lambda: np.zeros(3))
     """Its place on the map (3,) (NED, m), until it is detected."""
     scatter: float = 0.0

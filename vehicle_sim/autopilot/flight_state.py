@@ -43,9 +43,9 @@ class FlightState:
     stop_plan: StopPlan | None = None
     """The newest of the ground in control."""
     link_time: float = -math.inf
-    """When a message of any ground came last (s)."""
+    """Time of the last message of any ground (s)."""
     now: float = -math.inf
-    """Of the last step (s)."""
+    """Time of the last step (s)."""
     notices: list[str] = field(default_factory=list)
     """STATUSTEXTs to the operator, not sent yet."""
 

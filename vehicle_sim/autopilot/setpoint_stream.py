@@ -51,7 +51,7 @@ class SetpointStream:
 
 
 def _mean(setpoints: list[AttitudeSetpoint]) -> AttitudeSetpoint:
-    """Of set-points of one kind; else the last one."""
+    """Mean of set-points of one kind; else the last one."""
     last = setpoints[-1]
     attitudes = [s.attitude for s in setpoints if s.attitude is not None]
     thrusts = [s.thrust for s in setpoints if s.thrust is not None]

@@ -19,7 +19,7 @@ class LinkImpairment:
     """Datagrams pass unchanged; a kind of fault overrides :meth:`_disturb`."""
 
     direction: ClassVar[Direction | None] = None
-    """Of a kind that is bound to one direction; None: the mission's."""
+    """Direction of a kind that is bound to one; None: the mission's."""
 
     def __init__(self, fault: ActiveFault, generator: np.random.Generator) -> None:
         self.fault = fault

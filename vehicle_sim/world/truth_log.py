@@ -33,7 +33,7 @@ class TruthLog:
 
     @property
     def error(self) -> OSError | None:
-        """Why writing stopped before ``close()``, if it did."""
+        """Error that stopped writing before ``close()``, if any."""
         return next((table.error for table in self._tables if table.error is not None), None)
 
     @property

@@ -16,7 +16,7 @@ CONFIDENCE = 0.95
 
 @dataclass(frozen=True)
 class Rates:
-    """Of all flights with one fault at one severity: counts, and rates with the ends of their Wilson intervals.
+    """Counts of all flights with one fault at one severity, and rates with the ends of their Wilson intervals.
 
     ``safe``: set down without contact, in any phase.
     """

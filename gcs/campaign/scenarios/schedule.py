@@ -31,7 +31,7 @@ class Schedule:
         own_weight = parameters.m * parameters.g / parameters.hover_thrust
         release = spool_up * float(own_weight.min()) + LAG
         self.start = spool_up - release
-        """When the climb begins."""
+        """Time at which the climb begins."""
         count = 4096
         while True:  # the end of a lazy trajectory is known only after a sample beyond it
             elapsed: Array = SAMPLE * np.arange(count, dtype=np.float64)
@@ -42,11 +42,11 @@ class Schedule:
                 raise ValueError(f"the mission lasts longer than {LONGEST:g} s")
             count *= 2
         self.landing = self.start + mission_trajectory.landing_from
-        """When the final descent begins."""
+        """Time at which the final descent begins."""
         until = elapsed <= mission_trajectory.landing_from
         self.times: Array = self.start + elapsed[until]
         self.positions: Array = positions[until]
-        """Of the payload at ``times`` (K, 3), from the pad to the place above the landing."""
+        """Payload positions at ``times`` (K, 3), from the pad to the place above the landing."""
         self.goal: Array = np.array(mission_trajectory.trajectory.position(mission_trajectory.landing_from))
 
 

@@ -38,7 +38,7 @@ class SensorHealth:
         self._stuck = StuckSensors(noise, settings.stuck_sensor)
         self.dead_reckoning = DeadReckoning(number_of_uavs, settings.dead_reckoning)
         self.isolated_groups: dict[SensorGroup, tuple[bool, bool]] = {}
-        """Of groups that contradict themselves: whether poses, or motions, are isolated, the worse explained ones."""
+        """Inconsistent groups, and isolation of their poses and of their motions: the worse explained ones."""
         self.adaptation: NoiseAdaptation
         self.isolation: ChannelIsolation
         self._unusable_since: dict[SensorKey, float] = {}
