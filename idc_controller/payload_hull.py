@@ -46,12 +46,12 @@ class PayloadHull:
 
     @cached_property
     def below(self) -> float:
-        """From the centre of mass down to the lowest point of the level payload (m)."""
+        """Depth of the level payload's lowest point below the centre of mass (m)."""
         return float(self.bounds[1, 2])
 
     @cached_property
     def above(self) -> float:
-        """From the centre of mass up to the highest point of the level payload (m)."""
+        """Height of the level payload's highest point above the centre of mass (m)."""
         return float(-self.bounds[0, 2])
 
     @cached_property

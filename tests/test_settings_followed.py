@@ -109,7 +109,7 @@ def test_separation_limit_follows_spacing_of_the_team(spacing, limit):
 
 
 @pytest.mark.parametrize(("spacing", "limit"), [(1.0, 0.75), (1.4, 0.9)])
-def test_judged_separation_follows_spacing_of_the_team(spacing, limit):
+def test_least_separation_of_a_pass_follows_spacing_of_the_team(spacing, limit):
     assert least_separation(system(team={"spacing": spacing})) == pytest.approx(limit)
 
 

@@ -104,7 +104,7 @@ class MonitorStep:
     record: StepRecord | None
     in_air: bool
     clear: bool
-    """In the air, clear of the ground, and estimated in this step."""
+    """True in the air, clear of the ground, with an estimate of this step."""
     steady: bool
     """No hard manoeuvre lately: the attitude loop does what its linear model says."""
 

@@ -5,7 +5,7 @@ import math
 from gcs.config.flight_settings import DEFAULTS, TimingSettings
 
 TOLERANCE = 1e-6
-"""For timers that are sums of periods (s)."""
+"""Tolerance of timers that are sums of periods (s)."""
 
 
 class TeamClock:

@@ -27,7 +27,7 @@ class LinkStatistics:
         self.not_finite = 0
         """The vehicle's measurements that hold no number."""
         self.payload_not_finite = 0
-        """Those of the payload that it relays."""
+        """Measurements of the payload that it relays and that hold no number."""
         self._newest: int | None = None
         self._seen: deque[int] = deque(maxlen=REMEMBERED)
         self._gaps: deque[tuple[float, set[int]]] = deque()

@@ -105,7 +105,7 @@ class Climb(Step):
 
 @dataclass(frozen=True)
 class Go(Step):
-    """To a place, and hold there (s)."""
+    """Fly to a place, and hold there (s)."""
 
     place: Place
     hold: float = 0.0
@@ -124,7 +124,7 @@ class Turn(Step):
 
 @dataclass(frozen=True)
 class Stay(Step):
-    """To a place, and hold there until stopped."""
+    """Fly to a place, and hold there until stopped."""
 
     place: Place
 
@@ -138,14 +138,14 @@ class Wait(Step):
 
 @dataclass(frozen=True)
 class Descend(Step):
-    """To above a place, and land."""
+    """Fly to above a place, and land."""
 
     place: Place
 
 
 @dataclass(frozen=True)
 class Return(Step):
-    """To above home at the present altitude, and land."""
+    """Fly to above home at the present altitude, and land."""
 
 
 @dataclass(frozen=True)
@@ -157,7 +157,7 @@ class Speed(Step):
 
 @dataclass(frozen=True)
 class Jump(Step):
-    """To the step of index ``target``, ``repeats`` times (None: always), then on."""
+    """Jump to the step of index ``target``, ``repeats`` times (None: always), then go on."""
 
     target: int
     repeats: int | None

@@ -53,7 +53,7 @@ class LoadAdaptation:
 
 
 def _drag(air: Air | None, velocity: Array) -> tuple[Array, Array]:
-    """On the payload and on each UAV (3,) (N), at ``velocity`` (3,) (m/s)."""
+    """Return the drag on the payload and on each UAV (3,) (N), at ``velocity`` (3,) (m/s)."""
     return (np.zeros(3), np.zeros(3)) if air is None else (air.on_payload(velocity), air.on_uav(velocity))
 
 

@@ -30,7 +30,7 @@ class PropagationInterval:
         self.times = sorted(set(times))
         self.flat = reference.at(np.array(self.times))
         self.setpoints = [setpoints.in_force(a, b) for a, b in pairwise(self.times)]
-        """From each time to the next."""
+        """Set-points in force from each time to the next."""
         # The drag that is predicted changes with the velocity, so what is estimated of it is the rest.
         self.nominal = np.empty((len(self.times), process.size))
         """State of the exact reference at each time (K, n)."""

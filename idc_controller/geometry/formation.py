@@ -129,9 +129,9 @@ class BoundingCylinder:
 
     radius: float
     above: float
-    """From the payload's centre up to the highest disc."""
+    """Height of the highest disc above the payload's centre."""
     below: float
-    """From the payload's centre down to the payload's lowest point."""
+    """Depth of the payload's lowest point below its centre."""
 
     def __post_init__(self) -> None:
         for name in ("radius", "above", "below"):

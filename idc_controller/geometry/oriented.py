@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 _HEADINGS = np.radians(np.arange(0.0, 90.0, 5.0))
 """Headings tried for the upright box that is to hold a body: the smallest plan view is taken."""
 _MOST_POINTS = 9
-"""That a range sensor hits on one body."""
+"""Largest number of points that a range sensor hits on one body."""
 _GRAZING = 0.05
 """Least cosine of the angle of incidence at which a range sensor gets an answer."""
 

@@ -103,5 +103,5 @@ class RestingPlaceSettings:
 
     @property
     def clearance(self) -> float:
-        """From the formation's upright hull to any obstacle, by the plan (m)."""
+        """Least planned distance from the formation's upright hull to any obstacle (m)."""
         return self.margin + self.drift

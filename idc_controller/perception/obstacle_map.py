@@ -36,7 +36,7 @@ class MapObstacle(NamedTuple):
     name: str
     shape: Shape
     centre: Array
-    """In the world (3,) (NED, m); of a moving obstacle, where its motion has its mean."""
+    """Centre in the world (3,) (NED, m); of a moving obstacle, the mean of its motion."""
     moves: bool = False
 
 

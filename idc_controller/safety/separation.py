@@ -83,6 +83,6 @@ def separations(
 
 
 def _reach(obstacle: PredictedObstacle) -> float:
-    """From the centre to the farthest of the surface, of upright shapes as seen from above (m)."""
+    """Return the largest distance of the surface from the centre, of upright shapes in plan view (m)."""
     shape = obstacle.shape
     return shape.horizontal_reach if shape.is_upright else shape.reach

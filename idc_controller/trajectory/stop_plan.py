@@ -43,7 +43,7 @@ class Braking(NamedTuple):
     settings: BrakingSettings = BrakingSettings()
 
     def duration(self, velocity: Array) -> float:
-        """From a ``velocity`` (3,) (m/s) to rest (s)."""
+        """Return the time from a ``velocity`` (3,) (m/s) to rest (s)."""
         speed = float(np.linalg.norm(velocity))
         return self.share * max(self.settings.time, 1.5 * speed / self.settings.deceleration)
 
@@ -54,7 +54,7 @@ class Braking(NamedTuple):
         return np.asarray(points)
 
     def path(self, state: Array) -> BPoly:
-        """From ``state`` (3, 3) on, over the time since then (s)."""
+        """Return the path from ``state`` (3, 3) on, over the time since then (s)."""
         duration = self.duration(state[1])
         return BPoly(self.control_points(state, duration)[:, None, :], [0.0, duration])
 
@@ -76,7 +76,7 @@ def stop_plan(
     x: Array | None = None,
     choose: Callable[[float, Array], Braking] = lambda time, state: Braking(),
 ) -> StopPlan:
-    """From the first instant of the reference ``flat``, which is ``time`` (s), to rest.
+    """Return the stop plan from the first instant of the reference ``flat``, which is ``time`` (s).
 
     ``x`` (12 + 11 N,) is the state then; None: that of the reference. ``choose`` says how to brake, by the time and
     position, velocity and acceleration (3, 3) of a payload that hangs at rest below the UAVs.

@@ -35,7 +35,7 @@ class _Corner:
 
 
 class WaypointTrajectory(Trajectory):
-    """From rest at a start point along legs, to rest at the last one; reads legs only as far as needed.
+    """A trajectory from rest at a start point along legs to rest at the last one; reads legs only as far as needed.
 
     Args:
         start_position: (3,), m, NED.

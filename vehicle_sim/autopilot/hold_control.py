@@ -31,7 +31,7 @@ class PlannedState(NamedTuple):
 
 @dataclass(frozen=True)
 class HoldPlan:
-    """To rest along a Bezier curve of degree 4, then down from ``descent_start`` on.
+    """A stop along a Bezier curve of degree 4, then a descent from ``descent_start`` on.
 
     ``control_points``: five, in the world (NED, m), passed from ``start`` on in ``duration`` (times in s); ``yaw`` in
     rad, ``descent_speed`` in m/s, reached in ``descent_ramp`` (s), ``descent_start`` infinite for a plan that stays.

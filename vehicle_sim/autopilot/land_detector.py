@@ -7,7 +7,7 @@ from vehicle_sim.world.sensors import Measurement
 
 
 class LandDetector:
-    """On the ground until it rises; in the air until it neither moves vertically nor carries its payload.
+    """Landed state: on the ground until it rises, in the air until it neither moves vertically nor carries its payload.
 
     ``in_air``; ``hover_thrust`` (N): the vertical thrust it flew with, low-passed, None before the first flight.
     """

@@ -9,7 +9,7 @@ _V1, _V2 = mavlink.PROTOCOL_MARKER_V1, mavlink.PROTOCOL_MARKER_V2
 
 
 class Frame(NamedTuple):
-    """From ``start`` to ``end`` in the datagram; ``checksum``: where that begins.
+    """A frame, from ``start`` to ``end`` in the datagram; ``checksum``: offset of its checksum.
 
     ``stamp``: the first four bytes of the payload, which in all streamed measurements and set-points are a time.
     """

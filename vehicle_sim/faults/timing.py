@@ -124,7 +124,7 @@ class StaleStamps(SampleImpairment):
         return sample._replace(time=self._stamp(sample.time))
 
     def _stamp(self, time: float) -> float:
-        """By the schedule at the sample's own time: the sample may be reported for the second time."""
+        """Return the stamp by the schedule at the sample's own time: the sample may be reported for the second time."""
         settings: kinds.StaleStamps = self.fault.settings
         return max(time - settings.age, 0.0) if self.fault.schedule.at(time) is not None else max(time, 0.0)
 

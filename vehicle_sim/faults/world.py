@@ -16,7 +16,7 @@ from vehicle_sim.faults.active import WORLD, ActiveFault
 from vehicle_sim.world.world import World
 
 Forces = tuple[Vector, Sequence[Vector]]
-"""On the payload, and on each UAV: at the centres of mass, north-east-down (N)."""
+"""Forces on the payload and on each UAV, at the centres of mass, north-east-down (N)."""
 
 
 class Wind:

@@ -18,7 +18,7 @@ def messages_of_engine_aside() -> Iterator[None]:
 
 @contextlib.contextmanager
 def greeting_of_engine_dropped() -> Iterator[None]:
-    """For the import of the engine, which prints the date of its making to standard error."""
+    """Discard what the import of the engine prints to standard error: its build date."""
     with _redirected(_ERRORS, os.open(os.devnull, os.O_WRONLY)):
         yield
 

@@ -53,7 +53,7 @@ def _linear(random: Random, time: float, travel: Array, fastest: float) -> AnyMo
 
 
 def _harmonic(random: Random, time: float, travel: Array, fastest: float) -> AnyMotion:
-    """At its mean position, and fastest, at the time."""
+    """Return a harmonic motion that is at its mean position, and fastest, at the time."""
     speed, length = _speed(random, fastest), random.uniform(0.8, 2.5)
     x, y, z = _against(random, travel)
     if random.random() < 0.2:
@@ -70,7 +70,7 @@ def _circle(random: Random, time: float, travel: Array, fastest: float) -> AnyMo
 
 
 def _waypoints(random: Random, time: float, travel: Array, fastest: float) -> AnyMotion:
-    """To and fro with stops, starting and stopping hard."""
+    """Return a motion to and fro with stops, at high accelerations."""
     speed = _below(_speed(random, fastest))
     acceleration = max(0.8, random.uniform(0.2, 0.5) * fastest**2)  # so that it does reach its speed
     corners = [_rounded(x, y, 0.0) for x, y in random.uniform(-2.5, 2.5, (random.integers(2, 5), 2)).tolist()]

@@ -14,7 +14,7 @@ class StateConstraint(Protocol):
     """Soft rows, the same at every constrained stage, with bounds that may move with the reference."""
 
     G: Array
-    """On the error (c, 12 + 11 N), in force components."""
+    """Rows on the error (c, 12 + 11 N), in force components."""
     slack: NDArray[np.int_]
     """Index of the constraint's own slack, from 0, by which each row may be exceeded (c,)."""
 

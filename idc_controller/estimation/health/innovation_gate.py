@@ -31,7 +31,7 @@ class InnovationGate:
 
     def __init__(self, probability: float) -> None:
         self._limits = chi2.ppf(probability, np.arange(7))
-        """By the size of a measurement."""
+        """Gates (normalised innovation squared) by the size of a measurement."""
 
     def test(self, residual: Array, predicted: Array, stack: ObservationStack, noise_scale: float) -> InnovationTest:
         """Test the measurements of one moment.

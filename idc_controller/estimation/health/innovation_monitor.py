@@ -43,7 +43,7 @@ class InnovationMonitor:
         """``gate_probability`` of the innovation test: beyond it a sample counts as one at the gate."""
         self._settings = s = settings
         self._statistics: dict[tuple[SensorKey, int], _Statistics] = {}
-        """By sensor and number of rows: now and then only one of its channels is there."""
+        """Statistics by sensor and number of rows: some samples have only one of its channels."""
         sizes = np.arange(1, 7)
         kept = (2.0 - s.share) / s.share
         # Variance of a running mean is 1 / kept; its square sum times kept is chi-squared with ``size`` degrees of
