@@ -67,7 +67,7 @@ class Settings:
     """N m, in both directions."""
     weights: Weights = Weights()
     terminal_outputs_alone: bool = False
-    """Of Q_f only the block of what the weights are on: the y of the paper's terminal cost."""
+    """True: Q_f weights only the outputs y of the paper's terminal cost."""
 
 
 @dataclass(frozen=True, eq=False)

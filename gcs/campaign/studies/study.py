@@ -77,4 +77,4 @@ STUDIES = {
 
 LABELS = ("mission", "variant", "seed", "clearance_asked_m", "tilt_limit_deg")
 STUDY_COLUMNS = (*LABELS, *COLUMNS)
-"""Of the table ``NAME.csv``; the labels are not stored with the results, for studies share their flights."""
+"""Columns of the table ``NAME.csv``; the labels are not stored with the results, for studies share their flights."""
