@@ -100,7 +100,7 @@ class Trigger:
     vehicles: tuple[int, ...] = ()
     """Indices of the vehicles (0 .. N-1) that are its cause; empty: the whole team."""
     cut_off: float = 0.0
-    """For how long the vehicle has most likely received nothing (s)."""
+    """Time for which the vehicle has most likely received no message (s)."""
     source: str = "team"
     """Source of the alarm where the cause is not one vehicle."""
 
