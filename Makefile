@@ -65,6 +65,7 @@ $(INSTALLED): pyproject.toml constraints.txt
 	exit 1
 	@$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check -c constraints.txt setuptools
 	@$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check --no-build-isolation -c constraints.txt -e '.[dev]'
+	@$(VENV)/bin/python -m vehicle_sim.app.compile_kernels
 	@touch $@
 
 clean:

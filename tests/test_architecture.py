@@ -78,7 +78,16 @@ ALLOWED = {
 SETTINGS = sorted((*ROOT.glob("idc_controller/*/settings.py"), *ROOT.glob("gcs/*/settings.py")))
 COMMON = {
     f"idc_controller.{name}"
-    for name in ("arrays", "errors", "parameters", "payload_hull", "rotations", "rotations_float", "settings")
+    for name in (
+        "arrays",
+        "compiled",
+        "errors",
+        "parameters",
+        "payload_hull",
+        "rotations",
+        "rotations_float",
+        "settings",
+    )
 } | {"gcs.errors"}
 """Modules beside the sub-packages that everything above them may import."""
 

@@ -6,7 +6,8 @@ A refactoring that is meant to change no behaviour changes no checksum:
   python tests/golden/golden.py leg spheres_1    compare these flights only
   python tests/golden/golden.py --renew          write the checksums anew, on purpose
   python tests/golden/golden.py --records DIR    keep the records in DIR; where DIR has those of an earlier run (of the
-                                                 commit before, say), print the first row and column that differ
+                                                 commit before, say), print the first row and column that differ, and
+                                                 the largest differences
 
 The checksums hold for the versions that `checksums.json` names, and for one kind of processor. `telemetry.tlog` is
 compared twice: whole, and without the texts of its STATUSTEXT messages, so that a reworded message can be distinguished
@@ -33,6 +34,7 @@ from pathlib import Path
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent))
 
+import pandas as pd  # noqa: E402
 import pymavlink.dialects.v20.common as mavlink  # noqa: E402
 from flight_in_process import InProcessFlight  # noqa: E402
 from threadpoolctl import threadpool_limits  # noqa: E402
@@ -47,6 +49,7 @@ PACKAGES = ("coal", "daqp", "filterpy", "numpy", "proxsuite", "pybullet", "pymav
 WITHOUT_TEXT = "telemetry.tlog without STATUSTEXT"
 _STATUSTEXT = mavlink.MAVLINK_MSG_ID_STATUSTEXT
 _STAMP_LENGTH = 8
+FIRST_SECONDS = 5.0
 
 
 @dataclass(frozen=True)
@@ -124,6 +127,11 @@ def fly(name: str, records: Path | None = None) -> tuple[str, dict[str, str], li
             earlier = records / name
             if earlier.exists():
                 differences = [text for file in FILES if (text := first_difference(earlier / file, folder / file))]
+                differences += [
+                    f"{file}: {largest_difference(earlier / file, folder / file)}"
+                    for file in FILES
+                    if file.endswith(".csv") and any(text.startswith(file) for text in differences)
+                ]
             else:
                 shutil.copytree(folder, earlier)
         return name, checksums(folder), differences
@@ -144,6 +152,18 @@ def first_difference(earlier: Path, later: Path) -> str:
         column, before, now = next(each for each in values if each[1] != each[2])
         return f"{later.name}: row {number}, {column.decode()}: {before.decode()} before, {now.decode()} now"
     return ""
+
+
+def largest_difference(earlier: Path, later: Path) -> str:
+    """Return the largest differences of any column within the first seconds of two tables, and in all."""
+    old, new = (pd.read_csv(path).select_dtypes("number") for path in (earlier, later))
+    rows = min(len(old), len(new))
+    off = (old.iloc[:rows] - new.iloc[:rows]).abs()
+    first = off[old.iloc[:rows, 0] <= old.iloc[0, 0] + FIRST_SECONDS].max()
+    return (
+        f"at most {first.max():.2g} in the first {FIRST_SECONDS:g} s ({first.idxmax()}), "
+        f"{off.max().max():.2g} in all ({off.max().idxmax()})"
+    )
 
 
 def _rows(data: bytes, is_table: bool) -> list[bytes]:
