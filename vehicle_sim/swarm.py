@@ -5,6 +5,8 @@ from collections.abc import Sequence
 from functools import partial
 from typing import NamedTuple, Self
 
+import numpy as np
+
 from gcs.config import SystemConfig
 from gcs.mavlink import px4
 from gcs.mavlink.address import Address
@@ -46,7 +48,7 @@ class _Uav:
         self.vehicle = vehicle
         self._rotors = Rotors(airframe.rotors, airframe.motor_time_constant, 1.0 / config.rates.physics)
         self._sensor = NavigationSensor(uav_noise, seed, vehicle.system_id)
-        self._range_sensor = RangeSensor(config.range_sensor, seed, vehicle.system_id)
+        self.range_sensor = RangeSensor(config.range_sensor, seed, vehicle.system_id)
         self._command: Four = IDLE
 
     def wrench(self) -> Four:
@@ -65,7 +67,7 @@ class _Uav:
 
     def scan(self, state: UavState, obstacles: Sequence[ObstacleBody], faults: FaultInjector, now: float) -> None:
         """Scan for obstacles."""
-        scan = self._range_sensor.scan(now, state.position_in_world, state.quaternion, obstacles)
+        scan = self.range_sensor.scan(now, state.position_in_world, state.quaternion, obstacles)
         self.vehicle.take_scan(faults.range_sample(self.vehicle.system_id, scan))
 
 
@@ -237,6 +239,8 @@ class Swarm:
 
     def _scan(self, state: WorldState) -> None:
         """Let every vehicle scan, in a world with obstacles."""
-        if obstacles := self.world.obstacles.all():
-            for uav, uav_state in zip(self._uavs, state.uavs, strict=True):
+        if self.world.obstacles.all():
+            places = np.array([uav_state.position_in_world for uav_state in state.uavs])
+            near = self.world.obstacles.near(places, self._uavs[0].range_sensor.reach)
+            for uav, uav_state, obstacles in zip(self._uavs, state.uavs, near, strict=True):
                 uav.scan(uav_state, obstacles, self._faults, state.time)

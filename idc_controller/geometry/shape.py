@@ -7,6 +7,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
+from functools import cached_property
 from typing import Any, ClassVar, NamedTuple, Self
 
 import coal
@@ -120,7 +121,7 @@ class Shape(ABC):
         """Shape frame to world, w first."""
         return 1.0, 0.0, 0.0, 0.0
 
-    @property
+    @cached_property
     def columns(self) -> Columns:
         """The shape as the tables hold it, by its fields ``radius``, ``size``, ``height`` (of the size) and ``yaw``."""
         own = vars(self)

@@ -2,33 +2,37 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from typing import NamedTuple
 
+import numpy as np
 import pybullet
 
 from gcs.mission.model import Obstacle as MissionObstacle
+from idc_controller.arrays import Array
 from idc_controller.errors import ShapeError
 from idc_controller.geometry.shape import Shape
-from idc_controller.rotations_float import Vector
+from idc_controller.rotations_float import Quaternion, Vector
 from vehicle_sim.world.errors import SimulationError
 from vehicle_sim.world.world_state import flipped, quaternion_to_engine
 
+_ROUNDING = 1e-6
+"""m; more than the rounding of a distance."""
 
-@dataclass(frozen=True)
-class Obstacle:
+
+class Obstacle(NamedTuple):
     """An obstacle at one time: its shape, and its centre in the world (NED, m)."""
 
     name: str
     shape: Shape
     position_in_world: Vector
 
-    def __post_init__(self) -> None:
-        try:
-            self.shape.check()
-        except ShapeError as error:
-            raise SimulationError(f"obstacle {self.name}: {error}") from error
-        if len(self.position_in_world) != 3 or not all(map(math.isfinite, self.position_in_world)):
-            raise SimulationError(f"obstacle {self.name}: position must be three finite numbers")
+
+class _Body(NamedTuple):
+    """The engine's handle of an obstacle, its attitude there, and its row in arrays of all."""
+
+    handle: int
+    attitude: Quaternion
+    row: int
 
 
 class ObstacleBodies:
@@ -37,21 +41,32 @@ class ObstacleBodies:
     def __init__(self, client: int) -> None:
         self._client = client
         self._obstacles: dict[str, Obstacle] = {}
-        self._bodies: dict[str, int] = {}
+        self._bodies: dict[str, _Body] = {}
+        self._centres = np.empty((0, 3))
+        self._bounds = np.empty(0)
 
     def all(self) -> tuple[Obstacle, ...]:
         """Return the obstacles at the current time, in the order in which they were added."""
         return tuple(self._obstacles.values())
 
+    def near(self, places: Array, within: float) -> list[list[Obstacle]]:
+        """Return the obstacles that may be ``within`` that distance (m) of each of the ``places`` (P, 3), NED (m)."""
+        apart = self._centres - places[:, None]
+        far = np.einsum("poi,poi->po", apart, apart) > (self._bounds + within + _ROUNDING) ** 2
+        obstacles = self.all()
+        return [[obstacles[row] for row in np.flatnonzero(~rows).tolist()] for rows in far]
+
     def body(self, name: str) -> int:
         """Return the engine's handle. Raises :class:`SimulationError` for an unknown name."""
-        if name not in self._bodies:
-            raise SimulationError(f"no obstacle is called {name!r}")
-        return self._bodies[name]
+        return self._body(name).handle
 
     def add(self, name: str, shape: Shape, position_in_world: Sequence[float]) -> None:
         """Add an obstacle, its centre (3,) in NED (m). Raises :class:`SimulationError`."""
-        obstacle = Obstacle(name, shape, _vector(position_in_world))
+        try:
+            shape.check()
+        except ShapeError as error:
+            raise SimulationError(f"obstacle {name}: {error}") from error
+        place = _place(name, position_in_world)
         if name in self._obstacles:
             raise SimulationError(f"obstacle {name}: the name is taken")
         primitive, dimensions = shape.collision()
@@ -60,20 +75,30 @@ class ObstacleBodies:
         collision = pybullet.createCollisionShape(
             getattr(pybullet, f"GEOM_{primitive.upper()}"), **dimensions, physicsClientId=self._client
         )
-        self._bodies[name] = pybullet.createMultiBody(
-            0.0, collision, basePosition=flipped(obstacle.position_in_world),
-            baseOrientation=quaternion_to_engine(shape.quaternion), physicsClientId=self._client,
-        )  # fmt: skip
-        self._obstacles[name] = obstacle
+        attitude = quaternion_to_engine(shape.quaternion)
+        handle = pybullet.createMultiBody(
+            0.0, collision, basePosition=flipped(place), baseOrientation=attitude, physicsClientId=self._client
+        )
+        self._bodies[name] = _Body(handle, attitude, len(self._bodies))
+        self._obstacles[name] = Obstacle(name, shape, place)
+        self._centres = np.vstack([self._centres, place])
+        self._bounds = np.append(self._bounds, bounding_radius(shape))
 
     def move(self, name: str, position_in_world: Sequence[float]) -> None:
         """Put an obstacle elsewhere, its centre (3,) in NED (m); it counts from the next step on."""
-        body = self.body(name)
-        new = self._obstacles[name] = replace(self._obstacles[name], position_in_world=_vector(position_in_world))
+        body, obstacle, place = self._body(name), self._obstacles[name], _place(name, position_in_world)
+        if place == obstacle.position_in_world:
+            return
+        self._obstacles[name] = Obstacle(name, obstacle.shape, place)
+        self._centres[body.row] = place
         pybullet.resetBasePositionAndOrientation(
-            body, flipped(new.position_in_world), quaternion_to_engine(new.shape.quaternion),
-            physicsClientId=self._client,
-        )  # fmt: skip
+            body.handle, flipped(place), body.attitude, physicsClientId=self._client
+        )
+
+    def _body(self, name: str) -> _Body:
+        if name not in self._bodies:
+            raise SimulationError(f"no obstacle is called {name!r}")
+        return self._bodies[name]
 
 
 class MovingObstacles:
@@ -100,6 +125,15 @@ def _moved(rest: Vector, by: Vector) -> Vector:
     return rest[0] + by[0], rest[1] + by[1], rest[2] + by[2]
 
 
-def _vector(values: Sequence[float]) -> Vector:
+def bounding_radius(shape: Shape) -> float:
+    """Return the radius (m) of a ball about the centre of a shape that surely holds it."""
+    radius, (a, b, c), _ = shape.columns
+    return radius + 0.5 * math.sqrt(a * a + b * b + c * c)
+
+
+def _place(name: str, values: Sequence[float]) -> Vector:
     x, y, z = values
-    return float(x), float(y), float(z)
+    place = float(x), float(y), float(z)
+    if not all(map(math.isfinite, place)):
+        raise SimulationError(f"obstacle {name}: position must be three finite numbers")
+    return place

@@ -12,7 +12,7 @@ import numpy as np
 
 from gcs.config import RangeSensorConfig
 from idc_controller.rotations_float import Quaternion, Vector, into_body
-from vehicle_sim.world.obstacle_bodies import Obstacle
+from vehicle_sim.world.obstacle_bodies import Obstacle, bounding_radius
 
 #: Distinguishes these generators from the navigation sensors'.
 _STREAM = 1_000_003
@@ -44,6 +44,11 @@ class RangeSensor:
         self._generator = np.random.default_rng([seed, _STREAM, system_id])
         self._ids: dict[str, int] = {}
         self._next_id = 0
+
+    @property
+    def reach(self) -> float:
+        """Largest distance of what it detects (m)."""
+        return self._settings.range
 
     def scan(
         self, now: float, position: Sequence[float], attitude: Quaternion, obstacles: Iterable[Obstacle]
@@ -90,6 +95,4 @@ def visible_points(obstacle: Obstacle, sensor: Vector, reach: float, turn: float
 
 def _is_beyond(obstacle: Obstacle, sensor: Vector, reach: float) -> bool:
     """Return True for an obstacle that is surely out of reach: a cheap check before the others."""
-    radius, (a, b, c), _ = obstacle.shape.columns
-    size = radius + 0.5 * math.sqrt(a * a + b * b + c * c)
-    return math.dist(obstacle.position_in_world, sensor) > reach + size
+    return math.dist(obstacle.position_in_world, sensor) > reach + bounding_radius(obstacle.shape)
