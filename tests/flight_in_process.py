@@ -132,7 +132,9 @@ class InProcessFlight:
         swarm, station = self.swarm, self.station
         while not station.ended and self.now <= until and not stop():
             swarm.advance_to(self.now)
-            for i, datagram, address in swarm.datagrams_to_send(self.now):
+            telemetry = list(swarm.datagrams_to_send(self.now))
+            station.resume()
+            for i, datagram, address in telemetry:
                 if address == GROUND:
                     station.receive(datagram, address_of(i), self.now)
             for datagram, address in station.datagrams_to_send(self.now):

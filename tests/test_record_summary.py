@@ -15,7 +15,7 @@ from gcs.record.run_data import read_run
 from gcs.record.run_folder import open_run_folder, write_json, write_manifest
 from gcs.record.summary import summarise, within_limits, write_summary
 from gcs.record.summary_table import summary_table
-from gcs.record.tables import ESTIMATE_COLUMNS, REFERENCE_COLUMNS, STEP_COLUMNS, TableWriter
+from gcs.record.tables import ESTIMATE_COLUMNS, REFERENCE_COLUMNS, STEP_COLUMNS, STEP_PART_COLUMNS, TableWriter
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
@@ -96,10 +96,28 @@ def test_summary_agrees_with_values_computed_by_hand(run) -> None:
             "contacts_before": 3,
         },
         "step_time_ms": {"p50": 6.0, "p99": 10.9, "max": 11.0},
+        "step_parts_ms": None,
         "solver": {"mpc_p50_ms": 5.0, "planner_p50_ms": 0.5, "infeasible_steps": 2},
         "safety": None,
         "limits": {},
     }  # fmt: skip
+
+
+def test_summary_has_the_parts_of_the_control_step(tmp_path) -> None:
+    folder = open_run_folder("hover", tmp_path / "run")
+    write_truth(folder)
+    with TableWriter(folder / "steps.csv", (*STEP_COLUMNS, *STEP_PART_COLUMNS)) as table:
+        for k in range(101):
+            table.write([k / 20.0, 1.0, 0.5, 0.1, 10.0 + k, 0, 0, 2.0, k / 10.0, 0.3, 0.4, 0.6, 0.7, 0.8])
+    summary = summarise(folder, **FLOWN)
+    assert summary["step_time_ms"] == {"p50": 60.0, "p99": 109.0, "max": 110.0}
+    medians = {part: figures["p50"] for part, figures in summary["step_parts_ms"].items()}
+    assert medians == {
+        "telemetry": 2.0, "estimation": 1.0, "perception": 5.0, "planning": 0.5, "control": 0.3, "stop_plan": 0.4,
+        "monitoring": 0.6, "recording": 0.7, "setpoints": 0.8,
+    }  # fmt: skip
+    assert summary["step_parts_ms"]["perception"]["p99"] == 9.9
+    assert "2.0 / 1.0 / 5.0 ms" in printed(summary, folder)
 
 
 def test_error_counts_from_settle_on_and_within_the_reference_only(tmp_path) -> None:

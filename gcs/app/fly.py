@@ -21,6 +21,7 @@ from gcs.drivers.simulator import Simulator
 from gcs.errors import GcsError, UnusableInput
 from gcs.flight import stack
 from gcs.flight.alarms import AlarmLog
+from gcs.flight.compute_times import ComputeTimes
 from gcs.flight.condition import Trigger
 from gcs.flight.control_loop import ControlLoop
 from gcs.flight.failsafe import Failsafe
@@ -204,8 +205,8 @@ def ground_station(
     elif controller == "paper":
         safety = PrintedFilter(model, obstacle_map, config.avoidance.margin)
     control = ControlLoop(
-        stack.estimator(config, model), stack.controller(config, model, safety, stopwatch, guidance), stopwatch,
-        brake=stack.resting_place(config, model, obstacle_map),
+        stack.estimator(config, model), stack.controller(config, model, safety, stopwatch, guidance),
+        ComputeTimes(stopwatch), brake=stack.resting_place(config, model, obstacle_map),
     )  # fmt: skip
     alarms = AlarmLog(recorder.alarm, config.flight.monitor)
     flight = Flight(mission, Team(links, model.parameters), control, alarms, obstacle_map)

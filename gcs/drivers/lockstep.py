@@ -34,7 +34,9 @@ def run_in_lockstep(
     while not station.ended:
         tick = _next_tick(connection, clock_address, inbox)
         if tick is None:
-            if connection.wait(settings.join_interval):
+            arrived = connection.wait(settings.join_interval)
+            station.resume()
+            if arrived:
                 continue
             waited += settings.join_interval
             reason = end_reason()
@@ -56,6 +58,7 @@ def run_in_lockstep(
         inbox.clear()
         for datagram, address in station.datagrams_to_send(now):
             connection.send(datagram, address)
+        station.sent()
         progress()
         due = station.next_timer()
         next_us = None if due is None else max(math.ceil(due * 1e6 - 1e-3), tick.time_us + 1)

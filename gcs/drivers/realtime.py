@@ -38,6 +38,7 @@ def run_in_real_time(
             station.receive(datagram, sender, now)
         for datagram, address in station.datagrams_to_send(now):
             connection.send(datagram, address)
+        station.sent()
         station.add_latency((clock() - start) * speed - now)
         progress()
         due = station.next_timer()
@@ -46,3 +47,4 @@ def run_in_real_time(
         wait = due / speed - (clock() - start)
         if wait > 0.0:
             connection.wait(min(wait, settings.wait_max))
+            station.resume()

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gcs.flight.compute_times import ComputeTimes, Part
 from idc_controller.arrays import Array
 from idc_controller.control.controller import Decision, IntegratedDecisionController
 from idc_controller.estimation.estimate import Estimate
@@ -35,12 +36,10 @@ class Setpoints:
 
 @dataclass(frozen=True, eq=False)
 class StepRecord:
-    """One control step, for the records; compute times in s."""
+    """One control step, for the records."""
 
     estimate: Estimate
     decision: Decision
-    estimator_time: float
-    controller_time: float
 
 
 class ControlLoop:
@@ -50,37 +49,40 @@ class ControlLoop:
         self,
         estimator: Estimator,
         controller: IntegratedDecisionController,
-        stopwatch: Callable[[], float],
+        compute_times: ComputeTimes,
         brake: Callable[[float, Array], Braking] = lambda time, state: Braking(),
     ) -> None:
         """``brake``: the stop of a vehicle without set-points, see :mod:`idc_controller.trajectory.stop_plan`."""
         self.estimator, self.controller = estimator, controller
-        self._stopwatch, self._brake = stopwatch, brake
+        self.compute_times, self._brake = compute_times, brake
         self._stop_plans: deque[StopPlan] = deque(maxlen=STOP_PLANS)
         self.stop_plan: StopPlan | None = None
         """Stop of all vehicles when set-points are lost; it goes out with the set-points."""
-        self._estimator_time = 0.0
 
     def estimate(self, effective: float, trajectory: Trajectory) -> Estimate:
         """Return the estimate at ``effective`` (s), about ``trajectory``."""
-        begin = self._stopwatch()
+        self.compute_times.lap(Part.MONITORING)
         estimate = self.estimator.estimate(effective, self.controller.reference(trajectory))
-        self._estimator_time = self._stopwatch() - begin
+        self.compute_times.lap(Part.ESTIMATION)
         return estimate
 
     def decide(self, estimate: Estimate, trajectory: Trajectory, *, on_ground: bool, learn_load: bool) -> StepRecord:
         """Return the decision on an ``estimate`` of this step."""
-        begin = self._stopwatch()
+        self.compute_times.lap(Part.MONITORING)
         decision = self.controller.decide(estimate, trajectory, on_ground=on_ground, learn_load=learn_load)
-        return StepRecord(estimate, decision, self._estimator_time, self._stopwatch() - begin)
+        self.compute_times.lap(Part.CONTROL)
+        self.compute_times.shift(decision.compute_time.planner, Part.CONTROL, Part.PLANNING)
+        return StepRecord(estimate, decision)
 
     def send(self, record: StepRecord, effective: float, leaves: Array) -> None:
         """Take over the set-points of a step in the air, which leave at ``leaves`` (N,) and act at ``effective``."""
+        self.compute_times.lap(Part.MONITORING)
         self.estimator.setpoints.add(effective, record.decision.u, leaves)
         self.stop_plan = stop_plan(
             self.controller.parameters, record.decision.flat, effective, record.estimate.x, self._brake
         )
         self._stop_plans.append(self.stop_plan)
+        self.compute_times.lap(Part.STOP_PLAN)
 
     def choose_stop_plan(self, sent_until: float) -> None:
         """Take the last stop plan that a vehicle has received which was sent everything until ``sent_until`` (s)."""

@@ -4,12 +4,14 @@ Data flow: datagram -> telemetry router -> estimator -> controller -> set-point 
 """
 
 import math
+from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.flight.alarms import Alarm
+from gcs.flight.compute_times import ComputeTimes, Part
 from gcs.flight.condition import Trigger
 from gcs.flight.control_loop import Setpoints, StepRecord
 from gcs.flight.failsafe import Failsafe
@@ -26,6 +28,7 @@ from gcs.mavlink.id_check import SystemIdCheck
 from gcs.mavlink.messages import Message
 from gcs.mavlink.setpoints import attitude_target, stop_plan_message
 from gcs.mavlink.vehicle_link import VehicleLink
+from idc_controller.control.controller import Decision
 from idc_controller.estimation.measurements import Attitude, Position
 from idc_controller.perception.obstacle_map import ObstacleMap
 
@@ -45,6 +48,10 @@ class Recorder(Protocol):
 
     def step(self, flight: Flight, time: float, record: StepRecord | None) -> None:
         """Record one control step at team ``time``."""
+        ...
+
+    def compute_times(self, time: float, decision: Decision, parts: Sequence[float]) -> None:
+        """Record the compute times (s) of the control step at team ``time``, as :class:`Part` orders them."""
         ...
 
     def obstacles(self, obstacle_map: ObstacleMap, time: float) -> None:
@@ -85,17 +92,25 @@ class GroundStation:
         """True if the flight is over."""
         return self.flight.ended
 
+    @property
+    def _times(self) -> ComputeTimes:
+        return self.flight.control.compute_times
+
     def raise_failsafe(self, now: float, failsafe: Failsafe, reason: str) -> None:
         """React to an event that ends the flight early."""
         self.flight.raise_failsafe(self._clock.time(now), failsafe, Trigger(reason))
 
     def receive(self, datagram: bytes, sender: Address, now: float) -> None:
         """Take a datagram from any address. Never raises for anything that a datagram can hold."""
-        if self.router.receive(datagram, sender, now):
+        from_vehicle = self.router.receive(datagram, sender, now)
+        self._times.lap(Part.TELEMETRY)
+        if from_vehicle:
             self._recorder.datagram(now, datagram)
+            self._times.lap(Part.RECORDING)
 
     def datagrams_to_send(self, now: float) -> list[tuple[bytes, Address]]:
         """Return all that is due at ``now`` (s), each with its address."""
+        times, record = self._times, None
         messages: list[list[Message]] = [[] for _ in self.links]
         if self._heartbeat.is_due(now):
             for queue in messages:
@@ -104,28 +119,36 @@ class GroundStation:
             for link, queue in zip(self.links, messages, strict=True):
                 queue.append(mavlink.MAVLink_timesync_message(0, link.clock.request(now)))
         self._stepped = self._control.is_due(now)
+        times.lap(Part.SETPOINTS)
         if self.flight.check_links(self._clock.time(now), now):
             # The stop plan goes out before the command to stop, or vehicles stop by another one.
             self._schedule.clear()
             for i, queue in enumerate(messages):
                 queue.extend(self._setpoint_messages(i, now, None))
         if self._stepped and self._control.begin(now, self._clock, connecting=self.flight.phase is Phase.CONNECT):
-            self._step(now, messages)
+            record = self._step(now, messages)
+        times.lap(Part.MONITORING)
         carries_setpoints = [self._stepped] * len(self.links)
         for i, due in self._schedule.take(now):
             messages[i].extend(due)
             carries_setpoints[i] = True
         for link, queue in zip(self.links, messages, strict=True):
             queue.extend(link.requests.due(now))
-        out = []
-        for link, queue, repeated in zip(self.links, messages, carries_setpoints, strict=True):
-            if link.address is None:
-                continue
-            copies = link.setpoints.copies if repeated else 1
-            for datagram in gather(self._codec.encode(message) for message in queue):
-                out += [(datagram, link.address)] * copies
-                self._recorder.datagram(now, datagram)
+        out = self._encoded(now, messages, carries_setpoints)
+        if self._stepped:
+            parts = times.take()
+            if record is not None:
+                self._recorder.compute_times(self.flight.time, record.decision, parts)
+            times.lap(Part.RECORDING)
         return out
+
+    def resume(self) -> None:
+        """End an idle time: a driver that has waited calls this before it reads what has come."""
+        self._times.resume()
+
+    def sent(self) -> None:
+        """Take the time since :meth:`datagrams_to_send` for that of sending."""
+        self._times.lap(Part.SETPOINTS)
 
     def add_latency(self, duration: float) -> None:
         """Take the compute latency (s) of what was sent last; from now on it is compensated."""
@@ -138,19 +161,24 @@ class GroundStation:
             return None
         return max(min(self._control.next, self._heartbeat.next, self._timesync.next, self._schedule.next_due), 0.0)
 
-    def _step(self, now: float, messages: list[list[Message]]) -> None:
-        """Make one control step and add its messages to those of each vehicle."""
+    def _step(self, now: float, messages: list[list[Message]]) -> StepRecord | None:
+        """Make one control step and add its messages to those of each vehicle; return what was decided, if anything."""
+        times = self._times
         time = self._clock.time(now)
         delays = np.array([link.setpoints.delay for link in self.links])
         waits = self._schedule.waits(delays)
+        times.lap(Part.SETPOINTS)
         self._update_obstacle_map(time)
+        times.lap(Part.PERCEPTION)
         leaves = time + self._schedule.latency + waits
         effective = whole_ms(time + self._schedule.latency + delays.max())
         setpoints, record = self.flight.step(time, effective, leaves, now)
         if record is not None:
             self._compare(record)
         self._monitor.step(time, now, record)
+        times.lap(Part.MONITORING)
         self._recorder.step(self.flight, time, record)
+        times.lap(Part.RECORDING)
         if setpoints is None:
             self._schedule.clear()
         for i, (queue, wait) in enumerate(zip(messages, waits.tolist(), strict=True)):
@@ -159,6 +187,8 @@ class GroundStation:
                 self._schedule.add(now + wait, i, outgoing)
             else:
                 queue.extend(outgoing)
+        times.lap(Part.SETPOINTS)
+        return record
 
     def _update_obstacle_map(self, time: float) -> None:
         obstacle_map, estimator = self.flight.system.obstacle_map, self.flight.control.estimator
@@ -179,6 +209,23 @@ class GroundStation:
         if (obstacle_map := self.flight.system.obstacle_map) is not None:
             for sample in estimated:
                 obstacle_map.scans.poses.add_estimated(sample)
+
+    def _encoded(
+        self, now: float, messages: Sequence[Sequence[Message]], carries_setpoints: Sequence[bool]
+    ) -> list[tuple[bytes, Address]]:
+        """Return the datagrams of the messages to each vehicle, those with set-points as often as its link needs."""
+        out = []
+        for link, queue, repeated in zip(self.links, messages, carries_setpoints, strict=True):
+            if link.address is None:
+                continue
+            copies = link.setpoints.copies if repeated else 1
+            datagrams = gather(self._codec.encode(message) for message in queue)
+            self._times.lap(Part.SETPOINTS)
+            for datagram in datagrams:
+                out += [(datagram, link.address)] * copies
+                self._recorder.datagram(now, datagram)
+            self._times.lap(Part.RECORDING)
+        return out
 
     def _setpoint_messages(self, i: int, now: float, setpoints: Setpoints | None) -> list[Message]:
         """Return stop plan and set-point of vehicle ``i`` (0 .. N-1), as far as there are any."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING
@@ -18,6 +19,7 @@ from gcs.record.tables import (
     PLAN_COLUMNS,
     REFERENCE_COLUMNS,
     STEP_COLUMNS,
+    STEP_PART_COLUMNS,
     TableWriter,
 )
 from gcs.record.tlog import TelemetryLog
@@ -43,7 +45,7 @@ class FlightRecorder:
         self._tlog = TelemetryLog(run_dir / "telemetry.tlog", start_epoch)
         self._reference = TableWriter(run_dir / "reference.csv", REFERENCE_COLUMNS)
         self._estimate = TableWriter(run_dir / "estimate.csv", ESTIMATE_COLUMNS)
-        self._steps = TableWriter(run_dir / "steps.csv", STEP_COLUMNS)
+        self._steps = TableWriter(run_dir / "steps.csv", (*STEP_COLUMNS, *STEP_PART_COLUMNS))
         self._alarms = TableWriter(run_dir / ALARMS, ALARM_COLUMNS)
         self._run_dir = run_dir
         self._obstacles: TableWriter | None = None
@@ -67,11 +69,6 @@ class FlightRecorder:
         x = estimate.x
         attitude = quaternion_from_euler(*x[6:9])
         self._estimate.write([estimate.time, *x[0:3], *attitude, *x[3:6], *x[9:12], *estimate.force])
-        milliseconds = (record.estimator_time * 1e3, *(1e3 * part for part in decision.compute_time))
-        self._steps.write(
-            [time, *milliseconds, (record.estimator_time + record.controller_time) * 1e3, decision.iterations,
-             decision.infeasible]
-        )  # fmt: skip
         if flight.phase in CLEAR_OF_GROUND:
             self._write_plan(estimate.time, decision)
 
@@ -81,6 +78,15 @@ class FlightRecorder:
         bounds = (math.nan if b is None else b for b in (safety.payload_bound, safety.uav_bound))
         progress = (safety.slack, safety.lag, decision.progress_rate, decision.detours)
         self._plan.write([time, *position, *acceleration, *progress, *bounds])
+
+    def compute_times(self, time: float, decision: Decision, parts: Sequence[float]) -> None:
+        """Record the compute times (s) of the control step at team ``time`` (s), as :class:`Part` orders them."""
+        milliseconds = [1e3 * part for part in parts]
+        telemetry, estimation, perception, planning, *others = milliseconds
+        self._steps.write(
+            [time, estimation, planning, 1e3 * decision.compute_time.tracker, sum(milliseconds), decision.iterations,
+             decision.infeasible, telemetry, perception, *others]
+        )  # fmt: skip
 
     def obstacles(self, obstacle_map: ObstacleMap, time: float) -> None:
         """Record the tracked obstacles at team ``time`` (s); ten times a second, once there are any."""

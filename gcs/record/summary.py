@@ -16,6 +16,12 @@ from idc_controller.rotations import euler_from_quaternion
 OUTCOMES = ("completed", "aborted", "collided", "failed")
 LIMITS = ("position_rmse", "payload_tilt_deg", "clearance", "uav_separation", "touchdown_speed")
 DEFAULT_SETTLE = 10.0  # s
+STEP_PARTS = {
+    "telemetry": "telemetry_ms", "estimation": "estimator_ms", "perception": "perception_ms",
+    "planning": "planner_ms", "control": "control_ms", "stop_plan": "stop_plan_ms", "monitoring": "monitoring_ms",
+    "recording": "recording_ms", "setpoints": "setpoints_ms",
+}  # fmt: skip
+"""Parts of a control step, and their columns."""
 _DIGITS = 6  # of a metre, a degree or a millisecond: below what is simulated faithfully
 
 
@@ -72,6 +78,7 @@ def summarise(
             "contacts": None if run.contacts is None else onsets(run.contacts),
             "landing": landing,
             "step_time_ms": _step_times(run.steps),
+            "step_parts_ms": _step_parts(run.steps),
             "solver": _solver(run.steps),
             "safety": safety_figures(run),
             "limits": {
@@ -132,6 +139,16 @@ def payload_tilt_max(run: RunData) -> dict[str, float | None]:
 def _step_times(steps: Table | None) -> dict[str, float | None]:
     total = steps["total_ms"] if steps is not None else np.empty(0)
     return {name: _percentile(total, percent) for name, percent in (("p50", 50.0), ("p99", 99.0), ("max", 100.0))}
+
+
+def _step_parts(steps: Table | None) -> dict[str, dict[str, float | None]] | None:
+    """Return p50 and p99 of the parts of a control step; None where they are not on record."""
+    if steps is None or any(column not in steps for column in STEP_PARTS.values()):
+        return None
+    return {
+        part: {"p50": _percentile(steps[column], 50.0), "p99": _percentile(steps[column], 99.0)}
+        for part, column in STEP_PARTS.items()
+    }
 
 
 def _solver(steps: Table | None) -> dict[str, float | int | None]:

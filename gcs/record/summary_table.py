@@ -48,8 +48,11 @@ def summary_table(summary: Mapping[str, Any], run_dir: Path | str, pictures: Seq
     row("contacts", "-" if summary["contacts"] is None else str(summary["contacts"]))
     step_times = " / ".join(_number(steps[name], 1) for name in ("p50", "p99", "max"))
     row("control step, median / p99 / max", f"{step_times} ms")
-    row("  of it MPC / planner, median", f"{_number(solver['mpc_p50_ms'], 1)} / "
-        f"{_number(solver['planner_p50_ms'], 1)} ms")  # fmt: skip
+    if (parts := summary.get("step_parts_ms")) is not None:
+        for names in (("telemetry", "estimation", "perception"), ("planning", "control", "stop_plan"),
+                      ("monitoring", "recording", "setpoints")):  # fmt: skip
+            medians = " / ".join(_number(parts[name]["p50"], 1) for name in names)
+            row(f"  {' / '.join(names).replace('_', ' ')}, median", f"{medians} ms")
     safety = summary.get("safety")
     if safety and safety["payload_tracking_bound_m"] is not None:
         bounds = f"{safety['payload_tracking_bound_m']:g} / {_number(safety['uav_tracking_bound_m'], 2)}"
@@ -68,13 +71,13 @@ def summary_table(summary: Mapping[str, Any], run_dir: Path | str, pictures: Seq
     title.append(f": {_number(summary['duration_s'], 1, 's')}")
     if summary["real_time_factor"] is not None:
         title.append(f", {_number(summary['real_time_factor'], 1)} times real time")
-    parts: list[RenderableType] = [title, table]
+    shown: list[RenderableType] = [title, table]
     if summary["source"] == "estimate":
-        parts.append(Text("The swarm kept no truth here: figures are the ground's own estimate.", "yellow"))
-    parts.append(Text(f"Records   {run_dir}"))
+        shown.append(Text("The swarm kept no truth here: figures are the ground's own estimate.", "yellow"))
+    shown.append(Text(f"Records   {run_dir}"))
     if pictures:
-        parts.append(Text("Pictures  " + "  ".join(path.name for path in pictures)))
-    return Group(*parts)
+        shown.append(Text("Pictures  " + "  ".join(path.name for path in pictures)))
+    return Group(*shown)
 
 
 def _number(value: float | None, digits: int, unit: str = "") -> str:

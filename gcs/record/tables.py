@@ -24,6 +24,11 @@ ESTIMATE_COLUMNS = ("time_s", *PAYLOAD_COLUMNS, "disturbance_x_n", "disturbance_
 STEP_COLUMNS = (
     "time_s", "estimator_ms", "planner_ms", "mpc_ms", "total_ms", "solver_iterations", "infeasible",
 )  # fmt: skip
+# What the ground computed beside ``estimator_ms`` and ``planner_ms``; all of it is ``total_ms``. Of ``control_ms``,
+# ``mpc_ms`` is the tracker's.
+STEP_PART_COLUMNS = (
+    "telemetry_ms", "perception_ms", "control_ms", "stop_plan_ms", "monitoring_ms", "recording_ms", "setpoints_ms",
+)  # fmt: skip
 # What was tracked, and what the safety filter did, at every control step in the air.
 PLAN_COLUMNS = (
     "time_s", "x_m", "y_m", "z_m", "ax_mps2", "ay_mps2", "az_mps2", "slack_m", "lag_m", "clock_rate", "detours",
