@@ -137,7 +137,7 @@ class _SourceCheck:
 
     def _integrate(self, before: float, measurement: Measurement) -> None:
         """Continue the integral from the time ``before`` to that of ``measurement``."""
-        motion = np.median([near.motion for near in self._recent], axis=0)
+        motion = _median(np.array([near.motion for near in self._recent]))
         if self._motion is not None:
             self._integral.advance(measurement.time - before, 0.5 * (self._motion + motion))
         self._motion = motion
@@ -146,7 +146,13 @@ class _SourceCheck:
     def _ratio(self) -> float:
         n = self._settings.samples
         values = np.array([value for _, value in self._differences])
-        moved = np.abs(np.median(values[-n:], axis=0) - np.median(values[:n], axis=0))
-        sigma = _FROM_STEPS * np.median(np.abs(np.diff(values, axis=0)), axis=0)
+        moved = np.abs(_median(values[-n:]) - _median(values[:n]))
+        sigma = _FROM_STEPS * _median(np.abs(np.diff(values, axis=0)))
         of_medians = _MEDIAN_EFFICIENCY / n**0.5 * 2.0**0.5
         return float((moved / (self._error + self._settings.sigmas * of_medians * sigma)).max())
+
+
+def _median(values: Array) -> Array:
+    """Return the median over the rows of finite ``values`` (K, n) -> (n,); ``np.median`` takes four times as long."""
+    ordered, half = np.sort(values, axis=0), len(values) // 2
+    return np.asarray(ordered[half] if len(values) % 2 else (ordered[half - 1] + ordered[half]) / 2.0)
