@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import coal
 import numpy as np
 from paper_system import system
+from plain_flatness import flat_forces
 from scipy.spatial import ConvexHull
 
 from idc_controller.estimation.estimate import Estimate
@@ -17,7 +18,7 @@ from idc_controller.guidance.progress import AdaptiveGuidance
 from idc_controller.guidance.settings import NavigatorSettings, ProgressSettings
 from idc_controller.safety.safety_filter import AvoidanceFilter
 from idc_controller.safety.settings import PlannerSettings
-from idc_controller.trajectory.flatness import Load, flat_forces
+from idc_controller.trajectory.flatness import Load
 from idc_controller.trajectory.paths import Leg
 from idc_controller.trajectory.settings import Limits
 from idc_controller.trajectory.waypoints import WaypointTrajectory

@@ -1,14 +1,18 @@
 """The flat reference satisfies the nonlinear dynamics, not only their linearisation."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
 from flight_in_process import MISSIONS
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from nonlinear_motion import uav_positions
+from plain_flatness import flat_reference as plain_reference
 from test_linear_model import UNSYMMETRIC
 
 from gcs.config import read_system
+from idc_controller.model.drag import Air
 from idc_controller.model.linear import StateLayout
 from idc_controller.model.nonlinear import Inputs, SystemState, accelerations
 from idc_controller.rotations import hat
@@ -106,3 +110,30 @@ def test_payload_has_zero_moment():
     for q, tension in zip(flat.links.q, flat.links.tension, strict=True):
         assert np.allclose(sum(T * hat(p_i) @ q for T, p_i in zip(tension, p.p, strict=True)), 0.0, atol=1e-9)
         assert np.all(tension > 0.0)
+
+
+def vectors(limit):
+    return st.tuples(*3 * [st.floats(-limit, limit)]).map(np.array)
+
+
+@settings(deadline=None, derandomize=True, max_examples=60)
+@given(
+    vehicles=st.sampled_from([3, 4, 6]),
+    times=st.lists(st.floats(0.0, 20.0), min_size=1, max_size=8),
+    on_grid=st.booleans(),
+    force=vectors(4.0),
+    uav_force=vectors(1.0),
+    air=st.none() | st.builds(Air, vectors(6.0), vectors(0.5).map(np.abs), st.floats(0.0, 0.1), st.floats(5.0, 40.0)),
+)
+def test_compiled_flat_map_equals_plain_one(vehicles, times, on_grid, force, uav_force, air):
+    p = CONFIG.with_vehicles(vehicles).parameters()
+    times = 0.05 * np.round(20.0 * np.array(times)) if on_grid else np.array(times)
+    load = Load(0.9 * p.m_0, force, uav_force * np.arange(vehicles)[:, None], air)
+    compiled, plain = (of(p, Wave(), times, load) for of in (flat_reference, plain_reference))
+    assert (compiled.payload == plain.payload).all()
+    # Set-points hold the third derivative of a unit vector over the stencil: its rounding is 1e-16 / h^3 T_m / kp.
+    assert compiled.x == pytest.approx(plain.x, rel=1e-12, abs=1e-12)
+    assert compiled.u == pytest.approx(plain.u, rel=1e-12, abs=1e-12)
+    for field in fields(plain.links):
+        name = field.name
+        assert getattr(compiled.links, name) == pytest.approx(getattr(plain.links, name), rel=1e-12, abs=1e-12), name

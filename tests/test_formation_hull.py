@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from avoidance_scene import hull_of
 from paper_system import system
+from plain_flatness import flat_forces
 from proxsuite import proxqp
 
 from idc_controller.geometry.box import Wall
@@ -12,7 +13,7 @@ from idc_controller.geometry.obstacles import PredictedObstacle
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
 from idc_controller.safety.separation import separations
-from idc_controller.trajectory.flatness import Load, flat_forces
+from idc_controller.trajectory.flatness import Load
 
 TEAMS = [3, 4, 6, 8]
 SHAPES = [Sphere(0.5), Pole(0.3, 12.0), Wall(size=(0.3, 4.0, 5.0), yaw=0.4)]

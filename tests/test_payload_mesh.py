@@ -10,6 +10,7 @@ import pytest
 import trimesh
 from avoidance_scene import hull_of
 from nonlinear_motion import hover_inputs, hover_state
+from plain_flatness import flat_forces
 from scipy.spatial import Delaunay
 from world_runs import place
 
@@ -22,7 +23,7 @@ from idc_controller.errors import ParameterError
 from idc_controller.geometry.formation import BoundingCylinder, Formation
 from idc_controller.model.nonlinear import accelerations
 from idc_controller.payload_hull import PayloadHull
-from idc_controller.trajectory.flatness import Load, flat_forces
+from idc_controller.trajectory.flatness import Load
 from vehicle_sim.world.multibody import principal_axes
 from vehicle_sim.world.world import World
 
