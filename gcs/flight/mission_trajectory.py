@@ -9,7 +9,6 @@ from gcs.mission.model import Lissajous, Mission
 from gcs.mission.route import Circle, FlyTo, HoldForever, Land, Leg, Speed, TakeOff
 from idc_controller.arrays import Array
 from idc_controller.trajectory import paths
-from idc_controller.trajectory.cached import CachedTrajectory
 from idc_controller.trajectory.lissajous import LissajousCurve, LissajousTrajectory
 from idc_controller.trajectory.settings import Limits
 from idc_controller.trajectory.trajectory import Trajectory
@@ -34,7 +33,7 @@ class MissionTrajectory:
         up = WaypointTrajectory(position, climb, self._limits(self._motion.climb_speed), start=start)
         self._climb: Trajectory | None = up
         along = up.then(lambda time, here: self._flown(mission, legs, time, here))
-        self.trajectory: Trajectory = CachedTrajectory(along.then(self._land))
+        self.trajectory: Trajectory = along.then(self._land)
         self._braking = False
 
     def reference(self, times: Array) -> tuple[Array, Array]:
@@ -68,7 +67,7 @@ class MissionTrajectory:
             return
         self._braking = True
         self._climb = None
-        self.trajectory = CachedTrajectory(followed.stop(time).then(self._land))
+        self.trajectory = followed.stop(time).then(self._land)
 
     def _split(self, mission: Mission, position: Array) -> tuple[list[paths.Leg], Iterator[Leg]]:
         """Return the climb, and the legs that follow it."""

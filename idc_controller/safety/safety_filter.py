@@ -13,10 +13,11 @@ from idc_controller.parameters import SystemParameters
 from idc_controller.safety.alternatives import alternatives
 from idc_controller.safety.filter_protocol import SafetyReport
 from idc_controller.safety.planner import Plan, Planner
-from idc_controller.safety.safe_trajectory import Piece, SafeTrajectory, evaluate
+from idc_controller.safety.safe_trajectory import Piece, SafeTrajectory
 from idc_controller.safety.separation import Separation, separations
 from idc_controller.safety.settings import FilterSettings, PlannerSettings
 from idc_controller.trajectory.scaled import ScaledReference
+from idc_controller.trajectory.trajectory_kernels import chain as deviation_after
 
 NEGLIGIBLE = 1e-5
 """A deviation below this, in all derivatives, is none."""
@@ -36,6 +37,7 @@ class AvoidanceFilter:
         self.formation = Formation(parameters)
         self.planner = Planner(self.formation, settings)
         self._pieces: deque[Piece] = deque()
+        self._trajectory: SafeTrajectory | None = None
         self._plan: Plan | None = None
         self._plan_time = 0.0
         self._turn = 0
@@ -48,10 +50,10 @@ class AvoidanceFilter:
     def filter(self, time: float, reference: ScaledReference, estimate: Estimate) -> SafeTrajectory:
         """Return the trajectory to track from ``time`` (s) on; a plan stays for as long as its reference does."""
         chain = self.settings.chain
-        if self._pieces and reference is self._pieces[-1].reference:
-            return SafeTrajectory(list(self._pieces), chain)
+        if self._trajectory is not None and reference is self._pieces[-1].reference:
+            return self._trajectory
         obstacles = list(self.obstacles.predict(time + chain.times))
-        now = evaluate(self._pieces[-1], chain, np.array([time]))[:, 0] if self._pieces else None
+        now = None if self._trajectory is None else self._trajectory.derivatives(np.array([time]))[:, 0]
         ahead = reference.after(chain.times)
         start = np.zeros((5, 3)) if now is None else now - ahead[:, 0]
         if np.abs(start).max() < NEGLIGIBLE:
@@ -75,7 +77,8 @@ class AvoidanceFilter:
             payload_bound=self.settings.tracking,
             uav_bound=self.settings.tracking + self.settings.uav_tracking,
         )
-        return SafeTrajectory(list(self._pieces), chain)
+        self._trajectory = SafeTrajectory(self._pieces, chain)
+        return self._trajectory
 
     def _grown(self, obstacles: list[PredictedObstacle], error: float) -> list[PredictedObstacle]:
         """The obstacles, larger by what the payload is off the plan (m) beyond the bound, while it comes back."""
@@ -106,9 +109,7 @@ class AvoidanceFilter:
         qp_count = 0
         best: Plan | None = None
         if self._plan is not None:
-            before = self.settings.chain.evaluate(
-                self._plan.deviation, time - self._plan_time + self.settings.chain.times
-            )
+            before = self._shifted(self._plan, time)
             best, count = self._refine(start, ahead, ahead[0] + before[0], ahead[2] + before[2], obstacles, 2)
             qp_count += count
         sets = alternatives(planner.barrier, near, position, acceleration, ahead[1])
@@ -150,9 +151,13 @@ class AvoidanceFilter:
         """The plan in force, shifted to now."""
         if self._plan is None:
             return None
-        chain = self.settings.chain
-        states = chain.evaluate(self._plan.deviation, time - self._plan_time + chain.times).transpose(1, 0, 2)
+        states = np.ascontiguousarray(self._shifted(self._plan, time).transpose(1, 0, 2))
         return Plan(self._plan.knots, states, self._plan.cost, self._plan.slack)
+
+    def _shifted(self, plan: Plan, time: float) -> Array:
+        """States (5, K + 1, 3) of the deviation of the plan in force at the stages from ``time`` (s) on."""
+        chain = self.settings.chain
+        return deviation_after(plan.deviation, chain.period, time - self._plan_time + chain.times)
 
 
 def _absolute(ahead: Array, plan: Plan | None) -> tuple[Array, Array]:

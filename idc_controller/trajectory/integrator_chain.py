@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from idc_controller.arrays import Array
 
@@ -76,29 +75,3 @@ class Chain:
         """States at all stages (K + 1, 5, 3) from ``start`` (5, 3) and snap ``knots`` (knots, 3)."""
         Phi, Gamma = self.response
         return Phi @ start + Gamma @ knots
-
-    def evaluate(self, states: Array, elapsed: Array, row: NDArray[np.int_] | int = 0) -> Array:
-        """Position to snap (5, M, 3) at times ``elapsed`` (M,) (s) since stage 0 of rolled-out ``states``.
-
-        ``row`` (M,) is where stage 0 stands in ``states``: several roll-outs may be stacked. Beyond the last stage it
-        goes on with the last acceleration fading at once: callers look that far for shape only.
-        """
-        h = self.period
-        stage = np.clip((elapsed / h).astype(int), 0, self.stages - 1)
-        dt = np.clip(elapsed - stage * h, 0.0, h)[:, None]
-        k = stage + row
-        crackle = (states[k + 1, 4] - states[k, 4]) / h
-        at = [states[k, d] for d in range(5)] + [crackle]
-        result = np.empty((5, len(elapsed), 3))
-        for d in range(5):
-            value = at[5]
-            for c in range(4, d - 1, -1):
-                value = at[c] + value * dt / (c + 1 - d)
-            result[d] = value
-        over = elapsed - self.stages * h
-        beyond = over > 0.0
-        if beyond.any():
-            last = np.broadcast_to(row, len(elapsed))[beyond] + self.stages
-            result[0, beyond] += states[last, 1] * over[beyond, None]
-            result[2:, beyond] = 0.0
-        return result

@@ -4,6 +4,7 @@ The curve is a fixed function of its phase, the phase a piecewise polynomial of 
 follow exactly by the chain rule: the trajectory never leaves the curve.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,12 +15,16 @@ from scipy.interpolate import BPoly, PPoly
 from idc_controller.arrays import Array
 from idc_controller.errors import TrajectoryError
 from idc_controller.trajectory.settings import Limits
-from idc_controller.trajectory.trajectory import Trajectory, checked_times, finite, positive
+from idc_controller.trajectory.trajectory import Times, Trajectory, finite, positive
+from idc_controller.trajectory.trajectory_kernels import figure_eight
+from idc_controller.trajectory.trajectory_kernels import phase as phase_at
 
 SHORTEST_RAMP, LONGEST_RAMP = 0.25, 60.0
 """s, between rest and the full rate."""
 RAMP_LONGER = 1.08
 """Factor from one ramp tried to the next."""
+_RAMP = np.array([-20.0, 70.0, -84.0, 35.0]) / [8.0, 7.0, 6.0, 5.0]
+"""Integral of the polynomial from 0 to 1 whose three derivatives are zero at both ends: its powers 8 to 5."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +49,10 @@ class LissajousCurve:
         finite(self.down, "down")
         if len(self.centre) != 2 or not np.isfinite(self.centre).all():
             raise TrajectoryError(f"centre must be two finite numbers, not {self.centre}")
+
+    def as_array(self) -> Array:
+        """Return the amplitudes, the centre and down (5,) (m)."""
+        return np.array([*self.amplitude, *self.centre, self.down])
 
     def by_phase(self, phase: Array, order: int) -> list[Array]:
         """The curve and its derivatives by phase (rad) up to ``order``, each (K, 3), m / rad^d."""
@@ -84,37 +93,25 @@ class LissajousTrajectory(Trajectory):
         duration = positive(duration, "duration")
         start = finite(start, "start")
         _check_full_rate(curve, rate, limits)
-        rest = np.zeros(4)
-        cruise = np.array([rate, 0.0, 0.0, 0.0])
         # A little gentler at first, so that it can always stop while it gathers speed.
-        up, phase = _shortest_ramp(curve, _gentler(curve, rate, limits), 0.0, rest, cruise)
-        down, _ = _shortest_ramp(curve, limits, phase + rate * duration, cruise, rest)
+        up, phase = _shortest_ramp(curve, _gentler(curve, rate, limits), 0.0, 0.0, rate)
+        down, _ = _shortest_ramp(curve, limits, phase + rate * duration, rate, 0.0)
         self.full_rate = (start + up, start + up + duration)
         """Times, s, between which the phase runs at the full rate."""
         knots = np.array([start, *self.full_rate, self.full_rate[1] + down])
-        self._set_phase(_phase(knots, [rest, cruise, cruise, rest], 0.0))
+        self._set_phase(_phase(knots, [0.0, rate, rate, 0.0], 0.0))
 
     def _set_phase(self, phase: PPoly) -> None:
-        # Phase and four derivatives as one polynomial with values (5,): evaluated at once.
-        coefficients = np.zeros((*phase.c.shape, 5))
-        for d in range(5):
-            derivative = phase.derivative(d) if d else phase
-            coefficients[-len(derivative.c) :, :, d] = derivative.c
-        self._phase = PPoly(coefficients, phase.x)
-        self._rate = phase.derivative()
+        self._phase, self._rate = phase, phase.derivative()
         self.start, self._end = float(phase.x[0]), float(phase.x[-1])
 
     def phase(self, times: ArrayLike, order: int = 0) -> Array:
         """Phase and its derivatives at times (K,), s: (order + 1, K), rad / s^d."""
-        times = checked_times(times, order)
-        inside = np.clip(times, self.start, self._end)
-        result: Array = self._phase(inside).T[: order + 1]
-        result[1:, (times <= self.start) | (times >= self._end)] = 0.0
-        return result
+        return phase_at(self._phase.c, self._phase.x, np.asarray(times, dtype=float), order, True)
 
-    def derivatives(self, times: ArrayLike, order: int = 4) -> Array:
-        """See ``Trajectory.derivatives``; analytic, by the chain rule."""
-        return _chain_rule(self.curve, self.phase(times, order))
+    def evaluate(self, times: Times, order: int) -> Array:
+        """See ``Trajectory.evaluate``; analytic, by the chain rule."""
+        return figure_eight(self.curve.as_array(), self.phase(times.values, order))
 
     def stop(self, time: float) -> Trajectory:
         """See ``Trajectory.stop``; stays on the curve."""
@@ -169,34 +166,15 @@ class _Stopped(LissajousTrajectory):
         return self
 
 
-def _chain_rule(curve: LissajousCurve, phase: Array) -> Array:
-    """Derivatives by time (order + 1, K, 3) from those of the phase (order + 1, K) (Faa di Bruno)."""
-    order = len(phase) - 1
-    r = curve.by_phase(phase[0], order)
-    p = phase[:, :, None]
-    result = [r[0]]
-    if order >= 1:
-        result.append(r[1] * p[1])
-    if order >= 2:
-        result.append(r[2] * p[1] ** 2 + r[1] * p[2])
-    if order >= 3:
-        result.append(r[3] * p[1] ** 3 + 3.0 * r[2] * p[1] * p[2] + r[1] * p[3])
-    if order >= 4:
-        result.append(
-            r[4] * p[1] ** 4
-            + 6.0 * r[3] * p[1] ** 2 * p[2]
-            + r[2] * (3.0 * p[2] ** 2 + 4.0 * p[1] * p[3])
-            + r[1] * p[4]
-        )
-    return np.array(result)
-
-
-def _phase(knots: Array, rates: list[Array], first: float) -> PPoly:
-    """Phase from ``first`` on, whose rate and three derivatives (4,) at the knots (s) are given."""
-    rate = PPoly.from_bernstein_basis(BPoly.from_derivatives(knots, rates))
-    phase = rate.antiderivative()
-    phase.c[-1] += first
-    return phase
+def _phase(knots: Array, rates: Sequence[float], first: float) -> PPoly:
+    """Phase from ``first`` on, whose rate is given at the knots (s), where its three derivatives are zero."""
+    coefficients = np.zeros((9, len(rates) - 1))
+    for i, duration in enumerate(np.diff(knots)):
+        change = rates[i + 1] - rates[i]
+        coefficients[:4, i] = change * _RAMP / duration ** np.arange(7, 3, -1)
+        coefficients[-2:, i] = rates[i], first
+        first += (rates[i] + 0.5 * change) * duration
+    return PPoly(coefficients, knots)
 
 
 def _largest(curve: LissajousCurve, rate: float) -> Array:
@@ -221,12 +199,12 @@ def _check_full_rate(curve: LissajousCurve, rate: float, limits: Limits) -> None
 
 
 def _shortest_ramp(
-    curve: LissajousCurve, limits: Limits, phase: float, before: Array, after: Array
+    curve: LissajousCurve, limits: Limits, phase: float, before: float, after: float
 ) -> tuple[float, float]:
-    """Shortest ramp between two states of the rate (4,) within limits: (duration s, phase at its end rad)."""
+    """Shortest ramp between two rates (rad/s) within limits: (duration s, phase at its end rad)."""
 
     def ramp(duration: float) -> PPoly:
-        return _phase(np.array([0.0, duration]), [before, after], phase)
+        return _phase(np.array([0.0, duration]), (before, after), phase)
 
     def feasible(duration: float) -> bool:
         times = np.linspace(0.0, duration, max(400, int(duration * 100)))
@@ -245,7 +223,7 @@ def _shortest_ramp(
 
 
 def _holds_limits(curve: LissajousCurve, limits: Limits, phase: PPoly, times: Array) -> bool:
-    phases = np.array([phase(times, d) for d in range(5)])
-    norms = np.linalg.norm(_chain_rule(curve, phases)[1:], axis=2).max(axis=1)
+    phases = phase_at(phase.c, phase.x, times, 4, False)
+    norms = np.linalg.norm(figure_eight(curve.as_array(), phases)[1:], axis=2).max(axis=1)
     # Never backwards; samples may miss a peak by a little.
     return bool(phases[1].min() >= -1e-9 and np.all(norms <= limits.as_array() * (1.0 - 1e-3)))

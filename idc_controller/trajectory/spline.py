@@ -17,7 +17,8 @@ from scipy.interpolate import BSpline, PPoly, make_interp_spline
 from idc_controller.arrays import Array
 from idc_controller.errors import TrajectoryError
 from idc_controller.trajectory.settings import Limits
-from idc_controller.trajectory.trajectory import Trajectory, checked_times, finite, positive
+from idc_controller.trajectory.trajectory import Times, Trajectory, finite, positive
+from idc_controller.trajectory.trajectory_kernels import spline
 
 DEGREE = 5
 SUPPORT = DEGREE + 1
@@ -29,22 +30,19 @@ DELAYS = (0, 1, 2, 4, 6, 9, 12, 16)
 
 
 @lru_cache(maxsize=32)
-def _basis(interval: float, order: int) -> Array:
-    """Polynomials of the basis function and its derivatives, per power of the fraction of an interval.
+def _basis(interval: float) -> Array:
+    """Polynomials of the basis function and its derivatives up to the fourth (5, 6 control points, 6 powers).
 
-    Shape (6 powers, (order + 1) * 6): column d * 6 + k belongs to the d-th derivative and the k-th control
-    point of those that act (oldest first).
+    The control points are those that act, oldest first; the powers, lowest first, are of the fraction of an interval.
     """
     # Rows of PPoly.c: highest power first; columns: interval 0..5 of the basis function.
     powers = PPoly.from_spline(BSpline.basis_element(np.arange(SUPPORT + 1.0), extrapolate=False))
     inside = np.flatnonzero((powers.x[:-1] >= 0.0) & (np.diff(powers.x) > 0.0))[:SUPPORT]
-    columns = []
-    for d in range(order + 1):
+    basis = np.zeros((5, SUPPORT, SUPPORT))
+    for d in range(5):
         c = powers.derivative(d).c[::-1, inside] if d else powers.c[::-1, inside]
-        padded = np.zeros((SUPPORT, SUPPORT))
-        padded[: len(c)] = c / interval**d
-        columns.append(padded[:, ::-1])  # the oldest control point is in its last interval
-    return np.hstack(columns)
+        basis[d, ::-1, : len(c)] = c.T / interval**d  # the oldest control point is in its last interval
+    return basis
 
 
 def evaluate(control_points: Array, interval: float, arguments: Array, order: int) -> Array:
@@ -59,16 +57,7 @@ def evaluate(control_points: Array, interval: float, arguments: Array, order: in
     Returns:
         (order + 1, K, 3).
     """
-    clipped = np.clip(arguments, 0.0, len(control_points) + SUPPORT)
-    cell = np.floor(clipped).astype(int)
-    fraction = clipped - cell
-    chosen = control_points[np.clip(cell[:, None] + np.arange(-DEGREE, 1), 0, len(control_points) - 1)]
-    base = chosen[:, -1]
-    weights = (fraction[:, None] ** np.arange(SUPPORT)) @ _basis(interval, order)
-    # Relative to one of the points: rest is then exactly rest.
-    result: Array = weights.reshape(len(cell), order + 1, SUPPORT) @ (chosen - base[:, None])
-    result[:, 0] += base
-    return result.transpose(1, 0, 2)
+    return spline(control_points, _basis(interval), arguments, order)
 
 
 def within_limits(control_points: Array, interval: float, limits: Limits, slack: float = 1e-7) -> bool:
@@ -111,10 +100,9 @@ class SplineTrajectory(Trajectory):
             self.start += (moving[0] + 1) * self.interval
             self._end += (moving[-1] + SUPPORT) * self.interval
 
-    def derivatives(self, times: ArrayLike, order: int = 4) -> Array:
-        """See ``Trajectory.derivatives``."""
-        arguments = (checked_times(times, order) - self.origin) / self.interval
-        return evaluate(self.control_points, self.interval, arguments, order)
+    def evaluate(self, times: Times, order: int) -> Array:
+        """See ``Trajectory.evaluate``."""
+        return evaluate(self.control_points, self.interval, (times.values - self.origin) / self.interval, order)
 
     def stop(self, time: float) -> SplineTrajectory:
         """See ``Trajectory.stop``."""

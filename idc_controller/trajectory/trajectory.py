@@ -5,12 +5,23 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from idc_controller.arrays import Array
 from idc_controller.errors import TrajectoryError
+from idc_controller.trajectory.trajectory_kernels import span
+
+
+class Times(NamedTuple):
+    """Times of an evaluation (s), one at least, all finite."""
+
+    values: Array
+    """(K,), contiguous, in any order."""
+    earliest: float
+    latest: float
 
 
 class Trajectory(ABC):
@@ -28,7 +39,6 @@ class Trajectory(ABC):
         """Time from which on it rests, s; ``inf`` while that is not known."""
         return self._end
 
-    @abstractmethod
     def derivatives(self, times: ArrayLike, order: int = 4) -> Array:
         """Position and its time derivatives.
 
@@ -38,7 +48,25 @@ class Trajectory(ABC):
 
         Returns:
             Shape (order + 1, K, 3): position m, velocity m/s, acceleration, jerk, snap in NED.
+
+        Raises:
+            TrajectoryError: a time is not finite, or there is no derivative of that order.
         """
+        array = np.ascontiguousarray(times, dtype=float)
+        if array.ndim != 1:
+            raise TrajectoryError("times must be a list of finite numbers")
+        if not 0 <= order <= 4:
+            raise TrajectoryError(f"derivatives exist for order 0 to 4, not {order}")
+        if not len(array):
+            return np.zeros((order + 1, 0, 3))
+        earliest, latest = span(array)
+        if not math.isfinite(latest):
+            raise TrajectoryError("times must be a list of finite numbers")
+        return self.evaluate(Times(array, earliest, latest), order)
+
+    @abstractmethod
+    def evaluate(self, times: Times, order: int) -> Array:
+        """Return :meth:`derivatives` at ``times`` that are checked."""
 
     @abstractmethod
     def stop(self, time: float) -> Trajectory:
@@ -75,10 +103,9 @@ class RestTrajectory(Trajectory):
         if not self._end >= self.start:
             raise TrajectoryError(f"end {end} s lies before start {start} s")
 
-    def derivatives(self, times: ArrayLike, order: int = 4) -> Array:
-        """See ``Trajectory.derivatives``."""
-        times = checked_times(times, order)
-        result = np.zeros((order + 1, len(times), 3))
+    def evaluate(self, times: Times, order: int) -> Array:
+        """See ``Trajectory.evaluate``."""
+        result = np.zeros((order + 1, len(times.values), 3))
         result[0] = self._position
         return result
 
@@ -94,22 +121,24 @@ class SequenceTrajectory(Trajectory):
         self.start = first.start
         self._first, self._follow = first, follow
         self._second: Trajectory | None = None
+        self._end = math.inf
 
     @property
     def end(self) -> float:
         """End of the second trajectory, s; ``inf`` while the first one's end is not known."""
-        return self._next().end if math.isfinite(self._first.end) else math.inf
+        if math.isinf(self._end) and math.isfinite(self._first.end):
+            self._end = self._next().end
+        return self._end
 
-    def derivatives(self, times: ArrayLike, order: int = 4) -> Array:
-        """See ``Trajectory.derivatives``."""
-        times = checked_times(times, order)
-        if len(times) and times.min() > self._first.end:
-            return self._next().derivatives(times, order)
-        # Evaluated first: a lazy trajectory learns of its end while it looks ahead.
-        result = self._first.derivatives(np.minimum(times, self._first.end), order)
-        later = times > self._first.end
-        if later.any():
-            result[:, later] = self._next().derivatives(times[later], order)
+    def evaluate(self, times: Times, order: int) -> Array:
+        """See ``Trajectory.evaluate``."""
+        if times.earliest > self._first.end:
+            return self._next().evaluate(times, order)
+        # Evaluated first: a lazy trajectory learns of its end while it looks ahead, and rests beyond it.
+        result = self._first.evaluate(times, order)
+        if times.latest > self._first.end:
+            later = times.values > self._first.end
+            result[:, later] = self._next().derivatives(times.values[later], order)
         return result
 
     def waypoints(self, begin: float, end: float) -> Array:
@@ -133,16 +162,6 @@ class SequenceTrajectory(Trajectory):
             if self._second.start < end - 1e-9:
                 raise TrajectoryError(f"what starts at {self._second.start:g} s cannot follow what ends at {end:g} s")
         return self._second
-
-
-def checked_times(times: ArrayLike, order: int) -> Array:
-    """``times`` as an array (K,); raises TrajectoryError unless finite, and ``order`` is 0 to 4."""
-    array = np.atleast_1d(np.asarray(times, dtype=float))
-    if array.ndim != 1 or not np.isfinite(array).all():
-        raise TrajectoryError("times must be a list of finite numbers")
-    if not 0 <= order <= 4:
-        raise TrajectoryError(f"derivatives exist for order 0 to 4, not {order}")
-    return array
 
 
 def finite(value: float, name: str) -> float:

@@ -20,7 +20,7 @@ from idc_controller.trajectory.sampled_path import SampledPath, at_half_interval
 from idc_controller.trajectory.settings import CORNER, Limits
 from idc_controller.trajectory.smoothing import Smoothing, smoothing_for
 from idc_controller.trajectory.spline import SplineTrajectory, within_limits
-from idc_controller.trajectory.trajectory import Trajectory, checked_times, finite, point, positive
+from idc_controller.trajectory.trajectory import Times, Trajectory, finite, point, positive
 
 PIECE_SLOWER = 0.93
 """Factor by which a piece is slowed until it holds the limits."""
@@ -82,18 +82,14 @@ class WaypointTrajectory(Trajectory):
         times = [self._passage(corner) for corner in self._open if corner.mark.is_waypoint]
         return list(accumulate([*self._passages, *times], max))
 
-    def derivatives(self, times: ArrayLike, order: int = 4) -> Array:
-        """See ``Trajectory.derivatives``."""
-        times = checked_times(times, order)
-        if len(times) == 0:
-            return np.zeros((order + 1, 0, 3))
-        self._plan_until(float(times.max()))
-        earliest = float(times.min())
+    def evaluate(self, times: Times, order: int) -> Array:
+        """See ``Trajectory.evaluate``."""
+        self._plan_until(times.latest)
         if math.isfinite(self._kept):
-            self._path.drop_before(earliest - self._kept)
-        if not self._path.is_kept(earliest):
-            raise TrajectoryError(f"the trajectory at {earliest:g} s is no longer kept")
-        return self._path.derivatives(times, order)
+            self._path.drop_before(times.earliest - self._kept)
+        if not self._path.is_kept(times.earliest):
+            raise TrajectoryError(f"the trajectory at {times.earliest:g} s is no longer kept")
+        return self._path.derivatives(times.values, order)
 
     def waypoints(self, begin: float, end: float) -> Array:
         """See ``Trajectory.waypoints``."""
