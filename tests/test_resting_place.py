@@ -2,13 +2,19 @@
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from standing_obstacles import StandingObstacles
 
 from gcs.config import read_system
+from idc_controller.geometry.box import Box, Wall
+from idc_controller.geometry.capsule import Capsule
+from idc_controller.geometry.mesh import Mesh, MeshHull
 from idc_controller.geometry.obstacles import PredictedObstacle
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
-from idc_controller.guidance.resting_place import RestingPlace
+from idc_controller.guidance.resting_place import RestingPlace, least_distance
+from idc_controller.guidance.resting_place_kernels import least_distances
 from idc_controller.guidance.settings import RestingPlaceSettings
 from idc_controller.trajectory.stop_plan import Braking
 
@@ -38,6 +44,34 @@ class Swinging:
 
 def rest_of(braking):
     return braking.path(STATE)(braking.duration(STATE[1]))
+
+
+@settings(deadline=None, derandomize=True)
+@given(
+    shape=st.sampled_from([Sphere(0.5), Pole(0.2, 9.0), Wall((0.3, 3.0, 2.0), 0.4), Capsule(0.3, 1.5, pitch=0.7)]),
+    place=st.tuples(*[st.floats(-6.0, 6.0)] * 2, st.floats(-8.0, 0.0)),
+    velocity=st.tuples(*[st.floats(-2.0, 2.0)] * 3),
+    state=st.tuples(*[st.floats(-2.0, 2.0)] * 6),
+)
+def test_least_distance_of_kernel_agrees_with_plain_formula(shape, place, velocity, state):
+    state = np.array([[0.0, 0.0, -5.0], state[:3], state[3:]])
+    elapsed, axis = np.linspace(0.0, 10.0, 21), np.linspace(-1.0, 0.3, 9)
+    centres, growth = np.array(place) + elapsed[:, None] * np.array(velocity), 0.05 * elapsed
+    duration = USUAL.duration(state[1])
+    least = least_distances(
+        USUAL.control_points(state, duration)[None], np.array([duration]), elapsed, axis, 0.4,
+        shape.row[None], np.array([shape.reach]), centres[None], growth[None], 2.0,
+    )  # fmt: skip
+    places = USUAL.path(state)(np.minimum(elapsed, duration))
+    assert least[0] == pytest.approx(least_distance(shape, places, axis, centres, growth, 2.0), abs=1e-12)
+
+
+def test_resting_place_beside_mesh_is_that_beside_box_of_its_corners():
+    box = Box((0.8, 1.0, 1.2), yaw=0.3)
+    mesh = Mesh(MeshHull("box.stl", tuple(map(tuple, box.corners.tolist()))), yaw=0.3)
+    place = REST + np.array([0.3, 0.1, 0.0])
+    by_box, by_mesh = (RestingPlace(PARAMETERS, StandingObstacles([("o", s, place)]))(0.0, STATE) for s in (box, mesh))
+    assert by_box == by_mesh != USUAL
 
 
 def test_default_braking_path_starts_with_current_motion_and_ends_at_rest():

@@ -61,6 +61,22 @@ def test_distance_outside_is_that_of_the_distance_library(shape):
     np.testing.assert_allclose(distance[outside], expected, atol=1e-5)
 
 
+def distance_to_rounded_box(shape, points):
+    """The distance kernel in numpy: horizontal and vertical gap, joined by Pythagoras."""
+    box, (x, y, z) = shape.rounded_box, (points @ shape.rotation).T
+    x, y, z = np.abs(x) - box.half_x, np.abs(y) - box.half_y, np.abs(z) - box.half_z
+    across = np.hypot(np.maximum(x, 0.0), np.maximum(y, 0.0)) + np.minimum(np.maximum(x, y), 0.0) - box.radial
+    return np.hypot(np.maximum(across, 0.0), np.maximum(z, 0.0)) + np.minimum(np.maximum(across, z), 0.0) - box.ball
+
+
+@pytest.mark.parametrize("shape", [shape for shape in EXAMPLES if shape.rounded_box], ids=lambda shape: shape.kind)
+def test_distance_kernels_agree_with_formula_in_numpy(shape):
+    points, bodies = points_about(shape, 2000), Bodies([shape])
+    expected = distance_to_rounded_box(shape, points)
+    np.testing.assert_allclose(bodies.from_offsets(points[None])[0], expected, rtol=0.0, atol=1e-12)
+    np.testing.assert_allclose(bodies.distance(points + HERE, HERE[None])[0], expected, rtol=0.0, atol=1e-12)
+
+
 def test_points_inside_have_negative_distance(shape):
     assert Bodies([shape]).from_offsets(np.zeros((1, 1, 3)))[0, 0] < -0.1
 

@@ -1,10 +1,9 @@
 """Boxes: the wall, which stands upright, and the box in any attitude."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import coal
 import numpy as np
@@ -17,6 +16,7 @@ from idc_controller.geometry.shape import (
     LENGTH,
     CollisionGeometry,
     PlanView,
+    RoundedBox,
     Shape,
     UprightBounds,
     Vector,
@@ -62,18 +62,11 @@ class Wall(Shape):
         """Largest ``direction . y`` over the body, for unit ``directions`` (..., 3) -> (...)."""
         return np.asarray(np.abs(directions @ self.rotation) @ (np.array(self.size) / 2.0))
 
-    @classmethod
-    def distances(cls, shapes: Sequence[Self], offsets: Array) -> Array:
-        """Signed distance of points (B, n, 3) about the centres of B walls (B, n) (m)."""
-        half = np.array([shape.size for shape in shapes]).reshape(-1, 3)[:, None] / 2.0
-        yaw = np.array([shape.yaw for shape in shapes])[:, None]
-        cosine, sine = np.cos(yaw), np.sin(yaw)
-        x, y, z = offsets[..., 0], offsets[..., 1], offsets[..., 2]
-        return _distance_of_gaps(
-            np.abs(cosine * x + sine * y) - half[..., 0],
-            np.abs(cosine * y - sine * x) - half[..., 1],
-            np.abs(z) - half[..., 2],
-        )
+    @property
+    def rounded_box(self) -> RoundedBox:
+        """The body itself."""
+        x, y, z = self.size
+        return RoundedBox(x / 2.0, y / 2.0, z / 2.0)
 
     @property
     def upright_bounds(self) -> UprightBounds:
@@ -115,6 +108,12 @@ class Box(OrientedShape):
         signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
         return np.asarray(signs * np.array(self.size) / 2.0)
 
+    @property
+    def rounded_box(self) -> RoundedBox:
+        """The body itself."""
+        x, y, z = self.size
+        return RoundedBox(x / 2.0, y / 2.0, z / 2.0)
+
     def geometry(self) -> coal.ShapeBase:
         """Return the shape for distance queries, in its own frame."""
         return coal.Box(*self.size)
@@ -122,18 +121,6 @@ class Box(OrientedShape):
     def collision(self) -> CollisionGeometry:
         """Return the shape for a physics engine, in its own frame."""
         return CollisionGeometry("box", {"halfExtents": [edge / 2 for edge in self.size]})
-
-    def distance(self, points: Array) -> Array:
-        """Signed distance (n,) (m) of ``points`` (n, 3) in the shape's own frame."""
-        x, y, z = (np.abs(points) - np.array(self.size) / 2.0).T
-        return _distance_of_gaps(x, y, z)
-
-
-def _distance_of_gaps(a: Array, b: Array, c: Array) -> Array:
-    """Signed distance to a box, from the distances beyond its faces on its three axes."""
-    inside = np.minimum(np.maximum(np.maximum(a, b), c), 0.0)
-    a, b, c = np.maximum(a, 0.0), np.maximum(b, 0.0), np.maximum(c, 0.0)
-    return np.asarray(np.sqrt(a * a + b * b + c * c) + inside)
 
 
 def _visible_points(size: Vector, sensor: Vector, reach: float) -> list[Vector]:

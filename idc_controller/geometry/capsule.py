@@ -9,7 +9,7 @@ import numpy as np
 
 from idc_controller.arrays import Array
 from idc_controller.geometry.oriented import OrientedShape
-from idc_controller.geometry.shape import LENGTH, CollisionGeometry
+from idc_controller.geometry.shape import LENGTH, CollisionGeometry, RoundedBox
 
 _RINGS, _AROUND = 5, 12
 """Samples of the surface: circles over the length, points on each; the ends have as many circles."""
@@ -39,6 +39,11 @@ class Capsule(OrientedShape):
         """The radius (m)."""
         return self.radius
 
+    @property
+    def rounded_box(self) -> RoundedBox:
+        """The body: a line rounded in all directions."""
+        return RoundedBox(0.0, 0.0, self.length / 2.0, ball=self.radius)
+
     def geometry(self) -> coal.ShapeBase:
         """Return the shape for distance queries, in its own frame."""
         return coal.Capsule(self.radius, self.length)
@@ -46,11 +51,6 @@ class Capsule(OrientedShape):
     def collision(self) -> CollisionGeometry:
         """Return the shape for a physics engine, in its own frame."""
         return CollisionGeometry("capsule", {"radius": self.radius, "height": self.length})
-
-    def distance(self, points: Array) -> Array:
-        """Signed distance (n,) (m) of ``points`` (n, 3) in the shape's own frame."""
-        beyond = np.maximum(np.abs(points[:, 2]) - self.length / 2.0, 0.0)
-        return np.asarray(np.hypot(np.hypot(points[:, 0], points[:, 1]), beyond) - self.radius)
 
     def surface_samples(self) -> tuple[Array, Array]:
         """Return points all over the surface (n, 3) and its outward normals there (n, 3), in the shape's own frame."""

@@ -7,7 +7,8 @@ from typing import Protocol
 import numpy as np
 
 from idc_controller.arrays import Array
-from idc_controller.geometry.shape import Shape
+from idc_controller.geometry.distance_kernels import distances_of_offsets, distances_of_points
+from idc_controller.geometry.shape import ROW, Shape
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,24 +33,25 @@ class ObstacleSource(Protocol):
 
 
 class Bodies:
-    """Shapes gathered by kind, for distances from points to all of them together."""
+    """Shapes gathered for distances from points to all of them together."""
 
     def __init__(self, shapes: Sequence[Shape]) -> None:
         self.count = len(shapes)
-        kinds = dict.fromkeys(type(shape) for shape in shapes)
-        self._groups = [
-            (kind, [shape for shape in shapes if type(shape) is kind],
-             np.array([i for i, shape in enumerate(shapes) if type(shape) is kind]))
-            for kind in kinds
-        ]  # fmt: skip
+        self.rows = np.array([shape.row for shape in shapes]).reshape(self.count, ROW)
+        """Rounded boxes as :mod:`idc_controller.geometry.distance_kernels` takes them (B, 14)."""
+        self.others = [(i, shape) for i, shape in enumerate(shapes) if shape.rounded_box is None]
+        """Bodies that are no rounded boxes, with their index."""
 
     def distance(self, points: Array, centres: Array) -> Array:
         """Signed distance (m) from ``points`` (n, 3) to the surfaces of bodies at ``centres`` (B, 3): (B, n)."""
-        return self.from_offsets(points[None, :, :] - centres[:, None, :])
+        distance = distances_of_points(self.rows, np.ascontiguousarray(points), np.ascontiguousarray(centres))
+        for i, shape in self.others:
+            distance[i] = shape.distance((points - centres[i]) @ shape.rotation)
+        return distance
 
     def from_offsets(self, offsets: Array) -> Array:
         """Return the same for points relative to each body's centre (B, n, 3)."""
-        distance = np.empty(offsets.shape[:-1])
-        for kind, shapes, index in self._groups:
-            distance[index] = kind.distances(shapes, offsets[index])
+        distance = distances_of_offsets(self.rows, np.ascontiguousarray(offsets))
+        for i, shape in self.others:
+            distance[i] = shape.distance(offsets[i] @ shape.rotation)
         return distance

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, Self
+from typing import TYPE_CHECKING, ClassVar
 
 import coal
 import numpy as np
@@ -83,17 +82,6 @@ class OrientedShape(Shape):
     def support(self, directions: Array) -> Array:
         """Largest ``direction . y`` over the body about its centre, for unit ``directions`` (..., 3) -> (...)."""
         return np.asarray((directions @ self._in_world.T).max(axis=-1) + self.rounding)
-
-    @classmethod
-    def distances(cls, shapes: Sequence[Self], offsets: Array) -> Array:
-        """Signed distance (m) of points (B, n, 3), relative to each body's centre, to B bodies of this kind (B, n)."""
-        return np.stack(
-            [shape.distance(points @ shape.rotation) for shape, points in zip(shapes, offsets, strict=True)]
-        )
-
-    @abstractmethod
-    def distance(self, points: Array) -> Array:
-        """Signed distance (n,) (m) of ``points`` (n, 3) in the shape's own frame."""
 
     @cached_property
     def reach(self) -> float:

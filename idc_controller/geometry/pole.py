@@ -1,16 +1,15 @@
 """The pole: an upright cylinder that stands on the ground."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import coal
 import numpy as np
 import shapely
 
 from idc_controller.arrays import Array
-from idc_controller.geometry.shape import LENGTH, CollisionGeometry, PlanView, Shape, UprightBounds, Vector
+from idc_controller.geometry.shape import LENGTH, CollisionGeometry, PlanView, RoundedBox, Shape, UprightBounds, Vector
 
 #: A sensor's rays at the side: share of the radius to the right; share of the visible length up (1) or down (-1).
 _SIDE = ((0.8, 0.0), (-0.8, 0.0), (0.5, 1.0), (-0.5, -1.0), (-0.85, 0.6), (0.85, -0.6), (-0.3, 1.0), (0.3, -1.0))
@@ -47,16 +46,10 @@ class Pole(Shape):
         lateral = np.hypot(directions[..., 0], directions[..., 1])
         return np.asarray(self.radius * lateral + self.height / 2.0 * np.abs(directions[..., 2]))
 
-    @classmethod
-    def distances(cls, shapes: Sequence[Self], offsets: Array) -> Array:
-        """Signed distance of points (B, n, 3) about the centres of B poles (B, n) (m)."""
-        radius = np.array([shape.radius for shape in shapes])[:, None]
-        half = np.array([shape.height for shape in shapes])[:, None] / 2.0
-        a = np.hypot(offsets[..., 0], offsets[..., 1]) - radius
-        c = np.abs(offsets[..., 2]) - half
-        inside = np.minimum(np.maximum(a, c), 0.0)
-        a, c = np.maximum(a, 0.0), np.maximum(c, 0.0)
-        return np.asarray(np.sqrt(a * a + c * c) + inside)
+    @property
+    def rounded_box(self) -> RoundedBox:
+        """The body: a vertical line rounded horizontally."""
+        return RoundedBox(0.0, 0.0, self.height / 2.0, radial=self.radius)
 
     @property
     def upright_bounds(self) -> UprightBounds:

@@ -5,7 +5,7 @@ A kind of shape is one module with one class, entered in :data:`idc_controller.g
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import Any, ClassVar, NamedTuple, Self
@@ -22,6 +22,9 @@ Vector = tuple[float, float, float]
 _CIRCLE_SEGMENTS = 32
 """Segments of a quarter of a circle, where a plan view is drawn as a polygon."""
 
+
+ROW = 14
+"""Numbers of a body in arrays of bodies, see :attr:`Shape.row`."""
 
 LENGTH: Mapping[str, str] = {"unit": "m"}
 """Metadata of a shape's field that is a length, or a tuple of lengths (m): positive; a key of the mission file."""
@@ -58,6 +61,19 @@ class UprightBounds(NamedTuple):
     ball: float
     cosine: float
     sine: float
+
+
+class RoundedBox(NamedTuple):
+    """A box about the centre, in the shape's own frame, rounded as in :class:`UprightBounds`.
+
+    ``half_x`` and ``half_y``, or ``radial``, are zero.
+    """
+
+    half_x: float
+    half_y: float
+    half_z: float
+    radial: float = 0.0
+    ball: float = 0.0
 
 
 class PlanView(NamedTuple):
@@ -158,18 +174,28 @@ class Shape(ABC):
     def support(self, directions: Array) -> Array:
         """Largest ``direction . y`` over the body about its centre, for unit ``directions`` (..., 3) -> (...)."""
 
-    @classmethod
-    @abstractmethod
-    def distances(cls, shapes: Sequence[Self], offsets: Array) -> Array:
-        """Signed distance (m) of points (B, n, 3), relative to each body's centre, to B bodies of this kind (B, n)."""
-
     @property
+    def rounded_box(self) -> RoundedBox | None:
+        """The body, if it is a rounded box; None: its distances are those of :meth:`distance`."""
+        return None
+
+    def distance(self, points: Array) -> Array:
+        """Signed distance (n,) (m) of ``points`` (n, 3) in the shape's own frame, of a body that is no rounded box."""
+        raise NotImplementedError
+
+    @cached_property
+    def row(self) -> Array:
+        """:attr:`rounded_box` and :attr:`rotation` in one row (14,), for arrays of bodies; of other bodies zeros."""
+        box = self.rounded_box
+        return np.zeros(ROW) if box is None else np.concatenate([box, self.rotation.ravel()])
+
+    @cached_property
     def reach(self) -> float:
         """Radius of the ball about the centre that holds the body (m)."""
         bounds = self.upright_bounds
         return math.hypot(math.hypot(bounds.half_x, bounds.half_y) + bounds.radial, bounds.half_z) + bounds.ball
 
-    @property
+    @cached_property
     def horizontal_reach(self) -> float:
         """Radius of the upright cylinder about the centre that holds the body (m)."""
         bounds = self.upright_bounds

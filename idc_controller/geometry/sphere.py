@@ -1,16 +1,15 @@
 """The sphere."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import coal
 import numpy as np
 import shapely
 
 from idc_controller.arrays import Array
-from idc_controller.geometry.shape import LENGTH, CollisionGeometry, PlanView, Shape, UprightBounds, Vector
+from idc_controller.geometry.shape import LENGTH, CollisionGeometry, PlanView, RoundedBox, Shape, UprightBounds, Vector
 
 #: Off-axis positions of a sensor's rays: share of the radius; six of them, turned by a random angle.
 _RING = (0.9, 0.6, 0.9, 0.6, 0.9, 0.6)
@@ -42,12 +41,10 @@ class Sphere(Shape):
         """Largest ``direction . y`` over the body, for unit ``directions`` (..., 3) -> (...)."""
         return np.full(directions.shape[:-1], self.radius)
 
-    @classmethod
-    def distances(cls, shapes: Sequence[Self], offsets: Array) -> Array:
-        """Signed distance of points (B, n, 3) about the centres of B spheres (B, n) (m)."""
-        radius = np.array([shape.radius for shape in shapes])[:, None]
-        lateral = np.hypot(offsets[..., 0], offsets[..., 1])
-        return np.asarray(np.hypot(lateral, np.abs(offsets[..., 2])) - radius)
+    @property
+    def rounded_box(self) -> RoundedBox:
+        """The body: a point rounded in all directions."""
+        return RoundedBox(0.0, 0.0, 0.0, ball=self.radius)
 
     @property
     def upright_bounds(self) -> UprightBounds:

@@ -7,12 +7,16 @@ aside.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.interpolate import BPoly
 
 from idc_controller.arrays import Array
 from idc_controller.geometry.obstacles import Bodies, ObstacleSource, PredictedObstacle
+from idc_controller.geometry.shape import Shape
+from idc_controller.guidance.resting_place_kernels import least_distances
 from idc_controller.guidance.settings import RestingPlaceSettings
 from idc_controller.parameters import SystemParameters
 from idc_controller.trajectory.settings import BrakingSettings
@@ -21,6 +25,7 @@ from idc_controller.trajectory.stop_plan import Braking
 _AXIS = 9
 """Points on the formation's upright axis on its path."""
 _STEP = 0.4  # m, between points below the place of rest
+_ROUNDING = 1e-6  # m, more than the rounding of a distance
 
 
 class RestingPlace:
@@ -34,12 +39,13 @@ class RestingPlace:
         braking: BrakingSettings = BrakingSettings(),
     ) -> None:
         self.settings, self._obstacles = settings, obstacles
-        self._usual = Braking(settings=braking)
+        usual = Braking(settings=braking)
         beside = np.hypot(parameters.p[:, 0], parameters.p[:, 1]) + parameters.disc_radius
         self._radius = float(max(beside.max(), parameters.payload.horizontal_reach))
-        self._top = float((parameters.l - parameters.p[:, 2]).max())
-        self._bottom = parameters.payload.below
-        self._last = self._usual
+        self._axis = np.linspace(-float((parameters.l - parameters.p[:, 2]).max()), parameters.payload.below, _AXIS)
+        self._elapsed = np.linspace(0.0, settings.look_ahead, settings.samples)
+        self._choices = [usual, usual, *_deflected(usual, settings)]
+        """The usual stop, the last one that was chosen, and all others."""
 
     def __call__(self, time: float, state: Array) -> Braking:
         """Return the stop from ``state`` (3, 3) at ``time`` (s).
@@ -47,44 +53,40 @@ class RestingPlace:
         These are position, velocity and acceleration of a payload that hangs at rest below the UAVs, which
         brake. The usual stop, if that is clear; else the last one that was chosen, while it is; else the best of many.
         """
-        times = time + np.linspace(0.0, self.settings.look_ahead, self.settings.samples)
-        obstacles = self._obstacles.predict(times)
+        s, (usual, last) = self.settings, self._choices[:2]
+        obstacles = self._obstacles.predict(time + self._elapsed)
         if not obstacles:
-            return self._usual
-        near = _Near(obstacles, self.settings.growth_max)
-        for known in dict.fromkeys((self._usual, self._last)):
-            if self._clearance(near, state, known) >= self.settings.clearance:
-                self._last = known
+            return usual
+        near = _Near(obstacles, s.growth_max)
+        for known in dict.fromkeys((usual, last)):
+            if self._clearances(near, state, [known])[0] >= s.clearance:
+                self._choices[1] = known
                 return known
-        self._last = max(self._choices(state), key=lambda choice: self._merit(near, state, choice))
-        return self._last
+        effort = [math.hypot(*choice.aside) + s.duration_cost * abs(choice.share - 1.0) for choice in self._choices]
+        merits = np.minimum(self._clearances(near, state, self._choices), s.clearance) - s.cost * np.array(effort)
+        best = self._choices[1] = self._choices[int(np.argmax(merits))]
+        return best
 
-    def _choices(self, state: Array) -> list[Braking]:
-        s, usual = self.settings, self._usual
-        choices = [usual, self._last, *(usual._replace(share=share) for share in s.durations)]
-        for aside in s.aside:
-            for bearing in np.linspace(0.0, 2.0 * np.pi, s.bearings, endpoint=False):
-                offset = (aside * float(np.cos(bearing)), aside * float(np.sin(bearing)), 0.0)
-                choices.append(usual._replace(aside=offset))
-        return choices
+    def _clearances(self, near: _Near, state: Array, choices: Sequence[Braking]) -> Array:
+        """Return the least distance (m) of the formation's upright hull on its path to rest, and down from there.
 
-    def _merit(self, near: _Near, state: Array, choice: Braking) -> float:
-        s = self.settings
-        effort = float(np.linalg.norm(choice.aside)) + s.duration_cost * abs(choice.share - 1.0)
-        return min(self._clearance(near, state, choice), s.clearance) - s.cost * effort
+        For each of the ``choices`` (C,); those beyond the clearance that is asked for are not told apart.
+        """
+        durations = np.array([choice.duration(state[1]) for choice in choices])
+        control = np.array([choice.control_points(state, t) for choice, t in zip(choices, durations, strict=True)])
+        limit = self._radius + self.settings.clearance + _ROUNDING
+        least = near.least_distances(control, durations, self._elapsed, self._axis, limit)
+        return least - self._radius
 
-    def _clearance(self, near: _Near, state: Array, choice: Braking) -> float:
-        """Least distance (m) of the formation's upright hull on its path to rest, and down from there."""
-        path = choice.path(state)
-        elapsed = np.linspace(0.0, self.settings.look_ahead, self.settings.samples)
-        centres = path(np.minimum(elapsed, path.x[-1]))
-        axis = np.zeros((_AXIS, 3))
-        axis[:, 2] = np.linspace(-self._top, self._bottom, _AXIS)
-        on_path = near.at_their_time(centres[:, None, :] + axis)
-        rest = centres[-1]
-        heights = np.arange(min(rest[2] - self._top, 0.0), 0.0, _STEP)
-        below = np.column_stack([np.tile(rest[:2], (len(heights), 1)), heights])
-        return min(on_path, near.at_any_time(below)) - self._radius
+
+def _deflected(usual: Braking, s: RestingPlaceSettings) -> list[Braking]:
+    """Return the stops that take longer or less long than the usual one, or end aside."""
+    choices = [usual._replace(share=share) for share in s.durations]
+    for aside in s.aside:
+        for bearing in np.linspace(0.0, 2.0 * np.pi, s.bearings, endpoint=False):
+            offset = (aside * float(np.cos(bearing)), aside * float(np.sin(bearing)), 0.0)
+            choices.append(usual._replace(aside=offset))
+    return choices
 
 
 class _Near:
@@ -92,20 +94,36 @@ class _Near:
 
     def __init__(self, obstacles: Sequence[PredictedObstacle], growth_max: float) -> None:
         self._bodies = Bodies([obstacle.shape for obstacle in obstacles])
-        self._centres = np.stack([obstacle.positions for obstacle in obstacles])  # (O, K, 3)
-        self._growth = np.minimum(np.stack([obstacle.growth for obstacle in obstacles]), growth_max)  # (O, K)
+        self._reach = np.array([obstacle.shape.reach for obstacle in obstacles])
+        self._centres = np.array([obstacle.positions for obstacle in obstacles])  # (O, K, 3)
+        self._growth = np.minimum(np.array([obstacle.growth for obstacle in obstacles]), growth_max)  # (O, K)
 
-    def at_their_time(self, points: Array) -> float:
-        """Return the least distance (m) of points (K, n, 3), each at its own moment."""
-        return self._least(points[None] - self._centres[:, :, None])
+    def least_distances(self, control: Array, durations: Array, elapsed: Array, axis: Array, limit: float) -> Array:
+        """See :func:`~idc_controller.guidance.resting_place_kernels.least_distances`."""
+        others = self._bodies.others
+        if others:
+            self._reach[[i for i, _ in others]] = -np.inf  # never near: the kernel passes them over
+        least = least_distances(
+            control, durations, elapsed, axis, _STEP, self._bodies.rows, self._reach, self._centres, self._growth, limit
+        )
+        for i, shape in others:
+            for c, (points, duration) in enumerate(zip(control, durations, strict=True)):
+                places = BPoly(points[:, None], [0.0, duration])(np.minimum(elapsed, duration))
+                least[c] = least_distance(shape, places, axis, self._centres[i], self._growth[i], least[c])
+        return least
 
-    def at_any_time(self, points: Array) -> float:
-        """Return the least distance (m) of points (n, 3) at all moments."""
-        return self._least(points - self._centres[:, :, None])
 
-    def _least(self, apart: Array) -> float:
-        """Return the least distance (m) of points relative to the centres (O, K, n, 3)."""
-        if not apart.size:
-            return np.inf
-        distance = self._bodies.from_offsets(apart.reshape(len(apart), -1, 3)).reshape(apart.shape[:3])
-        return float((distance - self._growth[:, :, None]).min())
+def least_distance(shape: Shape, places: Array, axis: Array, centres: Array, growth: Array, limit: float) -> float:
+    """Return what :func:`~idc_controller.guidance.resting_place_kernels.least_distances` does, for any shape.
+
+    For one path, by its ``places`` (K, 3) at the moments, and one obstacle, by its ``centres`` (K, 3) and ``growth``
+    (K,) (m).
+    """
+    on_path = places[:, None] + np.column_stack([np.zeros((len(axis), 2)), axis])
+    rest = places[-1]
+    heights = np.arange(min(rest[2] + axis[0], 0.0), 0.0, _STEP)
+    below = np.column_stack([np.tile(rest[:2], (len(heights), 1)), heights])
+    points = np.concatenate([on_path, np.broadcast_to(below, (len(places), *below.shape))], axis=1) - centres[:, None]
+    near = np.linalg.norm(points, axis=2) - shape.reach - growth[:, None] < limit
+    distance = Bodies([shape]).from_offsets(points[near][None])[0] - np.broadcast_to(growth[:, None], near.shape)[near]
+    return float(distance.min(initial=limit))

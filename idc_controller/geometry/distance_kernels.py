@@ -1,0 +1,54 @@
+"""Distances to rounded boxes, compiled: spheres, poles, walls, capsules and boxes in one formula.
+
+A body is a row of 14 numbers: half edges x, y, z, radial and ball (m) of its
+:class:`~idc_controller.geometry.shape.RoundedBox`, then its rotation to the world, row by row.
+"""
+
+import math
+
+import numpy as np
+
+from idc_controller.arrays import Array
+from idc_controller.compiled import inlined, kernel
+
+
+@inlined
+def distance_to(bodies: Array, b: int, x: float, y: float, z: float) -> float:
+    """Return the signed distance (m) of a point about the centre of body ``b`` of ``bodies`` (B, 14), world axes."""
+    u = bodies[b, 5] * x + bodies[b, 8] * y + bodies[b, 11] * z
+    v = bodies[b, 6] * x + bodies[b, 9] * y + bodies[b, 12] * z
+    w = abs(bodies[b, 7] * x + bodies[b, 10] * y + bodies[b, 13] * z) - bodies[b, 2]
+    beyond = max(w, 0.0)
+    if bodies[b, 0] == 0.0 and bodies[b, 1] == 0.0:
+        u = math.hypot(u, v) - bodies[b, 3]
+        inside = min(max(u, w), 0.0)
+        u = max(u, 0.0)
+        return float(math.sqrt(u * u + beyond * beyond) + inside - bodies[b, 4])
+    u, v = abs(u) - bodies[b, 0], abs(v) - bodies[b, 1]
+    inside = min(max(max(u, v), w), 0.0)
+    u, v = max(u, 0.0), max(v, 0.0)
+    return float(math.sqrt(u * u + v * v + beyond * beyond) + inside - bodies[b, 4])
+
+
+@kernel("float64[:, ::1](float64[:, ::1], float64[:, :, ::1])")
+def distances_of_offsets(bodies: Array, offsets: Array) -> Array:
+    """Return signed distances (B, n) (m) of points (B, n, 3) about the centres of ``bodies`` (B, 14), world axes."""
+    count, n = offsets.shape[0], offsets.shape[1]
+    distance = np.empty((count, n))
+    for b in range(count):
+        for i in range(n):
+            distance[b, i] = distance_to(bodies, b, offsets[b, i, 0], offsets[b, i, 1], offsets[b, i, 2])
+    return distance
+
+
+@kernel("float64[:, ::1](float64[:, ::1], float64[:, ::1], float64[:, ::1])")
+def distances_of_points(bodies: Array, points: Array, centres: Array) -> Array:
+    """Return signed distances (B, n) (m) of ``points`` (n, 3) to ``bodies`` (B, 14) at ``centres`` (B, 3), world."""
+    count, n = centres.shape[0], points.shape[0]
+    distance = np.empty((count, n))
+    for b in range(count):
+        for i in range(n):
+            distance[b, i] = distance_to(
+                bodies, b, points[i, 0] - centres[b, 0], points[i, 1] - centres[b, 1], points[i, 2] - centres[b, 2]
+            )
+    return distance
