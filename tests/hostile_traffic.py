@@ -7,7 +7,7 @@ from collections import deque
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink.codec import Codec
-from gcs.record.tlog import frames_in
+from gcs.mavlink.frames import spans
 from vehicle_sim.faults import FaultInjector
 
 REMEMBERED = 64  # genuine datagrams that may be imitated
@@ -139,4 +139,4 @@ class HostileTraffic:
 
 
 def _frames(datagram):
-    return [bytearray(frame) for frame in frames_in(bytes(datagram))]
+    return [bytearray(datagram[start:end]) for start, end in spans(bytes(datagram))]

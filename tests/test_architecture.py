@@ -37,7 +37,9 @@ ALLOWED = {
     ),
     "gcs.mavlink": "idc_controller.estimation idc_controller.perception",
     "gcs.mission": "gcs.config gcs.faults idc_controller.geometry idc_controller.perception",
-    "gcs.record": "gcs.config gcs.flight idc_controller.control idc_controller.geometry idc_controller.perception",
+    "gcs.record": (
+        "gcs.config gcs.flight gcs.mavlink idc_controller.control idc_controller.geometry idc_controller.perception"
+    ),
     "gcs.reproduce": (
         "gcs.campaign gcs.config gcs.flight gcs.record idc_controller.estimation idc_controller.geometry "
         "idc_controller.guidance idc_controller.model idc_controller.paper idc_controller.safety "
@@ -186,7 +188,7 @@ def test_settings_module_imports_mathematics_only(path):
     assert all(name.startswith("idc_controller.") for name, _ in sub_packages_imported(path))
 
 
-PROTOCOL = {"address", "codec", "lockstep", "messages", "px4", "udp"}
+PROTOCOL = {"address", "codec", "frames", "layout", "lockstep", "messages", "px4", "udp"}
 """Modules of gcs.mavlink that both ends of the wire share; the others are the ground's links."""
 
 

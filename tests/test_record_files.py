@@ -28,7 +28,7 @@ from gcs.record.tables import (
     read_text_table,
     truth_columns,
 )
-from gcs.record.tlog import TelemetryLog, frames_in
+from gcs.record.tlog import TelemetryLog
 
 # --- run folder ---------------------------------------------------------------------------------------------------
 
@@ -330,25 +330,6 @@ def test_truncated_last_record_is_skipped(tmp_path) -> None:
         path.write_bytes(whole[:-cut])
         messages = [m for m in read_back(path) if m.get_type() != "BAD_DATA"]
         assert [m.time_boot_ms for m in messages] == [0, 20, 40, 60]
-
-
-def test_signed_frames_are_kept_whole(tmp_path) -> None:
-    sender = mavlink.MAVLink(None, srcSystem=3, srcComponent=1)
-    sender.signing.secret_key = bytes(32)
-    sender.signing.sign_outgoing = True
-    sender.signing.timestamp = 1
-    signed = mavlink.MAVLink_heartbeat_message(2, 12, 0, 0, 0, 3).pack(sender)
-    plain = frames(1)[0]
-    assert list(frames_in(signed + plain)) == [signed, plain]
-
-
-def test_bytes_outside_frames_are_skipped() -> None:
-    a, b = frames(2)
-    assert list(frames_in(b"")) == []
-    assert list(frames_in(b"hello")) == []
-    assert list(frames_in(b"\x00\x01" + a + b"zz" + b)) == [a, b]
-    assert list(frames_in(a[:-1])) == []
-    assert list(frames_in(b"\xfd")) == []
 
 
 def test_damaged_frames_do_not_hide_the_good_ones(tmp_path) -> None:

@@ -1,11 +1,13 @@
 """Bytes to MAVLink messages and back, robust against whatever a datagram may hold. No socket, no clock."""
 
 import struct
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
-from gcs.mavlink.messages import Message, Received, classify
+from gcs.mavlink.frames import SIGNED, V1, V2, end_of_frame, next_marker
+from gcs.mavlink.layout import LAYOUTS, Packed, packed
+from gcs.mavlink.messages import Message, Received
 
 #: Frames are gathered into datagrams up to this size, which every usual path carries unfragmented (bytes).
 DATAGRAM_LIMIT = 1200
@@ -13,10 +15,17 @@ DATAGRAM_LIMIT = 1200
 #: Frames of one datagram that may be broken; more make it no datagram of MAVLink, and the rest is not looked at.
 BAD_FRAMES_MAX = 32
 
-_V1, _V2 = mavlink.PROTOCOL_MARKER_V1, mavlink.PROTOCOL_MARKER_V2
-_SIGNED = mavlink.MAVLINK_IFLAG_SIGNED
-_SIGNATURE_LENGTH = mavlink.MAVLINK_SIGNATURE_BLOCK_LEN
-_KNOWN = mavlink.mavlink_map
+_HEADER_V2 = struct.Struct("<BBBBBBB3s")
+"""Marker, length, incompatible and compatible flags, sequence number, system, component, message id."""
+_HEADER_V1 = struct.Struct("<BBBBB1s")
+"""Marker, length, sequence number, system, component, message id."""
+
+_LAYOUTS = {layout.number: layout for layout in LAYOUTS.values()}
+_LAYOUTS |= {number[:1]: layout for number, layout in _LAYOUTS.items() if number[1:] == b"\0\0"}
+"""By the message id as it is sent, in a frame of MAVLink 2 or 1."""
+
+#: CRC-16/MCRF4XX: compiled where pymavlink has it compiled.
+_checksum: Callable[[bytes], int] = getattr(mavlink, "mcrf4xx", None) or (lambda data: mavlink.x25crc(data).crc)
 
 
 class Codec:
@@ -30,7 +39,10 @@ class Codec:
     """
 
     def __init__(self, system_id: int, component_id: int) -> None:
-        self._mavlink = mavlink.MAVLink(None, system_id, component_id)
+        self.system_id = system_id
+        """The sender's system id in every encoded frame."""
+        self._component_id = component_id
+        self._sequence = 0
         self.bad_frames = 0
         self.skipped_bytes = 0
 
@@ -39,67 +51,62 @@ class Codec:
         """Number of bad frames and skipped bytes: grows with every datagram that cannot be read in full."""
         return self.bad_frames + self.skipped_bytes
 
-    @property
-    def system_id(self) -> int:
-        """The sender's system id in every encoded frame."""
-        return self._mavlink.srcSystem
-
     def encode(self, message: Message) -> bytes:
         """Return a MAVLink 2 frame. The sequence number rises by one with every call.
 
         Raises ``struct.error`` or ``OverflowError`` when a field does not fit its type on the wire.
         """
-        frame = message.pack(self._mavlink)
-        self._mavlink.seq = (self._mavlink.seq + 1) & 0xFF
-        return frame
+        return self.frame(*packed(message))
+
+    def frame(self, message: Packed) -> bytes:
+        """Return a MAVLink 2 frame of a message that is packed already, as :meth:`encode` does."""
+        layout, payload = message
+        body = _HEADER_V2.pack(
+            V2, len(payload), 0, 0, self._sequence, self.system_id, self._component_id, layout.number
+        ) + payload  # fmt: skip
+        self._sequence = (self._sequence + 1) & 0xFF
+        return body + _checksum(body[1:] + layout.crc_extra).to_bytes(2, "little")
 
     def decode(self, datagram: bytes) -> list[Received]:
         """Return all messages of one datagram, in order. Frames never reach across datagrams."""
         messages: list[Received] = []
-        end = len(datagram)
-        position = 0
+        size = len(datagram)
+        start = 0
         give_up = self.bad_frames + BAD_FRAMES_MAX
-        while position < end:
-            marker = datagram[position]
-            length = 0
-            if marker == _V2 and position + 12 <= end:
-                flags = datagram[position + 2]
-                length = datagram[position + 1] + (12 + _SIGNATURE_LENGTH if flags & _SIGNED else 12)
-                number = int.from_bytes(datagram[position + 7 : position + 10], "little")
-            elif marker == _V1 and position + 8 <= end:
-                flags = 0
-                length = datagram[position + 1] + 8
-                number = datagram[position + 5]
-            following = position + length
-            if not length or following > end:  # no marker, or a frame that is cut short
-                position += 1
-                self.skipped_bytes += 1
+        while start < size:
+            end = end_of_frame(datagram, start)
+            if not end:  # no marker, or a frame that is cut short
+                following = next_marker(datagram, start + 1)
+                self.skipped_bytes += following - start
+                start = following
                 continue
-            if number not in _KNOWN:
+            if datagram[start] == V2:
+                _, length, flags, _, sequence, system, component, number = _HEADER_V2.unpack_from(datagram, start)
+                body = start + _HEADER_V2.size
+            else:
+                _, length, sequence, system, component, number = _HEADER_V1.unpack_from(datagram, start)
+                flags, body = 0, start + _HEADER_V1.size
+            layout = _LAYOUTS.get(number)
+            if layout is None:
                 # Its checksum cannot be verified. Accept its length only if that leads to a frame or the end.
-                if following == end or datagram[following] in (_V1, _V2):
-                    position = following
+                if end == size or datagram[end] in (V1, V2):
+                    start = end
                 else:
                     self.skipped_bytes += 1
-                    position += 1
+                    start += 1
                 continue
-            message = None if flags & ~_SIGNED else self._decode_frame(datagram[position:following])
-            if message is None:
+            behind = body + length
+            checksum = _checksum(datagram[start + 1 : behind] + layout.crc_extra)
+            if flags & ~SIGNED or checksum != datagram[behind] | datagram[behind + 1] << 8:
                 self.bad_frames += 1
                 if self.bad_frames >= give_up:
-                    self.skipped_bytes += end - position
+                    self.skipped_bytes += size - start
                     break
-                position += 1  # its length may be what is wrong
+                start += 1  # its length may be what is wrong
                 continue
-            messages.append(classify(message))
-            position = following
+            messages.append(layout.read(datagram[body:behind], sequence, system, component))
+            start = end
         return messages
-
-    def _decode_frame(self, frame: bytes) -> Message | None:
-        try:
-            return self._mavlink.decode(bytearray(frame))
-        except (mavlink.MAVError, struct.error, ValueError, TypeError, IndexError):
-            return None
 
 
 def gather(frames: Iterable[bytes], limit: int = DATAGRAM_LIMIT) -> list[bytes]:

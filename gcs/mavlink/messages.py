@@ -4,7 +4,6 @@ A message is recognised by its class (``isinstance``), so that its fields have t
 ArduPilot's dialect, which holds the common one; a class of another dialect is another class.
 """
 
-from operator import attrgetter
 from typing import NamedTuple
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
@@ -13,10 +12,6 @@ Message = mavlink.MAVLink_message
 
 BROADCAST = 0
 """System or component id that addresses everybody."""
-
-_target_system, _target_component = attrgetter("target_system"), attrgetter("target_component")
-_TO_SYSTEMS = frozenset(kind for kind in mavlink.mavlink_map.values() if "target_system" in kind.fieldnames)
-_TO_COMPONENTS = frozenset(kind for kind in _TO_SYSTEMS if "target_component" in kind.fieldnames)
 
 
 class Received(NamedTuple):
@@ -34,12 +29,3 @@ class Received(NamedTuple):
         return self.target_system in (BROADCAST, system) and (
             component is None or self.target_component in (BROADCAST, component)
         )
-
-
-def classify(message: Message) -> Received:
-    """Return a decoded message with sender, sequence number and addressee."""
-    header, kind = message.get_header(), type(message)
-    if kind not in _TO_SYSTEMS:
-        return Received(message, header.srcSystem, header.srcComponent, header.seq)
-    component = _target_component(message) if kind in _TO_COMPONENTS else BROADCAST
-    return Received(message, header.srcSystem, header.srcComponent, header.seq, _target_system(message), component)

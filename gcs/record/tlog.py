@@ -5,35 +5,12 @@ log several links keep the link's number in the two lowest bits of the time stam
 """
 
 import struct
-from collections.abc import Iterator
 from pathlib import Path
 
+from gcs.mavlink.frames import spans
 from gcs.record.append_file import AppendOnlyFile
 
 _STAMP = struct.Struct(">Q")
-_MAVLINK_1, _MAVLINK_2 = 0xFE, 0xFD
-_SIGNED = 0x01
-_SIGNATURE_LENGTH = 13
-
-
-def frames_in(datagram: bytes) -> Iterator[bytes]:
-    """Yield the MAVLink 1 and 2 frames in a datagram, by their length fields: checksums are not verified.
-
-    Bytes that belong to no frame, as a damaged datagram may hold, are left out.
-    """
-    at, end = 0, len(datagram)
-    while at < end:
-        magic = datagram[at]
-        length = 0
-        if magic == _MAVLINK_2 and at + 3 <= end:
-            length = 12 + datagram[at + 1] + (_SIGNATURE_LENGTH if datagram[at + 2] & _SIGNED else 0)
-        elif magic == _MAVLINK_1 and at + 2 <= end:
-            length = 8 + datagram[at + 1]
-        if length and at + length <= end:
-            yield datagram[at : at + length]
-            at += length
-        else:
-            at += 1
 
 
 class TelemetryLog(AppendOnlyFile):
@@ -44,7 +21,10 @@ class TelemetryLog(AppendOnlyFile):
         self._start_us = round(start_epoch * 1e6)
 
     def write(self, now: float, datagram: bytes) -> None:
-        """Record a datagram that was sent or received at flight time ``now`` (s): one record a frame."""
+        """Record a datagram that was sent or received at flight time ``now`` (s): one record a frame.
+
+        Bytes that belong to no frame, as a damaged datagram may hold, are left out.
+        """
         stamp = _STAMP.pack((self._start_us + round(now * 1e6)) & ~0x3)
-        if records := b"".join(stamp + frame for frame in frames_in(datagram)):
+        if records := b"".join([stamp + datagram[start:end] for start, end in spans(datagram)]):
             self.append(records)

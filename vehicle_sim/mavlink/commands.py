@@ -113,10 +113,10 @@ class CommandServer:
         wanted = _whole(message.param1, 1 << 24)
         if wanted is None or not self._telemetry.knows(px4.AUTOPILOT_COMPONENT, wanted):
             return Answer(_UNSUPPORTED)
-        built = self._telemetry.build(px4.AUTOPILOT_COMPONENT, wanted, request.now)
+        built = self._telemetry.build(request.now, px4.AUTOPILOT_COMPONENT, wanted)
         if not built:
             return Answer(mavlink.MAV_RESULT_TEMPORARILY_REJECTED)
-        request.peer.reply(*built)
+        request.peer.reply_packed(*built)
         return ACCEPTED
 
     def _set_message_interval(self, message: Command, request: Request) -> Answer:
@@ -138,7 +138,7 @@ class CommandServer:
 
     def _request_capabilities(self, message: Command, request: Request) -> Answer:
         version = mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION
-        request.peer.reply(*self._telemetry.build(px4.AUTOPILOT_COMPONENT, version, request.now))
+        request.peer.reply_packed(*self._telemetry.build(request.now, px4.AUTOPILOT_COMPONENT, version))
         return ACCEPTED
 
 

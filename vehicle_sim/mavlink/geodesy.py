@@ -2,26 +2,55 @@
 
 import math
 
-import pymap3d
-
 from gcs.mission.model import Home
 from vehicle_sim.world.sensors import Measurement
 
 Place = tuple[int, int, int]
 """Latitude and longitude (1e-7 deg), altitude (mm)."""
 
+# The ellipsoid of WGS 84.
+_EQUATORIAL_RADIUS = 6378137.0  # m
+_FLATTENING = 1.0 / 298.257223563
+_POLAR_RADIUS = _EQUATORIAL_RADIUS * (1.0 - _FLATTENING)
+_ECCENTRICITY_SQUARED = _FLATTENING * (2.0 - _FLATTENING)
+_SECOND_ECCENTRICITY_SQUARED = _ECCENTRICITY_SQUARED / (1.0 - _ECCENTRICITY_SQUARED)
 
-def place_of_home(home: Home) -> Place:
-    """Return the place of the frame's origin, on the ground."""
-    return round(home.latitude * 1e7), round(home.longitude * 1e7), round(home.altitude * 1e3)
 
+class LocalFrame:
+    """The north-east-down frame at a home on the ellipsoid of WGS 84."""
 
-def place_of(measured: Measurement, home: Home) -> Place:
-    """Return the place of a sample."""
-    latitude, longitude, altitude = pymap3d.ned2geodetic(
-        *measured.position, home.latitude, home.longitude, home.altitude
-    )
-    return clamp(latitude * 1e7, 32), clamp(longitude * 1e7, 32), clamp(altitude * 1e3, 32)
+    def __init__(self, home: Home) -> None:
+        self.origin: Place = round(home.latitude * 1e7), round(home.longitude * 1e7), round(home.altitude * 1e3)
+        self._longitude = home.longitude
+        latitude = math.radians(home.latitude)
+        self._sin, self._cos = math.sin(latitude), math.cos(latitude)
+        normal = _EQUATORIAL_RADIUS / math.sqrt(1.0 - _ECCENTRICITY_SQUARED * self._sin**2)
+        self._from_axis = (normal + home.altitude) * self._cos
+        self._above_equator = (normal * (1.0 - _ECCENTRICITY_SQUARED) + home.altitude) * self._sin
+
+    def geodetic(self, north: float, east: float, down: float) -> tuple[float, float, float]:
+        """Return latitude and longitude (deg), altitude (m) of a position (m).
+
+        Bowring's formula: near the ground exact to a nanometre.
+        """
+        # Earth-fixed, with home's meridian in the plane of x and z.
+        x = self._from_axis - self._sin * north - self._cos * down
+        z = self._above_equator + self._cos * north - self._sin * down
+        from_axis = math.hypot(x, east)
+        reduced = math.atan2(_EQUATORIAL_RADIUS * z, _POLAR_RADIUS * from_axis)
+        latitude = math.atan2(
+            z + _SECOND_ECCENTRICITY_SQUARED * _POLAR_RADIUS * math.sin(reduced) ** 3,
+            from_axis - _ECCENTRICITY_SQUARED * _EQUATORIAL_RADIUS * math.cos(reduced) ** 3,
+        )
+        sin, cos = math.sin(latitude), math.cos(latitude)
+        altitude = from_axis * cos + z * sin - _EQUATORIAL_RADIUS * math.sqrt(1.0 - _ECCENTRICITY_SQUARED * sin * sin)
+        longitude = self._longitude + math.degrees(math.atan2(east, x))
+        return math.degrees(latitude), math.remainder(longitude, 360.0), altitude
+
+    def place_of(self, measured: Measurement) -> Place:
+        """Return the place of a sample."""
+        latitude, longitude, altitude = self.geodetic(*measured.position)
+        return clamp(latitude * 1e7, 32), clamp(longitude * 1e7, 32), clamp(altitude * 1e3, 32)
 
 
 def is_finite(measured: Measurement) -> bool:

@@ -1,6 +1,7 @@
 """One peer of a vehicle, and its streams."""
 
 import math
+from collections.abc import Callable
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
@@ -8,8 +9,9 @@ from gcs.config.vehicle_settings import StreamIntervals, VehicleLinkSettings
 from gcs.mavlink import px4
 from gcs.mavlink.address import Address
 from gcs.mavlink.codec import Codec, gather
+from gcs.mavlink.layout import Packed, packed
 from gcs.mavlink.messages import Message
-from vehicle_sim.mavlink.telemetry import Telemetry
+from vehicle_sim.mavlink.telemetry import Built
 
 TIME_TOLERANCE = 1e-6  # s: sums of steps are not exact
 
@@ -17,12 +19,15 @@ _TEXT_LIMIT = 50
 _AUTOPILOT, _PAYLOAD = px4.AUTOPILOT_COMPONENT, px4.PAYLOAD_UNIT_COMPONENT
 _HEARTBEAT = mavlink.MAVLINK_MSG_ID_HEARTBEAT
 
-#: Messages of one sample: never sent twice for the same one.
+Build = Callable[[int, int], Built]
+
+#: Messages of one sample, which begin with its stamp: never sent twice for the same one.
 _OF_ONE_SAMPLE = (
-    mavlink.MAVLink_attitude_quaternion_message,
-    mavlink.MAVLink_local_position_ned_message,
-    mavlink.MAVLink_obstacle_distance_3d_message,
+    mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION,
+    mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED,
+    mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D,
 )
+_STAMP_LENGTH = 4
 
 
 def default_intervals(intervals: StreamIntervals, telemetry_interval: float) -> dict[tuple[int, int], float]:
@@ -55,16 +60,16 @@ def default_intervals(intervals: StreamIntervals, telemetry_interval: float) -> 
 class Stream:
     """One message that is sent again and again, at whole multiples of its interval, so that streams coincide."""
 
-    __slots__ = ("component", "due", "interval", "last_stamp", "message_id", "repeats")
+    __slots__ = ("_last_stamp", "_of_one_sample", "due", "interval", "key", "repeats")
 
     def __init__(self, component: int, message_id: int, interval: float) -> None:
         """``interval`` in s; due at once."""
-        self.component = component
-        self.message_id = message_id
+        self.key = component, message_id
         self.interval = interval
         self.due = -math.inf
         self.repeats = 0
-        self.last_stamp: int | None = None
+        self._of_one_sample = message_id in _OF_ONE_SAMPLE
+        self._last_stamp = b""
 
     def advance(self, now: float, repeat_interval: float) -> None:
         """Set the due time to the next multiple of the interval; sooner while repetitions are due (interval in s)."""
@@ -73,12 +78,12 @@ class Stream:
             self.repeats -= 1
             self.due = min(self.due, now + repeat_interval)
 
-    def is_new(self, message: Message) -> bool:
+    def is_new(self, message: Packed) -> bool:
         """Return True if a message is not of the sample that was sent last."""
-        if not isinstance(message, _OF_ONE_SAMPLE):
+        if not self._of_one_sample:
             return True
-        stamp, self.last_stamp = self.last_stamp, message.time_boot_ms
-        return stamp != message.time_boot_ms
+        last, self._last_stamp = self._last_stamp, message.payload[:_STAMP_LENGTH]
+        return self._last_stamp != last
 
 
 class Peer:
@@ -117,7 +122,7 @@ class Peer:
         key = _AUTOPILOT, message_id
         if interval == 0.0:
             interval = self._defaults.get(key, math.inf)
-        self._streams = [stream for stream in self._streams if (stream.component, stream.message_id) != key]
+        self._streams = [stream for stream in self._streams if stream.key != key]
         if math.isfinite(interval):
             self._streams.append(Stream(*key, interval))
         self.next_due = -math.inf
@@ -125,14 +130,18 @@ class Peer:
     def repeat(self, *message_ids: int) -> None:
         """Send these messages at once, and repeatedly, because a datagram may be lost: their content has changed."""
         for stream in self._streams:
-            if stream.message_id in message_ids:
+            if stream.key[1] in message_ids:
                 stream.due, stream.repeats = -math.inf, self._settings.repeats if self.is_streaming else 0
         self.next_due = -math.inf
 
     def reply(self, *messages: Message) -> None:
         """Send messages of the autopilot with the next datagrams."""
+        self.reply_packed(*packed(*messages))
+
+    def reply_packed(self, *messages: Packed) -> None:
+        """Send messages of the autopilot with the next datagrams, as :meth:`reply` does."""
         if len(self._replies) < self._settings.replies_max:
-            self._replies += [self._codecs[_AUTOPILOT].encode(message) for message in messages]
+            self._replies += [self._codecs[_AUTOPILOT].frame(message) for message in messages]
             self.next_due = -math.inf
 
     def send_statustext(self, text: str, severity: int = mavlink.MAV_SEVERITY_WARNING) -> None:
@@ -141,8 +150,11 @@ class Peer:
         for start in range(0, len(data), _TEXT_LIMIT):
             self.reply(mavlink.MAVLink_statustext_message(severity, data[start : start + _TEXT_LIMIT]))
 
-    def datagrams(self, telemetry: Telemetry, now: float) -> list[bytes]:
-        """Return replies and what is due, in as few datagrams as possible."""
+    def datagrams(self, build: Build, now: float) -> list[bytes]:
+        """Return replies and what is due, in as few datagrams as possible.
+
+        ``build`` returns the messages of a component and message id at ``now``.
+        """
         if now + TIME_TOLERANCE < self.next_due:
             return []
         frames = self._replies
@@ -150,10 +162,10 @@ class Peer:
         next_due = math.inf
         for stream in self._streams:
             if stream.due <= now + TIME_TOLERANCE:
-                messages = telemetry.build(stream.component, stream.message_id, now)
+                messages = build(*stream.key)
                 if messages and stream.is_new(messages[0]):
-                    codec = self._codecs[stream.component]
-                    frames += [codec.encode(message) for message in messages]
+                    codec = self._codecs[stream.key[0]]
+                    frames += [codec.frame(message) for message in messages]
                 stream.advance(now, self._settings.repeat_interval)
             if stream.due < next_due:
                 next_due = stream.due

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator
+from functools import cache, partial
 
 from gcs.config.vehicle_settings import VehicleLinkSettings
 from gcs.mavlink.address import Address
@@ -42,6 +43,7 @@ class Peers:
     def datagrams_to_send(self, telemetry: Telemetry, now: float) -> list[tuple[bytes, Address]]:
         """Return all that is due at ``now`` (s), each with its address."""
         out: list[tuple[bytes, Address]] = []
+        build = cache(partial(telemetry.build, now))  # once for all peers
         for peer in tuple(self._peers.values()):
             if now + TIME_TOLERANCE < peer.next_due:
                 continue
@@ -49,7 +51,7 @@ class Peers:
                 self._remove_silent(now)
                 if peer.address not in self._peers:
                     continue
-            out.extend([(datagram, peer.address) for datagram in peer.datagrams(telemetry, now)])
+            out.extend([(datagram, peer.address) for datagram in peer.datagrams(build, now)])
         return out
 
     @property

@@ -6,12 +6,12 @@ from collections.abc import Callable, Iterator
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink import px4
-from gcs.mavlink.messages import Message
+from gcs.mavlink.layout import LAYOUTS, Packed, packed
 from gcs.mission.model import Home
 from idc_controller.rotations_float import euler_of, into_body
 from vehicle_sim.autopilot.attitude_control import LEVEL
 from vehicle_sim.autopilot.autopilot import Autopilot
-from vehicle_sim.mavlink.geodesy import clamp, is_finite, place_of, place_of_home
+from vehicle_sim.mavlink.geodesy import LocalFrame, clamp, is_finite
 from vehicle_sim.world.range_sensor import RangeSample
 from vehicle_sim.world.sensors import Measurement, ReportedState
 
@@ -36,7 +36,15 @@ _VERSION = 0x00010000  # 0.1.0, a development version
 _CELLS = [4000, 4000, 4000, 4000, 65535, 65535, 65535, 65535, 65535, 65535]
 _NAN = math.nan
 
-Built = tuple[Message, ...]
+Built = tuple[Packed, ...]
+
+# What is sent with every sample is packed without a message object, its fields in the order of the wire.
+_ATTITUDE_QUATERNION = LAYOUTS[mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION]
+_LOCAL_POSITION_NED = LAYOUTS[mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED]
+_ATTITUDE_TARGET = LAYOUTS[mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET]
+_OBSTACLE_DISTANCE_3D = LAYOUTS[mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D]
+_NO_OFFSET = (0.0, 0.0, 0.0, 0.0)
+
 _OWN = px4.AUTOPILOT_COMPONENT
 
 
@@ -50,6 +58,7 @@ class Telemetry:
         self._system_id = system_id
         self._autopilot = autopilot
         self._home = home
+        self._frame = LocalFrame(home)
         self._boot_time = boot_time
         self._clock = clock
         self.reported: ReportedState | None = None
@@ -84,7 +93,7 @@ class Telemetry:
         """Return True if a component of this vehicle has such a message."""
         return (component, message_id) in self._builders
 
-    def build(self, component: int, message_id: int, now: float) -> Built:
+    def build(self, now: float, component: int, message_id: int) -> Built:
         """Return the messages of a kind that :meth:`knows`: none while there is no data, several for a scan."""
         return self._builders[component, message_id](now)
 
@@ -111,10 +120,10 @@ class Telemetry:
             state = mavlink.MAV_STATE_BOOT
         if autopilot.armed:
             base_mode |= mavlink.MAV_MODE_FLAG_SAFETY_ARMED
-        return (
+        return packed(
             mavlink.MAVLink_heartbeat_message(
                 mavlink.MAV_TYPE_QUADROTOR, mavlink.MAV_AUTOPILOT_PX4, base_mode, autopilot.mode, state, 3
-            ),
+            )
         )
 
     def _sys_status(self, now: float) -> Built:
@@ -128,11 +137,13 @@ class Telemetry:
             health |= _SENSORS
         if self._autopilot.arming_problem(now) is None:
             health |= _PREARM
-        return (mavlink.MAVLink_sys_status_message(present, present, health, 100, 16000, -1, 100, 0, 0, 0, 0, 0, 0),)
+        return packed(
+            mavlink.MAVLink_sys_status_message(present, present, health, 100, 16000, -1, 100, 0, 0, 0, 0, 0, 0)
+        )
 
     def _extended_sys_state(self, now: float) -> Built:
-        return (
-            mavlink.MAVLink_extended_sys_state_message(mavlink.MAV_VTOL_STATE_UNDEFINED, self._autopilot.landed_state),
+        return packed(
+            mavlink.MAVLink_extended_sys_state_message(mavlink.MAV_VTOL_STATE_UNDEFINED, self._autopilot.landed_state)
         )
 
     def _attitude(self, now: float) -> Built:
@@ -140,53 +151,55 @@ class Telemetry:
         if measured is None or not is_finite(measured):
             return ()
         roll, pitch, yaw = euler_of(measured.attitude)
-        return (mavlink.MAVLink_attitude_message(self.time_boot_ms(measured.time), roll, pitch, yaw, *measured.rates),)
+        return packed(
+            mavlink.MAVLink_attitude_message(self.time_boot_ms(measured.time), roll, pitch, yaw, *measured.rates)
+        )
 
     def _global_position(self, now: float) -> Built:
         measured = self._own_state
         if measured is None:
             return ()
-        latitude, longitude, altitude = place_of(measured, self._home)
+        latitude, longitude, altitude = self._frame.place_of(measured)
         v_x, v_y, v_z = (clamp(100.0 * v, 16) for v in measured.velocity)
         heading = round(math.degrees(euler_of(measured.attitude)[2]) * 100.0) % 36000
-        return (
+        return packed(
             mavlink.MAVLink_global_position_int_message(
                 self.time_boot_ms(measured.time), latitude, longitude, altitude,
                 clamp(-1e3 * measured.position[2], 32), v_x, v_y, v_z, heading,
-            ),
+            )
         )  # fmt: skip
 
     def _gps_raw(self, now: float) -> Built:
         measured = self._own_state
         if measured is None:
             return ()
-        latitude, longitude, altitude = place_of(measured, self._home)
+        latitude, longitude, altitude = self._frame.place_of(measured)
         v_n, v_e, _ = measured.velocity
         speed = min(round(100.0 * math.hypot(v_n, v_e)), 65534)
         course = round(math.degrees(math.atan2(v_e, v_n)) * 100.0) % 36000
-        return (
+        return packed(
             mavlink.MAVLink_gps_raw_int_message(
                 self.time_boot_ms(measured.time) * 1000, mavlink.GPS_FIX_TYPE_RTK_FIXED,
                 latitude, longitude, altitude, 50, 50, speed, course, 20,
-            ),
+            )
         )  # fmt: skip
 
     def _home_position(self, now: float) -> Built:
-        return (
+        return packed(
             mavlink.MAVLink_home_position_message(
-                *place_of_home(self._home), 0.0, 0.0, 0.0,
+                *self._frame.origin, 0.0, 0.0, 0.0,
                 list(LEVEL), _NAN, _NAN, _NAN, self.time_boot_ms(now) * 1000,
-            ),
+            )
         )  # fmt: skip
 
     def _global_origin(self, now: float) -> Built:
-        return (mavlink.MAVLink_gps_global_origin_message(*place_of_home(self._home), self.time_boot_ms(now) * 1000),)
+        return packed(mavlink.MAVLink_gps_global_origin_message(*self._frame.origin, self.time_boot_ms(now) * 1000))
 
     def _battery(self, now: float) -> Built:
-        return (
+        return packed(
             mavlink.MAVLink_battery_status_message(
                 0, mavlink.MAV_BATTERY_FUNCTION_ALL, mavlink.MAV_BATTERY_TYPE_LIPO, 32767, _CELLS, -1, -1, -1, 100
-            ),
+            )
         )
 
     def _attitude_target(self, now: float) -> Built:
@@ -194,11 +207,7 @@ class Telemetry:
         attitude, rates, thrust = self._autopilot.state.actuation.target
         since = max(self._autopilot.state.actuation.target_since, self._boot_time)
         mask = 0 if attitude is not None else mavlink.ATTITUDE_TARGET_TYPEMASK_ATTITUDE_IGNORE
-        return (
-            mavlink.MAVLink_attitude_target_message(
-                self.time_boot_ms(since), mask, list(attitude or LEVEL), *rates, thrust
-            ),
-        )
+        return (_ATTITUDE_TARGET.pack(self.time_boot_ms(since), *(attitude or LEVEL), *rates, thrust, mask),)
 
     def _vfr_hud(self, now: float) -> Built:
         measured = self._own_state
@@ -209,7 +218,7 @@ class Telemetry:
         heading = round(math.degrees(euler_of(measured.attitude)[2])) % 360
         throttle = round(100.0 * self._autopilot.state.actuation.target[2])
         altitude = self._home.altitude - measured.position[2]
-        return (mavlink.MAVLink_vfr_hud_message(speed, speed, heading, throttle, altitude, -v_d),)
+        return packed(mavlink.MAVLink_vfr_hud_message(speed, speed, heading, throttle, altitude, -v_d))
 
     def _odometry(self, now: float) -> Built:
         measured = self._own_state
@@ -217,18 +226,18 @@ class Telemetry:
             return ()
         unknown = [_NAN] + [0.0] * 20
         velocity = into_body(measured.attitude, measured.velocity)
-        return (
+        return packed(
             mavlink.MAVLink_odometry_message(
                 self.time_boot_ms(measured.time) * 1000, mavlink.MAV_FRAME_LOCAL_NED, mavlink.MAV_FRAME_BODY_FRD,
                 *measured.position, list(measured.attitude), *velocity, *measured.rates, unknown, unknown,
-            ),
+            )
         )  # fmt: skip
 
     def _autopilot_version(self, now: float) -> Built:
-        return (
+        return packed(
             mavlink.MAVLink_autopilot_version_message(
                 _CAPABILITIES, _VERSION, 0, 0, 0, [0] * 8, [0] * 8, [0] * 8, 0, 0, self._system_id
-            ),
+            )
         )
 
     def _obstacles(self, now: float) -> Built:
@@ -238,12 +247,12 @@ class Telemetry:
             self._scan_messages = scan, () if scan is None else tuple(self._detections(scan))
         return self._scan_messages[1]
 
-    def _detections(self, scan: RangeSample) -> Iterator[Message]:
+    def _detections(self, scan: RangeSample) -> Iterator[Packed]:
         stamp = self.time_boot_ms(scan.time)
         for detection in scan.detections:
-            yield mavlink.MAVLink_obstacle_distance_3d_message(
-                stamp, mavlink.MAV_DISTANCE_SENSOR_LASER, mavlink.MAV_FRAME_BODY_FRD, detection.obstacle_id,
-                *detection.position_in_body, scan.range_min, scan.reach,
+            yield _OBSTACLE_DISTANCE_3D.pack(
+                stamp, *detection.position_in_body, scan.range_min, scan.reach, detection.obstacle_id,
+                mavlink.MAV_DISTANCE_SENSOR_LASER, mavlink.MAV_FRAME_BODY_FRD,
             )  # fmt: skip
 
     @property
@@ -271,10 +280,10 @@ class Telemetry:
     def _payload_heartbeat(self, now: float) -> Built:
         if self.payload is None:
             return ()
-        return (
+        return packed(
             mavlink.MAVLink_heartbeat_message(
                 mavlink.MAV_TYPE_ONBOARD_CONTROLLER, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, mavlink.MAV_STATE_ACTIVE, 3
-            ),
+            )
         )
 
     # Shared
@@ -283,16 +292,12 @@ class Telemetry:
         if measured is None:
             return ()
         return (
-            mavlink.MAVLink_attitude_quaternion_message(
-                self.time_boot_ms(measured.time), *measured.attitude, *measured.rates
+            _ATTITUDE_QUATERNION.pack(
+                self.time_boot_ms(measured.time), *measured.attitude, *measured.rates, *_NO_OFFSET
             ),
         )
 
     def _position_of(self, measured: Measurement | None) -> Built:
         if measured is None:
             return ()
-        return (
-            mavlink.MAVLink_local_position_ned_message(
-                self.time_boot_ms(measured.time), *measured.position, *measured.velocity
-            ),
-        )
+        return (_LOCAL_POSITION_NED.pack(self.time_boot_ms(measured.time), *measured.position, *measured.velocity),)

@@ -1,0 +1,101 @@
+"""How messages lie on the wire: one precompiled ``struct`` a kind, made from pymavlink's definition of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from itertools import accumulate
+from operator import attrgetter, itemgetter
+from typing import Any, NamedTuple
+
+import pymavlink.dialects.v20.ardupilotmega as mavlink
+
+from gcs.mavlink.messages import Message, Received
+
+
+class Packed(NamedTuple):
+    """A message without its header: the same for all who get it."""
+
+    layout: Layout
+    payload: bytes
+
+
+class Layout:
+    """The kind of message ``kind``, and its conversion to and from the payload of a frame.
+
+    Payloads are those of MAVLink 2, without trailing zeros. What is read may be shorter (zeros are missing), or longer
+    (a later version of the message has further fields).
+    """
+
+    def __init__(self, kind: type[Message]) -> None:
+        self.kind = kind
+        self.number: bytes = kind.id.to_bytes(3, "little")
+        """The message id as it is sent."""
+        self.crc_extra = bytes([kind.crc_extra])
+        """The last byte that a frame's checksum covers, which is not sent."""
+        self._pack, self._unpack, self._size = kind.unpacker.pack, kind.unpacker.unpack_from, kind.unpacker.size
+        names, lengths = list(kind.ordered_fieldnames), list(kind.array_lengths)
+        texts = [i for i, code in enumerate(kind.native_format.decode().lstrip("<")) if code == "c"]
+        self._has_text = bool(texts)
+        for i in texts:  # pymavlink keeps a text as it is on the wire beside the text that people read
+            names[i], lengths[i] = f"_{names[i]}_raw", 0
+        self._values = _tuple_of(attrgetter, names)
+        self._lengths = lengths if any(lengths) else None
+        """Lengths of the fields in the order of the wire, 0: no array; None: there is no array."""
+        firsts = accumulate((length or 1 for length in lengths), initial=0)
+        places = [slice(i, i + length) if length else i for i, length in zip(firsts, lengths, strict=False)]
+        self._order = _tuple_of(itemgetter, [places[i] for i in kind.orders])
+        targets = ("target_system", "target_component")
+        self._targets = [kind.fieldnames.index(name) for name in targets if name in kind.fieldnames]
+
+    def pack(self, *values: float) -> Packed:
+        """Return a message of these fields, in the order of the wire, arrays number by number.
+
+        Raises ``struct.error`` or ``OverflowError`` when a field does not fit its type.
+        """
+        return Packed(self, _without_trailing_zeros(self._pack(*values)))
+
+    def pack_message(self, message: Message) -> Packed:
+        """Return a message of this kind, packed. Raises as :meth:`pack`."""
+        values: Iterable[Any] = self._values(message)
+        if self._lengths is not None:
+            flat: list[Any] = []
+            for value, length in zip(values, self._lengths, strict=True):
+                if length:
+                    flat += value[:length]
+                else:
+                    flat.append(value)
+            values = flat
+        return self.pack(*values)
+
+    def read(self, payload: bytes, sequence: int, system: int, component: int) -> Received:
+        """Return the message of a payload that came with this sequence number from a component of a system."""
+        fields = self._order(self._unpack(payload.ljust(self._size, b"\0")))
+        if self._has_text:
+            fields = tuple([field.rstrip(b"\0") if isinstance(field, bytes) else field for field in fields])
+        message = self.kind(*fields)
+        header = message.get_header()
+        header.seq, header.srcSystem, header.srcComponent = sequence, system, component
+        if not self._targets:
+            return Received(message, system, component, sequence)
+        return Received(message, system, component, sequence, *[fields[i] for i in self._targets])
+
+
+def packed(*messages: Message) -> tuple[Packed, ...]:
+    """Return messages of ArduPilot's dialect, packed. Raises as :meth:`Layout.pack`."""
+    # By the class: some messages have a field ``id``.
+    return tuple([LAYOUTS[type(message).id].pack_message(message) for message in messages])
+
+
+def _tuple_of(getter: Callable[..., Callable[[Any], Any]], keys: Sequence[Any]) -> Callable[[Any], tuple[Any, ...]]:
+    """Return a function that gets ``keys`` of its argument, always as a tuple."""
+    get = getter(*keys)
+    return get if len(keys) > 1 else lambda source: (get(source),)
+
+
+def _without_trailing_zeros(payload: bytes) -> bytes:
+    """Return a payload as MAVLink 2 sends it: at least one byte."""
+    return payload.rstrip(b"\0") or payload[:1]
+
+
+LAYOUTS: dict[int, Layout] = {number: Layout(kind) for number, kind in mavlink.mavlink_map.items()}
+"""Layouts of ArduPilot's dialect, which holds the common one, by message id."""
