@@ -9,12 +9,13 @@ export OPENBLAS_NUM_THREADS := 1
 # Compiled modules are kept: the tests start many programs.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help install fly test test-fast golden golden-renew benchmark docs clean
+.PHONY: help install fly test test-fast mutants golden golden-renew benchmark docs clean
 
 help:
 	@echo "make fly          fly $(MISSION) with a simulated swarm (MISSION=... for another one)"
 	@echo "make test         ruff, mypy and the tests"
 	@echo "make test-fast    ruff, mypy and the tests that need no flight"
+	@echo "make mutants      see whether the fast tests notice changes of the flight path (MUTANTS='--number 60 --seed 1')"
 	@echo "make golden       compare short flights, to the byte, with tests/golden/checksums.json"
 	@echo "make golden-renew write these checksums anew"
 	@echo "make benchmark    the measurements of speed"
@@ -35,7 +36,10 @@ test-fast: $(INSTALLED)
 	$(VENV)/bin/ruff check
 	$(VENV)/bin/ruff format --check
 	$(VENV)/bin/mypy
-	$(VENV)/bin/python -m pytest --numprocesses auto --dist loadfile -m "not slow"
+	$(VENV)/bin/python -m pytest --numprocesses auto --dist loadfile -m "not slow" --durations 15
+
+mutants: $(INSTALLED)
+	$(VENV)/bin/python tests/mutation/mutants.py $(MUTANTS)
 
 golden: $(INSTALLED)
 	$(VENV)/bin/python tests/golden/golden.py

@@ -4,7 +4,12 @@ from __future__ import annotations
 
 import pymavlink.dialects.v20.common as mavlink
 import pytest
+from hypothesis import settings
 from vehicle_bench import Bench
+
+# The same examples at every run, however busy the machine is.
+settings.register_profile("repeatable", deadline=None, derandomize=True)
+settings.load_profile("repeatable")
 
 
 @pytest.fixture

@@ -112,7 +112,7 @@ def test_unknown_incompatibility_flags_are_refused() -> None:
 
 
 @given(st.binary(max_size=400))
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 def test_codec_reads_a_good_frame_in_its_own_datagram_after_any_bytes(data: bytes) -> None:
     codec = Codec(2, 1)
     codec.decode(data)

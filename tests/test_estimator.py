@@ -8,7 +8,9 @@ from flight_in_process import MISSIONS
 
 from gcs.config import read_system
 from idc_controller.estimation.estimator import Estimator
-from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position, SensorGroup
+from idc_controller.estimation.measurement_model import MeasurementModel
+from idc_controller.estimation.measurements import PAYLOAD, Attitude, Channel, MeasurementNoise, Position, SensorGroup
+from idc_controller.estimation.settings import MeasurementModelSettings
 from idc_controller.model.linear import LinearModel
 from idc_controller.rotations import quaternion_product
 from idc_controller.rotations_float import attitude_of_direction
@@ -189,6 +191,22 @@ def test_estimator_uses_velocity_when_position_is_unusable(position):
     assert not any(record.covariance_reset for record in innovations)
 
 
+def test_estimate_is_the_same_whatever_an_isolated_channel_measures():
+    """It is left out, though it would be accepted: neither gated nor given less weight."""
+    estimates = []
+    for offset in (0.02, -0.02):
+        estimator = started()
+        for k, samples in enumerate(samples_of(1.5)):
+            off = 0.3 * INTERVAL * k if k < 70 else offset
+            for measurement in corrupted(samples, pose=samples[5].pose + np.array([off, 0.0, 0.0])):
+                estimator.add(measurement)
+            estimate = estimator.estimate(INTERVAL * (k + 1), REFERENCE)
+            if k >= 69:
+                assert estimator.health.isolation.isolated == (Channel(1, Position, 0),)
+        estimates.append(estimate.x)
+    assert estimates[0] == pytest.approx(estimates[1], abs=1e-12)
+
+
 def test_estimator_uses_position_when_velocity_is_missing():
     moments = samples_of(2.0)
     _, estimate, _ = run([corrupted(s, motion=np.full(3, np.nan)) for s in moments])
@@ -251,6 +269,15 @@ def test_held_position_is_ignored_when_payload_unit_is_received():
         estimator.hold_payload(moment[0].time, HOVER + np.array([0.0, 3.0, 0.0]), 0.0)
         estimate = estimator.estimate(moment[0].time, REFERENCE)
     assert np.linalg.norm(estimate.x[LAYOUT.r_0] - HOVER) < 0.03
+
+
+def test_stacked_observations_know_the_rows_of_the_payload_unit_and_of_each_height():
+    model = MeasurementModel(MODEL, MeasurementNoise(), MeasurementModelSettings())
+    keys = ((2, Position), (PAYLOAD, Attitude), (1, Attitude), (PAYLOAD, Position), (0, Position))
+    stack = model.stack(keys)
+    assert stack.sizes.tolist() == [6, 6, 4, 6, 6]
+    assert np.flatnonzero(stack.of_payload).tolist() == [*range(6, 12), *range(16, 22)]
+    assert (stack.uavs.tolist(), stack.heights.tolist()) == ([2, 0], [2, 24])
 
 
 def test_estimated_vehicles_match_measurement_model():

@@ -17,7 +17,10 @@ def test_bias_drift_scale_sign_frame_and_quantisation():
     drift = injected(fault("drift", start=2.0, channel="position", rate=0.1, axes=["y"]))
     assert reported(drift, 1.9).position.position[1] == 2.0
     assert reported(drift, 7.0).position.position[1] == pytest.approx(2.5)
+    everywhere = injected(fault("drift", start=2.0, channel="velocity", rate=-0.1))
+    assert reported(everywhere, 7.0).position.velocity == pytest.approx((-0.4, -0.3, -0.2))
     assert reported(injected(fault("scale", channel="velocity", factor=2.0)), 1.0).position.velocity == (0.2, 0.4, 0.6)
+    assert reported(injected(fault("flipped_sign", channel="velocity")), 1.0).position.velocity == (-0.1, -0.2, -0.3)
     assert reported(injected(fault("flipped_sign", channel="rates")), 1.0).attitude.rates == (-0.01, -0.02, -0.03)
     assert reported(injected(fault("swapped_frame", channel="position")), 1.0).position.position == (2.0, 1.0, 5.0)
     coarse = injected(fault("quantisation", channel="velocity", step=0.25))

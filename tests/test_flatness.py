@@ -116,7 +116,7 @@ def vectors(limit):
     return st.tuples(*3 * [st.floats(-limit, limit)]).map(np.array)
 
 
-@settings(deadline=None, derandomize=True, max_examples=60)
+@settings(max_examples=60)
 @given(
     vehicles=st.sampled_from([3, 4, 6]),
     times=st.lists(st.floats(0.0, 20.0), min_size=1, max_size=8),

@@ -14,9 +14,7 @@ from gcs.mission.read import read_mission
 from gcs.mission.route import HoldForever, Land, Route, TakeOff
 
 MISSIONS = Path(__file__).parents[1] / "missions"
-FUZZ = settings(
-    max_examples=75, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.function_scoped_fixture]
-)
+FUZZ = settings(max_examples=75, suppress_health_check=[HealthCheck.function_scoped_fixture])
 
 numbers = st.one_of(
     st.integers(-3, 12), st.sampled_from([-1, 0, 16, 17, 18, 20, 21, 22, 93, 177, 178, 600, 601, 2000, 5001, 10**30]),

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from flight_in_process import MISSIONS
-from scipy.linalg import block_diag, solve_discrete_are
-from scipy.optimize import nnls
+from mpc_oracle import optimal_moves
+from scipy.linalg import solve_discrete_are
 
 from gcs.config import read_system
 from idc_controller.control.force_components import (
@@ -44,6 +44,13 @@ def error_of(**parts):
     return error
 
 
+def free_move(error):
+    """The move without limits: linear in the error, and a small one reaches no limit."""
+    output = DEFAULT.track(1e-3 * error, STAGES)
+    assert output.iterations == 0
+    return 1e3 * output.delta_u
+
+
 def next_error(mpc, error):
     return mpc.prediction.A @ error + mpc.prediction.B @ mpc.track(error, STAGES).delta_u
 
@@ -74,29 +81,6 @@ def test_blocked_moves_cost_little_and_bring_the_system_to_rest():
     assert np.max(np.abs(error)) < 1e-4
 
 
-def reference_solution(mpc, error, stages):
-    """The same QP, slacks and all, as a least-distance problem (Lawson and Hanson, chapter 23)."""
-    qp, s = mpc.qp, mpc.settings
-    m, slacks = len(qp.G), int(qp.slack_of_row.max()) + 1
-    P = block_diag(qp.P, s.slack_quadratic * np.eye(slacks))
-    g = np.append(mpc._gradient @ error, np.full(slacks, s.slack_linear))
-    columns = np.zeros((m, slacks))
-    soft = np.flatnonzero(qp.slack_of_row >= 0)
-    columns[soft, qp.slack_of_row[soft]] = -1.0
-    G = np.block([[qp.G, columns], [np.zeros((slacks, qp.G.shape[1])), -np.eye(slacks)]])
-    h = np.append(mpc.bounds(error, stages), np.zeros(slacks))
-    L = np.linalg.cholesky((P + P.T) / 2)
-    shift = np.linalg.solve(L, g)  # y = L'x + shift: the nearest point to zero in A y >= b
-    A = -np.linalg.solve(L, G.T).T
-    b = -h + A @ shift
-    scale = np.linalg.norm(np.column_stack([A, b]), axis=1)
-    E = np.vstack([A.T, b]) / scale
-    f = np.append(np.zeros(len(P)), 1.0)
-    u, _ = nnls(E, f, maxiter=20 * len(h))
-    r = E @ u - f
-    return np.linalg.solve(L.T, -r[:-1] / r[-1] - shift)
-
-
 @pytest.mark.parametrize(
     "parts",
     [
@@ -104,16 +88,19 @@ def reference_solution(mpc, error, stages):
         {"Theta": (np.radians(4.5), 0.0, 0.0), "omega": (0.4, 0.0, 0.0)},
         {"r_0": (0.0, 0.0, -2.0)},  # thrusts at their lower limit
         {"r_0": (3.0, 0.0, 0.0)},  # tilts at their limit
+        {"v_0": (0.0, 0.0, 0.8), "height": 0.3},  # about to hit the ground
+        {"s": (0.3, 0.2, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)},  # a vehicle comes close to its neighbours
     ],
-    ids=["tilted", "tilting", "high", "far"],
+    ids=["tilted", "tilting", "high", "far", "sinking", "close"],
 )  # fmt: skip
-def test_mpc_with_active_constraints_agrees_with_reference_solver(parts):
-    error = error_of(**parts)
-    output = DEFAULT.track(error, STAGES)
+def test_mpc_with_active_constraints_finds_the_optimum_of_the_problem_as_the_paper_has_it(parts):
+    height = parts.get("height", 5.0)
+    error = error_of(**{name: value for name, value in parts.items() if name != "height"})
+    output = DEFAULT.track(error, stages_at(height))
     assert output.iterations > 0
     assert not output.infeasible
-    moves_found = reference_solution(DEFAULT, error, STAGES)
-    assert output.delta_u == pytest.approx(moves_found[: LAYOUT.inputs], abs=2e-3)
+    moves = optimal_moves(MODEL, DEFAULT.settings, DEFAULT.prediction.blocks, error, height)
+    assert output.delta_u == pytest.approx(moves[0], abs=2e-3)
 
 
 def test_hard_input_limits_are_kept_whatever_the_error():
@@ -145,26 +132,32 @@ def test_payload_tilt_limit_binds_before_it_is_reached():
 def test_ground_is_a_soft_limit():
     stages = stages_at(0.3)
     error = error_of(v_0=(0.0, 0.0, 0.8))  # sinking fast, 5 cm above the ground
-    free = DEFAULT.qp.unconstrained(DEFAULT._gradient @ error)
     output = DEFAULT.track(error, stages)
     assert output.iterations > 0
-    assert np.sum(output.delta_u[LAYOUT.f_setpoint]) > np.sum(free[: LAYOUT.inputs][LAYOUT.f_setpoint])
+    assert np.sum(output.delta_u[LAYOUT.f_setpoint]) > np.sum(free_move(error)[LAYOUT.f_setpoint])
 
 
-def test_mpc_marks_step_and_clips_move_when_qp_has_no_solution(monkeypatch):
+@pytest.mark.parametrize(
+    "parts",
+    [{"r_0": (3.0, -2.0, -4.0)}, {"r_0": (-3.0, 2.0, 4.0)}, {"r_0": (0.02, -0.01, 0.01)}],
+    ids=["upper and lower", "lower and upper", "within"],
+)
+def test_mpc_marks_step_and_cuts_move_to_both_input_limits_when_qp_has_no_solution(parts, monkeypatch):
     mpc = ModelPredictiveController(MODEL, DEFAULT.settings)
-    far = error_of(r_0=(3.0, 0.0, 0.0))
+    s, hover = mpc.settings, MODEL.parameters.hover_thrust
 
     def fail(g, h):
         raise SolverError("no")
 
     with monkeypatch.context() as patched:
         patched.setattr(mpc.qp, "solve", fail)
-        output = mpc.track(far, STAGES)
+        output = mpc.track(error_of(**parts), STAGES)
     assert output.infeasible
-    u = inputs_in_force_components(STAGES.u[0], LAYOUT, MODEL.parameters.hover_thrust) + output.delta_u
-    assert np.abs(u[LAYOUT.n_setpoint]).max() == pytest.approx(np.tan(mpc.settings.tuning.uav_tilt_limit))
-    assert not mpc.track(far, STAGES).infeasible
+    u = inputs_in_force_components(STAGES.u[0], LAYOUT, hover)
+    tilt, thrust_max = np.full(8, np.tan(s.tuning.uav_tilt_limit)), s.thrust_share_max * MODEL.parameters.thrust_max
+    lower, upper = np.append(-tilt, [s.thrust_min] * 4), np.append(tilt, [thrust_max] * 4)
+    assert u + output.delta_u == pytest.approx(np.clip(u + free_move(error_of(**parts)), lower, upper), abs=1e-6)
+    assert not mpc.track(error_of(**parts), STAGES).infeasible
 
 
 @pytest.mark.parametrize("where", ["gradient", "bound"])

@@ -44,6 +44,23 @@ def test_pose_is_extrapolated_by_estimated_motion_when_none_is_measured():
     assert cluster.surface_points.points[0] == pytest.approx(HERE + np.array([5.0, 2.0 * t, -5.0 * t]), abs=2e-3)
 
 
+@pytest.mark.parametrize(("time", "nearest"), [(0.29, 3), (0.21, 2), (0.16, 2), (0.14, 1), (0.0, 0), (0.36, 4)])
+def test_scan_is_placed_by_the_pose_nearest_in_time(time, nearest):
+    """The poses jump from sample to sample, and claim to stand still: the place shows which was taken."""
+    scans = ScanAssembly(SENSORS)
+    half = np.radians(10.0) / 2.0
+    for k in range(5):
+        quaternion = np.array([np.cos(k * half), 0.0, 0.0, np.sin(k * half)])
+        scans.poses.add_measured(Attitude(0.1 * k, 0, quaternion, np.zeros(3)))
+        scans.poses.add_measured(Position(0.1 * k, 0, HERE + k, np.zeros(3)))
+    for message in messages_of(RangeSample(time, REACH, (Detection(1, (5.0, 0.0, 0.0)),))):
+        scans.add(detection(message), 0, time)
+    [[cluster]] = scans.frames(0.4)
+    heading = nearest * np.radians(10.0)
+    expected = HERE + nearest + 5.0 * np.array([np.cos(heading), np.sin(heading), 0.0])
+    assert cluster.surface_points.points[0] == pytest.approx(expected, abs=2e-3)
+
+
 def test_scan_is_discarded_without_pose_and_estimate():
     m, scene = map_of(), Scene(0)
     for k in range(10):

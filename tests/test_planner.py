@@ -83,7 +83,7 @@ def test_poles_must_be_real_and_stable(rates):
     st.lists(st.floats(0.0, 5.0), min_size=K, max_size=K),
     st.floats(0.0, 5.0),
 )
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_safe_sets_are_nested(rates, rows, first):
     """Whenever h_0 >= 0 and all rows hold, h stays at zero or more: the rows' first stages put it in every set."""
     operator = barrier_operator(rates, SETTINGS.chain)

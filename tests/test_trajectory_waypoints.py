@@ -82,7 +82,7 @@ def missions(draw):
     return start, legs
 
 
-@settings(max_examples=60, deadline=None, derandomize=True)
+@settings(max_examples=60)
 @given(missions())
 def test_any_mission_keeps_limits_passes_every_waypoint_and_rests_at_both_ends(mission):
     start, legs = mission
@@ -106,7 +106,7 @@ def test_any_mission_keeps_limits_passes_every_waypoint_and_rests_at_both_ends(m
         assert np.allclose(ends[0, -1], legs[-1].position, atol=2e-6)
 
 
-@settings(max_examples=30, deadline=None, derandomize=True)
+@settings(max_examples=30)
 @given(missions(), st.floats(0.0, 1.0))
 def test_stop_leaves_continuously_keeps_limits_and_never_ends_later(mission, share):
     start, legs = mission
