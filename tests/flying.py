@@ -8,7 +8,7 @@ import numpy as np
 
 from vehicle_sim.autopilot.airframe import Airframe
 from vehicle_sim.world.rotors import IDLE, RotorGeometry, Rotors
-from vehicle_sim.world.sensors import Measurement, NavigationSensor, SensorNoise
+from vehicle_sim.world.sensors import Measurement, NavigationSensors, SensorNoise
 
 AIRFRAME = Airframe(
     mass=0.7,
@@ -23,13 +23,19 @@ PHYSICS_STEP = 0.002
 ONBOARD_EVERY = 2
 
 
+def measured(sensor: NavigationSensors, now: float, attitude, rates, position, velocity) -> Measurement:
+    """One sample of the sensor of one vehicle."""
+    state = np.concatenate([position, attitude, velocity, rates])
+    return Measurement.of_row(now, sensor.measure(state[None])[0].tolist())
+
+
 class Body:
     """Mass ``carried`` hangs at the centre, so that the vehicle has to learn what it carries. Ground at z = 0."""
 
     def __init__(self, carried: float = 0.0, noise: SensorNoise | None = None, seed: int = 0) -> None:
         self.mass = AIRFRAME.mass + carried
-        self.sensor = NavigationSensor(noise or SensorNoise(), seed, 1)
-        self.rotors = Rotors(AIRFRAME.rotors, AIRFRAME.motor_time_constant, PHYSICS_STEP)
+        self.sensor = NavigationSensors([noise or SensorNoise()], seed, [1])
+        self.rotors = Rotors([AIRFRAME.rotors], [AIRFRAME.motor_time_constant], PHYSICS_STEP)
         self.command = IDLE
         self.thrust = 0.0
         self.tick = 0
@@ -43,10 +49,10 @@ class Body:
         return self.tick * PHYSICS_STEP
 
     def measure(self) -> Measurement:
-        return self.sensor.measure(self.now, self.attitude, self.rates, self.position, self.velocity)
+        return measured(self.sensor, self.now, self.attitude, self.rates, self.position, self.velocity)
 
     def advance(self) -> None:
-        self.thrust, *torque = self.rotors.advance(self.command)
+        (self.thrust,), (torque,) = self.rotors.advance(np.array([self.command]))
         w, x, y, z = self.attitude.tolist()
         # The third column of the rotation matrix; the inertia is a multiple of the identity: no gyroscopic term.
         up = np.array([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)])

@@ -4,13 +4,14 @@ import math
 
 import numpy as np
 import pytest
+from flying import measured
 
 from idc_controller.rotations import quaternion_from_euler
 from idc_controller.rotations_float import attitude_of_force
 from idc_controller.trajectory.settings import BrakingSettings
 from vehicle_sim.autopilot.attitude_control import AttitudeController
 from vehicle_sim.autopilot.hold_control import HoldPlan
-from vehicle_sim.world.sensors import Measurement, NavigationSensor, SensorNoise
+from vehicle_sim.world.sensors import Measurement, NavigationSensors, SensorNoise
 
 LEVEL = (1.0, 0.0, 0.0, 0.0)
 
@@ -66,8 +67,8 @@ def test_sensor_noise_has_its_sigmas_and_repeats_by_seed_and_id() -> None:
     truth = (tuple(quaternion_from_euler(0.1, 0.2, 2.0)), (0.1, 0.2, 0.3), (1.0, 2.0, -3.0), (0.5, 0.0, -0.5))
 
     def samples(seed: int, sensor_id: int, count: int = 4000) -> list[Measurement]:
-        sensor = NavigationSensor(noise, seed, sensor_id)
-        return [sensor.measure(0.0, *truth) for _ in range(count)]
+        sensor = NavigationSensors([noise], seed, [sensor_id])
+        return [measured(sensor, 0.0, *truth) for _ in range(count)]
 
     some = samples(1, 2)
     for field, index, sigma in (("position", 2, 0.02), ("velocity", 3, 0.05), ("rates", 1, 0.008)):
@@ -80,5 +81,5 @@ def test_sensor_noise_has_its_sigmas_and_repeats_by_seed_and_id() -> None:
     assert math.sqrt(np.mean(angle**2) / 3) == pytest.approx(0.003, rel=0.06)
     assert samples(1, 2, 50) == some[:50]
     assert samples(2, 2, 1) != some[:1] and samples(1, 3, 1) != some[:1]
-    perfect = NavigationSensor(SensorNoise(), 1, 1).measure(0.5, *truth)
+    perfect = measured(NavigationSensors([SensorNoise()], 1, [1]), 0.5, *truth)
     assert perfect.position == truth[2] and perfect.attitude == pytest.approx(truth[0], abs=1e-15)

@@ -17,8 +17,8 @@ from vehicle_sim.autopilot.airframe import Airframe
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.parameter_table import vehicle_parameters
 from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
-from vehicle_sim.world.rotors import IDLE, Rotors
-from vehicle_sim.world.sensors import NavigationSensor, SensorNoise
+from vehicle_sim.world.rotors import Rotors
+from vehicle_sim.world.sensors import Measurement, NavigationSensors, SensorNoise
 from vehicle_sim.world.world import World
 
 NOISE = SensorNoise(position=0.02, attitude=math.radians(0.2), velocity=0.02, rates=0.005)
@@ -37,27 +37,25 @@ def test_payload_is_braked_held_and_set_down(velocity: tuple[float, float]) -> N
     )  # fmt: skip
     airframes = [Airframe.of_system(system, i, config.uav) for i in range(n)]
     pilots = [Autopilot(airframe, vehicle_parameters(airframe, i, 250)) for i, airframe in enumerate(airframes)]
-    rotors = [Rotors(airframe.rotors, airframe.motor_time_constant, 0.002) for airframe in airframes]
-    sensors = [NavigationSensor(NOISE, 3, i) for i in range(n)]
-    speeds = [IDLE] * n
+    lags = [airframe.motor_time_constant for airframe in airframes]
+    rotors = Rotors([airframe.rotors for airframe in airframes], lags, 0.002)
+    sensors = NavigationSensors([NOISE] * n, 3, range(n))
+    speeds = np.zeros((n, 4))
     tilts, separations, modes, sinking = [], [], set(), []
     with World(system, 500) as world:
         place(world, start)
         for tick in range(12_000):
             now, state = tick * 0.002, world.state()
             if tick % 2 == 0:
-                for i, (pilot, uav) in enumerate(zip(pilots, state.uavs, strict=True)):
+                samples = sensors.measure(world.states()[1:])
+                for i, pilot in enumerate(pilots):
                     thrust = float(system.hover_thrust[i]) / system.thrust_max
                     setpoint = AttitudeSetpoint((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), thrust, tick)
-                    measured = sensors[i].measure(
-                        now, uav.quaternion, uav.rates_in_body, uav.position_in_world, uav.velocity_in_world
-                    )
-                    speeds[i] = pilot.step(measured, now)
+                    speeds[i] = pilot.step(Measurement.of_row(now, samples[i].tolist()), now)
                     if tick == 0:
                         pilot.enter_offboard(setpoint, now, now)
                         pilot.arm(now, force=True)
-                        rotors[i].speeds = (math.sqrt(system.hover_thrust[i] / 4 / airframes[i].rotors.k_f),) * 4
-                        speeds[i] = rotors[i].speeds
+                        speeds[i] = rotors.speeds[i] = math.sqrt(system.hover_thrust[i] / 4 / airframes[i].rotors.k_f)
                     elif now < 0.8:
                         pilot.follow(setpoint, now)
             if tick % 50 == 0:
@@ -69,8 +67,7 @@ def test_payload_is_braked_held_and_set_down(velocity: tuple[float, float]) -> N
                     sinking.append(state.payload_velocity_in_world[2])
                 if not any(pilot.armed for pilot in pilots):
                     break
-            wrenches = [rotor.advance(command) for rotor, command in zip(rotors, speeds, strict=True)]
-            world.step([wrench[0] for wrench in wrenches], [wrench[1:] for wrench in wrenches])
+            world.step(*rotors.advance(speeds))
         assert world.touching_ground()
         # Flown to the loss (0.8 s), unnoticed (0.5 s), and half of the braking time (4 s).
         braking_distance = math.hypot(*velocity) * (0.8 + 0.5 + 2.0)

@@ -90,7 +90,7 @@ def place(world, state):
             system.body, system.uavs[i], _product(_conjugate(link_quaternion), uav_quaternion),
             _rotate_back(uav_quaternion, flipped(uav_rates.tolist())), physicsClientId=client,
         )  # fmt: skip
-    world._now = world._before = world._read()
+    world._readings.restart()
     world._contacts = None
 
 

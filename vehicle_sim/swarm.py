@@ -5,23 +5,18 @@ from collections.abc import Sequence
 from functools import partial
 from typing import NamedTuple, Self
 
-import numpy as np
-
 from gcs.config import SystemConfig
 from gcs.mavlink import px4
 from gcs.mavlink.address import Address
 from gcs.mission.model import DEFAULT_HOME, Home, Obstacle
+from idc_controller.arrays import Array
 from vehicle_sim.autopilot.airframe import Airframe
 from vehicle_sim.faults.fault_injector import FaultInjector
 from vehicle_sim.mavlink.vehicle import Vehicle
+from vehicle_sim.team import Team
 from vehicle_sim.world.obstacle_bodies import MovingObstacles
-from vehicle_sim.world.obstacle_bodies import Obstacle as ObstacleBody
-from vehicle_sim.world.range_sensor import RangeSensor
-from vehicle_sim.world.rotors import IDLE, Four, Rotors
-from vehicle_sim.world.sensors import PAYLOAD_UNIT, Measurement, NavigationSensor, SensorNoise
 from vehicle_sim.world.truth_log import TruthLog
 from vehicle_sim.world.world import World
-from vehicle_sim.world.world_state import UavState, WorldState
 
 TRUTH_RATE = 50  # Hz, at least
 REST_SPEED = 0.1  # m/s
@@ -35,40 +30,6 @@ class _Periods(NamedTuple):
     onboard: int
     row: int
     scan: int
-
-
-class _Uav:
-    """One vehicle with its rotors and sensors."""
-
-    def __init__(self, vehicle: Vehicle, airframe: Airframe, config: SystemConfig, seed: int) -> None:
-        noise = config.sensors
-        uav_noise = SensorNoise(
-            noise.position, math.radians(noise.attitude_deg), noise.uav_velocity, noise.uav_rates
-        )  # fmt: skip
-        self.vehicle = vehicle
-        self._rotors = Rotors(airframe.rotors, airframe.motor_time_constant, 1.0 / config.rates.physics)
-        self._sensor = NavigationSensor(uav_noise, seed, vehicle.system_id)
-        self.range_sensor = RangeSensor(config.range_sensor, seed, vehicle.system_id)
-        self._command: Four = IDLE
-
-    def wrench(self) -> Four:
-        """Return thrust and torques of the rotors over the next physics step."""
-        return self._rotors.advance(self._command)
-
-    def step(self, state: UavState, payload_sample: Measurement, faults: FaultInjector, now: float) -> None:
-        """Measure, relay the payload's sample, and let the autopilot take a step."""
-        vehicle, number = self.vehicle, self.vehicle.system_id
-        sample = self._sensor.measure(
-            now, state.quaternion, state.rates_in_body, state.position_in_world, state.velocity_in_world
-        )
-        vehicle.relay(faults.payload_sample(number, payload_sample))
-        self._command = vehicle.step(faults.own_sample(number, sample), now)
-        vehicle.report(faults.reported_sample(number, vehicle.autopilot.state.navigation.reported))
-
-    def scan(self, state: UavState, obstacles: Sequence[ObstacleBody], faults: FaultInjector, now: float) -> None:
-        """Scan for obstacles."""
-        scan = self.range_sensor.scan(now, state.position_in_world, state.quaternion, obstacles)
-        self.vehicle.take_scan(faults.range_sample(self.vehicle.system_id, scan))
 
 
 class Swarm:
@@ -94,7 +55,7 @@ class Swarm:
         gui: bool = False,
     ) -> None:
         """``ground_address`` is where the vehicles offer themselves. Raises :class:`SimulationError`."""
-        system, rates, noise = config.true_parameters(), config.rates, config.sensors
+        system, rates = config.true_parameters(), config.rates
         self.world = World(system, rates.physics, gui, config.world)
         try:
             self._obstacles = MovingObstacles(self.world.obstacles, obstacles)
@@ -110,23 +71,18 @@ class Swarm:
         )
         self._steps = 0
         self._contacts = 0
-        self._uavs = []
-        for i in range(1, system.number_of_uavs + 1):
-            airframe = Airframe.of_system(system, i - 1, config.uav)
-            vehicle = Vehicle(
+        airframes = [Airframe.of_system(system, i, config.uav) for i in range(system.number_of_uavs)]
+        self.vehicles = tuple(
+            Vehicle(
                 i, airframe, onboard_rate=rates.onboard, telemetry_rate=rates.telemetry, home=home or DEFAULT_HOME,
                 ground_address=ground_address, clock=partial(self._faults.clock, i), autopilot=config.onboard(),
                 link=config.vehicle_link,
-            )  # fmt: skip
-            self._uavs.append(_Uav(vehicle, airframe, config, seed))
-        self.vehicles = tuple(uav.vehicle for uav in self._uavs)
-        payload_noise = SensorNoise(
-            noise.position, math.radians(noise.attitude_deg), noise.payload_velocity, noise.payload_rates
-        )
-        self._payload_sensor = NavigationSensor(payload_noise, seed, PAYLOAD_UNIT)
-        state = self.world.state()
-        self._onboard(state)
-        self._scan(state)
+            )
+            for i, airframe in enumerate(airframes, start=1)
+        )  # fmt: skip
+        self._team = Team(self.vehicles, airframes, config, seed, self._faults)
+        self._onboard(self.world.states())
+        self._team.scan(self.world.state(), self.world.obstacles)
 
     @property
     def time(self) -> float:
@@ -199,48 +155,28 @@ class Swarm:
         world = self.world
         if self.take_off_time is not None:
             self._obstacles.move((self._steps + 1) / world.physics_hz - self.take_off_time)
-        wrenches = [uav.wrench() for uav in self._uavs]
         forces = self._faults.disturb(world, world.time)
-        world.step([wrench[0] for wrench in wrenches], [wrench[1:] for wrench in wrenches], *(forces or ()))
+        world.step(*self._team.wrenches(), *(forces or ()))
         self._steps += 1
         if self._truth is not None:
             self._contacts = max(self._contacts, world.contacts().pairs)
-        measures = self._steps % self._periods.onboard == 0
-        records = self._steps % self._periods.row == 0 and self._truth is not None
-        scans = self._steps % self._periods.scan == 0
-        if not (measures or records or scans or self.take_off_time is None):
-            return
-        state = world.state()
-        if self.take_off_time is None and not all(uav.cradled for uav in state.uavs):
-            self.take_off_time = state.time
-            self._faults.took_off(state.time)
-        if measures:
-            self._onboard(state)
-        if scans:
-            self._scan(state)
-        if records and self._truth is not None:
-            self._truth.write(state, self._contacts, world.obstacles.all())
+        if self.take_off_time is None and not world.all_cradled:
+            self.take_off_time = world.time
+            self._faults.took_off(world.time)
+        if self._steps % self._periods.onboard == 0:
+            self._onboard(world.states())
+        if self._steps % self._periods.scan == 0:
+            self._team.scan(world.state(), world.obstacles)
+        if self._steps % self._periods.row == 0 and self._truth is not None:
+            self._truth.write(world.state(), self._contacts, world.obstacles.all())
             self._contacts = 0
 
-    def _onboard(self, state: WorldState) -> None:
-        """Measure, and let every autopilot take a step."""
-        payload_sample = self._payload_sensor.measure(
-            state.time, state.payload_quaternion, state.payload_rates_in_payload, state.payload_position_in_world,
-            state.payload_velocity_in_world,
-        )  # fmt: skip
-        for uav, uav_state in zip(self._uavs, state.uavs, strict=True):
-            uav.step(uav_state, payload_sample, self._faults, state.time)
-            if self._truth is not None:
-                autopilot = uav.vehicle.autopilot
+    def _onboard(self, states: Array) -> None:
+        """Let all vehicles take an onboard step, and record what they fly."""
+        now = self.world.time
+        self._team.step(states, now)
+        if self._truth is not None:
+            for vehicle in self.vehicles:
+                autopilot = vehicle.autopilot
                 mode = px4.mode_name(autopilot.mode)
-                self._truth.write_mode(
-                    state.time, uav.vehicle.system_id, mode, autopilot.armed, autopilot.failsafe
-                )  # fmt: skip
-
-    def _scan(self, state: WorldState) -> None:
-        """Let every vehicle scan, in a world with obstacles."""
-        if self.world.obstacles.all():
-            places = np.array([uav_state.position_in_world for uav_state in state.uavs])
-            near = self.world.obstacles.near(places, self._uavs[0].range_sensor.reach)
-            for uav, uav_state, obstacles in zip(self._uavs, state.uavs, near, strict=True):
-                uav.scan(uav_state, obstacles, self._faults, state.time)
+                self._truth.write_mode(now, vehicle.system_id, mode, autopilot.armed, autopilot.failsafe)

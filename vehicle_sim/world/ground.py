@@ -8,7 +8,8 @@ import pybullet
 from gcs.config.tables import PadSettings
 from idc_controller.payload_hull import PayloadHull
 from idc_controller.rotations_float import into_body
-from vehicle_sim.world.world_state import flipped, quaternion_from_engine
+from vehicle_sim.world.multibody import Multibody
+from vehicle_sim.world.world_state import flipped, product, quaternion_from_engine
 
 # Contact points closer than this (m) to the plane of the payload's lower face are the payload standing.
 _STANDING_DEPTH = 0.02
@@ -26,6 +27,9 @@ class Contacts(NamedTuple):
 
     pairs: int
     standing: bool
+
+
+_NO_CONTACTS = Contacts(0, False)
 
 
 class Ground:
@@ -49,15 +53,18 @@ class Ground:
         """Return True for a payload low enough to stand on pad or ground."""
         return payload[0][2] <= self._standing_height
 
-    def contacts(self, system: int, payload: Pose) -> Contacts:
-        """Return the contacts of the last step; ``system`` is the engine's body of payload, links and UAVs."""
+    def contacts(self, system: Multibody, payload: Pose) -> Contacts:
+        """Return the contacts of the last step; ``payload`` is the pose of its principal axes."""
+        points = pybullet.getContactPoints(physicsClientId=self._client)
+        if not points:
+            return _NO_CONTACTS
+        payload = payload[0], product(payload[1], system.payload_in_axes)
         pairs: set[tuple[int, int, int, int]] = set()
         standing = False
-        points = pybullet.getContactPoints(physicsClientId=self._client)
         for _, body_a, body_b, link_a, link_b, on_a, on_b, _, distance, force, *_ in points:
             if distance > 0.0 and force <= 0.0:
                 continue
-            if body_b == system and body_a != body_b:
+            if body_b == system.body and body_a != body_b:
                 body_a, body_b, link_a, link_b, on_a, on_b = body_b, body_a, link_b, link_a, on_b, on_a
             if link_a == -1 and body_b in self._bodies and self._is_in_lower_face(payload, on_a):
                 standing = True

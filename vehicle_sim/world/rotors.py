@@ -5,9 +5,14 @@ seen from above), 3 front left, 4 rear right (clockwise).
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
+from idc_controller.arrays import Array
 from vehicle_sim.world.errors import SimulationError
+from vehicle_sim.world.rotor_kernels import advance_rotors
 
 Four = tuple[float, float, float, float]
 
@@ -105,46 +110,41 @@ class Mixer:
 
 
 class Rotors:
-    """Rotor speeds that follow their commands with a first-order lag, advanced by the physics step.
+    """Rotor speeds of N vehicles that follow their commands with a first-order lag, advanced by the physics step.
 
-    ``advance`` is exact for a command that stays constant over the step, and returns the mean force and torques over
-    the step, so that neither the lag nor the force depends on the step's length.
+    ``advance`` is exact for a command that stays constant over the step, and gives the mean force and torques over
+    the step, so that neither the lag nor the force depends on the step's length. ``speeds`` (N, 4) in rad/s.
     """
 
-    def __init__(self, geometry: RotorGeometry, motor_time_constant: float, physics_step: float) -> None:
-        """Rotors at rest; time constant and physics step in s, both positive (else :class:`SimulationError`)."""
-        if not (motor_time_constant > 0.0 and physics_step > 0.0):
+    def __init__(
+        self, geometries: Sequence[RotorGeometry], motor_time_constants: Sequence[float], physics_step: float
+    ) -> None:
+        """Rotors at rest; time constants and physics step in s, both positive (else :class:`SimulationError`)."""
+        if not (min(motor_time_constants) > 0.0 and physics_step > 0.0):
             raise SimulationError("motor_time_constant and physics_step must be positive")
-        self._k_f = geometry.k_f
-        self._lever = geometry.lever
-        self._torque_to_thrust = geometry.torque_to_thrust
-        self._speed_max = geometry.rotor_speed_max
-        ratio = physics_step / motor_time_constant
-        self._decay = math.exp(-ratio)
-        # Omega = c + d exp(-t / T): its square's mean over the step is c^2 + 2 c d mean_1 + d^2 mean_2.
-        self._mean_1 = -math.expm1(-ratio) / ratio
-        self._mean_2 = -math.expm1(-2.0 * ratio) / (2.0 * ratio)
-        self.speeds: Four = IDLE
-
-    def advance(self, command: Four) -> Four:
-        """One physics step under the commanded speeds (rad/s): mean thrust (N), mean body torques (N m, FRD)."""
-        c_1, c_2, c_3, c_4 = command
-        s_1, s_2, s_3, s_4 = self.speeds
-        decay, mean_1, mean_2, k_f, top = self._decay, 2.0 * self._mean_1, self._mean_2, self._k_f, self._speed_max
-        c_1 = c_1 if c_1 < top else top
-        c_2 = c_2 if c_2 < top else top
-        c_3 = c_3 if c_3 < top else top
-        c_4 = c_4 if c_4 < top else top
-        d_1, d_2, d_3, d_4 = s_1 - c_1, s_2 - c_2, s_3 - c_3, s_4 - c_4
-        self.speeds = (c_1 + d_1 * decay, c_2 + d_2 * decay, c_3 + d_3 * decay, c_4 + d_4 * decay)
-        f_1 = k_f * (c_1 * (c_1 + mean_1 * d_1) + mean_2 * d_1 * d_1)
-        f_2 = k_f * (c_2 * (c_2 + mean_1 * d_2) + mean_2 * d_2 * d_2)
-        f_3 = k_f * (c_3 * (c_3 + mean_1 * d_3) + mean_2 * d_3 * d_3)
-        f_4 = k_f * (c_4 * (c_4 + mean_1 * d_4) + mean_2 * d_4 * d_4)
-        lever = self._lever
-        return (
-            f_1 + f_2 + f_3 + f_4,
-            lever * (f_2 + f_3 - f_1 - f_4),
-            lever * (f_1 + f_3 - f_2 - f_4),
-            self._torque_to_thrust * (f_1 + f_2 - f_3 - f_4),
+        self._motors = np.array(
+            [
+                _motor(geometry, physics_step / time_constant)
+                for geometry, time_constant in zip(geometries, motor_time_constants, strict=True)
+            ]
         )
+        n = len(self._motors)
+        self.speeds, self._thrusts, self._torques = np.zeros((n, 4)), np.zeros(n), np.zeros((n, 3))
+
+    def advance(self, commands: Array) -> tuple[list[float], list[list[float]]]:
+        """One physics step under the commanded speeds (N, 4) (rad/s): mean thrusts (N), body torques (N m, FRD)."""
+        advance_rotors(self._motors, commands, self.speeds, self._thrusts, self._torques)
+        return self._thrusts.tolist(), self._torques.tolist()
+
+
+def _motor(geometry: RotorGeometry, ratio: float) -> tuple[float, ...]:
+    """Return the row of one vehicle for :func:`advance_rotors`; ``ratio`` of the physics step to the time constant."""
+    return (
+        math.exp(-ratio),
+        2.0 * (-math.expm1(-ratio) / ratio),
+        -math.expm1(-2.0 * ratio) / (2.0 * ratio),
+        geometry.k_f,
+        geometry.lever,
+        geometry.torque_to_thrust,
+        geometry.rotor_speed_max,
+    )

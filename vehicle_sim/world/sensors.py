@@ -3,16 +3,19 @@
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 
+from idc_controller.arrays import Array
 from vehicle_sim.world.errors import SimulationError
+from vehicle_sim.world.state_kernels import measure
 
 #: The payload's navigation unit draws from the generator of this id; vehicles count from 1.
 PAYLOAD_UNIT = 0
 
-_BLOCK = 4096
+_BLOCK = 256
+_CHANNELS = 12
 _FAR = 1e6
 _FLOAT32 = 3e38
 
@@ -29,6 +32,12 @@ class Measurement(NamedTuple):
     rates: tuple[float, float, float]
     position: tuple[float, float, float]
     velocity: tuple[float, float, float]
+
+    @classmethod
+    def of_row(cls, time: float, row: list[float]) -> Self:
+        """Return the sample whose numbers stand in a ``row`` of 13, as in :mod:`.state_kernels`."""
+        x, y, z, q_w, q_x, q_y, q_z, v_x, v_y, v_z, p, q, r = row
+        return cls(time, (q_w, q_x, q_y, q_z), (p, q, r), (x, y, z), (v_x, v_y, v_z))
 
     def is_usable(self) -> bool:
         """Return True if every number is finite and of a size that could be sent."""
@@ -73,57 +82,22 @@ class SensorNoise:
                 raise SimulationError(f"noise of {name} must be zero or more, got {value}")
 
 
-class NavigationSensor:
-    """Adds noise to the truth; the same seed and id give the same noise, different ids independent noise."""
+class NavigationSensors:
+    """Add noise to the truth; the same seed and id give the same noise, different ids independent noise."""
 
-    def __init__(self, noise: SensorNoise, seed: int, sensor_id: int) -> None:
-        """``sensor_id``: the vehicle's system id, or :data:`PAYLOAD_UNIT`."""
-        self._noise = noise
-        self._normals = _normals(np.random.default_rng([seed, sensor_id]))
+    def __init__(self, noises: Sequence[SensorNoise], seed: int, sensor_ids: Sequence[int]) -> None:
+        """``sensor_ids``: the vehicles' system ids and :data:`PAYLOAD_UNIT`, one for each of the ``noises``."""
+        self._sigmas = np.array([(n.position, n.attitude, n.velocity, n.rates) for n in noises])
+        self._normals = _normals([np.random.default_rng([seed, sensor_id]) for sensor_id in sensor_ids])
 
-    def measure(
-        self,
-        now: float,
-        attitude: Sequence[float],
-        rates: Sequence[float],
-        position: Sequence[float],
-        velocity: Sequence[float],
-    ) -> Measurement:
-        """Return a sample of the truth at ``now`` (s); arguments as in :class:`Measurement`, numpy rows or tuples."""
-        n = self._normals
-        noise = self._noise
-        w, x, y, z = attitude
-        half = 0.5 * noise.attitude
-        # A small rotation in the body frame, on the right of the attitude.
-        a, b, c = half * next(n), half * next(n), half * next(n)
-        scale = 1.0 / math.sqrt((1.0 + a * a + b * b + c * c) * (w * w + x * x + y * y + z * z))
-        s = noise.rates
-        p = noise.position
-        v = noise.velocity
-        # float(): the rows may come from numpy, whose scalars would make everything after them slow.
-        return Measurement(
-            now,
-            (
-                float(scale * (w - x * a - y * b - z * c)),
-                float(scale * (x + w * a + y * c - z * b)),
-                float(scale * (y + w * b + z * a - x * c)),
-                float(scale * (z + w * c + x * b - y * a)),
-            ),
-            (float(rates[0] + s * next(n)), float(rates[1] + s * next(n)), float(rates[2] + s * next(n))),
-            (
-                float(position[0] + p * next(n)),
-                float(position[1] + p * next(n)),
-                float(position[2] + p * next(n)),
-            ),
-            (
-                float(velocity[0] + v * next(n)),
-                float(velocity[1] + v * next(n)),
-                float(velocity[2] + v * next(n)),
-            ),
-        )
+    def measure(self, states: Array) -> Array:
+        """Return samples of the true ``states``, both (M, 13) as in :mod:`.state_kernels`."""
+        samples = np.empty_like(states)
+        measure(states, self._sigmas, next(self._normals), samples)
+        return samples
 
 
-def _normals(generator: np.random.Generator) -> Iterator[float]:
-    """Standard normal numbers as plain floats. Drawn in blocks: a call for each would cost more than its use."""
+def _normals(generators: Sequence[np.random.Generator]) -> Iterator[Array]:
+    """Standard normal numbers (M, 12), a row from each generator. Drawn in blocks: single calls cost more."""
     while True:
-        yield from generator.standard_normal(_BLOCK).tolist()
+        yield from np.stack([generator.standard_normal((_BLOCK, _CHANNELS)) for generator in generators], axis=1)

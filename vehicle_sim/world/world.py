@@ -4,29 +4,23 @@ All that crosses this boundary is SI, north-east-down, forward-right-down, quate
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple, Self
+from typing import Self
 
 import pybullet
 
 from gcs.config.tables import WorldConfig
+from idc_controller.arrays import Array
 from idc_controller.parameters import SystemParameters
-from idc_controller.rotations_float import Vector, into_body
+from idc_controller.rotations_float import Quaternion, Vector
 from vehicle_sim.world.cradles import Cradles
 from vehicle_sim.world.errors import SimulationError
-from vehicle_sim.world.ground import Contacts, Ground, Pose
+from vehicle_sim.world.ground import Contacts, Ground
 from vehicle_sim.world.multibody import check_supported, load_multibody
 from vehicle_sim.world.obstacle_bodies import ObstacleBodies
-from vehicle_sim.world.world_state import UavState, WorldState, flipped, product, quaternion_from_engine
+from vehicle_sim.world.readings import Readings
+from vehicle_sim.world.world_state import UavState, WorldState, flipped
 
 _ORIGIN = (0.0, 0.0, 0.0)
-
-
-class _Reading(NamedTuple):
-    """State of the engine after a step, in its own frames: pose and velocities of the payload, states of the UAVs."""
-
-    payload: Pose
-    payload_velocity: tuple[Vector, Vector]
-    uavs: Sequence[tuple[tuple[float, ...], ...]]
 
 
 class World:
@@ -75,11 +69,11 @@ class World:
         self.obstacles = ObstacleBodies(client)
         weights = [float(m_i) * parameters.g for m_i in parameters.m]
         self._cradles = Cradles(client, self._system.body, self._system.uavs, weights, settings.cradles)
+        self._readings = Readings(client, self._system)
         self._steps = 0
         self._thrusts = (0.0,) * parameters.number_of_uavs
         self._contacts: Contacts | None = None
-        self._now = self._before = self._read()
-        for i, uav in enumerate(self._now.uavs):
+        for i, uav in enumerate(self._readings.now.uavs):
             self._cradles.latch(i, uav[0], uav[1])
 
     @property
@@ -111,19 +105,19 @@ class World:
             apply_force(body, uav, (0.0, 0.0, thrusts[i]), _ORIGIN, link_frame, client)
             x, y, z = torques[i]
             apply_torque(body, uav, (x, -y, -z), link_frame, client)
-        if self._cradles.number_held == len(uavs):
+        if self.all_cradled:
             # A payload between held links hangs as much as it stands: wind would swing what the ground should hold.
             payload_force = uav_forces = None
         if uav_forces is not None:
-            for uav, force, state in zip(uavs, uav_forces, self._now.uavs, strict=True):
+            for uav, force, state in zip(uavs, uav_forces, self._readings.now.uavs, strict=True):
                 apply_force(body, uav, flipped(force), state[0], world_frame, client)
         if payload_force is not None:
-            apply_force(body, -1, flipped(payload_force), self._now.payload[0], world_frame, client)
+            apply_force(body, -1, flipped(payload_force), self._readings.now.payload[0], world_frame, client)
         pybullet.stepSimulation(client)
         self._steps += 1
         self._thrusts = tuple(thrusts)
         self._contacts = None
-        self._before, self._now = self._now, self._read()
+        self._readings.update()
 
     def set_payload_mass(self, mass: float) -> None:
         """Make the payload weigh ``mass`` (kg) from the next step on; its inertia changes in proportion."""
@@ -134,39 +128,33 @@ class World:
         inertia = tuple(share * moment for moment in self._system.payload_moments)
         pybullet.changeDynamics(body, -1, localInertiaDiagonal=inertia, physicsClientId=client)
 
+    def states(self) -> Array:
+        """Return the true states of payload and UAVs after the last step, (N + 1, 13) as in :mod:`.state_kernels`."""
+        return self._readings.states()
+
     def state(self) -> WorldState:
         """Return the true state after the last step: velocities, too, to second order."""
-        before, now = self._before, self._now
-        position, quaternion = now.payload
-        payload_quaternion = quaternion_from_engine(quaternion)
-        velocity = _half_a_step_on(before.payload_velocity[0], now.payload_velocity[0])
-        rates = _half_a_step_on(before.payload_velocity[1], now.payload_velocity[1])
+        (position, quaternion, velocity, rates), *uavs = map(_parts, self.states().tolist())
         held = self._cradles.held
-        uavs = []
-        for i, (uav_before, uav) in enumerate(zip(before.uavs, now.uavs, strict=True)):
-            attitude = quaternion_from_engine(uav[1])
-            uav_velocity = _half_a_step_on(uav_before[6], uav[6])
-            uav_rates = _half_a_step_on(uav_before[7], uav[7])
-            uavs.append(
-                UavState(
-                    flipped(uav[0]), attitude, flipped(uav_velocity), into_body(attitude, flipped(uav_rates)),
-                    self._thrusts[i], held(i),
-                )
-            )  # fmt: skip
         return WorldState(
-            self._steps / self.physics_hz, flipped(position), payload_quaternion, flipped(velocity),
-            into_body(payload_quaternion, flipped(rates)), tuple(uavs),
+            self._steps / self.physics_hz, position, quaternion, velocity, rates,
+            tuple(UavState(*parts, self._thrusts[i], held(i)) for i, parts in enumerate(uavs)),
         )  # fmt: skip
+
+    @property
+    def all_cradled(self) -> bool:
+        """Return True if every UAV is held by its cradle."""
+        return self._cradles.number_held == len(self._system.uavs)
 
     def contacts(self) -> Contacts:
         """Return what touches after the last step, computed once a step."""
         if self._contacts is None:
-            self._contacts = self._ground.contacts(self._system.body, self._now.payload)
+            self._contacts = self._ground.contacts(self._system, self._readings.now.payload)
         return self._contacts
 
     def touching_ground(self) -> bool:
         """Return True if the payload stands on pad or ground."""
-        return self._ground.is_near(self._now.payload) and self.contacts().standing
+        return self._ground.is_near(self._readings.now.payload) and self.contacts().standing
 
     def close(self) -> None:
         """End the world; harmless when it has ended."""
@@ -180,26 +168,12 @@ class World:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def _read(self) -> _Reading:
-        """Fetch poses and velocities from the engine.
-
-        Forward kinematics is requested: without it links are one step behind the payload, and so are the frames in
-        which the engine takes the next forces. Hence after every step, whether the state is read or not.
-        """
-        body, client = self._system.body, self._client
-        position, attitude = pybullet.getBasePositionAndOrientation(body, client)
-        return _Reading(
-            (position, product(attitude, self._system.payload_in_axes)),
-            pybullet.getBaseVelocity(body, client),
-            pybullet.getLinkStates(body, self._system.uavs, 1, 1, client),
-        )
-
     def _update_cradles(self, thrusts: Sequence[float]) -> None:
         cradles = self._cradles
-        low = self._ground.is_near(self._now.payload)
+        low = self._ground.is_near(self._readings.now.payload)
         if not low and cradles.number_held == 0:
             return
-        for i, uav in enumerate(self._now.uavs):
+        for i, uav in enumerate(self._readings.now.uavs):
             x, y, _, _ = uav[1]
             upward = thrusts[i] * (1.0 - 2.0 * (x * x + y * y))
             if cradles.wants_release(i, upward):
@@ -212,8 +186,7 @@ class World:
                     cradles.latch(i, uav[0], uav[1])
 
 
-def _half_a_step_on(before: Sequence[float], now: Sequence[float]) -> Vector:
-    """Return a velocity at the end of a step, from those of the middles of the last two steps."""
-    x, y, z = now
-    a, b, c = before
-    return (x + 0.5 * (x - a), y + 0.5 * (y - b), z + 0.5 * (z - c))
+def _parts(row: list[float]) -> tuple[Vector, Quaternion, Vector, Vector]:
+    """Return position, attitude, velocity and rates of a row of a state."""
+    x, y, z, q_w, q_x, q_y, q_z, v_x, v_y, v_z, p, q, r = row
+    return (x, y, z), (q_w, q_x, q_y, q_z), (v_x, v_y, v_z), (p, q, r)

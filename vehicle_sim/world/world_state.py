@@ -6,13 +6,12 @@ The engine's quaternions are x-first. Both stay inside the world modules.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from idc_controller.rotations_float import Quaternion, Vector
 
 
-@dataclass(slots=True, frozen=True)
-class UavState:
+class UavState(NamedTuple):
     """The true state of one UAV.
 
     ``position_in_world`` (m) and ``velocity_in_world`` (m/s) of its centre of mass, NED; ``quaternion`` body to
@@ -28,8 +27,7 @@ class UavState:
     cradled: bool
 
 
-@dataclass(slots=True, frozen=True)
-class WorldState:
+class WorldState(NamedTuple):
     """The true state at ``time`` (s) since the world was made.
 
     Payload: ``payload_position_in_world`` (m) and ``payload_velocity_in_world`` (m/s) of the centre of mass, NED;

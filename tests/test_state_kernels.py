@@ -1,0 +1,61 @@
+"""The kernels of the true state and of the sensors agree with plain Python."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from idc_controller.rotations_float import into_body
+from vehicle_sim.world.rotor_kernels import advance_rotors
+from vehicle_sim.world.state_kernels import measure, states_from_engine
+from vehicle_sim.world.world_state import flipped, product, quaternion_from_engine
+
+RNG = np.random.default_rng(7)
+
+
+def quaternions(count):
+    return Rotation.random(count, random_state=3).as_quat()
+
+
+def test_states_are_the_readings_in_the_projects_frames_half_a_step_on():
+    readings, before = RNG.normal(size=(5, 13)), RNG.normal(size=(5, 6))
+    readings[:, 3:7] = quaternions(5)
+    payload_in_axes = quaternions(6)[5]
+    states = np.empty((5, 13))
+    states_from_engine(readings, before, payload_in_axes, states)
+    for i, (now, earlier) in enumerate(zip(readings.tolist(), before.tolist(), strict=True)):
+        attitude = quaternion_from_engine(product(now[3:7], payload_in_axes.tolist()) if i == 0 else now[3:7])
+        on = [x + 0.5 * (x - a) for x, a in zip(now[7:], earlier, strict=True)]
+        rates = into_body(attitude, flipped(on[3:]))
+        assert states[i].tolist() == [*flipped(now[:3]), *attitude, *flipped(on[:3]), *rates]
+
+
+def test_samples_are_states_turned_and_shifted_by_the_normals():
+    states, normals, sigmas = RNG.normal(size=(5, 13)), RNG.normal(size=(5, 12)), 0.1 * RNG.random((5, 4))
+    states[:, 3:7] = quaternions(5)
+    samples = np.empty((5, 13))
+    measure(states, sigmas, normals, samples)
+    for state, sample, (position, attitude, velocity, rates), n in zip(states, samples, sigmas, normals, strict=True):
+        turned = Rotation.from_quat(state[[4, 5, 6, 3]]) * Rotation.from_quat([*(0.5 * attitude * n[:3]), 1.0])
+        assert turned.approx_equal(Rotation.from_quat(sample[[4, 5, 6, 3]]), 1e-12)
+        assert np.linalg.norm(sample[3:7]) == pytest.approx(1.0)
+        assert sample[10:] == pytest.approx(state[10:] + rates * n[3:6], abs=1e-15)
+        assert sample[:3] == pytest.approx(state[:3] + position * n[6:9], abs=1e-15)
+        assert sample[7:10] == pytest.approx(state[7:10] + velocity * n[9:], abs=1e-15)
+
+
+def test_rotors_of_a_team_advance_as_each_alone():
+    motors = RNG.uniform(0.1, 1.0, (3, 7))
+    motors[:, 6] = 800.0
+    commands, speeds = RNG.uniform(0.0, 1000.0, (3, 4)), RNG.uniform(0.0, 1000.0, (3, 4))
+    begun, thrusts, torques = speeds.copy(), np.empty(3), np.empty((3, 3))
+    advance_rotors(motors, commands, speeds, thrusts, torques)
+    for i, (decay, mean_1, mean_2, k_f, lever, per_thrust, top) in enumerate(motors.tolist()):
+        c = np.minimum(commands[i], top)
+        d = begun[i] - c
+        f = k_f * (c * (c + mean_1 * d) + mean_2 * d * d)
+        assert speeds[i] == pytest.approx(c + d * decay)
+        assert thrusts[i] == pytest.approx(math.fsum(f))
+        roll, pitch, yaw = lever * (f @ [-1, 1, 1, -1]), lever * (f @ [1, -1, 1, -1]), per_thrust * (f @ [1, 1, -1, -1])
+        assert torques[i] == pytest.approx([roll, pitch, yaw])
