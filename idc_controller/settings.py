@@ -5,6 +5,7 @@ system file; ``docs/settings.md`` lists them all.
 """
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 METADATA_KEY = "setting"
@@ -61,22 +62,15 @@ class SampledSettings:
     """Rate of the samples (Hz)."""
 
 
-@dataclass(frozen=True)
-class SampleCount:
+class SampleCount(cached_property[int]):
     """Attribute of :class:`SampledSettings`: the number of samples, one or more, in its setting ``time`` (s)."""
 
-    time: str
-
-    def __get__(self, settings: SampledSettings, owner: type[SampledSettings]) -> int:
-        time: float = getattr(settings, self.time)
-        return max(round(time * settings.rate), 1)
+    def __init__(self, time: str) -> None:
+        super().__init__(lambda settings: max(round(getattr(settings, time) * settings.rate), 1))
 
 
-@dataclass(frozen=True)
-class SampleShare:
+class SampleShare(cached_property[float]):
     """Attribute of :class:`SampledSettings`: the share of a sample in a mean over its setting ``time``."""
 
-    time: str
-
-    def __get__(self, settings: SampledSettings, owner: type[SampledSettings]) -> float:
-        return 1.0 / SampleCount(self.time).__get__(settings, owner)
+    def __init__(self, time: str) -> None:
+        super().__init__(lambda settings: 1.0 / max(round(getattr(settings, time) * settings.rate), 1))

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from idc_controller.estimation.health.dead_reckoning import DeadReckoning
+from idc_controller.estimation.health.dead_reckoning_kernels import drift_ratio
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position, SensorGroup
 from idc_controller.estimation.settings import DeadReckoningSettings
 from idc_controller.rotations import quaternion_from_euler, quaternion_product
@@ -152,3 +153,13 @@ def test_repeated_sample_counts_once():
             for late in (0.0, 0.006) if source == PAYLOAD else (0.0,):
                 reckoning.add(Position(t + late, source, *sample))
         assert not reckoning.inconsistent_groups
+
+
+@pytest.mark.parametrize("count", [19, 20, 50, 51])
+@pytest.mark.parametrize("n", [8, 9])
+def test_compiled_drift_ratio_equals_plain_one(count, n):
+    values, error, sigmas = np.random.default_rng(count).standard_normal((count, 3)), 0.03, 5.0
+    moved = np.abs(np.median(values[-n:], axis=0) - np.median(values[:n], axis=0))
+    sigma = 1.4826 / np.sqrt(2.0) * np.median(np.abs(np.diff(values, axis=0)), axis=0)
+    allowed = error + sigmas * 1.2533 * np.sqrt(2.0 / n) * sigma
+    assert drift_ratio(values, n, error, sigmas) == pytest.approx((moved / allowed).max(), rel=1e-12)

@@ -6,16 +6,15 @@ when it persists after a blow. Yet each of them contradicts its own motion, what
 """
 
 from collections import deque
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
-from idc_controller.arrays import Array
+from idc_controller.estimation.health.dead_reckoning_kernels import drift_ratio
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, Position, SensorGroup, SensorKey
 from idc_controller.estimation.settings import DeadReckoningSettings
-from idc_controller.rotations import quaternion_product
-
-_MEDIAN_EFFICIENCY = 1.2533  # standard deviation of a median of n, times sqrt(n), over that of one sample
-_FROM_STEPS = 1.4826 / 2.0**0.5  # standard deviation of a sample over the median step from one to the next
+from idc_controller.rotations_float import Quaternion, Vector, turned
 
 
 class DeadReckoning:
@@ -67,31 +66,43 @@ class _IntegratedVelocity:
     """Path (m) by velocities."""
 
     def __init__(self) -> None:
-        self._path = np.zeros(3)
+        self._path: Vector = (0.0, 0.0, 0.0)
 
-    def advance(self, duration: float, motion: Array) -> None:
-        """Integrate a ``motion`` (3,) over a ``duration`` (s)."""
-        self._path = self._path + duration * motion
+    def advance(self, duration: float, motion: Vector) -> None:
+        """Integrate a ``motion`` over a ``duration`` (s)."""
+        (x, y, z), (u, v, w) = self._path, motion
+        self._path = x + duration * u, y + duration * v, z + duration * w
 
-    def difference(self, pose: Array) -> Array:
-        """Return ``pose`` less the integral (3,), which is constant but for noise."""
-        return np.asarray(pose - self._path)
+    def difference(self, pose: Sequence[float]) -> Vector:
+        """Return ``pose`` less the integral, which is constant but for noise."""
+        (x, y, z), (a, b, c) = self._path, pose
+        return a - x, b - y, c - z
 
 
 class _IntegratedRates:
-    """Attitude by body rates from the quaternion ``begin`` (4,)."""
+    """Attitude by body rates from the quaternion ``begin``."""
 
-    def __init__(self, begin: Array) -> None:
+    def __init__(self, begin: Quaternion) -> None:
         self._attitude = begin
 
-    def advance(self, duration: float, motion: Array) -> None:
-        turned = quaternion_product(self._attitude, np.append(1.0, 0.5 * duration * motion))
-        self._attitude = turned / np.linalg.norm(turned)
+    def advance(self, duration: float, motion: Vector) -> None:
+        self._attitude = turned(self._attitude, motion, duration)
 
-    def difference(self, pose: Array) -> Array:
+    def difference(self, pose: Sequence[float]) -> Vector:
         """Return a rotation vector in the world (rad), as long as it is small."""
-        rest = quaternion_product(pose, self._attitude * [1.0, -1.0, -1.0, -1.0])
-        return np.asarray(2.0 * rest[1:] * (1.0 if rest[0] >= 0.0 else -1.0))
+        (w, x, y, z), (a, b, c, d) = self._attitude, pose
+        twice = 2.0 if a * w + b * x + c * y + d * z >= 0.0 else -2.0
+        return (
+            twice * (b * w - a * x - c * z + d * y),
+            twice * (c * w - a * y - d * x + b * z),
+            twice * (d * w - a * z - b * y + c * x),
+        )
+
+
+class _Sample(NamedTuple):
+    time: float
+    pose: list[float]
+    motion: list[float]
 
 
 class _SourceCheck:
@@ -102,27 +113,28 @@ class _SourceCheck:
         """Difference of pose and integrated motion over what is allowed."""
         self._settings = s = settings
         is_position = isinstance(first, Position)
-        self._integral = _IntegratedVelocity() if is_position else _IntegratedRates(first.pose)
+        self._integral = _IntegratedVelocity() if is_position else _IntegratedRates(tuple(first.pose.tolist()))
         self._error = s.position_error if is_position else s.attitude_error
         self._inconsistent = 0
-        self._recent: deque[Measurement] = deque(maxlen=s.smoothed)
-        self._motion: Array | None = None
-        self._differences: deque[tuple[float, Array]] = deque()
+        self._recent: deque[_Sample] = deque(maxlen=s.smoothed)
+        self._motion: Vector | None = None
+        self._differences: deque[tuple[float, Vector]] = deque()
         self._untested = 0
 
     def add(self, measurement: Measurement) -> None:
         """Take a measurement that has pose and motion."""
         recent, s = self._recent, self._settings
-        if recent and (measurement.time <= recent[-1].time or measurement.same_values(recent[-1])):
+        sample = _Sample(measurement.time, measurement.pose.tolist(), measurement.motion.tolist())
+        if recent and (sample.time <= recent[-1].time or sample[1:] == recent[-1][1:]):
             return  # a relay of the same sample by a vehicle whose clock is off brings nothing new
-        if recent and measurement.time - recent[-1].time > s.gap:
+        if recent and sample.time - recent[-1].time > s.gap:
             recent.clear()
             self._differences.clear()
             self._motion = None
-        recent.append(measurement)
+        recent.append(sample)
         if len(recent) == s.smoothed:
             self._integrate(recent[s.smoothed // 2 - 1].time, recent[s.smoothed // 2])
-        while self._differences and measurement.time - self._differences[0][0] > s.window:
+        while self._differences and sample.time - self._differences[0][0] > s.window:
             self._differences.popleft()
         self._untested += 1
         if self._untested >= s.samples // 2:
@@ -135,24 +147,21 @@ class _SourceCheck:
         """Return whether several tests in a row failed: enough for a source that has no others beside it."""
         return self._inconsistent >= self._settings.consecutive
 
-    def _integrate(self, before: float, measurement: Measurement) -> None:
-        """Continue the integral from the time ``before`` to that of ``measurement``."""
-        motion = _median(np.array([near.motion for near in self._recent]))
+    def _integrate(self, before: float, sample: _Sample) -> None:
+        """Continue the integral from the time ``before`` to that of ``sample``."""
+        u, v, w = (_median(axis) for axis in zip(*(near.motion for near in self._recent), strict=True))
         if self._motion is not None:
-            self._integral.advance(measurement.time - before, 0.5 * (self._motion + motion))
-        self._motion = motion
-        self._differences.append((measurement.time, self._integral.difference(measurement.pose)))
+            a, b, c = self._motion
+            self._integral.advance(sample.time - before, (0.5 * (a + u), 0.5 * (b + v), 0.5 * (c + w)))
+        self._motion = u, v, w
+        self._differences.append((sample.time, self._integral.difference(sample.pose)))
 
     def _ratio(self) -> float:
-        n = self._settings.samples
-        values = np.array([value for _, value in self._differences])
-        moved = np.abs(_median(values[-n:]) - _median(values[:n]))
-        sigma = _FROM_STEPS * _median(np.abs(np.diff(values, axis=0)))
-        of_medians = _MEDIAN_EFFICIENCY / n**0.5 * 2.0**0.5
-        return float((moved / (self._error + self._settings.sigmas * of_medians * sigma)).max())
+        s, differences = self._settings, np.array([difference for _, difference in self._differences])
+        return drift_ratio(differences, s.samples, self._error, s.sigmas)
 
 
-def _median(values: Array) -> Array:
-    """Return the median over the rows of finite ``values`` (K, n) -> (n,); ``np.median`` takes four times as long."""
-    ordered, half = np.sort(values, axis=0), len(values) // 2
-    return np.asarray(ordered[half] if len(values) % 2 else (ordered[half - 1] + ordered[half]) / 2.0)
+def _median(values: Sequence[float]) -> float:
+    """Return the median of finite ``values``."""
+    ordered, half = sorted(values), len(values) // 2
+    return ordered[half] if len(values) % 2 else (ordered[half - 1] + ordered[half]) / 2.0
