@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from idc_controller.estimation.health.channel_isolation import ChannelIsolation
-from idc_controller.estimation.measurement_model import ObservationStack, _blocks
+from idc_controller.estimation.kalman_filter import Innovation, SparseRows
+from idc_controller.estimation.measurement_model import ObservationStack
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Channel, Position
 from idc_controller.estimation.settings import ChannelIsolationSettings
 
@@ -17,12 +18,9 @@ REJECTIONS, ACCEPTANCES = SETTINGS.rejections, SETTINGS.acceptances
 
 def stack_of(sources=SOURCES):
     keys = tuple((source, kind) for source in sources for kind in (Position, Attitude))
-    m = 6 * len(keys)
-    none = np.zeros(0, dtype=int)
+    sizes = np.full(len(keys), 6)
     of_payload = np.repeat([source == PAYLOAD for source, _ in keys], 6)
-    return ObservationStack(
-        keys, np.zeros((m, 1)), np.full(m, 0.01), *_blocks(np.full(len(keys), 6)), of_payload, uavs=none, heights=none
-    )
+    return ObservationStack(keys, np.full(6 * len(keys), 0.01), sizes, np.cumsum(sizes) - sizes, of_payload)
 
 
 STACK = stack_of()
@@ -46,9 +44,11 @@ def rejecting(*channels, times=REJECTIONS, isolation=None, inconsistent=True):
 
 
 def accept(isolation, size, times):
-    residual = size * rows_of(VELOCITY_OF_1)
+    m = len(ALL)
+    rows = SparseRows(np.zeros((m, 1), dtype=int), np.zeros((m, 1)))
+    innovation = Innovation(rows, size * rows_of(VELOCITY_OF_1), np.zeros((m, 1)), np.zeros((m, m)))
     for _ in range(times):
-        isolation.restore(STACK, residual, np.zeros((len(ALL), 1)), np.zeros((1, 1)), 1.0)
+        isolation.restore(STACK, innovation, 1.0)
 
 
 def test_channel_is_isolated_after_rejections():

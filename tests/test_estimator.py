@@ -286,9 +286,9 @@ def test_estimated_vehicles_match_measurement_model():
     flat = REFERENCE.at(np.zeros(1))
     model = Estimator(MODEL).measurement_model
     for measurement in model.vehicles(0.0, moved):
-        rows, _ = model.observations[measurement.source, type(measurement)]
-        expected = rows @ (moved - flat.x[0])
-        assert model.innovation(measurement, flat, 0) == pytest.approx(expected, abs=2e-3)
+        observation = model.observation(((measurement.source, type(measurement)),))
+        expected = observation.rows.dense(LAYOUT.size) @ (moved - flat.x[0])
+        assert model.less_reference(observation, [measurement], flat, 0) == pytest.approx(expected, abs=2e-3)
 
 
 @pytest.mark.parametrize("tilt", [(0.4, 0.3), (-0.3, 0.4), (0.0, -0.5)])

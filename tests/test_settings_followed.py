@@ -158,9 +158,8 @@ def test_isolation_of_a_channel_takes_as_long_at_any_rate_of_telemetry():
         config = system(rates={"telemetry": telemetry})
         settings = config.estimation.estimator.at_rates(telemetry, config.rates.control).isolation
         isolation = ChannelIsolation(4, settings)
-        stack_of_one = MeasurementModel(
-            LinearModel(config.parameters()), MeasurementNoise(), MeasurementModelSettings()
-        ).stack(((0, Attitude),))
+        model = MeasurementModel(LinearModel(config.parameters()), MeasurementNoise(), MeasurementModelSettings())
+        stack_of_one = model.observation(((0, Attitude),)).stack
         tested, accepted = np.ones(4, dtype=bool), np.zeros(4, dtype=bool)
         steps = 0
         while not isolation.isolated:

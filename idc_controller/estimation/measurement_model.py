@@ -2,62 +2,72 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from idc_controller.arrays import Array, Indices, Mask
+from idc_controller.estimation.kalman_filter import SparseRows
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, MeasurementNoise, Position, SensorKey
 from idc_controller.estimation.settings import MeasurementModelSettings
+from idc_controller.estimation.update_kernels import measured_less_reference
 from idc_controller.model.linear import LinearModel
-from idc_controller.rotations import euler_from_quaternion, quaternion_from_euler, rotation_from_quaternion
+from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
 from idc_controller.trajectory.flatness import FlatReference
 
+_WIDTH = 5
+"""Most elements of a row that are not zero: three, and the two of a tilted link."""
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, eq=False)
 class ObservationStack:
-    """Observations of one moment, one below the other."""
+    """Measurements of one moment, one below the other."""
 
     keys: tuple[SensorKey, ...]
     """Source and kind of each (K,)."""
-    rows: Array
-    """(m, n), links upright."""
     variance: Array
     """(m,)"""
     sizes: Indices
     """Rows of each (K,); they add up to m."""
     starts: Indices
     """Their first rows (K,)."""
-    rows_by_size: tuple[Indices, ...]
-    """Rows of the observations of one size, (count, size) for each size that there is."""
     of_payload: Mask
     """Rows (m,) of the payload."""
-    uavs: Indices
-    """UAVs whose position is observed (K,)."""
-    heights: Indices
-    """Rows of their heights (K,); those of the vertical velocities are three below."""
 
     def split(self, rows: Array) -> tuple[Array, ...]:
-        """Return ``rows`` (m,) by observation."""
+        """Return ``rows`` (m,) by measurement."""
         ends = self.starts + self.sizes
         return tuple(rows[a:b] for a, b in zip(self.starts.tolist(), ends.tolist(), strict=True))
 
     def subset(self, present: Mask) -> ObservationStack:
-        """Return the stack of the rows ``present`` (m,) alone; :meth:`MeasurementModel.observe` takes whole ones."""
+        """Return the stack of the rows ``present`` (m,) alone; all of them: this one."""
+        if present.all():
+            return self
         sizes = np.add.reduceat(present, self.starts, dtype=int)
         left = sizes > 0
         keys = tuple(key for key, some in zip(self.keys, left.tolist(), strict=True) if some)
-        none = np.zeros(0, dtype=int)
+        sizes = sizes[left]
         return ObservationStack(
-            keys, self.rows[present], self.variance[present],
-            *_blocks(sizes[left]), self.of_payload[present], uavs=none, heights=none,
+            keys, self.variance[present], sizes, np.cumsum(sizes) - sizes, self.of_payload[present]
         )  # fmt: skip
 
 
-def _blocks(sizes: Indices) -> tuple[Indices, Indices, tuple[Indices, ...]]:
-    """Return sizes, first rows, and rows by size, of observations one below the other."""
-    starts = np.cumsum(sizes) - sizes
-    return sizes, starts, tuple(starts[sizes == size][:, None] + np.arange(size) for size in np.unique(sizes))
+@dataclass(frozen=True, eq=False)
+class Observation:
+    """How the measurements of one moment observe the state."""
+
+    stack: ObservationStack
+    rows: SparseRows
+    """Links upright."""
+    sources: Indices
+    """Source of each (K,)."""
+    is_position: Mask
+    """Whether each is a position (K,)."""
+    uavs: Indices
+    """UAVs whose position is observed (P,)."""
+    heights: Indices
+    """Rows of their heights (P,); those of the vertical velocities are three below."""
 
 
 class MeasurementModel:
@@ -98,63 +108,54 @@ class MeasurementModel:
                 np.vstack([identity[layout.n][two], identity[layout.n_dot][two]]),
                 attitude_variance(noise.uav_rates, 2),
             )
-        self._stacks: dict[tuple[SensorKey, ...], ObservationStack] = {}
+        self._observations: dict[tuple[SensorKey, ...], Observation] = {}
 
-    def stack(self, keys: tuple[SensorKey, ...]) -> ObservationStack:
-        """Return the observations of these sensors."""
-        if (found := self._stacks.get(keys)) is None:
-            observations = [self.observations[key] for key in keys]
-            sizes = np.array([len(variance) for _, variance in observations])
-            _, starts, _ = _blocks(sizes)
-            tilted = [(i, start + 2) for (i, kind), start in zip(keys, starts.tolist(), strict=True)
-                      if kind is Position and i != PAYLOAD]  # fmt: skip
-            found = self._stacks[keys] = ObservationStack(
-                keys,
-                np.vstack([rows for rows, _ in observations]),
-                np.concatenate([variance for _, variance in observations]),
-                *_blocks(sizes),
-                np.repeat([i == PAYLOAD for i, _ in keys], sizes),
-                np.array([i for i, _ in tilted], dtype=int),
-                np.array([row for _, row in tilted], dtype=int),
-            )
+    def observation(self, keys: tuple[SensorKey, ...]) -> Observation:
+        """Return how these sensors observe the state."""
+        if (found := self._observations.get(keys)) is None:
+            found = self._observations[keys] = self._stacked(keys)
         return found
 
-    def observe(self, stack: ObservationStack, reference: FlatReference, k: int, into: Array) -> None:
-        """Fill ``into`` (m, n) with the rows that observe the error about the reference's time ``k``."""
-        into[:] = stack.rows
-        if len(stack.uavs):
-            # The unit length of a tilted link: a change of its lateral part changes its height too.
-            q = reference.links.q[k]
-            slope = np.outer(self.parameters.l[stack.uavs], q[:2] / q[2])
-            columns = 2 * stack.uavs[:, None] + np.arange(2)
-            into[stack.heights[:, None], self.layout.s.start + columns] = slope
-            into[stack.heights[:, None] + 3, self.layout.s_dot.start + columns] = slope
+    def _stacked(self, keys: tuple[SensorKey, ...]) -> Observation:
+        observations = [self.observations[key] for key in keys]
+        sizes = np.array([len(variance) for _, variance in observations])
+        starts = np.cumsum(sizes) - sizes
+        sources, is_position = np.array([i for i, _ in keys]), np.array([kind is Position for _, kind in keys])
+        variance = np.concatenate([variance for _, variance in observations])
+        stack = ObservationStack(keys, variance, sizes, starts, np.repeat(sources == PAYLOAD, sizes))
+        of_uav = is_position & (sources != PAYLOAD)
+        uavs, heights = sources[of_uav], starts[of_uav] + 2
+        rows = np.vstack([rows for rows, _ in observations])
+        columns, coefficients = np.zeros((len(rows), _WIDTH), dtype=int), np.zeros((len(rows), _WIDTH))
+        for r, row in enumerate(rows):
+            filled = np.flatnonzero(row)
+            columns[r, : len(filled)], coefficients[r, : len(filled)] = filled, row[filled]
+        for below, part in ((0, self.layout.s), (3, self.layout.s_dot)):
+            columns[heights + below, -2:] = part.start + 2 * uavs[:, None] + np.arange(2)
+        return Observation(stack, SparseRows(columns, coefficients), sources, is_position, uavs, heights)
 
-    def innovation(self, measurement: Measurement, reference: FlatReference, k: int) -> Array:
+    def rows(self, observation: Observation, reference: FlatReference, k: int) -> SparseRows:
+        """Return the rows that observe the error about the reference's time ``k``."""
+        columns, coefficients = observation.rows
+        if not len(observation.uavs):
+            return observation.rows
+        # The unit length of a tilted link: a change of its lateral part changes its height too.
+        q = reference.links.q[k]
+        slope = self.parameters.l[observation.uavs, None] * (q[:2] / q[2])
+        coefficients = coefficients.copy()
+        coefficients[observation.heights, -2:] = coefficients[observation.heights + 3, -2:] = slope
+        return SparseRows(columns, coefficients)
+
+    def less_reference(
+        self, observation: Observation, measurements: Sequence[Measurement], reference: FlatReference, k: int
+    ) -> Array:
         """Return measured less reference (m,) at the reference's time ``k``; nan where nothing was measured."""
-        i = measurement.source
-        if isinstance(measurement, Attitude):
-            if i == PAYLOAD:
-                return np.concatenate([euler_from_quaternion(measurement.quaternion), measurement.rates])
-            # Of a UAV's attitude only the direction of the thrust moves anything: n = -R e3, n' = -R (omega x e3).
-            w, x, y, z = measurement.quaternion.tolist()
-            p, q, _ = measurement.rates.tolist()
-            reference_x, first = reference.x[k], 2 * i
-            n, n_dot = self.layout.n.start + first, self.layout.n_dot.start + first
-            measured = (
-                -2.0 * (x * z + w * y),
-                -2.0 * (y * z - w * x),
-                2.0 * (x * y - w * z) * p - (1.0 - 2.0 * (y * y + z * z)) * q,
-                (1.0 - 2.0 * (x * x + z * z)) * p - 2.0 * (x * y + w * z) * q,
-            )
-            expected = (reference_x[n], reference_x[n + 1], reference_x[n_dot], reference_x[n_dot + 1])
-            return np.subtract(measured, expected)
-        position, velocity = reference.payload[0, k], reference.payload[1, k]
-        if i != PAYLOAD:
-            l = self.parameters.l[i]
-            position = position + self.parameters.p[i] - l * reference.links.q[k]
-            velocity = velocity - l * reference.links.q_dot[k]
-        return np.concatenate([measurement.position - position, measurement.velocity - velocity])
+        values = np.concatenate([part for sample in measurements for part in (sample.pose, sample.motion)])
+        links, p = reference.links, self.parameters
+        return measured_less_reference(
+            values, observation.sources, observation.is_position, len(observation.stack.variance),
+            reference.x, reference.payload, links.q[k], links.q_dot[k], k, p.p, p.l,
+        )  # fmt: skip
 
     def vehicles(self, time: float, x: Array) -> list[Measurement]:
         """Return positions and attitudes of the UAVs in the state ``x`` (n,) at ``time`` (s), heading north."""

@@ -1,7 +1,5 @@
 """Measurement update: innovations of one moment, their test, and the correction of the filter."""
 
-import numpy as np
-
 from idc_controller.estimation.estimate import InnovationRecord
 from idc_controller.estimation.health.innovation_gate import InnovationGate
 from idc_controller.estimation.health.noise_adaptation import Reaction
@@ -36,28 +34,27 @@ class MeasurementUpdate:
         Returns:
             The innovation test; None where no measurement may be used.
         """
-        health, size = self._health, filter.process.layout.size
+        health, model = self._health, self._model
         measurements = [median_of(copies) for copies in moment.measurements.values()]
         for measurement in measurements:
             health.dead_reckoning.add(measurement)
-        whole = stack = self._model.stack(tuple(moment.measurements))
-        y = np.concatenate([self._model.innovation(health.usable(m), flat, k) for m in measurements])
-        H = np.zeros((len(y), filter.process.size))
-        self._model.observe(stack, flat, k, into=H[:, :size])
-        present = health.usable_rows(stack, y, H, filter.x, filter.P)
+        observation = model.observation(tuple(moment.measurements))
+        whole, rows = observation.stack, model.rows(observation, flat, k)
+        y = model.less_reference(observation, [health.usable(measurement) for measurement in measurements], flat, k)
+        innovation = filter.innovation(y, rows)
+        present = health.usable_rows(whole, innovation)
         if not present.any():
             return None
-        if not present.all():
-            stack, y, H = stack.subset(present), y[present], H[present]
+        stack, innovation = whole.subset(present), innovation.subset(present)
         keys, adaptation = stack.keys, health.adaptation
-        residual = y - H @ filter.x
-        test = self._gate.test(residual, H @ filter.P @ H.T, stack, adaptation.measurement_scale)
+        test = self._gate.test(innovation, stack, adaptation.measurement_scale)
         reaction = adaptation.react(moment.time, keys, test) if adapt else Reaction.NONE
         if reaction is Reaction.COVARIANCE_RESET:
             filter.inflate(filter.process.covariance_reset(filter.P, self._settings.reset))
+            innovation = filter.innovation(y, rows).subset(present)
         if reaction is not Reaction.NONE:
-            test = self._gate.test(residual, H @ filter.P @ H.T, stack, adaptation.measurement_scale)
-        accepted = self._gate.accepted_rows(residual, test, stack)
+            test = self._gate.test(innovation, stack, adaptation.measurement_scale)
+        accepted = test.accepted_rows
         rejected = [c for c, good in enumerate(test.accepted.tolist()) if not good]
         poses = [keys[c] for c in rejected if keys[c][1] is Position or not accepted[stack.starts[c]]]
         health.rejected(moment.time, poses)
@@ -68,8 +65,9 @@ class MeasurementUpdate:
             adaptation.learn(moment.time, keys, test.normalised, test.mean_squares, accepted, stack.of_payload)
         squared = 0.0
         if accepted.any():
-            measured = accepted_of_all[whole.heights] & accepted_of_all[whole.heights + 3]
-            squared = filter.update(y[accepted], test.variance[accepted], H[accepted], whole.uavs[measured])
+            heights = observation.heights
+            measured = observation.uavs[accepted_of_all[heights] & accepted_of_all[heights + 3]]
+            squared = filter.update(innovation.subset(accepted), test.variance[accepted], measured)
         return InnovationRecord(
             moment.time, squared, int(accepted.sum()), tuple(keys[c] for c in rejected),
             reaction is Reaction.COVARIANCE_RESET, keys, stack.split(test.normalised),

@@ -3,9 +3,9 @@
 from itertools import pairwise
 
 import numpy as np
-from filterpy.kalman import KalmanFilter
 
 from idc_controller.arrays import Array, Indices
+from idc_controller.estimation.kalman_filter import CholeskyKalmanFilter, Innovation, SparseRows
 from idc_controller.estimation.process_model import ProcessModel
 from idc_controller.estimation.setpoint_history import SetpointHistory
 from idc_controller.trajectory.reference import Reference
@@ -57,7 +57,7 @@ class ErrorStateFilter:
 
     def __init__(self, process: ProcessModel) -> None:
         self.process = process
-        self._kf = KalmanFilter(dim_x=process.size, dim_z=1)
+        self._kf = CholeskyKalmanFilter(dim_x=process.size, dim_z=1)
         self._nominal = np.zeros((1, process.size))
 
     @property
@@ -93,17 +93,18 @@ class ErrorStateFilter:
         """Add ``added`` (n, n) to the covariance."""
         self._kf.P = self._kf.P + added
 
-    def update(self, y: Array, variance: Array, H: Array, measured: Indices) -> float:
+    def innovation(self, y: Array, rows: SparseRows) -> Innovation:
+        """Return the innovation of the measurements ``y`` (m,), less reference, that ``rows`` observe."""
+        return self._kf.innovation(y, rows)
+
+    def update(self, innovation: Innovation, variance: Array, measured: Indices) -> float:
         """Correct by measurements and return their normalised innovation squared.
 
         Args:
-            y: measured less reference (m,).
+            innovation: theirs.
             variance: of the measurements (m,).
-            H: rows (m, n).
             measured: UAVs whose position and velocity are among them.
         """
-        kf = self._kf
-        kf.update(y, R=np.diag(variance), H=H)
-        kf.P = (kf.P + kf.P.T) / 2
-        kf.P.flat[:: self.process.size + 1] += self.process.per_vehicle_noise(measured)
-        return float(kf.y @ kf.SI @ kf.y)
+        squared = self._kf.correct(innovation, variance)
+        self._kf.P.flat[:: self.process.size + 1] += self.process.per_vehicle_noise(measured)
+        return squared

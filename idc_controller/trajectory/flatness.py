@@ -107,9 +107,11 @@ def flat_reference(
         derivatives, load.mass, load.force, constant,
         load.air is not None, air.wind, air.payload, air.uav, air.limit, p.g, p.p, p.l, p.m,
     )  # fmt: skip
-    x, u = flat_states(derivatives, links, thrust, index, STENCIL, p.attitude_kp, p.attitude_kd, p.motor_time_constant)
+    x, u, payload, directions = flat_states(
+        derivatives, links, thrust, index, STENCIL, p.attitude_kp, p.attitude_kd, p.motor_time_constant
+    )
+    q, q_dot, q_ddot = directions
     centre = index[:, 2]
-    q, q_dot, q_ddot = links[:, centre]
     on_uavs = constant + on_uav[centre][:, None]
     forces = FlatForces(q, q_dot, q_ddot, tension[centre], thrust[centre], on_payload[centre], on_uavs)
-    return FlatReference(derivatives[:, centre], forces, x, u)
+    return FlatReference(payload, forces, x, u)

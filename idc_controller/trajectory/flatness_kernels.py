@@ -210,29 +210,37 @@ def flat_forces(
 
 
 @kernel(
-    "UniTuple(float64[:, ::1], 2)(float64[:, :, ::1], float64[:, :, ::1], float64[:, :, ::1], int64[:, ::1], "
-    "float64, float64, float64, float64)"
+    "Tuple((float64[:, ::1], float64[:, ::1], float64[:, :, ::1], float64[:, :, ::1]))"
+    "(float64[:, :, ::1], float64[:, :, ::1], float64[:, :, ::1], int64[:, ::1], float64, float64, float64, float64)"
 )
 def flat_states(
     derivatives: Array, links: Array, thrust: Array, index: Indices, h: float, kp: float, kd: float, T_m: float
-) -> tuple[Array, Array]:
-    """Return states (K, 12 + 11 N) and set-points (K, 3 N) in the coordinates of the linear model.
+) -> tuple[Array, Array, Array, Array]:
+    """Return the reference at K times, in the coordinates of the linear model.
 
     Args:
         derivatives: of the payload's position (5, G, 3).
         links: link directions with two derivatives (3, G, 3).
         thrust: thrust vectors (G, N, 3) (N).
-        index: instants of the five points of the stencil about each of K times (K, 5).
+        index: instants of the five points of the stencil about each time (K, 5).
         h: spacing of these points (s).
         kp, kd, T_m: of the attitude loop and the motors, which are inverted: the set-point leads the attitude.
+
+    Returns:
+        States (K, 12 + 11 N), set-points (K, 3 N), and of ``derivatives`` and ``links`` those at the K times.
     """
     K, N = len(index), thrust.shape[1]
     x, u = np.zeros((K, 12 + 11 * N)), np.empty((K, 3 * N))
+    payload, directions = np.empty((5, K, 3)), np.empty((3, K, 3))
     s, s_dot, n_at, n_dot_at, n_acc_at, f_at = 12, 12 + 2 * N, 12 + 4 * N, 12 + 6 * N, 12 + 8 * N, 12 + 10 * N
     f, n = np.empty(5), np.empty(5)
     for k in range(K):
         centre = index[k, 2]
         for c in range(3):
+            for order in range(5):
+                payload[order, k, c] = derivatives[order, centre, c]
+            for order in range(3):
+                directions[order, k, c] = links[order, centre, c]
             x[k, c], x[k, 3 + c] = derivatives[0, centre, c], derivatives[1, centre, c]
         for i in range(N):
             for o in range(5):
@@ -250,4 +258,4 @@ def flat_states(
                 x[k, s + at], x[k, s_dot + at] = links[0, centre, c], links[1, centre, c]
                 x[k, n_at + at], x[k, n_dot_at + at], x[k, n_acc_at + at] = n[2], n_dot, n_acc
                 u[k, at] = n[2] + (kd * n_dot + n_acc + T_m * n_jerk) / kp
-    return x, u
+    return x, u, payload, directions

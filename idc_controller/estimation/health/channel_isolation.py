@@ -9,9 +9,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.stats import chi2
 
-from idc_controller.arrays import Array, Mask
+from idc_controller.arrays import Mask
+from idc_controller.estimation.health.chi_squared import lower_quantile
+from idc_controller.estimation.kalman_filter import Innovation
 from idc_controller.estimation.measurement_model import ObservationStack
 from idc_controller.estimation.measurements import PAYLOAD, Channel, Position
 from idc_controller.estimation.settings import ChannelIsolationSettings
@@ -22,7 +23,7 @@ class ChannelIsolation:
 
     def __init__(self, number_of_uavs: int, settings: ChannelIsolationSettings = ChannelIsolationSettings()) -> None:
         self._number_of_uavs, self._settings = number_of_uavs, settings
-        self._gate = float(chi2.ppf(self._settings.restoring_probability, 3))
+        self._gate = float(lower_quantile(self._settings.restoring_probability, 3))
         self._rejections: dict[Channel, int] = {}
         self._acceptances: dict[Channel, int] = {}
 
@@ -79,21 +80,20 @@ class ChannelIsolation:
             elif count > 0:
                 self._rejections[channel] = min(count, limit)
 
-    def restore(self, stack: ObservationStack, residual: Array, H: Array, P: Array, noise_scale: float) -> None:
+    def restore(self, stack: ObservationStack, innovation: Innovation, noise_scale: float) -> None:
         """Restore isolated channels that have been consistent with the prediction for long.
 
         Args:
             stack: all measurements of the moment.
-            residual: their innovations (m,).
-            H: their rows (m, n).
-            P: covariance of the prediction (n, n).
+            innovation: theirs.
             noise_scale: scale of the measurement variances.
         """
         for channel, part in _channels(stack):
-            if channel not in self._acceptances or not np.isfinite(residual[part]).all():
+            residual = innovation.residual[part]
+            if channel not in self._acceptances or not np.isfinite(residual).all():
                 continue
-            covariance = H[part] @ P @ H[part].T + noise_scale * np.diag(stack.variance[part])
-            squared = float(residual[part] @ np.linalg.solve(covariance, residual[part]))
+            covariance = innovation.covariance[part, part] + noise_scale * np.diag(stack.variance[part])
+            squared = float(residual @ np.linalg.solve(covariance, residual))
             self._acceptances[channel] = self._acceptances[channel] + 1 if squared <= self._gate else 0
             if self._acceptances[channel] >= self._settings.acceptances:
                 del self._acceptances[channel]

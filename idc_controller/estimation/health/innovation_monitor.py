@@ -10,9 +10,9 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 import numpy as np
-from scipy.stats import chi2
 
 from idc_controller.arrays import Array
+from idc_controller.estimation.health.chi_squared import lower_quantile, upper_quantile
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, SensorKey
 from idc_controller.estimation.settings import InnovationMonitorSettings
 
@@ -48,10 +48,12 @@ class InnovationMonitor:
         kept = (2.0 - s.share) / s.share
         # Variance of a running mean is 1 / kept; its square sum times kept is chi-squared with ``size`` degrees of
         # freedom, and the running mean square like one of kept * size of them.
-        self._gates = dict(zip(sizes.tolist(), chi2.ppf(gate_probability, sizes).tolist(), strict=True))
-        self._mean_limits = dict(zip(sizes.tolist(), (chi2.isf(s.false_alarm, sizes) / kept).tolist(), strict=True))
+        self._gates = dict(zip(sizes.tolist(), lower_quantile(gate_probability, sizes).tolist(), strict=True))
+        self._mean_limits = dict(
+            zip(sizes.tolist(), (upper_quantile(s.false_alarm, sizes) / kept).tolist(), strict=True)
+        )
         freedom = kept * sizes
-        squares = chi2.isf(s.false_alarm, freedom) / freedom
+        squares = upper_quantile(s.false_alarm, freedom) / freedom
         self._square_limits = dict(zip(sizes.tolist(), squares.tolist(), strict=True))
 
     def learn(

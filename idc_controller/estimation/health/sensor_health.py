@@ -5,11 +5,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idc_controller.arrays import Array, Mask
+from idc_controller.arrays import Mask
 from idc_controller.estimation.health.channel_isolation import ChannelIsolation
 from idc_controller.estimation.health.dead_reckoning import DeadReckoning
 from idc_controller.estimation.health.noise_adaptation import NoiseAdaptation
 from idc_controller.estimation.health.stuck_sensor import StuckSensors
+from idc_controller.estimation.kalman_filter import Innovation
 from idc_controller.estimation.measurement_model import ObservationStack
 from idc_controller.estimation.measurements import (
     PAYLOAD,
@@ -89,19 +90,16 @@ class SensorHealth:
         isolated = self.isolated_groups.get(SensorGroup(measurement.source == PAYLOAD, type(measurement)))
         return measurement if isolated is None else measurement.without(*isolated)
 
-    def usable_rows(self, stack: ObservationStack, y: Array, H: Array, x: Array, P: Array) -> Mask:
+    def usable_rows(self, stack: ObservationStack, innovation: Innovation) -> Mask:
         """Return which rows (m,) of one moment may be used; isolated channels that are consistent are restored.
 
         Args:
             stack: all measurements of the moment.
-            y: measured less reference (m,), nan where nothing was measured.
-            H: their rows (m, n).
-            x: predicted error state (n,).
-            P: its covariance (n, n).
+            innovation: theirs, nan where nothing was measured.
         """
-        present = np.isfinite(y)
+        present = np.isfinite(innovation.residual)
         if self.isolation.isolated:
-            self.isolation.restore(stack, y - H @ x, H, P, self.adaptation.measurement_scale)
+            self.isolation.restore(stack, innovation, self.adaptation.measurement_scale)
             present &= ~self.isolation.rows(stack)
         return present
 

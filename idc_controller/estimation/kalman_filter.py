@@ -1,0 +1,82 @@
+"""Kalman filter of the estimator: filterpy's, corrected by a Cholesky factor of the innovation covariance."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from filterpy.kalman import KalmanFilter
+from scipy.linalg.blas import dtrsm, dtrsv
+from scipy.linalg.lapack import dpotrf
+
+from idc_controller.arrays import Array, Indices, Mask
+from idc_controller.estimation.update_kernels import predicted
+
+_CANCELLED = 1e-6
+"""Share of a variance that a correction may leave before its rounding needs Joseph's form."""
+
+
+class SparseRows(NamedTuple):
+    """Rows H (m, n) that observe the state: their few elements that are not zero, (m, W) each."""
+
+    columns: Indices
+    coefficients: Array
+
+    def dense(self, n: int) -> Array:
+        """Return H (m, n)."""
+        H = np.zeros((len(self.columns), n))
+        np.add.at(H, (np.arange(len(H))[:, None], self.columns), self.coefficients)
+        return H
+
+
+class Innovation(NamedTuple):
+    """Measurements less their prediction."""
+
+    rows: SparseRows
+    """H (m, n)"""
+    residual: Array
+    """(m,)"""
+    cross: Array
+    """H P (m, n)."""
+    covariance: Array
+    """H P H' (m, m): of the prediction alone."""
+
+    def subset(self, which: Mask) -> Innovation:
+        """Return that of some rows (m,); all of them: this one."""
+        if which.all():
+            return self
+        columns, coefficients = self.rows
+        rows = SparseRows(columns[which], coefficients[which])
+        return Innovation(rows, self.residual[which], self.cross[which], self.covariance[np.ix_(which, which)])
+
+
+class CholeskyKalmanFilter(KalmanFilter):  # type: ignore[misc]  # filterpy has no types
+    """filterpy's filter, whose correction needs neither an inverse nor dense rows."""
+
+    x: Array
+    P: Array
+
+    def innovation(self, y: Array, rows: SparseRows) -> Innovation:
+        """Return the innovation of the measurements ``y`` (m,) that ``rows`` observe."""
+        return Innovation(rows, *predicted(self.x, self.P, y, rows.columns, rows.coefficients))
+
+    def correct(self, innovation: Innovation, variance: Array) -> float:
+        """Correct by measurements with ``variance`` (m,) and return their normalised innovation squared.
+
+        With S = L L' and W = L^-1 H P the correction is x + W' L^-1 y and P - W' W. Where that leaves next to nothing
+        of a variance, or S is not positive definite, filterpy's own update in Joseph's form takes its place.
+        """
+        covariance = innovation.covariance.copy()
+        covariance.flat[:: len(variance) + 1] += variance
+        L, info = dpotrf(covariance, lower=1)
+        if info == 0:
+            W = dtrsm(1.0, L, innovation.cross.T, side=1, lower=1, trans_a=1)  # transposed (n, m)
+            normalised = dtrsv(L, innovation.residual, lower=1)
+            P = self.P - W @ W.T
+            if (P.diagonal() >= _CANCELLED * self.P.diagonal()).all():
+                self.x, self.P = self.x + W @ normalised, (P + P.T) / 2
+                return float(normalised @ normalised)
+        H = innovation.rows.dense(self.dim_x)
+        self.update(innovation.residual + H @ self.x, R=np.diag(variance), H=H)
+        self.P = (self.P + self.P.T) / 2
+        return float(self.y @ self.SI @ self.y)

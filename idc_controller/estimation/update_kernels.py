@@ -1,0 +1,172 @@
+"""Compiled kernels of the measurement update: innovations, their covariance, and their test.
+
+Rows that observe the error state have few elements: each is given by ``columns`` and ``coefficients`` (m, W).
+"""
+
+import math
+
+import numpy as np
+
+from idc_controller.arrays import Array, Indices, Mask
+from idc_controller.compiled import inlined, kernel
+
+_VECTOR, _MATRIX = (f"Array(float64, {axes}, 'C', readonly=True)" for axes in (1, 2))
+"""Types of arrays of parameters, which are read only."""
+
+
+@kernel(
+    "float64[::1](float64[::1], int64[::1], boolean[::1], int64, float64[:, ::1], float64[:, :, ::1], "
+    f"float64[::1], float64[::1], int64, {_MATRIX}, {_VECTOR})"
+)
+def measured_less_reference(
+    values: Array, sources: Indices, is_position: Mask, m: int, x: Array, payload: Array,
+    q: Array, q_dot: Array, k: int, p: Array, l: Array,
+) -> Array:  # fmt: skip
+    """Return measured less reference (m,) of K measurements of one moment; nan where nothing was measured.
+
+    A position has 6 rows, an attitude of the payload 6 (Euler angles and body rates), one of a UAV 4: of that only the
+    direction of the thrust moves anything, n = -R e3, n' = -R (omega x e3).
+
+    Args:
+        values: poses (quaternion or position) and motions, one measurement after the other, NED, SI.
+        sources: UAV (K,), or negative for the payload.
+        is_position: whether each is a position; else it is an attitude (K,).
+        m: number of rows.
+        x: states of the reference in the linear model's coordinates (T, 12 + 11 N).
+        payload: derivatives of the payload's position (5, T, 3).
+        q, q_dot: direction of the links and its derivative (3,), at time ``k``.
+        k: index of the time in the reference.
+        p: attachment points (N, 3) (m).
+        l: lengths of the links (N,) (m).
+    """
+    N = len(l)
+    result = np.empty(m)
+    at, row = 0, 0
+    for j in range(len(sources)):
+        i = sources[j]
+        if is_position[j]:
+            for c in range(3):
+                position, velocity = payload[0, k, c], payload[1, k, c]
+                if i >= 0:
+                    position, velocity = position + p[i, c] - l[i] * q[c], velocity - l[i] * q_dot[c]
+                result[row + c], result[row + 3 + c] = values[at + c] - position, values[at + 3 + c] - velocity
+            at, row = at + 6, row + 6
+            continue
+        w, a, b, c = values[at], values[at + 1], values[at + 2], values[at + 3]
+        omega_x, omega_y, omega_z = values[at + 4], values[at + 5], values[at + 6]
+        at += 7
+        if i < 0:
+            result[row] = math.atan2(2 * (w * a + b * c), 1 - 2 * (a * a + b * b))
+            sine = 2 * (w * b - c * a)
+            result[row + 1] = math.asin(min(max(sine, -1.0), 1.0)) if sine == sine else sine
+            result[row + 2] = math.atan2(2 * (w * c + a * b), 1 - 2 * (b * b + c * c))
+            result[row + 3], result[row + 4], result[row + 5] = omega_x, omega_y, omega_z
+            row += 6
+        else:
+            n, n_dot = 12 + 4 * N + 2 * i, 12 + 6 * N + 2 * i
+            result[row] = -2.0 * (a * c + w * b) - x[k, n]
+            result[row + 1] = -2.0 * (b * c - w * a) - x[k, n + 1]
+            turn, cross = 2.0 * (a * b - w * c), 2.0 * (a * b + w * c)
+            result[row + 2] = turn * omega_x - (1.0 - 2.0 * (b * b + c * c)) * omega_y - x[k, n_dot]
+            result[row + 3] = (1.0 - 2.0 * (a * a + c * c)) * omega_x - cross * omega_y - x[k, n_dot + 1]
+            row += 4
+    return result
+
+
+@kernel(
+    "Tuple((float64[::1], float64[:, ::1], float64[:, ::1]))"
+    f"({_VECTOR}, {_MATRIX}, float64[::1], int64[:, ::1], float64[:, ::1])"
+)
+def predicted(x: Array, P: Array, y: Array, columns: Indices, coefficients: Array) -> tuple[Array, Array, Array]:
+    """Return the residual y - H x (m,), H P (m, n) and H P H' (m, m) for the sparse rows H.
+
+    Args:
+        x: predicted error state (n,).
+        P: its covariance (n, n).
+        y: measured less reference (m,).
+        columns, coefficients: elements of the rows that are not zero (m, W).
+    """
+    m, n, W = len(y), len(x), columns.shape[1]
+    residual, cross, covariance = y.copy(), np.zeros((m, n)), np.empty((m, m))
+    for r in range(m):
+        for a in range(W):
+            weight, column = coefficients[r, a], columns[r, a]
+            if weight != 0.0:
+                residual[r] -= weight * x[column]
+                for c in range(n):
+                    cross[r, c] += weight * P[column, c]
+    for r in range(m):
+        for o in range(r + 1):
+            total = 0.0
+            for a in range(W):
+                total += coefficients[r, a] * cross[o, columns[r, a]]
+            covariance[r, o] = covariance[o, r] = total
+    return residual, cross, covariance
+
+
+@inlined
+def _normalise(residual: Array, covariance: Array, variance: Array, first: int, size: int, into: Array) -> float:
+    """Fill ``into`` (size,) with the rows from ``first`` on normalised to variance 1; return the sum of their squares.
+
+    Both are inf where the covariance of these rows is not positive definite: of a filter that has diverged already.
+    """
+    L = np.empty((size, size))
+    total = 0.0
+    for r in range(size):
+        for c in range(r + 1):
+            value = covariance[first + r, first + c]
+            if r == c:
+                value += variance[first + r]
+            for k in range(c):
+                value -= L[r, k] * L[c, k]
+            if r != c:
+                L[r, c] = value / L[c, c]
+            elif value > 0.0:
+                L[r, r] = np.sqrt(value)
+            else:
+                into[:size] = np.inf
+                return np.inf
+        value = residual[first + r]
+        for k in range(r):
+            value -= L[r, k] * into[k]
+        into[r] = value / L[r, r]
+        total += into[r] ** 2
+    return total
+
+
+@kernel(
+    "Tuple((float64[::1], float64[::1], boolean[::1], boolean[::1]))"
+    "(float64[::1], float64[:, ::1], float64[::1], int64[::1], int64[::1], float64[::1])"
+)
+def gated(
+    residual: Array, covariance: Array, variance: Array, starts: Indices, sizes: Indices, limits: Array
+) -> tuple[Array, Array, Mask, Mask]:
+    """Test the innovations of K measurements, each by its own block of the covariance.
+
+    Args:
+        residual: innovations (m,).
+        covariance: of the predicted measurements (m, m).
+        variance: of the measurements (m,).
+        starts, sizes: first row and number of rows of each measurement (K,).
+        limits: gates (normalised innovation squared) by the number of rows.
+
+    Returns:
+        Normalised innovations (m,), their mean square by measurement (K,), the measurements that pass (K,), and the
+        rows that pass (m,): of a rejected measurement with pose and motion, the one that passes alone. A drifting
+        position, say, comes with a true velocity.
+    """
+    normalised, mean_squares = np.empty(len(residual)), np.empty(len(starts))
+    accepted, rows, half = np.empty(len(starts), np.bool_), np.zeros(len(residual), np.bool_), np.empty(3)
+    for j in range(len(starts)):
+        first, size = starts[j], sizes[j]
+        square = _normalise(residual, covariance, variance, first, size, normalised[first : first + size])
+        mean_squares[j] = square / size if square == square else np.inf
+        accepted[j] = square <= limits[size]
+        rows[first : first + size] = accepted[j]
+        if not accepted[j] and size > 3:
+            part = size // 2
+            for begin in (first, first + part):
+                rows[begin : begin + part] = (
+                    _normalise(residual, covariance, variance, begin, part, half) <= limits[part]
+                )
+    return normalised, mean_squares, accepted, rows

@@ -1,0 +1,169 @@
+"""Kalman filter: correction by Cholesky factor, sparse rows and compiled kernels against filterpy and plain numpy."""
+
+import numpy as np
+import pytest
+from filterpy.kalman import KalmanFilter
+from flight_in_process import MISSIONS
+from scipy.stats import chi2
+from test_flatness import Wave
+
+from gcs.config import read_system
+from idc_controller.estimation.estimator import Estimator
+from idc_controller.estimation.health.chi_squared import lower_quantile, upper_quantile
+from idc_controller.estimation.kalman_filter import CholeskyKalmanFilter, SparseRows
+from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
+from idc_controller.estimation.update_kernels import gated
+from idc_controller.model.linear import LinearModel
+from idc_controller.rotations import euler_from_quaternion, rotation_from_quaternion
+from idc_controller.trajectory.flatness import Load, flat_reference
+
+N_STATES = 30
+
+
+def positive_definite(rng, n):
+    factor = rng.standard_normal((n, n))
+    return factor @ factor.T + 0.1 * np.eye(n)
+
+
+def sparse_rows(rng, m, n):
+    columns = np.argsort(rng.random((m, n)), axis=1)[:, :5].copy()
+    return SparseRows(columns, rng.standard_normal((m, 5)) * (rng.random((m, 5)) < 0.7))
+
+
+def both(rng, P):
+    compiled, plain = (of(dim_x=len(P), dim_z=1) for of in (CholeskyKalmanFilter, KalmanFilter))
+    compiled.x = plain.x = rng.standard_normal(len(P))
+    compiled.P, plain.P = P.copy(), P.copy()
+    return compiled, plain
+
+
+def corrected(seed, P, variance):
+    """Correct both filters by measurements with ``variance``; return them and the normalised innovation squared."""
+    rng, m = np.random.default_rng(seed), len(variance)
+    compiled, plain = both(rng, P)
+    rows, y = sparse_rows(rng, m, len(P)), rng.standard_normal(m)
+    squared = compiled.correct(compiled.innovation(y, rows), variance)
+    plain.update(y, R=np.diag(variance), H=rows.dense(len(P)))
+    assert squared == pytest.approx(plain.y @ plain.SI @ plain.y, rel=1e-10)
+    return compiled, plain
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_correction_by_cholesky_factor_equals_filterpys_update(seed):
+    rng = np.random.default_rng(seed)
+    variance = 10.0 ** rng.uniform(-2.0, 1.0, rng.integers(1, 25))
+    compiled, plain = corrected(seed, positive_definite(rng, N_STATES), variance)
+    assert compiled.x == pytest.approx(plain.x, rel=1e-11, abs=1e-11)
+    assert np.allclose(compiled.P, plain.P, rtol=1e-11, atol=1e-11)
+    assert (compiled.P == compiled.P.T).all()
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_correction_that_cancels_a_variance_takes_josephs_form(seed):
+    compiled, plain = corrected(seed, 1e4 * np.eye(N_STATES), np.full(3, 1e-9))
+    assert np.allclose(compiled.P, (plain.P + plain.P.T) / 2, rtol=1e-9, atol=1e-12)
+    assert np.linalg.eigvalsh(compiled.P)[0] > 0.0
+
+
+def test_correction_without_positive_definite_covariance_is_filterpys():
+    compiled, plain = corrected(1, -np.eye(N_STATES), np.full(3, 0.1))
+    assert compiled.x == pytest.approx(plain.x)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_innovation_and_its_subset_equal_dense_products(seed):
+    rng, m = np.random.default_rng(seed), 12
+    filter, _ = both(rng, positive_definite(rng, N_STATES))
+    rows, y, which = sparse_rows(rng, m, N_STATES), rng.standard_normal(m), rng.random(m) < 0.5
+    innovation, H = filter.innovation(y, rows), rows.dense(N_STATES)
+    assert innovation.subset(np.ones(m, dtype=bool)) is innovation
+    for part, kept in ((innovation, H), (innovation.subset(which), H[which])):
+        assert part.cross == pytest.approx(kept @ filter.P, rel=1e-12, abs=1e-12)
+        assert part.covariance == pytest.approx(kept @ filter.P @ kept.T, rel=1e-12, abs=1e-12)
+    assert innovation.residual == pytest.approx(y - H @ filter.x, rel=1e-12, abs=1e-12)
+
+
+def plain_gate(residual, covariance, variance, starts, sizes, limits):
+    covariance = covariance + np.diag(variance)
+    normalised, mean_squares, accepted, rows = [], [], [], np.zeros(len(residual), dtype=bool)
+
+    def squared(part):
+        return residual[part] @ np.linalg.solve(covariance[part, part], residual[part])
+
+    for first, size in zip(starts, sizes, strict=True):
+        part = slice(first, first + size)
+        normalised.append(np.linalg.solve(np.linalg.cholesky(covariance[part, part]), residual[part]))
+        mean_squares.append(squared(part) / size)
+        accepted.append(squared(part) <= limits[size])
+        rows[part] = accepted[-1]
+        if not accepted[-1] and size > 3:
+            for half in (slice(first, first + size // 2), slice(first + size // 2, first + size)):
+                rows[half] = squared(half) <= limits[size // 2]
+    return np.concatenate(normalised), np.array(mean_squares), np.array(accepted), rows
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_compiled_gate_equals_plain_one(seed):
+    rng = np.random.default_rng(seed)
+    sizes = rng.choice([2, 3, 4, 6], 8)
+    starts, m = np.cumsum(sizes) - sizes, int(sizes.sum())
+    residual = rng.standard_normal(m) * 10.0 ** rng.uniform(0.0, 1.5, m)
+    arguments = (
+        residual,
+        positive_definite(rng, m),
+        rng.uniform(0.1, 1.0, m),
+        starts,
+        sizes,
+        lower_quantile(0.9, range(7)),
+    )
+    compiled, plain = gated(*arguments), plain_gate(*arguments)
+    for ours, theirs in zip(compiled[:2], plain[:2], strict=True):
+        assert ours == pytest.approx(theirs, rel=1e-10)
+    assert all((ours == theirs).all() for ours, theirs in zip(compiled[2:], plain[2:], strict=True))
+    assert 0 < compiled[3].sum() < m
+
+
+def test_gate_rejects_measurement_without_covariance_and_accepts_others():
+    covariance, limits = np.diag([np.nan] * 6 + [-2.0] * 6 + [1.0] * 6), lower_quantile(0.999, range(7))
+    starts, sizes = np.array([0, 6, 12]), np.full(3, 6)
+    normalised, mean_squares, accepted, rows = gated(np.zeros(18), covariance, np.full(18, 0.1), starts, sizes, limits)
+    assert accepted.tolist() == [False, False, True]
+    assert rows.tolist() == [False] * 12 + [True] * 6
+    assert mean_squares.tolist() == [np.inf, np.inf, 0.0]
+    assert np.isinf(normalised[:12]).all()
+
+
+@pytest.mark.parametrize("vehicles", [3, 4, 6])
+def test_compiled_measured_less_reference_equals_plain_one(vehicles):
+    parameters = read_system(MISSIONS / "system.toml").with_vehicles(vehicles).parameters()
+    model = Estimator(LinearModel(parameters)).measurement_model
+    flat = flat_reference(parameters, Wave(), np.array([1.0, 2.0]), Load(parameters.m_0, np.zeros(3)))
+    rng, x, layout = np.random.default_rng(vehicles), flat.x[1], model.layout
+    samples, expected = [], []
+    for source in (2, PAYLOAD, 0):
+        turn, values = rng.standard_normal(4), rng.standard_normal((3, 3))
+        turn /= np.linalg.norm(turn)
+        samples += [Attitude(2.0, source, turn, values[0]), Position(2.0, source, values[1], values[2])]
+        position, velocity = flat.payload[:2, 1]
+        if source == PAYLOAD:
+            expected += [euler_from_quaternion(turn), values[0]]
+        else:
+            R, of = rotation_from_quaternion(turn), slice(2 * source, 2 * source + 2)
+            expected += [
+                -R[:2, 2] - x[layout.n][of],
+                -(R @ np.cross(values[0], [0.0, 0.0, 1.0]))[:2] - x[layout.n_dot][of],
+            ]
+            position = position + parameters.p[source] - parameters.l[source] * flat.links.q[1]
+            velocity = velocity - parameters.l[source] * flat.links.q_dot[1]
+        expected += [values[1] - position, values[2] - velocity]
+    samples[-1] = samples[-1].without(pose=True, motion=False)
+    expected[-2] = np.full(3, np.nan)
+    observation = model.observation(tuple((sample.source, type(sample)) for sample in samples))
+    y = model.less_reference(observation, samples, flat, 1)
+    assert y == pytest.approx(np.concatenate(expected), rel=1e-12, abs=1e-12, nan_ok=True)
+
+
+def test_chi_squared_quantiles_equal_scipys():
+    freedom = np.arange(1, 300)
+    assert lower_quantile(1.0 - 1e-6, freedom) == pytest.approx(chi2.ppf(1.0 - 1e-6, freedom), rel=1e-12)
+    assert upper_quantile(1e-10, freedom) == pytest.approx(chi2.isf(1e-10, freedom), rel=1e-12)
