@@ -5,6 +5,7 @@ import pytest
 from filterpy.kalman import KalmanFilter
 from scipy.linalg import expm
 
+from idc_controller.perception.imm_kernels import advanced, predicted, updated
 from idc_controller.perception.motion_imm import MotionImm, MotionModels
 from idc_controller.perception.settings import ImmSettings
 
@@ -163,3 +164,58 @@ def test_returned_innovation_is_normalised():
     expected = near.state[0]
     assert near.update(expected, VARIANCE) == pytest.approx(0.0, abs=1e-12)
     assert far.update(expected + 3.0 * spread, VARIANCE) == pytest.approx(9.0)
+
+
+def advanced_in_numpy(weight, x, P, F, Q, change):
+    """Mixing of Blom and Bar-Shalom (1988), then the prediction of every model."""
+    m = len(weight)
+    to = weight[:, None] * (np.eye(m) * (1.0 - change - change / (m - 1)) + change / (m - 1))
+    share = to / to.sum(axis=0)
+    mean = np.einsum("ij,iak->jak", share, x)
+    second = np.einsum("ij,iakl->jakl", share, P + x[..., :, None] * x[..., None, :])
+    P = second - mean[..., :, None] * mean[..., None, :]
+    return to.sum(axis=0), np.einsum("mij,maj->mai", F, mean), np.einsum("mij,majk,mlk->mail", F, P, F) + Q[:, None]
+
+
+def updated_in_numpy(weight, x, P, position, variance):
+    measured = np.isfinite(position)
+    S = P[:, :, 0, 0] + variance
+    expected = weight @ x[:, :, 0]
+    spread = weight @ (P[:, :, 0, 0] + (x[:, :, 0] - expected) ** 2)
+    y = np.where(measured, position - x[:, :, 0], 0.0)
+    likelihood = (-0.5 * (y**2 / S + np.log(2.0 * np.pi * S)) * measured).sum(axis=1)
+    K = P[:, :, :, 0] / S[..., None] * measured[:, None]
+    weight = weight * np.exp(np.maximum(likelihood - likelihood.max(), -50.0))
+    weight = np.maximum(weight, 1e-6 * weight.sum())
+    squared = np.mean((position - expected)[measured] ** 2 / (spread + variance)[measured])
+    return weight / weight.sum(), x + K * y[..., None], P - K[..., :, None] * P[:, :, None, 0, :], squared
+
+
+def predicted_in_numpy(weight, x, P, F, Q):
+    f = F[:, :, 0]
+    means = np.einsum("mkj,maj->mka", f, x)
+    variances = np.einsum("mki,maij,mkj->mka", f, P, f) + Q[:, :, 0, 0, None]
+    mean = np.einsum("m,mka->ka", weight, means)
+    apart = means - mean
+    covariance = np.einsum("m,mka,mkb->kab", weight, apart, apart)
+    return mean, covariance + np.einsum("m,mka->ka", weight, variances)[:, :, None] * np.eye(3)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_kernels_agree_with_formulas_in_numpy(seed):
+    rng = np.random.default_rng(seed)
+    imm = followed(lambda t: np.array([np.sin(t), 0.3 * t, -5.0]), seed, until=1.0 + seed)
+    for dt in (0.01, 0.1, 1.0):
+        step = (*MODELS.step(dt), 0.1 * dt)
+        state = imm.weight, imm.x, imm.P
+        for ours, theirs in zip(advanced(*state, *step), advanced_in_numpy(*state, *step), strict=True):
+            np.testing.assert_allclose(ours, theirs, rtol=1e-9, atol=1e-12)
+        position = imm.state[0] + rng.normal(0.0, 0.1, 3)
+        position[seed % 3] = np.nan if seed else position[0]
+        for ours, theirs in zip(
+            updated(*state, position, VARIANCE), updated_in_numpy(*state, position, VARIANCE), strict=True
+        ):
+            np.testing.assert_allclose(ours, theirs, rtol=1e-9, atol=1e-12)
+        ahead = MODELS.horizon(np.linspace(0.0, 5.0 * dt, 8))
+        for ours, theirs in zip(predicted(*state, *ahead), predicted_in_numpy(*state, *ahead), strict=True):
+            np.testing.assert_allclose(ours, theirs, rtol=1e-9, atol=1e-12)

@@ -7,8 +7,9 @@ All models share the state (position, velocity, acceleration) on each of the thr
 - *harmonic* at several frequencies: x''' = -omega^2 x', a swing about a centre that the state implies.
 
 They interact as in Blom and Bar-Shalom (1988). The axes are filtered separately, with a model's weight in common.
-``filterpy`` has the same filters one at a time; here all models and axes are one array, since there are many obstacles
-and little time. The tests compare a single model with ``filterpy``.
+``filterpy`` has the same filters one at a time; here all models and axes are steps of one kernel
+(:mod:`idc_controller.perception.imm_kernels`), since there are many obstacles and little time. The tests compare a
+single model with ``filterpy``, and all of them with the formulas in numpy.
 """
 
 from functools import lru_cache
@@ -16,10 +17,8 @@ from functools import lru_cache
 import numpy as np
 
 from idc_controller.arrays import Array
+from idc_controller.perception.imm_kernels import advanced, predicted, updated
 from idc_controller.perception.settings import ImmSettings
-
-_LOG_2PI = float(np.log(2.0 * np.pi))
-_DIAGONAL = np.arange(3)
 
 
 class MotionModels:
@@ -120,15 +119,16 @@ class MotionImm:
         return np.asarray(self.weight @ (self.P[:, :, 0, 0] + (self.x[:, :, 0] - mean) ** 2))
 
     def advance(self, time: float) -> None:
-        """Predict to ``time`` (s); earlier times are passed over."""
+        """Predict to ``time`` (s); earlier times are passed over.
+
+        The models' states are mixed by the probability that the obstacle has changed its model.
+        """
         dt = time - self.time
         if dt <= 0.0:
             return
-        self._mix(dt)
         F, Q = self.models.step(dt)
-        F_transposed = F.transpose(0, 2, 1)
-        self.x = self.x @ F_transposed
-        self.P = F[:, None] @ self.P @ F_transposed[:, None] + Q[:, None]
+        change = min(self.models.settings.transition_rate * dt, 0.5)
+        self.weight, self.x, self.P = advanced(self.weight, self.x, self.P, F, Q, change)
         self.time = time
 
     def update(self, position: Array, variance: Array) -> float:
@@ -137,19 +137,9 @@ class MotionImm:
         Returns:
             The squared innovation of the mixture over its variance, mean over the measured axes.
         """
-        measured = np.isfinite(position)
-        S = self.P[:, :, 0, 0] + variance
-        expected = self.weight @ self.x[:, :, 0]
-        squared = np.where(measured, (position - expected) ** 2 / (self.position_variance + variance), 0.0)
-        y = np.where(measured, position - self.x[:, :, 0], 0.0)
-        log_likelihood = -0.5 * ((y**2 / S + np.log(S) + _LOG_2PI) * measured).sum(axis=1)
-        K = self.P[:, :, :, 0] / S[..., None] * measured[:, None]
-        self.x = self.x + K * y[..., None]
-        self.P = self.P - K[..., :, None] * self.P[:, :, None, 0, :]
-        weight = self.weight * np.exp(np.maximum(log_likelihood - log_likelihood.max(), -50.0))
-        weight = np.maximum(weight, 1e-6 * weight.sum())
-        self.weight = weight / weight.sum()
-        return float(squared.sum()) / max(int(measured.sum()), 1)
+        position, variance = np.ascontiguousarray(position), np.ascontiguousarray(variance)
+        self.weight, self.x, self.P, squared = updated(self.weight, self.x, self.P, position, variance)
+        return squared
 
     def shift(self, by: Array) -> None:
         """Shift the tracked point ``by`` (3,) (m)."""
@@ -157,33 +147,5 @@ class MotionImm:
 
     def predict(self, times: Array) -> tuple[Array, Array]:
         """Return mean (K, 3) (m) and covariance (K, 3, 3) (m2) of the position at ``times`` (K,) (s)."""
-        dt = np.maximum(np.asarray(times, dtype=float) - self.time, 0.0)
-        F, Q = self.models.horizon(dt)
-        f = F[:, :, 0, :]  # (M, K, 3): how the position comes about
-        means = np.matmul(f, np.swapaxes(self.x, 1, 2))  # (M, K, axis)
-        ff = (f[..., :, None] * f[..., None, :]).reshape(len(self.weight), len(dt), 9)
-        variances = np.matmul(ff, self.P.reshape(len(self.weight), 3, 9).swapaxes(1, 2))
-        variances += Q[:, :, 0, 0, None]
-        w, k = self.weight, len(dt)
-        mean = (w @ means.reshape(len(w), -1)).reshape(k, 3)
-        apart = (means - mean).transpose(1, 0, 2)
-        covariance = np.matmul((apart * w[:, None]).transpose(0, 2, 1), apart)
-        covariance[:, _DIAGONAL, _DIAGONAL] += (w @ variances.reshape(len(w), -1)).reshape(k, 3)
-        return mean, covariance
-
-    def _mix(self, dt: float) -> None:
-        """Mix the models' states by the probability that the obstacle has changed its model."""
-        m = len(self.weight)
-        change = min(self.models.settings.transition_rate * dt, 0.5)
-        # From model i to j: stays with 1 - change, else any of the others.
-        to = self.weight[:, None] * (np.eye(m) * (1.0 - change - change / (m - 1)) + change / (m - 1))
-        weight = to.sum(axis=0)
-        share = to / weight  # (from, to)
-        # Second moments about a common point, so that little is lost in the difference of large numbers.
-        common = (self.weight @ self.x.reshape(m, 9)).reshape(3, 3)
-        apart = self.x - common
-        mean = (share.T @ apart.reshape(m, 9)).reshape(m, 3, 3)
-        second = self.P + apart[..., :, None] * apart[..., None, :]
-        mixed = (share.T @ second.reshape(m, 27)).reshape(m, 3, 3, 3)
-        self.P = mixed - mean[..., :, None] * mean[..., None, :]
-        self.x, self.weight = mean + common, weight
+        F, Q = self.models.horizon(np.maximum(times - self.time, 0.0))
+        return predicted(self.weight, self.x, self.P, F, Q)
