@@ -8,6 +8,7 @@ import numpy as np
 
 from idc_controller.arrays import Array
 from idc_controller.perception.pose_history import PoseHistory
+from idc_controller.perception.scan_kernels import placed_points
 from idc_controller.perception.settings import ScanSettings
 from idc_controller.perception.surfaces.points import SurfacePoints
 from idc_controller.rotations import rotation_from_quaternion
@@ -187,14 +188,13 @@ class ScanAssembly:
     def _placed(
         self, uav: int, scan: _Scan, position: Array, quaternion: Array, position_sigma: float, attitude_sigma: float
     ) -> list[Cluster]:
-        rotation = rotation_from_quaternion(quaternion)
         noise = self._sensors.range_noise
         body = np.array([point for points in scan.points.values() for point in points])
-        distance = np.sqrt(np.einsum("ij,ij->i", body, body))
-        world = position + body @ rotation.T
-        origins = np.broadcast_to(position, body.shape)
-        cut = distance > scan.max_range - self._settings.cut_sigmas * noise
-        variance = position_sigma**2 + (attitude_sigma * distance) ** 2
+        world, cut, variance = placed_points(
+            body, np.ascontiguousarray(position), rotation_from_quaternion(quaternion),
+            scan.max_range - self._settings.cut_sigmas * noise, position_sigma, attitude_sigma,
+        )  # fmt: skip
+        origins = np.tile(position, (len(body), 1))
         clusters, end = [], 0
         for number, points in scan.points.items():
             own = slice(end, end + len(points))
