@@ -12,7 +12,7 @@ from idc_controller.geometry.formation import Formation
 from idc_controller.geometry.obstacles import PredictedObstacle
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
-from idc_controller.safety.separation import separations
+from idc_controller.safety.separation import PredictedObstacles, separations
 from idc_controller.trajectory.flatness import Load
 
 TEAMS = [3, 4, 6, 8]
@@ -118,7 +118,7 @@ def test_distance_and_plane_are_those_of_the_convex_hulls(n, shape):
     away = rng.normal(size=(K, 3)) * [1.0, 1.0, 0.4]
     centre = position + 3.2 * away / np.linalg.norm(away, axis=1, keepdims=True) + [0.0, 0.0, -1.5]
     obstacle = PredictedObstacle("o", shape, centre, np.zeros(K))
-    (found,) = separations(formation, position, a, [obstacle], 50.0)
+    (found,) = separations(formation, position, a, PredictedObstacles([obstacle]), 50.0)
     points = formation.hull_points(a) + position[:, None]
     body, radius = surface(shape)
     apart = 0
@@ -148,7 +148,7 @@ def test_only_near_obstacles_are_active():
             ("near", [8.0, 2.5, -5.0], 0.0), ("far", [8.0, 8.0, -5.0], 0.0), ("grown", [8.0, -6.0, -5.0], 3.0),
         )
     )  # fmt: skip
-    found = separations(formation, position, np.zeros((K, 3)), [near, far, grown], 2.5)
+    found = separations(formation, position, np.zeros((K, 3)), PredictedObstacles([near, far, grown]), 2.5)
     assert [s.obstacle.name for s in found] == ["near", "grown"]
     # The distance of far stages is not below the limit of evaluation.
     assert found[0].distance[0] >= 2.5
@@ -159,5 +159,5 @@ def test_only_near_obstacles_are_active():
 def test_distance_of_overlap_is_negative():
     formation = Formation(system())
     inside = PredictedObstacle("in", Sphere(0.5), np.array([[0.0, 0.0, -6.0]]), np.zeros(1))
-    (found,) = separations(formation, np.array([[0.0, 0.0, -5.0]]), np.zeros((1, 3)), [inside], 2.5)
+    (found,) = separations(formation, np.array([[0.0, 0.0, -5.0]]), np.zeros((1, 3)), PredictedObstacles([inside]), 2.5)
     assert found.distance[0] < -0.4

@@ -16,7 +16,7 @@ from idc_controller.geometry.sphere import Sphere
 from idc_controller.qp.daqp_solver import DaqpSolver
 from idc_controller.safety.constraints.exponential_barrier import barrier_operator
 from idc_controller.safety.planner import Planner, terminal_weight
-from idc_controller.safety.separation import separations
+from idc_controller.safety.separation import PredictedObstacles, separations
 from idc_controller.safety.settings import PlannerSettings
 
 SETTINGS = PlannerSettings()
@@ -46,7 +46,7 @@ def solved(planner, start, mission, obstacles, passes=3):
     """The plan after some rounds of convexification, and the planes it kept to."""
     position, acceleration, plan = mission[0], mission[2], None
     for _ in range(passes):
-        near = separations(planner.formation, position, acceleration, obstacles, 2.5)
+        near = separations(planner.formation, position, acceleration, PredictedObstacles(obstacles), 2.5)
         about = acceleration
         plan = planner.solve(start, mission, near, about)
         assert plan is not None
@@ -108,14 +108,14 @@ def test_barrier_limits_how_fast_an_obstacle_is_approached(rates):
     position = mission[0] + plan.deviation[:, 0]
     n, lever = near[0].normals, planner.formation.levers(about)[:, 0]
     change = plan.deviation[:, 2] + mission[2] - about
-    barrier_values = planner.barrier.values(near[0], position, about)
+    barrier_values = planner.barrier.values(near[:1], position, about)[0]
     barrier_values[1] -= lever * np.sum(n[:, :2] * change[:, :2], axis=1)
     for h in barrier_values:
         assert (planner.barrier.operator @ h).min() > -1e-6
         assert h.min() > -1e-6
     # The mission itself would break them.
     assert (
-        min((planner.barrier.operator @ h).min() for h in planner.barrier.values(near[0], mission[0], mission[2]))
+        min((planner.barrier.operator @ h).min() for h in planner.barrier.values(near[:1], mission[0], mission[2])[0])
         < -0.05
     )
 
@@ -151,7 +151,7 @@ def test_optimum_is_that_of_another_solver(seed):
     p, x = solver.problem, solver.solution.x
     n = len(p.g)
     value = 0.5 * x @ p.H @ x + p.g @ x
-    assert plan.cost == pytest.approx(value + planner.cost(start, np.zeros((SETTINGS.chain.knots, 3))), abs=1e-6)
+    assert plan.cost == pytest.approx(value + planner.cost.of(start, np.zeros(3 * SETTINGS.chain.knots)), abs=1e-6)
     rows = np.vstack([np.eye(n), p.G])
     upper, lower = np.concatenate([p.upper, p.h]), np.concatenate([p.lower, np.full(len(p.h), -np.inf)])
     assert np.all(rows @ x <= upper + 1e-6)
@@ -245,7 +245,7 @@ def test_infeasible_row_of_one_obstacle_does_not_relax_another(planner):
     both = planner.solve(np.zeros((5, 3)), cruising(-1.5), planes, about)
     other = next(s for s in planes if s.obstacle.name == "other")
     position = cruising(-1.5)[0] + both.deviation[:, 0]
-    assert planner.barrier.values(other, position, both.deviation[:, 2])[0].min() > -1e-6
+    assert planner.barrier.values([other], position, both.deviation[:, 2])[0, 0].min() > -1e-6
 
 
 def test_margin_includes_growth_of_uncertainty(planner):
@@ -292,5 +292,5 @@ def test_plan_is_feasible_with_other_integrator_chains():
     mission = cruising(1.0, stages=chain.stages, period=chain.period)
     k = chain.stages + 1
     obstacle = PredictedObstacle("o", Sphere(0.4), np.tile([2.0, 0.3, -7.0], (k, 1)), np.zeros(k))
-    near = separations(planner.formation, mission[0], mission[2], [obstacle], 2.5)
+    near = separations(planner.formation, mission[0], mission[2], PredictedObstacles([obstacle]), 2.5)
     assert planner.solve(np.zeros((5, 3)), mission, near, mission[2]) is not None

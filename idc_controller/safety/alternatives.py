@@ -18,9 +18,10 @@ def alternatives(
         near: the separations of a trajectory with ``position`` and ``acceleration`` (K + 1, 3), NED, SI.
         velocity: of the reference (K + 1, 3) (m/s).
     """
-    values = [barrier.values(s, position, acceleration).min(axis=0) for s in near]
-    first = min(range(len(near)), key=lambda i: int(np.argmax(values[i] < 0.0)) if (values[i] < 0.0).any() else 999)
-    conflict = np.flatnonzero(values[first] < 0.0)
+    values = barrier.values(near, position, acceleration).min(axis=1)
+    missed = values < 0.0
+    first = int(np.argmin(np.where(missed.any(axis=1), missed.argmax(axis=1), values.shape[1])))
+    conflict = np.flatnonzero(missed[first])
     if len(conflict) == 0:
         conflict = np.array([int(np.argmin(values[first]))])
     at = conflict[len(conflict) // 2]

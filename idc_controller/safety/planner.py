@@ -4,9 +4,12 @@ Decision variables are the knots of the snap of the payload's deviation from the
 in :mod:`idc_controller.safety.constraints`; slacks keep the QP feasible and say by how much safety would be missed.
 """
 
+from __future__ import annotations
+
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 from scipy.linalg import block_diag, solve_discrete_are
@@ -17,7 +20,7 @@ from idc_controller.geometry.formation import Formation
 from idc_controller.qp.daqp_solver import DaqpSolver
 from idc_controller.qp.problem import QpSolver, QuadraticProgram
 from idc_controller.safety.constraints import planner_constraints
-from idc_controller.safety.constraints.constraint import Penalty, PlanningStep
+from idc_controller.safety.constraints.constraint import Constraint, Penalty, PlanningStep
 from idc_controller.safety.constraints.exponential_barrier import ExponentialBarrier
 from idc_controller.safety.constraints.snap_bounds import SnapBounds
 from idc_controller.safety.separation import Separation
@@ -46,14 +49,14 @@ class Planner:
         self.snap_bounds = SnapBounds(settings)
         self.barrier = ExponentialBarrier(formation, settings)
         self.constraints = planner_constraints(self.barrier, settings)
-        self.hessians, self.gradients, self._gains, self._constants = _condensed_cost(settings)
-        self._hessian = block_diag(*self.hessians)
+        self.cost = _condensed_cost(settings)
+        self._layouts: dict[int, _Layout] = {}
 
     def free(self, start: Array) -> Plan:
         """Return the plan back to the reference from a deviation ``start`` (5, 3) with no obstacle near."""
-        knots = np.column_stack([-self._gains[axis] @ start[:, axis] for axis in range(3)])
-        deviation = self.settings.chain.roll_out(start, knots)
-        return Plan(knots, deviation, self.cost(start, knots), 0.0)
+        z = -self.cost.gain @ start.T.ravel()
+        knots = z.reshape(3, -1).T
+        return Plan(knots, self.settings.chain.roll_out(start, knots), self.cost.of(start, z), 0.0)
 
     def solve(
         self, start: Array, reference: Array, separations: Sequence[Separation], acceleration: Array
@@ -68,17 +71,18 @@ class Planner:
         """
         chain = self.settings.chain
         step = PlanningStep(reference, chain.response[0] @ start, acceleration, separations)
-        problem, slacks = self._problem(start, step)
+        layout = self._layout(len(separations))
+        problem = self._problem(start, step, layout)
         try:
             x = self.solver.solve(problem).x
         except SolverError:
             return None
         n = 3 * chain.knots
-        z = x[:n].reshape(3, chain.knots).T
-        slack, linear, quadratic = x[n:], problem.g[n:], np.diag(problem.H)[n:]
-        cost = self.cost(start, z) + float(0.5 * slack @ (quadratic * slack) + linear @ slack)
-        missed = x[slacks[self.barrier.penalty]].max(initial=0.0)
-        return Plan(z, chain.roll_out(start, z), cost, float(missed))
+        slack = x[n:]
+        penalty = float(0.5 * slack @ (layout.quadratic * slack) + layout.linear @ slack)
+        missed = x[layout.slacks[self.barrier.penalty]].max(initial=0.0)
+        knots = x[:n].reshape(3, chain.knots).T
+        return Plan(knots, chain.roll_out(start, knots), self.cost.of(start, x[:n]) + penalty, float(missed))
 
     def is_within_limits(self, plan: Plan, reference: Array) -> bool:
         """Return whether a plan about ``reference`` (5, K + 1, 3) keeps snap, acceleration and height."""
@@ -90,49 +94,90 @@ class Planner:
             bool(np.all(G @ z <= h + 1e-9)) for G, h in rows
         )
 
-    def _problem(self, start: Array, step: PlanningStep) -> tuple[QuadraticProgram, dict[Penalty, slice]]:
-        """Return the QP in (z, slacks) and where the slacks of each penalty are."""
-        knots = self.settings.chain.knots
-        blocks = [(c.penalty, *c.rows(step), c.slack_shares(step)) for c in self.constraints]
+    def _layout(self, obstacles: int) -> _Layout:
+        """Return what is the same in every QP with that number of obstacles."""
+        if obstacles not in self._layouts:
+            self._layouts[obstacles] = _Layout.of(self.constraints, self.cost.H, obstacles)
+        return self._layouts[obstacles]
+
+    def _problem(self, start: Array, step: PlanningStep, layout: _Layout) -> QuadraticProgram:
+        """Return the QP in (z, slacks)."""
+        n = 3 * self.settings.chain.knots
+        G, bounds, row = layout.G.copy(), [], 0
+        for constraint in self.constraints:
+            rows, h = constraint.rows(step)
+            G[row : row + len(h), :n] = rows
+            bounds.append(h)
+            row += len(h)
+        g = np.concatenate([self.cost.G @ start.T.ravel(), layout.linear])
+        least, most = self.snap_bounds.bounds(step)
+        lower, upper = np.concatenate([least, layout.least]), np.concatenate([most, layout.most])
+        return QuadraticProgram(layout.H, g, G, np.concatenate(bounds), lower, upper)
+
+
+@dataclass(frozen=True, eq=False)
+class _Layout:
+    """The part of the QP in (z, slacks) that depends on the number of obstacles only."""
+
+    H: Array
+    """(n, n)"""
+    G: Array
+    """Rows of all constraints, with the shares of the slacks and no z (m, n)."""
+    linear: Array
+    quadratic: Array
+    """Costs of the slacks (n - 3 knots,)."""
+    least: Array
+    most: Array
+    """Bounds of the slacks."""
+    slacks: Mapping[Penalty, slice]
+    """Where the slacks of each penalty are."""
+
+    @classmethod
+    def of(cls, constraints: Sequence[Constraint], H: Array, obstacles: int) -> Self:
+        """Return the layout for ``constraints`` and the Hessian ``H`` (3 knots, 3 knots) of z."""
+        shares = [(constraint.penalty, constraint.slack_shares(obstacles)) for constraint in constraints]
         slacks: dict[Penalty, slice] = {}
-        n, m = 3 * knots, sum(len(h) for _, _, h, _ in blocks)
-        for penalty, _, _, shares in blocks:
+        n = len(H)
+        for penalty, share in shares:
             if penalty not in slacks:
-                slacks[penalty] = slice(n, n := n + shares.shape[1])
-        H, g = np.zeros((n, n)), np.zeros(n)
-        H[: 3 * knots, : 3 * knots] = self._hessian
-        for axis in range(3):
-            g[axis * knots : (axis + 1) * knots] = self.gradients[axis] @ start[:, axis]
-        for penalty, columns in slacks.items():
-            np.fill_diagonal(H[columns, columns], penalty.quadratic)
-            g[columns] = penalty.linear
-        G, h, row = np.zeros((m, n)), np.zeros(m), 0
-        for penalty, G_z, bound, shares in blocks:
-            rows = slice(row, row := row + len(bound))
-            G[rows, : 3 * knots], G[rows, slacks[penalty]], h[rows] = G_z, -shares, bound
-        lower, upper = np.zeros(n), np.full(n, np.inf)
-        lower[: 3 * knots], upper[: 3 * knots] = self.snap_bounds.bounds(step)
-        return QuadraticProgram(H, g, G, h, lower, upper), slacks
-
-    def cost(self, start: Array, knots: Array) -> float:
-        """Return the cost of the deviation from ``start`` (5, 3) under snap ``knots`` (knots, 3), without slacks."""
-        total = 0.0
-        for axis in range(3):
-            z, y = knots[:, axis], start[:, axis]
-            total += float(
-                0.5 * z @ self.hessians[axis] @ z + (self.gradients[axis] @ y) @ z + 0.5 * y @ self._constants[axis] @ y
-            )
-        return total
+                slacks[penalty] = slice(n, n := n + share.shape[1])
+        G, row = np.zeros((sum(len(share) for _, share in shares), n)), 0
+        for penalty, share in shares:
+            G[row : row + len(share), slacks[penalty]] = -share
+            row += len(share)
+        number = [columns.stop - columns.start for columns in slacks.values()]
+        linear = np.repeat([penalty.linear for penalty in slacks], number)
+        quadratic = np.repeat([penalty.quadratic for penalty in slacks], number)
+        return cls(
+            block_diag(H, np.diag(quadratic)), G, linear, quadratic,
+            np.zeros(n - len(H)), np.full(n - len(H), np.inf), slacks,
+        )  # fmt: skip
 
 
-def _condensed_cost(s: PlannerSettings) -> tuple[list[Array], list[Array], list[Array], list[Array]]:
-    """Per axis, 1/2 z' H z + (G y)' z + 1/2 y' C y for knots z and start y: H, G, the gain H^-1 G, and C."""
+@dataclass(frozen=True, eq=False)
+class DeviationCost:
+    """Cost of the deviation, 1/2 z' H z + (G y)' z + 1/2 y' C y for knots z and start y, both axis by axis."""
+
+    H: Array
+    """(3 knots, 3 knots)"""
+    G: Array
+    """(3 knots, 15)"""
+    C: Array
+    """(15, 15)"""
+    gain: Array
+    """H^-1 G (3 knots, 15): the optimum without constraints is -gain y."""
+
+    def of(self, start: Array, z: Array) -> float:
+        """Return the cost of a deviation from ``start`` (5, 3) under ``z`` (3 knots,)."""
+        y = start.T.ravel()
+        return float(0.5 * z @ self.H @ z + (self.G @ y) @ z + 0.5 * y @ self.C @ y)
+
+
+def _condensed_cost(s: PlannerSettings) -> DeviationCost:
+    """Return the cost over all stages, condensed to the knots."""
     chain = s.chain
     Phi, Gamma = chain.response
-    hessians: list[Array] = []
-    gradients: list[Array] = []
-    gains: list[Array] = []
-    constants: list[Array] = []
+    parts: list[tuple[Array, Array, Array, Array]] = []
     for axis in range(3):
         W = np.diag([s.position[axis], s.velocity[axis], s.acceleration, s.jerk, s.snap[axis]])
         W_f = np.zeros((5, 5))
@@ -146,11 +191,8 @@ def _condensed_cost(s: PlannerSettings) -> tuple[list[Array], list[Array], list[
             H = H + Gamma[k].T @ weight @ Gamma[k]
             G = G + Gamma[k].T @ weight @ Phi[k]
             C = C + Phi[k].T @ weight @ Phi[k]
-        hessians.append(H)
-        gradients.append(G)
-        gains.append(np.asarray(np.linalg.solve(H, G), dtype=np.float64))
-        constants.append(C)
-    return hessians, gradients, gains, constants
+        parts.append((H, G, C, np.asarray(np.linalg.solve(H, G))))
+    return DeviationCost(*(block_diag(*blocks) for blocks in zip(*parts, strict=True)))
 
 
 def terminal_weight(period: float, W: Array) -> Array:

@@ -1,20 +1,19 @@
 """The safety filter: from a reference trajectory to one that keeps the hull clear of obstacles, step by step."""
 
 from collections import deque
-from dataclasses import replace
 
 import numpy as np
 
 from idc_controller.arrays import Array
 from idc_controller.estimation.estimate import Estimate
 from idc_controller.geometry.formation import Formation
-from idc_controller.geometry.obstacles import ObstacleSource, PredictedObstacle
+from idc_controller.geometry.obstacles import ObstacleSource
 from idc_controller.parameters import SystemParameters
 from idc_controller.safety.alternatives import alternatives
 from idc_controller.safety.filter_protocol import SafetyReport
 from idc_controller.safety.planner import Plan, Planner
 from idc_controller.safety.safe_trajectory import Piece, SafeTrajectory
-from idc_controller.safety.separation import Separation, separations
+from idc_controller.safety.separation import PredictedObstacles, Separation, separations
 from idc_controller.safety.settings import FilterSettings, PlannerSettings
 from idc_controller.trajectory.scaled import ScaledReference
 from idc_controller.trajectory.trajectory_kernels import chain as deviation_after
@@ -52,14 +51,14 @@ class AvoidanceFilter:
         chain = self.settings.chain
         if self._trajectory is not None and reference is self._pieces[-1].reference:
             return self._trajectory
-        obstacles = list(self.obstacles.predict(time + chain.times))
+        predicted = self.obstacles.predict(time + chain.times)
         now = None if self._trajectory is None else self._trajectory.derivatives(np.array([time]))[:, 0]
         ahead = reference.after(chain.times)
         start = np.zeros((5, 3)) if now is None else now - ahead[:, 0]
         if np.abs(start).max() < NEGLIGIBLE:
             start[:] = 0.0
-        if now is not None:
-            obstacles = self._grown(obstacles, float(np.linalg.norm(estimate.x[0:3] - now[0])))
+        off = 0.0 if now is None else float(np.linalg.norm(estimate.x[0:3] - now[0]))
+        obstacles = PredictedObstacles(predicted, self._extra_growth(off))
         plan, nearest, infeasible, qp_count = self._decide(time, start, ahead, obstacles)
         negligible = plan is None or bool(np.abs(plan.deviation).max() < NEGLIGIBLE)
         deviation = None if negligible or plan is None else plan.deviation
@@ -80,17 +79,14 @@ class AvoidanceFilter:
         self._trajectory = SafeTrajectory(self._pieces, chain)
         return self._trajectory
 
-    def _grown(self, obstacles: list[PredictedObstacle], error: float) -> list[PredictedObstacle]:
-        """The obstacles, larger by what the payload is off the plan (m) beyond the bound, while it comes back."""
+    def _extra_growth(self, error: float) -> Array | float:
+        """Growth of all obstacles (K + 1,) by what the payload is off the plan (m) beyond the bound, as it returns."""
         s = self.filter_settings
         excess = min(error - self.settings.tracking, s.excess_max)
-        if excess <= 0.0:
-            return obstacles
-        growth = excess * np.exp(-self.settings.chain.times / s.recovery)
-        return [replace(obstacle, growth=obstacle.growth + growth) for obstacle in obstacles]
+        return excess * np.exp(-self.settings.chain.times / s.recovery) if excess > 0.0 else 0.0
 
     def _decide(
-        self, time: float, start: Array, ahead: Array, obstacles: list[PredictedObstacle]
+        self, time: float, start: Array, ahead: Array, obstacles: PredictedObstacles
     ) -> tuple[Plan | None, str, bool, int]:
         """Plan (None: the reference itself), nearest obstacle, whether no QP had a solution, and QPs solved."""
         planner = self.planner
@@ -132,7 +128,7 @@ class AvoidanceFilter:
 
     def _refine(
         self, start: Array, ahead: Array, position: Array, acceleration: Array,
-        obstacles: list[PredictedObstacle], passes: int,
+        obstacles: PredictedObstacles, passes: int,
     ) -> tuple[Plan | None, int]:  # fmt: skip
         """Solve again with the planes of the plan before, ``passes`` times; also returns the QPs solved."""
         plan = None
@@ -144,7 +140,7 @@ class AvoidanceFilter:
             position, acceleration = _absolute(ahead, plan)
         return plan, passes
 
-    def _near(self, position: Array, acceleration: Array, obstacles: list[PredictedObstacle]) -> list[Separation]:
+    def _near(self, position: Array, acceleration: Array, obstacles: PredictedObstacles) -> list[Separation]:
         return separations(self.formation, position, acceleration, obstacles, self.filter_settings.watch)
 
     def _kept(self, time: float) -> Plan | None:

@@ -30,6 +30,6 @@ class AccelerationBounds:
         limit = np.maximum(self._limits[:, None], np.abs(own) + self._spare)
         return self._G, np.stack([limit - value, limit + value], axis=1).ravel()
 
-    def slack_shares(self, step: PlanningStep) -> Array:
+    def slack_shares(self, obstacles: int) -> Array:
         """Return S (m, 1): one slack for all."""
         return np.ones((len(self._G), 1))

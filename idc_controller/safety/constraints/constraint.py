@@ -38,6 +38,6 @@ class Constraint(Protocol):
         """Return G (m, 3 knots) and h (m,)."""
         ...
 
-    def slack_shares(self, step: PlanningStep) -> Array:
-        """Return S (m, s): by what share of each slack a row may be exceeded."""
+    def slack_shares(self, obstacles: int) -> Array:
+        """Return S (m, s): by what share of each slack a row may be exceeded, with that number of obstacles."""
         ...

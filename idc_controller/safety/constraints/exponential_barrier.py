@@ -9,13 +9,17 @@ the discrete form of the exponential barrier of degree m with the real poles ln(
 plain distance rows.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from idc_controller.arrays import Array
 from idc_controller.geometry.formation import Formation
 from idc_controller.safety.constraints.constraint import Penalty, PlanningStep
+from idc_controller.safety.planner_kernels import barrier_rows, barrier_values
 from idc_controller.safety.separation import Separation
 from idc_controller.safety.settings import PlannerSettings
 from idc_controller.trajectory.integrator_chain import Chain
@@ -28,8 +32,9 @@ class ExponentialBarrier:
         self.formation, self.settings = formation, settings
         self.penalty = Penalty(settings.slack_linear, settings.slack_quadratic)
         chain = settings.chain
-        self._Gamma = chain.response[1]
+        self._response = chain.response[1]
         self.operator = barrier_operator(settings.barrier_rates, chain)
+        self._degree = len(settings.barrier_rates)
         fading = np.exp(-np.arange(chain.stages + 1) * chain.period / settings.slack_time_constant)
         # The barrier of h + slack in place of h: nested sets that are larger by the slack, now and later.
         shares = self.operator @ np.column_stack([fading, 1.0 - fading])
@@ -39,60 +44,63 @@ class ExponentialBarrier:
         """Return G (2 K O, 3 knots) and h (2 K O,) for O obstacles: payload, then discs of each."""
         if not step.separations:
             return np.zeros((0, 3 * self.settings.chain.knots)), np.zeros(0)
-        G, h = zip(*(self._rows_of(separation, step) for separation in step.separations), strict=True)
-        return np.vstack(G), np.concatenate(h)
+        position, acceleration = step.reference[0] + step.free[:, 0], step.reference[2] + step.free[:, 2]
+        planes = self._planes(step.separations, step.acceleration)
+        G = barrier_rows(planes.normals, planes.lever, self._response, self.operator, self._degree)
+        return G, (barrier_values(*planes, position, acceleration) @ self.operator.T).ravel()
 
-    def slack_shares(self, step: PlanningStep) -> Array:
+    def slack_shares(self, obstacles: int) -> Array:
         """Return S (2 K O, 2 O): the slack that fades and the one that sets in, of each obstacle."""
-        rows, number = len(self._shares), len(step.separations)
-        shares = np.zeros((number * rows, 2 * number))
-        for j in range(number):
-            shares[j * rows : (j + 1) * rows, 2 * j : 2 * j + 2] = self._shares
-        return shares
+        return np.kron(np.eye(obstacles), self._shares)
 
-    def values(self, separation: Separation, position: Array, acceleration: Array) -> Array:
-        """Return h of payload and discs at all stages (2, K + 1) (m), along the separation's planes.
+    def values(self, separations: Sequence[Separation], position: Array, acceleration: Array) -> Array:
+        """Return h of payload and discs at all stages (O, 2, K + 1) (m), along the separations' planes.
 
         Args:
-            separation: of one obstacle.
+            separations: of O obstacles, one at least.
             position, acceleration: of the payload's centre (K + 1, 3), NED, SI.
         """
-        n = separation.normals
-        payload, discs, lever = self._constants(separation, acceleration)
-        h_payload = payload - np.sum(n * position, axis=1)
-        h_discs = discs - np.sum(n * position, axis=1) - lever * np.sum(n[:, :2] * acceleration[:, :2], axis=1)
-        return np.stack([h_payload, h_discs])
+        planes = self._planes(separations, acceleration)
+        return barrier_values(*planes, np.ascontiguousarray(position), np.ascontiguousarray(acceleration))
 
     def is_kept(self, separations: Sequence[Separation], position: Array, acceleration: Array) -> bool:
         """Return whether the rows of all ``separations`` hold for ``position`` and ``acceleration`` (K + 1, 3)."""
-        return all(
-            float((self.operator @ h).min()) >= 0.0
-            for separation in separations
-            for h in self.values(separation, position, acceleration)
+        return bool((self.values(separations, position, acceleration) @ self.operator.T).min() >= 0.0)
+
+    def _planes(self, separations: Sequence[Separation], acceleration: Array) -> _Planes:
+        """Return the planes of ``separations`` for a hull under ``acceleration`` (K + 1, 3)."""
+        s, stages = self.settings, len(acceleration)
+        normals = np.array([separation.normals for separation in separations])
+        surface = np.array([_surface(separation) for separation in separations]) - (s.margin + s.tracking)
+        directions = normals.reshape(-1, 3)
+        payload = self.formation.payload.support(directions)
+        discs = self.formation.disc_support(directions, np.tile(acceleration, (len(separations), 1)))
+        return _Planes(
+            normals,
+            surface - payload.reshape(-1, stages),
+            surface - s.uav_tracking - discs.reshape(-1, stages),
+            np.ascontiguousarray(self.formation.levers(acceleration)[:, 0]),
         )
 
-    def _constants(self, separation: Separation, acceleration: Array) -> tuple[Array, Array, Array]:
-        """Constants of h for payload and discs (K + 1,), and the discs' levers."""
-        s, n, obstacle = self.settings, separation.normals, separation.obstacle
-        surface = np.sum(n * obstacle.positions, axis=1) - obstacle.shape.support(-n)
-        surface -= s.margin + s.tracking + obstacle.growth
-        payload = surface - self.formation.payload.support(n)
-        discs = surface - s.uav_tracking - self.formation.disc_support(n, acceleration)
-        return payload, discs, self.formation.levers(acceleration)[:, 0]
 
-    def _rows_of(self, separation: Separation, step: PlanningStep) -> tuple[Array, Array]:
-        n = separation.normals
-        payload, discs, lever = self._constants(separation, step.acceleration)
-        position, acceleration = step.reference[0] + step.free[:, 0], step.reference[2] + step.free[:, 2]
-        along = np.sum(n * position, axis=1)
-        shear = lever * np.sum(n[:, :2] * acceleration[:, :2], axis=1)
-        # h_k = constant_k - row_k z
-        row_payload = n[:, :, None] * self._Gamma[:, 0][:, None, :]
-        row_discs = row_payload.copy()
-        row_discs[:, :2] += (lever[:, None] * n[:, :2])[:, :, None] * self._Gamma[:, 2][:, None, :]
-        G = [self.operator @ row.reshape(len(n), -1) for row in (row_payload, row_discs)]
-        h = [self.operator @ (payload - along), self.operator @ (discs - along - shear)]
-        return np.vstack(G), np.concatenate(h)
+class _Planes(NamedTuple):
+    """Separating planes of O obstacles, and the constants of h on the safe side of them."""
+
+    normals: Array
+    """Unit vectors from hull to obstacle (O, K + 1, 3)."""
+    payload: Array
+    """(O, K + 1) (m)"""
+    discs: Array
+    """(O, K + 1) (m)"""
+    lever: Array
+    """Of the discs, by the payload's level acceleration (K + 1,) (s2)."""
+
+
+def _surface(separation: Separation) -> Array:
+    """Return where the obstacle's surface with its growth is along the normals (K + 1,) (m)."""
+    n, obstacle = separation.normals, separation.obstacle
+    along = np.einsum("ka,ka->k", n, obstacle.positions)
+    return np.asarray(along - obstacle.shape.support(-n) - obstacle.growth)
 
 
 def barrier_operator(rates: Sequence[float], chain: Chain) -> Array:

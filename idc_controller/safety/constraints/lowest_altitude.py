@@ -25,6 +25,6 @@ class LowestAltitude:
         z = step.reference[0, self._stages, 2]
         return self._G, np.maximum(self.lowest, z) - z - step.free[self._stages, 0, 2]
 
-    def slack_shares(self, step: PlanningStep) -> Array:
+    def slack_shares(self, obstacles: int) -> Array:
         """Return S (m, 1): one slack for all."""
         return np.ones((len(self._G), 1))
