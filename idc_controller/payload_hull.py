@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
-import coal
 import numpy as np
-import shapely
 from numpy.typing import ArrayLike
 
 from idc_controller.arrays import Array
 from idc_controller.errors import ParameterError
+
+if TYPE_CHECKING:
+    import coal
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +69,8 @@ class PayloadHull:
     @cached_property
     def areas(self) -> Array:
         """Areas of the silhouettes along the axes x, y, z (3,) (m2)."""
+        import shapely
+
         views = [shapely.MultiPoint(np.delete(self.vertices, axis, axis=1)).convex_hull for axis in range(3)]
         return np.array([view.area for view in views])
 
@@ -83,6 +87,8 @@ class PayloadHull:
 
     def geometry(self) -> coal.ShapeBase:
         """Return the hull for distance queries, in the payload frame."""
+        import coal
+
         vertices = coal.StdVec_Vec3s()
         vertices.extend(list(self.vertices))
         return coal.ConvexBase.convexHull(vertices, False, "")

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-from pydantic import AfterValidator, Field, GetCoreSchemaHandler, ValidationInfo
+from pydantic_core.core_schema import ValidationInfo
 
 from gcs.config.mesh_file import MOST_CORNERS, UnusableMesh, read_mesh
 from idc_controller.arrays import Array
@@ -83,12 +83,8 @@ class PayloadMesh:
         ]
 
     @classmethod
-    def __get_pydantic_core_schema__(cls, source: Any, handler: GetCoreSchemaHandler) -> Any:
-        """Return the schema of a file name, of which the mesh is read."""
-        return handler.generate_schema(Annotated[str, Field(min_length=1), AfterValidator(cls._beside)])
-
-    @classmethod
-    def _beside(cls, name: str, info: ValidationInfo) -> PayloadMesh:
+    def from_text(cls, name: str, info: ValidationInfo) -> PayloadMesh:
+        """Return the mesh in a file beside the one that names it. Raises ``ValueError`` where there is none."""
         try:
             return cls.read(Path((info.context or {}).get("folder", "")) / name, name)
         except UnusableMesh as error:

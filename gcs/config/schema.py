@@ -1,4 +1,4 @@
-"""Schema of declared settings: a type that pydantic validates strictly, and a listing.
+"""Schema of declared settings: a validator by which pydantic reads them strictly, and a listing.
 
 A table of the system file is a frozen dataclass whose fields are declared with
 :func:`idc_controller.settings.setting`; a field that is such a dataclass itself is a table within the table. Other
@@ -6,18 +6,25 @@ fields are no keys of the file: constants, and what is ``derived`` from other se
 """
 
 import dataclasses
-from collections.abc import Iterator
-from functools import reduce
-from operator import or_
-from types import UnionType
-from typing import Annotated, Any, Union, get_args, get_origin, get_type_hints
+from collections.abc import Iterator, Mapping
+from types import NoneType, UnionType
+from typing import Any, Union, get_args, get_origin, get_type_hints
 
-from pydantic import AfterValidator, ConfigDict, Field, create_model
+from pydantic_core import CoreSchema, SchemaValidator
+from pydantic_core.core_schema import (
+    float_schema,
+    int_schema,
+    no_info_after_validator_function,
+    nullable_schema,
+    str_schema,
+    tuple_schema,
+    typed_dict_field,
+    typed_dict_schema,
+    with_info_after_validator_function,
+)
 
 from idc_controller.errors import ParameterError
 from idc_controller.settings import DERIVED_KEY, METADATA_KEY, Setting
-
-_STRICT = ConfigDict(extra="forbid", allow_inf_nan=False, protected_namespaces=())
 
 
 @dataclasses.dataclass(frozen=True)
@@ -30,25 +37,33 @@ class ListedSetting:
     setting: Setting
 
 
-def table_type(cls: type[Any]) -> Any:
-    """Return the type by which pydantic reads a table into an object of the dataclass ``cls``.
+def table_validator(cls: type[Any]) -> SchemaValidator:
+    """Return the validator that reads a table into an object of the dataclass ``cls``.
 
     Unknown keys and values outside the declared bounds are refused; keys that are missing have their defaults. The
     bounds of a setting with several numbers hold for each of them.
     """
-    fields: dict[str, Any] = {}
-    for name, hint, field in _declared(cls):
-        bounds = _bounds(field.metadata[METADATA_KEY]) if METADATA_KEY in field.metadata else {}
-        fields[name] = (_bounded(hint, bounds), _default(field))
-    model: Any = create_model(cls.__name__, __config__=_STRICT, **fields)
+    return SchemaValidator(_table_schema(cls))
 
-    def construct(values: Any) -> Any:
+
+def _table_schema(cls: type[Any]) -> CoreSchema:
+    """Return the schema of a table, and of those within it: its keys, none of which must be there."""
+
+    def construct(values: dict[str, Any]) -> Any:
         try:
-            return cls(**vars(values))
+            return cls(**values)
         except ParameterError as error:
             raise ValueError(str(error)) from error
 
-    return Annotated[model, AfterValidator(construct)]
+    keys = {
+        name: typed_dict_field(
+            _schema(hint, _bounds(field.metadata[METADATA_KEY])) if METADATA_KEY in field.metadata else
+            _table_schema(hint),
+            required=False,
+        )
+        for name, hint, field in _declared(cls)
+    }  # fmt: skip
+    return no_info_after_validator_function(construct, typed_dict_schema(keys, extra_behavior="forbid"))
 
 
 def listed_settings(cls: type[Any], table: str = "") -> Iterator[ListedSetting]:
@@ -71,8 +86,8 @@ def table_of(values: Any) -> dict[str, Any]:
 
 
 def _reads_itself(hint: Any) -> bool:
-    """Return True for a type that is read from a text, and is that text again by ``str``."""
-    return hasattr(hint, "__get_pydantic_core_schema__")
+    """Return True for a type that is read by its method ``from_text``, and is that text again by ``str``."""
+    return hasattr(hint, "from_text")
 
 
 def _plain(value: Any) -> Any:
@@ -113,17 +128,18 @@ def _bounds(setting: Setting) -> dict[str, Any]:
     return {name: bound for name, bound in bounds.items() if bound is not None}
 
 
-def _bounded(hint: Any, bounds: dict[str, Any]) -> Any:
-    """Return the type ``hint`` with ``bounds`` on every number in it, and tables as the types they are read by."""
+def _schema(hint: Any, bounds: Mapping[str, Any]) -> CoreSchema:
+    """Return the schema of a setting of the type ``hint``, with ``bounds`` on every number in it."""
+    if hint is float:
+        return float_schema(allow_inf_nan=False, **bounds)
+    if hint is int:
+        return int_schema(**bounds)
     if _reads_itself(hint):
-        return hint
-    if isinstance(hint, type) and dataclasses.is_dataclass(hint):
-        return table_type(hint)
-    if hint in (int, float):
-        return Annotated[hint, Field(**bounds)]
-    parts = tuple(part if part is Ellipsis else _bounded(part, bounds) for part in get_args(hint))
+        return with_info_after_validator_function(hint.from_text, str_schema(min_length=1))
+    parts = get_args(hint)
+    items = [_schema(part, bounds) for part in parts if part not in (Ellipsis, NoneType)]
     if get_origin(hint) is tuple:
-        return tuple.__class_getitem__(parts)
-    if get_origin(hint) in (Union, UnionType):
-        return reduce(or_, parts)
-    return hint
+        return tuple_schema(items, variadic_item_index=0 if Ellipsis in parts else None)
+    if get_origin(hint) in (Union, UnionType) and NoneType in parts and len(items) == 1:
+        return nullable_schema(items[0])
+    raise TypeError(f"a setting of the type {hint} cannot be read")

@@ -13,10 +13,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pydantic import TypeAdapter
+from pydantic_core import SchemaValidator
 
 from gcs.config.flight_settings import FlightSettings
-from gcs.config.schema import table_of, table_type
+from gcs.config.schema import table_of, table_validator
 from gcs.config.sub_packages import ControlConfig, EstimationConfig, GuidanceConfig, SafetyConfig
 from gcs.config.tables import (
     MotionConfig,
@@ -144,8 +144,8 @@ class SystemConfig:
 
 
 @cache
-def _adapter() -> TypeAdapter[SystemConfig]:
-    return TypeAdapter(table_type(SystemConfig))
+def _validator() -> SchemaValidator:
+    return table_validator(SystemConfig)
 
 
 def read_system(path: Path | None = None) -> SystemConfig:
@@ -157,7 +157,7 @@ def read_system(path: Path | None = None) -> SystemConfig:
     if path is None:
         return SystemConfig()
     file = read_toml(path)
-    config = file.validated(_adapter())
+    config: SystemConfig = file.validated(_validator())
     if problems := _disagreements(config, file):
         raise UnusableFile(problems)
     for key, parameters in (("team",), config.parameters), (("world", "payload_mass_factor"), config.true_parameters):

@@ -7,10 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from pydantic import TypeAdapter
-
 from gcs.config.text_file import read_text
-from gcs.config.validate import Key, T, UnusableFile, dotted, validated
+from gcs.config.validate import Key, T, UnusableFile, Validator, dotted, validated
 
 _HEADER = re.compile(r"^\s*(\[\[?)\s*([^\[\]]+?)\s*\]\]?\s*(#.*)?$")
 _ENTRY = re.compile(r"""^\s*([A-Za-z0-9_."'-]+(?:\s*\.\s*[A-Za-z0-9_"'-]+)*)\s*=""")
@@ -36,13 +34,13 @@ class TomlFile:
         """Return a message of one line: file, line, table.key, reason."""
         return f"{self.path}: line {self.line(key)}: {dotted(key)}: {reason}"
 
-    def validated(self, adapter: TypeAdapter[T], data: dict[str, Any] | None = None, under: Key = ()) -> T:
-        """Return the file's data (or ``data`` in its place, of the same keys below ``under``) as the adapter's type.
+    def validated(self, validator: Validator[T], data: dict[str, Any] | None = None, under: Key = ()) -> T:
+        """Return the file's data (or ``data`` in its place, of the same keys below ``under``) as the validator's type.
 
         Raises :class:`UnusableFile` with every unknown key, missing key and wrong value.
         """
         return validated(
-            adapter,
+            validator,
             self.data if data is None else data,
             lambda key, reason: self.problem((*under, *key), reason),
             {"folder": self.path.parent},

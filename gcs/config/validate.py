@@ -2,13 +2,14 @@
 
 import json
 from collections.abc import Callable, Mapping, Sequence
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any, Protocol, TypeVar
 
-from pydantic import ConfigDict, Field, TypeAdapter, ValidationError, with_config
+from pydantic import ConfigDict, Field, ValidationError, with_config
 
 from gcs.errors import UnusableInput
 
 T = TypeVar("T")
+Read = TypeVar("Read", covariant=True)
 Key = tuple[str | int, ...]
 Positive = Annotated[float, Field(gt=0.0)]
 NotNegative = Annotated[float, Field(ge=0.0)]
@@ -19,8 +20,16 @@ _REASONS = {
     "unexpected_keyword_argument": "unknown key",
     "extra_forbidden": "unknown key",
     "dataclass_type": "must be a table",
+    "dict_type": "must be a table",
     "model_type": "must be a table",
 }
+
+
+class Validator(Protocol[Read]):
+    """What reads data from JSON into a type: pydantic's ``TypeAdapter`` or ``SchemaValidator``."""
+
+    def validate_json(self, data: str, /, *, strict: bool, context: dict[str, Any]) -> Read:
+        """Return the data as the type. Raises :class:`pydantic.ValidationError`."""
 
 
 class UnusableFile(UnusableInput):
@@ -44,12 +53,12 @@ def strict(cls: type[T]) -> type[T]:
 
 
 def validated(
-    adapter: TypeAdapter[T],
+    validator: Validator[T],
     data: Any,
     problem: Callable[[Key, str], str],
     context: Mapping[str, Any] | None = None,
 ) -> T:
-    """Return ``data`` as the adapter's type.
+    """Return ``data`` as the validator's type.
 
     ``problem`` makes the line for a key and a reason. Raises :class:`UnusableFile` with every unknown key, missing key
     and wrong value.
@@ -57,7 +66,7 @@ def validated(
     try:
         # Through JSON: strict types, yet arrays become tuples and tables dataclasses. Dates, which JSON does not
         # have, become text and are refused as such.
-        return adapter.validate_json(json.dumps(data, default=str), strict=True, context=dict(context or {}))
+        return validator.validate_json(json.dumps(data, default=str), strict=True, context=dict(context or {}))
     except ValidationError as error:
         found = error.errors(include_url=False)
     except (ValueError, RecursionError) as error:

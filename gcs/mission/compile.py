@@ -10,23 +10,20 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from pymavlink.dialects.v20 import common as mavlink
-
 from gcs.config import SystemConfig, UnusableFile
-from gcs.mission.flow import check_flow
-from gcs.mission.items import (
+from gcs.mission.commands import (
     AMSL_FRAMES,
-    CONDITION_GATE,
-    FARTHEST,
     FENCE_AND_RALLY,
     FRAMES,
+    LAST_NAVIGATION,
     LEFT_OUT,
-    ItemError,
-    MissionItem,
-    WaypointFile,
+    Command,
+    Frame,
     command_name,
     frame_name,
 )
+from gcs.mission.flow import check_flow
+from gcs.mission.items import FARTHEST, ItemError, MissionItem, WaypointFile
 from gcs.mission.route import Climb, Descend, Go, Jump, Place, Return, Route, Speed, Stay, Step, Turn, Wait
 
 LOITER_RADIUS = 5.0
@@ -76,7 +73,7 @@ def _number_items(items: tuple[MissionItem, ...], context: _Context, path: Path,
     """Find the targets of jumps: by number and by tag, each of which may appear only once."""
     for index, item in enumerate(items):
         kinds = [(context.index_of_number, item.number, "number")]
-        if item.command == mavlink.MAV_CMD_JUMP_TAG:
+        if item.command == Command.JUMP_TAG:
             try:
                 kinds.append((context.index_of_tag, _whole(item, 0, "tag"), "tag"))
             except ItemError as problem:
@@ -98,7 +95,7 @@ def _step(item: MissionItem, context: _Context) -> Step | None:
         context.note(item, "left out")
         return None
     name = command_name(item.command)
-    if name.startswith("NAV_") or item.command <= mavlink.MAV_CMD_NAV_LAST:
+    if name.startswith("NAV_") or item.command <= LAST_NAVIGATION:
         raise ItemError("command", f"navigation by {name} is not supported")
     raise ItemError("command", f"{name} is not supported, and leaving it out could change the flight")
 
@@ -131,7 +128,7 @@ def _place(item: MissionItem, context: _Context) -> Place:
     here = latitude is None or longitude is None or (latitude == 0.0 and longitude == 0.0)
     if here and not altitude:
         return Place()
-    if item.frame == mavlink.MAV_FRAME_MISSION:
+    if item.frame == Frame.MISSION:
         raise ItemError("frame", f"{frame_name(item.frame)}, has no coordinates")
     if altitude is not None:
         altitude = _above_home(item, altitude, context)
@@ -209,7 +206,7 @@ def _loiter_turns(item: MissionItem, context: _Context) -> Step:
 def _land(item: MissionItem, context: _Context) -> Step:
     _note_heading(item, context)
     altitude = item.params[6]
-    if altitude and item.frame != mavlink.MAV_FRAME_MISSION:
+    if altitude and item.frame != Frame.MISSION:
         height = _above_home(item, altitude, context)
         if height < -0.5:
             raise ItemError("altitude", f"below ground: {-height:.6g} m lower than home")
@@ -268,19 +265,19 @@ def _jump(item: MissionItem, index_of: dict[int, int], name: str, context: _Cont
 
 
 _COMMANDS: dict[int, Callable[[MissionItem, _Context], Step | None]] = {
-    mavlink.MAV_CMD_NAV_WAYPOINT: _waypoint,
-    mavlink.MAV_CMD_NAV_SPLINE_WAYPOINT: lambda item, context: replace(_go(item, context), spline=True),
-    CONDITION_GATE: lambda item, context: Go(item.label, _place(item, context)),
-    mavlink.MAV_CMD_NAV_LOITER_UNLIM: _loiter_unlimited,
-    mavlink.MAV_CMD_NAV_LOITER_TURNS: _loiter_turns,
-    mavlink.MAV_CMD_NAV_LOITER_TIME: _go,
-    mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH: lambda item, context: Return(item.label),
-    mavlink.MAV_CMD_NAV_LAND: _land,
-    mavlink.MAV_CMD_NAV_TAKEOFF: _take_off,
-    mavlink.MAV_CMD_NAV_DELAY: _delay,
-    mavlink.MAV_CMD_CONDITION_DELAY: _delay,
-    mavlink.MAV_CMD_DO_CHANGE_SPEED: _change_speed,
-    mavlink.MAV_CMD_DO_JUMP: lambda item, context: _jump(item, context.index_of_number, "target", context),
-    mavlink.MAV_CMD_JUMP_TAG: lambda item, context: None,
-    mavlink.MAV_CMD_DO_JUMP_TAG: lambda item, context: _jump(item, context.index_of_tag, "tag", context),
+    Command.NAV_WAYPOINT: _waypoint,
+    Command.NAV_SPLINE_WAYPOINT: lambda item, context: replace(_go(item, context), spline=True),
+    Command.CONDITION_GATE: lambda item, context: Go(item.label, _place(item, context)),
+    Command.NAV_LOITER_UNLIM: _loiter_unlimited,
+    Command.NAV_LOITER_TURNS: _loiter_turns,
+    Command.NAV_LOITER_TIME: _go,
+    Command.NAV_RETURN_TO_LAUNCH: lambda item, context: Return(item.label),
+    Command.NAV_LAND: _land,
+    Command.NAV_TAKEOFF: _take_off,
+    Command.NAV_DELAY: _delay,
+    Command.CONDITION_DELAY: _delay,
+    Command.DO_CHANGE_SPEED: _change_speed,
+    Command.DO_JUMP: lambda item, context: _jump(item, context.index_of_number, "target", context),
+    Command.JUMP_TAG: lambda item, context: None,
+    Command.DO_JUMP_TAG: lambda item, context: _jump(item, context.index_of_tag, "tag", context),
 }

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-import shapely
 
 from gcs.mission.model import Obstacle
 from gcs.mission.route import Position
@@ -32,7 +31,7 @@ class Fence:
     def violation(self, place: Position) -> str | None:
         """Return the reason why a place must not be flown to; None if it may."""
         reason = None
-        if self.boundary is not None and not shapely.Polygon(self.boundary).covers(shapely.Point(place[:2])):
+        if self.boundary is not None and not _covers(self.boundary, place):
             reason = "outside the fence's inclusion area"
         for obstacle in self.obstacles:
             if -place[2] <= _top(obstacle) and obstacle.shape.plan_view.contains(_from_centre(place, obstacle)):
@@ -42,10 +41,8 @@ class Fence:
     def crossings(self, start: Position, end: Position) -> list[str]:
         """Return the names of the parts that a straight line from ``start`` to ``end`` crosses."""
         crossed = []
-        if self.boundary is not None and start[:2] != end[:2]:
-            line = shapely.LineString([start[:2], end[:2]])
-            if line.crosses(shapely.Polygon(self.boundary)):
-                crossed.append("the fence's inclusion area")
+        if self.boundary is not None and start[:2] != end[:2] and _crosses(self.boundary, start, end):
+            crossed.append("the fence's inclusion area")
         low = min(-start[2], -end[2])
         for obstacle in self.obstacles:
             here, there = (_from_centre(place, obstacle) for place in (start, end))
@@ -58,6 +55,14 @@ def circle_corners(centre: Point, radius: float) -> Corners:
     """Return corners on a circle: the polygon lies inside it."""
     angles = np.arange(CIRCLE_CORNERS) * (2.0 * math.pi / CIRCLE_CORNERS)
     return tuple((centre[0] + radius * math.cos(a), centre[1] + radius * math.sin(a)) for a in angles)
+
+
+def encloses_area(polygon: Corners) -> bool:
+    """Return whether a polygon does not cross itself, and has an area."""
+    import shapely  # takes long to import, spent only where there is a fence
+
+    area = shapely.Polygon(polygon)
+    return bool(area.is_valid and area.area >= 1e-3)
 
 
 def excluded_circle(name: str, centre: Point, radius: float) -> Obstacle:
@@ -80,6 +85,8 @@ def boundary_walls(polygon: Corners) -> list[Obstacle]:
 
 def _walls_along(name: str, polygon: Corners, *, inside: bool) -> list[Obstacle]:
     """Return one wall along each edge of a polygon, on its inner or its outer side."""
+    import shapely
+
     inward = 1.0 if shapely.LinearRing(polygon).is_ccw == inside else -1.0
     walls = []
     for number, (a, b) in enumerate(pairwise((*polygon, polygon[0])), start=1):
@@ -110,6 +117,20 @@ def _rectangle(polygon: Corners) -> tuple[Point, Point, float] | None:
     centre = (a + b + c + d) / 4.0
     heading = math.atan2(b[1] - a[1], b[0] - a[0])
     return (float(centre[0]), float(centre[1])), (x, y), heading
+
+
+def _covers(area: Corners, place: Position) -> bool:
+    """Return whether a place is above an area."""
+    import shapely  # takes long to import, spent only where there is a fence
+
+    return bool(shapely.Polygon(area).covers(shapely.Point(place[:2])))
+
+
+def _crosses(area: Corners, start: Position, end: Position) -> bool:
+    """Return whether the straight line from ``start`` to ``end`` leaves or enters an area."""
+    import shapely
+
+    return bool(shapely.LineString([start[:2], end[:2]]).crosses(shapely.Polygon(area)))
 
 
 def _from_centre(place: Position, obstacle: Obstacle) -> Point:

@@ -3,10 +3,8 @@
 import math
 from dataclasses import dataclass, field
 
-import pymap3d
-from pymap3d.haversine import anglesep
-from pymavlink.dialects.v20 import common as mavlink
-
+from gcs.mission import geodesy
+from gcs.mission.commands import command_name
 from gcs.mission.fence import Fence
 
 ITEM_LIMIT = 10_000
@@ -65,13 +63,13 @@ class FileHome:
         """
         check_latitude_longitude(latitude, longitude)
         altitude = self.altitude or 0.0
-        north, east, _ = pymap3d.geodetic2ned(latitude, longitude, altitude, self.latitude, self.longitude, altitude)
+        north, east = geodesy.north_east(latitude, longitude, self.latitude, self.longitude, altitude)
         # The chord alone does not discriminate near the antipodes.
         if math.hypot(north, east) > FARTHEST or abs(latitude - self.latitude) > 1.0:
-            kilometres = float(anglesep(self.longitude, self.latitude, longitude, latitude)) * 111.2
+            kilometres = geodesy.angle_between(self.latitude, self.longitude, latitude, longitude) * 111.2
             reason = f"{kilometres:.0f} km from home (limit {FARTHEST / 1000:.0f} km)"
             raise ItemError("latitude, longitude", reason)
-        return float(north), float(east)
+        return north, east
 
 
 @dataclass(frozen=True)
@@ -90,59 +88,3 @@ def check_latitude_longitude(latitude: float, longitude: float) -> None:
         raise ItemError("latitude", f"{latitude:g} is outside -90 .. 90 deg")
     if not -180.0 <= longitude <= 180.0:
         raise ItemError("longitude", f"{longitude:g} is outside -180 .. 180 deg")
-
-
-def command_name(command: int) -> str:
-    """Return ``NAV_WAYPOINT``, or the number where MAVLink's common dialect has no name for it."""
-    if command == CONDITION_GATE:
-        return "CONDITION_GATE"
-    entry = mavlink.enums["MAV_CMD"].get(command)
-    return entry.name.removeprefix("MAV_CMD_") if entry else f"command {command}"
-
-
-def frame_name(frame: int) -> str:
-    """Return ``frame 3, GLOBAL_RELATIVE_ALT``."""
-    entry = mavlink.enums["MAV_FRAME"].get(frame)
-    return f"frame {frame}" + (f", {entry.name.removeprefix('MAV_FRAME_')}" if entry else "")
-
-
-CONDITION_GATE = 4501
-"""Of MAVLink's development dialect: a point to fly through, which QGroundControl writes into surveys."""
-
-AMSL_FRAMES = frozenset({mavlink.MAV_FRAME_GLOBAL, mavlink.MAV_FRAME_GLOBAL_INT})
-ABOVE_HOME_FRAMES = frozenset(
-    {
-        mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT,
-        mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT,
-        mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT,  # the ground is flat
-        mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT_INT,
-    }
-)
-FRAMES = AMSL_FRAMES | ABOVE_HOME_FRAMES | {mavlink.MAV_FRAME_MISSION}
-
-FENCE_AND_RALLY = frozenset(range(5000, 5005)) | {mavlink.MAV_CMD_NAV_RALLY_POINT}
-
-LEFT_OUT = frozenset(
-    getattr(mavlink, f"MAV_CMD_{name}")
-    for name in (
-        # camera and video
-        "DO_CONTROL_VIDEO", "DO_DIGICAM_CONFIGURE", "DO_DIGICAM_CONTROL", "DO_SET_CAM_TRIGG_DIST",
-        "DO_SET_CAM_TRIGG_INTERVAL", "REQUEST_CAMERA_INFORMATION", "REQUEST_CAMERA_SETTINGS",
-        "REQUEST_STORAGE_INFORMATION", "STORAGE_FORMAT", "REQUEST_CAMERA_CAPTURE_STATUS", "RESET_CAMERA_SETTINGS",
-        "SET_CAMERA_MODE", "SET_CAMERA_ZOOM", "SET_CAMERA_FOCUS", "SET_STORAGE_USAGE", "SET_CAMERA_SOURCE",
-        "IMAGE_START_CAPTURE", "IMAGE_STOP_CAPTURE", "REQUEST_CAMERA_IMAGE_CAPTURE", "DO_TRIGGER_CONTROL",
-        "CAMERA_TRACK_POINT", "CAMERA_TRACK_RECTANGLE", "CAMERA_STOP_TRACKING", "VIDEO_START_CAPTURE",
-        "VIDEO_STOP_CAPTURE", "VIDEO_START_STREAMING", "VIDEO_STOP_STREAMING", "REQUEST_VIDEO_STREAM_INFORMATION",
-        "REQUEST_VIDEO_STREAM_STATUS",
-        # gimbal and region of interest
-        "DO_MOUNT_CONFIGURE", "DO_MOUNT_CONTROL", "DO_MOUNT_CONTROL_QUAT", "DO_GIMBAL_MANAGER_PITCHYAW",
-        "DO_GIMBAL_MANAGER_CONFIGURE", "NAV_ROI", "DO_SET_ROI", "DO_SET_ROI_LOCATION", "DO_SET_ROI_WPNEXT_OFFSET",
-        "DO_SET_ROI_NONE", "DO_SET_ROI_SYSID",
-        # other devices on board
-        "DO_SET_SERVO", "DO_REPEAT_SERVO", "DO_SET_RELAY", "DO_REPEAT_RELAY", "DO_SET_ACTUATOR", "DO_GRIPPER",
-        "DO_WINCH", "ILLUMINATOR_ON_OFF", "DO_ILLUMINATOR_CONFIGURE", "LOGGING_START", "LOGGING_STOP",
-        # marks in the file, without an action
-        "DO_LAND_START", "DO_RETURN_PATH_START",
-    )
-)  # fmt: skip
-"""Commands that concern devices which these vehicles do not have, or nothing at all."""

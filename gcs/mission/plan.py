@@ -11,11 +11,10 @@ from itertools import islice
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-import shapely
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, TypeAdapter
 
 from gcs.config.validate import Key, UnusableFile, dotted, validated
-from gcs.mission.fence import Corners, Fence, circle_corners, excluded_circle, excluded_polygon
+from gcs.mission.fence import Corners, Fence, circle_corners, encloses_area, excluded_circle, excluded_polygon
 from gcs.mission.items import ITEM_LIMIT, PARAM_NAMES, FileHome, ItemError, MissionItem, WaypointFile
 from gcs.mission.model import Obstacle
 
@@ -203,7 +202,7 @@ def _fence(section: _GeoFence, home: FileHome) -> Fence:
             obstacles.append(excluded_circle(f"fence circle {number}", centre, circle.circle.radius))
     for number, polygon in enumerate(section.polygons, start=1):
         corners = _places(f"polygons[{number}].polygon", polygon.polygon, home)
-        if not (area := shapely.Polygon(corners)).is_valid or area.area < 1e-3:
+        if not encloses_area(corners):
             raise ItemError(f"polygons[{number}].polygon", "has no area, or crosses itself")
         if polygon.inclusion:
             boundaries.append(corners)

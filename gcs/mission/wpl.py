@@ -7,21 +7,9 @@ import math
 import re
 from pathlib import Path
 
-from pymavlink.dialects.v20 import common as mavlink
-
 from gcs.config.validate import UnusableFile
-from gcs.mission.items import (
-    AMSL_FRAMES,
-    FRAMES,
-    ITEM_LIMIT,
-    PARAM_NAMES,
-    FileHome,
-    ItemError,
-    MissionItem,
-    WaypointFile,
-    command_name,
-    frame_name,
-)
+from gcs.mission.commands import AMSL_FRAMES, FRAMES, Command, command_name, frame_name
+from gcs.mission.items import ITEM_LIMIT, PARAM_NAMES, FileHome, ItemError, MissionItem, WaypointFile
 
 VERSION = "110"
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf|infinity)", re.IGNORECASE | re.ASCII)
@@ -99,7 +87,7 @@ def _integer(value: float | None, name: str) -> int:
 
 
 def _home(item: MissionItem) -> FileHome:
-    if item.command != mavlink.MAV_CMD_NAV_WAYPOINT:
+    if item.command != Command.NAV_WAYPOINT:
         reason = f"row 0 must be home, a NAV_WAYPOINT; {command_name(item.command)} is not: home is missing"
         raise ItemError("command", reason)
     if item.frame not in FRAMES:

@@ -1,13 +1,13 @@
 """Boxes: the wall, which stands upright, and the box in any attitude."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
-import coal
 import numpy as np
-import shapely
 
 from idc_controller.arrays import Array
 from idc_controller.geometry.oriented import OrientedShape
@@ -21,6 +21,9 @@ from idc_controller.geometry.shape import (
     UprightBounds,
     Vector,
 )
+
+if TYPE_CHECKING:
+    import coal
 
 
 @dataclass(frozen=True)
@@ -52,6 +55,8 @@ class Wall(Shape):
 
     def geometry(self) -> coal.ShapeBase:
         """Return the shape for distance queries."""
+        import coal
+
         return coal.Box(*self.size)
 
     def collision(self) -> CollisionGeometry:
@@ -77,6 +82,8 @@ class Wall(Shape):
     @property
     def plan_view(self) -> PlanView:
         """A rectangle."""
+        import shapely
+
         signs = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
         return PlanView(shapely.Polygon(signs * (np.array(self.size[:2]) / 2.0) @ self.rotation[:2, :2].T), 0.0)
 
@@ -116,6 +123,8 @@ class Box(OrientedShape):
 
     def geometry(self) -> coal.ShapeBase:
         """Return the shape for distance queries, in its own frame."""
+        import coal
+
         return coal.Box(*self.size)
 
     def collision(self) -> CollisionGeometry:

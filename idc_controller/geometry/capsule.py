@@ -1,15 +1,19 @@
 """The capsule: a cylinder with round ends, in any attitude."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
-import coal
 import numpy as np
 
 from idc_controller.arrays import Array
 from idc_controller.geometry.oriented import OrientedShape
 from idc_controller.geometry.shape import LENGTH, CollisionGeometry, RoundedBox
+
+if TYPE_CHECKING:
+    import coal
 
 _RINGS, _AROUND = 5, 12
 """Samples of the surface: circles over the length, points on each; the ends have as many circles."""
@@ -46,6 +50,8 @@ class Capsule(OrientedShape):
 
     def geometry(self) -> coal.ShapeBase:
         """Return the shape for distance queries, in its own frame."""
+        import coal
+
         return coal.Capsule(self.radius, self.length)
 
     def collision(self) -> CollisionGeometry:

@@ -1,16 +1,20 @@
 """A convex body from a mesh, in any attitude."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, ClassVar, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
-import coal
 import numpy as np
 
 from idc_controller.arrays import Array
 from idc_controller.geometry.oriented import OrientedShape
 from idc_controller.geometry.shape import CollisionGeometry, Vector
+
+if TYPE_CHECKING:
+    import coal
 
 
 class MeshHull(NamedTuple):
@@ -51,6 +55,8 @@ class Mesh(OrientedShape):
 
     @cached_property
     def _geometry(self) -> coal.ShapeBase:
+        import coal
+
         vertices, facets = coal.StdVec_Vec3s(), coal.StdVec_Triangle()
         vertices.extend(list(np.array(self._hull.vertices)))
         for triangle in self._hull.faces:
@@ -67,6 +73,8 @@ class Mesh(OrientedShape):
 
     def distance(self, points: Array) -> Array:
         """Signed distance (n,) (m) of ``points`` (n, 3) in the shape's own frame."""
+        import coal
+
         request, result, here = coal.DistanceRequest(), coal.DistanceResult(), coal.Transform3s.Identity()
         # Inside, the nearest of the planes of the faces.
         distance = (points @ self._planes[0].T - self._planes[1]).max(axis=1)

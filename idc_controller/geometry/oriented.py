@@ -8,9 +8,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
-import coal
 import numpy as np
-import shapely
 
 from idc_controller.arrays import Array
 from idc_controller.geometry.shape import ANGLE, Columns, PlanView, Shape, UprightBounds, Vector
@@ -109,6 +107,8 @@ class OrientedShape(Shape):
     @property
     def plan_view(self) -> PlanView:
         """The hull of the corners, rounded."""
+        import shapely
+
         return PlanView(shapely.MultiPoint(self._in_world[:, :2]).convex_hull, self.rounding)
 
     def visible_points(self, sensor: Vector, reach: float, turn: float) -> list[Vector]:
@@ -131,6 +131,8 @@ class OrientedShape(Shape):
 
     def _nearest(self, place: Array) -> Vector | None:
         """Point of the surface about the centre that is nearest to ``place`` (3,); None: it lies inside."""
+        import coal
+
         result = coal.DistanceResult()
         distance = coal.distance(
             self.geometry(), coal.Transform3s(self.rotation, np.zeros(3)), coal.Sphere(1e-6),

@@ -1,15 +1,18 @@
 """The pole: an upright cylinder that stands on the ground."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass, field
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
-import coal
 import numpy as np
-import shapely
 
 from idc_controller.arrays import Array
 from idc_controller.geometry.shape import LENGTH, CollisionGeometry, PlanView, RoundedBox, Shape, UprightBounds, Vector
+
+if TYPE_CHECKING:
+    import coal
 
 #: A sensor's rays at the side: share of the radius to the right; share of the visible length up (1) or down (-1).
 _SIDE = ((0.8, 0.0), (-0.8, 0.0), (0.5, 1.0), (-0.5, -1.0), (-0.85, 0.6), (0.85, -0.6), (-0.3, 1.0), (0.3, -1.0))
@@ -35,6 +38,8 @@ class Pole(Shape):
 
     def geometry(self) -> coal.ShapeBase:
         """Return the shape for distance queries."""
+        import coal
+
         return coal.Cylinder(self.radius, self.height)
 
     def collision(self) -> CollisionGeometry:
@@ -59,6 +64,8 @@ class Pole(Shape):
     @property
     def plan_view(self) -> PlanView:
         """A circle."""
+        import shapely
+
         return PlanView(shapely.Point(0.0, 0.0), self.radius)
 
     def visible_points(self, sensor: Vector, reach: float, turn: float) -> list[Vector]:

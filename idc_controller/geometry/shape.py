@@ -3,19 +3,23 @@
 A kind of shape is one module with one class, entered in :data:`idc_controller.geometry.shapes.SHAPES`. SI units, NED.
 """
 
+from __future__ import annotations
+
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import Any, ClassVar, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
-import coal
 import numpy as np
-import shapely
 
 from idc_controller.arrays import Array
 from idc_controller.errors import ShapeError
+
+if TYPE_CHECKING:
+    import coal
+    import shapely
 
 Vector = tuple[float, float, float]
 
@@ -84,12 +88,16 @@ class PlanView(NamedTuple):
 
     def contains(self, place: tuple[float, float]) -> bool:
         """Return whether a place (north, east) about the centre (m) lies within."""
+        import shapely
+
         return bool(self.core.distance(shapely.Point(place)) <= self.radius)
 
     def is_crossed(self, start: tuple[float, float], end: tuple[float, float]) -> bool:
         """Return whether the straight line from ``start`` to ``end`` about the centre (m) leads through."""
         if start == end:
             return False
+        import shapely
+
         line = shapely.LineString([start, end])
         return bool(line.distance(self.core) < self.radius or line.relate_pattern(self.core, "T********"))
 

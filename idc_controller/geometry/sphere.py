@@ -1,15 +1,18 @@
 """The sphere."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass, field
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
-import coal
 import numpy as np
-import shapely
 
 from idc_controller.arrays import Array
 from idc_controller.geometry.shape import LENGTH, CollisionGeometry, PlanView, RoundedBox, Shape, UprightBounds, Vector
+
+if TYPE_CHECKING:
+    import coal
 
 #: Off-axis positions of a sensor's rays: share of the radius; six of them, turned by a random angle.
 _RING = (0.9, 0.6, 0.9, 0.6, 0.9, 0.6)
@@ -31,6 +34,8 @@ class Sphere(Shape):
 
     def geometry(self) -> coal.ShapeBase:
         """Return the shape for distance queries."""
+        import coal
+
         return coal.Sphere(self.radius)
 
     def collision(self) -> CollisionGeometry:
@@ -54,6 +59,8 @@ class Sphere(Shape):
     @property
     def plan_view(self) -> PlanView:
         """A circle."""
+        import shapely
+
         return PlanView(shapely.Point(0.0, 0.0), self.radius)
 
     def visible_points(self, sensor: Vector, reach: float, turn: float) -> list[Vector]:
