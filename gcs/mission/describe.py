@@ -11,7 +11,6 @@ from rich.table import Table
 from rich.text import Text
 
 from gcs.config import MotionConfig, SystemConfig
-from gcs.faults import KINDS
 from gcs.mission.model import Fault, Limits, Lissajous, Mission
 from gcs.mission.route import Circle, FlyTo, HoldForever, Land, Leg, Position, Route, TakeOff
 
@@ -137,6 +136,8 @@ def _surroundings(mission: Mission) -> Iterable[str]:
 
 
 def _fault(fault: Fault) -> str:
+    from gcs.faults import KINDS  # takes long to import, spent only where there are faults
+
     kind = KINDS[fault.kind]
     text = f"fault {fault.kind} from {fault.start:g} s "
     text += f"for {fault.duration:g} s" if fault.duration else "to the end"

@@ -10,7 +10,6 @@ from pydantic import TypeAdapter
 from gcs.config import SystemConfig, UnusableFile
 from gcs.config.toml_file import TomlFile
 from gcs.errors import UnusableInput
-from gcs.faults import KINDS, read_settings, settings_adapter
 from gcs.mission.model import Fault, Mission
 
 _KEYS = ("kind", "start", "duration", "every", "times", "vehicles", "direction")
@@ -44,6 +43,8 @@ def _adapter() -> TypeAdapter[Fault]:
 
 def parameter_problems(file: TomlFile, index: int, fault: Fault) -> list[str]:
     """Return every reason against the kind of the file's fault ``index`` and its parameters."""
+    from gcs.faults import KINDS, settings_adapter  # the kinds take long to import, spent only where there are faults
+
     if fault.kind not in KINDS:
         near = get_close_matches(fault.kind, KINDS, 1)
         hint = f": did you mean '{near[0]}'?" if near else ": gcs faults --kinds lists them"
@@ -57,6 +58,8 @@ def parameter_problems(file: TomlFile, index: int, fault: Fault) -> list[str]:
 
 def fault_problems(fault: Fault, system: SystemConfig) -> Iterator[tuple[str, str]]:
     """Yield key and reason of every disagreement of a fault (known kind, sane parameters) with itself or the system."""
+    from gcs.faults import KINDS, read_settings
+
     kind = KINDS[fault.kind]
     if kind.direction is None and fault.direction is not None:
         yield "direction", f"{fault.kind} has none"
@@ -84,6 +87,10 @@ def fault_problems(fault: Fault, system: SystemConfig) -> Iterator[tuple[str, st
 
 def check_faults_of(mission: Mission) -> None:
     """Check the faults of a mission whose system has changed since it was read. Raises :class:`UnusableInput`."""
+    if not mission.faults:
+        return
+    from gcs.faults import read_settings
+
     for fault in mission.faults:
         read_settings(fault.kind, fault.settings)
         for key, reason in fault_problems(fault, mission.system):

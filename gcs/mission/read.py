@@ -7,11 +7,8 @@ from gcs.config import SystemConfig, UnusableFile, read_system
 from gcs.config.text_file import read_text
 from gcs.config.toml_file import TomlFile
 from gcs.config.validate import Key
-from gcs.mission.compile import compile_route
 from gcs.mission.model import DEFAULT_HOME, Home, Lissajous, Mission
-from gcs.mission.plan import read_plan
 from gcs.mission.toml_mission import DEFAULT_SEED, check_with_system, points_route, read_mission_file
-from gcs.mission.wpl import read_wpl
 
 _SUFFIXES = {".waypoints": "wpl", ".txt": "wpl", ".plan": "plan", ".json": "plan", ".toml": "toml"}
 
@@ -49,6 +46,11 @@ def mission_format(path: Path, text: str) -> str:
 
 def _from_waypoints(path: Path, text: str, system: SystemConfig, speed: float) -> Mission:
     """Return the mission of a waypoint file, flown at ``speed`` (m/s) where the file names none."""
+    # Spent only where there are waypoints.
+    from gcs.mission.compile import compile_route
+    from gcs.mission.plan import read_plan
+    from gcs.mission.wpl import read_wpl
+
     kind = mission_format(path, text)
     if kind == "toml":
         raise UnusableFile([f"{path}: neither a QGC WPL file nor a QGroundControl plan"])

@@ -3,11 +3,7 @@
 import argparse
 from pathlib import Path
 
-from rich.console import Console
-
 from gcs.app.exit_status import ExitStatus
-from gcs.mission.describe import describe
-from gcs.mission.read import read_mission
 
 DESCRIPTION = "Reads a mission and says what will be flown, or every reason why not, with file and line."
 
@@ -20,5 +16,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command, and return its exit status."""
+    from rich.console import Console
+
+    from gcs.mission.describe import describe
+    from gcs.mission.read import read_mission
+
     Console(highlight=False).print(describe(read_mission(arguments.mission, arguments.config)))
     return ExitStatus.DONE

@@ -5,17 +5,8 @@ import json
 from functools import partial
 from pathlib import Path
 
-from rich.console import Console
-
 from gcs.app.arguments import CONTROLLERS, number
-from gcs.app.fly import FlyOptions, fly, prepare
 from gcs.app.logs import LOG
-from gcs.app.progress import FlightProgress
-from gcs.campaign.process_pool import BROKEN_OFF, end_with_parent
-from gcs.faults.record import fault_notes
-from gcs.mavlink.address import parse_url
-from gcs.record.figures import report
-from gcs.record.summary_table import summary_table
 
 DESCRIPTION = """\
 Flies a mission: a QGroundControl .plan, a QGC WPL 110 file, or the project's .toml.
@@ -59,6 +50,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command, and return its exit status."""
+    from rich.console import Console
+
+    from gcs.app.fly import FlyOptions, fly, prepare
+    from gcs.app.progress import FlightProgress
+    from gcs.campaign.process_pool import BROKEN_OFF, end_with_parent
+    from gcs.mavlink.address import parse_url
+    from gcs.record.summary_table import summary_table
+
     options = FlyOptions(
         mission=arguments.mission,
         config=arguments.config,
@@ -77,13 +76,20 @@ def run(arguments: argparse.Namespace) -> int:
     console = Console(stderr=arguments.json, highlight=False)
     with FlightProgress(console) as progress:
         result = fly(options, mission, progress.update)
-    pictures = report(result.run_dir) if result.flown and not arguments.no_pictures else []
+    pictures: list[Path] = []
+    if result.flown and not arguments.no_pictures:
+        from gcs.record.figures import report
+
+        pictures = report(result.run_dir)
     if arguments.json:
         print(json.dumps(result.summary, indent=2))
     else:
         console.print(summary_table(result.summary, result.run_dir, pictures))
-    for note in fault_notes(result.run_dir):
-        LOG.warning("note: %s", note)
+    if mission.faults:
+        from gcs.faults.record import fault_notes
+
+        for note in fault_notes(result.run_dir):
+            LOG.warning("note: %s", note)
     if mission.faults and options.connect:
         LOG.warning("note: faults come from the simulator: start it with vehicle-sim --mission %s", options.mission)
     if result.reason:

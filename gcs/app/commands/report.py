@@ -4,7 +4,6 @@ import argparse
 from pathlib import Path
 
 from gcs.app.exit_status import ExitStatus
-from gcs.record.figures import report
 
 DESCRIPTION = "Draws what happened in a run, and prints the names of the pictures."
 
@@ -16,6 +15,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command, and return its exit status."""
+    from gcs.record.figures import report
+
     for picture in report(arguments.run_dir):
         print(picture)
     return ExitStatus.DONE
