@@ -1,6 +1,8 @@
 # The first command on a fresh clone may be any of these; the first one installs into .venv.
 
 MISSION ?= missions/figure_eight_spheres.toml
+# The commit that benchmark-check compares with.
+BASE ?= HEAD~1
 VENV := .venv
 INSTALLED := $(VENV)/installed
 
@@ -9,7 +11,8 @@ export OPENBLAS_NUM_THREADS := 1
 # Compiled modules are kept: the tests start many programs.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help install fly test test-fast mutants golden golden-renew benchmark docs clean
+.PHONY: help install fly test test-fast mutants golden golden-renew
+.PHONY: benchmark benchmark-parts benchmark-check docs clean
 
 help:
 	@echo "make fly          fly $(MISSION) with a simulated swarm (MISSION=... for another one)"
@@ -18,7 +21,9 @@ help:
 	@echo "make mutants      see whether the fast tests notice changes of the flight path (MUTANTS='--number 60 --seed 1')"
 	@echo "make golden       compare short flights, to the byte, with tests/golden/checksums.json"
 	@echo "make golden-renew write these checksums anew"
-	@echo "make benchmark    the measurements of speed"
+	@echo "make benchmark    the speed of flights relative to gym-pybullet-drones; adds to the history"
+	@echo "make benchmark-check  compare the CPU cost of flights with that of the commit BASE ($(BASE))"
+	@echo "make benchmark-parts  the CPU cost of parts, of the planner, and of QP solvers"
 	@echo "make docs         write docs/settings.md and docs/failsafes.md from their declarations"
 	@echo "make install      only install, into $(VENV)"
 	@echo "make clean        remove $(VENV) and the caches"
@@ -47,8 +52,15 @@ golden: $(INSTALLED)
 golden-renew: $(INSTALLED)
 	$(VENV)/bin/python tests/golden/golden.py --renew
 
+# OPTIONS: --quick, --long, --rounds N. ANCHOR_PYTHON: a Python with gym-pybullet-drones, else an equal loop is flown.
 benchmark: $(INSTALLED)
+	$(VENV)/bin/python tests/benchmarks/benchmark.py $(OPTIONS)
+
+benchmark-parts: $(INSTALLED)
 	$(VENV)/bin/python -m pytest -o addopts= -s tests/benchmarks
+
+benchmark-check: $(INSTALLED)
+	$(VENV)/bin/python tests/benchmarks/check.py --base $(BASE)
 
 docs: $(INSTALLED)
 	$(VENV)/bin/python -m gcs.config.settings_page > docs/settings.md

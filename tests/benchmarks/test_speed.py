@@ -1,14 +1,11 @@
-"""The cost of a flight and of its parts: printed as tables and written to ``benchmark.json`` in the current folder.
+"""The cost of parts of a flight: printed as a table and written to ``benchmark.json`` in the current folder.
 
-``make benchmark``. Figures are CPU times in yardsticks; none of them fails a test.
+``make benchmark-parts``. Figures are CPU times in yardsticks; none of them fails a test.
 """
 
 import json
 import os
 import platform
-import resource
-import statistics
-import subprocess
 import sys
 from pathlib import Path
 
@@ -24,7 +21,7 @@ sys.path.insert(0, str(ROOT / "tests"))
 from flight_in_process import MISSIONS  # noqa: E402
 from flying import AIRFRAME, Body  # noqa: E402
 from test_mpc import DEFAULT, STAGES, error_of  # noqa: E402
-from yardstick import in_yardsticks, yardstick  # noqa: E402
+from yardstick import in_yardsticks  # noqa: E402
 
 from gcs.config import read_system  # noqa: E402
 from gcs.mavlink.codec import Codec, gather  # noqa: E402
@@ -50,27 +47,6 @@ def show(title, rows):
     for name, value in rows.items():
         table.add_row(name, f"{value:.3g}")
     Console(width=100).print(table)
-
-
-def children_cpu():
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
-
-
-def test_cost_of_a_whole_flight(tmp_path):
-    """World, four vehicles, MAVLink bytes, estimator, controller and records: the figure eight from pad to pad."""
-    command = [sys.executable, "-m", "gcs", "fly", str(MISSIONS / "figure_eight.toml"), "--seed", "1", "--json"]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT), "OPENBLAS_NUM_THREADS": "1"}
-    before, begin = yardstick(), children_cpu()
-    done = subprocess.run(
-        [*command, "--no-pictures", "--run-dir", str(tmp_path / "run")], env=environment, capture_output=True, text=True
-    )
-    spent, after = children_cpu() - begin, yardstick()
-    assert done.returncode == 0, done.stderr
-    summary = json.loads(done.stdout)
-    per_second = spent / summary["duration_s"] / statistics.mean([before, after])
-    RESULTS["flight_yardsticks_per_second"] = per_second
-    show("figure eight in lockstep, four vehicles, both programs", {"one second of flight": per_second})
 
 
 def test_cost_of_parts():

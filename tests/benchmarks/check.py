@@ -1,0 +1,77 @@
+"""Compare the CPU cost of flights with that of an earlier commit, in turns on one core; `make benchmark-check`.
+
+    python tests/benchmarks/check.py [--base COMMIT] [--rounds 5]
+
+Exit status 1, with the ratio, if a flight costs more than 10 % above the base's in the median of the rounds, and more
+than it in every round: beyond the spread. Both trees run in this environment.
+"""
+
+import argparse
+import statistics
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from measure import FLIGHTS, ROOT, fly, use_one_core, write_missions
+
+LIMIT = 1.10
+DURATION = 5.0  # s
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--base", default="HEAD~1", help="commit to compare with (default: %(default)s)")
+    parser.add_argument("--rounds", type=int, default=5)
+    options = parser.parse_args()
+    use_one_core()
+    with tempfile.TemporaryDirectory() as scratch:
+        base = Path(scratch) / "base"
+        git = ["git", "-C", str(ROOT), "worktree"]
+        subprocess.run([*git, "add", "--quiet", "--detach", str(base), options.base], check=True)
+        try:
+            compile_kernels(base)
+            return compare(base, Path(scratch), options)
+        finally:
+            subprocess.run([*git, "remove", "--force", str(base)], check=True)
+
+
+def compile_kernels(tree):
+    """Compile what the base compiles at installation."""
+    if (tree / "vehicle_sim" / "app" / "compile_kernels.py").exists():
+        command = [sys.executable, "-m", "vehicle_sim.app.compile_kernels"]
+        subprocess.run(command, cwd=tree, env={"PYTHONPATH": str(tree)}, check=True)
+
+
+def compare(base, scratch, options):
+    missions = {}
+    for tree in (base, ROOT):
+        folder = scratch / f"missions of {'base' if tree is base else 'head'}"
+        folder.mkdir()
+        missions[tree] = write_missions(tree, folder, DURATION)
+    dearer = []
+    for name in FLIGHTS:
+        ratios = []
+        for k in range(options.rounds):
+            cost = {}
+            for tree in (base, ROOT) if k % 2 else (ROOT, base):
+                cost[tree] = fly(tree, missions[tree][name])["ms_per_second"]
+            ratios.append(cost[ROOT] / cost[base])
+        median = statistics.median(ratios)
+        spread = f"{min(ratios):.2f} to {max(ratios):.2f}"
+        verdict = "dearer" if is_dearer(ratios) else "not dearer"
+        print(f"{name}: {median:.2f} of the CPU time of {options.base} ({spread}): {verdict}", flush=True)
+        if is_dearer(ratios):
+            dearer.append(f"{name} {median:.2f}")
+    if dearer:
+        print(f"CPU cost above {LIMIT:.2f} of that of {options.base}: {', '.join(dearer)}", file=sys.stderr)
+    return 1 if dearer else 0
+
+
+def is_dearer(ratios):
+    """Return whether the median is above the limit, beyond the spread."""
+    return statistics.median(ratios) > LIMIT and min(ratios) > 1.0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,57 @@
+"""The benchmark's anchor flies, its missions can be read, and its check tells more cost from scatter."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from gcs.mission.read import read_mission
+
+BENCHMARKS = Path(__file__).parent / "benchmarks"
+sys.path.insert(0, str(BENCHMARKS))
+
+from benchmark import add_to_history  # noqa: E402
+from check import is_dearer  # noqa: E402
+from measure import FLIGHTS, ROOT, write_missions  # noqa: E402
+
+
+def test_anchor_flies_its_circle():
+    command = [sys.executable, str(BENCHMARKS / "anchor.py"), "--equal", "--seconds", "5"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    figures = json.loads(done.stdout.splitlines()[-1])
+    assert figures["loop"] == "equal loop"
+    assert 0.0 < figures["step_ms"]["p50"] <= figures["step_ms"]["p99"] <= figures["step_ms"]["max"]
+    assert figures["ms_per_second"] >= 48 * figures["step_ms"]["p50"] * 0.5
+
+
+def test_missions_of_the_benchmark_are_flown_clear_of_their_obstacles(tmp_path):
+    missions = {name: read_mission(path) for name, path in write_missions(ROOT, tmp_path, 5.0).items()}
+    assert {name: len(mission.obstacles) for name, mission in missions.items()} == dict(
+        zip(FLIGHTS, (0, 2, 200), strict=True)
+    )
+    assert all(obstacle.known for obstacle in missions["obstacles_200"].obstacles)
+
+
+@pytest.mark.parametrize(
+    ("ratios", "dearer"),
+    [
+        ([1.12, 1.15, 1.11, 1.2, 1.13], True),
+        ([1.08, 1.09, 1.02, 1.2, 1.06], False),  # 8 %: within the limit
+        ([1.3, 1.2, 0.95, 1.11, 1.12], False),  # one round the other way round: scatter
+    ],
+)
+def test_check_finds_cost_above_the_limit_and_beyond_the_spread(ratios, dearer):
+    assert is_dearer(np.array(ratios).tolist()) == dearer
+
+
+def test_history_keeps_earlier_rows_when_a_column_is_new(tmp_path, monkeypatch):
+    monkeypatch.setattr("benchmark.HISTORY", tmp_path / "history.csv")
+    monkeypatch.setattr("benchmark.ROOT", tmp_path)
+    add_to_history({"date": "2026-01-01", "speed": 1.0})
+    add_to_history({"date": "2026-01-02", "speed": 1.5, "memory": 3.0})
+    lines = (tmp_path / "history.csv").read_text().splitlines()
+    assert lines == ["date,speed,memory", "2026-01-01,1.0,", "2026-01-02,1.5,3.0"]
