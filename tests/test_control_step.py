@@ -89,6 +89,23 @@ def test_telemetry_becomes_measurement_of_its_source(component, source):
     assert attitude.rates == pytest.approx([0.1, -0.2, 0.3])
 
 
+@pytest.mark.parametrize(
+    ("values", "pose", "motion"),
+    [((1, 2, 3, 4, 5, np.nan), True, False), ((1, np.nan, 3, 4, 5, 6), False, True), ((np.inf,) * 6, None, None)],
+    ids=["no velocity", "no position", "neither"],
+)
+def test_part_of_telemetry_that_is_no_number_is_not_measured(values, pose, motion):
+    message = mavlink.MAVLink_local_position_ned_message(1234, *map(float, values))
+    found = measurement(received(message, 3, px4.AUTOPILOT_COMPONENT), 2, 7.5)
+    assert found is None if pose is None else (found.has_pose, found.has_motion) == (pose, motion)
+    turned = mavlink.MAVLink_attitude_quaternion_message(1234, *(0.8, 0.6, 0.0, 0.0), 0.1, np.nan, 0.3)
+    found = measurement(received(turned, 3, px4.AUTOPILOT_COMPONENT), 2, 7.5)
+    assert (found.has_pose, found.has_motion) == (True, False)
+    no_rotation = mavlink.MAVLink_attitude_quaternion_message(1234, *(0.8, 0.8, 0.0, 0.0), 0.1, -0.2, 0.3)
+    found = measurement(received(no_rotation, 3, px4.AUTOPILOT_COMPONENT), 2, 7.5)
+    assert (found.has_pose, found.has_motion) == (False, True)
+
+
 # Telemetry on the pad -> positions before take-off
 
 

@@ -151,6 +151,9 @@ def test_drag_is_quadratic_in_the_area_across_the_wind():
     assert down == pytest.approx((0.0, 0.0, 0.5 * 1.225 * 1.05 * 1.0 * 4.0))
     slant, _ = forces([3.0, 3.0, 0.0])
     assert math.hypot(*slant) == pytest.approx(0.5 * 1.225 * 1.05 * (1.0 * math.sqrt(0.5)) * 18.0)
+    with World(SYSTEM.true_parameters()) as world:
+        both = [active(fault("wind", velocity=velocity)) for velocity in ([1.0, -2.0, 0.5], [2.0, 2.0, -0.5])]
+        assert WorldFaults(both).act(world, 10.0)[0] == pytest.approx(payload)
     rising, _ = forces([3.0, 0.0, 0.0], now=1.0)
     assert rising[0] == pytest.approx(payload[0] / 4.0)
     with World(SYSTEM.true_parameters()) as world:

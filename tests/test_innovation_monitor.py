@@ -40,6 +40,17 @@ def test_monitor_finds_repeated_rejections():
     assert found == {((1, Position), Finding.REJECTED): pytest.approx(0.04 * (100 + REJECTIONS - 1))}
 
 
+def test_rejections_count_for_their_time_and_no_longer():
+    settings = InnovationMonitorSettings()
+    monitor, none = InnovationMonitor(GATE), [np.zeros(size) for size in SIZES]
+    times = np.linspace(0.0, 0.9 * settings.rejection_time, REJECTIONS)
+    for time in times:
+        monitor.learn(time, KEYS, none, [(1, Position)])
+    assert monitor.findings(times[-1]) == {(1, Position): [Finding.REJECTED]}
+    assert monitor.findings(0.999 * settings.rejection_time) == {(1, Position): [Finding.REJECTED]}
+    assert monitor.findings(1.001 * settings.rejection_time) == {}
+
+
 @pytest.mark.parametrize("which", [0, 1])
 def test_monitor_finds_bias_far_below_the_gate(which):
     push = np.array([0.0, 0.0, 1.5, 0.0, 0.0, 0.0])

@@ -53,6 +53,10 @@ def test_process_noise_is_its_integral(dt):
         kernel = MODELS.transition(t)[i, :, :, 2]
         exact = np.trapezoid(kernel[:, :, None] * kernel[:, None, :], t, axis=0) * strength[i]
         np.testing.assert_allclose(Q[i], exact, rtol=0.02, atol=0.02 * exact.max())
+    # A place and a velocity that walk at random.
+    np.testing.assert_allclose(Q[0], s.static_walk**2 * dt * np.diag([1.0, 0.0, 0.0]))
+    expected = s.velocity_walk**2 * np.array([[dt**3 / 3, dt**2 / 2, 0.0], [dt**2 / 2, dt, 0.0], [0.0, 0.0, 0.0]])
+    np.testing.assert_allclose(Q[1], expected)
     for i in range(MODELS.count):
         assert np.linalg.eigvalsh(Q[i]).min() > -1e-15
 

@@ -122,3 +122,21 @@ def test_constant_samples_without_noise_are_not_stuck():
     for k in range(3 * NavigationSettings.stuck_after):
         sample = rest._replace(time=k * STEP)
         assert navigation.update(sample, (0.0, 0.0, 0.0), sample.time) == sample == navigation.reported
+
+
+def test_sensor_counts_as_stuck_after_so_many_samples_equal_to_the_digit():
+    """Until then its samples are flown; another value ends it at once."""
+    limit = NavigationSettings().stuck_after
+    body, navigation = Turning(), Navigation(LAG, NavigationSettings())
+    body.step()
+    first = body.sample()
+    navigation.update(first, (0.0,) * 3, body.time)
+    for k in range(1, limit + 3):
+        body.step()
+        repeated = body.sample(rates=first.rates)
+        navigation.update(repeated, (0.0,) * 3, body.time)
+        assert (navigation.reported.rates == first.rates) == (k < limit), k
+    body.step()
+    alive = body.sample()
+    navigation.update(alive, (0.0,) * 3, body.time)
+    assert navigation.reported.rates == alive.rates

@@ -61,6 +61,23 @@ def test_distance_outside_is_that_of_the_distance_library(shape):
     np.testing.assert_allclose(distance[outside], expected, atol=1e-5)
 
 
+@pytest.mark.parametrize(
+    "shape", [shape for shape in EXAMPLES if hasattr(shape, "surface_samples")], ids=lambda shape: shape.kind
+)
+def test_surface_samples_lie_on_the_surface_with_normals_outward(shape):
+    points, normals = shape.surface_samples()
+    assert np.linalg.norm(normals, axis=1) == pytest.approx(np.ones(len(points)))
+    outside, inside = (
+        Bodies([shape]).distance((points + side * normals) @ shape.rotation.T + HERE, HERE[None])[0]
+        for side in (0.02, -0.02)
+    )
+    assert outside == pytest.approx(0.02, abs=1e-4)
+    # Within an edge the nearest surface may be another one.
+    assert np.mean(inside < -0.01) > 0.7 and inside.min() > -0.0201
+    assert np.linalg.norm(points, axis=1).max() > 0.7 * shape.reach
+    assert np.abs(points.mean(axis=0)).max() < 0.3 * shape.reach
+
+
 def distance_to_rounded_box(shape, points):
     """The distance kernel in numpy: horizontal and vertical gap, joined by Pythagoras."""
     box, (x, y, z) = shape.rounded_box, (points @ shape.rotation).T

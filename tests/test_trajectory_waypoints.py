@@ -9,6 +9,7 @@ from scipy.interpolate import BSpline
 
 from idc_controller.errors import TrajectoryError
 from idc_controller.trajectory.paths import Circle, Leg
+from idc_controller.trajectory.sampled_path import distance_to_line
 from idc_controller.trajectory.settings import Limits
 from idc_controller.trajectory.smoothing import smoothing_for
 from idc_controller.trajectory.spline import SplineTrajectory
@@ -304,3 +305,14 @@ def test_mission_without_legs_is_a_rest():
     assert np.array_equal(trajectory.position(9.0), HIGH)
     assert trajectory.end == 2.0
     assert trajectory.stop(3.0).end <= 3.0
+
+
+@pytest.mark.parametrize(
+    ("position", "distance"),
+    [((1.0, 0.5, 0.0), 0.5), ((2.4, 0.0, 0.0), 0.4), ((-0.3, 0.4, 0.0), 0.5), ((2.3, 1.0, 0.0), 0.3)],
+    ids=["beside", "beyond the corner", "before the begin", "beside the second part"],
+)
+def test_distance_to_a_line_is_to_its_parts_and_not_to_their_extensions(position, distance):
+    line = np.array([[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0]])
+    assert distance_to_line(np.array(position), line) == pytest.approx(distance)
+    assert distance_to_line(np.array(position), line[:1]) == pytest.approx(np.linalg.norm(position))

@@ -123,6 +123,13 @@ def test_inconsistent_or_missing_stop_plan_is_not_followed(flying: Bench, late: 
     assert flying.body.position[0] - x == pytest.approx(0.0, abs=0.3)
 
 
+@pytest.mark.parametrize("duration", [0.05, 0.9, 4.0])
+def test_stop_plan_of_any_duration_is_taken(flying: Bench, duration: float) -> None:
+    flying.send(stop_plan_message(flying.now, duration, [(0.0, 0.0, -1.0)] * 5))
+    taken = flying.vehicle.autopilot.state.stop_plan
+    assert taken is not None and taken.duration == pytest.approx(duration)
+
+
 def test_stop_plan_of_foreign_system_is_not_followed(flying: Bench) -> None:
     x = flying.body.position[0]
     flying.send(stop_plan(flying, flying.now, x=3.0), STRANGER)

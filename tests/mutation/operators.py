@@ -23,7 +23,7 @@ NOT_BEHAVIOUR = {"info", "warning", "debug", "getLogger", "TypeVar", "NewType"} 
 
 @dataclass(frozen=True)
 class Mutant:
-    """A change of one place of a module; ``function``: qualified name of its scope, empty at module level."""
+    """A change of one place of a module; ``function``: qualified name of the function that it is in, empty outside."""
 
     path: str
     line: int
@@ -64,13 +64,15 @@ class _Places(ast.NodeVisitor):
         for line in self.raw.splitlines(keepends=True):
             self.line_starts.append(self.line_starts[-1] + len(line))
         self.scope: list[str] = []
+        self.in_function = False
         self.found: list[Mutant] = []
         self.visit(ast.parse(source))
 
     def add(self, node: ast.expr | ast.stmt, kind: str, replacement: str) -> None:
         begin, end = self.span(node)
-        original, function = self.raw[begin:end].decode(), ".".join(self.scope)
-        self.found.append(Mutant(self.path, node.lineno, function, kind, begin, end, original, replacement))
+        original, function = self.raw[begin:end].decode(), ".".join(self.scope) if self.in_function else ""
+        if replacement != original:
+            self.found.append(Mutant(self.path, node.lineno, function, kind, begin, end, original, replacement))
 
     def span(self, node: ast.expr | ast.stmt) -> tuple[int, int]:
         assert node.end_lineno is not None and node.end_col_offset is not None
@@ -87,6 +89,7 @@ class _Places(ast.NodeVisitor):
     visit_Import = visit_ImportFrom = visit_JoinedStr = visit_Assert = visit_arg = leave
 
     def visit_FunctionDef(self, node: ast.FunctionDef) -> None:
+        inside, self.in_function = self.in_function, True
         self.scope.append(node.name)
         for default in (*node.args.defaults, *node.args.kw_defaults):
             if default is not None:
@@ -94,6 +97,7 @@ class _Places(ast.NodeVisitor):
         for statement in node.body:
             self.visit(statement)
         self.scope.pop()
+        self.in_function = inside
 
     def visit_ClassDef(self, node: ast.ClassDef) -> None:
         self.scope.append(node.name)
