@@ -50,6 +50,11 @@ def messages_of(scan):
     ]  # fmt: skip
 
 
+def detection_of(message):
+    """As the ground reads it."""
+    return detection(tuple(getattr(message, name) for name in message.ordered_fieldnames))
+
+
 class Scene:
     """Four UAVs that look around. Poses on the ground's side have the noise of the default navigation."""
 
@@ -98,7 +103,7 @@ class Scene:
             if off is not None:
                 obstacle_map.scans.poses.add_estimated(Position(time, i, position, np.zeros(3)))
             for message in messages_of(scan):
-                obstacle_map.scans.add(detection(message), i, time)
+                obstacle_map.scans.add(detection_of(message), i, time)
 
     def frame(self, time, centre, obstacle):
         """All points on one obstacle; None if no vehicle detects it."""

@@ -32,7 +32,8 @@ class ScriptedGround:
         self.stamps = {}
 
     def receive(self, datagram, sender, now):
-        for message, *_ in self.decoders[sender].decode(datagram):
+        for received in self.decoders[sender].decode(datagram):
+            message = received.message
             self.messages.append(message)
             if message.get_type() != "LOCAL_POSITION_NED":
                 continue

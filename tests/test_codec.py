@@ -39,7 +39,7 @@ def test_sequence_number_rises_and_wraps() -> None:
 def test_many_frames_in_one_datagram_keep_their_order() -> None:
     codec = Codec(1, 1)
     data = b"".join(codec.encode(attitude(stamp)) for stamp in range(20))
-    assert [message.time_boot_ms for message, *_ in Codec(2, 1).decode(data)] == list(range(20))
+    assert [received.time_boot_ms for received in Codec(2, 1).decode(data)] == list(range(20))
 
 
 def test_mavlink_1_frames_are_read() -> None:
@@ -57,7 +57,7 @@ def test_signed_frames_are_read() -> None:
     signer.signing.sign_outgoing = True
     frame = attitude().pack(signer)
     messages = Codec(2, 1).decode(frame + Codec(4, 1).encode(command()))
-    assert [message.get_type() for message, *_ in messages] == ["ATTITUDE_QUATERNION", "COMMAND_LONG"]
+    assert [received.message.get_type() for received in messages] == ["ATTITUDE_QUATERNION", "COMMAND_LONG"]
     assert Codec(2, 1).decode(frame[:-3]) == []
 
 
@@ -67,7 +67,7 @@ def test_garbage_bad_checksums_and_cut_frames_do_not_hide_what_follows() -> None
     bad[-1] ^= 0x40
     codec = Codec(2, 1)
     messages = codec.decode(b"\xfd\xfe garbage \xfd" + bytes(bad) + good + good[:-4] + good + b"\xfd\x00")
-    assert len(messages) == 2 and all(message.get_type() == "COMMAND_LONG" for message, *_ in messages)
+    assert len(messages) == 2 and all(received.message.get_type() == "COMMAND_LONG" for received in messages)
     assert codec.bad_frames >= 1 and codec.skipped_bytes > 0
 
 
@@ -99,7 +99,8 @@ def test_unknown_messages_are_skipped_whole() -> None:
     payload = hidden.ljust(60, b"\x01")
     unknown = struct.pack("<BBBBBBBHB", 0xFD, len(payload), 0, 0, 0, 1, 1, 0xFFF0, 0x7F) + payload + b"\x12\x34"
     codec = Codec(2, 1)
-    assert [m.get_type() for m, *_ in codec.decode(unknown + Codec(1, 1).encode(attitude()))] == ["ATTITUDE_QUATERNION"]
+    [received] = codec.decode(unknown + Codec(1, 1).encode(attitude()))
+    assert received.message.get_type() == "ATTITUDE_QUATERNION"
     assert codec.unread == 0
 
 
@@ -115,7 +116,8 @@ def test_unknown_incompatibility_flags_are_refused() -> None:
 @settings(max_examples=300)
 def test_codec_reads_a_good_frame_in_its_own_datagram_after_any_bytes(data: bytes) -> None:
     codec = Codec(2, 1)
-    codec.decode(data)
+    for received in codec.decode(data):
+        assert received.message.msgname
     assert len(codec.decode(Codec(1, 1).encode(command()))) == 1
 
 
@@ -127,7 +129,8 @@ def test_every_message_of_the_dialect_with_random_payload_is_read_or_refused() -
         for length in (0, 1, kind.unpacker.size, 255):
             body = struct.pack("<BBBBBBHB", length, 0, 0, 0, 1, 1, number & 0xFFFF, number >> 16) + rng.bytes(length)
             crc = mavlink.x25crc(body + bytes([kind.crc_extra])).crc
-            read += len(codec.decode(b"\xfd" + body + struct.pack("<H", crc)))
+            [received] = codec.decode(b"\xfd" + body + struct.pack("<H", crc))
+            read += received.message.msgname == kind.msgname
     assert read == 4 * len(mavlink.mavlink_map)
 
 
@@ -154,7 +157,8 @@ def test_integer_parameters_are_encoded_byte_wise(value: int) -> None:
     kind = mavlink.MAV_PARAM_TYPE_INT32
     codec = Codec(1, 1)
     sent = mavlink.MAVLink_param_value_message(b"X", px4.parameter_to_wire(value, kind), kind, 1, 0)
-    [(message, *_)] = codec.decode(codec.encode(sent))
+    [received] = codec.decode(codec.encode(sent))
+    message = received.message
     assert px4.parameter_from_wire(message.param_value, message.param_type) == value
 
 

@@ -20,7 +20,7 @@ def test_half_rate_is_an_even_share_of_measurements_and_all_of_the_rest(share, k
 
     decoder = Codec(255, 1)
     arrived = sent(injected(fault("low_rate", share=share)), 100, message=message)
-    messages = [m for *_, data in arrived for m, *_ in decoder.decode(data)]
+    messages = [received.message for *_, data in arrived for received in decoder.decode(data)]
     stamps = [m.time_boot_ms for m in messages if m.get_type() == "LOCAL_POSITION_NED"]
     assert len(stamps) == kept
     assert max(np.diff(stamps)) <= math.ceil(1 / share)

@@ -53,7 +53,8 @@ def test_acknowledgement_from_another_sender_is_ignored(station):
 def test_timesync_answer_counts_once_and_only_to_an_own_request(station):
     clock = station.links[0].clock
     sent = [m for m, address in station.datagrams_to_send(1.0) if address == address_of(1)]
-    [request] = [m for data in sent for m, *_ in Codec(2, 1).decode(data) if m.get_type() == "TIMESYNC"]
+    messages = [received.message for data in sent for received in Codec(2, 1).decode(data)]
+    [request] = [m for m in messages if m.get_type() == "TIMESYNC"]
     for ts1 in (0, 1, 900_000_000, -(2**63)):
         send(station, mavlink.MAVLink_timesync_message(5, ts1), now=1.02)
     assert clock.delay == 0.0

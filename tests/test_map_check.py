@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
-from obstacle_scene import HERE, NOISE, Scene, map_of, messages_of, pole, sphere, wall
+from obstacle_scene import HERE, NOISE, Scene, detection_of, map_of, messages_of, pole, sphere, wall
 
-from gcs.mavlink.telemetry import detection
 from gcs.mission.model import Obstacle
 from idc_controller.estimation.measurements import Attitude, Position
 from idc_controller.geometry.box import Wall
@@ -36,7 +35,7 @@ def look(known, true, off, until=6.0, seed=0, noise=1.0):
             for message in messages_of(scan):
                 wrong = np.asarray(off(t, uav)) + rng.normal(0.0, np.sqrt(noise**2 - 1.0) * NOISE * (t >= 2.0), 3)
                 message.x, message.y, message.z = np.array([message.x, message.y, message.z]) + wrong
-                m.scans.add(detection(message), uav, t)
+                m.scans.add(detection_of(message), uav, t)
         m.update(t)
         yield t, m
 

@@ -237,8 +237,8 @@ def test_detections_are_encoded_by_the_dialect():
     assert frame[7:10] == (11037).to_bytes(3, "little")
     expected = "d20400000000c03f000000c00000803e0000803d000020410700000c"
     assert frame[10:-2].hex() == expected
-    ((decoded, *_),) = Codec(255, 190).decode(frame)
-    assert decoded.to_dict() == message.to_dict()
+    [received] = Codec(255, 190).decode(frame)
+    assert received.message.to_dict() == message.to_dict()
     broken = bytearray(frame)
     broken[15] ^= 1
     assert Codec(255, 190).decode(bytes(broken)) == []

@@ -174,7 +174,8 @@ def test_answers_of_vehicles_arrive_at_the_same_time(lockstep):
     client.socket.sendto(Done(tick.serial, 5_000_000).encode(), client.clock)
     answers = []
     while (again := decode_tick((datagram := client.socket.recvfrom(65535))[0])) is None:
-        answers += [(datagram[1], m) for m, *_ in Codec(255, 1).decode(datagram[0]) if m.get_type() == "PING"]
+        received = [received.message for received in Codec(255, 1).decode(datagram[0])]
+        answers += [(datagram[1], m) for m in received if m.get_type() == "PING"]
     assert [(address, m.seq) for address, m in answers] == [(sockets.vehicles[2].getsockname(), 42)]
     assert (again.serial, again.time_us) == (tick.serial + 1, tick.time_us)
     client.close()
@@ -259,7 +260,8 @@ def test_real_time_over_udp_sends_each_sample_when_it_is_due():
         with contextlib.suppress(BlockingIOError):
             while True:
                 datagram, sender = ground.recvfrom(65535)
-                for message, *_ in codec.decode(datagram):
+                for received in codec.decode(datagram):
+                    message = received.message
                     if message.get_type() == "LOCAL_POSITION_NED" and message.get_srcComponent() == 1:
                         stamps.setdefault(sender, []).append(message.time_boot_ms)
         assert sorted(stamps) == sorted(endpoint.getsockname() for endpoint in sockets.vehicles)

@@ -73,7 +73,7 @@ class Bench:
     def collect(self) -> None:
         for datagram, address in self.vehicle.datagrams_to_send(self.now):
             self.datagrams.append((self.now, datagram, address))
-            self.inbox.setdefault(address, []).extend(m for m, *_ in self.reader.decode(datagram))
+            self.inbox.setdefault(address, []).extend(received.message for received in self.reader.decode(datagram))
 
     def run(self, seconds: float) -> None:
         for _ in range(round(seconds / 0.002)):

@@ -16,11 +16,9 @@ from gcs.mavlink.messages import Received
 from gcs.mavlink.telemetry import detection, measurement, setpoint_flown
 from gcs.mavlink.vehicle_link import VehicleLink
 
-_STAMPED = (
-    mavlink.MAVLink_attitude_quaternion_message,
-    mavlink.MAVLink_local_position_ned_message,
-    mavlink.MAVLink_attitude_target_message,
-    mavlink.MAVLink_obstacle_distance_3d_message,
+_SETPOINT, _DETECTION = mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET, mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D
+_STAMPED = frozenset(
+    (mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED, _SETPOINT, _DETECTION)
 )
 """Messages of one moment, which their stamp names."""
 
@@ -74,7 +72,7 @@ class TelemetryRouter:
 
     def _new_vehicle(self, received: Received, sender: Address) -> int | None:
         """Return the index of a vehicle that calls in for the first time with this heartbeat; None: none does."""
-        is_heartbeat = isinstance(received.message, mavlink.MAVLink_heartbeat_message)
+        is_heartbeat = received.message_id == mavlink.MAVLINK_MSG_ID_HEARTBEAT
         if not is_heartbeat or received.component != px4.AUTOPILOT_COMPONENT:
             return None
         system_id = received.system
@@ -92,30 +90,28 @@ class TelemetryRouter:
 
         ``latest``: the latest stamp of the messages before it in its datagram.
         """
-        message = received.message
-        if not isinstance(message, _STAMPED):
+        message_id = received.message_id
+        if message_id not in _STAMPED:
             return -math.inf
         link = self._links[index]
         if index == 0:
             offset = link.clock.offset + link.clock.set_back
             self._clock.follow(offset, now, connecting=self._flight.phase is Phase.CONNECT)
-        time = whole_ms(message.time_boot_ms * 1e-3 - link.clock.offset + self._clock.offset)
-        if isinstance(message, mavlink.MAVLink_attitude_target_message):
-            self._confirm_setpoint(message, index, time, latest, now)
-        elif isinstance(message, mavlink.MAVLink_obstacle_distance_3d_message):
+        time = whole_ms(received.time_boot_ms * 1e-3 - link.clock.offset + self._clock.offset)
+        if message_id == _SETPOINT:
+            self._confirm_setpoint(received, index, time, latest, now)
+        elif message_id == _DETECTION:
             obstacle_map = self._flight.system.obstacle_map
             # Detections from before a clock jump have the stamp of another pose.
             if obstacle_map is not None and now - link.clock.jumped_at > self._clock_settled:
-                obstacle_map.scans.add(detection(message), index, time)
+                obstacle_map.scans.add(detection(received.fields), index, time)
         else:
             self._add_measurement(received, index, time)
         return time
 
-    def _confirm_setpoint(
-        self, message: mavlink.MAVLink_attitude_target_message, index: int, time: float, latest: float, now: float
-    ) -> None:
+    def _confirm_setpoint(self, received: Received, index: int, time: float, latest: float, now: float) -> None:
         link, flight = self._links[index], self._flight
-        setpoint = setpoint_flown(message, link.status.parameters.get(px4.PARAM_THRUST_MAX, math.nan))
+        setpoint = setpoint_flown(received.fields, link.status.parameters.get(px4.PARAM_THRUST_MAX, math.nan))
         if setpoint is None or flight.phase not in IN_AIR:
             return
         # Its stamp is that of the moment at which it began to act.

@@ -20,7 +20,7 @@ _HEADER_V2 = struct.Struct("<BBBBBBB3s")
 _HEADER_V1 = struct.Struct("<BBBBB1s")
 """Marker, length, sequence number, system, component, message id."""
 
-_LAYOUTS = {layout.number: layout for layout in LAYOUTS.values()}
+_LAYOUTS = {layout.wire_id: layout for layout in LAYOUTS.values()}
 _LAYOUTS |= {number[:1]: layout for number, layout in _LAYOUTS.items() if number[1:] == b"\0\0"}
 """By the message id as it is sent, in a frame of MAVLink 2 or 1."""
 
@@ -62,7 +62,7 @@ class Codec:
         """Return a MAVLink 2 frame of a message that is packed already, as :meth:`encode` does."""
         layout, payload = message
         body = _HEADER_V2.pack(
-            V2, len(payload), 0, 0, self._sequence, self.system_id, self._component_id, layout.number
+            V2, len(payload), 0, 0, self._sequence, self.system_id, self._component_id, layout.wire_id
         ) + payload  # fmt: skip
         self._sequence = (self._sequence + 1) & 0xFF
         return body + _checksum(body[1:] + layout.crc_extra).to_bytes(2, "little")
@@ -104,7 +104,9 @@ class Codec:
                     break
                 start += 1  # its length may be what is wrong
                 continue
-            messages.append(layout.read(datagram[body:behind], sequence, system, component))
+            payload = datagram[body:behind]
+            targets = layout.targets(payload) if layout.target_offsets else ()
+            messages.append(Received(layout, payload, system, component, sequence, *targets))
             start = end
         return messages
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from itertools import accumulate
 from operator import attrgetter, itemgetter
+from struct import calcsize
 from typing import Any, NamedTuple
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
-from gcs.mavlink.messages import Message, Received
+Message = mavlink.MAVLink_message
 
 
 class Packed(NamedTuple):
@@ -28,13 +29,15 @@ class Layout:
 
     def __init__(self, kind: type[Message]) -> None:
         self.kind = kind
-        self.number: bytes = kind.id.to_bytes(3, "little")
+        self.message_id: int = kind.id
+        self.wire_id: bytes = kind.id.to_bytes(3, "little")
         """The message id as it is sent."""
         self.crc_extra = bytes([kind.crc_extra])
         """The last byte that a frame's checksum covers, which is not sent."""
         self._pack, self._unpack, self._size = kind.unpacker.pack, kind.unpacker.unpack_from, kind.unpacker.size
         names, lengths = list(kind.ordered_fieldnames), list(kind.array_lengths)
-        texts = [i for i, code in enumerate(kind.native_format.decode().lstrip("<")) if code == "c"]
+        codes = kind.native_format.decode().lstrip("<")
+        texts = [i for i, code in enumerate(codes) if code == "c"]
         self._has_text = bool(texts)
         for i in texts:  # pymavlink keeps a text as it is on the wire beside the text that people read
             names[i], lengths[i] = f"_{names[i]}_raw", 0
@@ -44,8 +47,10 @@ class Layout:
         firsts = accumulate((length or 1 for length in lengths), initial=0)
         places = [slice(i, i + length) if length else i for i, length in zip(firsts, lengths, strict=False)]
         self._order = _tuple_of(itemgetter, [places[i] for i in kind.orders])
-        targets = ("target_system", "target_component")
-        self._targets = [kind.fieldnames.index(name) for name in targets if name in kind.fieldnames]
+        sizes = [calcsize(f"<{code}") * (length or 1) for code, length in zip(codes, kind.array_lengths, strict=True)]
+        starts = dict(zip(kind.ordered_fieldnames, accumulate(sizes, initial=0), strict=False))
+        self.target_offsets = [starts[name] for name in ("target_system", "target_component") if name in starts]
+        """Where the payload holds the system and the component that a message is for, as far as it names them."""
 
     def pack(self, *values: float) -> Packed:
         """Return a message of these fields, in the order of the wire, arrays number by number.
@@ -67,17 +72,22 @@ class Layout:
             values = flat
         return self.pack(*values)
 
-    def read(self, payload: bytes, sequence: int, system: int, component: int) -> Received:
-        """Return the message of a payload that came with this sequence number from a component of a system."""
-        fields = self._order(self._unpack(payload.ljust(self._size, b"\0")))
+    def fields(self, payload: bytes) -> tuple[Any, ...]:
+        """Return the fields in a payload, in the order of the wire, arrays number by number."""
+        fields: tuple[Any, ...] = self._unpack(payload.ljust(self._size, b"\0"))
+        return fields
+
+    def message(self, payload: bytes) -> Message:
+        """Return the message in a payload."""
+        fields = self._order(self.fields(payload))
         if self._has_text:
             fields = tuple([field.rstrip(b"\0") if isinstance(field, bytes) else field for field in fields])
-        message = self.kind(*fields)
-        header = message.get_header()
-        header.seq, header.srcSystem, header.srcComponent = sequence, system, component
-        if not self._targets:
-            return Received(message, system, component, sequence)
-        return Received(message, system, component, sequence, *[fields[i] for i in self._targets])
+        return self.kind(*fields)
+
+    def targets(self, payload: bytes) -> Iterable[int]:
+        """Return the system, or system and component, that a message is for, as far as it names them."""
+        size = len(payload)
+        return [payload[offset] if offset < size else 0 for offset in self.target_offsets]
 
 
 def packed(*messages: Message) -> tuple[Packed, ...]:

@@ -1,12 +1,15 @@
 """MAVLink messages as types: the classes that pymavlink generates, each with who sent it and to whom.
 
 A message is recognised by its class (``isinstance``), so that its fields have types. The classes are those of
-ArduPilot's dialect, which holds the common one; a class of another dialect is another class.
+ArduPilot's dialect, which holds the common one; a class of another dialect is another class. What comes with every
+sample is recognised by its message id instead, and its fields are read without a message object.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
+
+from gcs.mavlink.layout import Layout
 
 Message = mavlink.MAVLink_message
 
@@ -17,12 +20,36 @@ BROADCAST = 0
 class Received(NamedTuple):
     """A message that has come in, with its sender and its addressee (:data:`BROADCAST` where it names none)."""
 
-    message: Message
+    layout: Layout
+    payload: bytes
     system: int
     component: int
     sequence: int
     target_system: int = BROADCAST
     target_component: int = BROADCAST
+
+    @property
+    def message_id(self) -> int:
+        """Id of the kind of message."""
+        return self.layout.message_id
+
+    @property
+    def message(self) -> Message:
+        """The message as pymavlink has it; read anew each time."""
+        message = self.layout.message(self.payload)
+        header = message.get_header()
+        header.seq, header.srcSystem, header.srcComponent = self.sequence, self.system, self.component
+        return message
+
+    @property
+    def fields(self) -> tuple[Any, ...]:
+        """The fields in the order of the wire, arrays number by number."""
+        return self.layout.fields(self.payload)
+
+    @property
+    def time_boot_ms(self) -> int:
+        """The stamp of a streamed measurement, its first field."""
+        return int.from_bytes(self.payload[:4], "little")
 
     def is_for(self, system: int, component: int | None = None) -> bool:
         """Return True if it is addressed to a component (None: to any) of a system, or to everybody."""

@@ -1,26 +1,37 @@
 """Telemetry: MAVLink messages of the vehicles become measurements for the estimator."""
 
 import math
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+from typing import Any
 
 import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink import px4
+from gcs.mavlink.layout import LAYOUTS
 from gcs.mavlink.messages import Received
 from idc_controller.arrays import Array
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, Position
 from idc_controller.perception.scan_assembly import Detection
 
+_ATTITUDE = LAYOUTS[mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION]
+_POSITION = LAYOUTS[mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED]
+_NAN = math.nan
 
-def setpoint_flown(message: mavlink.MAVLink_attitude_target_message, thrust_max: float) -> Array | None:
+_Values = tuple[Array, Array] | None
+"""Pose and motion, one of them nan if it cannot be a measurement; None: neither can."""
+
+
+def setpoint_flown(fields: tuple[Any, ...], thrust_max: float) -> Array | None:
     """Return the tilt of the thrust (north, east) and thrust (N), (3,), in an ATTITUDE_TARGET; None: it has neither.
 
-    ``thrust_max`` (N) is what the vehicle means by thrust 1.
+    ``fields`` in the order of the wire; ``thrust_max`` (N) is what the vehicle means by thrust 1.
     """
-    if message.type_mask & mavlink.ATTITUDE_TARGET_TYPEMASK_ATTITUDE_IGNORE:
+    _, w, x, y, z, _, _, _, thrust, type_mask = fields
+    if type_mask & mavlink.ATTITUDE_TARGET_TYPEMASK_ATTITUDE_IGNORE:
         return None
-    w, x, y, z = message.q
-    flown = (-2.0 * (x * z + w * y), -2.0 * (y * z - w * x), message.thrust * thrust_max)
+    flown = (-2.0 * (x * z + w * y), -2.0 * (y * z - w * x), thrust * thrust_max)
     return np.array(flown) if math.isfinite(sum(flown)) else None
 
 
@@ -31,35 +42,53 @@ def measurement(received: Received, uav: int, time: float) -> Measurement | None
     only the pose or only the motion cannot be one, that part is nan, as MAVLink has it for an unknown rate.
     The payload's navigation unit is a component of its own, relayed by every vehicle.
     """
-    message, component = received.message, received.component
-    if component == px4.PAYLOAD_UNIT_COMPONENT:
-        source = PAYLOAD
-    elif component == px4.AUTOPILOT_COMPONENT:
-        source = uav
+    layout, component = received.layout, received.component
+    if layout is not _ATTITUDE and layout is not _POSITION:
+        return None
+    if component == px4.AUTOPILOT_COMPONENT:
+        source, values = uav, _READ[layout.message_id](received.payload)
+    elif component == px4.PAYLOAD_UNIT_COMPONENT:
+        source, values = PAYLOAD, _READ_ONCE[layout.message_id](received.payload)
     else:
         return None
-    if isinstance(message, mavlink.MAVLink_attitude_quaternion_message):
-        quaternion = (message.q1, message.q2, message.q3, message.q4)
-        rates = (message.rollspeed, message.pitchspeed, message.yawspeed)
-        norm = math.sqrt(sum(c * c for c in quaternion))
-        attitude = Attitude(time, source, np.array(quaternion) / (norm or 1.0), np.array(rates))
-        return _usable(attitude, 0.9 < norm < 1.1, math.isfinite(sum(rates)))
-    if isinstance(message, mavlink.MAVLink_local_position_ned_message):
-        position, velocity = (message.x, message.y, message.z), (message.vx, message.vy, message.vz)
-        sample = Position(time, source, np.array(position), np.array(velocity))
-        return _usable(sample, math.isfinite(sum(position)), math.isfinite(sum(velocity)))
-    return None
+    if values is None:
+        return None
+    return (Attitude if layout is _ATTITUDE else Position)(time, source, *values)
 
 
-def detection(message: mavlink.MAVLink_obstacle_distance_3d_message) -> Detection:
-    """Return the detection in an OBSTACLE_DISTANCE_3D; one in a frame other than the body's has no point (nan)."""
-    is_body = message.frame == mavlink.MAV_FRAME_BODY_FRD
-    point = (message.x, message.y, message.z) if is_body else (math.nan, math.nan, math.nan)
-    return Detection(message.time_boot_ms, message.obstacle_id, point, message.max_distance)
+def detection(fields: tuple[Any, ...]) -> Detection:
+    """Return the detection in an OBSTACLE_DISTANCE_3D; one in a frame other than the body's has no point (nan).
+
+    ``fields`` in the order of the wire.
+    """
+    time_boot_ms, x, y, z, _, max_distance, obstacle_id, _, frame = fields
+    point = (x, y, z) if frame == mavlink.MAV_FRAME_BODY_FRD else (_NAN, _NAN, _NAN)
+    return Detection(time_boot_ms, obstacle_id, point, max_distance)
 
 
-def _usable(sample: Measurement, pose: bool, motion: bool) -> Measurement | None:
-    """Return a sample without the part, ``pose`` or ``motion``, that cannot be a measurement."""
-    if pose and motion:
-        return sample
-    return sample.without(not pose, not motion) if pose or motion else None
+def _attitude(payload: bytes) -> _Values:
+    _, w, x, y, z, *rates, _, _, _, _ = _ATTITUDE.fields(payload)
+    norm = math.sqrt(w * w + x * x + y * y + z * z)
+    scale = norm or 1.0
+    pose = (w / scale, x / scale, y / scale, z / scale)
+    return _usable(pose, rates, 0.9 < norm < 1.1, math.isfinite(sum(rates)))
+
+
+def _position(payload: bytes) -> _Values:
+    _, x, y, z, *velocity = _POSITION.fields(payload)
+    return _usable((x, y, z), velocity, math.isfinite(x + y + z), math.isfinite(sum(velocity)))
+
+
+def _usable(pose: Sequence[float], motion: Sequence[float], has_pose: bool, has_motion: bool) -> _Values:
+    """Return pose and motion as arrays, without the part that cannot be a measurement."""
+    if not (has_pose or has_motion):
+        return None
+    return (
+        np.array(pose) if has_pose else np.full(len(pose), _NAN),
+        np.array(motion) if has_motion else np.full(len(motion), _NAN),
+    )
+
+
+_READ: dict[int, Callable[[bytes], _Values]] = {_ATTITUDE.message_id: _attitude, _POSITION.message_id: _position}
+#: The payload unit's messages are equal from whomever relays them: each is read once.
+_READ_ONCE = {message_id: lru_cache(maxsize=4)(read) for message_id, read in _READ.items()}

@@ -15,7 +15,10 @@ from gcs.mavlink.requests import Requests
 from gcs.mavlink.setpoints import SetpointStream
 from gcs.mavlink.settings import LinkSettings
 
-_NAVIGATION = (mavlink.MAVLink_attitude_quaternion_message, mavlink.MAVLink_local_position_ned_message)
+_ATTITUDE, _POSITION = mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED
+_NAVIGATION = (_ATTITUDE, _POSITION)
+#: What comes with every sample, and tells of the link no more than that it came.
+_OF_SAMPLES = (mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET, mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D)
 
 
 @dataclass
@@ -94,22 +97,28 @@ class VehicleLink:
     def handle(self, received: Received, now: float) -> None:
         """Take one message of this vehicle."""
         self.received_at = now
-        message = received.message
-        if received.component == px4.AUTOPILOT_COMPONENT:
-            self._handle_autopilot(message, self.statistics.message(received.sequence, now), now)
-        elif received.component == px4.PAYLOAD_UNIT_COMPONENT and isinstance(message, _NAVIGATION):
-            self.payload_received_at = now
-        if isinstance(message, mavlink.MAVLink_timesync_message) and message.tc1:
+        of_autopilot = received.component == px4.AUTOPILOT_COMPONENT
+        in_order = of_autopilot and self.statistics.message(received.sequence, now)
+        message_id = received.message_id
+        if message_id in _NAVIGATION:
+            if of_autopilot:
+                self._handle_navigation(message_id, received.time_boot_ms, in_order, now)
+            elif received.component == px4.PAYLOAD_UNIT_COMPONENT:
+                self.payload_received_at = now
+        elif message_id not in _OF_SAMPLES:
+            self._handle_message(received.message, of_autopilot, now)
+
+    def _handle_navigation(self, message_id: int, time_boot_ms: int, in_order: bool, now: float) -> None:
+        self.clock.add_stamp(time_boot_ms * 1e-3, now, in_order)
+        if message_id == _ATTITUDE:
+            self.attitude_received_at = now
+        else:
+            self.position_received_at = now
+
+    def _handle_message(self, message: Message, of_autopilot: bool, now: float) -> None:
+        if of_autopilot and isinstance(message, mavlink.MAVLink_heartbeat_message):
+            self.status.base_mode, self.status.custom_mode = message.base_mode, message.custom_mode
+        elif isinstance(message, mavlink.MAVLink_timesync_message) and message.tc1:
             self.clock.add_answer(message.ts1, now)
         self.status.handle(message)
         self.requests.handle(message)
-
-    def _handle_autopilot(self, message: Message, in_order: bool, now: float) -> None:
-        if isinstance(message, _NAVIGATION):
-            self.clock.add_stamp(message.time_boot_ms * 1e-3, now, in_order)
-            if isinstance(message, mavlink.MAVLink_attitude_quaternion_message):
-                self.attitude_received_at = now
-            else:
-                self.position_received_at = now
-        elif isinstance(message, mavlink.MAVLink_heartbeat_message):
-            self.status.base_mode, self.status.custom_mode = message.base_mode, message.custom_mode

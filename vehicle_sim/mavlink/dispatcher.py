@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import NamedTuple, TypeVar
 
-from gcs.mavlink.messages import Message
+from gcs.mavlink.messages import Message, Received
 from vehicle_sim.mavlink.control_owner import Sender
 from vehicle_sim.mavlink.peer import Peer
 
@@ -34,7 +34,7 @@ class Dispatcher:
         """Hand every message of a class to ``handler``."""
         self._handlers[kind] = handler
 
-    def dispatch(self, message: Message, request: Request) -> None:
+    def dispatch(self, received: Received, request: Request) -> None:
         """Hand a message to its service; one without a service is ignored."""
-        if (handler := self._handlers.get(type(message))) is not None:
-            handler(message, request)
+        if (handler := self._handlers.get(received.layout.kind)) is not None:
+            handler(received.message, request)

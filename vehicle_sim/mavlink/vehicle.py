@@ -122,7 +122,7 @@ class Vehicle:
             self.autopilot.ground_message_received(now)
             if received.is_for(self.system_id, px4.AUTOPILOT_COMPONENT):
                 request = Request((sender, received.system), received.component, peer, now)
-                self._dispatcher.dispatch(received.message, request)
+                self._dispatcher.dispatch(received, request)
 
     def datagrams_to_send(self, now: float) -> list[tuple[bytes, Address]]:
         """Return all that is due at ``now`` (s), each with its address."""
