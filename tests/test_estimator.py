@@ -274,10 +274,11 @@ def test_held_position_is_ignored_when_payload_unit_is_received():
 def test_stacked_observations_know_the_rows_of_the_payload_unit_and_of_each_height():
     model = MeasurementModel(MODEL, MeasurementNoise(), MeasurementModelSettings())
     keys = ((2, Position), (PAYLOAD, Attitude), (1, Attitude), (PAYLOAD, Position), (0, Position))
-    stack = model.stack(keys)
+    observation = model.observation(keys)
+    stack = observation.stack
     assert stack.sizes.tolist() == [6, 6, 4, 6, 6]
     assert np.flatnonzero(stack.of_payload).tolist() == [*range(6, 12), *range(16, 22)]
-    assert (stack.uavs.tolist(), stack.heights.tolist()) == ([2, 0], [2, 24])
+    assert (observation.uavs.tolist(), observation.heights.tolist()) == ([2, 0], [2, 24])
 
 
 def test_estimated_vehicles_match_measurement_model():

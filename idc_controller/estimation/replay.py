@@ -24,17 +24,17 @@ class MeasurementHistory:
     def __init__(self, simultaneous: float) -> None:
         """``simultaneous``: measurements closer than this (s) are of one moment."""
         self._simultaneous = simultaneous
+        self._times: list[float] = []
         self._moments: list[Moment] = []
 
     def add(self, measurement: Measurement, applied: float) -> float | None:
         """Add one; return the time of its moment, or None if it adds nothing to what was ``applied`` until then (s)."""
-        time = measurement.time
-        at = bisect.bisect_left(self._moments, time - self._simultaneous, key=attrgetter("time"))
-        if at < len(self._moments) and self._moments[at].time <= time + self._simultaneous:
-            moment = self._moments[at]
-        else:
-            moment = Moment(time, {})
-            self._moments.insert(at, moment)
+        time, times = measurement.time, self._times
+        at = bisect.bisect_left(times, time - self._simultaneous)
+        if at == len(times) or times[at] > time + self._simultaneous:
+            times.insert(at, time)
+            self._moments.insert(at, Moment(time, {}))
+        moment = self._moments[at]
         copies = moment.measurements.setdefault((measurement.source, type(measurement)), [])
         if copies and measurement.source == PAYLOAD and moment.time <= applied:
             return None  # another vehicle's relay of what was applied already
@@ -43,7 +43,7 @@ class MeasurementHistory:
 
     def after(self, time: float) -> list[Moment]:
         """Return the moments after ``time`` (s)."""
-        return self._moments[bisect.bisect_right(self._moments, time, key=attrgetter("time")) :]
+        return self._moments[bisect.bisect_right(self._times, time) :]
 
     def has(self, key: SensorKey, since: float) -> bool:
         """Return whether there is a measurement of a source and kind after ``since`` (s)."""
@@ -51,7 +51,8 @@ class MeasurementHistory:
 
     def forget(self, until: float) -> None:
         """Discard all moments until that time (s)."""
-        del self._moments[: bisect.bisect_right(self._moments, until, key=attrgetter("time"))]
+        old = bisect.bisect_right(self._times, until)
+        del self._times[:old], self._moments[:old]
 
 
 @dataclass(frozen=True, eq=False)

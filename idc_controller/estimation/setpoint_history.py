@@ -58,11 +58,10 @@ class SetpointHistory:
 
     def __init__(self, number_of_uavs: int, settings: SetpointHistorySettings = SetpointHistorySettings()) -> None:
         self._N = number_of_uavs
-        self._settings = s = settings
-        self._tolerance = np.array([s.tilt_tolerance, s.tilt_tolerance, s.thrust_tolerance])
+        self._settings = settings
         self._entries: list[_Entry] = []
         self._jitter = np.zeros(number_of_uavs)
-        self.loss = np.full(number_of_uavs, s.loss_min)
+        self.loss = np.full(number_of_uavs, settings.loss_min)
         """Share of the set-points to each vehicle (N,) that is lost, ``loss_min`` or more."""
 
     def clear(self) -> None:
@@ -134,10 +133,16 @@ class SetpointHistory:
         """
         self._jitter[uav] = jitter
         s, entries, tolerance = self._settings, self._entries, self._settings.time_tolerance + jitter
-        which = [2 * uav, 2 * uav + 1, 2 * self._N + uav]
+        north, east, thrust = which = [2 * uav, 2 * uav + 1, 2 * self._N + uav]
+        tilt_north, tilt_east, lift = reported.tolist()
 
         def is_reported(u: Array | None) -> bool:
-            return u is not None and bool((np.abs(u[which] - reported) < self._tolerance).all())
+            return (
+                u is not None
+                and abs(u[thrust] - lift) < s.thrust_tolerance
+                and abs(u[north] - tilt_north) < s.tilt_tolerance
+                and abs(u[east] - tilt_east) < s.tilt_tolerance
+            )
 
         newest = self._at(until + tolerance)
         # Those that should be in force already; then those that would come earlier than they should.
@@ -181,7 +186,7 @@ class SetpointHistory:
         entry.confirmed[uav] = True
         assert entry.flown is not None and entry.sent is not None
         changed = math.inf
-        if bool((entry.flown[which] != entry.sent[which]).any()):
+        if any(entry.flown[k] != entry.sent[k] for k in which):
             entry.flown = entry.flown.copy()
             entry.flown[which] = entry.sent[which]
             changed = entry.effective

@@ -6,13 +6,14 @@ means over about a second show what no single sample does.
 
 from collections import defaultdict, deque
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Mask
 from idc_controller.estimation.health.chi_squared import lower_quantile, upper_quantile
+from idc_controller.estimation.health.innovation_monitor_kernels import running_means
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, SensorKey
 from idc_controller.estimation.settings import InnovationMonitorSettings
 
@@ -27,11 +28,28 @@ class Finding(Enum):
 
 @dataclass
 class _Statistics:
-    size: int
+    """Running means of S sensors; samples with another number of rows are of a sensor of their own."""
+
     mean: Array
-    square: float = 1.0
-    time: float = -np.inf
-    rejections: deque[float] = field(default_factory=deque)
+    """Of the innovations (S, 6)."""
+    square: Array
+    """Of their mean squares (S,)."""
+    last: Array
+    """Times of the last samples (S,) (s)."""
+    of_uav_attitude: Mask
+    """Sensors (S,) whose limits are wider."""
+    mean_limits: Array
+    """(S,)"""
+    square_limits: Array
+    """(S,)"""
+
+    def append(self, of_uav_attitude: bool, mean_limit: float, square_limit: float) -> None:
+        """Append a sensor without samples."""
+        self.mean = np.vstack([self.mean, np.zeros(6)])
+        self.square, self.last = np.append(self.square, 1.0), np.append(self.last, -np.inf)
+        self.of_uav_attitude = np.append(self.of_uav_attitude, of_uav_attitude)
+        self.mean_limits = np.append(self.mean_limits, mean_limit)
+        self.square_limits = np.append(self.square_limits, square_limit)
 
 
 class InnovationMonitor:
@@ -42,19 +60,20 @@ class InnovationMonitor:
     ) -> None:
         """``gate_probability`` of the innovation test: beyond it a sample counts as one at the gate."""
         self._settings = s = settings
-        self._statistics: dict[tuple[SensorKey, int], _Statistics] = {}
-        """Statistics by sensor and number of rows: some samples have only one of its channels."""
-        sizes = np.arange(1, 7)
+        self._sensors: dict[tuple[SensorKey, int], int] = {}
+        """Index of each sensor and number of rows: some samples have only one of its channels."""
+        none = np.zeros(0)
+        self._statistics = _Statistics(np.zeros((0, 6)), none, none, np.zeros(0, dtype=bool), none, none)
+        self._rejections: dict[tuple[SensorKey, int], deque[float]] = {}
+        """Times of the rejections of late (s)."""
+        sizes = np.arange(7)
         kept = (2.0 - s.share) / s.share
         # Variance of a running mean is 1 / kept; its square sum times kept is chi-squared with ``size`` degrees of
         # freedom, and the running mean square like one of kept * size of them.
-        self._gates = dict(zip(sizes.tolist(), lower_quantile(gate_probability, sizes).tolist(), strict=True))
-        self._mean_limits = dict(
-            zip(sizes.tolist(), (upper_quantile(s.false_alarm, sizes) / kept).tolist(), strict=True)
-        )
-        freedom = kept * sizes
-        squares = upper_quantile(s.false_alarm, freedom) / freedom
-        self._square_limits = dict(zip(sizes.tolist(), squares.tolist(), strict=True))
+        self._gates = lower_quantile(gate_probability, sizes)
+        freedom = kept * sizes[1:]
+        self._mean_limits = np.append(0.0, upper_quantile(s.false_alarm, sizes[1:]) / kept)
+        self._square_limits = np.append(0.0, upper_quantile(s.false_alarm, freedom) / freedom)
 
     def learn(
         self, time: float, keys: Sequence[SensorKey], normalised: Sequence[Array], rejected: Sequence[SensorKey]
@@ -67,42 +86,58 @@ class InnovationMonitor:
             normalised: their normalised innovations.
             rejected: those of them that the innovation test rejected.
         """
-        share = self._settings.share
-        for key, innovation in zip(keys, normalised, strict=True):
-            size = len(innovation)
-            statistics = self._statistics.get((key, size))
-            if statistics is None:
-                statistics = self._statistics[key, size] = _Statistics(size, np.zeros(size))
-            if time <= statistics.time:
-                continue
-            statistics.time = time
-            gate = self._gates[size]
-            bounded = np.nan_to_num(np.clip(innovation, -np.sqrt(gate), np.sqrt(gate)))
-            statistics.mean = statistics.mean + share * (bounded - statistics.mean)
-            square = min(float(bounded @ bounded), gate) / size
-            statistics.square += share * (square - statistics.square)
-            if key in rejected:
-                statistics.rejections.append(time)
+        sizes = [len(innovation) for innovation in normalised]
+        which = np.array([self._index(key, size) for key, size in zip(keys, sizes, strict=True)])
+        statistics = self._statistics
+        new = running_means(
+            time, which, np.array(sizes), np.concatenate(normalised), self._gates, self._settings.share,
+            statistics.mean, statistics.square, statistics.last,
+        )  # fmt: skip
+        for key, size, is_new in zip(keys, sizes, new.tolist(), strict=True) if rejected else ():
+            if is_new and key in rejected:
+                self._rejections.setdefault((key, size), deque()).append(time)
 
     def forget_attitudes(self) -> None:
         """Discard what was learnt of the UAVs' attitudes."""
-        for entry in tuple(self._statistics):
-            (source, kind), _ = entry
-            if source != PAYLOAD and kind is Attitude:
-                del self._statistics[entry]
+        statistics = self._statistics
+        attitudes = statistics.of_uav_attitude
+        statistics.mean[attitudes], statistics.square[attitudes], statistics.last[attitudes] = 0.0, 1.0, -np.inf
+        for entry in tuple(self._rejections):
+            if _is_uav_attitude(entry[0]):
+                del self._rejections[entry]
 
     def findings(self, time: float) -> dict[SensorKey, list[Finding]]:
         """Return what is wrong with sensors at ``time`` (s)."""
-        s = self._settings
+        s, statistics = self._settings, self._statistics
+        biased = np.einsum("sc,sc->s", statistics.mean, statistics.mean) > statistics.mean_limits
+        noisy = statistics.square > statistics.square_limits
+        for entry, times in tuple(self._rejections.items()):
+            while times and time - times[0] > s.rejection_time:
+                times.popleft()
+            if not times:
+                del self._rejections[entry]
         found: dict[SensorKey, list[Finding]] = defaultdict(list)
-        for (key, _), statistics in self._statistics.items():
-            while statistics.rejections and time - statistics.rejections[0] > s.rejection_time:
-                statistics.rejections.popleft()
-            factor = s.manoeuvre_factor if key[0] != PAYLOAD and key[1] is Attitude else 1.0
-            if len(statistics.rejections) >= factor * s.rejections:
-                found[key].append(Finding.REJECTED)
-            if float(statistics.mean @ statistics.mean) > factor * self._mean_limits[statistics.size]:
-                found[key].append(Finding.BIASED)
-            if statistics.square > factor * self._square_limits[statistics.size]:
-                found[key].append(Finding.NOISY)
+        if self._rejections or biased.any() or noisy.any():
+            for entry, at in self._sensors.items():
+                factor = s.manoeuvre_factor if statistics.of_uav_attitude[at] else 1.0
+                if len(self._rejections.get(entry, ())) >= factor * s.rejections:
+                    found[entry[0]].append(Finding.REJECTED)
+                if biased[at]:
+                    found[entry[0]].append(Finding.BIASED)
+                if noisy[at]:
+                    found[entry[0]].append(Finding.NOISY)
         return dict(found)
+
+    def _index(self, key: SensorKey, size: int) -> int:
+        at = self._sensors.get((key, size))
+        if at is None:
+            at = self._sensors[key, size] = len(self._sensors)
+            wide = _is_uav_attitude(key)
+            factor = self._settings.manoeuvre_factor if wide else 1.0
+            self._statistics.append(wide, factor * self._mean_limits[size], factor * self._square_limits[size])
+        return at
+
+
+def _is_uav_attitude(key: SensorKey) -> bool:
+    source, kind = key
+    return source != PAYLOAD and kind is Attitude

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 
-from idc_controller.arrays import Array
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Channel, Measurement, MeasurementNoise, SensorKey
 from idc_controller.estimation.settings import StuckSensorSettings
 
@@ -10,8 +9,10 @@ from idc_controller.estimation.settings import StuckSensorSettings
 @dataclass
 class _Last:
     time: float
-    parts: tuple[Array, Array]
-    repeats: list[int]
+    pose: list[float]
+    motion: list[float]
+    repeats: tuple[int, int] = (0, 0)
+    """Of the pose and of the motion."""
 
 
 class StuckSensors:
@@ -24,16 +25,15 @@ class StuckSensors:
     def check(self, measurement: Measurement) -> tuple[bool, bool]:
         """Take a measurement and return whether its pose, and whether its motion, is stuck."""
         key = measurement.source, type(measurement)
-        parts = measurement.pose, measurement.motion
         last = self._last.get(key)
-        if last is None:
-            self._last[key] = _Last(measurement.time, parts, [0, 0])
-            return False, False
         relayed = self._settings.relay_interval if measurement.source == PAYLOAD else 0.0
-        if measurement.time > last.time + relayed:
-            for k, (now, before) in enumerate(zip(parts, last.parts, strict=True)):
-                last.repeats[k] = last.repeats[k] + 1 if bool((now == before).all()) else 0
-            last.time, last.parts = measurement.time, parts
+        if last is None or measurement.time > last.time + relayed:
+            pose, motion = measurement.pose.tolist(), measurement.motion.tolist()
+            now = self._last[key] = _Last(measurement.time, pose, motion)
+            if last is not None:
+                of_pose, of_motion = last.repeats
+                now.repeats = of_pose + 1 if pose == last.pose else 0, of_motion + 1 if motion == last.motion else 0
+            last = now
         return self._stuck_parts(key, last)
 
     def channels(self) -> list[Channel]:
@@ -46,9 +46,11 @@ class StuckSensors:
         ]
 
     def _stuck_parts(self, key: SensorKey, last: _Last) -> tuple[bool, bool]:
-        pose_sigma, motion_sigma = self._sigmas(*key)
         pose, motion = last.repeats
         limit = self._settings.repeats
+        if pose < limit and motion < limit:
+            return False, False
+        pose_sigma, motion_sigma = self._sigmas(*key)
         return pose >= limit and pose_sigma > 0.0, motion >= limit and motion_sigma > 0.0
 
     def _sigmas(self, source: int, kind: type) -> tuple[float, float]:

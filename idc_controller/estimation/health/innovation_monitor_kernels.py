@@ -1,0 +1,48 @@
+"""Compiled kernel of the innovation monitor; see :mod:`idc_controller.estimation.health.innovation_monitor`."""
+
+import numpy as np
+
+from idc_controller.arrays import Array, Indices, Mask
+from idc_controller.compiled import kernel
+
+
+@kernel(
+    "boolean[::1](float64, int64[::1], int64[::1], float64[::1], float64[::1], float64, "
+    "float64[:, ::1], float64[::1], float64[::1])"
+)
+def running_means(
+    time: float, which: Indices, sizes: Indices, innovations: Array, gates: Array, share: float,
+    mean: Array, square: Array, last: Array,
+) -> Mask:  # fmt: skip
+    """Update the running means of S sensors in place; return which of K measurements are new (K,).
+
+    Args:
+        time: of the measurements (s).
+        which: sensor of each measurement (K,).
+        sizes: rows of each (K,).
+        innovations: normalised, one measurement after the other (m,); nan counts as 0.
+        gates: largest squares that count, by the number of rows (7,).
+        share: of one sample in the running means.
+        mean: running means of the innovations (S, 6).
+        square: running means of their mean squares (S,).
+        last: time of the last measurement of each sensor (S,) (s).
+    """
+    new = np.empty(len(which), np.bool_)
+    first = 0
+    for j in range(len(which)):
+        at, size = which[j], sizes[j]
+        gate = gates[size]
+        bound = np.sqrt(gate)
+        new[j] = time > last[at]
+        if new[j]:
+            last[at] = time
+            total = 0.0
+            for c in range(size):
+                value = min(max(innovations[first + c], -bound), bound)
+                if value != value:
+                    value = 0.0
+                mean[at, c] += share * (value - mean[at, c])
+                total += value * value
+            square[at] += share * (min(total, gate) / size - square[at])
+        first += size
+    return new
