@@ -189,7 +189,9 @@ def test_world_without_ticks_is_lost_after_the_time_of_the_file(tmp_path):
     path = tmp_path / "system.toml"
     path.write_text("[drivers]\njoin_interval = 0.02\ntick_timeout = 0.05\n")
     reasons = []
-    station = SimpleNamespace(ended=False, raise_failsafe=lambda now, failsafe, reason: reasons.append(reason))
+    station = SimpleNamespace(
+        ended=False, resume=lambda: None, raise_failsafe=lambda now, failsafe, reason: reasons.append(reason)
+    )
     with closing(Connection()) as ground, closing(Connection()) as world:
         run_in_lockstep(station, ground, world.socket.getsockname(), Interrupt(), read_system(path).drivers)
     assert reasons == ["the simulated world does not answer for 0.05 s"]
