@@ -23,7 +23,7 @@ def fly(id_check, sources, steps=2 * STEPS, off=0.0, missing=()):
                 id_check.add(Position(0.1 * k, id_check.vehicle_of(i), position, NONE))
         id_check.add(Position(0.1 * k, PAYLOAD, PLACES[1], NONE))
         id_check.add(Attitude(0.1 * k, 0, np.array([1.0, 0.0, 0.0, 0.0]), NONE))
-        id_check.compare([Position(0.1 * k, i, place, NONE) for i, place in enumerate(PLACES)])
+        id_check.compare(PLACES)
     return id_check
 
 

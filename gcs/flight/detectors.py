@@ -4,7 +4,7 @@ To add one, add its code to :class:`MonitorAlarm` and a detector to :func:`detec
 """
 
 from collections import defaultdict, deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 
@@ -103,6 +103,8 @@ class MonitorStep:
     log: AlarmLog
     record: StepRecord | None
     in_air: bool
+    names: Sequence[str]
+    """Of all vehicles, then of the payload."""
     clear: bool
     """True in the air, clear of the ground, with an estimate of this step."""
     steady: bool
@@ -115,7 +117,7 @@ class MonitorStep:
 
     def name(self, source: int) -> str:
         """Return the name of a vehicle (0 .. N-1) or of the payload."""
-        return "payload" if source == PAYLOAD else f"vehicle {self.links[source].system_id}"
+        return self.names[source]
 
     def raise_alarm(self, source: str, code: MonitorAlarm, text: str = "") -> None:
         """Raise an alarm now, if its scope allows."""
@@ -150,6 +152,29 @@ class EventCounter:
         return found
 
 
+class SlidingRange:
+    """Range of a quantity over the last seconds."""
+
+    def __init__(self, window: float) -> None:
+        """``window``: its length (s)."""
+        self._window = window
+        # Values that a later one has not exceeded, and not undercut: the first is the greatest, and the least.
+        self._falling: deque[tuple[float, float]] = deque()
+        self._rising: deque[tuple[float, float]] = deque()
+
+    def add(self, time: float, value: float) -> float:
+        """Add the value at ``time`` (s); return the greatest value of the window less the least."""
+        while self._falling and self._falling[-1][1] <= value:
+            self._falling.pop()
+        while self._rising and self._rising[-1][1] >= value:
+            self._rising.pop()
+        for extremes in (self._falling, self._rising):
+            extremes.append((time, value))
+            while time - extremes[0][0] > self._window:
+                extremes.popleft()
+        return self._falling[0][1] - self._rising[0][1]
+
+
 class _TelemetryTimeout:
     """Gaps in the telemetry, also those that ended since the last step."""
 
@@ -172,27 +197,24 @@ class _TelemetryTimeout:
 class _LinkTiming:
     """Latency, jitter and clock of each vehicle's link."""
 
-    def __init__(self, settings: MonitorSettings, control_period: float) -> None:
+    def __init__(self, settings: MonitorSettings, control_period: float, number_of_uavs: int) -> None:
         self._settings = settings
         self._latency = settings.latency_periods * control_period
         self._jitter = settings.jitter_periods * control_period
-        self._offsets: dict[int, deque[tuple[float, float]]] = {}
+        self._offsets = [SlidingRange(settings.clock_window) for _ in range(number_of_uavs)]
 
     def __call__(self, step: MonitorStep) -> None:
         s = self._settings
         for i, link in enumerate(step.links):
             name, clock = step.name(i), link.clock
-            offsets = self._offsets.setdefault(i, deque())
-            offsets.append((step.time, clock.offset))
-            while step.time - offsets[0][0] > s.clock_window:
-                offsets.popleft()
+            moved = self._offsets[i].add(step.time, clock.offset)
             if clock.delay > self._latency:
                 text = f"link latency is {clock.delay * 1e3:.0f} ms (limit {self._latency * 1e3:.0f} ms)"
                 step.raise_alarm(name, MonitorAlarm.LINK_LATENCY, text)
             elif clock.spread > self._jitter:
                 text = f"link latency varies by {clock.spread * 1e3:.0f} ms (limit {self._jitter * 1e3:.1f} ms)"
                 step.raise_alarm(name, MonitorAlarm.LINK_JITTER, text)
-            elif (moved := max(o for _, o in offsets) - min(o for _, o in offsets)) > s.clock_error:
+            elif moved > s.clock_error:
                 text = f"clock moved by {moved * 1e3:.0f} ms in {s.clock_window:g} s"
                 step.raise_alarm(name, MonitorAlarm.CLOCK_ERROR, text)
 
@@ -200,32 +222,41 @@ class _LinkTiming:
 class _MessageEvents:
     """Lost, reordered, duplicated, corrupted and not finite messages, and lost set-points."""
 
-    def __init__(self, settings: MonitorSettings) -> None:
+    # Every vehicle relays the payload's: counted for each.
+    _CODES = (
+        MonitorAlarm.MESSAGES_LOST, MonitorAlarm.MESSAGES_REORDERED, MonitorAlarm.MESSAGES_DUPLICATED,
+        MonitorAlarm.MESSAGES_CORRUPTED, MonitorAlarm.VALUES_NOT_FINITE, MonitorAlarm.SETPOINTS_LOST,
+        MonitorAlarm.VALUES_NOT_FINITE,
+    )  # fmt: skip
+
+    def __init__(self, settings: MonitorSettings, number_of_uavs: int) -> None:
         self._count = settings.event_count
         self._events = EventCounter(settings.event_window)
         self._setpoints = EventCounter(settings.setpoint_window)
-        self._totals: dict[tuple[int, str, MonitorAlarm], int] = {}
+        self._totals = [(0,) * len(self._CODES)] * number_of_uavs
 
     def __call__(self, step: MonitorStep) -> None:
         # Counted before take-off as well, so that nothing of that is an event in the air.
         for i, link in enumerate(step.links):
-            name, statistics = step.name(i), link.statistics
+            statistics = link.statistics
             statistics.settle(step.now)
-            for source, code, events, total in (
-                (name, MonitorAlarm.MESSAGES_LOST, self._events, statistics.lost),
-                (name, MonitorAlarm.MESSAGES_REORDERED, self._events, statistics.reordered),
-                (name, MonitorAlarm.MESSAGES_DUPLICATED, self._events, statistics.duplicated),
-                (name, MonitorAlarm.MESSAGES_CORRUPTED, self._events, statistics.damaged),
-                (name, MonitorAlarm.VALUES_NOT_FINITE, self._events, statistics.not_finite),
-                ("payload", MonitorAlarm.VALUES_NOT_FINITE, self._events, statistics.payload_not_finite),
-                (name, MonitorAlarm.SETPOINTS_LOST, self._setpoints, link.setpoints.lost),
-            ):
-                # Every vehicle relays the payload's: counted for each.
-                if (more := total - self._totals.get((i, source, code), 0)) > 0:
-                    events.add((source, code), step.time, more)
-                    self._totals[i, source, code] = total
+            totals = (
+                statistics.lost, statistics.reordered, statistics.duplicated, statistics.damaged,
+                statistics.not_finite, link.setpoints.lost, statistics.payload_not_finite,
+            )  # fmt: skip
+            if totals != self._totals[i]:
+                self._add(step, i, totals)
         for events in (self._events, self._setpoints):
             _raise_frequent(step, events, self._count)
+
+    def _add(self, step: MonitorStep, i: int, totals: tuple[int, ...]) -> None:
+        """Add what is new in the totals of a vehicle's link, the last of which is the payload's."""
+        sources = [step.name(i)] * (len(totals) - 1) + [step.name(PAYLOAD)]
+        for source, code, total, before in zip(sources, self._CODES, totals, self._totals[i], strict=True):
+            if total > before:
+                events = self._setpoints if code is MonitorAlarm.SETPOINTS_LOST else self._events
+                events.add((source, code), step.time, total - before)
+        self._totals[i] = totals
 
 
 class _Innovations:
@@ -321,16 +352,16 @@ def _obstacles(step: MonitorStep) -> None:
 
 def detectors(flight: Flight, settings: MonitorSettings) -> tuple[Detector, ...]:
     """Return the detectors of a flight, in the order in which they run."""
-    rates = flight.mission.system.rates
+    rates, number_of_uavs = flight.mission.system.rates, len(flight.system.team.links)
     innovations = replace(flight.mission.system.estimation.innovation_monitor, rate=rates.telemetry)
     return (
         _TelemetryTimeout(settings.missed_samples / rates.telemetry),
         _range_sensors,
-        _LinkTiming(settings, 1.0 / rates.control),
+        _LinkTiming(settings, 1.0 / rates.control, number_of_uavs),
         _estimator_health,
         _Innovations(flight.control.estimator.settings.gate_probability, settings, innovations),
         _ModelMismatch(settings, innovations),
-        _MessageEvents(settings),
+        _MessageEvents(settings, number_of_uavs),
         _obstacles,
     )
 

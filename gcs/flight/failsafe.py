@@ -281,6 +281,9 @@ class Failsafe(AlarmCode):
     # fmt: on
 
 
+_BY_CHECK = {check: tuple(failsafe for failsafe in Failsafe if failsafe.check is check) for check in Check}
+
+
 class FailsafeState:
     """Failsafes that have been raised in a flight: the present reaction, and the first reason."""
 
@@ -302,9 +305,8 @@ class FailsafeState:
         """Return what counts among the conditions of ``check`` that call for more than is under way; None: none."""
         held = [
             (failsafe, trigger)
-            for failsafe in Failsafe
-            if failsafe.check is check
-            and failsafe.reaction.in_phase(moment.phase) > self.reaction
+            for failsafe in _BY_CHECK[check]
+            if failsafe.reaction.in_phase(moment.phase) > self.reaction
             and (trigger := failsafe.evaluate(self.system, moment)) is not None
         ]
         return min(held, key=lambda each: (-each[0].reaction, len(each[1].vehicles), each[1].vehicles), default=None)

@@ -205,7 +205,7 @@ class GroundStation:
     def _compare(self, record: StepRecord) -> None:
         """Compare estimated vehicle states with what each system id sends; place the detections by them."""
         estimated = self.flight.control.estimator.measurement_model.vehicles(record.estimate.time, record.estimate.x)
-        self._id_check.compare(estimated)
+        self._id_check.compare(np.array([sample.pose for sample in estimated[: len(self.links)]]))
         if (obstacle_map := self.flight.system.obstacle_map) is not None:
             for sample in estimated:
                 obstacle_map.scans.poses.add_estimated(sample)

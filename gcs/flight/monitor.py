@@ -22,6 +22,7 @@ class FlightMonitor:
     ) -> None:
         self._flight, self._id_check, self._log, self._settings = flight, id_check, log, settings
         self._detectors = detectors(flight, settings)
+        self._names = [*(f"vehicle {link.system_id}" for link in flight.system.team.links), "payload"]
         self._tilts: Array | None = None
         self._steady_from = -math.inf
 
@@ -32,7 +33,7 @@ class FlightMonitor:
         clear, steady = False, True
         if in_air and record is not None and flight.system.payload.is_clear(record.estimate):
             clear, steady = True, self._is_steady(time, record.decision.u[: 2 * len(flight.system.team.links)])
-        step = MonitorStep(time, now, flight, self._id_check, self._log, record, in_air, clear, steady)
+        step = MonitorStep(time, now, flight, self._id_check, self._log, record, in_air, self._names, clear, steady)
         for detector in self._detectors:
             detector(step)
 

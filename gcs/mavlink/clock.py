@@ -3,8 +3,20 @@
 import math
 from collections import deque
 from statistics import median
+from typing import NamedTuple
 
 from gcs.mavlink.settings import ClockSettings
+
+
+class _RoundTrips(NamedTuple):
+    """The last round trips (s)."""
+
+    shortest: float = 0.0
+    median: float = 0.0
+    spread: float = 0.0
+    """Upper quartile less the shortest."""
+    longest: float = math.inf
+    """Of the last few."""
 
 
 class RemoteClock:
@@ -28,7 +40,7 @@ class RemoteClock:
         self._requests: deque[int] = deque(maxlen=settings.open_requests)
         self._round_trips: deque[float] = deque(maxlen=settings.round_trips)
         self._arrivals: deque[float] = deque(maxlen=settings.round_trips)
-        self._shortest = 0.0
+        self._trips = _RoundTrips()
 
     def add_stamp(self, boot_time: float, arrival: float, in_order: bool = False) -> None:
         """Take the stamp ``boot_time`` (s, vehicle) of telemetry that arrived at ``arrival`` (s, ground).
@@ -67,7 +79,9 @@ class RemoteClock:
             self._requests.remove(ts1)
             self._round_trips.append(max(arrival - ts1 * 1e-9, 0.0))
             self._arrivals.append(arrival)
-            self._shortest = min(self._round_trips)
+            trips, recent = sorted(self._round_trips), list(self._round_trips)[-self._settings.recent_round_trips :]
+            spread = trips[3 * (len(trips) - 1) // 4] - trips[0]
+            self._trips = _RoundTrips(trips[0], median(trips), spread, max(recent))
 
     @property
     def known(self) -> bool:
@@ -77,18 +91,17 @@ class RemoteClock:
     @property
     def offset(self) -> float:
         """Vehicle boot time less ground time (s)."""
-        return self._lead + self._shortest / 2.0 if self._leads else 0.0
+        return self._lead + self._trips.shortest / 2.0 if self._leads else 0.0
 
     @property
     def spread(self) -> float:
         """Variation of the latency (s), apart from the worst quarter of the round trips."""
-        trips = sorted(self._round_trips)
-        return (trips[3 * (len(trips) - 1) // 4] - trips[0]) / 2.0 if trips else 0.0
+        return self._trips.spread / 2.0
 
     @property
     def round_trip_max(self) -> float:
         """The longest of the last few round trips (s): no latency is longer."""
-        return max(list(self._round_trips)[-self._settings.recent_round_trips :], default=math.inf)
+        return self._trips.longest
 
     def least_delay(self, duration: float, now: float) -> float:
         """Return the latency (s) that no datagram has undercut for ``duration`` (s) until ``now``; 0: not known yet.
@@ -106,4 +119,4 @@ class RemoteClock:
     @property
     def delay(self) -> float:
         """Link latency (s): half of the median round trip."""
-        return median(self._round_trips) / 2.0 if self._round_trips else 0.0
+        return self._trips.median / 2.0

@@ -4,8 +4,6 @@ Their telemetry is plausible in itself, and a loop that is closed over it pushes
 Their positions show it: each is at the other's estimate.
 """
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from gcs.mavlink.settings import IdCheckSettings
@@ -37,9 +35,8 @@ class SystemIdCheck:
         if isinstance(sample, Position) and sample.source != PAYLOAD and sample.has_pose:
             self._positions[sample.source] = sample.position
 
-    def compare(self, estimated: Sequence[Measurement]) -> None:
-        """Compare the samples since the last time with the vehicles' estimates; once a control step."""
-        places = np.array([sample.position for sample in estimated if isinstance(sample, Position)])
+    def compare(self, places: Array) -> None:
+        """Compare the samples since the last time with the estimated ``places`` (N, 3); once a control step."""
         found = _swapped(self._positions, places, self._settings.distance_ratio)
         self._positions = {}
         self._steps = self._steps + 1 if found and found == self._suspected else int(bool(found))
@@ -51,10 +48,12 @@ class SystemIdCheck:
 
 def _swapped(positions: dict[int, Array], places: Array, distance_ratio: float) -> dict[int, int]:
     """Return vehicles whose ``positions`` are at each other's ``places`` (N, 3), and at which; otherwise none."""
-    at = {}
-    for vehicle, position in positions.items():
-        away = np.linalg.norm(places - position, axis=1)
-        nearest = int(away.argmin())
-        if away[nearest] * distance_ratio < away[vehicle]:
-            at[vehicle] = nearest
+    if not positions:
+        return {}
+    vehicles = [*positions]
+    away = np.linalg.norm(places - np.array([positions[vehicle] for vehicle in vehicles])[:, None], axis=2)
+    nearest = away.argmin(axis=1)
+    rows = np.arange(len(vehicles))
+    elsewhere = away[rows, nearest] * distance_ratio < away[rows, vehicles]
+    at = {vehicles[row]: int(nearest[row]) for row in np.flatnonzero(elsewhere)}
     return at if set(at) == set(at.values()) else {}

@@ -35,9 +35,9 @@ class AppendOnlyFile:
         if self._file.closed or self.error is not None:
             return
         try:
-            rest = memoryview(record)
-            while rest:  # an unbuffered write may take only a part
-                rest = rest[self._file.write(rest) :]
+            rest = record
+            while (written := self._file.write(rest)) < len(rest):  # an unbuffered write may take only a part
+                rest = rest[written:]
             self._whole += len(record)
         except OSError as error:
             self.error = error

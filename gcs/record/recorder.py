@@ -66,14 +66,14 @@ class FlightRecorder:
         if record is None:
             return
         estimate, decision = record.estimate, record.decision
-        x = estimate.x
-        attitude = quaternion_from_euler(*x[6:9])
-        self._estimate.write([estimate.time, *x[0:3], *attitude, *x[3:6], *x[9:12], *estimate.force])
+        x = estimate.x[:12].tolist()
+        attitude = quaternion_from_euler(*x[6:9]).tolist()
+        self._estimate.write([estimate.time, *x[0:3], *attitude, *x[3:6], *x[9:12], *estimate.force.tolist()])
         if flight.phase in CLEAR_OF_GROUND:
             self._write_plan(estimate.time, decision)
 
     def _write_plan(self, time: float, decision: Decision) -> None:
-        position, _, acceleration = decision.flat.payload[:3, 0]
+        position, _, acceleration = decision.flat.payload[:3, 0].tolist()
         safety = decision.safety
         bounds = (math.nan if b is None else b for b in (safety.payload_bound, safety.uav_bound))
         progress = (safety.slack, safety.lag, decision.progress_rate, decision.detours)
@@ -98,8 +98,8 @@ class FlightRecorder:
                 self._obstacles = TableWriter(self._run_dir / "obstacles_estimate.csv", OBSTACLE_ESTIMATE_COLUMNS)
             shape, columns = track.shape, track.shape.columns
             self._obstacles.write(
-                [round(time, 6), track.name, shape.kind, *track.position, *track.velocity, columns.radius,
-                 *columns.size, columns.yaw, track.growth]
+                [round(time, 6), track.name, shape.kind, *track.position.tolist(), *track.velocity.tolist(),
+                 columns.radius, *columns.size, columns.yaw, track.growth]
             )  # fmt: skip
 
     def alarm(self, alarm: Alarm) -> None:
@@ -115,9 +115,9 @@ class FlightRecorder:
         last = math.floor(time / REFERENCE_INTERVAL + _GRID_TOLERANCE)
         times = np.arange(self._next_row, last + 1, dtype=np.float64) * REFERENCE_INTERVAL
         if len(times):
-            position, velocity = flight.reference(times)
-            for row in zip(times, position, velocity, strict=True):
-                self._reference.write([round(row[0], 6), *row[1], *row[2]])
+            rows = (each.tolist() for each in (times, *flight.reference(times)))
+            for moment, position, velocity in zip(*rows, strict=True):
+                self._reference.write([round(moment, 6), *position, *velocity])
             self._next_row = last + 1
 
     def close(self) -> None:

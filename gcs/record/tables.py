@@ -2,8 +2,9 @@
 
 import csv
 import io
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -72,10 +73,14 @@ class TableWriter(AppendOnlyFile):
 
     def write(self, row: Iterable[Cell]) -> None:
         """Append one row, a value a column. Raises :class:`ValueError` for another number of values."""
-        cells = [_cell(value) for value in row]
+        cells = [_FORMATS.get(type(value), _cell)(value) for value in row]
         if len(cells) != len(self.columns):
             raise ValueError(f"{self.path.name}: {len(cells)} values for {len(self.columns)} columns")
         self.append(_line(cells))
+
+
+_FORMATS: dict[type, Callable[[Any], str]] = {float: repr, int: repr, str: str}
+"""How values of these types are written; others by :func:`_cell`."""
 
 
 def _cell(value: Cell) -> str:

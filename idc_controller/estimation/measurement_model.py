@@ -12,8 +12,8 @@ from idc_controller.estimation.kalman_filter import SparseRows
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, MeasurementNoise, Position, SensorKey
 from idc_controller.estimation.settings import MeasurementModelSettings
 from idc_controller.estimation.update_kernels import measured_less_reference
+from idc_controller.estimation.vehicle_kernels import vehicle_states
 from idc_controller.model.linear import LinearModel
-from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
 from idc_controller.trajectory.flatness import FlatReference
 
 _WIDTH = 5
@@ -159,30 +159,8 @@ class MeasurementModel:
 
     def vehicles(self, time: float, x: Array) -> list[Measurement]:
         """Return positions and attitudes of the UAVs in the state ``x`` (n,) at ``time`` (s), heading north."""
-        layout, p, l = self.layout, self.parameters.p, self.parameters.l[:, None]
-        attached = p @ rotation_from_quaternion(quaternion_from_euler(*x[layout.Theta])).T
-        s, s_dot = _pairs(x[layout.s]), _pairs(x[layout.s_dot])
-        down = _third(s)
-        position = x[layout.r_0] + attached - l * np.column_stack([s, down])
-        sinking = -(s * s_dot).sum(axis=1) / down
-        velocity = x[layout.v_0] + np.cross(x[layout.omega], attached) - l * np.column_stack([s_dot, sinking])
-        n, n_dot = _pairs(x[layout.n]), _pairs(x[layout.n_dot])
-        # Roll and pitch, without a turn from north, that tilt the thrust, along -e3, to (n, -n_z).
-        roll, pitch = np.arcsin(n[:, 1]), np.arctan2(-n[:, 0], _third(n))
-        (a, b), (c, d) = (np.cos([roll / 2, pitch / 2]), np.sin([roll / 2, pitch / 2]))
-        turn = np.column_stack([a * b, c * b, a * d, -c * d])
-        # n' = -R (omega x e3), and the heading stays.
-        about_x = n_dot[:, 1] / np.cos(roll)
-        about_y = (np.sin(pitch) * np.sin(roll) * about_x - n_dot[:, 0]) / np.cos(pitch)
-        rates = np.column_stack([about_x, about_y, -np.tan(roll) * about_y])
-        positions: list[Measurement] = [Position(time, i, position[i], velocity[i]) for i in range(len(n))]
-        return positions + [Attitude(time, i, turn[i], rates[i]) for i in range(len(n))]
-
-
-def _pairs(values: Array) -> Array:
-    return values.reshape(-1, 2)
-
-
-def _third(lateral: Array) -> Array:
-    """Return the third parts of unit vectors with these lateral parts (N, 2)."""
-    return np.asarray(np.sqrt(np.maximum(1.0 - (lateral**2).sum(axis=1), 0.01)))
+        layout, p = self.layout, self.parameters
+        links = x[layout.s.start : layout.s_dot.stop]
+        states = vehicle_states(x[:12], links, x[layout.n], x[layout.n_dot], p.p, p.l)
+        positions: list[Measurement] = [Position(time, i, state[0:3], state[3:6]) for i, state in enumerate(states)]
+        return positions + [Attitude(time, i, state[6:10], state[10:13]) for i, state in enumerate(states)]
