@@ -1,4 +1,4 @@
-"""Kalman filter: correction by Cholesky factor, sparse rows and compiled kernels against filterpy and plain numpy."""
+"""Kalman filter: blocks, Cholesky factor, sparse rows and compiled kernels against filterpy and plain numpy."""
 
 import numpy as np
 import pytest
@@ -10,8 +10,10 @@ from test_flatness import Wave
 from gcs.config import read_system
 from idc_controller.estimation.estimator import Estimator
 from idc_controller.estimation.health.chi_squared import lower_quantile, upper_quantile
-from idc_controller.estimation.kalman_filter import CholeskyKalmanFilter, SparseRows
+from idc_controller.estimation.kalman_filter import SetpointNoise, SparseRows, StructuredKalmanFilter
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
+from idc_controller.estimation.process_model import ProcessModel
+from idc_controller.estimation.settings import ProcessNoiseSettings
 from idc_controller.estimation.update_kernels import gated
 from idc_controller.model.linear import LinearModel
 from idc_controller.rotations import euler_from_quaternion, rotation_from_quaternion
@@ -31,7 +33,7 @@ def sparse_rows(rng, m, n):
 
 
 def both(rng, P):
-    compiled, plain = (of(dim_x=len(P), dim_z=1) for of in (CholeskyKalmanFilter, KalmanFilter))
+    compiled, plain = (of(dim_x=len(P), dim_z=1) for of in (StructuredKalmanFilter, KalmanFilter))
     compiled.x = plain.x = rng.standard_normal(len(P))
     compiled.P, plain.P = P.copy(), P.copy()
     return compiled, plain
@@ -81,6 +83,32 @@ def test_innovation_and_its_subset_equal_dense_products(seed):
         assert part.cross == pytest.approx(kept @ filter.P, rel=1e-12, abs=1e-12)
         assert part.covariance == pytest.approx(kept @ filter.P @ kept.T, rel=1e-12, abs=1e-12)
     assert innovation.residual == pytest.approx(y - H @ filter.x, rel=1e-12, abs=1e-12)
+
+
+@pytest.mark.parametrize("vehicles", [3, 4, 6])
+@pytest.mark.parametrize("is_changed", [True, False])
+def test_propagation_by_blocks_equals_filterpys_prediction(vehicles, is_changed):
+    model = LinearModel(read_system(MISSIONS / "system.toml").with_vehicles(vehicles).parameters())
+    process, rng = ProcessModel(model, ProcessNoiseSettings()), np.random.default_rng(vehicles)
+    compiled, plain = both(rng, positive_definite(rng, process.size))
+    transition, Q = process.transition(37_000, np.array([0.5, -1.0, 2.0])), process.noise(37_000, 5.0)
+    A_k, B_k, B_dk = model.discretised(37_000)
+    n, B = len(A_k), transition.B
+    assert (transition.F[:n, :n] == A_k).all()
+    assert (transition.F[:n, process.forces] == B_dk).all()
+    assert transition.F[:n, process.mass] == pytest.approx(B_dk[:, :3] @ [-0.5, 1.0, model.parameters.g - 2.0])
+    assert (transition.F[n:, n:] == np.eye(process.size - n)).all()
+    assert (B[:n] == B_k).all()
+    u, change, probability = rng.standard_normal(3 * vehicles), rng.standard_normal(3 * vehicles), rng.random(vehicles)
+    compiled.propagate(transition, u, Q, SetpointNoise(change if is_changed else np.zeros(0), probability))
+    # The tilts of one vehicle are lost together, its thrust by itself.
+    error = is_changed * B * (change * np.sqrt(np.concatenate([np.repeat(probability, 2), probability])))
+    tilts, thrusts = error[:, : 2 * vehicles], error[:, 2 * vehicles :]
+    lost = np.hstack([tilts[:, ::2] + tilts[:, 1::2], thrusts])
+    plain.predict(u=u, F=transition.F, B=B, Q=Q + lost @ lost.T)
+    assert np.allclose(compiled.x, plain.x, rtol=1e-12, atol=1e-12)
+    assert np.allclose(compiled.P, plain.P, rtol=1e-12, atol=1e-12)
+    assert (compiled.P == compiled.P.T).all()
 
 
 def plain_gate(residual, covariance, variance, starts, sizes, limits):

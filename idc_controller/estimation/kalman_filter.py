@@ -10,6 +10,7 @@ from scipy.linalg.blas import dtrsm, dtrsv
 from scipy.linalg.lapack import dpotrf
 
 from idc_controller.arrays import Array, Indices, Mask
+from idc_controller.estimation.propagation_kernels import propagated
 from idc_controller.estimation.update_kernels import predicted
 
 _CANCELLED = 1e-6
@@ -21,6 +22,15 @@ class SparseRows(NamedTuple):
 
     columns: Indices
     coefficients: Array
+
+    @classmethod
+    def of(cls, H: Array, width: int) -> SparseRows:
+        """Return the rows ``H`` (m, n), of which none has more than ``width`` elements that are not zero."""
+        columns, coefficients = np.zeros((len(H), width), dtype=int), np.zeros((len(H), width))
+        for r, row in enumerate(H):
+            filled = np.flatnonzero(row)
+            columns[r, : len(filled)], coefficients[r, : len(filled)] = filled, row[filled]
+        return cls(columns, coefficients)
 
     def dense(self, n: int) -> Array:
         """Return H (m, n)."""
@@ -50,11 +60,47 @@ class Innovation(NamedTuple):
         return Innovation(rows, self.residual[which], self.cross[which], self.covariance[np.ix_(which, which)])
 
 
-class CholeskyKalmanFilter(KalmanFilter):  # type: ignore[misc]  # filterpy has no types
-    """filterpy's filter, whose correction needs neither an inverse nor dense rows."""
+class Transition(NamedTuple):
+    """Transition matrix F (n, n) and input matrix B (n, 3 N) over an interval."""
+
+    dense: Array
+    """First rows of F (d, n)."""
+    sparse: SparseRows
+    """The others, whose elements are in the last n - d columns."""
+    B: Array
+
+    @property
+    def F(self) -> Array:
+        """Transition matrix (n, n)."""
+        return np.vstack([self.dense, self.sparse.dense(self.dense.shape[1])])
+
+
+class SetpointNoise(NamedTuple):
+    """Set-points that may not act yet, or never."""
+
+    change: Array
+    """Difference from the set-points before (3 N,); empty: there are none."""
+    probability: Array
+    """With which each vehicle still flies those before (N,)."""
+
+
+class StructuredKalmanFilter(KalmanFilter):  # type: ignore[misc]  # filterpy has no types
+    """filterpy's filter for sparse models: prediction by blocks, correction without inverse and dense rows."""
 
     x: Array
     P: Array
+
+    def propagate(self, transition: Transition, u: Array, Q: Array, noise: SetpointNoise) -> None:
+        """Predict over an interval; filterpy's ``predict`` with these matrices gives the same.
+
+        Args:
+            transition: over the interval.
+            u: input (3 N,).
+            Q: covariance of the process noise (n, n).
+            noise: of the input, which adds to it.
+        """
+        dense, (columns, coefficients), B = transition
+        self.x, self.P = propagated(self.x, self.P, dense, columns, coefficients, B, u, Q, *noise)
 
     def innovation(self, y: Array, rows: SparseRows) -> Innovation:
         """Return the innovation of the measurements ``y`` (m,) that ``rows`` observe."""

@@ -126,13 +126,10 @@ class MeasurementModel:
         of_uav = is_position & (sources != PAYLOAD)
         uavs, heights = sources[of_uav], starts[of_uav] + 2
         rows = np.vstack([rows for rows, _ in observations])
-        columns, coefficients = np.zeros((len(rows), _WIDTH), dtype=int), np.zeros((len(rows), _WIDTH))
-        for r, row in enumerate(rows):
-            filled = np.flatnonzero(row)
-            columns[r, : len(filled)], coefficients[r, : len(filled)] = filled, row[filled]
+        sparse = SparseRows.of(rows, _WIDTH)
         for below, part in ((0, self.layout.s), (3, self.layout.s_dot)):
-            columns[heights + below, -2:] = part.start + 2 * uavs[:, None] + np.arange(2)
-        return Observation(stack, SparseRows(columns, coefficients), sources, is_position, uavs, heights)
+            sparse.columns[heights + below, -2:] = part.start + 2 * uavs[:, None] + np.arange(2)
+        return Observation(stack, sparse, sources, is_position, uavs, heights)
 
     def rows(self, observation: Observation, reference: FlatReference, k: int) -> SparseRows:
         """Return the rows that observe the error about the reference's time ``k``."""

@@ -6,6 +6,7 @@ import numpy as np
 from scipy.linalg import expm
 
 from idc_controller.arrays import Array, Indices
+from idc_controller.estimation.kalman_filter import SparseRows, Transition
 from idc_controller.estimation.settings import CovarianceResetSettings, InitialCovarianceSettings, ProcessNoiseSettings
 from idc_controller.model.linear import LinearModel
 
@@ -23,16 +24,16 @@ class ProcessModel:
         self._plain = lru_cache(maxsize=256)(self._discretised)
         self.noise = lru_cache(maxsize=256)(self._integrated_noise)
 
-    def transition(self, interval_us: int, acceleration: Array) -> tuple[Array, Array]:
-        """Return F (n, n) and B (n, 3 N) over an interval (us).
+    def transition(self, interval_us: int, acceleration: Array) -> Transition:
+        """Return the transition over an interval (us).
 
         ``acceleration`` of the payload (3,) (m/s2): an excess of mass acts along g e3 - a, which follows the manoeuvre.
         """
-        F, B, B_d = self._plain(interval_us)
+        (dense, sparse, B), B_d = self._plain(interval_us)
         direction = np.array([0.0, 0.0, self.model.parameters.g]) - acceleration
-        F = F.copy()
-        F[: self.layout.size, self.mass] = B_d[:, :3] @ direction
-        return F, B
+        dense = dense.copy()
+        dense[:, self.mass] = B_d[: len(dense), :3] @ direction
+        return Transition(dense, sparse, B)
 
     def per_vehicle_noise(self, measured: Indices) -> Array:
         """Return the variances (n,) added to the disturbance forces of the UAVs ``measured`` (K,) between samples.
@@ -71,20 +72,6 @@ class ProcessModel:
         added[force] = np.maximum(settings.force**2 - np.diag(P)[force], 0.0)
         return np.diag(added)
 
-    def setpoint_noise(self, B: Array, change: Array, probability: Array) -> Array:
-        """Return the covariance (n, n) of set-points that may not act yet, or never.
-
-        Args:
-            B: input matrix over the interval (n, 3 N).
-            change: difference from the set-points before (3 N,).
-            probability: with which each vehicle still flies those before (N,).
-        """
-        N = self.layout.number_of_uavs
-        error = B * (change * np.sqrt(np.concatenate([np.repeat(probability, 2), probability])))
-        tilts = error[:, : 2 * N].reshape(-1, N, 2).sum(axis=2)
-        lost = np.hstack([tilts, error[:, 2 * N :]])
-        return np.asarray(lost @ lost.T)
-
     def uav_forces(self, common: float, own: float) -> Array:
         """Return the covariance (2 N, 2 N) of level forces on the UAVs.
 
@@ -93,12 +80,15 @@ class ProcessModel:
         N = self.layout.number_of_uavs
         return np.asarray(np.kron(common**2 * np.ones((N, N)) + own**2 * np.eye(N), np.eye(2)))
 
-    def _discretised(self, interval_us: int) -> tuple[Array, Array, Array]:
+    def _discretised(self, interval_us: int) -> tuple[Transition, Array]:
         n = self.layout.size
         A_k, B_k, B_dk = self.model.discretised(interval_us)
         F = np.eye(self.size)
         F[:n, :n], F[:n, self.forces] = A_k, B_dk
-        return F, np.vstack([B_k, np.zeros((self.size - n, self.layout.inputs))]), B_dk
+        B = np.vstack([B_k, np.zeros((self.size - n, self.layout.inputs))])
+        # Payload and links, then the UAVs: three states of each tilt, one of each thrust and of each force.
+        moved = self.layout.n.start
+        return Transition(F[:moved], SparseRows.of(F[moved:], width=3), B), B_dk
 
     def _integrated_noise(self, interval_us: int, force_scale: float) -> Array:
         """Return the covariance (n, n) that an interval (us) adds; ``force_scale``: of the forces' noise."""

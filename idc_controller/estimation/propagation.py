@@ -5,10 +5,12 @@ from itertools import pairwise
 import numpy as np
 
 from idc_controller.arrays import Array, Indices
-from idc_controller.estimation.kalman_filter import CholeskyKalmanFilter, Innovation, SparseRows
+from idc_controller.estimation.kalman_filter import Innovation, SetpointNoise, SparseRows, StructuredKalmanFilter
 from idc_controller.estimation.process_model import ProcessModel
 from idc_controller.estimation.setpoint_history import SetpointHistory
 from idc_controller.trajectory.reference import Reference
+
+_NONE = np.zeros(0)
 
 
 class PropagationInterval:
@@ -57,7 +59,7 @@ class ErrorStateFilter:
 
     def __init__(self, process: ProcessModel) -> None:
         self.process = process
-        self._kf = CholeskyKalmanFilter(dim_x=process.size, dim_z=1)
+        self._kf = StructuredKalmanFilter(dim_x=process.size, dim_z=1)
         self._nominal = np.zeros((1, process.size))
 
     @property
@@ -83,11 +85,10 @@ class ErrorStateFilter:
         """Propagate from time ``k`` to the next under the set-points in force; ``force_scale``: of process noise."""
         u, change, probability = interval.setpoints[k]
         delta_u = np.zeros(self.process.layout.inputs) if u is None else u - interval.u(k)
-        F, B = self.process.transition(interval.duration_us(k), interval.acceleration(k))
+        transition = self.process.transition(interval.duration_us(k), interval.acceleration(k))
         Q = self.process.noise(interval.duration_us(k), force_scale)
-        if change is not None:
-            Q = Q + self.process.setpoint_noise(B, change, probability)
-        self._kf.predict(u=delta_u, F=F, B=B, Q=Q)
+        noise = SetpointNoise(_NONE if change is None else change, probability)
+        self._kf.propagate(transition, delta_u, Q, noise)
 
     def inflate(self, added: Array) -> None:
         """Add ``added`` (n, n) to the covariance."""

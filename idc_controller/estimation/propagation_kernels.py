@@ -1,0 +1,76 @@
+"""Compiled kernel of the filter's propagation."""
+
+import numpy as np
+
+from idc_controller.arrays import Array, Indices
+from idc_controller.compiled import kernel
+
+_VECTOR, _MATRIX, _COLUMNS = (
+    f"Array({of}, {axes}, 'C', readonly=True)" for of, axes in (("float64", 1), ("float64", 2), ("int64", 2))
+)
+"""Types of arrays that are only read."""
+
+
+@kernel(
+    f"Tuple((float64[::1], float64[:, ::1]))({_VECTOR}, {_MATRIX}, {_MATRIX}, {_COLUMNS}, {_MATRIX}, {_MATRIX}, "
+    f"{_VECTOR}, {_MATRIX}, {_VECTOR}, {_VECTOR})"
+)
+def propagated(
+    x: Array, P: Array, dense: Array, columns: Indices, coefficients: Array, B: Array,
+    u: Array, Q: Array, change: Array, probability: Array,
+) -> tuple[Array, Array]:  # fmt: skip
+    """Return the state F x + B u (n,) and its covariance F P F' + Q (n, n) after an interval.
+
+    The first rows of F are dense: payload and links move by all states. The others have few elements, none of them in
+    the columns of the first states: each thrust and each disturbance goes by itself.
+
+    Args:
+        x: state (n,).
+        P: its covariance, symmetric (n, n).
+        dense: first rows of F (d, n).
+        columns, coefficients: elements of the other rows of F that are not zero (n - d, W).
+        B: input matrix (n, 3 N).
+        u: input (3 N,).
+        Q: covariance of the process noise (n, n).
+        change: of the set-points (3 N,): some vehicles may still fly those before; empty: none.
+        probability: with which each vehicle does (N,).
+    """
+    n, d, W = len(x), len(dense), columns.shape[1]
+    result = np.dot(B, u)
+    result[:d] += np.dot(dense, x)
+    covariance = np.empty((n, n))
+    top = np.dot(dense, P)
+    covariance[:d, :d] = np.dot(top, dense.T)
+    row = np.empty(n)
+    for r in range(n - d):
+        row[:] = 0.0
+        for a in range(W):
+            weight, column = coefficients[r, a], columns[r, a]
+            if weight != 0.0:
+                result[d + r] += weight * x[column]
+                for c in range(d, n):
+                    row[c] += weight * P[column, c]
+        for o in range(d):
+            total = 0.0
+            for a in range(W):
+                total += coefficients[r, a] * top[o, columns[r, a]]
+            covariance[d + r, o] = total
+        for o in range(r + 1):
+            total = 0.0
+            for a in range(W):
+                total += coefficients[o, a] * row[columns[o, a]]
+            covariance[d + r, d + o] = total
+    if len(change):
+        N = len(probability)
+        lost = np.zeros((n, 2 * N))
+        for i in range(N):
+            share = np.sqrt(probability[i])
+            for r in range(n):
+                lost[r, i] = share * (B[r, 2 * i] * change[2 * i] + B[r, 2 * i + 1] * change[2 * i + 1])
+                lost[r, N + i] = share * B[r, 2 * N + i] * change[2 * N + i]
+        covariance += np.dot(lost, lost.T)
+    for r in range(n):
+        for o in range(r + 1):
+            covariance[r, o] += Q[r, o]
+            covariance[o, r] = covariance[r, o]
+    return result, covariance
