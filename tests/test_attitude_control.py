@@ -1,41 +1,80 @@
 """The attitude loop, hold plans, and the noise of the sensors: the parts of an autopilot."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from flying import measured
+from flying import AIRFRAME, measured
 
-from idc_controller.rotations import quaternion_from_euler
+from gcs.config.vehicle_settings import LandDetectorSettings
+from idc_controller.rotations import quaternion_from_euler, quaternion_product
 from idc_controller.rotations_float import attitude_of_force
 from idc_controller.trajectory.settings import BrakingSettings
-from vehicle_sim.autopilot.attitude_control import AttitudeController
 from vehicle_sim.autopilot.hold_control import HoldPlan
+from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
+from vehicle_sim.autopilot.onboard_kernels import control_attitudes, mixed_forces, wanted_acceleration
 from vehicle_sim.world.sensors import Measurement, NavigationSensors, SensorNoise
 
 LEVEL = (1.0, 0.0, 0.0, 0.0)
 
 
 def test_small_errors_are_angles_whatever_the_signs() -> None:
-    control = AttitudeController(np.eye(3), 1.0, 1e-9)
     for angles in np.eye(3) * 0.01:
         target = tuple(quaternion_from_euler(*angles))
         for a, b in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
-            torque = control.torque(tuple(a * np.array(LEVEL)), (0.0,) * 3, tuple(b * np.array(target)), (0.0,) * 3)
-            assert torque == pytest.approx(angles, rel=1e-4, abs=1e-9)
+            wanted = acceleration(tuple(a * np.array(LEVEL)), tuple(b * np.array(target)))
+            assert wanted == pytest.approx(angles, rel=1e-4, abs=1e-9)
 
 
 def test_error_is_in_the_body_frame() -> None:
-    control = AttitudeController(np.eye(3), 1.0, 1e-9)
     yawed = quaternion_from_euler(0.0, 0.0, math.pi / 2)
     target = quaternion_from_euler(0.02, 0.0, math.pi / 2)
-    assert control.torque(tuple(yawed), (0.0,) * 3, tuple(target), (0.0,) * 3) == pytest.approx([0.02, 0, 0], abs=1e-4)
+    assert acceleration(tuple(yawed), tuple(target)) == pytest.approx([0.02, 0, 0], abs=1e-4)
 
 
-def test_torque_takes_the_whole_inertia() -> None:
+def test_rates_alone_are_controlled_without_an_attitude():
+    # A torque of J (kd (target - rates)), of which the rotors' wrench is made.
     J = np.array([[0.02, 0.001, 0.002], [0.001, 0.03, 0.003], [0.002, 0.003, 0.04]])
-    torque = AttitudeController(J, 1.0, 2.0).torque(LEVEL, (0.1, 0.2, 0.3), None, (1.0, 1.0, 1.0))
-    assert torque == pytest.approx(J @ (2.0 * np.array([0.9, 0.8, 0.7])))
+    airframe = replace(AIRFRAME, inertia=tuple(map(tuple, J.tolist())), attitude_kd=2.0)
+    arrays = OnboardArrays.of([AIRFRAME, airframe], LandDetectorSettings())
+    arrays.estimates[1] = [*(0.0,) * 3, *LEVEL, *(0.0,) * 3, 0.1, 0.2, 0.3]
+    arrays.targets[1] = [0.0, *LEVEL, 0.2, 0.25, 0.35, 14.0]
+    control(arrays)
+    assert arrays.accelerations[1] == pytest.approx([0.2, 0.1, 0.1])
+    lever, per_thrust = airframe.rotors.lever, airframe.rotors.torque_to_thrust
+    a, b, c, d = (airframe.rotors.k_f * arrays.speeds[1] ** 2).tolist()
+    wrench = [a + b + c + d, lever * (b + c - a - d), lever * (a + c - b - d), per_thrust * (a + b - c - d)]
+    assert wrench == pytest.approx([14.0, *(J @ [0.2, 0.1, 0.1])])
+    # The other one has neither an estimate nor a thrust.
+    assert not arrays.speeds[0].any() and not arrays.accelerations[0].any()
+
+
+def test_attitude_loop_of_a_team_is_that_of_each():
+    rng = np.random.default_rng(5)
+    arrays = OnboardArrays.of([AIRFRAME] * 6, LandDetectorSettings())
+    for i in range(6):
+        attitude, target = (quaternion_from_euler(*rng.uniform(-0.4, 0.4, 3)).tolist() for _ in range(2))
+        arrays.estimates[i] = [*rng.normal(size=3), *attitude, *rng.normal(size=3), *(0.3 * rng.normal(size=3))]
+        arrays.targets[i] = [1.0, *target, *(0.3 * rng.normal(size=3)), rng.uniform(2.0, 28.0)]
+    control(arrays)
+    kp, kd, rotors = AIRFRAME.attitude_kp, AIRFRAME.attitude_kd, AIRFRAME.rotors
+    for i, (estimate, target) in enumerate(zip(arrays.estimates, arrays.targets, strict=True)):
+        turn = quaternion_product(estimate[3:7] * [1, -1, -1, -1], target[1:5])
+        wanted = kp * 2.0 * np.sign(turn[0]) * turn[1:] + kd * (target[5:8] - estimate[10:13])
+        assert arrays.accelerations[i] == pytest.approx(wanted)
+        geometry = 1 / (4 * rotors.lever), 1 / (4 * rotors.torque_to_thrust)
+        forces = mixed_forces(target[8], *(np.array(AIRFRAME.inertia) @ wanted), rotors.thrust_max / 4, *geometry)
+        assert rotors.k_f * arrays.speeds[i] ** 2 == pytest.approx(np.maximum(forces, 0.0), abs=1e-12)
+
+
+def control(arrays):
+    control_attitudes(arrays.airframes, arrays.estimates, arrays.targets, arrays.accelerations, arrays.speeds)
+
+
+def acceleration(attitude, target):
+    """Angular acceleration by the attitude alone, with kp = 1."""
+    return wanted_acceleration(attitude, (0.0,) * 3, target, (0.0,) * 3, 2.0, 1e-9)
 
 
 def test_hold_plan_is_consistent_with_its_own_derivatives() -> None:

@@ -232,6 +232,9 @@ def test_truth_is_written_50_times_a_second_or_more_at_any_physics_rate(tmp_path
 
 def test_fault_injector_acts_on_samples_and_datagrams():
     class Disturbed(FaultInjector):
+        def disturbs_samples(self, vehicle):
+            return vehicle == 2
+
         def own_sample(self, vehicle, sample):
             return None if vehicle == 2 else sample
 

@@ -11,10 +11,12 @@ from gcs.mavlink.address import Address
 from gcs.mission.model import DEFAULT_HOME, Home, Obstacle
 from idc_controller.arrays import Array
 from vehicle_sim.autopilot.airframe import Airframe
+from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
 from vehicle_sim.faults.fault_injector import FaultInjector
 from vehicle_sim.mavlink.vehicle import Vehicle
 from vehicle_sim.team import Team
 from vehicle_sim.world.obstacle_bodies import MovingObstacles
+from vehicle_sim.world.rotors import Rotors
 from vehicle_sim.world.truth_log import TruthLog
 from vehicle_sim.world.world import World
 
@@ -72,16 +74,24 @@ class Swarm:
         self._steps = 0
         self._contacts = 0
         airframes = [Airframe.of_system(system, i, config.uav) for i in range(system.number_of_uavs)]
+        onboard = config.onboard()
+        arrays = OnboardArrays.of(airframes, onboard.land_detector)
         self.vehicles = tuple(
             Vehicle(
                 i, airframe, onboard_rate=rates.onboard, telemetry_rate=rates.telemetry, home=home or DEFAULT_HOME,
-                ground_address=ground_address, clock=partial(self._faults.clock, i), autopilot=config.onboard(),
-                link=config.vehicle_link,
+                ground_address=ground_address, clock=partial(self._faults.clock, i), autopilot=onboard,
+                link=config.vehicle_link, arrays=arrays.of_vehicle(i - 1),
             )
             for i, airframe in enumerate(airframes, start=1)
         )  # fmt: skip
-        self._team = Team(self.vehicles, airframes, config, seed, self._faults)
+        rotors = Rotors(
+            [airframe.rotors for airframe in airframes], [airframe.motor_time_constant for airframe in airframes],
+            1.0 / rates.physics,
+        )  # fmt: skip
+        self._team = Team(self.vehicles, arrays, rotors, config, seed, self._faults)
+        self._modes_recorded = False
         self._onboard(self.world.states())
+        self._team.relay()
         self._team.scan(self.world.state(), self.world.obstacles)
 
     @property
@@ -94,10 +104,12 @@ class Swarm:
         last = math.floor((now + _TIME_TOLERANCE) * self.world.physics_hz)
         while self._steps < last:
             self._step()
+        self._team.relay()
 
     def record(self, truth: TruthLog) -> None:
         """Record the true state from here on, 50 times a second or more. The log is closed with the swarm."""
         self._truth = truth
+        self._modes_recorded = False
         truth.write(self.world.state(), self.world.contacts().pairs, self.world.obstacles.all())
 
     def close(self) -> None:
@@ -172,11 +184,13 @@ class Swarm:
             self._contacts = 0
 
     def _onboard(self, states: Array) -> None:
-        """Let all vehicles take an onboard step, and record what they fly."""
+        """Let all vehicles take an onboard step, and record what they fly where it changes."""
         now = self.world.time
-        self._team.step(states, now)
-        if self._truth is not None:
-            for vehicle in self.vehicles:
-                autopilot = vehicle.autopilot
-                mode = px4.mode_name(autopilot.mode)
-                self._truth.write_mode(now, vehicle.system_id, mode, autopilot.armed, autopilot.failsafe)
+        changed = self._team.step(states, now)
+        if self._truth is None or (self._modes_recorded and not changed):
+            return
+        self._modes_recorded = True
+        for vehicle in self.vehicles:
+            autopilot = vehicle.autopilot
+            mode = px4.mode_name(autopilot.mode)
+            self._truth.write_mode(now, vehicle.system_id, mode, autopilot.armed, autopilot.failsafe)

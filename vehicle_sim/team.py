@@ -8,7 +8,8 @@ import numpy as np
 from gcs.config import SystemConfig
 from gcs.config.tables import SensorsConfig
 from idc_controller.arrays import Array
-from vehicle_sim.autopilot.airframe import Airframe
+from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
+from vehicle_sim.autopilot.onboard_loop import step_together
 from vehicle_sim.faults.fault_injector import FaultInjector
 from vehicle_sim.mavlink.vehicle import Vehicle
 from vehicle_sim.world.obstacle_bodies import ObstacleBodies
@@ -24,36 +25,67 @@ class Team:
     def __init__(
         self,
         vehicles: Sequence[Vehicle],
-        airframes: Sequence[Airframe],
+        arrays: OnboardArrays,
+        rotors: Rotors,
         config: SystemConfig,
         seed: int,
         faults: FaultInjector,
     ) -> None:
+        """``arrays`` of these vehicles, each of which has its row."""
         self.vehicles = tuple(vehicles)
-        self._faults = faults
+        self._autopilots = [vehicle.autopilot for vehicle in vehicles]
+        self._arrays = arrays
+        self._rotors = rotors
         ids = [vehicle.system_id for vehicle in vehicles]
         self._sensors = _navigation_sensors(config.sensors, seed, ids)
         self._range_sensors = [RangeSensor(config.range_sensor, seed, i) for i in ids]
-        self._rotors = Rotors(
-            [airframe.rotors for airframe in airframes],
-            [airframe.motor_time_constant for airframe in airframes],
-            1.0 / config.rates.physics,
-        )
-        self._commands = np.zeros((len(ids), 4))
+        self._faults = faults
+        self._disturbed = [vehicle for vehicle in vehicles if faults.disturbs_samples(vehicle.system_id)]
+        self._payload_sample: tuple[float, Array] | None = None
 
     def wrenches(self) -> tuple[list[float], list[list[float]]]:
         """Return thrusts (N) and torques (N m) of the rotors over the next physics step."""
-        return self._rotors.advance(self._commands)
+        return self._rotors.advance(self._arrays.speeds)
 
-    def step(self, states: Array, now: float) -> None:
-        """Measure the true ``states``, relay the payload's sample, and let every autopilot take a step."""
-        faults = self._faults
-        payload_sample, *samples = [Measurement.of_row(now, row) for row in self._sensors.measure(states).tolist()]
-        for i, (vehicle, sample) in enumerate(zip(self.vehicles, samples, strict=True)):
+    def step(self, states: Array, now: float) -> bool:
+        """Measure the true ``states``, and let every autopilot take a step; return True if a HEARTBEAT changes."""
+        rows = self._sensors.measure(states)
+        self._payload_sample = now, rows[0]
+        own_rows = rows[1:]
+        samples: list[Measurement | None] = [Measurement.of_row(now, row) for row in own_rows.tolist()]
+        if self._disturbed:
+            self._disturb(samples, own_rows)
+        changed = step_together(self._autopilots, self._arrays, samples, own_rows, now)
+        for i in changed:
+            self.vehicles[i].send_changes()
+        for vehicle in self._disturbed:
+            reported = vehicle.autopilot.state.navigation.reported
+            vehicle.report(self._faults.reported_sample(vehicle.system_id, reported))
+        return bool(changed)
+
+    def relay(self) -> None:
+        """Let the vehicles relay the payload's newest sample; those that a fault disturbs get every one at once."""
+        if self._payload_sample is None:
+            return
+        time, row = self._payload_sample
+        sample = Measurement.of_row(time, row.tolist())
+        for vehicle in self.vehicles:
+            if vehicle not in self._disturbed:
+                vehicle.relay(sample)
+
+    def _disturb(self, samples: list[Measurement | None], rows: Array) -> None:
+        """Let the faults act on the samples of the vehicles, also as ``rows`` (N, 13), and on what they relay."""
+        assert self._payload_sample is not None
+        time, row = self._payload_sample
+        payload_sample = Measurement.of_row(time, row.tolist())
+        for vehicle in self._disturbed:
             number = vehicle.system_id
-            vehicle.relay(faults.payload_sample(number, payload_sample))
-            self._commands[i] = vehicle.step(faults.own_sample(number, sample), now)
-            vehicle.report(faults.reported_sample(number, vehicle.autopilot.state.navigation.reported))
+            vehicle.relay(self._faults.payload_sample(number, payload_sample))
+            before = samples[number - 1]
+            assert before is not None
+            sample = samples[number - 1] = self._faults.own_sample(number, before)
+            if sample is not None and sample is not before:
+                rows[number - 1] = sample.as_row()
 
     def scan(self, state: WorldState, obstacles: ObstacleBodies) -> None:
         """Let every vehicle scan for obstacles, in a world with any."""

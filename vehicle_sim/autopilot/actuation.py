@@ -1,13 +1,14 @@
-"""From an attitude target to rotor speeds."""
+"""What a vehicle's attitude loop and mixer are to do."""
 
 import math
 from typing import NamedTuple
 
-from idc_controller.rotations_float import Quaternion, Vector
-from vehicle_sim.autopilot.airframe import Airframe
-from vehicle_sim.autopilot.attitude_control import LEVEL, NO_RATES, AttitudeController
-from vehicle_sim.world.rotors import IDLE, Four, Mixer
-from vehicle_sim.world.sensors import Measurement
+from idc_controller.rotations_float import IDENTITY, Quaternion, Vector
+from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
+from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
+
+LEVEL = IDENTITY
+NO_RATES: Vector = (0.0, 0.0, 0.0)
 
 
 class AttitudeTarget(NamedTuple):
@@ -18,44 +19,48 @@ class AttitudeTarget(NamedTuple):
     thrust: float
 
 
-class Actuation:
-    """The attitude loop and the mixer.
+_NOTHING = AttitudeTarget(LEVEL, NO_RATES, 0.0)
 
-    ``thrust`` (N) as commanded last; ``target`` as flown last, and ``target_since`` (s) when it began to act.
+
+class Actuation:
+    """The target of the attitude loop, which works on it with those of the whole team.
+
+    See :func:`.onboard_kernels.control_attitudes`. ``thrust`` (N) as commanded last; ``target`` as flown last, and
+    ``target_since`` (s) when it began to act.
     """
 
-    def __init__(self, airframe: Airframe) -> None:
-        self._thrust_max = airframe.rotors.thrust_max
-        self._attitude_control = AttitudeController(airframe.inertia, airframe.attitude_kp, airframe.attitude_kd)
-        self._mixer = Mixer(airframe.rotors)
+    def __init__(self, thrust_max: float, arrays: OnboardArrays) -> None:
+        """``arrays`` of one vehicle; its largest thrust in N."""
+        self._thrust_max = thrust_max
+        self._row, self._acceleration = arrays.targets[0], arrays.accelerations[0]
+        self._followed: AttitudeSetpoint | None = None
         self.thrust = 0.0
-        self.target = AttitudeTarget(LEVEL, NO_RATES, 0.0)
+        self.target = _NOTHING
         self.target_since = -math.inf
 
     @property
     def commanded_acceleration(self) -> Vector:
         """The angular acceleration (rad/s2) for which the torque was last set."""
-        return self._attitude_control.commanded
+        x, y, z = self._acceleration.tolist()
+        return x, y, z
 
-    def command(
-        self, measured: Measurement, attitude: Quaternion | None, rates: Vector, thrust: float, now: float
-    ) -> Four:
-        """Rotor-speed commands (rad/s) for an attitude, rates and a thrust (N)."""
-        if thrust > self._thrust_max:
-            thrust = self._thrust_max
-        self.thrust = thrust
-        self._set_target(AttitudeTarget(attitude, rates, thrust / self._thrust_max), now)
-        if thrust <= 0.0:
-            self._attitude_control.commanded = NO_RATES
-            return IDLE
-        tau_x, tau_y, tau_z = self._attitude_control.torque(measured.attitude, measured.rates, attitude, rates)
-        return self._mixer.rotor_speeds(thrust, tau_x, tau_y, tau_z)
+    def follow(self, setpoint: AttitudeSetpoint, now: float) -> None:
+        """Fly a set-point from now on; without a thrust of its own it keeps the last one."""
+        if setpoint is self._followed:
+            return
+        thrust = self.thrust if setpoint.thrust is None else setpoint.thrust * self._thrust_max
+        self.command(setpoint.attitude, setpoint.rates, thrust, now)
+        self._followed = setpoint
+
+    def command(self, attitude: Quaternion | None, rates: Vector, thrust: float, now: float) -> None:
+        """Fly an attitude, rates and a thrust (N) from now on."""
+        self._followed = None
+        self.thrust = min(thrust, self._thrust_max)
+        target = AttitudeTarget(attitude, rates, self.thrust / self._thrust_max)
+        if target != self.target:
+            self.target, self.target_since = target, now
+        self._row[:] = (attitude is not None, *(attitude or LEVEL), *rates, self.thrust)
 
     def stop(self, now: float) -> None:
         """Command no thrust."""
-        self.thrust = 0.0
-        self._set_target(AttitudeTarget(LEVEL, NO_RATES, 0.0), now)
-
-    def _set_target(self, target: AttitudeTarget, now: float) -> None:
-        if target != self.target:
-            self.target, self.target_since = target, now
+        self.command(LEVEL, NO_RATES, 0.0, now)

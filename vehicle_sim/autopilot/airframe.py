@@ -5,6 +5,7 @@ from typing import Self
 
 from gcs.config import UavConfig
 from idc_controller.parameters import SystemParameters
+from vehicle_sim.world.errors import SimulationError
 from vehicle_sim.world.rotors import RotorGeometry
 
 Matrix = tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]
@@ -14,7 +15,7 @@ Matrix = tuple[tuple[float, float, float], tuple[float, float, float], tuple[flo
 class Airframe:
     """One UAV: mass (kg), inertia about its centre (kg m2), rotors, motor lag (s), attitude gains, gravity.
 
-    ``attitude_kp`` (1/s2) and ``attitude_kd`` (1/s): torque = J (kp e - kd omega).
+    ``attitude_kp`` (1/s2) and ``attitude_kd`` (1/s): torque = J (kp e - kd omega), both positive.
     """
 
     mass: float
@@ -24,6 +25,10 @@ class Airframe:
     attitude_kp: float
     attitude_kd: float
     g: float = 9.81
+
+    def __post_init__(self) -> None:
+        if not (self.attitude_kp > 0.0 and self.attitude_kd > 0.0):
+            raise SimulationError(f"attitude gains must be positive, got {self.attitude_kp} and {self.attitude_kd}")
 
     @classmethod
     def of_system(cls, system: SystemParameters, index: int, uav: UavConfig) -> Self:

@@ -4,42 +4,52 @@ It knows no bytes and no addresses. Time is an argument everywhere. Where to fin
 failsafes in :mod:`.failsafe`, prearm checks in :mod:`.arming`, what they share in :mod:`.flight_state`.
 """
 
+import math
+
+import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.config.vehicle_settings import AutopilotSettings
 from gcs.mavlink import px4
 from idc_controller.rotations_float import attitude_of_force, euler_of
 from vehicle_sim.autopilot import modes
-from vehicle_sim.autopilot.actuation import Actuation
+from vehicle_sim.autopilot.actuation import NO_RATES, Actuation
 from vehicle_sim.autopilot.airframe import Airframe
 from vehicle_sim.autopilot.answer import ACCEPTED, Answer, denied, rejected_for_now
 from vehicle_sim.autopilot.arming import arming_problem
-from vehicle_sim.autopilot.attitude_control import NO_RATES
 from vehicle_sim.autopilot.failsafe import check_failsafes
 from vehicle_sim.autopilot.flight_state import FlightState
 from vehicle_sim.autopilot.land_detector import LandDetector
 from vehicle_sim.autopilot.navigation import Navigation
+from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
+from vehicle_sim.autopilot.onboard_loop import step_together
 from vehicle_sim.autopilot.parameter_table import ParameterTable
 from vehicle_sim.autopilot.setpoint_stream import SetpointStream
 from vehicle_sim.autopilot.setpoints import AttitudeSetpoint, StopPlan
-from vehicle_sim.world.rotors import IDLE, Four
+from vehicle_sim.world.rotors import Four
 from vehicle_sim.world.sensors import Measurement
+from vehicle_sim.world.state_kernels import STATE_COLUMNS
 
 
 class Autopilot:
     """One vehicle's autopilot. ``changes`` rises with every change of a HEARTBEAT; ``state`` is to be read only."""
 
     def __init__(
-        self, airframe: Airframe, parameters: ParameterTable, settings: AutopilotSettings = AutopilotSettings()
+        self,
+        airframe: Airframe,
+        parameters: ParameterTable,
+        settings: AutopilotSettings = AutopilotSettings(),
+        arrays: OnboardArrays | None = None,
     ) -> None:
-        weight, thrust_max = airframe.mass * airframe.g, airframe.rotors.thrust_max
+        """``arrays`` of this vehicle, in a team that is stepped together; None: it is stepped alone."""
+        self._arrays = arrays or OnboardArrays.of([airframe], settings.land_detector)
         self.state = FlightState(
             airframe,
             parameters,
             settings,
             Navigation(airframe.motor_time_constant, settings.navigation),
-            LandDetector(weight, thrust_max, settings.land_detector),
-            Actuation(airframe),
+            LandDetector(self._arrays),
+            Actuation(airframe.rotors.thrust_max, self._arrays),
             SetpointStream(settings.setpoints),
         )
         self._shown: tuple[int, bool, bool, int] | None = None
@@ -101,7 +111,6 @@ class Autopilot:
         state.armed = True
         state.failsafe = False
         state.hold = None
-        state.actuation.thrust = 0.0
         state.land.start()
         return ACCEPTED
 
@@ -136,37 +145,59 @@ class Autopilot:
     # The onboard loop
 
     def step(self, measurement: Measurement | None, now: float) -> Four:
-        """One step of the onboard loop: four rotor-speed commands (rad/s). None: no sample came this time."""
+        """One step of the onboard loop alone: four rotor-speed commands (rad/s). None: no sample came this time."""
+        row = np.array([measurement.as_row() if measurement is not None else [math.nan] * STATE_COLUMNS])
+        step_together((self,), self._arrays, (measurement,), row, now)
+        a, b, c, d = self._arrays.speeds[0].tolist()
+        return a, b, c, d
+
+    def sense(self, sample: Measurement | None, ordinary: bool, now: float) -> None:
+        """Take what the sensors delivered; ``ordinary`` samples need no closer look."""
+        navigation = self.state.navigation
+        self.state.now = now
+        if sample is not None and ordinary and math.isfinite(sample.time):
+            navigation.take(sample, now)
+            return
+        if sample is not None:
+            navigation.update(sample, self.state.actuation.commanded_acceleration, now)
+        estimate = navigation.estimate
+        self._arrays.estimates[0] = math.nan if estimate is None else estimate.as_row()
+
+    def decide(self, now: float) -> bool:
+        """Check the failsafes, and say what the rotors are to do; return True if a HEARTBEAT changes."""
         state = self.state
-        state.now = now
-        if measurement is not None:
-            state.navigation.update(measurement, state.actuation.commanded_acceleration, now)
         measured = state.navigation.estimate
         if measured is None:
-            return IDLE
-        flies_setpoints = state.armed and state.mode == px4.MODE_OFFBOARD and not state.failsafe
-        state.land.update(measured, state.actuation.thrust, now, learn=flies_setpoints)
+            return False
         check_failsafes(state, now)
-        self._check_touchdown(now)
-        speeds = self._fly(measured, now) if state.armed else IDLE
+        if state.hold is not None:
+            self._check_touchdown(now)
+        if state.armed:
+            self._fly(measured, now)
         shown = (self.mode, state.armed, state.failsafe, self.landed_state)
-        if shown != self._shown:
-            self._shown = shown
-            self.changes += 1
-        return speeds
+        if shown == self._shown:
+            return False
+        self._shown = shown
+        self.changes += 1
+        return True
 
-    def _fly(self, measured: Measurement, now: float) -> Four:
+    @property
+    def flies_setpoints(self) -> bool:
+        """Return True if it flies set-points of the ground."""
+        state = self.state
+        return state.armed and state.mode == px4.MODE_OFFBOARD and not state.failsafe
+
+    def _fly(self, measured: Measurement, now: float) -> None:
         """The control law of what is flown: hold and descent, the set-points of OFFBOARD, or waiting armed."""
         state = self.state
         if state.hold is not None:
             attitude, thrust = state.hold.command(measured, now, state.is_supported(now))
-            return state.actuation.command(measured, attitude, NO_RATES, thrust, now)
-        if state.mode == px4.MODE_OFFBOARD and (setpoint := state.setpoints.at(now)) is not None:
-            share = setpoint.thrust
-            thrust = state.actuation.thrust if share is None else share * state.airframe.rotors.thrust_max
-            return state.actuation.command(measured, setpoint.attitude, setpoint.rates, thrust, now)
-        level = attitude_of_force(0.0, 0.0, -1.0, euler_of(measured.attitude)[2])
-        return state.actuation.command(measured, level, NO_RATES, 0.0, now)
+            state.actuation.command(attitude, NO_RATES, thrust, now)
+        elif state.mode == px4.MODE_OFFBOARD and (setpoint := state.setpoints.at(now)) is not None:
+            state.actuation.follow(setpoint, now)
+        else:
+            level = attitude_of_force(0.0, 0.0, -1.0, euler_of(measured.attitude)[2])
+            state.actuation.command(level, NO_RATES, 0.0, now)
 
     def _check_touchdown(self, now: float) -> None:
         state = self.state

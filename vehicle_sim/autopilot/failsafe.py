@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import groupby
 
 from gcs.mavlink import px4
 from vehicle_sim.autopilot.flight_state import FlightState
@@ -9,12 +10,15 @@ from vehicle_sim.autopilot.flight_state import FlightState
 
 @dataclass(frozen=True)
 class Failsafe:
-    """Condition and action; in flight the vehicle is then in failsafe, until a ground commands it."""
+    """Cause, condition and action; in flight the vehicle is then in failsafe, until a ground commands it."""
 
     name: str
     parameter: str
     """The PX4 parameter that decides when."""
-    condition: Callable[[FlightState, float], bool]
+    cause: Callable[[FlightState, float], bool]
+    """What must have happened."""
+    condition: Callable[[FlightState], bool]
+    """And in which state of the vehicle."""
     action: Callable[[FlightState, float], None]
     notice: str
     """STATUSTEXT to the operator; empty: none."""
@@ -22,24 +26,31 @@ class Failsafe:
 
 def check_failsafes(state: FlightState, now: float) -> None:
     """Take the action of the first failsafe whose condition holds."""
-    for failsafe in FAILSAFES:
-        if failsafe.condition(state, now):
-            failsafe.action(state, now)
-            if failsafe.notice:
-                state.notices.append(failsafe.notice)
-            return
+    for cause, failsafes in _BY_CAUSE:
+        if not cause(state, now):
+            continue
+        for failsafe in failsafes:
+            if failsafe.condition(state):
+                failsafe.action(state, now)
+                if failsafe.notice:
+                    state.notices.append(failsafe.notice)
+                return
 
 
 def _setpoints_lost(state: FlightState, now: float) -> bool:
     return state.mode == px4.MODE_OFFBOARD and not state.failsafe and not state.has_fresh_setpoints(now)
 
 
-def _setpoints_lost_in_flight(state: FlightState, now: float) -> bool:
-    return _setpoints_lost(state, now) and state.armed and state.is_up
+def _in_flight(state: FlightState) -> bool:
+    return state.armed and state.is_up
 
 
-def _setpoints_lost_armed(state: FlightState, now: float) -> bool:
-    return _setpoints_lost(state, now) and state.armed
+def _armed(state: FlightState) -> bool:
+    return state.armed
+
+
+def _always(state: FlightState) -> bool:
+    return True
 
 
 def _data_link_lost(state: FlightState, now: float) -> bool:
@@ -72,23 +83,29 @@ FAILSAFES = (
     Failsafe(
         "offboard_loss",
         px4.PARAM_SETPOINT_LOSS,
-        _setpoints_lost_in_flight,
+        _setpoints_lost,
+        _in_flight,
         _hold_then_land,
         "Set-points lost: braking and holding",
     ),
     Failsafe(
         "offboard_loss_on_ground",
         px4.PARAM_SETPOINT_LOSS,
-        _setpoints_lost_armed,
+        _setpoints_lost,
+        _armed,
         _disarm,
         "Set-points lost on the ground: disarmed",
     ),
-    Failsafe("offboard_loss_disarmed", px4.PARAM_SETPOINT_LOSS, _setpoints_lost, _disarm, ""),
+    Failsafe("offboard_loss_disarmed", px4.PARAM_SETPOINT_LOSS, _setpoints_lost, _always, _disarm, ""),
     Failsafe(
         "data_link_loss",
         px4.PARAM_LINK_LOSS,
         _data_link_lost,
+        _always,
         _land,
         "No ground station: descending",
     ),
 )
+
+# A cause that several share is looked at once.
+_BY_CAUSE = [(cause, [*rows]) for cause, rows in groupby(FAILSAFES, key=lambda failsafe: failsafe.cause)]

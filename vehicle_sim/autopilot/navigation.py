@@ -44,6 +44,14 @@ class Navigation:
             return self._known
         return self._known._replace(rates=(math.nan, math.nan, math.nan))
 
+    def take(self, sample: Measurement, now: float) -> None:
+        """Take an ordinary ``sample``: usable, and of other attitude and rates than the last one."""
+        self.measured_at = now
+        self._known = self._raw = sample
+        self._observed = None
+        self._has_rates = True
+        self._repeated["attitude"] = self._repeated["rates"] = 0
+
     def update(self, sample: Measurement, commanded: Vector, now: float) -> Measurement | None:
         """Return the estimate after a ``sample`` that came at ``now`` (s); None before the first usable one.
 

@@ -41,6 +41,7 @@ class ParameterTable:
 
     def __init__(self, parameters: list[Parameter]) -> None:
         self._parameters = sorted(parameters, key=lambda parameter: parameter.name)
+        self._by_name = {parameter.name: parameter for parameter in self._parameters}
         self._index = {parameter.name: i for i, parameter in enumerate(self._parameters)}
         if len(self._index) != len(self._parameters) or any(len(name) > 16 for name in self._index):
             raise SimulationError("parameter names must be unique and at most 16 characters long")
@@ -49,7 +50,7 @@ class ParameterTable:
         return len(self._parameters)
 
     def __getitem__(self, name: str) -> float:
-        return self._parameters[self._index[name]].value
+        return self._by_name[name].value
 
     def by_index(self, index: int) -> Parameter | None:
         """The parameter at an index of the list, None outside."""
@@ -57,7 +58,7 @@ class ParameterTable:
 
     def by_name(self, name: str) -> Parameter | None:
         """The parameter of a name, None if there is none."""
-        return self.by_index(self._index.get(name, -1))
+        return self._by_name.get(name)
 
     def index_of(self, name: str) -> int:
         """Position of an existing parameter in the list."""

@@ -13,22 +13,21 @@ class SetpointStream:
 
     A ground that corrects an error with every set-point means each for a moment only: held through a gap, the last of
     them would go on correcting an error that is over. So the mean of the last ones is flown in a gap.
+
+    ``last_time`` of the last one; -inf: there is none.
     """
 
     def __init__(self, settings: SetpointSettings) -> None:
         self._settings = settings
         self._recent: deque[tuple[float, AttitudeSetpoint]] = deque()
         self._mean: AttitudeSetpoint | None = None
-
-    @property
-    def last_time(self) -> float:
-        """Time of the last one; -inf: there is none."""
-        return self._recent[-1][0] if self._recent else -math.inf
+        self.last_time = -math.inf
 
     def add(self, setpoint: AttitudeSetpoint, now: float) -> None:
         """Take a set-point."""
         recent = self._recent
         recent.append((now, setpoint))
+        self.last_time = now
         while now - recent[0][0] > self._settings.mean_over:
             recent.popleft()
         self._mean = None
@@ -47,6 +46,7 @@ class SetpointStream:
     def clear(self) -> None:
         """Forget all."""
         self._recent.clear()
+        self.last_time = -math.inf
         self._mean = None
 
 

@@ -88,6 +88,10 @@ class FaultInjector:
             shown += error
         return shown
 
+    def disturbs_samples(self, vehicle: int) -> bool:
+        """Return True if a fault acts on samples of the vehicle or on those it relays, now or at another time."""
+        return any(disturbed == vehicle for _, disturbed in self._samples)
+
     def own_sample(self, vehicle: int, sample: Measurement) -> Measurement | None:
         """Return what the autopilot gets of the vehicle's own measurement; None: nothing."""
         return self._through(OWN, vehicle, sample.time, sample)

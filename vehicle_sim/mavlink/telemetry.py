@@ -9,7 +9,7 @@ from gcs.mavlink import px4
 from gcs.mavlink.layout import LAYOUTS, Packed, packed
 from gcs.mission.model import Home
 from idc_controller.rotations_float import euler_of, into_body
-from vehicle_sim.autopilot.attitude_control import LEVEL
+from vehicle_sim.autopilot.actuation import LEVEL
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.mavlink.geodesy import LocalFrame, clamp, is_finite
 from vehicle_sim.world.range_sensor import RangeSample

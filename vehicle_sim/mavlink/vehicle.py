@@ -13,6 +13,7 @@ from gcs.mavlink.messages import BROADCAST
 from gcs.mission.model import DEFAULT_HOME, Home
 from vehicle_sim.autopilot.airframe import Airframe
 from vehicle_sim.autopilot.autopilot import Autopilot
+from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
 from vehicle_sim.autopilot.parameter_table import vehicle_parameters
 from vehicle_sim.mavlink.commands import CommandServer
 from vehicle_sim.mavlink.control_owner import ControlOwner
@@ -51,15 +52,16 @@ class Vehicle:
         clock: Callable[[float], float] = float,
         autopilot: AutopilotSettings = AutopilotSettings(),
         link: VehicleLinkSettings = VehicleLinkSettings(),
+        arrays: OnboardArrays | None = None,
     ) -> None:
         """``system_id`` 1 .. 255; rates in Hz; ``boot_time`` (s) is the zero of every ``time_boot_ms``.
 
-        ``clock`` is what its clock shows at a time.
+        ``clock`` is what its clock shows at a time; ``arrays`` as in :class:`.Autopilot`.
         """
         intervals = default_intervals(link.intervals, 1.0 / telemetry_rate)
         self.system_id = system_id
         self.parameters = vehicle_parameters(airframe, system_id, round(onboard_rate), autopilot)
-        self.autopilot = Autopilot(airframe, self.parameters, autopilot)
+        self.autopilot = Autopilot(airframe, self.parameters, autopilot, arrays)
         self.telemetry = Telemetry(system_id, self.autopilot, home, boot_time, clock)
         self._decoder = Codec(system_id, px4.AUTOPILOT_COMPONENT)
         self._peers = Peers(lambda address: Peer(address, system_id, intervals, link), ground_address, link)
@@ -88,7 +90,7 @@ class Vehicle:
         """
         speeds = self.autopilot.step(measurement, now)
         if self.autopilot.changes != self._sent_changes:
-            self._send_changes()
+            self.send_changes()
         return speeds
 
     def report(self, reported: ReportedState) -> None:
@@ -128,7 +130,7 @@ class Vehicle:
         """Return all that is due at ``now`` (s), each with its address."""
         self._latest = max(self._latest, now)
         if self.autopilot.changes != self._sent_changes or self.autopilot.state.notices:
-            self._send_changes()
+            self.send_changes()
         return self._peers.datagrams_to_send(self.telemetry, now)
 
     def next_timer(self) -> float | None:
@@ -138,7 +140,8 @@ class Vehicle:
             return self._latest if math.isfinite(self._latest) else 0.0
         return due if math.isfinite(due) else None
 
-    def _send_changes(self) -> None:
+    def send_changes(self) -> None:
+        """Send the HEARTBEAT anew, and what is to be said to the operator."""
         self._sent_changes = self.autopilot.changes
         self._peers.repeat(mavlink.MAVLINK_MSG_ID_HEARTBEAT, mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE)
         for text in self.autopilot.take_notices():

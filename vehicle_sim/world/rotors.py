@@ -52,63 +52,6 @@ class RotorGeometry:
         return self.arm_length / math.sqrt(2.0)
 
 
-class Mixer:
-    """Thrust and torques to rotor speeds, within what four rotors can do.
-
-    What cannot be done is given up in this order: yaw torque, then roll and pitch torque together (scaled, so that
-    their direction stays); the thrust is kept.
-    """
-
-    def __init__(self, geometry: RotorGeometry) -> None:
-        self._force_max = geometry.thrust_max / 4.0
-        self._per_roll_pitch = 1.0 / (4.0 * geometry.lever)
-        self._per_yaw = 1.0 / (4.0 * geometry.torque_to_thrust)
-        self._per_k_f = 1.0 / geometry.k_f
-
-    def forces(self, thrust: float, tau_x: float, tau_y: float, tau_z: float) -> Four:
-        """Rotor forces (N), each within 0 .. thrust_max / 4, of a thrust (N) and body torques (N m, FRD)."""
-        top = self._force_max
-        level = thrust * 0.25
-        if level < 0.0:
-            level = 0.0
-        elif level > top:
-            level = top
-        roll, pitch, yaw = tau_x * self._per_roll_pitch, tau_y * self._per_roll_pitch, tau_z * self._per_yaw
-        # Pairs on a diagonal get opposite shares of roll and pitch and the same share of yaw.
-        first, third = pitch - roll, pitch + roll
-        headroom = level if level < top - level else top - level
-        first_size, third_size = abs(first), abs(third)
-        largest = first_size if first_size > third_size else third_size
-        if largest > headroom:
-            scale = headroom / largest
-            first *= scale
-            third *= scale
-            first_size *= scale
-            third_size *= scale
-        # +yaw on rotors 1 and 2 (level -+ first), -yaw on rotors 3 and 4 (level -+ third).
-        yaw_headroom = headroom - (first_size if first_size > third_size else third_size)
-        if yaw > yaw_headroom:
-            upper, lower = top - level - first_size, level - third_size
-            limit = upper if upper < lower else lower
-            yaw = yaw if yaw < limit else limit
-        elif yaw < -yaw_headroom:
-            upper, lower = top - level - third_size, level - first_size
-            limit = upper if upper < lower else lower
-            yaw = yaw if -yaw < limit else -limit
-        return level + first + yaw, level - first + yaw, level + third - yaw, level - third - yaw
-
-    def rotor_speeds(self, thrust: float, tau_x: float, tau_y: float, tau_z: float) -> Four:
-        """Rotor speeds (rad/s) for a thrust (N) and body torques (N m, FRD)."""
-        f_1, f_2, f_3, f_4 = self.forces(thrust, tau_x, tau_y, tau_z)
-        per_k_f = self._per_k_f
-        return (
-            math.sqrt(f_1 * per_k_f) if f_1 > 0.0 else 0.0,
-            math.sqrt(f_2 * per_k_f) if f_2 > 0.0 else 0.0,
-            math.sqrt(f_3 * per_k_f) if f_3 > 0.0 else 0.0,
-            math.sqrt(f_4 * per_k_f) if f_4 > 0.0 else 0.0,
-        )
-
-
 class Rotors:
     """Rotor speeds of N vehicles that follow their commands with a first-order lag, advanced by the physics step.
 

@@ -39,6 +39,10 @@ class Measurement(NamedTuple):
         x, y, z, q_w, q_x, q_y, q_z, v_x, v_y, v_z, p, q, r = row
         return cls(time, (q_w, q_x, q_y, q_z), (p, q, r), (x, y, z), (v_x, v_y, v_z))
 
+    def as_row(self) -> list[float]:
+        """Return the inverse of :meth:`of_row`."""
+        return [*self.position, *self.attitude, *self.velocity, *self.rates]
+
     def is_usable(self) -> bool:
         """Return True if every number is finite and of a size that could be sent."""
         total = sum(self.attitude) + sum(self.rates) + sum(self.position) + sum(self.velocity)

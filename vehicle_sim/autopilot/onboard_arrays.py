@@ -1,0 +1,86 @@
+"""The arrays that the kernels of the onboard loop work on."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import Self
+
+import numpy as np
+
+from gcs.config.vehicle_settings import LandDetectorSettings
+from idc_controller.arrays import Array, Mask
+from vehicle_sim.autopilot.airframe import Airframe
+from vehicle_sim.autopilot.onboard_kernels import (
+    IN_AIR,
+    LANDING_COLUMNS,
+    LAST_TIME,
+    LIGHT_SINCE,
+    TARGET_COLUMNS,
+    TOUCHING_SINCE,
+    VELOCITY,
+)
+from vehicle_sim.world.state_kernels import STATE_COLUMNS
+
+
+@dataclass(frozen=True, eq=False)
+class OnboardArrays:
+    """One row for each of N vehicles; columns as in :mod:`.onboard_kernels`.
+
+    Every vehicle owns its row, and a vehicle alone is a team of one.
+    """
+
+    airframes: Array
+    detectors: Array
+    last_samples: Array
+    """The newest sample of each, as it came."""
+    ordinary: Mask
+    """Samples that need no closer look."""
+    estimates: Array
+    learns: Mask
+    """Vehicles that learn the thrust that they hover with."""
+    landings: Array
+    targets: Array
+    accelerations: Array
+    """Angular accelerations (N, 3) for which the torques were last set (rad/s2)."""
+    speeds: Array
+    """Commanded rotor speeds (N, 4) (rad/s)."""
+
+    @classmethod
+    def of(cls, airframes: Sequence[Airframe], settings: LandDetectorSettings) -> Self:
+        """Return the arrays of vehicles that have not begun."""
+        n = len(airframes)
+        landings = np.full((n, LANDING_COLUMNS), np.nan)
+        landings[:, [VELOCITY, LAST_TIME, IN_AIR]] = 0.0
+        landings[:, [LIGHT_SINCE, TOUCHING_SINCE]] = np.inf
+        return cls(
+            np.array([_airframe(airframe) for airframe in airframes]),
+            np.array([_detector(airframe, settings) for airframe in airframes]),
+            np.full((n, STATE_COLUMNS), np.nan),
+            np.zeros(n, dtype=np.bool_),
+            np.full((n, STATE_COLUMNS), np.nan),
+            np.zeros(n, dtype=np.bool_),
+            landings,
+            np.zeros((n, TARGET_COLUMNS)),
+            np.zeros((n, 3)),
+            np.zeros((n, 4)),
+        )
+
+    def of_vehicle(self, i: int) -> Self:
+        """Return the row of vehicle ``i`` (from 0), shared with these arrays."""
+        return type(self)(*(getattr(self, field.name)[i : i + 1] for field in fields(self)))
+
+
+def _airframe(airframe: Airframe) -> list[float]:
+    (j_xx, j_xy, j_xz), (_, j_yy, j_yz), (_, _, j_zz) = airframe.inertia
+    rotors = airframe.rotors
+    return [
+        j_xx, j_yy, j_zz, j_xy, j_xz, j_yz, 2.0 * airframe.attitude_kp, airframe.attitude_kd,
+        rotors.thrust_max / 4.0, 1.0 / (4.0 * rotors.lever), 1.0 / (4.0 * rotors.torque_to_thrust), 1.0 / rotors.k_f,
+    ]  # fmt: skip
+
+
+def _detector(airframe: Airframe, settings: LandDetectorSettings) -> list[float]:
+    return [
+        airframe.mass * airframe.g, airframe.rotors.thrust_max, settings.lifted, settings.vertical_speed_max,
+        settings.time, settings.touchdown_thrust, settings.touchdown_sinking, settings.velocity_filter,
+        settings.altitude_filter, settings.hover_filter, settings.unloaded_share,
+    ]  # fmt: skip

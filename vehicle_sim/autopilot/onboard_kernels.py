@@ -1,0 +1,192 @@
+"""The arithmetic of the onboard loop, for all vehicles of a team at once: samples, landing detection, attitude, mixer.
+
+One row a vehicle, of arrays whose columns are named below. ``estimates`` and ``samples`` have rows of states as in
+:mod:`vehicle_sim.world.state_kernels`; a row that begins with NaN says that there is none.
+"""
+
+import math
+
+from idc_controller import rotations_float
+from idc_controller.arrays import Array, Mask
+from idc_controller.compiled import inlined, kernel
+from idc_controller.rotations_float import Quaternion, Vector
+from vehicle_sim.world.rotors import Four
+
+# Columns of ``targets``: whether there is an attitude, the attitude (4), body rates (3) in rad/s, thrust (N).
+HAS_ATTITUDE, ATTITUDE, RATES, THRUST = 0, 1, 5, 8
+TARGET_COLUMNS = 9
+
+# Columns of ``airframes``: inertia (xx, yy, zz, xy, xz, yz) in kg m2, twice kp (1/s2), kd (1/s), the largest force of a
+# rotor (N), its force per torque about roll or pitch and about yaw (1/m), squared speed per thrust (1/(N s2)).
+INERTIA, TWO_KP, KD, FORCE_MAX, PER_ROLL_PITCH, PER_YAW, PER_K_F = 0, 6, 7, 8, 9, 10, 11
+AIRFRAME_COLUMNS = 12
+
+# Columns of ``landings``: what the detector has found; NaN: not known yet. Times in s, m, m/s, N.
+ALTITUDE, VELOCITY, GROUND, LAST_TIME, LIGHT_SINCE, TOUCHING_SINCE, HOVER_THRUST, IN_AIR = 0, 1, 2, 3, 4, 5, 6, 7
+LANDING_COLUMNS = 8
+
+# Columns of ``detectors``: the vehicle's weight and largest thrust (N), and the settings of these names.
+(
+    WEIGHT, THRUST_MAX, LIFTED, VERTICAL_SPEED_MAX, TIME, TOUCHDOWN_THRUST, TOUCHDOWN_SINKING, VELOCITY_FILTER,
+    ALTITUDE_FILTER, HOVER_FILTER, UNLOADED_SHARE,
+) = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10  # fmt: skip
+
+_FAR = 1e6
+
+_half_rotation = inlined(rotations_float.half_rotation)
+
+
+@inlined
+def landed(found: Array) -> None:
+    """Take the vehicle to be on the ground here: armed, or disarmed."""
+    found[GROUND] = found[ALTITUDE]
+    found[IN_AIR] = 0.0
+    found[LIGHT_SINCE] = found[TOUCHING_SINCE] = math.inf
+
+
+@inlined
+def mixed_forces(
+    thrust: float, tau_x: float, tau_y: float, tau_z: float, top: float, per_roll_pitch: float, per_yaw: float
+) -> Four:
+    """Return rotor forces (N), each within 0 .. ``top``, of a thrust (N) and body torques (N m, FRD).
+
+    What cannot be done is given up in this order: yaw torque, then roll and pitch torque together (scaled, so that
+    their direction stays); the thrust is kept.
+    """
+    level = min(max(thrust * 0.25, 0.0), top)
+    roll, pitch, yaw = tau_x * per_roll_pitch, tau_y * per_roll_pitch, tau_z * per_yaw
+    # Pairs on a diagonal get opposite shares of roll and pitch and the same share of yaw.
+    first, third = pitch - roll, pitch + roll
+    headroom = min(level, top - level)
+    largest = max(abs(first), abs(third))
+    if largest > headroom:
+        scale = headroom / largest
+        first *= scale
+        third *= scale
+    first_size, third_size = abs(first), abs(third)
+    # +yaw on rotors 1 and 2 (level -+ first), -yaw on rotors 3 and 4 (level -+ third).
+    yaw_headroom = headroom - max(first_size, third_size)
+    if yaw > yaw_headroom:
+        yaw = min(yaw, min(top - level - first_size, level - third_size))
+    elif yaw < -yaw_headroom:
+        yaw = -min(-yaw, min(top - level - third_size, level - first_size))
+    return level + first + yaw, level - first + yaw, level + third - yaw, level - third - yaw
+
+
+@inlined
+def wanted_acceleration(
+    attitude: Quaternion, rates: Vector, target: Quaternion, target_rates: Vector, two_kp: float, kd: float
+) -> Vector:
+    """Return the angular acceleration kp e - kd (omega - omega_target) (rad/s2), in the body frame.
+
+    e = 2 sign(w) (x, y, z) of the rotation from the attitude to the target, in the body frame: their angle where it is
+    small, the shorter way round, whichever sign either quaternion has. With ``two_kp`` 0 the rates alone count.
+    """
+    x = kd * (target_rates[0] - rates[0])
+    y = kd * (target_rates[1] - rates[1])
+    z = kd * (target_rates[2] - rates[2])
+    if two_kp != 0.0:
+        e_x, e_y, e_z = _half_rotation(attitude, target)
+        x += two_kp * e_x
+        y += two_kp * e_y
+        z += two_kp * e_z
+    return x, y, z
+
+
+@kernel("void(float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1])")
+def control_attitudes(airframes: Array, estimates: Array, targets: Array, accelerations: Array, speeds: Array) -> None:
+    """Write rotor-speed commands ``speeds`` (N, 4) (rad/s) that turn vehicles to their ``targets``; 0 without thrust.
+
+    ``accelerations`` (N, 3): the angular accelerations for which the torques are set (rad/s2).
+    """
+    for i in range(targets.shape[0]):
+        t, s, a = targets[i], estimates[i], airframes[i]
+        if t[THRUST] <= 0.0 or math.isnan(s[0]):
+            accelerations[i] = 0.0
+            speeds[i] = 0.0
+            continue
+        x, y, z = wanted_acceleration(
+            (s[3], s[4], s[5], s[6]),
+            (s[10], s[11], s[12]),
+            (t[ATTITUDE], t[ATTITUDE + 1], t[ATTITUDE + 2], t[ATTITUDE + 3]),
+            (t[RATES], t[RATES + 1], t[RATES + 2]),
+            a[TWO_KP] if t[HAS_ATTITUDE] != 0.0 else 0.0,
+            a[KD],
+        )
+        accelerations[i, 0], accelerations[i, 1], accelerations[i, 2] = x, y, z
+        j_xx, j_yy, j_zz, j_xy, j_xz, j_yz = a[0], a[1], a[2], a[3], a[4], a[5]
+        forces = mixed_forces(
+            t[THRUST],
+            j_xx * x + j_xy * y + j_xz * z,
+            j_xy * x + j_yy * y + j_yz * z,
+            j_xz * x + j_yz * y + j_zz * z,
+            a[FORCE_MAX],
+            a[PER_ROLL_PITCH],
+            a[PER_YAW],
+        )
+        for k in range(4):
+            speeds[i, k] = math.sqrt(forces[k] * a[PER_K_F]) if forces[k] > 0.0 else 0.0
+
+
+@kernel("void(float64[:, ::1], float64[:, ::1], boolean[::1])")
+def find_ordinary(samples: Array, last: Array, ordinary: Mask) -> None:
+    """Write which ``samples`` (N, 13) are numbers and repeat neither attitude nor rates of the ``last`` ones.
+
+    Then copy them to ``last``. Sensors repeat themselves by chance, or because they are stuck: :mod:`.navigation`
+    decides. Rates of zero are those of a vehicle at rest in a world without noise.
+    """
+    for i in range(samples.shape[0]):
+        s = samples[i]
+        attitude, rates = s[3] + s[4] + s[5] + s[6], s[10] + s[11] + s[12]
+        total = attitude + rates + (s[0] + s[1] + s[2]) + (s[7] + s[8] + s[9])
+        are_numbers = abs(attitude) < _FAR and abs(rates) < _FAR and abs(total) < _FAR
+        same_attitude, same_rates, still = True, True, True
+        for k in range(3, 7):
+            same_attitude = same_attitude and s[k] == last[i, k]
+        for k in range(10, 13):
+            same_rates = same_rates and s[k] == last[i, k]
+            still = still and s[k] == 0.0
+        ordinary[i] = are_numbers and not same_attitude and (still or not same_rates)
+        last[i] = s
+
+
+@kernel("void(float64[:, ::1], float64[:, ::1], float64[:, ::1], boolean[::1], float64, float64[:, ::1])")
+def detect_landings(
+    detectors: Array, estimates: Array, targets: Array, learns: Mask, now: float, landings: Array
+) -> None:
+    """Take one step of landing detection at ``now`` (s); see :class:`.land_detector.LandDetector`.
+
+    The thrust is that of ``targets``; ``learns``: vehicles that learn their hover thrust from it.
+    """
+    for i in range(landings.shape[0]):
+        s, d, found, thrust = estimates[i], detectors[i], landings[i], targets[i, THRUST]
+        if math.isnan(s[0]):
+            continue
+        step = now - found[LAST_TIME]
+        found[LAST_TIME] = now
+        z, v_z = s[2], s[9]
+        if math.isnan(found[ALTITUDE]):
+            found[ALTITUDE] = z
+            continue
+        found[ALTITUDE] += (z - found[ALTITUDE]) * step / (d[ALTITUDE_FILTER] + step)
+        found[VELOCITY] += (v_z - found[VELOCITY]) * step / (d[VELOCITY_FILTER] + step)
+        x, y = s[4], s[5]
+        lift = min(max(thrust * (1.0 - 2.0 * (x * x + y * y)), d[WEIGHT]), d[THRUST_MAX])
+        if found[IN_AIR] == 0.0:
+            if found[GROUND] - found[ALTITUDE] > d[LIFTED]:  # not where the ground is not known
+                found[IN_AIR] = 1.0
+                found[HOVER_THRUST] = lift
+            continue
+        if math.isnan(found[HOVER_THRUST]) or learns[i]:
+            hover = lift if math.isnan(found[HOVER_THRUST]) else found[HOVER_THRUST]
+            found[HOVER_THRUST] = hover + (lift - hover) * step / (d[HOVER_FILTER] + step)
+        hover = found[HOVER_THRUST]
+        slow = abs(found[VELOCITY]) < d[VERTICAL_SPEED_MAX]
+        if not slow or thrust > d[WEIGHT] + d[UNLOADED_SHARE] * (hover - d[WEIGHT]):
+            found[LIGHT_SINCE] = now
+        if found[VELOCITY] > d[TOUCHDOWN_SINKING] or thrust > d[TOUCHDOWN_THRUST] * hover:
+            found[TOUCHING_SINCE] = now
+        found[LIGHT_SINCE] = min(found[LIGHT_SINCE], now)
+        found[TOUCHING_SINCE] = min(found[TOUCHING_SINCE], now)
+        if now - found[LIGHT_SINCE] >= d[TIME]:
+            landed(found)
