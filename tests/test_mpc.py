@@ -109,7 +109,7 @@ def test_hard_input_limits_are_kept_whatever_the_error():
     for _ in range(30):
         error = rng.standard_normal(LAYOUT.size) * rng.choice([0.1, 0.5])
         output = DEFAULT.track(error, STAGES)
-        u = inputs_in_force_components(STAGES.u[0], LAYOUT, p.hover_thrust) + output.delta_u
+        u = inputs_in_force_components(STAGES.u[0], p.hover_thrust) + output.delta_u
         assert np.all(np.abs(u[LAYOUT.n_setpoint]) <= np.tan(s.tuning.uav_tilt_limit) + 1e-5)
         assert np.all(u[LAYOUT.f_setpoint] <= 0.95 * p.thrust_max + 1e-4)
         assert np.all(u[LAYOUT.f_setpoint] >= s.thrust_min - 1e-4)
@@ -153,7 +153,7 @@ def test_mpc_marks_step_and_cuts_move_to_both_input_limits_when_qp_has_no_soluti
         patched.setattr(mpc.qp, "solve", fail)
         output = mpc.track(error_of(**parts), STAGES)
     assert output.infeasible
-    u = inputs_in_force_components(STAGES.u[0], LAYOUT, hover)
+    u = inputs_in_force_components(STAGES.u[0], hover)
     tilt, thrust_max = np.full(8, np.tan(s.tuning.uav_tilt_limit)), s.thrust_share_max * MODEL.parameters.thrust_max
     lower, upper = np.append(-tilt, [s.thrust_min] * 4), np.append(tilt, [thrust_max] * 4)
     assert u + output.delta_u == pytest.approx(np.clip(u + free_move(error_of(**parts)), lower, upper), abs=1e-6)
@@ -201,13 +201,13 @@ def test_force_components_are_inverted_exactly():
     hover = MODEL.parameters.hover_thrust
     u = np.concatenate([0.2 * rng.standard_normal(8), hover + rng.standard_normal(4)])
     target = np.concatenate([0.2 * rng.standard_normal(8), hover + rng.standard_normal(4)])
-    delta = inputs_in_force_components(target, LAYOUT, hover) - inputs_in_force_components(u, LAYOUT, hover)
-    assert setpoints_from_force_components(delta, u, LAYOUT, hover, 0.05) == pytest.approx(target)
+    delta = inputs_in_force_components(target, hover) - inputs_in_force_components(u, hover)
+    assert setpoints_from_force_components(delta, u, hover, 0.05) == pytest.approx(target)
     x = np.zeros(LAYOUT.size)
     x[LAYOUT.n], x[LAYOUT.f] = u[:8], u[8:]
     converted = state_in_force_components(x, LAYOUT, hover)
     as_inputs = np.concatenate([converted[LAYOUT.n], converted[LAYOUT.f]])
-    assert as_inputs == pytest.approx(inputs_in_force_components(u, LAYOUT, hover))
+    assert as_inputs == pytest.approx(inputs_in_force_components(u, hover))
 
 
 @pytest.mark.parametrize("horizon", [2, 7, 20, 33])

@@ -13,6 +13,7 @@ import numpy as np
 
 from idc_controller.arrays import Array
 from idc_controller.control.force_components import setpoints_from_force_components, state_in_force_components
+from idc_controller.control.force_kernels import directions
 from idc_controller.control.ground_controller import GroundController
 from idc_controller.control.load_adaptation import LoadAdaptation, limited
 from idc_controller.control.settings import ControllerSettings
@@ -80,6 +81,7 @@ class IntegratedDecisionController:
         self.guidance = guidance or Guidance()
         self.load = LoadAdaptation(model, settings)
         self._ground_controller = GroundController(model, settings.period, settings.ground)
+        self._hover = self.parameters.hover_thrust
         self._tracked: PayloadTrajectory | None = None
         self._stopwatch = stopwatch
         self._times = settings.period * np.append(np.arange(tracker.horizon + 1), 0.5)
@@ -118,24 +120,21 @@ class IntegratedDecisionController:
         # the middle of it leaves the least error.
         flat = reference.at(estimate.time + self._times)
         stages = flat.part(slice(0, -1))
-        hover = self.parameters.hover_thrust
-        error = state_in_force_components(estimate.x, self.layout, hover)
-        error -= state_in_force_components(stages.x[0], self.layout, hover)
-        s = self.settings
+        hover = self._hover
+        state, referred = state_in_force_components(np.array([estimate.x, stages.x[0]]), self.layout, hover)
+        error, s = state - referred, self.settings
         error[self.layout.r_0] = limited(error[self.layout.r_0], s.position_error_limit)
         error[self.layout.v_0] = limited(error[self.layout.v_0], s.velocity_error_limit)
         ready = self._stopwatch()
         output = (self._ground_controller if on_ground else self.tracker).track(error, stages)
         tracked = self._stopwatch()
-        u = setpoints_from_force_components(output.delta_u, flat.u[-1], self.layout, hover, s.least_lift)
+        u = setpoints_from_force_components(output.delta_u, flat.u[-1], hover, s.least_lift)
         if not on_ground:
             u = self.safety.correct(estimate.time, u, estimate)
-        n = u[self.layout.n_setpoint].reshape(-1, 2)
-        upward = np.sqrt(np.maximum(1.0 - np.sum(n**2, axis=1), 0.0))
         return Decision(
             time=estimate.time,
             u=u,
-            directions=np.column_stack([n, -upward]),
+            directions=directions(u),
             thrusts=u[self.layout.f_setpoint],
             reference=reference,
             flat=stages,

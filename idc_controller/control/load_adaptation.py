@@ -1,5 +1,7 @@
 """The load that the reference is made for: payload mass, disturbance forces and wind, learnt from the estimates."""
 
+import math
+
 import numpy as np
 
 from idc_controller.arrays import Array
@@ -17,6 +19,7 @@ class LoadAdaptation:
     def __init__(self, model: LinearModel, settings: ControllerSettings) -> None:
         self.parameters, self.layout, self.settings = model.parameters, model.layout, settings
         self._weight = self.parameters.m_0 * self.parameters.g
+        self._uav_limit = settings.force_limit * float(self.parameters.m.min()) * self.parameters.g
         self.estimate = Load(self.parameters.m_0, np.zeros(3), np.zeros((self.parameters.number_of_uavs, 3)))
         self.wind = WindEstimator(
             self.parameters.payload.areas, settings.period, settings.drag_limit * self._weight, settings.wind
@@ -38,17 +41,16 @@ class LoadAdaptation:
         drag, uav_drag = _drag(load.air, velocity)
         force, uav_force = load.force + drag, load.uav_force + uav_drag
         # What one of the UAVs has of its own is no wind.
-        self.wind.learn(estimate.force, np.median(estimate.uav_force, axis=0), velocity)
+        self.wind.learn(estimate.force, _median(estimate.uav_force), velocity)
         drag, uav_drag = _drag(self.wind.air, velocity)
-        uav_limit = self.settings.force_limit * float(self.parameters.m.min()) * self.parameters.g
         # The estimate of the wind changes what is left over, not the whole.
         force, uav_force = force - drag, uav_force - uav_drag
         limit = self._weight * (self.settings.force_limit if self.wind.air is None else self.settings.drag_limit)
         force = force + share * (limited(estimate.force, limit) - drag - force)
-        on_uavs = np.array([limited(force_i, uav_limit) for force_i in estimate.uav_force])
+        on_uavs = np.array([limited(force_i, self._uav_limit) for force_i in estimate.uav_force])
         uav_force = uav_force + share * (on_uavs - uav_drag - uav_force)
         least, most = self.settings.mass_share
-        mass = float(np.clip(mass, least * self.parameters.m_0, most * self.parameters.m_0))
+        mass = min(max(mass, least * self.parameters.m_0), most * self.parameters.m_0)
         self.estimate = Load(mass, force, uav_force, self.wind.air)
 
 
@@ -57,7 +59,13 @@ def _drag(air: Air | None, velocity: Array) -> tuple[Array, Array]:
     return (np.zeros(3), np.zeros(3)) if air is None else (air.on_payload(velocity), air.on_uav(velocity))
 
 
+def _median(vectors: Array) -> Array:
+    """Return the median (3,) of finite ``vectors`` (N, 3), axis by axis."""
+    ordered, half = np.sort(vectors, axis=0), len(vectors) // 2
+    return np.asarray(ordered[half] if len(vectors) % 2 else (ordered[half - 1] + ordered[half]) / 2.0)
+
+
 def limited(vector: Array, limit: float) -> Array:
     """Return ``vector`` (3,), shortened to ``limit`` if it is longer."""
-    norm = float(np.linalg.norm(vector))
+    norm = math.sqrt(float(vector @ vector))
     return vector * (limit / norm) if norm > limit else vector

@@ -45,7 +45,7 @@ class ModelPredictiveController:
         # Input bounds of every move are hard; the states' bounds are soft.
         self._input_limits, self.state_constraints = InputLimits(model, settings), state_constraints(model, settings)
         rows = np.vstack([constraint.G for constraint in self.state_constraints])
-        stages = settings.constraint_stages
+        self._stages = stages = settings.constraint_stages
         G = np.vstack([np.kron(np.eye(len(blocks)), self._input_limits.G), *(rows @ H[k] for k in stages)])
         slack_of_constraint = _numbered([constraint.slack for constraint in self.state_constraints])
         slack_of_row = np.concatenate([np.full(2 * H.shape[2], -1), np.tile(slack_of_constraint, len(stages))])
@@ -73,9 +73,10 @@ class ModelPredictiveController:
 
     def bounds(self, error: Array, reference: FlatReference) -> Array:
         """Return h of the QP: of the inputs of every move, then of the states at every constrained stage."""
-        stages = self.settings.constraint_stages
         inputs = self._input_limits.h(reference.u[self.prediction.first_stages])
-        states = np.concatenate([constraint.h(reference, stages) for constraint in self.state_constraints], axis=1)
+        states = np.concatenate(
+            [constraint.h(reference, self._stages) for constraint in self.state_constraints], axis=1
+        )
         return np.concatenate([inputs.ravel(), states.ravel() - self._free_response @ error])
 
 

@@ -29,7 +29,7 @@ class CondensedPrediction:
         self.A, self.B, self.blocks = A, B, tuple(blocks)
         (n, m), stages, moves = B.shape, sum(blocks), len(blocks)
         move_of_stage = np.repeat(np.arange(moves), blocks)
-        self.first_stages = [sum(blocks[:i]) for i in range(moves)]
+        self.first_stages = np.array([sum(blocks[:i]) for i in range(moves)])
         """Stage at which each move begins."""
         self.F = np.zeros((stages + 1, n, n))
         """(N_p + 1, n, n)"""

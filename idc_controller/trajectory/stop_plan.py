@@ -16,10 +16,11 @@ import numpy as np
 from scipy.interpolate import BPoly
 
 from idc_controller.arrays import Array
-from idc_controller.model.linear import E3, StateLayout
+from idc_controller.model.linear import StateLayout
 from idc_controller.parameters import SystemParameters
 from idc_controller.trajectory.flatness import FlatReference
 from idc_controller.trajectory.settings import BrakingSettings
+from idc_controller.trajectory.stop_plan_kernels import motion
 
 # Control points of the quartic from (position, T velocity, T^2 acceleration) at its start.
 _CONTROL_POINTS = np.array(
@@ -81,32 +82,14 @@ def stop_plan(
     ``x`` (12 + 11 N,) is the state then; None: that of the reference. ``choose`` says how to brake, by the time and
     position, velocity and acceleration (3, 3) of a payload that hangs at rest below the UAVs.
     """
-    links = flat.links
-    position, velocity, acceleration = flat.payload[:3, 0]
-    if x is not None and np.all(np.isfinite(x)):
-        off = _beside(parameters, x - flat.x[0])
-        position, velocity = position + off[0], velocity + off[1]
-    l = parameters.l[:, None]
-    state = np.stack(
-        [
-            position + parameters.p - l * links.q[0],
-            velocity - l * links.q_dot[0],
-            acceleration - l * links.q_ddot[0],
-        ],
-        axis=1,
-    )  # (N, 3, 3)
+    layout, links = StateLayout(parameters.number_of_uavs), flat.links
+    error = np.zeros(layout.size) if x is None or not np.isfinite(x).all() else x - flat.x[0]
+    motions = motion(
+        flat.payload[:3, 0], error,
+        links.q[0], links.q_dot[0], links.q_ddot[0], parameters.p, parameters.l, layout.s.start, layout.s_dot.start,
+    )  # fmt: skip
     # The UAVs come to rest by their own motion, and the payload below them, which may swing now.
-    below = state.mean(axis=0)
-    below[0] -= parameters.p.mean(axis=0) - parameters.l.mean() * E3
+    state, below = motions[:-1], motions[-1]
     braking = choose(time, below)
     duration = braking.duration(below[1])
     return StopPlan(time, duration, braking.control_points(state, duration))
-
-
-def _beside(parameters: SystemParameters, error: Array) -> Array:
-    """Position and velocity (2, 3) of the UAVs' centre beside the reference's: the mean of r_0 - l_i s_i."""
-    layout = StateLayout(parameters.number_of_uavs)
-    off = np.array([error[layout.r_0], error[layout.v_0]])
-    for row, tilt in zip(off, (layout.s, layout.s_dot), strict=True):
-        row[:2] -= np.mean(parameters.l[:, None] * error[tilt].reshape(-1, 2), axis=0)
-    return off

@@ -12,7 +12,7 @@ class InputLimits:
     """Rows G v <= h on a move v (3 N,) about the reference's set-points, in force components."""
 
     def __init__(self, model: LinearModel, settings: MpcSettings) -> None:
-        self._layout, self._hover = model.layout, model.parameters.hover_thrust
+        self._hover = model.parameters.hover_thrust
         N = model.layout.number_of_uavs
         tilt = np.full(2 * N, np.tan(settings.tuning.uav_tilt_limit))
         thrust_max = settings.thrust_share_max * model.parameters.thrust_max
@@ -23,5 +23,8 @@ class InputLimits:
 
     def h(self, u: Array) -> Array:
         """Return the bounds (M, 2, 3 N), upper then lower, for set-points ``u`` (M, 3 N) of the reference."""
-        u = inputs_in_force_components(u, self._layout, self._hover)
-        return np.stack([self._upper - u, u - self._lower], axis=1)
+        u = inputs_in_force_components(u, self._hover)
+        bounds = np.empty((len(u), 2, u.shape[1]))
+        np.subtract(self._upper, u, out=bounds[:, 0])
+        np.subtract(u, self._lower, out=bounds[:, 1])
+        return bounds

@@ -31,4 +31,4 @@ class UavSeparation:
 
     def h(self, reference: FlatReference, stages: Sequence[int]) -> Array:
         """Return by how much the UAVs may come closer (S, pairs) (m): on the reference the links are parallel."""
-        return np.tile(self._h, (len(stages), 1))
+        return self._h[None].repeat(len(stages), axis=0)
