@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pymavlink.dialects.v20.common as mavlink
 import pytest
 from hypothesis import settings
+from matplotlib.figure import Figure
+from matplotlib.text import Text
 from vehicle_bench import Bench
 
 # The same examples at every run, however busy the machine is.
@@ -25,3 +29,18 @@ def bench() -> Bench:
 def flying(bench: Bench) -> Bench:
     bench.fly()
     return bench
+
+
+@pytest.fixture
+def pictures(monkeypatch: pytest.MonkeyPatch) -> dict[str, list[str]]:
+    """Texts in each picture that is written, by its file name: titles, labels, legends, numbers in cells."""
+    texts: dict[str, list[str]] = {}
+    save = Figure.savefig
+
+    def savefig(figure: Figure, file: Path, **options: object) -> None:
+        save(figure, file, **options)
+        found = figure.findobj(lambda artist: isinstance(artist, Text) and artist.get_visible())
+        texts[Path(file).name] = [text.get_text() for text in found if text.get_text()]
+
+    monkeypatch.setattr(Figure, "savefig", savefig)
+    return texts

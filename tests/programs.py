@@ -4,7 +4,6 @@ import contextlib
 import json
 import os
 import re
-import socket
 import subprocess
 import sys
 from pathlib import Path
@@ -69,14 +68,6 @@ def addresses_of(process):
         who, _, url = line.strip().partition(": ")
         urls[who] = url
     raise AssertionError(process.stderr.read())
-
-
-def free_port():
-    """A port for which the next four are most likely free, too."""
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
-    return port if port < 60000 else port - 10000
 
 
 @contextlib.contextmanager

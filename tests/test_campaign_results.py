@@ -48,10 +48,11 @@ def test_csv_and_parquet_agree(tmp_path):
     assert pandas.read_csv(rates)["flights"].tolist() == [3, 1]
 
 
-def test_report_covers_all_outcomes(tmp_path):
+def test_report_covers_all_outcomes(tmp_path, pictures):
     [result] = results(tmp_path, 1)
     made = [dataclasses.replace(result, outcome=o, level=i % 3 + 1, notes="x") for i, o in enumerate(VERDICTS)]
-    assert draw_matrix("a test", made, tmp_path).stat().st_size > 5_000
+    draw_matrix("a test", made, tmp_path)
+    assert set(VERDICTS) <= set(pictures["matrix.png"])
     report("a test", made, tmp_path)
 
 

@@ -101,14 +101,16 @@ def test_folder_is_refused_to_another_campaign_or_process(tmp_path, flown):
     assert flown == []
 
 
-def test_command_flies_and_reports(tmp_path, flown, capsys):
+def test_command_flies_and_reports(tmp_path, flown, capsys, pictures):
     path, out = str(campaign_file(tmp_path)), tmp_path / "out"
     assert main(["faults", path, "--out", str(out), "--jobs", "2"]) == 1
     said = capsys.readouterr().out
     assert "4 of 6 flights within their limits" in said
     for name in flown:
         assert (f"gcs fly {out}/missions/{name}.toml --controller idc" in said) == ("0.3" in name)
-    assert (out / "matrix.png").stat().st_size > 10_000
+    cells = {"probability 0.1\n2 of 2", "probability 0.3\n0 of 2", "2 of 2"}
+    assert cells | {"loss", "slow", "within limits", "outside limits"} <= set(pictures["matrix.png"])
+    assert (out / "matrix.png").is_file()
     assert main(["faults", str(campaign_file(tmp_path, CAMPAIGN.replace(", 0.3", ""))), "--out", str(out)]) == 0
     assert len(flown) == 6
 

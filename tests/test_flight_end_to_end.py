@@ -11,7 +11,7 @@ from flight_in_process import (
     short_figure,
     truth_of,
 )
-from programs import addresses_of, free_port, gcs_fly, swarm_process
+from programs import addresses_of, gcs_fly, swarm_process
 
 from gcs.mission.read import read_mission
 from gcs.mission.route import FlyTo
@@ -49,7 +49,7 @@ def test_short_figure_covers_whole_curve(figure):
     assert np.abs(truth["payload_y_m"]).max() > 2.7
 
 
-@pytest.mark.parametrize("vehicles", [3, 5, 8])
+@pytest.mark.parametrize("vehicles", [3, 8])  # the fewest, an odd number; and many
 def test_figure_eight_is_flown_by_other_team_sizes(tmp_path, vehicles):
     summary = flown(read_mission(short_figure(tmp_path, duration=8.0, vehicles=vehicles)), tmp_path / "run", seed=11)
     check_within_limits(summary)
@@ -113,8 +113,7 @@ def test_two_programs_with_different_payload_masses_fly_in_lockstep(tmp_path):
     heavy = tmp_path / "heavy"
     heavy.mkdir()
     heavier = short_figure(heavy, duration=12.0, payload_mass_factor="1.1")
-    base = free_port()
-    swarm = swarm_process("--lockstep", "--mission", heavier, "--run-dir", tmp_path / "world", "--base-port", base)
+    swarm = swarm_process("--lockstep", "--mission", heavier, "--run-dir", tmp_path / "world", "--base-port", 0)
     try:
         addresses = addresses_of(swarm)
         urls = [addresses[f"vehicle {i}"] for i in (1, 2, 3, 4)]

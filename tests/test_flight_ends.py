@@ -1,14 +1,16 @@
 """Every end of a flight: a clear message and exit code, the payload on the ground, records closed."""
 
+import contextlib
 import json
 import os
 import signal
+import socket
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from flight_in_process import InProcessFlight, short_figure, truth_of
-from programs import PATIENCE, GcsProcess, addresses_of, free_port, swarm_process
+from programs import PATIENCE, GcsProcess, addresses_of, swarm_process
 from pymavlink import mavutil
 
 from gcs.app.cli import main
@@ -24,18 +26,23 @@ pytestmark = pytest.mark.slow
 
 def check_records_closed(folder):
     summary = json.loads((folder / "summary.json").read_text())
-    log = mavutil.mavlink_connection(str(folder / "telemetry.tlog"))
-    kinds = set()
-    while (message := log.recv_match()) is not None:
-        kinds.add(message.get_type())
-    log.close()
-    assert {"HEARTBEAT", "SET_ATTITUDE_TARGET", "LOCAL_POSITION_NED"} <= kinds
+    assert {"HEARTBEAT", "SET_ATTITUDE_TARGET", "LOCAL_POSITION_NED"} <= kinds_in_log(folder)
     for name in ("truth.csv", "reference.csv"):
         text = (folder / name).read_text()
         assert text.endswith("\n")
         columns = text.partition("\n")[0].count(",")
         assert text.rstrip("\n").rpartition("\n")[2].count(",") == columns  # the last row is whole
     return summary
+
+
+def kinds_in_log(folder):
+    """Types of the messages in the log of a flight's datagrams."""
+    log = mavutil.mavlink_connection(str(folder / "telemetry.tlog"))
+    kinds = set()
+    while (message := log.recv_match()) is not None:
+        kinds.add(message.get_type())
+    log.close()
+    return kinds
 
 
 def check_on_the_ground(folder, height=0.25):
@@ -84,12 +91,12 @@ def test_killed_simulation_ends_the_flight_with_its_reason(tmp_path):
     assert "vehicle-sim was killed by signal 9" in errors
     summary = json.loads((gcs.folder / "summary.json").read_text())
     assert not summary["completed"]
-    assert (gcs.folder / "telemetry.tlog").stat().st_size > 10_000
+    assert {"HEARTBEAT", "SET_ATTITUDE_TARGET", "LOCAL_POSITION_NED"} <= kinds_in_log(gcs.folder)
 
 
 def test_vehicles_hold_then_land_when_the_ground_is_killed(tmp_path):
     mission = short_figure(tmp_path, duration=30.0, altitude=1.5)
-    options = ("--lockstep", "--mission", mission, "--run-dir", tmp_path / "world", "--base-port", free_port())
+    options = ("--lockstep", "--mission", mission, "--run-dir", tmp_path / "world", "--base-port", 0)
     swarm = swarm_process(*options)
     try:
         addresses = addresses_of(swarm)
@@ -114,11 +121,14 @@ def test_vehicles_hold_then_land_when_the_ground_is_killed(tmp_path):
 
 
 def test_unreachable_vehicles_are_refused_with_their_address(tmp_path):
-    base = free_port()
-    urls = [f"udp://127.0.0.1:{base + i}" for i in range(4)]
-    code, errors = GcsProcess(
-        short_figure(tmp_path), tmp_path / "run", "--realtime", "--speed", "10", "--connect", *urls
-    ).end()
+    with contextlib.ExitStack() as opened:
+        silent = [opened.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) for _ in range(4)]
+        for endpoint in silent:
+            endpoint.bind(("127.0.0.1", 0))
+        urls = [f"udp://127.0.0.1:{endpoint.getsockname()[1]}" for endpoint in silent]
+        code, errors = GcsProcess(
+            short_figure(tmp_path), tmp_path / "run", "--realtime", "--speed", "10", "--connect", *urls
+        ).end()
     assert code == 1, errors
     assert f"vehicle 1 does not answer at {urls[0].removeprefix('udp://')}" in errors
     assert json.loads((tmp_path / "run" / "summary.json").read_text())["outcome"] == "aborted"
@@ -231,9 +241,12 @@ def test_link_loss_of_one_vehicle_lands_all_of_them(tmp_path, telemetry, command
         summary = flight.summary()
     assert not summary["completed"]
     stops = stops_after(tmp_path / "run", 16.4)
+    # Apart by a control period at most, 0.05 s, and a step on board: the last set-point or plan that reached a vehicle
+    # may be one older than the others'.
     assert len(stops) == 4 and max(stops.values()) - min(stops.values()) < 0.055
     assert len(followed) == 4 and max(followed.values()) - min(followed.values()) < 0.055
     # A vehicle without commands stops and reports it; one without telemetry is detected at a control step.
+    # The set-point loss time, 0.46 s, and of these two half a control period or a whole one.
     assert max(stops.values()) - 16.4 <= (0.515 if telemetry else 0.485)
     check_set_down(tmp_path / "run", summary)
 

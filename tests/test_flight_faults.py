@@ -1,5 +1,6 @@
 """Single faults of one vehicle, of one channel of all, or of the payload's unit: the team goes on, within limits.
 
+A flight has several of them one after the other, with time to recover; the last one lasts through the landing.
 Flights of one process: tests/test_pytest_plugin.py and the last of these fly faults with the two programs.
 """
 
@@ -26,32 +27,45 @@ START = 13.0  # s after take-off: on the figure
 LIMITS = Limits(position_rmse=0.15, settle=0.0, payload_tilt_deg=4.0, uav_separation=0.75)
 
 
-def of_one(parameters, direction=None, start=START):
-    return [fault(parameters, start=start, vehicles=[3], direction=direction)]
+def of_one(parameters, direction=None, vehicle=3, start=START, duration=None):
+    return [fault(parameters, start, duration, vehicles=[vehicle], direction=direction)]
 
 
-def of_all(parameters):
-    return [fault(parameters, start=START)]
+def of_all(*parameters, start=START, duration=None):
+    return [fault(each, start, duration) for each in parameters]
 
 
+FIRST = {"start": START, "duration": 5.0}
+THEN = {"start": START + 7.0, "duration": 5.0}
+LAST = {"start": START + 14.0}  # and through the landing
 FAULTS = {
-    "one link late": of_one(Latency(delay=0.06)),
-    "one link's set-points late": of_one(Latency(delay=0.06), "command"),
-    "all links late": [*of_all(Latency(delay=0.06)), *of_all(Jitter(spread=0.02))],
-    "out of order": of_all(Reordering(probability=0.2)),
-    "position drifting": of_one(Drift(rate=0.1, channel="position")),
-    "position biased": of_one(Bias(amount=0.5, channel="position")),
-    "position stuck": of_one(Stuck(channel="position")),
-    "velocity unknown": of_one(NotANumber(channel="velocity")),
-    "position lost": of_one(PositionLost()),
-    "position lost while it climbs, and for the vehicle it does so still": of_one(PositionLost(), start=5.0),
-    "two vehicles' data swapped": of_one(SwappedVehicles(other=1)),
-    "attitude lost": of_one(AttitudeLost()),
-    "rates lost": of_one(RatesLost()),
-    "payload's position stuck": of_all(Stuck(channel="payload_position")),
-    "all positions drifting": of_all(PositionDrift(velocity=(0.1, 0.0, 0.0))),
+    "one link late, velocity unknown, position drifting": [
+        *of_one(Latency(delay=0.06), **FIRST),
+        *of_one(NotANumber(channel="velocity"), vehicle=1, **THEN),
+        *of_one(Drift(rate=0.1, channel="position"), **LAST),
+    ],
+    "one link's set-points late, rates lost, position stuck": [
+        *of_one(Latency(delay=0.06), "command", **FIRST),
+        *of_one(RatesLost(), vehicle=1, **THEN),
+        *of_one(Stuck(channel="position"), **LAST),
+    ],
+    "all links late, attitude lost, all positions drifting": [
+        *of_all(Latency(delay=0.06), Jitter(spread=0.02), **FIRST),
+        *of_one(AttitudeLost(), **THEN),
+        *of_all(PositionDrift(velocity=(0.1, 0.0, 0.0)), **LAST),
+    ],
+    "out of order, position biased, all attitudes stuck": [
+        *of_all(Reordering(probability=0.2), **FIRST),
+        *of_one(Bias(amount=0.5, channel="position"), **THEN),
+        *of_all(Stuck(channel="attitude"), **LAST),
+    ],
+    "payload's position stuck, position lost, two vehicles' data swapped": [
+        *of_all(Stuck(channel="payload_position"), **FIRST),
+        *of_one(PositionLost(), vehicle=1, **THEN),
+        *of_one(SwappedVehicles(other=1), **LAST),
+    ],
     "all velocities biased": of_all(Bias(amount=0.5, channel="velocity")),
-    "all attitudes stuck": of_all(Stuck(channel="attitude")),
+    "position lost from the climb on": of_one(PositionLost(), start=5.0),
 }
 
 
@@ -66,8 +80,9 @@ def check_flown_within(limits, mission, folder, faults, seed):
 
 
 @pytest.mark.parametrize("name", FAULTS)
-def test_flight_with_faults_completes_within_limits(name, tmp_path):
-    mission = short_figure(tmp_path, duration=12.0, altitude=2.5 if "climbs" in name else 1.5)
+def test_flight_with_faults_one_after_another_completes_within_limits(name, tmp_path):
+    duration = 24.0 if "," in name else 12.0
+    mission = short_figure(tmp_path, duration=duration, altitude=2.5 if "climb" in name else 1.5)
     check_flown_within(LIMITS, mission, tmp_path / "run", FAULTS[name], seed=31)
 
 

@@ -14,8 +14,8 @@ from gcs.mavlink import px4
 
 pytestmark = pytest.mark.slow
 
-DATAGRAMS = 200_000  # to the vehicle, and as many to the ground
-EXCHANGES = 1500  # in which they come; the flight has some more
+DATAGRAMS = 60_000  # to the vehicle, and as many to the ground
+EXCHANGES = 1000  # in which they come; the flight has some more
 VEHICLE = 1  # the team's time is its time
 OTHER_HOST = ("10.0.0.66", 40002)
 AGAINST_VEHICLE = [

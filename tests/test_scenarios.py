@@ -319,7 +319,7 @@ def test_folder_of_something_else_is_refused(tmp_path):
         campaign_in(tmp_path)
 
 
-def test_command_flies_and_reports(tmp_path, flown, capsys):
+def test_command_flies_and_reports(tmp_path, flown, capsys, pictures):
     out = str(tmp_path / "out")
     assert main(["courses", "--count", "3", "--kinds", "poles", "--out", out]) == 0
     printed = capsys.readouterr().out
@@ -327,7 +327,10 @@ def test_command_flies_and_reports(tmp_path, flown, capsys):
     assert main(["courses", "--count", "4", "--kinds", "poles", "--out", out]) == 1
     printed = capsys.readouterr().out
     assert "3 of 4 scenarios passed" in printed and f"gcs fly {out}/missions/0004-poles.toml" in printed
-    assert (tmp_path / "out" / "distribution.png").stat().st_size > 10_000
+    assert (tmp_path / "out" / "distribution.png").is_file()
+    texts = pictures["distribution.png"]
+    assert texts.count("scenarios") >= 3 and "4 random scenarios, 3 passed" in texts
+    assert any(text.startswith("limit ") for text in texts) and any(text.startswith("worst ") for text in texts)
     assert main(["courses", "--count", "4", "--kinds", "walls", "--out", out]) == 2
     assert "was begun with kinds" in capsys.readouterr().err
 

@@ -160,7 +160,7 @@ def test_results_of_earlier_version_are_read(tmp_path, flown):
     assert read_result(path, COLUMNS, OPTIONAL) is None
 
 
-def test_command_flies_and_reports(tmp_path, flown, capsys):
+def test_command_flies_and_reports(tmp_path, flown, capsys, pictures):
     arguments = ["--quick", "--jobs", "1", "--out", str(tmp_path), "--missions", str(MISSIONS)]
     assert main(["study", "controllers", *arguments]) == 1
     printed = capsys.readouterr().out
@@ -171,7 +171,10 @@ def test_command_flies_and_reports(tmp_path, flown, capsys):
         rows = list(csv.DictReader(file))
     assert tuple(rows[0]) == STUDY_COLUMNS and len(rows) == 9
     assert {row["clearance_asked_m"] for row in rows} == {"", "0.5", "0.45"}
-    assert (tmp_path / "controllers.png").stat().st_size > 10_000
+    assert (tmp_path / "controllers.png").is_file()
+    texts = pictures["controllers.png"]
+    assert {"least clearance, hull to surface (m)", "limit"} <= set(texts)
+    assert any(text.startswith("controllers: ") and text.endswith("(9 flights)") for text in texts)
     assert main(["study", "margin", *arguments]) == 0
     assert "0.60 >= 0.25" in capsys.readouterr().out
     assert len(flown) == 9 + 3

@@ -29,13 +29,13 @@ def scripted_ground(addresses, lift=0.6):
 
 
 @pytest.fixture
-def lockstep():
-    """A driver in a thread of its own: (swarm, sockets, ending, thread)."""
+def lockstep(request):
+    """A driver in a thread of its own: (swarm, sockets, ending, thread); its parameter: how long it waits (s)."""
     with contextlib.ExitStack() as opened:
         swarm = opened.enter_context(Swarm(CONFIG, seed=1))
         sockets = opened.enter_context(SwarmSockets("127.0.0.1", 0, 4, with_clock=True))
         ending = opened.enter_context(contextlib.closing(Ending()))
-        driver = LockstepDriver(swarm, sockets, ending, answer_time=3.0)
+        driver = LockstepDriver(swarm, sockets, ending, answer_time=getattr(request, "param", PATIENCE))
         thread = threading.Thread(target=driver.run)
         thread.start()
         try:
@@ -129,6 +129,7 @@ def test_second_ground_may_join_after_first_has_left(lockstep):
     second.close()
 
 
+@pytest.mark.parametrize("lockstep", [3.0], indirect=True)  # as long as it takes a busy machine to answer, and to wait
 def test_ground_that_stops_answering_times_out(lockstep):
     swarm, sockets, _, _ = lockstep
     first = client_of(sockets, lift=0.3)

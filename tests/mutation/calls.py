@@ -95,19 +95,22 @@ class CallMap:
     def tests_for(self, mutant: Mutant, importers: dict[str, set[str]]) -> list[TestFile]:
         """Return the test files that may notice the mutant, those first of which most tests call the function.
 
-        What is no function (a constant, a default) and what is compiled (a kernel) may be noticed by whoever calls the
-        module or one that imports it.
+        What is no function (a constant, a default), what is compiled (a kernel) and what is newer than the map may be
+        noticed by whoever calls the module or one that imports it.
         """
-        whole = mutant.path.endswith("kernels.py") or not mutant.function
-        modules = users(mutant.path, importers) if whole else {mutant.path}
+        if mutant.function and not mutant.path.endswith("kernels.py"):
+            found = self._calling(lambda path, name: path == mutant.path and _encloses(name, mutant.function))
+            if found:
+                return found
+        modules = users(mutant.path, importers)
+        return self._calling(lambda path, name: path in modules)
+
+    def _calling(self, is_called: Callable[[str, str], bool]) -> list[TestFile]:
         found = []
         for name, entry in self.tests.items():
             callers, others = [], []
             for test, (cost, calls) in entry["tests"].items():
-                called = any(
-                    path in modules and (whole or _encloses(function, mutant.function)) for path, function in calls
-                )
-                (callers if called else others).append((cost, test))
+                (callers if any(is_called(*call) for call in calls) else others).append((cost, test))
             if callers:
                 # The others run last: a fixture that they share with the callers may have been recorded as a caller's.
                 tests = [*sorted(callers), *sorted(others)]
@@ -118,7 +121,7 @@ class CallMap:
 
 def _encloses(function: str, scope: str) -> bool:
     """Return whether a call of ``function`` may reach the scope: itself, what it encloses, or its class's body."""
-    return scope in ("", function) or function.startswith(f"{scope}.") or scope.startswith(f"{function}.")
+    return scope == function or function.startswith(f"{scope}.") or scope.startswith(f"{function}.")
 
 
 def import_graph(root: Path) -> dict[str, set[str]]:
