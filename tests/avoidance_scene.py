@@ -86,7 +86,7 @@ class Scene:
     def __init__(self, obstacles):
         self.obstacles = list(obstacles)
 
-    def predict(self, times):
+    def predict(self, times, region=None):
         times = np.asarray(times, dtype=float)
         return [
             PredictedObstacle(name, shape, motion(times), np.full(len(times), growth))

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from idc_controller.arrays import Array
-from idc_controller.geometry.obstacles import PredictedObstacle
+from idc_controller.geometry.obstacles import PredictedObstacle, Region
 from idc_controller.geometry.shape import Shape
 
 
@@ -16,7 +16,7 @@ class StandingObstacles:
         """Name, shape and centre (3,) (m, NED) of each."""
         self._obstacles = tuple(obstacles)
 
-    def predict(self, times: Array) -> list[PredictedObstacle]:
+    def predict(self, times: Array, region: Region | None = None) -> list[PredictedObstacle]:
         """Return all of them, the same at every one of ``times`` (K,)."""
         K = len(times)
         return [

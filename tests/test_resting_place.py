@@ -36,7 +36,7 @@ class Swinging:
     def __init__(self, place, amplitude):
         self._place, self._amplitude = np.asarray(place, dtype=float), amplitude
 
-    def predict(self, times):
+    def predict(self, times, region=None):
         positions = np.tile(self._place, (len(times), 1))
         positions[:, 1] += self._amplitude * np.sin(1.5 * np.asarray(times))
         return [PredictedObstacle("swinging", Sphere(0.5), positions, np.zeros(len(times)))]

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcs.config import SystemConfig
-from idc_controller.geometry.obstacles import PredictedObstacle
+from idc_controller.geometry.obstacles import PredictedObstacle, Region
 from idc_controller.geometry.sphere import Sphere as SphereShape
 from idc_controller.trajectory.lissajous import LissajousCurve, LissajousTrajectory
 from idc_controller.trajectory.paths import Leg
@@ -33,7 +33,7 @@ def configuration() -> SystemConfig:
     return SystemConfig()
 
 
-def printed_reference(times: Array) -> Array:
+def printed_reference(times: Array, region: Region | None = None) -> Array:
     """Return eq:Lissajous (K, 3) at ``times`` (K,): a step to the altitude, and full speed from the start."""
     phase = RATE * np.asarray(times, dtype=float)
     return np.column_stack(
@@ -82,7 +82,7 @@ class Sphere:
     amplitude: float = 0.0
     phase: float = 0.0
 
-    def motion(self, times: Array) -> tuple[Array, Array, Array]:
+    def motion(self, times: Array, region: Region | None = None) -> tuple[Array, Array, Array]:
         """Return position, velocity and acceleration (K, 3) at ``times`` (K,)."""
         angle = OSCILLATION_RATE * np.asarray(times, dtype=float) + self.phase
         along = self.amplitude * np.array([1.0, 0.0, 0.0])
@@ -105,7 +105,7 @@ class KnownSpheres:
     def __init__(self, spheres: Sequence[Sphere]) -> None:
         self.spheres = tuple(spheres)
 
-    def predict(self, times: Array) -> list[PredictedObstacle]:
+    def predict(self, times: Array, region: Region | None = None) -> list[PredictedObstacle]:
         """Return all of them at ``times`` (K,)."""
         none = np.zeros(len(times))
         return [PredictedObstacle(s.name, SphereShape(RADIUS), s.motion(times)[0], none) for s in self.spheres]

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Indices
 from idc_controller.compiled import inlined, kernel
 
 
@@ -52,3 +52,36 @@ def distances_of_points(bodies: Array, points: Array, centres: Array) -> Array:
                 bodies, b, points[i, 0] - centres[b, 0], points[i, 1] - centres[b, 1], points[i, 2] - centres[b, 2]
             )
     return distance
+
+
+@kernel("float64[:, ::1](float64[:, ::1], float64[::1], float64[:, ::1], float64[:, ::1], int64[::1], float64)")
+def mean_distances_of_groups(
+    bodies: Array, reach: Array, centres: Array, points: Array, starts: Indices, far: float
+) -> Array:
+    """Return the mean distance of the points of G groups from the surfaces of B bodies (G, B) (m).
+
+    Args:
+        bodies: (B, 14).
+        reach: radius of the ball that holds each of them (B,) (m).
+        centres: of them (B, 3), world (m).
+        points: of all groups, one group after the other (n, 3), world (m).
+        starts: index of the first point of each group, then n (G + 1,).
+        far: distances that are surely above this (m) are replaced by a lower bound, itself above it.
+    """
+    groups, count = starts.shape[0] - 1, bodies.shape[0]
+    mean = np.empty((groups, count))
+    for g in range(groups):
+        first, size, spread = starts[g], starts[g + 1] - starts[g], 0.0
+        x, y, z = points[first, 0], points[first, 1], points[first, 2]
+        for i in range(first, starts[g + 1]):
+            apart = (points[i, 0] - x) ** 2 + (points[i, 1] - y) ** 2 + (points[i, 2] - z) ** 2
+            spread = max(spread, math.sqrt(apart))
+        for b in range(count):
+            cx, cy, cz = centres[b, 0], centres[b, 1], centres[b, 2]
+            mean[g, b] = math.sqrt((x - cx) ** 2 + (y - cy) ** 2 + (z - cz) ** 2) - spread - reach[b]
+            if mean[g, b] <= far:
+                total = 0.0
+                for i in range(first, starts[g + 1]):
+                    total += abs(distance_to(bodies, b, points[i, 0] - cx, points[i, 1] - cy, points[i, 2] - cz))
+                mean[g, b] = total / size
+    return mean

@@ -1,13 +1,19 @@
 """Obstacles as the safety filter takes them: convex shapes, their predicted places, and the distances to them."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from itertools import accumulate
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from idc_controller.arrays import Array
-from idc_controller.geometry.distance_kernels import distances_of_offsets, distances_of_points
+from idc_controller.geometry.distance_kernels import (
+    distances_of_offsets,
+    distances_of_points,
+    mean_distances_of_groups,
+)
 from idc_controller.geometry.shape import ROW, Shape
 
 
@@ -24,11 +30,18 @@ class PredictedObstacle:
     """Growth of the body at each moment, for what is not known (K,) (m)."""
 
 
+class Region(NamedTuple):
+    """All within ``radius`` (m) of the vertical line through ``place`` (3,), NED (m)."""
+
+    place: Array
+    radius: float
+
+
 class ObstacleSource(Protocol):
     """A source of predicted obstacles: a map, a tracker of detections, or both."""
 
-    def predict(self, times: Array) -> Sequence[PredictedObstacle]:
-        """Return all obstacles at ``times`` (K,) (s)."""
+    def predict(self, times: Array, region: Region | None = None) -> Sequence[PredictedObstacle]:
+        """Return all obstacles at ``times`` (K,) (s); those that stay out of ``region`` may be missing."""
         ...
 
 
@@ -36,9 +49,11 @@ class Bodies:
     """Shapes gathered for distances from points to all of them together."""
 
     def __init__(self, shapes: Sequence[Shape]) -> None:
-        self.count = len(shapes)
-        self.rows = np.array([shape.row for shape in shapes]).reshape(self.count, ROW)
+        self.shapes = shapes
+        self.rows = np.array([shape.row for shape in shapes]).reshape(len(shapes), ROW)
         """Rounded boxes as :mod:`idc_controller.geometry.distance_kernels` takes them (B, 14)."""
+        self.reach = np.array([shape.reach for shape in shapes])
+        """Radius of the ball about its centre that holds each body (B,) (m)."""
         self.others = [(i, shape) for i, shape in enumerate(shapes) if shape.rounded_box is None]
         """Bodies that are no rounded boxes, with their index."""
 
@@ -55,3 +70,16 @@ class Bodies:
         for i, shape in self.others:
             distance[i] = shape.distance(offsets[i] @ shape.rotation)
         return distance
+
+    def mean_distances(self, groups: Sequence[Array], centres: Array, far: float = math.inf) -> Array:
+        """Return the mean distance (m) of every group of points (n, 3) from every surface (groups, B).
+
+        Distances that are surely above ``far`` (m) may be replaced by a lower bound, itself above it.
+        """
+        starts = np.array([0, *accumulate(map(len, groups))])
+        points = np.concatenate(groups)
+        mean = mean_distances_of_groups(self.rows, self.reach, np.ascontiguousarray(centres), points, starts, far)
+        for i, shape in self.others:
+            distance = np.abs(shape.distance((points - centres[i]) @ shape.rotation))
+            mean[:, i] = np.add.reduceat(distance, starts[:-1]) / np.diff(starts)
+        return mean

@@ -9,7 +9,7 @@ import numpy as np
 
 from idc_controller.arrays import Array
 from idc_controller.geometry.formation import BoundingCylinder
-from idc_controller.geometry.free_space import FreeSpace, first_conflict
+from idc_controller.geometry.free_space import TOUCHING, FreeSpace
 from idc_controller.geometry.obstacles import ObstacleSource, PredictedObstacle
 from idc_controller.guidance.detour import find_detour
 from idc_controller.guidance.settings import NavigatorSettings
@@ -141,28 +141,26 @@ class Navigator:
     ) -> tuple[Array, float] | str:
         """Return waypoints of a detour and the mission's progress where it leads, or why there is no detour."""
         s = self.settings
-        now = [PredictedObstacle(o.name, o.shape, o.positions[:1], o.growth[:1]) for o in obstacles]
         ahead = progress + np.arange(0.0, s.look_ahead, s.sample)
         path = mission.derivatives(ahead, 0)[0]
         keep = s.margin + s.spare
-        conflicts = np.array([first_conflict(p[None], now, self.formation, keep) is not None for p in path])
-        bodies = [(o.shape, o.positions[0]) for o in now]
-        growth = [float(o.growth[0]) for o in now]
-        names = [o.name for o in now]
+        bodies = [(o.shape, o.positions[0]) for o in obstacles]
+        growth = [float(o.growth[0]) for o in obstacles]
+        names = [o.name for o in obstacles]
         highest = float(-path[:, 2].min()) + s.climb
+        space = FreeSpace(bodies, self.formation, keep, self.lowest, highest, growth=growth)
+        conflicts = np.asarray(np.any(space.clearance(path) < keep - TOUCHING, axis=1))
         begin = int(np.argmax(conflicts)) if conflicts.any() else 0
         free = np.flatnonzero(~conflicts[begin:]) + begin
         until = ahead[int(free[0])] if len(free) else ahead[-1]
-        fixed = [
-            now[i] for i, o in enumerate(obstacles) if np.linalg.norm(o.positions[-1] - o.positions[0]) < s.standing
-        ]
+        fixed = [i for i, o in enumerate(obstacles) if np.linalg.norm(o.positions[-1] - o.positions[0]) < s.standing]
         # The progress is ahead of the payload when that is held up.
-        for waypoint in mission.waypoints(progress - s.behind, until):
-            for obstacle in fixed:
-                if first_conflict(waypoint[None], [obstacle], self.formation, 0.0) is not None:
-                    north, east, down = waypoint
-                    place = f"{north:.1f} m north, {east:.1f} m east, {-down:.1f} m high"
-                    return f"{obstacle.name} stands at the waypoint {place}"
+        waypoints = mission.waypoints(progress - s.behind, until)
+        for waypoint, clearance in zip(waypoints, space.clearance(waypoints)[:, fixed], strict=True):
+            if (clearance < -TOUCHING).any():
+                north, east, down = waypoint
+                place = f"{north:.1f} m north, {east:.1f} m east, {-down:.1f} m high"
+                return f"{names[fixed[int(np.argmax(clearance < -TOUCHING))]]} stands at the waypoint {place}"
         goals = (
             [int(free[0]), int(free[min(round(s.goal_spare / s.sample), len(free) - 1)])]
             if len(free)
@@ -176,7 +174,6 @@ class Navigator:
             if detour.waypoints is not None:
                 return detour.waypoints, float(ahead[goal])
         # By its surface: a long wall's centre may be far.
-        space = FreeSpace(bodies, self.formation, keep, self.lowest, highest, growth=growth)
         reason = "there is no path to the rest of the mission"
         if bodies:
             nearest = names[int(np.argmin(space.clearance(position[None])[0]))]

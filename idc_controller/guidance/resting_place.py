@@ -14,7 +14,7 @@ import numpy as np
 from scipy.interpolate import BPoly
 
 from idc_controller.arrays import Array
-from idc_controller.geometry.obstacles import Bodies, ObstacleSource, PredictedObstacle
+from idc_controller.geometry.obstacles import Bodies, ObstacleSource, PredictedObstacle, Region
 from idc_controller.geometry.shape import Shape
 from idc_controller.guidance.resting_place_kernels import least_distances
 from idc_controller.guidance.settings import RestingPlaceSettings
@@ -54,7 +54,7 @@ class RestingPlace:
         brake. The usual stop, if that is clear; else the last one that was chosen, while it is; else the best of many.
         """
         s, (usual, last) = self.settings, self._choices[:2]
-        obstacles = self._obstacles.predict(time + self._elapsed)
+        obstacles = self._obstacles.predict(time + self._elapsed, Region(state[0], self._farthest(state)))
         if not obstacles:
             return usual
         near = _Near(obstacles, s.growth_max)
@@ -66,6 +66,15 @@ class RestingPlace:
         merits = np.minimum(self._clearances(near, state, self._choices), s.clearance) - s.cost * np.array(effort)
         best = self._choices[1] = self._choices[int(np.argmax(merits))]
         return best
+
+    def _farthest(self, state: Array) -> float:
+        """Return how far (m) from where it is now an obstacle can be that matters, for the slowest stop."""
+        s = self.settings
+        duration = max(choice.duration(state[1]) for choice in self._choices)
+        _, speed, acceleration = np.linalg.norm(state, axis=1).tolist()
+        # The control points of a path hold it.
+        length = duration / 2.0 * speed + duration**2 / 12.0 * acceleration + max(s.aside, default=0.0)
+        return float(length + self._radius + s.clearance + s.growth_max + _ROUNDING)
 
     def _clearances(self, near: _Near, state: Array, choices: Sequence[Braking]) -> Array:
         """Return the least distance (m) of the formation's upright hull on its path to rest, and down from there.
@@ -94,17 +103,17 @@ class _Near:
 
     def __init__(self, obstacles: Sequence[PredictedObstacle], growth_max: float) -> None:
         self._bodies = Bodies([obstacle.shape for obstacle in obstacles])
-        self._reach = np.array([obstacle.shape.reach for obstacle in obstacles])
         self._centres = np.array([obstacle.positions for obstacle in obstacles])  # (O, K, 3)
         self._growth = np.minimum(np.array([obstacle.growth for obstacle in obstacles]), growth_max)  # (O, K)
 
     def least_distances(self, control: Array, durations: Array, elapsed: Array, axis: Array, limit: float) -> Array:
         """See :func:`~idc_controller.guidance.resting_place_kernels.least_distances`."""
-        others = self._bodies.others
+        others, reach = self._bodies.others, self._bodies.reach
         if others:
-            self._reach[[i for i, _ in others]] = -np.inf  # never near: the kernel passes them over
+            reach = reach.copy()
+            reach[[i for i, _ in others]] = -np.inf  # never near: the kernel passes them over
         least = least_distances(
-            control, durations, elapsed, axis, _STEP, self._bodies.rows, self._reach, self._centres, self._growth, limit
+            control, durations, elapsed, axis, _STEP, self._bodies.rows, reach, self._centres, self._growth, limit
         )
         for i, shape in others:
             for c, (points, duration) in enumerate(zip(control, durations, strict=True)):

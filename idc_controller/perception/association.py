@@ -1,5 +1,6 @@
 """Association of clusters with obstacles: the nearest surface, a different one for each cluster of a vehicle."""
 
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -8,26 +9,11 @@ from scipy.optimize import linear_sum_assignment
 
 from idc_controller.arrays import Array
 from idc_controller.geometry.box import Wall
-from idc_controller.geometry.obstacles import Bodies
 from idc_controller.geometry.shape import Shape
 from idc_controller.perception.scan_assembly import Cluster
 from idc_controller.perception.settings import AssociationSettings
 
 _FAR = 1e3
-
-
-def mean_distances(clusters: Sequence[Cluster], shapes: Sequence[Shape], centres: Array) -> Array:
-    """Return the mean distance of every cluster's points from every surface (clusters, bodies) (m).
-
-    ``shapes`` at ``centres`` (bodies, 3) (NED, m).
-    """
-    if not shapes:
-        return np.zeros((len(clusters), 0))
-    points = np.concatenate([cluster.surface_points.points for cluster in clusters])
-    counts = np.array([len(cluster.surface_points.points) for cluster in clusters])
-    starts = np.concatenate([[0], np.cumsum(counts)[:-1]])
-    distance = np.abs(Bodies(shapes).distance(points, centres))
-    return np.asarray((np.add.reduceat(distance, starts, axis=1) / counts).T)
 
 
 def gating_shape(shape: Shape, wall_extension: float) -> Shape:
@@ -58,15 +44,18 @@ def associate(
     if distances.shape[1] == 0:
         return result
     cost = np.where(distances < gates, distances, _FAR)
+    rows_of_uav: dict[int, list[int]] = defaultdict(list)
+    for row, cluster in enumerate(clusters):
+        rows_of_uav[cluster.uav].append(row)
     for row, body in enumerate(remembered):
         if body is not None and distances[row, body] < max(settings.remembered_gate, gates[body]):
             cost[row, body] = distances[row, body] - settings.remembered_gain
-    uavs = np.array([cluster.uav for cluster in clusters])
-    for uav in np.unique(uavs):
-        rows = np.flatnonzero(uavs == uav)
-        for i, body in zip(*linear_sum_assignment(cost[rows]), strict=True):
-            if cost[rows[i], body] < _FAR / 2.0:
-                result[rows[i]] = int(body)
+    near = np.flatnonzero(cost.min(axis=0) < _FAR / 2.0)
+    cost = cost[:, near]
+    for rows in rows_of_uav.values():
+        for i, column in zip(*linear_sum_assignment(cost[rows]), strict=True):
+            if cost[rows[i], column] < _FAR / 2.0:
+                result[rows[i]] = int(near[column])
     return result
 
 

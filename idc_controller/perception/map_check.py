@@ -82,7 +82,7 @@ class MapCheck:
         Args:
             clusters: as the vehicles placed them.
             standing: the standing obstacle that each belongs to (None: none).
-            distances: mean distances (clusters, standing obstacles) (m).
+            distances: mean distances (clusters, standing obstacles) (m), once their vehicles' offsets are removed.
         """
         if not self._standing:
             return
@@ -96,19 +96,27 @@ class MapCheck:
         for row in np.argsort(distances.min(axis=1)).tolist():
             if row not in taken and distances[row, nearest[row]] <= self._gate:
                 detected.setdefault((clusters[row].uav, nearest[row]), row)
-        for (_, number), row in detected.items():
-            self._detected(clusters[row], number)
+        if not detected:
+            return
+        numbers, rows = [number for _, number in detected], list(detected.values())
+        origins = np.array([clusters[row].surface_points.origins[0] for row in rows])
+        bodies = Bodies([self._standing[number][1] for number in numbers])
+        centres = np.array([self._standing[number][2] for number in numbers])
+        from_sensors = np.abs(bodies.from_offsets((origins - centres)[:, None])[:, 0]).tolist()
+        offset_uavs = self.offsets.keys()
+        for number, row, from_sensor in zip(numbers, rows, from_sensors, strict=True):
+            cluster = clusters[row]
+            if from_sensor <= self._view_range:
+                mean = None if cluster.uav in offset_uavs else float(distances[row, number])
+                self._detected(cluster, number, mean)
 
-    def _detected(self, cluster: Cluster, number: int) -> None:
+    def _detected(self, cluster: Cluster, number: int, mean: float | None) -> None:
+        """Take a cluster of an obstacle by its ``mean`` distance from that (m), None: not known yet."""
         pair, detected, s = (cluster.uav, number), cluster.surface_points, self._settings
         _, shape, centre = self._standing[number]
-        places = np.concatenate([detected.origins[:1], detected.points])
-        from_sensor, *from_points = np.abs(Bodies([shape]).distance(places, centre[None])[0]).tolist()
-        if from_sensor > self._view_range:
-            return
-        if np.mean(from_points) < s.agreement_sigmas * math.sqrt(
-            detected.noise**2 + float(detected.pose_variance.mean())
-        ):
+        if mean is None:
+            mean = float(Bodies([shape]).mean_distances([detected.points], centre[None])[0, 0])
+        if mean < s.agreement_sigmas * math.sqrt(detected.noise**2 + float(detected.pose_variance.mean())):
             self._agreements[pair] = self._agreements.get(pair, 0) + 1
             self._offsets.pop(pair, None)
         elif self._agreements.get(pair, 0) >= s.agreements:

@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from idc_controller.arrays import Array
-from idc_controller.geometry.obstacles import Bodies, PredictedObstacle
+from idc_controller.geometry.obstacles import Bodies, PredictedObstacle, Region
 from idc_controller.geometry.shape import Shape
-from idc_controller.perception.association import associate, gating_shape, mean_distances
+from idc_controller.perception.association import associate, gating_shape
 from idc_controller.perception.map_check import MapCheck, shifted
 from idc_controller.perception.motion_imm import MotionModels
 from idc_controller.perception.scan_assembly import Cluster, ScanAssembly, SensorModel
@@ -57,12 +57,12 @@ class ObstacleMap:
         self._settings = s = settings
         models = MotionModels(s.tracking.motion)
         moving = [Track(o.name, models, s, o.shape, o.centre) for o in known if o.moves]
-        self._standing = [(o.name, o.shape, o.centre) for o in known if not o.moves]
+        self._standing = _Standing([o for o in known if not o.moves])
         self._tracks = TrackList(moving, [obstacle.name for obstacle in known], models, s)
         self._view_range = s.retention.in_view_share * sensor_range
         self.scans = ScanAssembly(sensors, s.scans)
         """Takes poses, detections and failures of the range sensors from telemetry."""
-        self._check = MapCheck(self._standing, self._view_range, s)
+        self._check = MapCheck(self._standing.obstacles, self._view_range, s)
         self._time = -math.inf
         self._deleted: list[str] = []
 
@@ -106,14 +106,10 @@ class ObstacleMap:
         """All tracks, the oldest first."""
         return self._tracks.tracks
 
-    def predict(self, times: Array) -> list[PredictedObstacle]:
-        """Return all obstacles at ``times`` (K,) (s)."""
+    def predict(self, times: Array, region: Region | None = None) -> list[PredictedObstacle]:
+        """Return all obstacles at ``times`` (K,) (s); standing ones that are out of ``region`` are left out."""
         times = np.asarray(times, dtype=float)
-        none = np.zeros(len(times))
-        found = [
-            PredictedObstacle(name, shape, np.broadcast_to(centre, (len(times), 3)), none)
-            for name, shape, centre in self._standing
-        ]
+        found = self._standing.predict(len(times), region)
         return found + [track.predict(times, self._time) for track in self.tracks if track.is_confirmed]
 
     def confirmed_tracks(self, time: float) -> list[TrackEstimate]:
@@ -134,7 +130,7 @@ class ObstacleMap:
         clusters = [shifted(c, -offsets[c.uav]) if c.uav in offsets else c for c in placed]
         # With their offset removed, they are used only if there are no others.
         excluded = frozenset() if self.map_offset_detected else frozenset(offsets)
-        memory, standing = self._tracks.memory, [name for name, _, _ in self._standing]
+        memory, standing = self._tracks.memory, self._standing.names
         names = [track.name for track in self.tracks] + standing
         distances, gates = self._distances(clusters, time)
         index = {name: i for i, name in enumerate(names)}
@@ -167,11 +163,13 @@ class ObstacleMap:
             centres.append(centre)
             gates.append(s.undetected_gate if track.filter is None or track.is_deleted else s.track_gate + sigma)
             shapes.append(gating_shape(track.shape, s.wall_extension) if track.map_shape is None else track.shape)
-        for _, shape, centre in self._standing:
-            shapes.append(shape)
-            centres.append(centre)
-            gates.append(s.map_gate)
-        return mean_distances(clusters, shapes, np.array(centres).reshape(-1, 3)), np.array(gates)
+        points = [cluster.surface_points.points for cluster in clusters]
+        of_tracks = Bodies(shapes).mean_distances(points, np.array(centres).reshape(-1, 3))
+        # Beyond the gates it does not matter how far they are.
+        far = max(s.map_gate, s.remembered_gate, s.merge_gate)
+        of_standing = self._standing.bodies.mean_distances(points, self._standing.centres, far)
+        gates += [s.map_gate] * len(self._standing.names)
+        return np.hstack([of_tracks, of_standing]), np.array(gates)
 
     def _valid_uavs(self) -> tuple[int, ...]:
         return self.scans.range_sensors.valid(self.scans.poses.uavs, self._time)
@@ -186,3 +184,30 @@ class ObstacleMap:
         centre, _ = track.centre(self._time)
         distance = Bodies([track.shape]).distance(near, centre[None])
         return bool(distance.min() < self._view_range)
+
+
+class _Standing:
+    """The standing obstacles of the map, gathered."""
+
+    def __init__(self, known: Sequence[MapObstacle]) -> None:
+        self.obstacles = [(o.name, o.shape, o.centre) for o in known]
+        self.names = [o.name for o in known]
+        self.bodies = Bodies([o.shape for o in known])
+        self.centres = np.array([o.centre for o in known]).reshape(-1, 3)
+        self._reach = np.array([o.shape.horizontal_reach for o in known])
+        self._predicted: dict[int, list[PredictedObstacle]] = {}
+
+    def predict(self, count: int, region: Region | None) -> list[PredictedObstacle]:
+        """Return them at ``count`` moments, all or those that reach into a ``region``."""
+        if count not in self._predicted:
+            none = np.zeros(count)
+            self._predicted[count] = [
+                PredictedObstacle(name, shape, np.tile(centre, (count, 1)), none)
+                for name, shape, centre in self.obstacles
+            ]
+        predicted = self._predicted[count]
+        if region is None:
+            return predicted[:]
+        apart = self.centres[:, :2] - region.place[:2]
+        near = np.hypot(apart[:, 0], apart[:, 1]) <= region.radius + self._reach
+        return [predicted[i] for i in np.flatnonzero(near).tolist()]

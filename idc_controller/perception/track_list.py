@@ -3,8 +3,11 @@
 from collections import defaultdict
 from collections.abc import Callable, Sequence
 
+import numpy as np
+
 from idc_controller.arrays import Array
-from idc_controller.perception.association import ClusterMemory, gating_shape, mean_distances
+from idc_controller.geometry.obstacles import Bodies
+from idc_controller.perception.association import ClusterMemory, gating_shape
 from idc_controller.perception.motion_imm import MotionModels
 from idc_controller.perception.scan_assembly import Cluster
 from idc_controller.perception.settings import PerceptionSettings
@@ -67,19 +70,20 @@ class TrackList:
             if track.map_shape is not None:
                 continue
             uavs = {clusters[row].uav for row in rows}
-            for older, name in enumerate(names):
-                if older < len(tracks) and (older >= younger or tracks[older].filter is None):
+            apart = {body for body, cluster in zip(bodies, clusters, strict=True) if cluster.uav in uavs}
+            near = np.flatnonzero(distances[rows].max(axis=0) <= s.merge_gate).tolist()
+            overlaps: dict[str, int] = {}
+            for older in near:
+                if older in apart or (older < len(tracks) and (older >= younger or tracks[older].filter is None)):
                     continue
-                apart = any(bodies[i] == older and clusters[i].uav in uavs for i in range(len(clusters)))
-                if apart or distances[rows, older].max() > s.merge_gate:
-                    track.overlaps.pop(name, None)
-                    continue
-                track.overlaps[name] = track.overlaps.get(name, 0) + 1
-                if track.overlaps[name] >= s.merge_frames:
+                name = names[older]
+                overlaps[name] = track.overlaps.get(name, 0) + 1
+                if overlaps[name] >= s.merge_frames:
                     if track in self.tracks:
                         self.tracks.remove(track)
                     self.memory.rename(track.name, name)
                     break
+            track.overlaps = overlaps
 
     def retain(self, now: float, sensing_lost: bool, in_field_of_view: Callable[[Track], bool]) -> list[str]:
         """Delete tracks that are not detected; return the names of confirmed ones that are deleted.
@@ -137,7 +141,7 @@ class TrackList:
                     continue
                 centre, _ = trial.centre(cluster.surface_points.time)
                 shape = gating_shape(trial.shape, s.wall_extension)
-                if mean_distances([cluster], [shape], centre[None])[0, 0] < s.group_gate:
+                if Bodies([shape]).mean_distances([cluster.surface_points.points], centre[None])[0, 0] < s.group_gate:
                     members.append(cluster)
                     trial.filter = None
                     trial.update([member.surface_points for member in members])
