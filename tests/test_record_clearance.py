@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import coal
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from gcs.errors import UnusableInput
-from gcs.record.clearance import RIM_VERTICES, ObstacleTrack, clearance_over_time
-from idc_controller.geometry.box import Wall
+from gcs.record.clearance import DEFAULT_PAYLOAD, ObstacleTrack, clearance_over_time
+from idc_controller.geometry.box import Box, Wall
+from idc_controller.geometry.capsule import Capsule
+from idc_controller.geometry.mesh import Mesh, MeshHull
 from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.shape import Shape
 from idc_controller.geometry.sphere import Sphere
 from idc_controller.payload_hull import PayloadHull
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
@@ -16,9 +22,7 @@ from idc_controller.rotations import quaternion_from_euler, rotation_from_quater
 LEVEL = np.array([1.0, 0.0, 0.0, 0.0])
 # Payload at the origin, its UAVs 1 m above its upper corners.
 UAVS = np.array([[x, y, -1.25] for x in (-0.5, 0.5) for y in (-0.5, 0.5)])
-RIM_ERROR = (1.0 - np.cos(np.pi / RIM_VERTICES)) / (1.0 + np.cos(np.pi / RIM_VERTICES))
-"""Largest error by the polygons in place of discs, over the disc's radius."""
-BOUND = 0.3 * RIM_ERROR + 1e-5
+BOUND = 1e-6  # m
 
 
 def clearance(obstacle: ObstacleTrack, rotation=LEVEL, shift=(0.0, 0.0, 0.0), uav_quaternion=LEVEL) -> float:
@@ -35,10 +39,6 @@ def clearance(obstacle: ObstacleTrack, rotation=LEVEL, shift=(0.0, 0.0, 0.0), ua
 
 def sphere(position, radius=0.5) -> ObstacleTrack:
     return ObstacleTrack("s", Sphere(radius), np.array([position], dtype=float))
-
-
-def test_clearance_error_by_polygons_is_below_a_fifth_of_a_millimetre() -> None:
-    assert 0.3 * RIM_ERROR < 0.2e-3
 
 
 @pytest.mark.parametrize(
@@ -142,7 +142,7 @@ def test_size_and_radius_given() -> None:
         [sphere((0, 0, 4)), sphere((9, 0.5, -1.25))],
         payload_vertices=PayloadHull.box((1.0, 1.0, 2.0)).vertices, disc_radius=0.5,
     )  # fmt: skip
-    assert got[0] == pytest.approx([4 - 1 - 0.5, 9 - 1.0 - 0.5], abs=0.5 * RIM_ERROR + 1e-5)
+    assert got[0] == pytest.approx([4 - 1 - 0.5, 9 - 1.0 - 0.5], abs=BOUND)
 
 
 def test_clearance_without_record_is_nan() -> None:
@@ -153,12 +153,59 @@ def test_clearance_without_record_is_nan() -> None:
     assert np.isnan(got[1, 0])
 
 
-def test_disc_of_clearance_lies_half_outside_half_inside_its_rim() -> None:
-    # At a corner of the polygon (north) and at the middle of an edge beside it.
-    half = np.pi / RIM_VERTICES
-    corner, edge = (clearance(sphere((0.5 + 2.0 * np.cos(a), 0.5 + 2.0 * np.sin(a), -1.25))) for a in (0.0, half))
-    assert corner == pytest.approx(2.0 - 0.5 - 0.3 * (1.0 + RIM_ERROR), abs=1e-6)
-    assert edge == pytest.approx(2.0 - 0.5 - 0.3 * (1.0 - RIM_ERROR), abs=1e-6)
+@pytest.mark.parametrize("heading", [0.0, 0.05, 0.7])
+def test_disc_of_clearance_is_round(heading) -> None:
+    place = (0.5 + 2.0 * np.cos(heading), 0.5 + 2.0 * np.sin(heading), -1.25)
+    assert clearance(sphere(place)) == pytest.approx(2.0 - 0.5 - 0.3, abs=1e-7)
+
+
+CORNERS = ((0.4, 0.0, 0.0), (-0.3, 0.5, 0.0), (-0.3, -0.5, 0.1), (0.0, 0.0, 0.8), (0.1, 0.1, -0.6))
+SHAPES = (
+    Sphere(0.4),
+    Pole(0.3, 12.0),
+    Wall((0.3, 4.0, 6.0), 0.5),
+    Capsule(0.3, 2.0, roll=0.4, pitch=-0.7, yaw=1.0),
+    Box((0.5, 1.0, 2.0), roll=0.3, pitch=0.5, yaw=-1.0),
+    Mesh(MeshHull("rock", CORNERS), scale=1.5, roll=0.2, pitch=0.1, yaw=2.0),
+)
+FINE = 100
+"""Corners of the polygons in place of discs, of the reference by coal."""
+
+
+def clearance_by_coal(states, shape: Shape, position) -> float:
+    """Reference: the hull built of points, discs as polygons through the rim, and the distance by coal."""
+    payload, quaternion, uavs, uav_quaternions = states
+    angle = np.linspace(0.0, 2.0 * np.pi, FINE, endpoint=False)
+    rim = 0.3 * np.column_stack([np.cos(angle), np.sin(angle), np.zeros(FINE)])
+    points = [DEFAULT_PAYLOAD.vertices @ rotation_from_quaternion(quaternion).T]
+    points += [
+        uav - payload + rim @ rotation_from_quaternion(q).T for uav, q in zip(uavs, uav_quaternions, strict=True)
+    ]
+    vertices = coal.StdVec_Vec3s()
+    vertices.extend(list(np.concatenate(points)))
+    hull = coal.ConvexBase.convexHull(vertices, False, "")
+    request = coal.DistanceRequest()
+    request.gjk_tolerance, request.gjk_max_iterations = 1e-7, 1000
+    there = coal.Transform3s(shape.rotation, position - payload)
+    here, result = coal.Transform3s.Identity(), coal.DistanceResult()
+    return max(coal.distance(hull, here, shape.geometry(), there, request, result), 0.0)
+
+
+@pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: shape.kind)
+@settings(deadline=None, derandomize=True, max_examples=60)
+@given(seed=st.integers(0, 10**6), away=st.floats(0.0, 6.0))
+def test_clearance_kernel_agrees_with_coal(shape, seed, away) -> None:
+    rng = np.random.default_rng(seed)
+    payload = rng.uniform(-50.0, 50.0, 3)
+    attitudes = [quaternion_from_euler(*rng.uniform(-0.8, 0.8, 3)) for _ in range(5)]
+    uavs = payload + UAVS + rng.uniform(-0.3, 0.3, UAVS.shape)
+    direction = rng.normal(size=3)
+    position = payload + away * direction / np.linalg.norm(direction)
+    states = (payload, attitudes[0], uavs, np.array(attitudes[1:]))
+    track = ObstacleTrack("x", shape, position[None])
+    got = clearance_over_time(*(np.asarray(state)[None] for state in states), [track])[0, 0]
+    # The polygons lie within the discs.
+    assert -1e-5 <= clearance_by_coal(states, shape, position) - got <= 0.3 * (1.0 - np.cos(np.pi / FINE)) + 1e-5
 
 
 @pytest.mark.parametrize(

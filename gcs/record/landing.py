@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 from typing import Any
 
-import coal
 import numpy as np
 
+from gcs.record.clearance_kernels import clearance
 from gcs.record.run_data import RunData
 from idc_controller.arrays import Array
 from idc_controller.rotations import rotation_from_quaternion
@@ -80,10 +80,13 @@ def _height(run: RunData, rotation: Array) -> Array:
     """Return the least distance of the payload to the ground and to the pad (T,) (m)."""
     hull, about_home = run.payload, run.pad
     height = np.min(-run.payload_position[:, None, 2] - rotation[:, 2] @ hull.vertices.T, axis=1)
-    pad = coal.Box(*np.ptp(hull.bounds, axis=0)[:2] + 2.0 * about_home.margin, about_home.thickness)
-    place = coal.Transform3s(np.eye(3), np.append(hull.bounds.mean(axis=0)[:2], -0.5 * about_home.thickness))
-    payload, request = hull.geometry(), coal.DistanceRequest()
-    for t in np.flatnonzero(height < _AIRBORNE + about_home.thickness):
-        pose = coal.Transform3s(rotation[t], run.payload_position[t])
-        height[t] = min(height[t], coal.distance(payload, pose, pad, place, request, coal.DistanceResult()))
+    near = np.flatnonzero(height < _AIRBORNE + about_home.thickness)
+    half = np.append(np.ptp(hull.bounds, axis=0)[:2] / 2.0 + about_home.margin, about_home.thickness / 2.0)
+    place = np.append(hull.bounds.mean(axis=0)[:2], -0.5 * about_home.thickness)
+    none = np.empty((len(near), 0, 3))
+    to_pad = clearance(
+        hull.vertices.copy(), np.ascontiguousarray(rotation[near]), none, none, 0.0, np.zeros((1, 3)),
+        np.append(half, (0.0, 0.0)), np.eye(3), place - run.payload_position[near],
+    )  # fmt: skip
+    height[near] = np.minimum(height[near], to_pad)
     return np.asarray(height)
