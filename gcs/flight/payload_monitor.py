@@ -35,8 +35,8 @@ class PayloadMonitor:
         Call once a control step.
         """
         s = self._settings.failsafe
-        tilt = np.abs(estimate.x[self._layout.Theta][:2]).max()
-        if np.all(np.isfinite(estimate.x)) and tilt < s.tilt_limit:
+        roll, pitch, _ = estimate.x[self._layout.Theta].tolist()
+        if max(abs(roll), abs(pitch)) < s.tilt_limit and np.isfinite(estimate.x).all():
             self._in_control = time
         return time - self._in_control > s.tilt_time
 

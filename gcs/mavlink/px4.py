@@ -5,6 +5,7 @@ Sources: PX4 ``px4_custom_mode.h``; MAVLink parameter protocol, "byte-wise" enco
 
 import struct
 from enum import IntEnum
+from functools import lru_cache
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
@@ -76,6 +77,7 @@ MODE_RETURN = encode_custom_mode(MainMode.AUTO, AutoMode.RTL)
 MODE_LAND = encode_custom_mode(MainMode.AUTO, AutoMode.LAND)
 
 
+@lru_cache(maxsize=64)
 def mode_name(custom_mode: int) -> str:
     """Return the name: ``OFFBOARD``, ``AUTO.LOITER``, or the numbers of a mode that is not known."""
     main, sub = decode_custom_mode(custom_mode)
