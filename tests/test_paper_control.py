@@ -122,13 +122,6 @@ def test_negative_poles_are_insufficient():
     assert least(real_poles, 1.0, -4.0) < -0.01  # outside the second set
 
 
-def test_printed_list_of_lie_derivatives_contradicts_itself():
-    """For r = 2 the paper requires L_g L_f h to be both zero and nonzero, and does not require L_g h = 0."""
-    r = 2
-    nonzero, zero_as_printed = r - 1, range(1, r)  # powers of L_f; the printed list begins with L_g L_f h
-    assert nonzero in zero_as_printed
-
-
 def test_filter_leaves_feasible_inputs_unchanged():
     rng = np.random.default_rng(3)
     u, lower, upper = rng.normal(size=16), np.full(16, -5.0), np.full(16, 5.0)

@@ -85,11 +85,11 @@ class CallMap:
             for path in sorted(root.glob("tests/test_*.py"))
         }
         self.tests = {name: known for name, known in self.tests.items() if checksums.get(name) == known["sha256"]}
-        if missing := sorted(checksums.keys() - self.tests.keys()):
-            for name, recorder in zip(missing, record(missing), strict=True):
-                calls = {test: [cost, sorted(recorder.calls[test])] for test, cost in recorder.cost.items()}
-                self.tests[name] = {"sha256": checksums[name], "tests": calls}
-            self.file.parent.mkdir(parents=True, exist_ok=True)
+        missing = sorted(checksums.keys() - self.tests.keys())
+        self.file.parent.mkdir(parents=True, exist_ok=True)
+        for name, recorder in zip(missing, record(missing), strict=True):
+            calls = {test: [cost, sorted(recorder.calls[test])] for test, cost in recorder.cost.items()}
+            self.tests[name] = {"sha256": checksums[name], "tests": calls}
             self.file.write_text(json.dumps(self.tests))
 
     def tests_for(self, mutant: Mutant, importers: dict[str, set[str]]) -> list[TestFile]:
