@@ -62,7 +62,7 @@ class TelemetryRouter:
                 continue  # an answer to another system behind this address
             link = self._links[index]
             link.handle(received, now)
-            if link.clock.known:
+            if received.message_id in _STAMPED and link.clock.known:
                 latest = max(latest, self._route(received, index, latest, now))
         self.refused += not known
         return known
@@ -86,18 +86,15 @@ class TelemetryRouter:
         return None
 
     def _route(self, received: Received, index: int, latest: float, now: float) -> float:
-        """Route a message with a time stamp; return that (s, team), -inf: it has none.
+        """Route a message with a time stamp; return that (s, team).
 
         ``latest``: the latest stamp of the messages before it in its datagram.
         """
-        message_id = received.message_id
-        if message_id not in _STAMPED:
-            return -math.inf
-        link = self._links[index]
+        message_id, link = received.message_id, self._links[index]
+        offset = link.clock.offset
         if index == 0:
-            offset = link.clock.offset + link.clock.set_back
-            self._clock.follow(offset, now, connecting=self._flight.phase is Phase.CONNECT)
-        time = whole_ms(received.time_boot_ms * 1e-3 - link.clock.offset + self._clock.offset)
+            self._clock.follow(offset + link.clock.set_back, now, connecting=self._flight.phase is Phase.CONNECT)
+        time = whole_ms(received.time_boot_ms * 1e-3 - offset + self._clock.offset)
         if message_id == _SETPOINT:
             self._confirm_setpoint(received, index, time, latest, now)
         elif message_id == _DETECTION:

@@ -32,7 +32,7 @@ class SystemIdCheck:
 
     def add(self, sample: Measurement) -> None:
         """Take a sample that was received as of the vehicle that is its source."""
-        if isinstance(sample, Position) and sample.source != PAYLOAD and sample.has_pose:
+        if sample.source != PAYLOAD and isinstance(sample, Position) and sample.has_pose:
             self._positions[sample.source] = sample.position
 
     def compare(self, places: Array) -> None:

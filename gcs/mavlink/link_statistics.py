@@ -39,7 +39,8 @@ class LinkStatistics:
 
     def message(self, number: int, now: float) -> bool:
         """Count a message by its sequence number (0 .. 255); return True if it was sent after all that came before."""
-        self.settle(now)
+        if self._gaps:
+            self.settle(now)
         ahead = 1 if self._newest is None else (number - self._newest) % NUMBERS
         if 0 < ahead < NUMBERS - REMEMBERED:
             if self._newest is not None and ahead > 1:

@@ -1,7 +1,6 @@
 """One peer of a vehicle, and its streams."""
 
 import math
-from collections.abc import Callable
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
@@ -11,15 +10,13 @@ from gcs.mavlink.address import Address
 from gcs.mavlink.codec import Codec, gather
 from gcs.mavlink.layout import Packed, packed
 from gcs.mavlink.messages import Message
-from vehicle_sim.mavlink.telemetry import Built
+from vehicle_sim.mavlink.telemetry import TelemetrySample
 
 TIME_TOLERANCE = 1e-6  # s: sums of steps are not exact
 
 _TEXT_LIMIT = 50
 _AUTOPILOT, _PAYLOAD = px4.AUTOPILOT_COMPONENT, px4.PAYLOAD_UNIT_COMPONENT
 _HEARTBEAT = mavlink.MAVLINK_MSG_ID_HEARTBEAT
-
-Build = Callable[[int, int], Built]
 
 #: Messages of one sample, which begin with its stamp: never sent twice for the same one.
 _OF_ONE_SAMPLE = (
@@ -150,22 +147,21 @@ class Peer:
         for start in range(0, len(data), _TEXT_LIMIT):
             self.reply(mavlink.MAVLink_statustext_message(severity, data[start : start + _TEXT_LIMIT]))
 
-    def datagrams(self, build: Build, now: float) -> list[bytes]:
-        """Return replies and what is due, in as few datagrams as possible.
-
-        ``build`` returns the messages of a component and message id at ``now``.
-        """
-        if now + TIME_TOLERANCE < self.next_due:
+    def datagrams(self, sample: TelemetrySample, now: float) -> list[bytes]:
+        """Return replies and what is due of ``sample``, in as few datagrams as possible."""
+        latest = now + TIME_TOLERANCE
+        if latest < self.next_due:
             return []
         frames = self._replies
         self._replies = []
         next_due = math.inf
         for stream in self._streams:
-            if stream.due <= now + TIME_TOLERANCE:
-                messages = build(*stream.key)
+            if stream.due <= latest:
+                messages = sample.messages(stream.key)
                 if messages and stream.is_new(messages[0]):
                     codec = self._codecs[stream.key[0]]
-                    frames += [codec.frame(message) for message in messages]
+                    for message in messages:
+                        frames.append(codec.frame(message))
                 stream.advance(now, self._settings.repeat_interval)
             if stream.due < next_due:
                 next_due = stream.due

@@ -2,12 +2,11 @@
 
 import math
 from collections.abc import Callable, Iterator
-from functools import cache, partial
 
 from gcs.config.vehicle_settings import VehicleLinkSettings
 from gcs.mavlink.address import Address
 from vehicle_sim.mavlink.peer import TIME_TOLERANCE, Peer
-from vehicle_sim.mavlink.telemetry import Telemetry
+from vehicle_sim.mavlink.telemetry import Telemetry, TelemetrySample
 
 
 class Peers:
@@ -43,7 +42,9 @@ class Peers:
     def datagrams_to_send(self, telemetry: Telemetry, now: float) -> list[tuple[bytes, Address]]:
         """Return all that is due at ``now`` (s), each with its address."""
         out: list[tuple[bytes, Address]] = []
-        build = cache(partial(telemetry.build, now))  # once for all peers
+        if now + TIME_TOLERANCE < self.next_due:
+            return out
+        sample = TelemetrySample(telemetry, now)
         for peer in tuple(self._peers.values()):
             if now + TIME_TOLERANCE < peer.next_due:
                 continue
@@ -51,7 +52,7 @@ class Peers:
                 self._remove_silent(now)
                 if peer.address not in self._peers:
                     continue
-            out.extend([(datagram, peer.address) for datagram in peer.datagrams(build, now)])
+            out.extend([(datagram, peer.address) for datagram in peer.datagrams(sample, now)])
         return out
 
     @property
