@@ -10,10 +10,11 @@ import pytest
 from rich.console import Console
 
 from gcs.errors import UnusableInput
-from gcs.record.figures import report
+from gcs.record import figures
+from gcs.record import summary as summaries
 from gcs.record.run_data import read_run
 from gcs.record.run_folder import open_run_folder, write_json, write_manifest
-from gcs.record.summary import summarise, within_limits, write_summary
+from gcs.record.summary import within_limits, write_summary
 from gcs.record.summary_table import summary_table
 from gcs.record.tables import ESTIMATE_COLUMNS, REFERENCE_COLUMNS, STEP_COLUMNS, STEP_PART_COLUMNS, TableWriter
 from idc_controller.geometry.box import Wall
@@ -28,6 +29,14 @@ LEVEL = (1.0, 0.0, 0.0, 0.0)
 REST = (0.0, 0.0, 0.0)
 CORNERS = np.array([[x, y, -1.25] for x in (-0.5, 0.5) for y in (-0.5, 0.5)])
 PNG = b"\x89PNG\r\n\x1a\n"
+
+
+def summarise(folder: Path, **options) -> dict:
+    return summaries.summarise(read_run(folder), **options)
+
+
+def report(folder: Path) -> list[Path]:
+    return figures.report(read_run(folder))
 
 
 def world_state(time, position, quaternion, uavs, thrust) -> WorldState:
@@ -325,7 +334,7 @@ def test_killed_run_is_drawn_to_its_last_record(tmp_path) -> None:
         (folder / name).write_bytes(content[:-cut])
     run = read_run(folder)
     assert len(run.time) == 29
-    assert np.isnan(run.clearance()[-1, 0])
+    assert np.isnan(run.clearance[-1, 0])
     assert len(report(folder)) == 5
 
 

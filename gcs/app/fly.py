@@ -4,7 +4,7 @@ import dataclasses
 import math
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack, closing
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -35,6 +35,7 @@ from gcs.mission.model import Mission
 from gcs.mission.read import read_mission
 from gcs.record.landing import is_set_down
 from gcs.record.recorder import FlightRecorder
+from gcs.record.run_data import RunData, read_run
 from gcs.record.run_folder import open_run_folder, write_manifest
 from gcs.record.summary import summarise, within_limits, write_summary
 from idc_controller.guidance.progress import Guidance
@@ -61,13 +62,22 @@ class FlyOptions:
 class FlightResult:
     """Result of a flight."""
 
-    run_dir: Path
+    records: RunData
     mission: Mission
-    summary: dict[str, Any]
     reason: str
     interrupted: bool
     flown: bool
     """True if take-off had begun."""
+
+    @property
+    def run_dir(self) -> Path:
+        """The folder of the records."""
+        return self.records.folder
+
+    @property
+    def summary(self) -> Mapping[str, Any]:
+        """The summary."""
+        return self.records.summary
 
     @property
     def exit_code(self) -> ExitStatus:
@@ -161,8 +171,9 @@ def flight_result(
     limits = dataclasses.asdict(mission.limits) if mission.limits is not None else None
     begun = not math.isnan(flight.takeoff_time)
     duration = last_time - flight.takeoff_time if begun else 0.0
+    records = read_run(run_dir)
     summary = summarise(
-        run_dir,
+        records,
         completed=flight.completed,
         outcome="completed" if flight.completed else "aborted" if flight.landed or not begun else "failed",
         duration_s=duration,
@@ -181,7 +192,8 @@ def flight_result(
     if summary["contacts"]:
         summary |= {"outcome": "collided", "completed": False}
     write_summary(run_dir, summary)
-    return FlightResult(run_dir, mission, summary, flight.reason, flight.failsafes.interrupted, begun)
+    records = records.with_summary(summary)
+    return FlightResult(records, mission, flight.reason, flight.failsafes.interrupted, begun)
 
 
 def ground_station(

@@ -12,7 +12,7 @@ from matplotlib.patches import Polygon
 
 from gcs.errors import UnusableInput
 from gcs.record.clearance import ObstacleTrack
-from gcs.record.run_data import RunData, position_error, read_run
+from gcs.record.run_data import RunData, position_error
 from gcs.record.summary import payload_angles
 
 # The palette of Okabe and Ito: distinct for colour-blind readers, too.
@@ -23,14 +23,13 @@ _REFERENCE_STYLE: dict[str, Any] = {"color": "#BBBBBB", "lw": 4.5, "solid_capsty
 _DPI = 130
 
 
-def report(run_dir: Path | str) -> list[Path]:
+def report(run: RunData) -> list[Path]:
     """Draw the pictures of a run, finished or cut off, as PNG files in its folder; return their paths.
 
     ``position``, ``payload_angles``, ``top_view``; ``thrust`` and ``separation`` where UAVs are on record
-    (the latter with the clearance where there are obstacles). Raises :class:`UnusableInput` for a folder that
-    is not a run, in which nothing was flown, or that cannot be written.
+    (the latter with the clearance where there are obstacles). Raises :class:`UnusableInput` where nothing was
+    flown, or where the folder cannot be written.
     """
-    run = read_run(run_dir)
     if len(run.time) == 0:
         raise UnusableInput(f"{run.folder}: nothing was flown: there is no row in truth.csv or estimate.csv")
     drawings: dict[str, Callable[[RunData], Figure]] = {
@@ -136,7 +135,7 @@ def draw_separation(run: RunData) -> Figure:
     axes[0].set_ylabel("between centres (m)")
     _draw_floor(axes[0], _limit(run, "uav_separation"))
     if run.obstacles:
-        for i, (obstacle, clearance) in enumerate(zip(run.obstacles, run.clearance().T, strict=True)):
+        for i, (obstacle, clearance) in enumerate(zip(run.obstacles, run.clearance.T, strict=True)):
             axes[1].plot(run.time, clearance, color=SERIES[i % len(SERIES)], lw=1.4, label=obstacle.name)
         axes[1].set_ylabel("hull to obstacle (m)")
         _draw_floor(axes[1], _limit(run, "clearance"))

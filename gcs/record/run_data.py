@@ -1,9 +1,13 @@
 """The records of a run folder, finished or cut off, as arrays."""
 
+from __future__ import annotations
+
 import json
 from collections import Counter
 from collections.abc import Mapping
+from copy import copy
 from dataclasses import dataclass, fields
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -98,8 +102,15 @@ class RunData:
         between = self.uav_position[:, first] - self.uav_position[:, second]
         return np.asarray(np.min(np.linalg.norm(between, axis=-1), axis=1, initial=np.inf))
 
+    def with_summary(self, summary: Mapping[str, Any]) -> RunData:
+        """Return the same records, with what has been computed from them, under another summary."""
+        other = copy(self)
+        object.__setattr__(other, "summary", summary)
+        return other
+
+    @cached_property
     def clearance(self) -> Array:
-        """Return the distance from the formation to each obstacle (T, number of obstacles) (m), NaN where unknown."""
+        """Distance from the formation to each obstacle (T, number of obstacles) (m), NaN where unknown."""
         return clearance_over_time(
             self.payload_position,
             self.payload_quaternion,

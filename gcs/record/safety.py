@@ -86,7 +86,7 @@ def return_times(run: RunData, clearance: float) -> list[tuple[float, float]]:
         uav_quaternion=np.tile(level, (len(time), len(upright), 1)),
         obstacles=tuple(replace(track, position=_at(time, run.time, track.position)) for track in run.obstacles),
     )
-    free = np.nan_to_num(planned.clearance(), nan=np.inf).min(axis=1) >= clearance
+    free = np.nan_to_num(planned.clearance, nan=np.inf).min(axis=1) >= clearance
     at, error = position_error(run)
     near = at[np.linalg.norm(error, axis=1) <= BACK]
     cleared = time[1:][free[1:] & ~free[:-1]]

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from gcs.record.landing import landing_figures, onsets
-from gcs.record.run_data import SUMMARY, RunData, Table, position_error, read_run
+from gcs.record.run_data import SUMMARY, RunData, Table, position_error
 from gcs.record.run_folder import write_json
 from gcs.record.safety import safety_figures
 from idc_controller.arrays import Array
@@ -26,7 +26,7 @@ _DIGITS = 6  # of a metre, a degree or a millisecond: below what is simulated fa
 
 
 def summarise(
-    run_dir: Path | str,
+    run: RunData,
     *,
     completed: bool,
     outcome: str,
@@ -35,13 +35,12 @@ def summarise(
     limits: Mapping[str, float | None] | None = None,
     obstacles: bool | None = None,
 ) -> dict[str, Any]:
-    """Return the content of ``summary.json``, from the truth in ``run_dir`` or, where there is none, the estimate.
+    """Return the content of ``summary.json``, from the truth on record or, where there is none, the estimate.
 
     The caller says how the flight ended. ``limits`` is the mission's table of that name: ``settle`` (s) and
     any of :data:`LIMITS` (m, deg, m/s), None for no limit. A limit is held when its figure is known and within it, a
     clearance also when there is no obstacle (``obstacles`` says whether the mission has any; None: as on record).
-    Figures that the records do not contain are None. Raises :class:`UnusableInput` like :func:`read_run`, and
-    ``ValueError`` for an unknown outcome or limit.
+    Figures that the records do not contain are None. Raises ``ValueError`` for an unknown outcome or limit.
     """
     if outcome not in OUTCOMES:
         raise ValueError(f"outcome {outcome!r} is none of {OUTCOMES}")
@@ -50,10 +49,9 @@ def summarise(
     for name in bounds:
         if name not in LIMITS:
             raise ValueError(f"limit {name!r} is none of {LIMITS}")
-    run = read_run(run_dir)
     rmse = position_rmse(run, settle)
     tilt = payload_tilt_max(run)
-    clearance = _least(run.clearance()) if run.obstacles and run.number_of_uavs else None
+    clearance = _least(run.clearance) if run.obstacles and run.number_of_uavs else None
     separation = _least(run.uav_separation()) if run.number_of_uavs > 1 else None
     has_obstacles = bool(run.obstacles) if obstacles is None else obstacles
     landing = landing_figures(run)

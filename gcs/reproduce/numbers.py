@@ -54,7 +54,7 @@ def flight_numbers(summary: Mapping[str, Any], run: RunData) -> dict[str, Any]:
     powered = (run.thrust > 0.0).any(axis=1)
     in_contact = np.flatnonzero((contacts > 0) & powered)
     before = slice(0, in_contact[0] + 1 if len(in_contact) else len(run.time))
-    nearest = run.clearance()[before]
+    nearest = run.clearance[before]
     return {
         "outcome": summary["outcome"],
         "clearance_min_m": summary["clearance_min_m"],

@@ -80,7 +80,7 @@ def run(arguments: argparse.Namespace) -> int:
     if result.flown and not arguments.no_pictures:
         from gcs.record.figures import report
 
-        pictures = report(result.run_dir)
+        pictures = report(result.records)
     if arguments.json:
         print(json.dumps(result.summary, indent=2))
     else:

@@ -16,7 +16,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the command, and return its exit status."""
     from gcs.record.figures import report
+    from gcs.record.run_data import read_run
 
-    for picture in report(arguments.run_dir):
+    for picture in report(read_run(arguments.run_dir)):
         print(picture)
     return ExitStatus.DONE
