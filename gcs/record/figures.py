@@ -21,6 +21,8 @@ SERIES = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#8C
 # Broad and pale, below what was flown: both stay visible where they agree.
 _REFERENCE_STYLE: dict[str, Any] = {"color": "#BBBBBB", "lw": 4.5, "solid_capstyle": "round", "label": "reference"}
 _DPI = 130
+_TOP_VIEW = (8.0, 8.2)
+"""Inches."""
 
 
 def report(run: RunData) -> list[Path]:
@@ -90,7 +92,7 @@ def draw_payload_angles(run: RunData) -> Figure:
 
 def draw_top_view(run: RunData) -> Figure:
     """Return the flight from above: path, reference and obstacles, north up."""
-    figure = _figure(run, "Top view", (8.0, 8.2))
+    figure = _figure(run, "Top view", _TOP_VIEW)
     ax = figure.add_subplot()
     for number, obstacle in enumerate(run.obstacles):
         _draw_obstacle(ax, obstacle, label="obstacle" if number == 0 else None)
@@ -111,7 +113,8 @@ def draw_top_view(run: RunData) -> Figure:
     ax.grid(alpha=0.3)
     ax.set_xlabel("east (m)")
     ax.set_ylabel("north (m)")
-    figure.legend(*ax.get_legend_handles_labels(), loc="outside lower center", ncols=5, frameon=False)
+    figure.subplots_adjust(bottom=0.9 / _TOP_VIEW[1], top=1.0 - 0.6 / _TOP_VIEW[1])
+    figure.legend(*ax.get_legend_handles_labels(), loc="lower center", ncols=5, frameon=False)
     return figure
 
 
@@ -169,8 +172,11 @@ def _draw_obstacle(ax: Axes, obstacle: ObstacleTrack, label: str | None) -> None
 
 def _figure(run: RunData, title: str, size: tuple[float, float]) -> Figure:
     # Figure and canvas by hand: pyplot would keep every figure and pick a screen.
-    figure = Figure(figsize=size, layout="constrained")
+    figure = Figure(figsize=size)
     FigureCanvasAgg(figure)
+    # Fixed margins: a layout engine would draw every picture twice.
+    width, height = size
+    figure.subplots_adjust(left=0.9 / width, right=1.0 - 0.25 / width, bottom=0.6 / height, top=1.0 - 0.8 / height)
     outcome = run.summary.get("outcome", "cut off")
     figure.suptitle(f"{title}: {run.folder.resolve().name} ({outcome})", fontsize=13, fontweight="bold")
     return figure
