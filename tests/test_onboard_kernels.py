@@ -103,8 +103,9 @@ def test_ordinary_samples_are_numbers_that_do_not_repeat():
     last[4, 3:7] = good[3:7]  # a stuck attitude
     last[5, 10:13] = good[10:13]  # stuck rates
     samples[6, 10:13] = last[6, 10:13] = 0.0  # at rest without noise
-    find_ordinary(samples, last, ordinary)
+    estimates = np.empty((7, 13))
+    find_ordinary(samples, last, estimates, ordinary)
     assert ordinary.tolist() == [True, False, False, False, False, False, True]
-    assert np.array_equal(last, samples, equal_nan=True)
-    find_ordinary(samples, last, ordinary)
+    assert np.array_equal(last, samples, equal_nan=True) and np.array_equal(estimates, samples, equal_nan=True)
+    find_ordinary(samples, last, estimates, ordinary)
     assert not ordinary.any()

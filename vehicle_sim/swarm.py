@@ -92,7 +92,8 @@ class Swarm:
         self._modes_recorded = False
         self._onboard(self.world.states())
         self._team.relay()
-        self._team.scan(self.world.state(), self.world.obstacles)
+        if self.world.obstacles.all():
+            self._team.scan(self.world.state(), self.world.obstacles)
 
     @property
     def time(self) -> float:
@@ -175,12 +176,21 @@ class Swarm:
         if self.take_off_time is None and not world.all_cradled:
             self.take_off_time = world.time
             self._faults.took_off(world.time)
-        if self._steps % self._periods.onboard == 0:
-            self._onboard(world.states())
-        if self._steps % self._periods.scan == 0:
-            self._team.scan(world.state(), world.obstacles)
-        if self._steps % self._periods.row == 0 and self._truth is not None:
-            self._truth.write(world.state(), self._contacts, world.obstacles.all())
+        measures = self._steps % self._periods.onboard == 0
+        scans = self._steps % self._periods.scan == 0 and bool(world.obstacles.all())
+        records = self._steps % self._periods.row == 0 and self._truth is not None
+        if not (measures or scans or records):
+            return
+        states = world.states()
+        if measures:
+            self._onboard(states)
+        if not (scans or records):
+            return
+        state = world.state(states)
+        if scans:
+            self._team.scan(state, world.obstacles)
+        if records and self._truth is not None:
+            self._truth.write(state, self._contacts, world.obstacles.all())
             self._contacts = 0
 
     def _onboard(self, states: Array) -> None:

@@ -88,9 +88,7 @@ class Team:
                 rows[number - 1] = sample.as_row()
 
     def scan(self, state: WorldState, obstacles: ObstacleBodies) -> None:
-        """Let every vehicle scan for obstacles, in a world with any."""
-        if not obstacles.all():
-            return
+        """Let every vehicle scan for the obstacles."""
         places = np.array([uav.position_in_world for uav in state.uavs])
         near = obstacles.near(places, self._range_sensors[0].reach)
         for vehicle, sensor, uav, some in zip(self.vehicles, self._range_sensors, state.uavs, near, strict=True):

@@ -78,6 +78,12 @@ class TableWriter(AppendOnlyFile):
             raise ValueError(f"{self.path.name}: {len(cells)} values for {len(self.columns)} columns")
         self.append(_line(cells))
 
+    def write_numbers(self, row: Sequence[float | int]) -> None:
+        """Append one row of plain floats and integers. Raises :class:`ValueError` for another number of values."""
+        if len(row) != len(self.columns):
+            raise ValueError(f"{self.path.name}: {len(row)} values for {len(self.columns)} columns")
+        self.append((",".join(map(repr, row)) + "\n").encode())
+
 
 _FORMATS: dict[type, Callable[[Any], str]] = {float: repr, int: repr, str: str}
 """How values of these types are written; others by :func:`_cell`."""

@@ -63,7 +63,7 @@ class FlightState:
 
     def has_fresh_setpoints(self, now: float) -> bool:
         """Return True if the set-points of OFFBOARD have not stopped."""
-        return now - self.setpoints.last_time < self.setpoint_loss_time - TIME_TOLERANCE
+        return now - self.setpoints.last_time < self.parameters[px4.PARAM_SETPOINT_LOSS] - TIME_TOLERANCE
 
     @property
     def is_descending(self) -> bool:

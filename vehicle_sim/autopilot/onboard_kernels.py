@@ -128,12 +128,12 @@ def control_attitudes(airframes: Array, estimates: Array, targets: Array, accele
             speeds[i, k] = math.sqrt(forces[k] * a[PER_K_F]) if forces[k] > 0.0 else 0.0
 
 
-@kernel("void(float64[:, ::1], float64[:, ::1], boolean[::1])")
-def find_ordinary(samples: Array, last: Array, ordinary: Mask) -> None:
+@kernel("void(float64[:, ::1], float64[:, ::1], float64[:, ::1], boolean[::1])")
+def find_ordinary(samples: Array, last: Array, estimates: Array, ordinary: Mask) -> None:
     """Write which ``samples`` (N, 13) are numbers and repeat neither attitude nor rates of the ``last`` ones.
 
-    Then copy them to ``last``. Sensors repeat themselves by chance, or because they are stuck: :mod:`.navigation`
-    decides. Rates of zero are those of a vehicle at rest in a world without noise.
+    Then copy them to ``last`` and ``estimates``. Sensors repeat themselves by chance, or because they are stuck:
+    :mod:`.navigation` decides. Rates of zero are those of a vehicle at rest in a world without noise.
     """
     for i in range(samples.shape[0]):
         s = samples[i]
@@ -148,6 +148,7 @@ def find_ordinary(samples: Array, last: Array, ordinary: Mask) -> None:
             still = still and s[k] == 0.0
         ordinary[i] = are_numbers and not same_attitude and (still or not same_rates)
         last[i] = s
+        estimates[i] = s
 
 
 @kernel("void(float64[:, ::1], float64[:, ::1], float64[:, ::1], boolean[::1], float64, float64[:, ::1])")

@@ -35,11 +35,10 @@ def step_together(
     ``samples``: what the vehicles' sensors delivered, None where no sample came this time; ``rows`` (N, 13): the same
     as rows of states, of missing ones anything. No vehicle learns anything of another.
     """
-    for i, sample in enumerate(samples):
-        if sample is None:
-            rows[i] = arrays.last_samples[i]
-    find_ordinary(rows, arrays.last_samples, arrays.ordinary)
-    arrays.estimates[:] = rows
+    if None in samples:
+        missing = [sample is None for sample in samples]
+        rows[missing] = arrays.last_samples[missing]
+    find_ordinary(rows, arrays.last_samples, arrays.estimates, arrays.ordinary)
     for autopilot, sample, ordinary in zip(autopilots, samples, arrays.ordinary.tolist(), strict=True):
         autopilot.sense(sample, ordinary, now)
     arrays.learns[:] = [autopilot.flies_setpoints for autopilot in autopilots]

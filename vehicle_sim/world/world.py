@@ -21,6 +21,7 @@ from vehicle_sim.world.readings import Readings
 from vehicle_sim.world.world_state import UavState, WorldState, flipped
 
 _ORIGIN = (0.0, 0.0, 0.0)
+_LINK_FRAME, _WORLD_FRAME = pybullet.LINK_FRAME, pybullet.WORLD_FRAME
 
 
 class World:
@@ -100,19 +101,17 @@ class World:
         client, body, uavs = self._client, self._system.body, self._system.uavs
         apply_force, apply_torque = pybullet.applyExternalForce, pybullet.applyExternalTorque
         self._update_cradles(thrusts)
-        link_frame, world_frame = pybullet.LINK_FRAME, pybullet.WORLD_FRAME
-        for i, uav in enumerate(uavs):
-            apply_force(body, uav, (0.0, 0.0, thrusts[i]), _ORIGIN, link_frame, client)
-            x, y, z = torques[i]
-            apply_torque(body, uav, (x, -y, -z), link_frame, client)
+        for uav, thrust, (x, y, z) in zip(uavs, thrusts, torques, strict=True):
+            apply_force(body, uav, (0.0, 0.0, thrust), _ORIGIN, _LINK_FRAME, client)
+            apply_torque(body, uav, (x, -y, -z), _LINK_FRAME, client)
         if self.all_cradled:
             # A payload between held links hangs as much as it stands: wind would swing what the ground should hold.
             payload_force = uav_forces = None
         if uav_forces is not None:
             for uav, force, state in zip(uavs, uav_forces, self._readings.now.uavs, strict=True):
-                apply_force(body, uav, flipped(force), state[0], world_frame, client)
+                apply_force(body, uav, flipped(force), state[0], _WORLD_FRAME, client)
         if payload_force is not None:
-            apply_force(body, -1, flipped(payload_force), self._readings.now.payload[0], world_frame, client)
+            apply_force(body, -1, flipped(payload_force), self._readings.now.payload[0], _WORLD_FRAME, client)
         pybullet.stepSimulation(client)
         self._steps += 1
         self._thrusts = tuple(thrusts)
@@ -132,9 +131,13 @@ class World:
         """Return the true states of payload and UAVs after the last step, (N + 1, 13) as in :mod:`.state_kernels`."""
         return self._readings.states()
 
-    def state(self) -> WorldState:
-        """Return the true state after the last step: velocities, too, to second order."""
-        (position, quaternion, velocity, rates), *uavs = map(_parts, self.states().tolist())
+    def state(self, states: Array | None = None) -> WorldState:
+        """Return the true state after the last step: velocities, too, to second order.
+
+        ``states`` as :meth:`states` gave them after this step, where they are at hand.
+        """
+        rows = self.states() if states is None else states
+        (position, quaternion, velocity, rates), *uavs = map(_parts, rows.tolist())
         held = self._cradles.held
         return WorldState(
             self._steps / self.physics_hz, position, quaternion, velocity, rates,
