@@ -347,3 +347,17 @@ def test_damaged_frames_do_not_hide_the_good_ones(tmp_path) -> None:
                 log.write(0.02 * i, frame)
     messages = [m for m in read_back(path) if m.get_type() == "ATTITUDE"]
     assert sum(m.time_boot_ms % 80 != 20 for m in messages) == good
+
+
+def test_frames_of_an_exchange_are_written_at_its_end_or_when_the_log_is_closed(tmp_path) -> None:
+    path, (first, second) = tmp_path / "telemetry.tlog", frames(2)
+    log = TelemetryLog(path, start_epoch=1.7e9)
+    log.write(0.0, first)
+    assert path.read_bytes() == b""
+    log.flush()
+    whole = path.read_bytes()
+    assert whole.endswith(first)
+    log.write(0.1, second)
+    log.close()
+    assert path.read_bytes().endswith(second)
+    assert path.read_bytes().startswith(whole)

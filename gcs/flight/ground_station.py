@@ -46,6 +46,10 @@ class Recorder(Protocol):
         """Record one datagram, sent or received."""
         ...
 
+    def end_exchange(self) -> None:
+        """Write what was recorded of the datagrams of one exchange."""
+        ...
+
     def step(self, flight: Flight, time: float, record: StepRecord | None) -> None:
         """Record one control step at team ``time``."""
         ...
@@ -135,6 +139,8 @@ class GroundStation:
         for link, queue in zip(self.links, messages, strict=True):
             queue.extend(link.requests.due(now))
         out = self._encoded(now, messages, carries_setpoints)
+        self._recorder.end_exchange()
+        times.lap(Part.RECORDING)
         if self._stepped:
             parts = times.take()
             if record is not None:

@@ -4,7 +4,7 @@ Their telemetry is plausible in itself, and a loop that is closed over it pushes
 Their positions show it: each is at the other's estimate.
 """
 
-import numpy as np
+import math
 
 from gcs.mavlink.settings import IdCheckSettings
 from idc_controller.arrays import Array
@@ -37,7 +37,7 @@ class SystemIdCheck:
 
     def compare(self, places: Array) -> None:
         """Compare the samples since the last time with the estimated ``places`` (N, 3); once a control step."""
-        found = _swapped(self._positions, places, self._settings.distance_ratio)
+        found = _swapped(self._positions, places.tolist(), self._settings.distance_ratio)
         self._positions = {}
         self._steps = self._steps + 1 if found and found == self._suspected else int(bool(found))
         self._suspected = found
@@ -46,14 +46,12 @@ class SystemIdCheck:
             self._suspected, self._steps = {}, 0
 
 
-def _swapped(positions: dict[int, Array], places: Array, distance_ratio: float) -> dict[int, int]:
+def _swapped(positions: dict[int, Array], places: list[list[float]], distance_ratio: float) -> dict[int, int]:
     """Return vehicles whose ``positions`` are at each other's ``places`` (N, 3), and at which; otherwise none."""
-    if not positions:
-        return {}
-    vehicles = [*positions]
-    away = np.linalg.norm(places - np.array([positions[vehicle] for vehicle in vehicles])[:, None], axis=2)
-    nearest = away.argmin(axis=1)
-    rows = np.arange(len(vehicles))
-    elsewhere = away[rows, nearest] * distance_ratio < away[rows, vehicles]
-    at = {vehicles[row]: int(nearest[row]) for row in np.flatnonzero(elsewhere)}
+    at = {}
+    for vehicle, position in positions.items():
+        away = [math.dist(position, place) for place in places]
+        nearest = away.index(min(away))
+        if away[nearest] * distance_ratio < away[vehicle]:
+            at[vehicle] = nearest
     return at if set(at) == set(at.values()) else {}

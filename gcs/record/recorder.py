@@ -58,6 +58,10 @@ class FlightRecorder:
         """Record a datagram, sent or received."""
         self._tlog.write(now, datagram)
 
+    def end_exchange(self) -> None:
+        """Write the datagrams of an exchange."""
+        self._tlog.flush()
+
     def step(self, flight: Flight, time: float, record: StepRecord | None) -> None:
         """Record a control step at team ``time`` (s)."""
         self.last_time = time
@@ -115,9 +119,8 @@ class FlightRecorder:
         last = math.floor(time / REFERENCE_INTERVAL + _GRID_TOLERANCE)
         times = np.arange(self._next_row, last + 1, dtype=np.float64) * REFERENCE_INTERVAL
         if len(times):
-            rows = (each.tolist() for each in (times, *flight.reference(times)))
-            for moment, position, velocity in zip(*rows, strict=True):
-                self._reference.write([round(moment, 6), *position, *velocity])
+            rows = np.column_stack([times.round(6), *flight.reference(times)])
+            self._reference.write_all(rows.tolist())
             self._next_row = last + 1
 
     def close(self) -> None:

@@ -73,10 +73,17 @@ class TableWriter(AppendOnlyFile):
 
     def write(self, row: Iterable[Cell]) -> None:
         """Append one row, a value a column. Raises :class:`ValueError` for another number of values."""
+        self.append(self._row(row))
+
+    def write_all(self, rows: Iterable[Iterable[Cell]]) -> None:
+        """Append rows in one record."""
+        self.append(b"".join(map(self._row, rows)))
+
+    def _row(self, row: Iterable[Cell]) -> bytes:
         cells = [_FORMATS.get(type(value), _cell)(value) for value in row]
         if len(cells) != len(self.columns):
             raise ValueError(f"{self.path.name}: {len(cells)} values for {len(self.columns)} columns")
-        self.append(_line(cells))
+        return _line(cells)
 
     def write_numbers(self, row: Sequence[float | int]) -> None:
         """Append one row of plain floats and integers. Raises :class:`ValueError` for another number of values."""

@@ -14,11 +14,15 @@ _STAMP = struct.Struct(">Q")
 
 
 class TelemetryLog(AppendOnlyFile):
-    """Writes a tlog; ``start_epoch`` is the wall-clock time (s since 1970, UTC) of flight time 0."""
+    """Writes a tlog; ``start_epoch`` is the wall-clock time (s since 1970, UTC) of flight time 0.
+
+    The frames of one exchange go to the operating system together: with :meth:`flush`, or when the file is closed.
+    """
 
     def __init__(self, path: Path | str, start_epoch: float) -> None:
         super().__init__(path)
         self._start_us = round(start_epoch * 1e6)
+        self._waiting: list[bytes] = []
 
     def write(self, now: float, datagram: bytes) -> None:
         """Record a datagram that was sent or received at flight time ``now`` (s): one record a frame.
@@ -26,5 +30,15 @@ class TelemetryLog(AppendOnlyFile):
         Bytes that belong to no frame, as a damaged datagram may hold, are left out.
         """
         stamp = _STAMP.pack((self._start_us + round(now * 1e6)) & ~0x3)
-        if records := b"".join([stamp + datagram[start:end] for start, end in spans(datagram)]):
-            self.append(records)
+        self._waiting += [stamp + datagram[start:end] for start, end in spans(datagram)]
+
+    def flush(self) -> None:
+        """Append the frames that were recorded since the last call."""
+        if self._waiting:
+            self.append(b"".join(self._waiting))
+            self._waiting.clear()
+
+    def close(self) -> None:
+        """Append what waits, and close the file; harmless when it is closed already."""
+        self.flush()
+        super().close()
