@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
+from flying import AIRFRAME
 
 from gcs.config.vehicle_settings import LandDetectorSettings
 from vehicle_sim.autopilot.land_detector import LandDetector
-from vehicle_sim.world.sensors import Measurement
+from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
+from vehicle_sim.autopilot.onboard_kernels import THRUST, detect_landings
 
 SETTINGS = LandDetectorSettings()
 WEIGHT, THRUST_MAX, HOVER = 7.0, 30.0, 14.0  # N; it carries as much again
@@ -18,7 +22,9 @@ class Bench:
     """A detector, and the motion that it is shown."""
 
     def __init__(self) -> None:
-        self.detector = LandDetector(WEIGHT, THRUST_MAX, SETTINGS)
+        airframe = replace(AIRFRAME, mass=WEIGHT / AIRFRAME.g, rotors=replace(AIRFRAME.rotors, thrust_max=THRUST_MAX))
+        self.arrays = OnboardArrays.of([airframe], SETTINGS)
+        self.detector = LandDetector(self.arrays)
         self.now, self.height = 0.0, 0.0
 
     def run(self, seconds: float, thrust: float = HOVER, climb: float = 0.0, learn: bool = True) -> LandDetector:
@@ -26,8 +32,12 @@ class Bench:
         for _ in range(round(seconds / STEP)):
             self.now += STEP
             self.height += climb * STEP
-            measured = Measurement(self.now, LEVEL, (0.0,) * 3, (0.0, 0.0, -self.height), (0.0, 0.0, -climb))
-            self.detector.update(measured, thrust, self.now, learn)
+            arrays = self.arrays
+            arrays.estimates[0] = [0.0, 0.0, -self.height, *LEVEL, 0.0, 0.0, -climb, 0.0, 0.0, 0.0]
+            arrays.targets[0, THRUST], arrays.learns[0] = thrust, learn
+            detect_landings(
+                arrays.detectors, arrays.estimates, arrays.targets, arrays.learns, self.now, arrays.landings
+            )
         return self.detector
 
     def fly(self) -> LandDetector:
