@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from idc_controller.estimation.health.dead_reckoning import DeadReckoning
-from idc_controller.estimation.health.dead_reckoning_kernels import drift_ratio
+from idc_controller.estimation.health.dead_reckoning_kernels import drift_ratio, integrate
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position, SensorGroup
 from idc_controller.estimation.settings import DeadReckoningSettings
 from idc_controller.rotations import quaternion_from_euler, quaternion_product
@@ -162,4 +162,27 @@ def test_compiled_drift_ratio_equals_plain_one(count, n):
     moved = np.abs(np.median(values[-n:], axis=0) - np.median(values[:n], axis=0))
     sigma = 1.4826 / np.sqrt(2.0) * np.median(np.abs(np.diff(values, axis=0)), axis=0)
     allowed = error + sigmas * 1.2533 * np.sqrt(2.0 / n) * sigma
-    assert drift_ratio(values, n, error, sigmas) == pytest.approx((moved / allowed).max(), rel=1e-12)
+    window = np.column_stack([0.04 * np.arange(count), values])
+    assert drift_ratio(window, n, error, sigmas) == pytest.approx((moved / allowed).max(), rel=1e-12)
+
+
+@pytest.mark.parametrize("is_position", [True, False])
+def test_compiled_integral_equals_plain_one(is_position):
+    rng = np.random.default_rng(3)
+    integral = np.zeros(3) if is_position else quaternion_from_euler(0.1, -0.2, 0.4)
+    plain, motion, difference = integral.copy(), np.zeros(3), np.empty(3)
+    for count in (4, 5, 5):
+        motions, pose, last = rng.standard_normal((count, 3)), rng.standard_normal(len(integral)), motion.copy()
+        integrate(motions, motion, integral, 0.04, pose, difference)
+        assert (motion == np.median(motions, axis=0)).all()
+        mean = 0.5 * (last + motion)
+        if is_position:
+            plain = plain + 0.04 * mean
+            expected = pose - plain
+        else:
+            plain = quaternion_product(plain, np.append(1.0, 0.02 * mean))
+            plain /= np.linalg.norm(plain)
+            rest = quaternion_product(pose, plain * [1.0, -1.0, -1.0, -1.0])
+            expected = 2.0 * np.copysign(1.0, rest[0]) * rest[1:]
+        assert integral == pytest.approx(plain, rel=1e-13, abs=1e-14)
+        assert difference == pytest.approx(expected, rel=1e-12, abs=1e-13)

@@ -14,7 +14,7 @@ from idc_controller.estimation.kalman_filter import SetpointNoise, SparseRows, S
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
 from idc_controller.estimation.process_model import ProcessModel
 from idc_controller.estimation.settings import ProcessNoiseSettings
-from idc_controller.estimation.update_kernels import gated
+from idc_controller.estimation.update_kernels import gated, mean_products
 from idc_controller.model.linear import LinearModel
 from idc_controller.rotations import euler_from_quaternion, rotation_from_quaternion
 from idc_controller.trajectory.flatness import Load, flat_reference
@@ -195,3 +195,11 @@ def test_chi_squared_quantiles_equal_scipys():
     freedom = np.arange(1, 300)
     assert lower_quantile(1.0 - 1e-6, freedom) == pytest.approx(chi2.ppf(1.0 - 1e-6, freedom), rel=1e-12)
     assert upper_quantile(1e-10, freedom) == pytest.approx(chi2.isf(1e-10, freedom), rel=1e-12)
+
+
+def test_compiled_mean_products_equal_plain_ones():
+    rng = np.random.default_rng(8)
+    normalised, last, accepted, of_payload = *rng.standard_normal((2, 30)), rng.random(30) < 0.7, np.arange(30) < 12
+    plain = [(normalised * last)[accepted & part].mean() for part in (of_payload, ~of_payload)]
+    assert mean_products(normalised, last, accepted, of_payload) == pytest.approx(plain, rel=1e-12)
+    assert np.isnan(mean_products(normalised, last, of_payload, of_payload)[1])

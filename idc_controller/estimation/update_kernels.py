@@ -170,3 +170,21 @@ def gated(
                     _normalise(residual, covariance, variance, begin, part, half) <= limits[part]
                 )
     return normalised, mean_squares, accepted, rows
+
+
+@kernel("UniTuple(float64, 2)(float64[::1], float64[::1], boolean[::1], boolean[::1])")
+def mean_products(normalised: Array, last: Array, accepted: Mask, of_payload: Mask) -> tuple[float, float]:
+    """Return the mean product of two normalised innovations (m,), over the payload's rows and over the UAVs'.
+
+    Args:
+        normalised, last: innovations of two consecutive moments (m,).
+        accepted: rows that count (m,); nan where there are none.
+        of_payload: rows of the payload unit (m,).
+    """
+    total, count = np.zeros(2), np.zeros(2)
+    for r in range(len(normalised)):
+        if accepted[r]:
+            part = 0 if of_payload[r] else 1
+            total[part] += normalised[r] * last[r]
+            count[part] += 1.0
+    return total[0] / count[0], total[1] / count[1]

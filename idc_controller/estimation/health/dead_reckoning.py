@@ -6,15 +6,13 @@ when it persists after a blow. Yet each of them contradicts its own motion, what
 """
 
 from collections import deque
-from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 
-from idc_controller.estimation.health.dead_reckoning_kernels import drift_ratio
+from idc_controller.arrays import Array
+from idc_controller.estimation.health.dead_reckoning_kernels import drift_ratio, integrate
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, Position, SensorGroup, SensorKey
 from idc_controller.estimation.settings import DeadReckoningSettings
-from idc_controller.rotations_float import Quaternion, Vector, turned
 
 
 class DeadReckoning:
@@ -62,47 +60,37 @@ class DeadReckoning:
         return tuple(found)
 
 
-class _IntegratedVelocity:
-    """Path (m) by velocities."""
+class _Window:
+    """Differences of poses and integrated motions, in order of time, each after its time (s)."""
 
     def __init__(self) -> None:
-        self._path: Vector = (0.0, 0.0, 0.0)
+        self._rows, self._begin, self._end = np.empty((256, 4)), 0, 0
 
-    def advance(self, duration: float, motion: Vector) -> None:
-        """Integrate a ``motion`` over a ``duration`` (s)."""
-        (x, y, z), (u, v, w) = self._path, motion
-        self._path = x + duration * u, y + duration * v, z + duration * w
+    def __len__(self) -> int:
+        return self._end - self._begin
 
-    def difference(self, pose: Sequence[float]) -> Vector:
-        """Return ``pose`` less the integral, which is constant but for noise."""
-        (x, y, z), (a, b, c) = self._path, pose
-        return a - x, b - y, c - z
+    @property
+    def rows(self) -> Array:
+        """All of them (K, 4)."""
+        return self._rows[self._begin : self._end]
 
+    def append(self, time: float) -> Array:
+        """Append one of that time and return it (3,), to be filled."""
+        if self._end == len(self._rows):
+            kept = self.rows.copy()
+            if 2 * len(kept) > len(self._rows):
+                self._rows = np.empty((2 * len(self._rows), 4))
+            self._rows[: len(kept)] = kept
+            self._begin, self._end = 0, len(kept)
+        row = self._rows[self._end]
+        self._end += 1
+        row[0] = time
+        return np.asarray(row[1:])
 
-class _IntegratedRates:
-    """Attitude by body rates from the quaternion ``begin``."""
-
-    def __init__(self, begin: Quaternion) -> None:
-        self._attitude = begin
-
-    def advance(self, duration: float, motion: Vector) -> None:
-        self._attitude = turned(self._attitude, motion, duration)
-
-    def difference(self, pose: Sequence[float]) -> Vector:
-        """Return a rotation vector in the world (rad), as long as it is small."""
-        (w, x, y, z), (a, b, c, d) = self._attitude, pose
-        twice = 2.0 if a * w + b * x + c * y + d * z >= 0.0 else -2.0
-        return (
-            twice * (b * w - a * x - c * z + d * y),
-            twice * (c * w - a * y - d * x + b * z),
-            twice * (d * w - a * z - b * y + c * x),
-        )
-
-
-class _Sample(NamedTuple):
-    time: float
-    pose: list[float]
-    motion: list[float]
+    def forget(self, until: float) -> None:
+        """Discard those before a time (s)."""
+        while self._begin < self._end and self._rows[self._begin, 0] < until:
+            self._begin += 1
 
 
 class _SourceCheck:
@@ -113,55 +101,47 @@ class _SourceCheck:
         """Difference of pose and integrated motion over what is allowed."""
         self._settings = s = settings
         is_position = isinstance(first, Position)
-        self._integral = _IntegratedVelocity() if is_position else _IntegratedRates(tuple(first.pose.tolist()))
+        self._integral = np.zeros(3) if is_position else first.pose.copy()
+        """Path (3,) (m) by velocities, or attitude (4,) by body rates."""
         self._error = s.position_error if is_position else s.attitude_error
         self._inconsistent = 0
-        self._recent: deque[_Sample] = deque(maxlen=s.smoothed)
-        self._motion: Vector | None = None
-        self._differences: deque[tuple[float, Vector]] = deque()
+        self._recent: deque[Measurement] = deque(maxlen=s.smoothed)
+        self._motion = np.zeros(3)
+        """Median of the recent ones."""
+        self._window = _Window()
         self._untested = 0
 
     def add(self, measurement: Measurement) -> None:
         """Take a measurement that has pose and motion."""
-        recent, s = self._recent, self._settings
-        sample = _Sample(measurement.time, measurement.pose.tolist(), measurement.motion.tolist())
-        if recent and (sample.time <= recent[-1].time or sample[1:] == recent[-1][1:]):
+        recent, s, time = self._recent, self._settings, measurement.time
+        if recent and (time <= recent[-1].time or measurement.same_values(recent[-1])):
             return  # a relay of the same sample by a vehicle whose clock is off brings nothing new
-        if recent and sample.time - recent[-1].time > s.gap:
+        if recent and time - recent[-1].time > s.gap:
             recent.clear()
-            self._differences.clear()
-            self._motion = None
-        recent.append(sample)
+            self._window = _Window()
+        recent.append(measurement)
         if len(recent) == s.smoothed:
             self._integrate(recent[s.smoothed // 2 - 1].time, recent[s.smoothed // 2])
-        while self._differences and sample.time - self._differences[0][0] > s.window:
-            self._differences.popleft()
+        self._window.forget(time - s.window)
         self._untested += 1
         if self._untested >= s.samples // 2:
             self._untested = 0
-            self.test_ratio = self._ratio() if len(self._differences) > 2 * s.samples else 0.0
-            self._inconsistent = self._inconsistent + 1 if self.test_ratio > 1.0 else 0
+            ratio = drift_ratio(self._window.rows, s.samples, self._error, s.sigmas) if self._is_filled else 0.0
+            self.test_ratio = ratio
+            self._inconsistent = self._inconsistent + 1 if ratio > 1.0 else 0
 
     @property
     def is_inconsistent(self) -> bool:
         """Return whether several tests in a row failed: enough for a source that has no others beside it."""
         return self._inconsistent >= self._settings.consecutive
 
-    def _integrate(self, before: float, sample: _Sample) -> None:
-        """Continue the integral from the time ``before`` to that of ``sample``."""
-        u, v, w = (_median(axis) for axis in zip(*(near.motion for near in self._recent), strict=True))
-        if self._motion is not None:
-            a, b, c = self._motion
-            self._integral.advance(sample.time - before, (0.5 * (a + u), 0.5 * (b + v), 0.5 * (c + w)))
-        self._motion = u, v, w
-        self._differences.append((sample.time, self._integral.difference(sample.pose)))
+    @property
+    def _is_filled(self) -> bool:
+        return len(self._window) > 2 * self._settings.samples
 
-    def _ratio(self) -> float:
-        s, differences = self._settings, np.array([difference for _, difference in self._differences])
-        return drift_ratio(differences, s.samples, self._error, s.sigmas)
-
-
-def _median(values: Sequence[float]) -> float:
-    """Return the median of finite ``values``."""
-    ordered, half = sorted(values), len(values) // 2
-    return ordered[half] if len(values) % 2 else (ordered[half - 1] + ordered[half]) / 2.0
+    def _integrate(self, before: float, measurement: Measurement) -> None:
+        """Continue the integral from the time ``before`` to that of ``measurement``."""
+        motions = np.array([near.motion for near in self._recent])
+        duration = measurement.time - before if len(self._window) else 0.0
+        difference = self._window.append(measurement.time)
+        integrate(motions, self._motion, self._integral, duration, measurement.pose, difference)

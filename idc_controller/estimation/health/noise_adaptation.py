@@ -5,6 +5,10 @@ correlation, the sensors are noisier than assumed; where they keep pointing the 
 assumed (gusts, a load that is lost).
 """
 
+from __future__ import annotations
+
+import math
+import statistics
 from collections.abc import Sequence
 from enum import Enum
 
@@ -14,6 +18,7 @@ from idc_controller.arrays import Array, Mask
 from idc_controller.estimation.health.innovation_gate import InnovationTest
 from idc_controller.estimation.measurements import PAYLOAD, SensorKey
 from idc_controller.estimation.settings import NoiseAdaptationSettings
+from idc_controller.estimation.update_kernels import mean_products
 
 
 class Reaction(Enum):
@@ -37,9 +42,15 @@ class NoiseAdaptation:
         self._time = -np.inf
         self._keys: Sequence[object] = ()
         self._last = np.zeros(0)
-        self._correlation = np.zeros(2)
+        self._correlation = 0.0, 0.0
+        """Mean correlation of the innovations of the payload unit and of the UAVs."""
         self._since_change = 0
         self._payload_rejections = 0
+
+    def __copy__(self) -> NoiseAdaptation:
+        other = NoiseAdaptation.__new__(NoiseAdaptation)
+        other.__dict__.update(self.__dict__)
+        return other
 
     @property
     def process_scale(self) -> float:
@@ -92,26 +103,31 @@ class NoiseAdaptation:
         """
         s = self._settings
         # A correlated part is no noise.
-        median = float(np.median(mean_squares)) - max(float(self._correlation.max()), 0.0)
+        median = statistics.median(mean_squares.tolist()) - max(*self._correlation, 0.0)
         if median > s.median_limit and not self._persists(time, keys, normalised):
             self.measurement_scale = min(self.measurement_scale * s.growth, s.measurement_scale_max)
         elif median < 1.0:
             self.measurement_scale = max(self.measurement_scale * s.decay, 1.0)
         if self._follows(time, keys, normalised):
-            product = normalised * self._last
-            self._correlation = self._correlation.copy()  # a snapshot may hold the one before
-            for k, part in enumerate((of_payload, ~of_payload)):
-                rows = part & accepted
-                if rows.any():
-                    clipped = float(np.clip(product[rows].mean(), -s.correlation_max, s.correlation_max))
-                    self._correlation[k] += s.correlation_share * (clipped - self._correlation[k])
+            products = mean_products(normalised, self._last, accepted, of_payload)
+            self._correlation = (
+                self._mean_correlation(self._correlation[0], products[0]),
+                self._mean_correlation(self._correlation[1], products[1]),
+            )
             self._since_change += 1
-            correlation = float(self._correlation.max())
+            correlation = max(self._correlation)
             if self._since_change > s.dwell and correlation > s.correlation_rise and self.level < s.process_levels:
                 self.level, self._since_change = self.level + 1, 0
             elif self._since_change > s.dwell and correlation < s.correlation_fall and self.level:
                 self.level, self._since_change = self.level - 1, 0
         self._time, self._keys, self._last = time, keys, normalised
+
+    def _mean_correlation(self, mean: float, product: float) -> float:
+        """Return the running ``mean`` with the mean ``product`` of one update; nan: it has none."""
+        s = self._settings
+        if math.isnan(product):
+            return mean
+        return mean + s.correlation_share * (min(max(product, -s.correlation_max), s.correlation_max) - mean)
 
     def _persists(self, time: float, keys: Sequence[object], normalised: Array) -> bool:
         """Return whether the innovation (m,) points where the last one pointed."""
