@@ -19,10 +19,12 @@ from idc_controller.geometry.box import Wall
 from idc_controller.geometry.obstacles import Bodies
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
+from idc_controller.geometry.visibility_kernels import points_of_pole, points_of_sphere
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
 from vehicle_sim.faults import FaultInjector
 from vehicle_sim.swarm import Swarm
-from vehicle_sim.world.range_sensor import RangeSensor, visible_points
+from vehicle_sim.world.range_sensor import RangeSensor, visible_rays
+from vehicle_sim.world.range_sensor_kernels import measured, rays_in_reach
 
 CONFIG = read_system()
 REACH = 10.0
@@ -51,12 +53,11 @@ def test_points_lie_on_the_visible_side_within_range_and_the_first_is_the_neares
     detected = 0
     for place in places(rng):
         distance = float(body.distance(np.array([place]), centre)[0, 0])
-        points = visible_points(obstacle, place, REACH, rng.uniform())
+        points = place + visible_rays(obstacle, place, REACH, rng.uniform())
         if distance <= 0.0 or distance > REACH:
-            assert points == []
+            assert len(points) == 0
             continue
         detected += 1
-        points = np.array(points)
         on_surface = np.abs(body.distance(points, centre)[0])
         # Points on a pole's end lie within its rim.
         assert on_surface.max() < 1e-6
@@ -70,11 +71,34 @@ def test_points_lie_on_the_visible_side_within_range_and_the_first_is_the_neares
     assert detected > 20
 
 
+def test_kernels_agree_with_plain_functions():
+    rng = np.random.default_rng(4)
+    attitude = tuple(quaternion_from_euler(0.1, -0.2, 2.0))
+    side, ring = rng.uniform(-0.9, 0.9, (6, 2)), rng.uniform(0.1, 0.9, 5)
+    for place in places(rng):
+        np.testing.assert_allclose(
+            points_of_sphere(*place, 0.5, 0.3, ring), points_of_sphere.py_func(*place, 0.5, 0.3, ring), atol=1e-12
+        )
+        np.testing.assert_allclose(
+            points_of_pole(*place, 0.2, 3.0, REACH, side, 0.95),
+            points_of_pole.py_func(*place, 0.2, 3.0, REACH, side, 0.95), atol=1e-12,
+        )  # fmt: skip
+        points, errors = rng.normal(0.0, 6.0, (20, 3)), rng.normal(0.0, 0.05, 20)
+        rays = rays_in_reach(points, *place, REACH)
+        near = np.linalg.norm(points - place, axis=1) <= REACH
+        np.testing.assert_allclose(rays, (points - place)[near], atol=1e-12)
+        found, ranges = measured(rays, errors[near], *attitude, 5.0), np.linalg.norm(rays, axis=1)
+        expected = rays @ rotation_from_quaternion(attitude) * (1.0 + errors[near] / ranges)[:, None]
+        np.testing.assert_allclose(found, np.where(ranges[:, None] < 5.0, np.nan, expected), atol=1e-12)
+
+
 def test_ends_are_hit_when_they_are_in_range():
-    points = np.array(visible_points(pole((0.0, 0.0), 0.2, 8.0), (-4.0, 0.0, -5.0), REACH, 0.0))
+    place = (-4.0, 0.0, -5.0)
+    points = place + visible_rays(pole((0.0, 0.0), 0.2, 8.0), place, REACH, 0.0)
     assert points[:, 2].min() == pytest.approx(-8.0)
     assert points[:, 2].max() == pytest.approx(0.0)
-    points = np.array(visible_points(wall((0.0, 0.0, -5.0), (0.4, 6.0, 4.0), 0.0), (-5.0, 0.0, -8.5), REACH, 0.0))
+    place = (-5.0, 0.0, -8.5)
+    points = place + visible_rays(wall((0.0, 0.0, -5.0), (0.4, 6.0, 4.0), 0.0), place, REACH, 0.0)
     assert np.ptp(points[:, 1]) == pytest.approx(6.0)
     assert np.ptp(points[:, 2]) == pytest.approx(4.0)
     assert np.ptp(points[:, 0]) == pytest.approx(0.4)  # the top shows how thick it is

@@ -137,7 +137,7 @@ def test_bounds_hold_the_body(shape):
 def test_range_sensor_hits_the_surface_that_faces_it(shape):
     for direction in np.random.default_rng(5).normal(size=(30, 3)):
         sensor = direction / np.linalg.norm(direction) * (shape.reach + 2.0)
-        points = np.array(shape.visible_points(tuple(sensor), 20.0, 0.3))
+        points = shape.visible_points(tuple(sensor), 20.0, 0.3)
         distance = Bodies([shape]).from_offsets(points[None])[0]
         np.testing.assert_allclose(distance, 0.0, atol=1e-6)
         ranges = np.linalg.norm(points - sensor, axis=1)
@@ -145,7 +145,7 @@ def test_range_sensor_hits_the_surface_that_faces_it(shape):
         # Nothing of the body lies between the sensor and the points.
         between = sensor + np.linspace(0.0, 0.98, 25)[:, None, None] * (points - sensor)
         assert (Bodies([shape]).from_offsets(between.reshape(1, -1, 3)) > -1e-6).all()
-    assert shape.visible_points((0.0, 0.0, 0.0), 20.0, 0.0) == []
+    assert len(shape.visible_points((0.0, 0.0, 0.0), 20.0, 0.0)) == 0
 
 
 def test_quaternion_is_the_rotation(shape):

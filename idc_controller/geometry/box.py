@@ -87,13 +87,13 @@ class Wall(Shape):
         signs = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
         return PlanView(shapely.Polygon(signs * (np.array(self.size[:2]) / 2.0) @ self.rotation[:2, :2].T), 0.0)
 
-    def visible_points(self, sensor: Vector, reach: float, turn: float) -> list[Vector]:
-        """Points of the surface that a range sensor hits: corners and middle of the faces in its field of view."""
+    def visible_points(self, sensor: Vector, reach: float, turn: float) -> Array:
+        """Points (n, 3) of the surface that a range sensor hits: corners and middle of the faces in view."""
         cosine, sine = math.cos(self.yaw), math.sin(self.yaw)
         a, b, c = sensor
         local = (cosine * a + sine * b, cosine * b - sine * a, c)
         points = _visible_points(self.size, local, reach)
-        return [(cosine * u - sine * v, sine * u + cosine * v, w) for u, v, w in points]
+        return np.array([(cosine * u - sine * v, sine * u + cosine * v, w) for u, v, w in points]).reshape(-1, 3)
 
 
 @dataclass(frozen=True)

@@ -111,12 +111,12 @@ class OrientedShape(Shape):
 
         return PlanView(shapely.MultiPoint(self._in_world[:, :2]).convex_hull, self.rounding)
 
-    def visible_points(self, sensor: Vector, reach: float, turn: float) -> list[Vector]:
-        """Points of the surface that a range sensor hits: the nearest, then those that lie farthest apart."""
+    def visible_points(self, sensor: Vector, reach: float, turn: float) -> Array:
+        """Points (n, 3) of the surface that a range sensor hits: the nearest, then those that lie farthest apart."""
         place = np.array(sensor)
         nearest = self._nearest(place)
         if nearest is None or math.dist(nearest, sensor) > reach:
-            return []
+            return np.empty((0, 3))
         points, normals = self._samples
         rays = place - points
         ranges = np.linalg.norm(rays, axis=1)
@@ -127,7 +127,7 @@ class OrientedShape(Shape):
         while len(chosen) < _MOST_POINTS and len(points) and apart.max() > 0.05 * self.reach:
             chosen.append(points[int(np.argmax(apart))])
             apart = np.minimum(apart, np.linalg.norm(points - chosen[-1], axis=1))
-        return [(float(x), float(y), float(z)) for x, y, z in chosen]
+        return np.array(chosen)
 
     def _nearest(self, place: Array) -> Vector | None:
         """Point of the surface about the centre that is nearest to ``place`` (3,); None: it lies inside."""

@@ -225,8 +225,8 @@ class Shape(ABC):
         """The body seen from above."""
 
     @abstractmethod
-    def visible_points(self, sensor: Vector, reach: float, turn: float) -> list[Vector]:
-        """Points of the surface that a range sensor hits, about the centre: the nearest first, then to the edges.
+    def visible_points(self, sensor: Vector, reach: float, turn: float) -> Array:
+        """Points (n, 3) of the surface that a range sensor hits, about the centre: the nearest first, then the edges.
 
         Args:
             sensor: where the sensor is, relative to the centre (m); one inside hits nothing.

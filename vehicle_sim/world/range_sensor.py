@@ -11,8 +11,10 @@ from typing import NamedTuple
 import numpy as np
 
 from gcs.config import RangeSensorConfig
-from idc_controller.rotations_float import Quaternion, Vector, into_body
+from idc_controller.arrays import Array
+from idc_controller.rotations_float import Quaternion, Vector
 from vehicle_sim.world.obstacle_bodies import Obstacle, bounding_radius
+from vehicle_sim.world.range_sensor_kernels import measured, rays_in_reach
 
 #: Distinguishes these generators from the navigation sensors'.
 _STREAM = 1_000_003
@@ -56,41 +58,38 @@ class RangeSensor:
         """Return the scan at ``now`` (s) from ``position`` (3,) (NED, m) with ``attitude`` (body to world)."""
         s = (float(position[0]), float(position[1]), float(position[2]))
         reach, nearest = self._settings.range, self._settings.range_min
-        detections: list[Detection] = []
+        rays, errors, numbers = [np.empty((0, 3))], [np.empty(0)], list[int]()
         detected: dict[str, int] = {}
         for obstacle in obstacles:
             if _is_beyond(obstacle, s, reach):
                 continue
-            points = visible_points(obstacle, s, reach, float(self._generator.uniform(0.0, math.pi / 3.0)))
-            if not points:
+            found = visible_rays(obstacle, s, reach, float(self._generator.uniform(0.0, math.pi / 3.0)))
+            if not len(found):
                 continue
             number = self._ids.get(obstacle.name)
             if number is None:
                 number, self._next_id = self._next_id, (self._next_id + 1) % _IDS
             detected[obstacle.name] = number
-            noise = (self._settings.noise * self._generator.standard_normal(len(points))).tolist()
-            for (x, y, z), error in zip(points, noise, strict=True):
-                ray = (x - s[0], y - s[1], z - s[2])
-                distance = math.hypot(*ray)
-                if distance < nearest:
-                    continue
-                a, b, c = into_body(attitude, ray)
-                scale = max(1.0 + error / distance, 0.0)
-                detections.append(Detection(number, (scale * a, scale * b, scale * c)))
+            rays.append(found)
+            errors.append(self._generator.standard_normal(len(found)))
+            numbers += [number] * len(found)
         self._ids = detected  # one that leaves and comes back is a new one to the vehicle
-        return RangeSample(now, reach, tuple(detections), range_min=nearest)
+        noise = self._settings.noise * np.concatenate(errors)
+        places = measured(np.concatenate(rays), noise, *attitude, nearest).tolist()
+        detections = tuple(
+            Detection(number, (x, y, z)) for number, (x, y, z) in zip(numbers, places, strict=True) if not math.isnan(x)
+        )
+        return RangeSample(now, reach, detections, range_min=nearest)
 
 
-def visible_points(obstacle: Obstacle, sensor: Vector, reach: float, turn: float) -> list[Vector]:
-    """Points of the surface in the world, the nearest first; empty if none is within ``reach`` (m).
+def visible_rays(obstacle: Obstacle, sensor: Vector, reach: float, turn: float) -> Array:
+    """Rays (n, 3) (m) in the world from a sensor to points of the surface within ``reach`` (m), the nearest first.
 
     An obstacle hides its own far side; it does not hide others.
     """
     x, y, z = obstacle.position_in_world
     offset = (sensor[0] - x, sensor[1] - y, sensor[2] - z)
-    limit = reach + 1e-9
-    points = obstacle.shape.visible_points(offset, reach, turn)
-    return [(x + a, y + b, z + c) for a, b, c in points if math.dist((a, b, c), offset) <= limit]
+    return rays_in_reach(obstacle.shape.visible_points(offset, reach, turn), *offset, reach + 1e-9)
 
 
 def _is_beyond(obstacle: Obstacle, sensor: Vector, reach: float) -> bool:
