@@ -128,7 +128,7 @@ def show(counts, wall, until):
 
 
 def test_standing_obstacles_benchmark():
-    main([])
+    main(["0", "200", "--until", "16"])
 
 
 def main(arguments=None):
