@@ -12,7 +12,7 @@ export OPENBLAS_NUM_THREADS := 1
 unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: help install fly test test-fast mutants golden golden-renew
-.PHONY: benchmark benchmark-parts benchmark-check docs clean
+.PHONY: benchmark benchmark-parts benchmark-campaign benchmark-check docs clean
 
 help:
 	@echo "make fly          fly $(MISSION) with a simulated swarm (MISSION=... for another one)"
@@ -23,6 +23,7 @@ help:
 	@echo "make golden-renew write these checksums anew"
 	@echo "make benchmark    the speed of flights relative to gym-pybullet-drones; adds to the history"
 	@echo "make benchmark-check  compare the CPU cost of flights with that of the commit BASE ($(BASE))"
+	@echo "make benchmark-campaign  throughput of parallel flights against a single one's"
 	@echo "make benchmark-parts  the CPU cost of parts, of the planner, and of QP solvers"
 	@echo "make docs         write docs/settings.md and docs/failsafes.md from their declarations"
 	@echo "make install      only install, into $(VENV)"
@@ -58,6 +59,9 @@ benchmark: $(INSTALLED)
 
 benchmark-parts: $(INSTALLED)
 	$(VENV)/bin/python -m pytest -o addopts= -s tests/benchmarks
+
+benchmark-campaign: $(INSTALLED)
+	$(VENV)/bin/python tests/benchmarks/campaign.py
 
 benchmark-check: $(INSTALLED)
 	$(VENV)/bin/python tests/benchmarks/check.py --base $(BASE)

@@ -1,0 +1,70 @@
+"""Throughput of a campaign's parallel flights against a single flight's; `make benchmark-campaign`.
+
+    python tests/benchmarks/campaign.py [--flights N]
+
+Flies the same mission one at a time and on all cores, by the campaigns' process pool, and prints the share of cores x
+single-flight speed that is reached (wall time: the machine must be idle), and the CPU time of a flight's start and end.
+"""
+
+import argparse
+import resource
+import sys
+import tempfile
+import threading
+import time
+from pathlib import Path
+
+from measure import ROOT, fly, mission_text, write
+from rich.console import Console
+from rich.table import Table
+
+sys.path.insert(0, str(ROOT))
+
+from gcs.campaign.process_pool import all_cores, fly_process, run_parallel
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--flights", type=int, default=4, help="flights for each core (default: %(default)s)")
+    options = parser.parse_args()
+    cores = all_cores()
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = Path(scratch)
+        mission = write(folder, "figure", mission_text(ROOT, "figure_eight.toml", 20.0, altitude=3.0))
+        single, spent = flown(mission, folder, options.flights, jobs=1)
+        parallel, _ = flown(mission, folder, options.flights * cores, jobs=cores)
+        in_flight = fly(ROOT, mission)
+    table = Table("", "", title=f"{options.flights} flights for each of {cores} cores")
+    table.add_row("one at a time", f"{single:.2f} simulated s per s")
+    table.add_row(f"{cores} at a time", f"{parallel:.2f}")
+    table.add_row("of cores x single", f"{100.0 * parallel / (cores * single):.0f} %")
+    table.add_row("start and end of a flight", f"{spent - in_flight['spent_s']:.2f} s of {spent:.2f} s CPU")
+    Console(width=100).print(table)
+
+
+def flown(mission, folder, count, jobs):
+    """Fly ``count`` times; return simulated time per wall time, and the CPU time of one flight (s)."""
+    durations = []
+
+    def flight(seed, stop):
+        return fly_process(mission, ("--seed", str(seed)), folder / f"flight-{jobs}-{seed}", stop)
+
+    def ended(_, process):
+        if process.exit_code:
+            sys.exit(f"{mission}: {process.reason}")
+        durations.append(process.summary["duration_s"])
+
+    begin, before = time.monotonic(), children()
+    run_parallel(range(1, count + 1), jobs, flight, lambda _: None, ended)
+    wall = time.monotonic() - begin
+    assert threading.active_count() == 1  # nothing flies on
+    return sum(durations) / wall, (children() - before) / count
+
+
+def children():
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+if __name__ == "__main__":
+    main()
