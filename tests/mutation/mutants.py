@@ -198,9 +198,9 @@ class Worker:
 
 
 def equivalents() -> set[tuple[str, str, str]]:
-    """Return path, original and replacement of the mutants that cannot be noticed."""
+    """Return path, line and replacement of the mutants that cannot be noticed."""
     named = tomllib.loads((HERE / "equivalent.toml").read_text())
-    return {(entry["path"], entry["original"], entry["replacement"]) for entry in named["equivalent"]}
+    return {(entry["path"], entry["line"], entry["replacement"]) for entry in named["equivalent"]}
 
 
 def sample(modules: Sequence[str], number: int, seed: int) -> list[Mutant]:
@@ -224,7 +224,7 @@ def report(outcomes: Sequence[Outcome]) -> bool:
     """Print the survivors and the share of killed mutants; return whether it is as large as wanted."""
     known = equivalents()
     survivors = [outcome.mutant for outcome in outcomes if outcome.killed_by is None]
-    equivalent = [m for m in survivors if (m.path, m.original, m.replacement) in known]
+    equivalent = [m for m in survivors if (m.path, m.text, m.replacement) in known]
     alive = sorted((m for m in survivors if m not in equivalent), key=lambda m: (m.path, m.line))
     noticeable = len(outcomes) - len(equivalent)
     share = 1.0 - len(alive) / noticeable if noticeable else 1.0

@@ -33,6 +33,8 @@ class Mutant:
     end: int
     original: str
     replacement: str
+    text: str
+    """The line that it begins in."""
 
     def is_python(self, source: bytes) -> bool:
         """Return whether the changed source can be parsed."""
@@ -60,6 +62,7 @@ class _Places(ast.NodeVisitor):
 
     def __init__(self, path: str, source: str) -> None:
         self.path, self.raw = path, source.encode()
+        self.lines = source.splitlines()
         self.line_starts = [0]
         for line in self.raw.splitlines(keepends=True):
             self.line_starts.append(self.line_starts[-1] + len(line))
@@ -72,7 +75,8 @@ class _Places(ast.NodeVisitor):
         begin, end = self.span(node)
         original, function = self.raw[begin:end].decode(), ".".join(self.scope) if self.in_function else ""
         if replacement != original:
-            self.found.append(Mutant(self.path, node.lineno, function, kind, begin, end, original, replacement))
+            text = self.lines[node.lineno - 1].strip()
+            self.found.append(Mutant(self.path, node.lineno, function, kind, begin, end, original, replacement, text))
 
     def span(self, node: ast.expr | ast.stmt) -> tuple[int, int]:
         assert node.end_lineno is not None and node.end_col_offset is not None
