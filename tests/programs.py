@@ -4,6 +4,7 @@ import contextlib
 import json
 import os
 import re
+import socket
 import subprocess
 import sys
 from pathlib import Path
@@ -68,6 +69,22 @@ def addresses_of(process):
         who, _, url = line.strip().partition(": ")
         urls[who] = url
     raise AssertionError(process.stderr.read())
+
+
+_BASE_PORTS = iter(range(20_000 + 500 * int(os.environ.get("PYTEST_XDIST_WORKER", "gw0")[2:]), 30_000, 10))
+
+
+def base_port():
+    """A port that with the one below it and the three above is free, of a range that only this worker's tests use.
+
+    The system gives out no ports of this range by itself (it begins at 32768).
+    """
+    for base in _BASE_PORTS:
+        with contextlib.ExitStack() as opened, contextlib.suppress(OSError):
+            for port in range(base - 1, base + 4):
+                opened.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)).bind(("127.0.0.1", port))
+            return base
+    raise AssertionError("no free ports")
 
 
 @contextlib.contextmanager

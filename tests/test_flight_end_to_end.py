@@ -11,7 +11,7 @@ from flight_in_process import (
     short_figure,
     truth_of,
 )
-from programs import addresses_of, gcs_fly, swarm_process
+from programs import addresses_of, base_port, gcs_fly, swarm_process
 
 from gcs.mission.read import read_mission
 from gcs.mission.route import FlyTo
@@ -113,7 +113,9 @@ def test_two_programs_with_different_payload_masses_fly_in_lockstep(tmp_path):
     heavy = tmp_path / "heavy"
     heavy.mkdir()
     heavier = short_figure(heavy, duration=12.0, payload_mass_factor="1.1")
-    swarm = swarm_process("--lockstep", "--mission", heavier, "--run-dir", tmp_path / "world", "--base-port", 0)
+    swarm = swarm_process(
+        "--lockstep", "--mission", heavier, "--run-dir", tmp_path / "world", "--base-port", base_port()
+    )
     try:
         addresses = addresses_of(swarm)
         urls = [addresses[f"vehicle {i}"] for i in (1, 2, 3, 4)]

@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from flight_in_process import InProcessFlight, short_figure, truth_of
-from programs import PATIENCE, GcsProcess, addresses_of, swarm_process
+from programs import PATIENCE, GcsProcess, addresses_of, base_port, swarm_process
 from pymavlink import mavutil
 
 from gcs.app.cli import main
@@ -96,7 +96,7 @@ def test_killed_simulation_ends_the_flight_with_its_reason(tmp_path):
 
 def test_vehicles_hold_then_land_when_the_ground_is_killed(tmp_path):
     mission = short_figure(tmp_path, duration=30.0, altitude=1.5)
-    options = ("--lockstep", "--mission", mission, "--run-dir", tmp_path / "world", "--base-port", 0)
+    options = ("--lockstep", "--mission", mission, "--run-dir", tmp_path / "world", "--base-port", base_port())
     swarm = swarm_process(*options)
     try:
         addresses = addresses_of(swarm)
