@@ -7,6 +7,7 @@ than it in every round: beyond the spread. Both trees run in this environment.
 """
 
 import argparse
+import os
 import statistics
 import subprocess
 import sys
@@ -40,7 +41,8 @@ def compile_kernels(tree):
     """Compile what the base compiles at installation."""
     if (tree / "vehicle_sim" / "app" / "compile_kernels.py").exists():
         command = [sys.executable, "-m", "vehicle_sim.app.compile_kernels"]
-        subprocess.run(command, cwd=tree, env={"PYTHONPATH": str(tree)}, check=True)
+        environment = {**os.environ, "PYTHONPATH": str(tree)}
+        subprocess.run(command, cwd=tree, env=environment, stdout=subprocess.DEVNULL, check=True)
 
 
 def compare(base, scratch, options):
