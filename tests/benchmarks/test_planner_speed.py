@@ -31,7 +31,7 @@ from idc_controller.control.settings import ControllerSettings, MpcSettings
 from idc_controller.model.linear import LinearModel
 
 OBSTACLES = (2, 10, 50, 200)
-TEAMS = (3, 4, 5, 6, 7, 8)
+TEAMS = (3, 4, 6, 8, 10, 12)
 FAR = 1e20
 
 
