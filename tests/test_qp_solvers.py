@@ -8,7 +8,7 @@ from idc_controller.qp.daqp_solver import DaqpSolver
 from idc_controller.qp.problem import QuadraticProgram
 from idc_controller.qp.proxqp_solver import ProxqpSolver
 
-SOLVERS = [DaqpSolver, lambda: ProxqpSolver(duality_gap=1e-6)]
+SOLVERS = [DaqpSolver, ProxqpSolver]
 INF = np.inf
 LOWER = np.array([-0.2, -0.2, -INF, -INF, -0.3, -INF])
 UPPER = np.array([0.2, INF, 0.2, INF, 0.3, INF])
@@ -47,7 +47,7 @@ def test_solvers_agree_on_soft_rows_that_cannot_be_kept(bounded):
 
 
 def test_proxqp_agrees_from_a_warm_start_with_other_gradients_and_bounds():
-    first, warm = program(1, LOWER, UPPER), ProxqpSolver(duality_gap=1e-6)
+    first, warm = program(1, LOWER, UPPER), ProxqpSolver()
     for seed in range(2, 12):
         other = program(seed)
         problem = QuadraticProgram(first.H, other.g, first.G, other.h, 0.5 * LOWER, 0.5 * UPPER)
@@ -57,7 +57,7 @@ def test_proxqp_agrees_from_a_warm_start_with_other_gradients_and_bounds():
         assert warm.solve(problem).x == pytest.approx(DaqpSolver().solve(problem).x, abs=1e-5)
 
 
-@pytest.mark.parametrize("solver", [*SOLVERS, ProxqpSolver])
+@pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize(
     ("h", "lower"), [([-1.0, -1.0], None), ([1.0, 5.0], np.array([2.0, -INF]))], ids=["rows", "bound"]
 )

@@ -17,15 +17,9 @@ ITERATIONS, INNER_ITERATIONS = 200, 100
 
 
 class ProxqpSolver:
-    """Adapter; see :class:`~idc_controller.qp.problem.QpSolver`. QPs with the same H and G objects start warm.
+    """Adapter; see :class:`~idc_controller.qp.problem.QpSolver`. QPs with the same H and G objects start warm."""
 
-    Args:
-        duality_gap: largest one of a solution. None: only the residuals of feasibility and stationarity are checked,
-            which lets some solutions be off the minimum by a few per cent, and takes fewer iterations.
-    """
-
-    def __init__(self, duality_gap: float | None = None) -> None:
-        self._duality_gap = duality_gap
+    def __init__(self) -> None:
         self._set_up: QuadraticProgram | None = None
         self._qp: Any = None
 
@@ -55,8 +49,8 @@ class ProxqpSolver:
         self._set_up, self._qp = problem, proxqp.dense.QP(len(H), 0, m)
         settings = self._qp.settings
         settings.eps_abs, settings.max_iter, settings.max_iter_in = TOLERANCE, ITERATIONS, INNER_ITERATIONS
-        if self._duality_gap is not None:
-            settings.check_duality_gap, settings.eps_duality_gap_abs = True, self._duality_gap
+        # The residuals of feasibility and stationarity alone let some solutions be off the minimum by a few per cent.
+        settings.check_duality_gap, settings.eps_duality_gap_abs = True, TOLERANCE
         settings.initial_guess = proxqp.InitialGuess.NO_INITIAL_GUESS
         self._qp.init(H, np.zeros(len(H)), None, None, rows, np.full(m, -UNBOUNDED), np.full(m, UNBOUNDED))
 
