@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from vehicle_sim.autopilot.airframe import Airframe
-from vehicle_sim.world.rotors import IDLE, RotorGeometry, Rotors
+from vehicle_sim.world.rotors import RotorGeometry, Rotors
 from vehicle_sim.world.sensors import Measurement, NavigationSensors, SensorNoise
 
 AIRFRAME = Airframe(
@@ -36,7 +36,7 @@ class Body:
         self.mass = AIRFRAME.mass + carried
         self.sensor = NavigationSensors([noise or SensorNoise()], seed, [1])
         self.rotors = Rotors([AIRFRAME.rotors], [AIRFRAME.motor_time_constant], PHYSICS_STEP)
-        self.command = IDLE
+        self.command = (0.0, 0.0, 0.0, 0.0)
         self.thrust = 0.0
         self.tick = 0
         self.position = np.zeros(3)

@@ -18,8 +18,7 @@ TARGET_COLUMNS = 9
 
 # Columns of ``airframes``: inertia (xx, yy, zz, xy, xz, yz) in kg m2, twice kp (1/s2), kd (1/s), the largest force of a
 # rotor (N), its force per torque about roll or pitch and about yaw (1/m), squared speed per thrust (1/(N s2)).
-INERTIA, TWO_KP, KD, FORCE_MAX, PER_ROLL_PITCH, PER_YAW, PER_K_F = 0, 6, 7, 8, 9, 10, 11
-AIRFRAME_COLUMNS = 12
+TWO_KP, KD, FORCE_MAX, PER_ROLL_PITCH, PER_YAW, PER_K_F = 6, 7, 8, 9, 10, 11
 
 # Columns of ``landings``: what the detector has found; NaN: not known yet. Times in s, m, m/s, N.
 ALTITUDE, VELOCITY, GROUND, LAST_TIME, LIGHT_SINCE, TOUCHING_SINCE, HOVER_THRUST, IN_AIR = 0, 1, 2, 3, 4, 5, 6, 7

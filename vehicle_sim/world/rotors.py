@@ -16,8 +16,6 @@ from vehicle_sim.world.rotor_kernels import advance_rotors
 
 Four = tuple[float, float, float, float]
 
-IDLE: Four = (0.0, 0.0, 0.0, 0.0)
-
 
 @dataclass(frozen=True)
 class RotorGeometry:
