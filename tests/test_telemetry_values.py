@@ -1,0 +1,102 @@
+"""Measurements, set-points and detections from telemetry, against the fields of pymavlink's messages."""
+
+import math
+import random
+
+import numpy as np
+import pymavlink.dialects.v20.ardupilotmega as mavlink
+import pytest
+
+from gcs.mavlink import px4
+from gcs.mavlink.codec import Codec
+from gcs.mavlink.telemetry import detection, measurement, setpoint_flown
+from idc_controller.estimation.measurements import PAYLOAD, Attitude
+
+SPECIAL = (0.0, 1.0, math.nan, math.inf, -math.inf, 3e38)
+
+
+def received(message, system=3, component=px4.AUTOPILOT_COMPONENT):
+    [only] = Codec(255, 190).decode(Codec(system, component).encode(message))
+    return only
+
+
+def numbers(rng, count):
+    return [rng.choice(SPECIAL) if rng.random() < 0.1 else rng.gauss(0.0, 2.0) for _ in range(count)]
+
+
+def expected_values(message):
+    """Pose and motion of a message as the plain reference has them; None: neither can be a measurement."""
+    if isinstance(message, mavlink.MAVLink_attitude_quaternion_message):
+        pose = np.array([message.q1, message.q2, message.q3, message.q4])
+        motion = np.array([message.rollspeed, message.pitchspeed, message.yawspeed])
+        norm = math.sqrt(sum(c * c for c in pose.tolist()))
+        has_pose, pose = 0.9 < norm < 1.1, pose / (norm or 1.0)
+    else:
+        pose, motion = np.array([message.x, message.y, message.z]), np.array([message.vx, message.vy, message.vz])
+        has_pose = bool(np.isfinite(pose).all())
+    has_motion = bool(np.isfinite(motion).all())
+    if not (has_pose or has_motion):
+        return None
+    return np.where(has_pose, pose, np.nan), np.where(has_motion, motion, np.nan)
+
+
+@pytest.mark.parametrize(("component", "source"), [(px4.AUTOPILOT_COMPONENT, 2), (px4.PAYLOAD_UNIT_COMPONENT, PAYLOAD)])
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+def test_measurement_has_the_values_of_the_message_as_far_as_they_can_be_measured(component, source):
+    rng, partly, none = random.Random(4), 0, 0
+    for _ in range(1000):
+        quaternion = numbers(rng, 4)
+        if rng.random() < 0.7 and math.isfinite(norm := math.hypot(*quaternion)) and 1e-3 < norm < 1e30:
+            quaternion = [c / norm for c in quaternion]
+        for message in (
+            mavlink.MAVLink_attitude_quaternion_message(1234, *quaternion, *numbers(rng, 3)),
+            mavlink.MAVLink_local_position_ned_message(1234, *numbers(rng, 6)),
+        ):
+            on_wire = received(message, component=component)
+            expected, sample = expected_values(on_wire.message), measurement(on_wire, 2, 7.5)
+            if expected is None or sample is None:
+                assert sample is None and expected is None
+                none += 1
+                continue
+            assert (sample.time, sample.source) == (7.5, source)
+            assert isinstance(sample, Attitude) == isinstance(message, mavlink.MAVLink_attitude_quaternion_message)
+            np.testing.assert_array_equal(sample.pose, expected[0])
+            np.testing.assert_array_equal(sample.motion, expected[1])
+            partly += not (sample.has_pose and sample.has_motion)
+    assert partly > 50 and none > 10
+
+
+def test_equal_relays_of_the_payload_unit_are_read_once():
+    message = mavlink.MAVLink_local_position_ned_message(1234, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
+    first, second = (
+        measurement(received(message, system, px4.PAYLOAD_UNIT_COMPONENT), system - 1, 0.001 * system)
+        for system in (1, 2)
+    )
+    assert first.pose is second.pose and first.motion is second.motion
+    assert (first.time, second.time) == (0.001, 0.002)
+
+
+def test_messages_of_other_components_and_kinds_measure_nothing():
+    position = mavlink.MAVLink_local_position_ned_message(1, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
+    assert measurement(received(position, component=77), 0, 0.0) is None
+    assert measurement(received(mavlink.MAVLink_heartbeat_message(2, 12, 0, 0, 4, 3)), 0, 0.0) is None
+
+
+def test_set_point_flown_is_tilt_and_thrust():
+    def target(mask=0, thrust=0.5):
+        return received(mavlink.MAVLink_attitude_target_message(5, mask, [0.8, 0.6, 0.0, 0.0], 0.0, 0.0, 0.0, thrust))
+
+    assert setpoint_flown(target().fields, 20.0) == pytest.approx([0.0, 0.96, 10.0])
+    assert setpoint_flown(target(mavlink.ATTITUDE_TARGET_TYPEMASK_ATTITUDE_IGNORE).fields, 20.0) is None
+    assert setpoint_flown(target(thrust=math.nan).fields, 20.0) is None
+    assert setpoint_flown(target().fields, math.nan) is None
+
+
+def test_detection_has_point_and_range_of_the_message():
+    def read(frame):
+        message = mavlink.MAVLink_obstacle_distance_3d_message(1234, 0, frame, 7, 1.5, -2.0, 0.25, 0.0625, 10.0)
+        return detection(received(message).fields)
+
+    found = read(mavlink.MAV_FRAME_BODY_FRD)
+    assert (found.scan, found.obstacle, found.point, found.max_range) == (1234, 7, (1.5, -2.0, 0.25), 10.0)
+    assert all(map(math.isnan, read(mavlink.MAV_FRAME_GLOBAL).point))
