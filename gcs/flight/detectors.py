@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
-from scipy.stats import chi2
 
 from gcs.config.flight_settings import MonitorSettings
 from gcs.flight.alarms import AlarmCode, AlarmLog, Severity
@@ -17,6 +16,7 @@ from gcs.flight.control_loop import StepRecord
 from gcs.flight.flight import Flight
 from gcs.mavlink.id_check import SystemIdCheck
 from gcs.mavlink.vehicle_link import VehicleLink
+from idc_controller.estimation.health.chi_squared import upper_quantile
 from idc_controller.estimation.health.innovation_monitor import Finding, InnovationMonitor
 from idc_controller.estimation.measurements import PAYLOAD, Position
 from idc_controller.estimation.settings import InnovationMonitorSettings
@@ -321,7 +321,7 @@ class _ModelMismatch:
 
     def __init__(self, settings: MonitorSettings, innovations: InnovationMonitorSettings) -> None:
         self._noise_factor = settings.noise_factor
-        self._force_limit = float(chi2.isf(innovations.false_alarm, 3))
+        self._force_limit = float(upper_quantile(innovations.false_alarm, 3))
 
     def __call__(self, step: MonitorStep) -> None:
         if not step.clear or step.record is None:

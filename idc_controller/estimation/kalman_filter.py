@@ -118,9 +118,9 @@ class StructuredKalmanFilter(KalmanFilter):  # type: ignore[misc]  # filterpy ha
         if info == 0:
             W = dtrsm(1.0, L, innovation.cross.T, side=1, lower=1, trans_a=1)  # transposed (n, m)
             normalised = dtrsv(L, innovation.residual, lower=1)
-            P = self.P - W @ W.T
+            P = self.P - W @ W.T  # symmetric to the digit, as both terms are
             if (P.diagonal() >= _CANCELLED * self.P.diagonal()).all():
-                self.x, self.P = self.x + W @ normalised, (P + P.T) / 2
+                self.x, self.P = self.x + W @ normalised, P
                 return float(normalised @ normalised)
         H = innovation.rows.dense(self.dim_x)
         self.update(innovation.residual + H @ self.x, R=np.diag(variance), H=H)
