@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable, Set
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -28,8 +29,7 @@ class SensorModel:
     """Standard deviation of its attitude, every axis (rad)."""
 
 
-@dataclass(frozen=True)
-class Detection:
+class Detection(NamedTuple):
     """One point that a vehicle's range sensor detected, as its telemetry reports it."""
 
     scan: int
