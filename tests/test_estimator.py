@@ -11,7 +11,7 @@ from gcs.config import read_system
 from idc_controller.estimation.estimator import Estimator
 from idc_controller.estimation.measurement_model import MeasurementModel
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Channel, MeasurementNoise, Position, SensorGroup
-from idc_controller.estimation.settings import MeasurementModelSettings
+from idc_controller.estimation.settings import EstimatorSettings, MeasurementModelSettings
 from idc_controller.estimation.vehicle_kernels import vehicle_states
 from idc_controller.model.linear import LinearModel, StateLayout
 from idc_controller.rotations import quaternion_from_euler, quaternion_product, rotation_from_quaternion
@@ -41,8 +41,8 @@ def all_samples(time, rng=None):
     return [sample(source, kind, time, rng) for source in (PAYLOAD, 0, 1, 2, 3) for kind in (Attitude, Position)]
 
 
-def started():
-    estimator = Estimator(MODEL)
+def started(settings=EstimatorSettings()):
+    estimator = Estimator(MODEL, settings=settings)
     x = REFERENCE.at(np.zeros(1)).x[0]
     estimator.start(0.0, x)
     estimator.setpoints.add(0.0, REFERENCE.at(np.zeros(1)).u[0])
@@ -113,6 +113,23 @@ def test_covariance_grows_with_missing_measurements():
         unsure, sure = (np.diag(e.covariance)[: LAYOUT.size] for e in (estimate, full))
         assert np.all(unsure >= sure * (1.0 - 1e-9))
     assert len(innovations) == 100
+
+
+@pytest.mark.parametrize(
+    ("noise", "part"),
+    [
+        ("payload_acceleration", "v_0"), ("payload_angular_acceleration", "omega"), ("link_acceleration", "s_dot"),
+        ("uav_jerk", "n_acc"), ("thrust", "f"),
+    ],
+)  # fmt: skip
+def test_process_noise_of_each_part_widens_its_covariance_by_its_density(noise, part):
+    """White noise of density d adds d^2 t to the variance, while t is too short for anything else."""
+    time, variances = 0.002, []
+    for density in (0.0, 2.0):
+        process = replace(EstimatorSettings().process, **{noise: density})
+        estimator = started(replace(EstimatorSettings(), process=process))
+        variances.append(np.diag(estimator.estimate(time, REFERENCE).covariance)[getattr(LAYOUT, part)])
+    assert variances[1] - variances[0] == pytest.approx(2.0**2 * time, rel=0.15)
 
 
 def test_estimate_is_predicted_without_measurements_and_recovers():

@@ -4,6 +4,7 @@ Up 0.8 m, a second in the air, and down, between an obstacle of the mission's ma
 know. Assertions share the flight; what a part does by itself is tested elsewhere.
 """
 
+from collections import Counter
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +12,7 @@ import pandas as pd
 import pytest
 from estimator_truth import known_to_the_world, true_state
 from flight_in_process import HOP, InProcessFlight, system_file
+from pymavlink import mavutil
 
 from gcs.config.flight_settings import DEFAULTS
 from gcs.flight.phase import IN_AIR, Phase
@@ -155,6 +157,22 @@ def test_every_vehicle_has_its_own_part_of_the_stop_plan_that_was_sent(flown):
             assert own.start == pytest.approx(plan.start, abs=0.01)
             assert own.duration == pytest.approx(plan.duration, rel=1e-6)
             assert np.array(own.control_points) == pytest.approx(plan.control_points[i], abs=1e-5)
+
+
+def test_each_vehicle_is_sent_one_setpoint_and_one_stop_plan_a_step(flown):
+    sent = Counter()
+    log = mavutil.mavlink_connection(str(flown.folder / "telemetry.tlog"))
+    while (message := log.recv_match(type=["SET_ATTITUDE_TARGET", "TRAJECTORY_REPRESENTATION_BEZIER"])) is not None:
+        sent[message.get_type()] += 1
+    log.close()
+    # From arming to disarming, and from the first step in the air on.
+    period = 1.0 / flown.mission.system.rates.control
+    steps = {
+        "SET_ATTITUDE_TARGET": (flown.phases[Phase.ENDED] - flown.phases[Phase.ARM]) / period,
+        "TRAJECTORY_REPRESENTATION_BEZIER": (flown.phases[Phase.ENDED] - flown.phases[Phase.CLIMB]) / period,
+    }
+    for kind, number in steps.items():
+        assert sent[kind] == pytest.approx(4 * number, rel=0.03), kind
 
 
 def test_map_has_the_detected_obstacle_and_the_known_one(flown):
