@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -108,15 +109,11 @@ class MeasurementModel:
                 np.vstack([identity[layout.n][two], identity[layout.n_dot][two]]),
                 attitude_variance(noise.uav_rates, 2),
             )
-        self._observations: dict[tuple[SensorKey, ...], Observation] = {}
+        # Orders of arrival are many where links lose and delay: those of late are kept.
+        self.observation = lru_cache(maxsize=256)(self._observation)
 
-    def observation(self, keys: tuple[SensorKey, ...]) -> Observation:
+    def _observation(self, keys: tuple[SensorKey, ...]) -> Observation:
         """Return how these sensors observe the state."""
-        if (found := self._observations.get(keys)) is None:
-            found = self._observations[keys] = self._stacked(keys)
-        return found
-
-    def _stacked(self, keys: tuple[SensorKey, ...]) -> Observation:
         observations = [self.observations[key] for key in keys]
         sizes = np.array([len(variance) for _, variance in observations])
         starts = np.cumsum(sizes) - sizes
