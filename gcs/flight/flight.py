@@ -178,7 +178,6 @@ class Flight:
         self._evaluate(Check.STEP, time, now)
         if self.phase in IN_AIR:
             self._evaluate(Check.IN_AIR, time, now)
-        idle = Setpoints.idle(self.control.controller.parameters.number_of_uavs)
         match self.phase:
             case Phase.CONNECT:
                 self._connect(time, now)
@@ -187,7 +186,7 @@ class Flight:
             case Phase.ARM:
                 if self._step_sequence(time, now):
                     self._begin_spool_up(time)
-                return (None if self.reason else idle), None
+                return (None if self.reason else self._idle()), None
             case Phase.AUTONOMOUS_LANDING:
                 if self._step_sequence(time, now):
                     self.phase = Phase.ENDED
@@ -195,12 +194,15 @@ class Flight:
                 if self._step_sequence(time, now):
                     self.phase = Phase.ENDED
                 # A vehicle that is not disarmed yet must not react to set-point loss, and rise.
-                return idle, None
+                return self._idle(), None
             case Phase.ENDED:
                 pass
             case _:
                 return self._fly(time, effective, leaves, now)
         return None, None
+
+    def _idle(self) -> Setpoints:
+        return Setpoints.idle(self.control.controller.parameters.number_of_uavs)
 
     def _step_sequence(self, time: float, now: float) -> bool:
         """Return whether the command sequence is done."""
