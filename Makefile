@@ -11,13 +11,14 @@ export OPENBLAS_NUM_THREADS := 1
 # Compiled modules are kept: the tests start many programs.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help install fly test test-fast mutants golden golden-renew
+.PHONY: help install fly test test-fast test-lowest mutants golden golden-renew
 .PHONY: benchmark benchmark-parts benchmark-campaign benchmark-check docs clean
 
 help:
 	@echo "make fly          fly $(MISSION) with a simulated swarm (MISSION=... for another one)"
 	@echo "make test         ruff, mypy and the tests"
 	@echo "make test-fast    ruff, mypy and the tests that need no flight"
+	@echo "make test-lowest  some tests and a flight with the lowest versions that pyproject.toml allows"
 	@echo "make mutants      see whether the fast tests notice changes of the flight path (MUTANTS='--number 60 --seed 1')"
 	@echo "make golden       compare short flights, to the byte, with tests/golden/checksums.json"
 	@echo "make golden-renew write these checksums anew"
@@ -25,7 +26,7 @@ help:
 	@echo "make benchmark-check  compare the CPU cost of flights with that of the commit BASE ($(BASE))"
 	@echo "make benchmark-campaign  throughput of parallel flights against a single one's"
 	@echo "make benchmark-parts  the CPU cost of parts, of the planner, and of QP solvers"
-	@echo "make docs         write docs/settings.md and docs/failsafes.md from their declarations"
+	@echo "make docs         write docs/settings.md, docs/failsafes.md and NOTICE from what they are about"
 	@echo "make install      only install, into $(VENV)"
 	@echo "make clean        remove $(VENV) and the caches"
 
@@ -43,6 +44,10 @@ test-fast: $(INSTALLED)
 	$(VENV)/bin/ruff format --check
 	$(VENV)/bin/mypy
 	$(VENV)/bin/python -m pytest --numprocesses auto --dist loadfile -m "not slow" --durations 15
+
+# Builds the package as a wheel and flies a mission with the lowest versions that pyproject.toml allows.
+test-lowest: $(INSTALLED)
+	tests/packaging/lowest $(VENV)/bin/python
 
 mutants: $(INSTALLED)
 	$(VENV)/bin/python tests/mutation/mutants.py $(MUTANTS)
@@ -69,11 +74,12 @@ benchmark-check: $(INSTALLED)
 docs: $(INSTALLED)
 	$(VENV)/bin/python -m gcs.config.settings_page > docs/settings.md
 	$(VENV)/bin/python -m gcs.flight.listing > docs/failsafes.md
+	$(VENV)/bin/python tests/packaging/notice.py > NOTICE
 
 install: $(INSTALLED)
 
-# setuptools comes first and pinned: without build isolation nothing is fetched that constraints.txt does not name.
-$(INSTALLED): pyproject.toml constraints.txt
+# Without build isolation nothing is fetched that requirements.lock does not name.
+$(INSTALLED): pyproject.toml requirements.lock
 	@for python in $(PYTHON) python3.11 python3 python3.12 python3.13 python; do \
 		if $$python -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; then \
 			echo "Installing into $(VENV) with $$($$python --version) (once, about a minute)"; \
@@ -83,8 +89,8 @@ $(INSTALLED): pyproject.toml constraints.txt
 	echo "cooplift needs Python 3.11 or newer; found: $$(python3 --version 2>&1 || echo none)." >&2; \
 	echo "Install python3.11, or name one: make PYTHON=/path/to/python3.11" >&2; \
 	exit 1
-	@$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check -c constraints.txt setuptools
-	@$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check --no-build-isolation -c constraints.txt -e '.[dev]'
+	@$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock
+	@$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps -e .
 	@$(VENV)/bin/python -m vehicle_sim.app.compile_kernels
 	@touch $@
 

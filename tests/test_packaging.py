@@ -1,4 +1,4 @@
-"""Dependencies: every imported package is declared, and no other."""
+"""Dependencies: every imported package is declared, and no other; all are locked, and their licences named."""
 
 import re
 import sys
@@ -33,8 +33,45 @@ def test_imported_packages_are_the_declared_dependencies():
     assert {normal(module) for module in foreign} == names(PROJECT["dependencies"])
 
 
-def test_all_dependencies_are_pinned():
-    lines = (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
-    pins = [line for line in lines if line and not line.startswith("#")]
-    assert all(re.fullmatch(r"[\w.-]+==[\w.]+", pin) for pin in pins)
-    assert names(pins) >= names(PROJECT["dependencies"]) | names(PROJECT["optional-dependencies"]["dev"])
+def pins(name):
+    """Versions by package of a list of pinned packages."""
+    text = (ROOT / name).read_text(encoding="utf-8")
+    return {normal(pin): version for pin, version in re.findall(r"^([\w.-]+)==([\w.]+)", text, re.MULTILINE)}
+
+
+DECLARED = PROJECT["dependencies"] + PROJECT["optional-dependencies"]["dev"]
+
+
+def test_all_dependencies_are_locked_with_hashes():
+    text = (ROOT / "requirements.lock").read_text(encoding="utf-8")
+    entries = [entry for entry in re.split(r"^(?=[\w.-]+==)", text, flags=re.MULTILINE) if not entry.startswith("#")]
+    assert len(entries) == len(pins("requirements.lock"))
+    assert all(re.fullmatch(r"\S+( \\\n    --hash=sha256:[0-9a-f]{64})+\n", entry) for entry in entries)
+    assert pins("requirements.lock").keys() >= names(DECLARED)
+    assert "://" not in text  # any index will do
+
+
+def test_lowest_versions_are_those_of_the_declared_dependencies():
+    bounds = {normal(name): bound for name, bound in (re.match(r"([\w.-]+)>=([\w.]+)", d).groups() for d in DECLARED)}
+    lowest = pins("tests/packaging/lowest.txt")
+
+    def number(version):
+        parts = tuple(map(int, version.split(".")))
+        return parts + (0,) * (4 - len(parts))
+
+    assert {name: number(lowest[name]) for name in bounds} == {name: number(bound) for name, bound in bounds.items()}
+
+
+def test_notice_names_every_locked_package_with_a_licence():
+    lines = (ROOT / "NOTICE").read_text(encoding="utf-8").splitlines()
+    stated = dict(line.split(": ", 1) for line in lines if re.match(r"[\w.-]+ [\d.]+: ", line))
+    assert stated.keys() == {f"{name} {version}" for name, version in pins("requirements.lock").items()}
+    assert "not stated" not in stated.values()
+    assert [stated[f"{name} {pins('requirements.lock')[name]}"] for name in ("pymavlink", "hypothesis")] == [
+        "LGPL-3.0",
+        "MPL-2.0",
+    ]
+
+
+def test_package_holds_no_symbolic_links():
+    assert not [path for package in PACKAGES for path in (ROOT / package).rglob("*") if path.is_symlink()]

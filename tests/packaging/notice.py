@@ -1,0 +1,55 @@
+"""Write NOTICE: the licence of everything that is installed with the project, from the metadata of the packages.
+
+python tests/packaging/notice.py > NOTICE
+"""
+
+import re
+from importlib import metadata
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+LOCK = ROOT / "requirements.lock"
+ELSEWHERE = {"cmeel-qhull": "Qhull", "cycler": "BSD-3-Clause", "kiwisolver": "BSD-3-Clause", "pymavlink": "LGPL-3.0"}
+"""Licences whose names stand in the text of the licence, not among the metadata."""
+HEAD = """\
+cooplift
+Copyright: see the history of its source; licensed under the Apache License, Version 2.0 (LICENSE).
+
+It uses the packages below, which are installed beside it, unchanged, from their own distributions. Each is under the
+licence that it states itself; the text is in its folder *.dist-info. Versions are those of requirements.lock.
+Written by `make docs`.
+"""
+
+
+def normal(name: str) -> str:
+    """Return a package's name as indices compare names."""
+    return re.sub(r"[-_.]+", "-", name).lower()
+
+
+def locked() -> dict[str, str]:
+    """Return the version of every package of the lock file."""
+    pins = re.findall(r"^([\w.-]+)==([\w.]+)", LOCK.read_text(encoding="utf-8"), re.MULTILINE)
+    return {normal(name): version for name, version in pins}
+
+
+def licence_of(name: str) -> str:
+    """Return the licence of an installed package: expression, or classifiers, or the first line of its text."""
+    about = metadata.metadata(name)
+    if name in ELSEWHERE:
+        return ELSEWHERE[name]
+    if expression := about.get("License-Expression"):
+        return expression
+    classifiers = [line.split(" :: ") for line in about.get_all("Classifier") or () if line.startswith("License ::")]
+    named = [parts[-1] for parts in classifiers if parts[-1] != "OSI Approved"]
+    text = (about.get("License") or "").strip().splitlines()
+    return "; ".join(named) or (text[0] if text else "not stated")
+
+
+def notice() -> str:
+    """Return the content of NOTICE."""
+    rows = [f"{name} {version}: {licence_of(name)}" for name, version in sorted(locked().items())]
+    return HEAD + "\n" + "\n".join(rows) + "\n"
+
+
+if __name__ == "__main__":
+    print(notice(), end="")
