@@ -16,14 +16,17 @@ from gcs.config.flight_settings import DEFAULTS
 from gcs.flight import stack
 from gcs.flight.preflight import Preflight
 from gcs.mavlink import px4
+from gcs.mavlink.clock import RemoteClock
 from gcs.mavlink.codec import Codec
-from gcs.mavlink.setpoints import attitude_target, stop_plan_message
+from gcs.mavlink.setpoints import SetpointStream, attitude_target, stop_plan_message
+from gcs.mavlink.settings import LinkSettings
 from gcs.mavlink.telemetry import measurement
 from idc_controller.control.controller import IntegratedDecisionController
 from idc_controller.control.load_adaptation import LoadAdaptation
 from idc_controller.control.settings import ControllerSettings
 from idc_controller.estimation.estimate import Estimate
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
+from idc_controller.estimation.setpoint_history import Confirmation
 from idc_controller.model.linear import LinearModel
 from idc_controller.rotations import rotation_from_quaternion
 from idc_controller.safety.filter_protocol import NoObstacles
@@ -286,3 +289,19 @@ def test_stop_plan_begins_at_estimated_state_of_each_vehicle_and_ends_at_rest():
         assert flown.start == pytest.approx(8.25)
         assert flown.duration == pytest.approx(plan.duration, rel=1e-6)
         assert np.array(flown.control_points) == pytest.approx(plan.control_points[i], abs=1e-5)
+
+
+def test_confirmations_of_setpoints_give_their_loss_and_copies():
+    settings = LinkSettings()
+    stream = SetpointStream(RemoteClock(settings.clock), {}, settings)
+    stream.confirm(Confirmation())  # not known whether it arrived
+    stream.confirm(Confirmation(as_sent=True))
+    assert (stream.loss, stream.lost, stream.copies) == (0.0, 0, 1)
+    stream.confirm(Confirmation(as_sent=False))
+    assert (stream.loss, stream.lost) == (pytest.approx(settings.loss_filter), 1)
+    for _ in range(200):
+        stream.confirm(Confirmation(as_sent=False))
+    assert stream.loss == pytest.approx(1.0, abs=0.01) and stream.copies == 3
+    for _ in range(200):
+        stream.confirm(Confirmation(as_sent=True))
+    assert stream.loss == pytest.approx(0.0, abs=0.01) and stream.lost == 201
