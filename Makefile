@@ -78,8 +78,8 @@ docs: $(INSTALLED)
 
 install: $(INSTALLED)
 
-# Without build isolation nothing is fetched that requirements.lock does not name.
-$(INSTALLED): pyproject.toml requirements.lock
+# Without build isolation nothing is fetched that constraints.txt does not name.
+$(INSTALLED): pyproject.toml constraints.txt
 	@for python in $(PYTHON) python3.11 python3 python3.12 python3.13 python; do \
 		if $$python -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; then \
 			echo "Installing into $(VENV) with $$($$python --version) (once, about a minute)"; \
@@ -89,7 +89,7 @@ $(INSTALLED): pyproject.toml requirements.lock
 	echo "cooplift needs Python 3.11 or newer; found: $$(python3 --version 2>&1 || echo none)." >&2; \
 	echo "Install python3.11, or name one: make PYTHON=/path/to/python3.11" >&2; \
 	exit 1
-	@$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock
+	@$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes -r constraints.txt
 	@$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps -e .
 	@$(VENV)/bin/python -m vehicle_sim.app.compile_kernels
 	@touch $@

@@ -43,11 +43,11 @@ DECLARED = PROJECT["dependencies"] + PROJECT["optional-dependencies"]["dev"]
 
 
 def test_all_dependencies_are_locked_with_hashes():
-    text = (ROOT / "requirements.lock").read_text(encoding="utf-8")
+    text = (ROOT / "constraints.txt").read_text(encoding="utf-8")
     entries = [entry for entry in re.split(r"^(?=[\w.-]+==)", text, flags=re.MULTILINE) if not entry.startswith("#")]
-    assert len(entries) == len(pins("requirements.lock"))
+    assert len(entries) == len(pins("constraints.txt"))
     assert all(re.fullmatch(r"\S+( \\\n    --hash=sha256:[0-9a-f]{64})+\n", entry) for entry in entries)
-    assert pins("requirements.lock").keys() >= names(DECLARED)
+    assert pins("constraints.txt").keys() >= names(DECLARED)
     assert "://" not in text  # any index will do
 
 
@@ -65,9 +65,9 @@ def test_lowest_versions_are_those_of_the_declared_dependencies():
 def test_notice_names_every_locked_package_with_a_licence():
     lines = (ROOT / "NOTICE").read_text(encoding="utf-8").splitlines()
     stated = dict(line.split(": ", 1) for line in lines if re.match(r"[\w.-]+ [\d.]+: ", line))
-    assert stated.keys() == {f"{name} {version}" for name, version in pins("requirements.lock").items()}
+    assert stated.keys() == {f"{name} {version}" for name, version in pins("constraints.txt").items()}
     assert "not stated" not in stated.values()
-    assert [stated[f"{name} {pins('requirements.lock')[name]}"] for name in ("pymavlink", "hypothesis")] == [
+    assert [stated[f"{name} {pins('constraints.txt')[name]}"] for name in ("pymavlink", "hypothesis")] == [
         "LGPL-3.0",
         "MPL-2.0",
     ]

@@ -8,7 +8,7 @@ from importlib import metadata
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-LOCK = ROOT / "requirements.lock"
+LOCK = ROOT / "constraints.txt"
 ELSEWHERE = {"cmeel-qhull": "Qhull", "cycler": "BSD-3-Clause", "kiwisolver": "BSD-3-Clause", "pymavlink": "LGPL-3.0"}
 """Licences whose names stand in the text of the licence, not among the metadata."""
 HEAD = """\
@@ -16,7 +16,7 @@ cooplift
 Copyright: see the history of its source; licensed under the Apache License, Version 2.0 (LICENSE).
 
 It uses the packages below, which are installed beside it, unchanged, from their own distributions. Each is under the
-licence that it states itself; the text is in its folder *.dist-info. Versions are those of requirements.lock.
+licence that it states itself; the text is in its folder *.dist-info. Versions are those of constraints.txt.
 Written by `make docs`.
 """
 
