@@ -33,7 +33,7 @@ def test_frames_have_the_numbers_of_the_common_dialect() -> None:
 def test_names_of_other_commands_and_frames_come_from_the_dialect() -> None:
     assert command_name(16) == "NAV_WAYPOINT"
     assert command_name(4501) == "CONDITION_GATE"
-    assert command_name(84) == "NAV_VTOL_TAKEOFF"
+    assert command_name(208) == "DO_PARACHUTE"
     assert command_name(31999) == "command 31999"
     assert frame_name(1) == "frame 1, LOCAL_NED"
     assert frame_name(99) == "frame 99"
