@@ -13,6 +13,7 @@ from idc_controller.geometry.obstacles import PredictedObstacle
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
 from idc_controller.guidance.detour import BoundingCylinder, FreeSpace, find_detour, first_conflict
+from idc_controller.guidance.settings import DetourSettings
 
 FORMATION = BoundingCylinder(radius=1.1, above=3.75, below=0.25)
 MARGIN = 0.5
@@ -138,6 +139,13 @@ def test_goal_inside_obstacle_is_unreachable(obstacle, others, reason):
                                           "highest": 12.0, "names": ["the ball"]} | others))  # fmt: skip
     assert detour.waypoints is None
     assert reason in detour.reason
+
+
+def test_largest_region_limits_how_far_beside_the_straight_path_is_searched():
+    """The end of the wall, passed at 13.6 m, is within a region of 2 x 15 m, but not within one of 2 x 12 m."""
+    wide = [wall(10.0, 0.0, 0.3, 24.0)]
+    assert abs(side(detour_of(wide, settings=DetourSettings(region_max=30.0)))) > 12.0 + 1.1 + MARGIN - 1e-6
+    assert detour_of(wide, settings=DetourSettings(region_max=24.0)).waypoints is None
 
 
 def test_detour_keeps_altitude_limits():
