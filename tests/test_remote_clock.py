@@ -65,3 +65,15 @@ def test_stalled_answers_released_together_are_no_link_latency():
         RemoteClock(), lambda sent: max(1.45 - sent, 0.0) if sent > 1.0 else 0.0, until=1.47
     )
     assert clock.least_delay(0.3, 1.47) == 0.0
+
+
+def test_equal_round_trips_are_latency_without_spread():
+    clock = clock_after_round_trips(RemoteClock(), lambda sent: 0.04, until=2.0)
+    assert clock.delay == pytest.approx(0.02) and clock.round_trip_max == pytest.approx(0.04)
+    assert clock.spread == pytest.approx(0.0, abs=1e-9)
+
+
+def test_spread_of_latency_is_that_of_the_round_trips_apart_from_the_worst_quarter():
+    trips = [0.02, 0.03, 0.04, 0.05, 0.3]
+    clock = clock_after_round_trips(RemoteClock(), lambda sent: trips[round(sent / 0.1) % 5], until=1.0)
+    assert clock.spread == pytest.approx((0.05 - 0.02) / 2.0)
