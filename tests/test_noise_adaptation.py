@@ -8,8 +8,6 @@ from gcs.mission.read import read_mission
 from idc_controller.estimation.health.noise_adaptation import NoiseAdaptation
 from idc_controller.estimation.settings import NoiseAdaptationSettings
 
-pytestmark = pytest.mark.slow
-
 KEYS = tuple(range(10))
 SIZES = np.full(10, 5)
 PAYLOAD_ROWS = np.arange(50) < 10
@@ -59,6 +57,7 @@ def with_faults(folder, *faults):
     return read_mission(mission)
 
 
+@pytest.mark.slow
 def test_flight_stays_within_limits_with_five_times_noise_on_every_channel(tmp_path):
     channels = ("position", "velocity", "attitude", "rates")
     every = [*channels, *(f"payload_{channel}" for channel in channels)]
@@ -71,6 +70,7 @@ def test_flight_stays_within_limits_with_five_times_noise_on_every_channel(tmp_p
         check_within_limits(flight.summary(), rmse=0.1)
 
 
+@pytest.mark.slow
 def test_flight_completes_in_gusty_wind(tmp_path):
     wind = 'kind = "wind"\nvelocity = [2.0, 2.0, 0.0]\ngust = 0.6\nstart = 5.0'
     with InProcessFlight(with_faults(tmp_path, wind), tmp_path / "run", seed=42) as flight:
@@ -82,6 +82,7 @@ def test_flight_completes_in_gusty_wind(tmp_path):
     assert summary["uav_separation_min_m"] >= 0.75
 
 
+@pytest.mark.slow
 def test_flight_stays_within_limits_with_a_third_of_datagrams_lost(tmp_path):
     mission = with_faults(tmp_path, 'kind = "packet_loss"\nprobability = 0.3\nstart = 0.0')
     with InProcessFlight(mission, tmp_path / "run", seed=43) as flight:
