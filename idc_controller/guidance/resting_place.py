@@ -46,6 +46,7 @@ class RestingPlace:
         self._elapsed = np.linspace(0.0, settings.look_ahead, settings.samples)
         self._choices = [usual, usual, *_deflected(usual, settings)]
         """The usual stop, the last one that was chosen, and all others."""
+        self._slowest = max(self._choices, key=lambda choice: choice.share)
 
     def __call__(self, time: float, state: Array) -> Braking:
         """Return the stop from ``state`` (3, 3) at ``time`` (s).
@@ -70,7 +71,7 @@ class RestingPlace:
     def _farthest(self, state: Array) -> float:
         """Return how far (m) from where it is now an obstacle can be that matters, for the slowest stop."""
         s = self.settings
-        duration = max(choice.duration(state[1]) for choice in self._choices)
+        duration = self._slowest.duration(state[1])
         _, speed, acceleration = np.linalg.norm(state, axis=1).tolist()
         # The control points of a path hold it.
         length = duration / 2.0 * speed + duration**2 / 12.0 * acceleration + max(s.aside, default=0.0)
