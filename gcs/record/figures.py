@@ -47,7 +47,7 @@ def report(run: RunData) -> list[Path]:
 def save_picture(figure: Figure, path: Path, dpi: int) -> Path:
     """Write a figure to ``path`` and return it. Raises :class:`UnusableInput` if it cannot be written."""
     try:
-        figure.savefig(path, dpi=dpi)
+        figure.savefig(path, dpi=dpi, pil_kwargs={"compress_level": 1})  # half the time of 6, a fifth more bytes
     except OSError as error:
         raise UnusableInput(f"{path}: cannot be written: {error.strerror}") from None
     return path
