@@ -1,10 +1,11 @@
-"""Kalman filter of the estimator: corrected by a Cholesky factor of the innovation covariance."""
+"""Kalman filter of the estimator: filterpy's, corrected by a Cholesky factor of the innovation covariance."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
 import numpy as np
+from filterpy.kalman import KalmanFilter
 from scipy.linalg.blas import dtrsm, dtrsv
 from scipy.linalg.lapack import dpotrf
 
@@ -83,16 +84,14 @@ class SetpointNoise(NamedTuple):
     """With which each vehicle still flies those before (N,)."""
 
 
-class StructuredKalmanFilter:
-    """Kalman filter for sparse models: prediction by blocks, correction without inverse and dense rows."""
+class StructuredKalmanFilter(KalmanFilter):  # type: ignore[misc]  # filterpy has no types
+    """filterpy's filter for sparse models: prediction by blocks, correction without inverse and dense rows."""
 
-    def __init__(self, size: int) -> None:
-        """Start with ``size`` states at zero, each with variance 1."""
-        self.x: Array = np.zeros(size)
-        self.P: Array = np.eye(size)
+    x: Array
+    P: Array
 
     def propagate(self, transition: Transition, u: Array, Q: Array, noise: SetpointNoise) -> None:
-        """Predict over an interval.
+        """Predict over an interval; filterpy's ``predict`` with these matrices gives the same.
 
         Args:
             transition: over the interval.
@@ -111,7 +110,7 @@ class StructuredKalmanFilter:
         """Correct by measurements with ``variance`` (m,) and return their normalised innovation squared.
 
         With S = L L' and W = L^-1 H P the correction is x + W' L^-1 y and P - W' W. Where that leaves next to nothing
-        of a variance, or S is not positive definite, Joseph's form takes its place.
+        of a variance, or S is not positive definite, filterpy's own update in Joseph's form takes its place.
         """
         covariance = innovation.covariance.copy()
         covariance.flat[:: len(variance) + 1] += variance
@@ -123,13 +122,7 @@ class StructuredKalmanFilter:
             if (P.diagonal() >= _CANCELLED * self.P.diagonal()).all():
                 self.x, self.P = self.x + W @ normalised, P
                 return float(normalised @ normalised)
-        return self._correct_in_josephs_form(innovation, variance, np.asarray(np.linalg.inv(covariance), dtype=float))
-
-    def _correct_in_josephs_form(self, innovation: Innovation, variance: Array, inverse: Array) -> float:
-        """Correct by the gain K = P H' S^-1 with P as (I - K H) P (I - K H)' + K R K'; ``inverse``: of S (m, m)."""
-        y, H = innovation.residual, innovation.rows.dense(len(self.x))
-        K = innovation.cross.T @ inverse
-        kept = np.eye(len(self.x)) - K @ H
-        P = kept @ self.P @ kept.T + (K * variance) @ K.T
-        self.x, self.P = self.x + K @ y, (P + P.T) / 2
-        return float(y @ inverse @ y)
+        H = innovation.rows.dense(self.dim_x)
+        self.update(innovation.residual + H @ self.x, R=np.diag(variance), H=H)
+        self.P = (self.P + self.P.T) / 2
+        return float(self.y @ self.SI @ self.y)

@@ -59,7 +59,7 @@ class ErrorStateFilter:
 
     def __init__(self, process: ProcessModel) -> None:
         self.process = process
-        self._kf = StructuredKalmanFilter(process.size)
+        self._kf = StructuredKalmanFilter(dim_x=process.size, dim_z=1)
         self._nominal = np.zeros((1, process.size))
 
     @property
