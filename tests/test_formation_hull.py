@@ -2,13 +2,14 @@
 
 import numpy as np
 import pytest
+import trimesh
 from avoidance_scene import hull_of
 from paper_system import system
 from plain_flatness import flat_forces
 from proxsuite import proxqp
 
 from idc_controller.geometry.box import Wall
-from idc_controller.geometry.formation import Formation
+from idc_controller.geometry.formation import Formation, outward_facets
 from idc_controller.geometry.obstacles import PredictedObstacle
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
@@ -161,3 +162,15 @@ def test_distance_of_overlap_is_negative():
     inside = PredictedObstacle("in", Sphere(0.5), np.array([[0.0, 0.0, -6.0]]), np.zeros(1))
     (found,) = separations(formation, np.array([[0.0, 0.0, -5.0]]), np.zeros((1, 3)), PredictedObstacles([inside]), 2.5)
     assert found.distance[0] < -0.4
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("edges", [None, (1.0, 2.0, 0.3)])
+def test_facets_are_those_of_trimesh(seed, edges):
+    points = np.random.default_rng(seed).standard_normal((30, 3))
+    if edges is not None:  # four points on each plane
+        points = trimesh.creation.box(edges).vertices + points[0]
+    hull = trimesh.convex.convex_hull(points)
+    triangles, normals = points[outward_facets(points)], hull.face_normals
+    assert triangles == pytest.approx(hull.triangles)
+    assert trimesh.triangles.normals(triangles)[0] == pytest.approx(normals)

@@ -12,16 +12,17 @@ from itertools import product
 
 import coal
 import numpy as np
-import trimesh
-from scipy.spatial import cKDTree
+from scipy.spatial import ConvexHull
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Indices
 from idc_controller.errors import TrajectoryError
 from idc_controller.parameters import SystemParameters
 from idc_controller.rotations import rotation_from_quaternion
 
 _LINEAR_SEARCH = 32
 """Up to so many points the distance library looks at all of them, so that their order and facets do not matter."""
+_NO_AREA = 1e-12
+"""Up to such an area (m2) a triangle between points on one plane of the hull is none."""
 _MOST_CORNERS = 16
 """Corners, at most, of a payload's hull that is planned with as it is: the rest of the linear search is for discs."""
 
@@ -47,6 +48,15 @@ def formation_points(
     return np.vstack([payload, discs.reshape(-1, 3)])
 
 
+def outward_facets(points: Array) -> Indices:
+    """Return the triangles of the hull of ``points`` (P, 3): indices (F, 3), anticlockwise seen from outside."""
+    hull = ConvexHull(points, qhull_options="QbB Pp Qt")  # in the unit cube, without warnings, triangles only
+    a, b, c = points[hull.simplices].swapaxes(0, 1)
+    double_area = np.einsum("fk,fk->f", np.cross(b - a, c - a), hull.equations[:, :3])  # negative: clockwise
+    facets = np.where(double_area[:, None] < 0.0, hull.simplices[:, ::-1], hull.simplices)
+    return np.asarray(facets[np.abs(double_area) > _NO_AREA], dtype=np.intp)
+
+
 class Formation:
     """Payload and UAV discs, for planning."""
 
@@ -69,12 +79,9 @@ class Formation:
         self._rim = self.disc_radius * np.stack([np.cos(angle), np.sin(angle), np.zeros_like(angle)], axis=-1)
         # The facets of the hull in hover give the distance library the neighbours of each point; the shear of an
         # accelerated flight hardly changes them.
-        points = self.hull_points(np.zeros((1, 3)))[0]
-        hull = trimesh.convex.convex_hull(points)
-        index = cKDTree(points).query(hull.vertices)[1]
         self._hulls: list[coal.Convex] = []
         self._facets = coal.StdVec_Triangle()
-        for triangle in index[hull.faces]:
+        for triangle in outward_facets(self.hull_points(np.zeros((1, 3)))[0]):
             self._facets.append(coal.Triangle(*map(int, triangle)))
 
     def levers(self, acceleration: Array) -> Array:
