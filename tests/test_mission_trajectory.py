@@ -1,0 +1,16 @@
+"""Mission trajectory: the payload's way from pad to ground."""
+
+import numpy as np
+from flight_in_process import short_figure
+
+from gcs.flight.mission_trajectory import MissionTrajectory
+from gcs.mission.read import read_mission
+
+
+def test_figure_begins_with_a_climb_at_once(tmp_path):
+    flown = MissionTrajectory(read_mission(short_figure(tmp_path)), np.array([1.0, 2.0, 0.0]), start=3.0)
+    position = flown.trajectory.derivatives(np.array([3.0, 3.9]), 0)[0]
+    np.testing.assert_allclose(position[0], [1.0, 2.0, 0.0], atol=1e-12)
+    np.testing.assert_allclose(position[1, :2], [1.0, 2.0], atol=1e-12)
+    assert position[1, 2] < -0.005
+    assert flown.phase(3.0) == "climb"
