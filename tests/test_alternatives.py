@@ -63,7 +63,7 @@ def test_obstacle_is_passed_above_left_and_right_of_the_motion_or_stopped_before
     ],
 )
 def test_sides_are_those_of_the_horizontal_motion_or_of_the_obstacle_without_one(velocity, heading):
-    np.testing.assert_allclose(heading_of(velocity, separation((0.6, 0.8, 0.0))), heading, atol=1e-12)
+    np.testing.assert_allclose(heading_of(velocity, separation((0.36, 0.48, 0.8))), heading, atol=1e-12)
 
 
 def test_sides_are_those_of_the_motion_relative_to_the_obstacle():
