@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from filterpy.kalman import KalmanFilter
 from flight_in_process import MISSIONS
+from scipy.linalg import expm
 from scipy.stats import chi2
 from test_flatness import Wave
 
@@ -83,6 +84,34 @@ def test_innovation_and_its_subset_equal_dense_products(seed):
         assert part.cross == pytest.approx(kept @ filter.P, rel=1e-12, abs=1e-12)
         assert part.covariance == pytest.approx(kept @ filter.P @ kept.T, rel=1e-12, abs=1e-12)
     assert innovation.residual == pytest.approx(y - H @ filter.x, rel=1e-12, abs=1e-12)
+
+
+def van_loan(process, densities, interval_us, force_scale):
+    """Integrate the process noise by one matrix exponential (Van Loan 1978)."""
+    p, layout, m, g = densities, process.layout, process.size, process.model.parameters.g
+    sigma, A = np.zeros(m), np.zeros((m, m))
+    sigma[layout.v_0], sigma[layout.omega] = p.payload_acceleration, p.payload_angular_acceleration
+    sigma[layout.s_dot], sigma[layout.n_acc], sigma[layout.f] = p.link_acceleration, p.uav_jerk, p.thrust
+    sigma[process.force], sigma[process.mass] = force_scale * p.force, p.mass
+    density, n = np.diag(sigma**2), layout.size
+    density[process.uav_force, process.uav_force] = process.uav_forces(force_scale * p.uav_force, 0.0)
+    A[:n, :n], A[:n, process.forces] = process.model.A, process.model.B_d
+    A[:n, process.mass] = process.model.B_d[:, 2] * g
+    big = expm(np.block([[-A, density], [np.zeros((m, m)), A.T]]) * interval_us * 1e-6)
+    return big[m:, m:].T @ big[:m, m:]
+
+
+@pytest.mark.parametrize("vehicles", [3, 4, 12])
+@pytest.mark.parametrize("interval_us", [1, 800, 20_000, 37_001, 99_999, 300_000])
+def test_integrated_process_noise_equals_that_by_a_matrix_exponential(vehicles, interval_us):
+    model = LinearModel(read_system(MISSIONS / "system.toml").with_vehicles(vehicles).parameters())
+    densities = ProcessNoiseSettings()
+    process = ProcessModel(model, densities)
+    for force_scale in (1.0, 7.0):
+        expected = van_loan(process, densities, interval_us, force_scale)
+        found = process.noise(interval_us, force_scale)
+        sigma = np.sqrt(np.diag(expected))
+        assert (np.abs(found - expected) <= 1e-12 * np.outer(sigma, sigma)).all()
 
 
 @pytest.mark.parametrize("vehicles", [3, 4, 6])

@@ -3,9 +3,9 @@
 from functools import lru_cache
 
 import numpy as np
-from scipy.linalg import expm
 
 from idc_controller.arrays import Array, Indices
+from idc_controller.estimation.integrated_noise import IntegratedNoise
 from idc_controller.estimation.kalman_filter import SparseRows, Transition
 from idc_controller.estimation.settings import CovarianceResetSettings, InitialCovarianceSettings, ProcessNoiseSettings
 from idc_controller.model.linear import LinearModel
@@ -21,6 +21,7 @@ class ProcessModel:
         self.mass = self.size - 1
         self.force, self.uav_force = slice(n, n + 3), slice(n + 3, self.mass)
         self.forces = slice(n, self.mass)
+        self._noise = self._noise_of(densities)
         self._plain = lru_cache(maxsize=256)(self._discretised)
         self.noise = lru_cache(maxsize=256)(self._integrated_noise)
 
@@ -92,23 +93,27 @@ class ProcessModel:
 
     def _integrated_noise(self, interval_us: int, force_scale: float) -> Array:
         """Return the covariance (n, n) that an interval (us) adds; ``force_scale``: of the forces' noise."""
-        p, layout, n = self._densities, self.layout, self.layout.size
+        duration = interval_us * 1e-6
+        if duration <= self._noise.duration_max:
+            return self._noise.covariance(duration, (1.0, force_scale**2))
+        half = interval_us // 2
+        F = self.transition(half, np.zeros(3)).F
+        return np.asarray(F @ self.noise(interval_us - half, force_scale) @ F.T + self.noise(half, force_scale))
+
+    def _noise_of(self, p: ProcessNoiseSettings) -> IntegratedNoise:
+        """Return the noise of all but the forces, and that of the forces."""
+        layout, n = self.layout, self.layout.size
         density = np.zeros(self.size)
         density[layout.v_0] = p.payload_acceleration
         density[layout.omega] = p.payload_angular_acceleration
         density[layout.s_dot] = p.link_acceleration
         density[layout.n_acc] = p.uav_jerk
         density[layout.f] = p.thrust
-        density[self.force], density[self.mass] = force_scale * p.force, p.mass
-        covariance = np.diag(density**2)
-        covariance[self.uav_force, self.uav_force] = self.uav_forces(force_scale * p.uav_force, 0.0)
+        density[self.mass] = p.mass
+        of_forces = np.zeros((self.size, self.size))
+        of_forces[self.force, self.force] = p.force**2 * np.eye(3)
+        of_forces[self.uav_force, self.uav_force] = self.uav_forces(p.uav_force, 0.0)
         A = np.zeros((self.size, self.size))
         A[:n, :n], A[:n, self.forces] = self.model.A, self.model.B_d
         A[:n, self.mass] = self.model.B_d[:, 2] * self.model.parameters.g
-        dt = interval_us * 1e-6
-        m = self.size
-        block = np.zeros((2 * m, 2 * m))
-        block[:m, :m], block[:m, m:], block[m:, m:] = -A, covariance, A.T
-        big = expm(block * dt)
-        Q = big[m:, m:].T @ big[:m, m:]
-        return np.asarray((Q + Q.T) / 2)
+        return IntegratedNoise(A, (np.diag(density**2), of_forces))
