@@ -134,4 +134,4 @@ class TelemetryRouter:
 
 def whole_ms(time: float) -> float:
     """Return ``time`` (s) in whole milliseconds, as stamps are: what is estimated for one of them serves them all."""
-    return round(time, 3)
+    return round(time * 1e3) / 1e3
