@@ -9,6 +9,8 @@ from idc_controller.estimation.measurements import Attitude, Position
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
+from idc_controller.perception import map_check
+from idc_controller.perception.surfaces.flat import FlatSurface
 
 EVERYONE = frozenset(range(4))
 UNKNOWN = np.array([0.0, 6.0, -6.0])
@@ -90,3 +92,19 @@ def test_obstacle_that_never_agreed_with_the_map_is_not_compared():
     known, _ = ON_THE_MAP["sphere"]
     beside = sphere((5.0, 0.7, -6.0))
     assert not any(m.map_offsets for _, m in look(known, beside, lambda t, uav: np.zeros(3)))
+
+
+def test_fit_to_an_offset_wall_begins_where_the_offset_so_far_places_it(monkeypatch):
+    known, true = ON_THE_MAP["wall"]
+    begins, offset = [], np.array([0.6, 0.2, 0.0])
+
+    class Watched(FlatSurface):
+        def fit(self, scan, predicted, iterations=3):
+            begins.append(predicted - known.position)
+            return super().fit(scan, predicted, iterations)
+
+    monkeypatch.setattr(map_check, "surface_of", lambda _, shape, settings: Watched(shape, settings))
+    *_, (_, m) = look(known, true, lambda t, uav: offset * (uav == 1 and t >= 2.0), until=3.5)
+    assert np.array_equal(begins[0], np.zeros(3))
+    np.testing.assert_allclose(begins[-1], m.map_offsets[1], atol=0.05)
+    assert begins[-1][0] > 0.3
