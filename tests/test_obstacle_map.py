@@ -32,8 +32,10 @@ from idc_controller.geometry.capsule import Capsule
 from idc_controller.geometry.obstacles import Bodies
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
+from idc_controller.perception import track_list
 from idc_controller.perception.obstacle_map import ObstacleMap
 from idc_controller.perception.scan_assembly import Cluster
+from idc_controller.perception.track import Track
 from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.obstacle_bodies import Obstacle as WorldObstacle
 
@@ -357,3 +359,19 @@ def test_prediction_covers_unknown_shape_that_no_surface_fits(shape):
     visible = (points @ shape.rotation.T)[(normals @ shape.rotation.T)[:, 0] < 0.0] + [0.0, 0.0, -6.0]
     outside = Bodies([found.shape]).distance(visible, found.positions[:1])[0] - found.growth[0]
     assert outside.max() < 0.2
+
+
+def test_clusters_of_one_surface_are_fitted_anew_with_each_that_joins(monkeypatch):
+    """A fit that had been updated by the same points before would count them twice."""
+    fitted = []
+
+    class Watched(Track):
+        def update(self, frames):
+            fitted.append((self.name, len(frames), self.filter is None))
+            super().update(frames)
+
+    monkeypatch.setattr(track_list, "Track", Watched)
+    m = map_of()
+    Scene(0).feed(m, 0.0, HERE, [sphere((0.0, 6.0, -6.0))])
+    m.update(0.0)
+    assert fitted == [*(("", members, True) for members in (1, 2, 3, 4)), ("track 1", 4, True)]
