@@ -119,6 +119,7 @@ def test_noise_is_along_the_line_of_sight_with_the_given_deviation():
         # The nearest point does not depend on how the pattern is turned.
         assert np.linalg.norm(np.cross(p[0], q[0])) < 1e-9
         errors.append(np.linalg.norm(p[0]) - np.linalg.norm(q[0]))
+    # Of 300 samples: the mean has a deviation of 0.05 / sqrt(300) = 0.0029 m, the deviation one of 1 / sqrt(600) = 4 %.
     assert np.mean(errors) == pytest.approx(0.0, abs=0.01)
     assert np.std(errors) == pytest.approx(0.05, rel=0.15)
     world = rotation_from_quaternion(np.array(attitude)) @ q[0]
