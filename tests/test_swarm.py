@@ -149,6 +149,7 @@ def test_noise_has_standard_deviation_of_system_file(flown):
         else:
             i = message.get_srcSystem()
             uav += [message.x - float(row[f"uav{i}_x_m"]), message.z - float(row[f"uav{i}_z_m"])]
+    # Of some 2600 and 660 samples: a deviation is known to 1 / sqrt(2 n) = 1.4 and 2.8 %, the mean to 0.0004 m.
     assert np.std(uav) == pytest.approx(CONFIG.sensors.position, rel=0.05)
     assert np.std(payload) == pytest.approx(CONFIG.sensors.payload_velocity, rel=0.1)
     assert abs(np.mean(uav)) < 0.002
