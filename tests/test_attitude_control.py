@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from flying import AIRFRAME, measured
+from scipy.interpolate import BPoly
 
 from gcs.config.vehicle_settings import LandDetectorSettings
 from idc_controller.rotations import quaternion_from_euler, quaternion_product
@@ -75,6 +76,14 @@ def control(arrays):
 def acceleration(attitude, target):
     """Angular acceleration by the attitude alone, with kp = 1."""
     return wanted_acceleration(attitude, (0.0,) * 3, target, (0.0,) * 3, 2.0, 1e-9)
+
+
+def test_hold_plan_is_the_bezier_curve_of_its_control_points() -> None:
+    plan = HoldPlan.to_rest(2.0, (1.0, 2.0, -5.0), (3.0, -4.0, 1.0), 0.3, BrakingSettings())
+    curve = BPoly(np.array(plan.control_points)[:, None, :], [2.0, 2.0 + plan.duration])
+    for t in np.linspace(2.0, 2.0 + plan.duration, 20):
+        for order, state in enumerate(plan.at(t)):
+            assert state == pytest.approx(curve(t, order), abs=1e-12)
 
 
 def test_hold_plan_is_consistent_with_its_own_derivatives() -> None:

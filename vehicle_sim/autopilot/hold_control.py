@@ -8,10 +8,10 @@ without one plans from its state at the moment of the loss.
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from operator import mul
 from typing import NamedTuple, Self
 
 import numpy as np
-from scipy.interpolate import BPoly
 
 from gcs.config.vehicle_settings import HoldSettings
 from idc_controller.rotations_float import Quaternion, Vector, attitude_of_force
@@ -64,7 +64,8 @@ class HoldPlan:
     def at(self, now: float) -> PlannedState:
         """The planned state at a time (s)."""
         t = min(max(now - self.start, 0.0), self.duration)
-        (x, y, z), (v_x, v_y, v_z), (a_x, a_y, a_z) = (curve(t).tolist() for curve in self._curves)
+        share = t / self.duration
+        (x, y, z), (v_x, v_y, v_z), (a_x, a_y, a_z) = (_on_bezier_curve(points, share) for points in self._curves)
         descending = now - self.descent_start
         if descending > 0.0:
             rate = self.descent_speed / self.descent_ramp
@@ -79,10 +80,12 @@ class HoldPlan:
         return PlannedState((x, y, z), (v_x, v_y, v_z), (a_x, a_y, a_z))
 
     @cached_property
-    def _curves(self) -> tuple[BPoly, BPoly, BPoly]:
-        """Position, velocity and acceleration over the time since the start."""
-        position = BPoly(np.array(self.control_points)[:, None, :], [0.0, self.duration])
-        return position, position.derivative(), position.derivative(2)
+    def _curves(self) -> tuple[list[list[float]], ...]:
+        """Control points, axis by axis, of the position (3, 5), of the velocity (3, 4), of the acceleration (3, 3)."""
+        position = np.array(self.control_points).T
+        velocity = 4 / self.duration * np.diff(position)
+        acceleration = 3 / self.duration * np.diff(velocity)
+        return position.tolist(), velocity.tolist(), acceleration.tolist()
 
     def is_descending(self, now: float) -> bool:
         """Return True if the descent has begun."""
@@ -91,6 +94,14 @@ class HoldPlan:
     def is_at_descent_speed(self, now: float) -> bool:
         """Return True if the descent has reached its speed."""
         return now - self.descent_start > self.descent_ramp
+
+
+def _on_bezier_curve(axes: list[list[float]], share: float) -> list[float]:
+    """Return the point after a ``share`` of the time of a curve with the control points of ``axes``, by Bernstein."""
+    n = len(axes[0]) - 1
+    rest = 1.0 - share
+    weights = [math.comb(n, i) * share**i * rest ** (n - i) for i in range(n + 1)]
+    return [sum(map(mul, weights, points)) for points in axes]
 
 
 class HoldController:

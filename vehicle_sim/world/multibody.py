@@ -6,12 +6,12 @@ origin at the attachment point and its z axis along the link, towards the UAV.
 
 import tempfile
 from collections.abc import Sequence
+from itertools import permutations
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 import pybullet
-from scipy.optimize import linear_sum_assignment
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 from scipy.spatial.transform import Rotation
 
@@ -73,7 +73,7 @@ def check_supported(parameters: SystemParameters) -> None:
 def principal_axes(inertia: Array) -> tuple[Array, Array]:
     """Return the principal moments (3,) of ``inertia`` (3, 3) and its axes (3, 3), columns nearest to its frame's."""
     moments, axes = np.linalg.eigh(inertia)
-    order = linear_sum_assignment(-np.abs(axes))[1]
+    order = list(max(permutations(range(3)), key=lambda columns: np.abs(axes[np.arange(3), list(columns)]).sum()))
     axes = axes[:, order] * np.where(np.diag(axes[:, order]) < 0.0, -1.0, 1.0)
     if np.linalg.det(axes) < 0.0:
         axes[:, np.argmin(np.diag(axes))] *= -1.0
