@@ -45,7 +45,19 @@ from gcs.mission.read import read_mission  # noqa: E402
 CHECKSUMS = HERE / "checksums.json"
 MISSIONS = HERE / "missions"
 FILES = ("truth.csv", "reference.csv", "estimate.csv", "plan.csv", "telemetry.tlog")
-PACKAGES = ("coal", "daqp", "filterpy", "numpy", "proxsuite", "pybullet", "pymavlink", "scipy", "shapely", "trimesh")
+PACKAGES = (
+    "coal",
+    "daqp",
+    "filterpy",
+    "numba",
+    "numpy",
+    "proxsuite",
+    "pybullet",
+    "pymavlink",
+    "scipy",
+    "shapely",
+    "trimesh",
+)
 WITHOUT_TEXT = "telemetry.tlog without STATUSTEXT"
 _STATUSTEXT = mavlink.MAVLINK_MSG_ID_STATUSTEXT
 _STAMP_LENGTH = 8
