@@ -80,7 +80,7 @@ class RestingPlace:
     def _clearances(self, near: _Near, state: Array, choices: Sequence[Braking]) -> Array:
         """Return the least distance (m) of the formation's upright hull on its path to rest, and down from there.
 
-        For each of the ``choices`` (C,); those beyond the clearance that is asked for are not told apart.
+        For each of the ``choices`` (C,); those beyond the clearance that is asked for are not distinguished.
         """
         durations = np.array([choice.duration(state[1]) for choice in choices])
         control = np.array([choice.control_points(state, t) for choice, t in zip(choices, durations, strict=True)])

@@ -53,7 +53,7 @@ def least_distances(
         reach: radius of the ball that holds each of them (O,).
         centres: of the obstacles at the moments (O, K, 3).
         growth: of them (O, K).
-        limit: distances above it are not told apart.
+        limit: distances above it are not distinguished.
     """
     moments, count = elapsed.shape[0], bodies.shape[0]
     least = np.full(control.shape[0], limit)
