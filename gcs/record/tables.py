@@ -79,6 +79,15 @@ class TableWriter(AppendOnlyFile):
         """Append rows in one record."""
         self.append(b"".join(map(self._row, rows)))
 
+    def write_behind(self, first: float, rests: Iterable[bytes]) -> None:
+        """Append rows in one record: the number ``first``, and behind it what :meth:`rest` has made."""
+        head = repr(first).encode() + b","
+        self.append(head + head.join(rests))
+
+    def rest(self, cells: Iterable[Cell]) -> bytes:
+        """Return a row without its first cell, to be written often. Raises as :meth:`write`."""
+        return self._row((0, *cells)).removeprefix(b"0,")
+
     def _row(self, row: Iterable[Cell]) -> bytes:
         cells = [_FORMATS.get(type(value), _cell)(value) for value in row]
         if len(cells) != len(self.columns):

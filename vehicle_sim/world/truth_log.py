@@ -27,8 +27,8 @@ class TruthLog:
         self._run_dir = make_folder(run_dir)
         self._truth = TableWriter(self._run_dir / "truth.csv", truth_columns(number_of_uavs))
         self._obstacles: TableWriter | None = None
-        self._rows: dict[str, tuple[Obstacle, list[str]]] = {}
-        """Obstacles as they were last written, with the cells of that."""
+        self._rows: dict[str, tuple[Obstacle, bytes]] = {}
+        """Obstacles as they were last written, with their rows without the time."""
         self._modes: TableWriter | None = None
         self._flown: dict[int, tuple[str, bool, bool]] = {}
         self._closed = False
@@ -64,18 +64,18 @@ class TruthLog:
         if self._obstacles is None:
             self._obstacles = TableWriter(self._run_dir / "obstacles.csv", OBSTACLE_COLUMNS)
             write_shapes(self._run_dir, {obstacle.name: obstacle.shape for obstacle in obstacles})
-        time = float(state.time)
-        self._obstacles.write_all([(time, *self._cells(obstacle)) for obstacle in obstacles])
+        table = self._obstacles
+        table.write_behind(float(state.time), [self._row(table, obstacle) for obstacle in obstacles])
 
-    def _cells(self, obstacle: Obstacle) -> list[str]:
+    def _row(self, table: TableWriter, obstacle: Obstacle) -> bytes:
         """Return the row of an obstacle without its time; of one that has not moved since, the same again."""
-        last, cells = self._rows.get(obstacle.name, (None, []))
+        last, row = self._rows.get(obstacle.name, (None, b""))
         if last is not obstacle:
             shape = obstacle.shape
             numbers = (*obstacle.position_in_world, shape.columns.radius, *shape.columns.size, shape.columns.yaw)
-            cells = [obstacle.name, shape.kind, *(repr(float(number)) for number in numbers)]
-            self._rows[obstacle.name] = obstacle, cells
-        return cells
+            row = table.rest([obstacle.name, shape.kind, *map(float, numbers)])
+            self._rows[obstacle.name] = obstacle, row
+        return row
 
     def write_mode(self, time: float, vehicle: int, mode: str, armed: bool, failsafe: bool) -> None:
         """Append what a vehicle (its system id) flies from ``time`` (s) on, if it is not what it flew before."""
