@@ -9,7 +9,7 @@ from flight_in_process import HOP, InProcessFlight, system_file
 from gcs.campaign.faults.judgement import detection, first_start
 from gcs.config.flight_settings import DEFAULTS
 from gcs.flight.alarms import AlarmLog
-from gcs.flight.detectors import EventCounter, MonitorAlarm
+from gcs.flight.detectors import MonitorAlarm
 from gcs.mavlink.link_statistics import LinkStatistics
 from gcs.mavlink.settings import LinkSettings
 from gcs.mission.model import Fault
@@ -33,15 +33,6 @@ def test_alarm_log_records_a_lasting_condition_once():
     expected = [("vehicle 3", "telemetry_timeout"), ("vehicle 2", "stuck_sensor"), ("vehicle 2", "telemetry_timeout")]
     assert raised == expected
     assert sink == log.alarms
-
-
-def test_event_counter_forgets_events_after_its_window():
-    events, key = EventCounter(2.0), ("vehicle 1", MonitorAlarm.MESSAGES_LOST)
-    events.add(key, 0.0)
-    events.add(key, 1.0, 2)
-    assert events.recent(1.5) == {key: 3}
-    assert events.recent(2.5) == {key: 2}
-    assert events.recent(9.0) == {}
 
 
 def event_counts(numbers, interval=0.01):

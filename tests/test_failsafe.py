@@ -13,7 +13,8 @@ from gcs.flight.alarms import AlarmLog
 from gcs.flight.command_sequences import AutonomousLanding
 from gcs.flight.condition import Check, Moment, Reaction, System, Trigger
 from gcs.flight.detectors import MonitorAlarm
-from gcs.flight.failsafe import Failsafe, FailsafeState
+from gcs.flight.failsafe import Failsafe
+from gcs.flight.failsafe_state import FailsafeState
 from gcs.flight.listing import listing
 from gcs.flight.phase import Phase
 from vehicle_sim.swarm import Swarm

@@ -3,41 +3,23 @@
 To add one, add its code to :class:`MonitorAlarm` and a detector to :func:`detectors`.
 """
 
-from collections import defaultdict, deque
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from enum import Enum
+from dataclasses import replace
 
 import numpy as np
 
 from gcs.config.flight_settings import MonitorSettings
-from gcs.flight.alarms import AlarmCode, AlarmLog, Severity
-from gcs.flight.control_loop import StepRecord
+from gcs.flight.alarms import Severity
 from gcs.flight.flight import Flight
-from gcs.mavlink.id_check import SystemIdCheck
-from gcs.mavlink.vehicle_link import VehicleLink
+from gcs.flight.monitor_step import Detector, MonitorStep, Scope, ScopedAlarm
+from gcs.flight.sliding_window import EventCounter, SlidingRange
 from idc_controller.estimation.health.chi_squared import upper_quantile
 from idc_controller.estimation.health.innovation_monitor import Finding, InnovationMonitor
 from idc_controller.estimation.measurements import PAYLOAD, Position
 from idc_controller.estimation.settings import InnovationMonitorSettings
 
 
-class Scope(Enum):
-    """Phases in which a detector runs."""
-
-    ALWAYS = "always"
-    IN_AIR = "in the air"
-    CLEAR_OF_GROUND = "in the air, with the payload clear of the ground"
-
-
-class MonitorAlarm(AlarmCode):
+class MonitorAlarm(ScopedAlarm):
     """Alarms of the detectors; in ``meaning``, names in braces are fields of ``MonitorSettings``."""
-
-    scope: Scope
-
-    def __init__(self, scope: Scope, severity: Severity, action: str, meaning: str) -> None:
-        super().__init__(severity, action, meaning)
-        self.scope = scope
 
     # fmt: off
     TELEMETRY_TIMEOUT = (Scope.IN_AIR, Severity.WARNING, "check its MAVLink link",
@@ -92,87 +74,8 @@ class MonitorAlarm(AlarmCode):
     # fmt: on
 
 
-@dataclass(frozen=True, eq=False)
-class MonitorStep:
-    """Inputs of a detector in one control step: team ``time`` and ground time ``now`` (s)."""
-
-    time: float
-    now: float
-    flight: Flight
-    id_check: SystemIdCheck
-    log: AlarmLog
-    record: StepRecord | None
-    in_air: bool
-    names: Sequence[str]
-    """Of all vehicles, then of the payload."""
-    clear: bool
-    """True in the air, clear of the ground, with an estimate of this step."""
-    steady: bool
-    """No hard manoeuvre lately: the attitude loop does what its linear model says."""
-
-    @property
-    def links(self) -> tuple[VehicleLink, ...]:
-        """The links of all vehicles."""
-        return self.flight.system.team.links
-
-    def name(self, source: int) -> str:
-        """Return the name of a vehicle (0 .. N-1) or of the payload."""
-        return self.names[source]
-
-    def raise_alarm(self, source: str, code: MonitorAlarm, text: str = "") -> None:
-        """Raise an alarm now, if its scope allows."""
-        within = {Scope.ALWAYS: True, Scope.IN_AIR: self.in_air, Scope.CLEAR_OF_GROUND: self.clear}
-        if within[code.scope]:
-            self.log.raise_alarm(self.time, source, code, text)
-
-
-Detector = Callable[[MonitorStep], None]
-
-
-class EventCounter:
-    """Counts events of the last seconds by source and alarm code."""
-
-    def __init__(self, window: float) -> None:
-        """``window``: how long an event counts (s)."""
-        self._window = window
-        self._times: dict[tuple[str, MonitorAlarm], deque[float]] = defaultdict(deque)
-
-    def add(self, key: tuple[str, MonitorAlarm], time: float, count: int = 1) -> None:
-        """Add ``count`` events at ``time`` (s)."""
-        self._times[key].extend([time] * count)
-
-    def recent(self, time: float) -> dict[tuple[str, MonitorAlarm], int]:
-        """Return the number of events in the window before ``time`` (s), where there are any."""
-        found = {}
-        for key, times in self._times.items():
-            while times and time - times[0] > self._window:
-                times.popleft()
-            if times:
-                found[key] = len(times)
-        return found
-
-
-class SlidingRange:
-    """Range of a quantity over the last seconds."""
-
-    def __init__(self, window: float) -> None:
-        """``window``: its length (s)."""
-        self._window = window
-        # Values that a later one has not exceeded, and not undercut: the first is the greatest, and the least.
-        self._falling: deque[tuple[float, float]] = deque()
-        self._rising: deque[tuple[float, float]] = deque()
-
-    def add(self, time: float, value: float) -> float:
-        """Add the value at ``time`` (s); return the greatest value of the window less the least."""
-        while self._falling and self._falling[-1][1] <= value:
-            self._falling.pop()
-        while self._rising and self._rising[-1][1] >= value:
-            self._rising.pop()
-        for extremes in (self._falling, self._rising):
-            extremes.append((time, value))
-            while time - extremes[0][0] > self._window:
-                extremes.popleft()
-        return self._falling[0][1] - self._rising[0][1]
+_Events = EventCounter[tuple[str, MonitorAlarm]]
+"""Counts by source and alarm code."""
 
 
 class _TelemetryTimeout:
@@ -207,7 +110,7 @@ class _LinkTiming:
         s = self._settings
         for i, link in enumerate(step.links):
             name, clock = step.name(i), link.clock
-            moved = self._offsets[i].add(step.time, clock.offset)
+            moved = self._offsets[i].add(step.now, clock.offset)
             if clock.delay > self._latency:
                 text = f"link latency is {clock.delay * 1e3:.0f} ms (limit {self._latency * 1e3:.0f} ms)"
                 step.raise_alarm(name, MonitorAlarm.LINK_LATENCY, text)
@@ -231,8 +134,8 @@ class _MessageEvents:
 
     def __init__(self, settings: MonitorSettings, number_of_uavs: int) -> None:
         self._count = settings.event_count
-        self._events = EventCounter(settings.event_window)
-        self._setpoints = EventCounter(settings.setpoint_window)
+        self._events = _Events(settings.event_window)
+        self._setpoints = _Events(settings.setpoint_window)
         self._totals = [(0,) * len(self._CODES)] * number_of_uavs
 
     def __call__(self, step: MonitorStep) -> None:
@@ -266,7 +169,7 @@ class _Innovations:
         self, gate_probability: float, settings: MonitorSettings, innovations: InnovationMonitorSettings
     ) -> None:
         self._tests = InnovationMonitor(gate_probability, innovations)
-        self._resets = EventCounter(settings.event_window)
+        self._resets = _Events(settings.event_window)
         self._count = settings.event_count
 
     def __call__(self, step: MonitorStep) -> None:
@@ -366,7 +269,7 @@ def detectors(flight: Flight, settings: MonitorSettings) -> tuple[Detector, ...]
     )
 
 
-def _raise_frequent(step: MonitorStep, events: EventCounter, count: int) -> None:
+def _raise_frequent(step: MonitorStep, events: _Events, count: int) -> None:
     for (source, code), number in events.recent(step.time).items():
         if number >= count:
             step.raise_alarm(source, code, f"{number} times")

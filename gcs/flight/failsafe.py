@@ -9,20 +9,18 @@ from collections.abc import Callable, Iterable
 
 import numpy as np
 
-from gcs.flight.alarms import AlarmCode, AlarmLog, Severity
+from gcs.flight.alarms import AlarmCode, Severity
 from gcs.flight.condition import Check, Condition, Moment, Reaction, System, Trigger
 from gcs.flight.phase import Phase
 from gcs.mavlink import px4
 from gcs.mavlink.vehicle_link import VehicleLink
 
 
-def _first_vehicle(
-    system: System, problem: Callable[[VehicleLink], str], cut_off: Callable[[VehicleLink], float] = lambda link: 0.0
-) -> Trigger | None:
-    """Return the first vehicle with a problem: the text that follows its name."""
+def _first_vehicle(system: System, problem: Callable[[VehicleLink], str]) -> Trigger | None:
+    """Return the trigger of the first vehicle with a problem: the text that follows its name."""
     for i, link in enumerate(system.team.links):
         if text := problem(link):
-            return Trigger(f"vehicle {link.system_id} {text}", (i,), cut_off(link))
+            return Trigger(f"vehicle {link.system_id} {text}", (i,))
     return None
 
 
@@ -83,6 +81,8 @@ def _misplaced(system: System, moment: Moment) -> Trigger | None:
 
 
 def _sequence_failed(phase: Phase) -> Condition:
+    """Return the condition that the command sequence of ``phase`` has a problem."""
+
     def condition(system: System, moment: Moment) -> Trigger | None:
         failed = moment.phase is phase and moment.sequence is not None and moment.sequence.problem
         return Trigger(failed) if failed else None
@@ -99,19 +99,19 @@ def _states_unknown(system: System, moment: Moment) -> Trigger | None:
 
 def _all_telemetry_lost(system: System, moment: Moment) -> Trigger | None:
     timeout = system.settings.telemetry_timeout
-    if any(moment.now - link.telemetry_received_at <= timeout for link in system.team.links):
-        return None
+    for link in system.team.links:
+        if moment.now - link.telemetry_received_at <= timeout:
+            return None
     return Trigger(f"no vehicle sends telemetry for {timeout:g} s", cut_off=timeout)
 
 
 def _telemetry_lost(system: System, moment: Moment) -> Trigger | None:
-    def age(link: VehicleLink) -> float:
-        return moment.now - link.telemetry_received_at
-
     timeout = system.settings.telemetry_timeout
-    return _first_vehicle(
-        system, lambda link: f"sends no telemetry for {timeout:g} s" if age(link) > timeout else "", age
-    )
+    for i, link in enumerate(system.team.links):
+        age = moment.now - link.telemetry_received_at
+        if age > timeout:
+            return Trigger(f"vehicle {link.system_id} sends no telemetry for {timeout:g} s", (i,), age)
+    return None
 
 
 def _link_latency_exceeded(system: System, moment: Moment) -> Trigger | None:
@@ -124,22 +124,19 @@ def _link_latency_exceeded(system: System, moment: Moment) -> Trigger | None:
 
 
 def _disarmed_in_flight(system: System, moment: Moment) -> Trigger | None:
-    return _first_vehicle(
-        system, lambda link: "" if link.status.armed else f"has disarmed itself{link.status.last_text}"
-    )
+    for i, link in enumerate(system.team.links):
+        if not link.status.armed:
+            return Trigger(f"vehicle {link.system_id} has disarmed itself{link.status.last_text}", (i,))
+    return None
 
 
 def _offboard_left(system: System, moment: Moment) -> Trigger | None:
-    def problem(link: VehicleLink) -> str:
-        return (
-            ""
-            if link.status.offboard
-            else f"has left OFFBOARD for {px4.mode_name(link.status.custom_mode)}{link.status.last_text}"
-        )
-
-    return _first_vehicle(
-        system, problem, lambda link: link.status.parameters[px4.PARAM_SETPOINT_LOSS] + link.clock.delay
-    )
+    for i, link in enumerate(system.team.links):
+        if not link.status.offboard:
+            mode, cut_off = px4.mode_name(link.status.custom_mode), link.status.parameters[px4.PARAM_SETPOINT_LOSS]
+            reason = f"vehicle {link.system_id} has left OFFBOARD for {mode}{link.status.last_text}"
+            return Trigger(reason, (i,), cut_off + link.clock.delay)
+    return None
 
 
 def _telemetry_incomplete(system: System, moment: Moment) -> Trigger | None:
@@ -279,49 +276,3 @@ class Failsafe(AlarmCode):
     DESCENT_STALLED = (Check.ESTIMATE, _descent_stalled, Reaction.AUTONOMOUS_LANDING, "check wind, load and positions",
         "the payload is still high {descent_timeout:g} s after the planned end of its descent")
     # fmt: on
-
-
-_BY_CHECK = {check: tuple(failsafe for failsafe in Failsafe if failsafe.check is check) for check in Check}
-
-
-class FailsafeState:
-    """Failsafes that have been raised in a flight: the present reaction, and the first reason."""
-
-    def __init__(self, system: System, alarms: AlarmLog) -> None:
-        self.system, self.alarms = system, alarms
-        self.reaction = Reaction.NONE
-        self.reason = ""
-        """First reason for which the flight was ended early; empty: none."""
-        self.time = math.nan
-        """Time of that reason (s, team time)."""
-        self.raised: set[Failsafe] = set()
-
-    @property
-    def interrupted(self) -> bool:
-        """True if the user has interrupted the flight."""
-        return not self.raised.isdisjoint({Failsafe.INTERRUPTED, Failsafe.INTERRUPTED_TWICE})
-
-    def evaluate(self, check: Check, moment: Moment) -> tuple[Failsafe, Trigger] | None:
-        """Return what counts among the conditions of ``check`` that call for more than is under way; None: none."""
-        held = [
-            (failsafe, trigger)
-            for failsafe in _BY_CHECK[check]
-            if failsafe.reaction.in_phase(moment.phase) > self.reaction
-            and (trigger := failsafe.evaluate(self.system, moment)) is not None
-        ]
-        return min(held, key=lambda each: (-each[0].reaction, len(each[1].vehicles), each[1].vehicles), default=None)
-
-    def raise_failsafe(self, time: float, phase: Phase, failsafe: Failsafe, trigger: Trigger) -> Reaction:
-        """Record it at ``time`` (s); return its reaction, NONE if a more severe one is under way."""
-        source = trigger.source
-        if len(trigger.vehicles) == 1:
-            source = f"vehicle {self.system.team.links[trigger.vehicles[0]].system_id}"
-        self.alarms.raise_alarm(time, source, failsafe, trigger.reason)
-        self.raised.add(failsafe)
-        if not self.reason:
-            self.reason, self.time = trigger.reason, time
-        reaction = failsafe.reaction.in_phase(phase)
-        if reaction < self.reaction:
-            return Reaction.NONE
-        self.reaction = reaction
-        return reaction

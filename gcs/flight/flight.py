@@ -9,7 +9,8 @@ from gcs.flight.alarms import AlarmLog
 from gcs.flight.command_sequences import Arming, AutonomousLanding, CommandSequence, Disarming
 from gcs.flight.condition import Check, Moment, Reaction, System, Trigger
 from gcs.flight.control_loop import ControlLoop, Setpoints, StepRecord
-from gcs.flight.failsafe import Failsafe, FailsafeState
+from gcs.flight.failsafe import Failsafe
+from gcs.flight.failsafe_state import FailsafeState
 from gcs.flight.mission_trajectory import MissionTrajectory
 from gcs.flight.payload_monitor import PayloadMonitor
 from gcs.flight.phase import CONTROLLED, IN_AIR, Phase

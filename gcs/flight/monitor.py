@@ -7,8 +7,9 @@ import numpy as np
 from gcs.config.flight_settings import DEFAULTS, MonitorSettings
 from gcs.flight.alarms import AlarmLog
 from gcs.flight.control_loop import StepRecord
-from gcs.flight.detectors import MonitorStep, detectors
+from gcs.flight.detectors import detectors
 from gcs.flight.flight import Flight
+from gcs.flight.monitor_step import MonitorStep
 from gcs.flight.phase import IN_AIR
 from gcs.mavlink.id_check import SystemIdCheck
 from idc_controller.arrays import Array

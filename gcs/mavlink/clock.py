@@ -1,6 +1,7 @@
 """The clock of one vehicle as the ground estimates it: offset of its boot time, and link latency."""
 
 import math
+from bisect import bisect_right
 from collections import deque
 from statistics import median
 from typing import NamedTuple
@@ -38,8 +39,8 @@ class RemoteClock:
         self.lag = 0.0
         """Delay (s) of the last stamp beyond the least delay of the last second."""
         self._requests: deque[int] = deque(maxlen=settings.open_requests)
-        self._round_trips: deque[float] = deque(maxlen=settings.round_trips)
-        self._arrivals: deque[float] = deque(maxlen=settings.round_trips)
+        self._round_trips: list[float] = []
+        self._arrivals: list[float] = []
         self._trips = _RoundTrips()
 
     def add_stamp(self, boot_time: float, arrival: float, in_order: bool = False) -> None:
@@ -79,7 +80,8 @@ class RemoteClock:
             self._requests.remove(ts1)
             self._round_trips.append(max(arrival - ts1 * 1e-9, 0.0))
             self._arrivals.append(arrival)
-            trips, recent = sorted(self._round_trips), list(self._round_trips)[-self._settings.recent_round_trips :]
+            del self._round_trips[: -self._settings.round_trips], self._arrivals[: -self._settings.round_trips]
+            trips, recent = sorted(self._round_trips), self._round_trips[-self._settings.recent_round_trips :]
             spread = trips[3 * (len(trips) - 1) // 4] - trips[0]
             self._trips = _RoundTrips(trips[0], median(trips), spread, max(recent))
 
@@ -109,12 +111,8 @@ class RemoteClock:
         Shows a growing latency sooner than :attr:`delay`. After an interruption all answers come simultaneously, the
         last of them soon after its request.
         """
-        least = math.inf
-        for arrival, trip in zip(reversed(self._arrivals), reversed(self._round_trips), strict=True):
-            least = min(least, trip)
-            if arrival <= now - duration:
-                return least / 2.0
-        return 0.0
+        before = bisect_right(self._arrivals, now - duration)
+        return min(self._round_trips[before - 1 :]) / 2.0 if before else 0.0
 
     @property
     def delay(self) -> float:

@@ -92,7 +92,7 @@ class ObstacleMap:
     @property
     def map_offset_detected(self) -> bool:
         """Return whether all vehicles with valid range sensors detect the obstacles of the map with an offset."""
-        return self._check.all_offset(self._valid_uavs())
+        return bool(self.map_offsets) and self._check.all_offset(self._valid_uavs())
 
     def take_deleted_tracks(self) -> list[str]:
         """Return the names of confirmed tracks deleted in the field of view since the last call."""

@@ -1,0 +1,56 @@
+"""The failsafes that have been raised in a flight: which counts of several, and the reaction under way."""
+
+import math
+
+from gcs.flight.alarms import AlarmLog
+from gcs.flight.condition import Check, Moment, Reaction, System, Trigger
+from gcs.flight.failsafe import Failsafe
+from gcs.flight.phase import Phase
+
+_ADMITTED = {
+    (check, phase): tuple((row, row.reaction.in_phase(phase)) for row in Failsafe if row.check is check)
+    for check in Check
+    for phase in Phase
+}
+"""Failsafes of each check, with the reactions that a phase allows."""
+
+
+class FailsafeState:
+    """Failsafes that have been raised in a flight: the present reaction, and the first reason."""
+
+    def __init__(self, system: System, alarms: AlarmLog) -> None:
+        self.system, self.alarms = system, alarms
+        self.reaction = Reaction.NONE
+        self.reason = ""
+        """First reason for which the flight was ended early; empty: none."""
+        self.time = math.nan
+        """Time of that reason (s, team time)."""
+        self.raised: set[Failsafe] = set()
+
+    @property
+    def interrupted(self) -> bool:
+        """True if the user has interrupted the flight."""
+        return not self.raised.isdisjoint({Failsafe.INTERRUPTED, Failsafe.INTERRUPTED_TWICE})
+
+    def evaluate(self, check: Check, moment: Moment) -> tuple[Failsafe, Trigger] | None:
+        """Return what counts among the conditions of ``check`` that call for more than is under way; None: none."""
+        held = []
+        for failsafe, reaction in _ADMITTED[check, moment.phase]:
+            if reaction > self.reaction and (trigger := failsafe.evaluate(self.system, moment)) is not None:
+                held.append((failsafe, trigger))
+        return min(held, key=lambda each: (-each[0].reaction, len(each[1].vehicles), each[1].vehicles), default=None)
+
+    def raise_failsafe(self, time: float, phase: Phase, failsafe: Failsafe, trigger: Trigger) -> Reaction:
+        """Record it at ``time`` (s); return its reaction, NONE if a more severe one is under way."""
+        source = trigger.source
+        if len(trigger.vehicles) == 1:
+            source = f"vehicle {self.system.team.links[trigger.vehicles[0]].system_id}"
+        self.alarms.raise_alarm(time, source, failsafe, trigger.reason)
+        self.raised.add(failsafe)
+        if not self.reason:
+            self.reason, self.time = trigger.reason, time
+        reaction = failsafe.reaction.in_phase(phase)
+        if reaction < self.reaction:
+            return Reaction.NONE
+        self.reaction = reaction
+        return reaction
