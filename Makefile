@@ -5,6 +5,8 @@ MISSION ?= missions/figure_eight_spheres.toml
 BASE ?= HEAD~1
 VENV := .venv
 INSTALLED := $(VENV)/installed
+COMPILED := $(VENV)/compiled
+PACKAGES := gcs idc_controller vehicle_sim
 
 # One BLAS thread: small matrices are no faster with more, and sums repeat.
 export OPENBLAS_NUM_THREADS := 1
@@ -30,16 +32,16 @@ help:
 	@echo "make install      only install, into $(VENV)"
 	@echo "make clean        remove $(VENV) and the caches"
 
-fly: $(INSTALLED)
+fly: $(COMPILED)
 	$(VENV)/bin/gcs fly $(MISSION)
 
-test: $(INSTALLED)
+test: $(COMPILED)
 	$(VENV)/bin/ruff check
 	$(VENV)/bin/ruff format --check
 	$(VENV)/bin/mypy
 	$(VENV)/bin/python -m pytest --numprocesses auto --dist loadfile --durations 25
 
-test-fast: $(INSTALLED)
+test-fast: $(COMPILED)
 	$(VENV)/bin/ruff check
 	$(VENV)/bin/ruff format --check
 	$(VENV)/bin/mypy
@@ -49,26 +51,26 @@ test-fast: $(INSTALLED)
 test-lowest: $(INSTALLED)
 	tests/packaging/lowest $(VENV)/bin/python
 
-mutants: $(INSTALLED)
+mutants: $(COMPILED)
 	$(VENV)/bin/python tests/mutation/mutants.py $(MUTANTS)
 
-golden: $(INSTALLED)
+golden: $(COMPILED)
 	$(VENV)/bin/python tests/golden/golden.py
 
-golden-renew: $(INSTALLED)
+golden-renew: $(COMPILED)
 	$(VENV)/bin/python tests/golden/golden.py --renew
 
 # OPTIONS: --quick, --long, --rounds N. ANCHOR_PYTHON: a Python with gym-pybullet-drones, else an equal loop is flown.
-benchmark: $(INSTALLED)
+benchmark: $(COMPILED)
 	$(VENV)/bin/python tests/benchmarks/benchmark.py $(OPTIONS)
 
-benchmark-parts: $(INSTALLED)
+benchmark-parts: $(COMPILED)
 	$(VENV)/bin/python -m pytest -o addopts= -s tests/benchmarks
 
-benchmark-campaign: $(INSTALLED)
+benchmark-campaign: $(COMPILED)
 	$(VENV)/bin/python tests/benchmarks/campaign.py
 
-benchmark-check: $(INSTALLED)
+benchmark-check: $(COMPILED)
 	$(VENV)/bin/python tests/benchmarks/check.py --base $(BASE)
 
 docs: $(INSTALLED)
@@ -76,7 +78,7 @@ docs: $(INSTALLED)
 	$(VENV)/bin/python -m gcs.flight.listing > docs/failsafes.md
 	$(VENV)/bin/python tests/packaging/notice.py > NOTICE
 
-install: $(INSTALLED)
+install: $(COMPILED)
 
 # Without build isolation nothing is fetched that constraints.txt does not name.
 $(INSTALLED): pyproject.toml constraints.txt
@@ -91,8 +93,13 @@ $(INSTALLED): pyproject.toml constraints.txt
 	exit 1
 	@$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes -r constraints.txt
 	@$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps -e .
+	@touch $@
+
+# Compiles the kernels that any change of the sources has changed.
+$(COMPILED): $(INSTALLED) $(shell find $(PACKAGES) -name '*.py')
 	@$(VENV)/bin/python -m vehicle_sim.app.compile_kernels
 	@touch $@
 
 clean:
 	rm -rf $(VENV) build *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis
+	find $(PACKAGES) tests -name __pycache__ -prune -exec rm -rf {} +
