@@ -1,9 +1,12 @@
 """Kalman filter: blocks, Cholesky factor, sparse rows and compiled kernels against filterpy and plain numpy."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from filterpy.kalman import KalmanFilter
 from flight_in_process import MISSIONS
+from paper_system import system
 from scipy.linalg import expm
 from scipy.stats import chi2
 from test_flatness import Wave
@@ -138,6 +141,33 @@ def test_propagation_by_blocks_equals_filterpys_prediction(vehicles, is_changed)
     assert np.allclose(compiled.x, plain.x, rtol=1e-12, atol=1e-12)
     assert np.allclose(compiled.P, plain.P, rtol=1e-12, atol=1e-12)
     assert (compiled.P == compiled.P.T).all()
+
+
+@pytest.mark.parametrize("interval_us", [250_000, 1_000_000, 5_000_000])
+@pytest.mark.parametrize("time_constant", [0.02, 0.05, 0.15, 0.3, 0.5])
+@pytest.mark.parametrize("is_slow", [False, True], ids=["loop_of_system_file", "loop_as_slow_as_the_motors"])
+def test_propagation_by_blocks_equals_dense_product_for_slow_motors_and_long_intervals(
+    is_slow, time_constant, interval_us
+):
+    parameters = replace(system(3), motor_time_constant=time_constant)
+    if is_slow:
+        parameters = replace(parameters, attitude_kp=0.1 / time_constant**2, attitude_kd=0.8 / time_constant)
+    model = LinearModel(parameters)
+    process, rng = ProcessModel(model, ProcessNoiseSettings()), np.random.default_rng(interval_us)
+    compiled, plain = both(rng, positive_definite(rng, process.size))
+    A_k, B_k, B_dk = model.discretised(interval_us)
+    n, F, B = len(A_k), np.eye(process.size), np.zeros((process.size, 9))
+    F[:n, :n], F[:n, process.forces], F[:n, process.mass], B[:n] = A_k, B_dk, B_dk[:, 2] * parameters.g, B_k
+    u, Q, nothing = (
+        rng.standard_normal(9),
+        positive_definite(rng, process.size),
+        SetpointNoise(np.zeros(0), np.zeros(3)),
+    )
+    compiled.propagate(process.transition(interval_us, np.zeros(3)), u, Q, nothing)
+    plain.predict(u=u, F=F, B=B, Q=Q)
+    scale = np.sqrt(np.diag(plain.P))
+    assert (np.abs(compiled.x - plain.x) <= 1e-10 * scale).all()
+    assert (np.abs(compiled.P - plain.P) <= 1e-10 * np.outer(scale, scale)).all()
 
 
 def plain_gate(residual, covariance, variance, starts, sizes, limits):

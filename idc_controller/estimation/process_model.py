@@ -4,7 +4,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from idc_controller.arrays import Array, Indices
+from idc_controller.arrays import Array, Indices, Mask
 from idc_controller.estimation.integrated_noise import IntegratedNoise
 from idc_controller.estimation.kalman_filter import SparseRows, Transition
 from idc_controller.estimation.settings import CovarianceResetSettings, InitialCovarianceSettings, ProcessNoiseSettings
@@ -21,6 +21,7 @@ class ProcessModel:
         self.mass = self.size - 1
         self.force, self.uav_force = slice(n, n + 3), slice(n + 3, self.mass)
         self.forces = slice(n, self.mass)
+        self._uav_columns = self._columns_of_uavs()
         self._noise = self._noise_of(densities)
         self._plain = lru_cache(maxsize=256)(self._discretised)
         self.noise = lru_cache(maxsize=256)(self._integrated_noise)
@@ -87,9 +88,24 @@ class ProcessModel:
         F = np.eye(self.size)
         F[:n, :n], F[:n, self.forces] = A_k, B_dk
         B = np.vstack([B_k, np.zeros((self.size - n, self.layout.inputs))])
-        # Payload and links, then the UAVs: three states of each tilt, one of each thrust and of each force.
-        moved = self.layout.n.start
-        return Transition(F[:moved], SparseRows.of(F[moved:], width=3), B), B_dk
+        columns, filled = self._uav_columns
+        moved = self.size - len(columns)
+        return Transition(
+            F[:moved], SparseRows(columns, filled * F[np.arange(moved, self.size)[:, None], columns]), B
+        ), B_dk
+
+    def _columns_of_uavs(self) -> tuple[Indices, Mask]:
+        """Return the columns (R, 3) of the elements in the rows below payload and links, and which of them count.
+
+        Three states of each tilt go by themselves, and so does each thrust, each force and the mass. What a matrix
+        exponential leaves elsewhere in these rows is rounding.
+        """
+        layout, N = self.layout, self.layout.number_of_uavs
+        tilts = np.tile(layout.n.start + np.arange(2 * N)[:, None] + 2 * N * np.arange(3), (3, 1))
+        alone = np.repeat(np.arange(layout.f.start, self.size)[:, None], 3, axis=1)
+        filled = np.ones((len(tilts) + len(alone), 3), dtype=bool)
+        filled[len(tilts) :, 1:] = False
+        return np.vstack([tilts, alone]), filled
 
     def _integrated_noise(self, interval_us: int, force_scale: float) -> Array:
         """Return the covariance (n, n) that an interval (us) adds; ``force_scale``: of the forces' noise."""
