@@ -166,6 +166,12 @@ def test_compiled_drift_ratio_equals_plain_one(count, n):
     assert drift_ratio(window, n, error, sigmas) == pytest.approx((moved / allowed).max(), rel=1e-12)
 
 
+def test_drift_ratio_of_a_value_that_is_no_number_is_infinite():
+    window = np.zeros((20, 4))
+    window[10:, 2] = np.nan  # as an integral leaves it that is none
+    assert drift_ratio(window, 8, 0.03, 5.0) == np.inf
+
+
 @pytest.mark.parametrize("is_position", [True, False])
 def test_compiled_integral_equals_plain_one(is_position):
     rng = np.random.default_rng(3)

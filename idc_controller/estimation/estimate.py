@@ -18,7 +18,7 @@ class InnovationRecord:
     rejected: tuple[SensorKey, ...]
     """Sources and kinds that failed the test."""
     covariance_reset: bool = False
-    """Most sources disagreed with the prediction, whose covariance was reset."""
+    """Most sources disagreed with the prediction, or it was no number: its covariance was reset."""
     keys: tuple[SensorKey, ...] = ()
     """Sources and kinds of all measurements (K,)."""
     normalised: tuple[Array, ...] = ()

@@ -35,6 +35,9 @@ class MeasurementUpdate:
             The innovation test; None where no measurement may be used.
         """
         health, model = self._health, self._model
+        is_lost = not filter.is_finite
+        if is_lost:
+            self._restart(filter)
         measurements = [median_of(copies) for copies in moment.measurements.values()]
         for measurement in measurements:
             health.dead_reckoning.add(measurement)
@@ -70,5 +73,10 @@ class MeasurementUpdate:
             squared = filter.update(innovation.subset(accepted), test.variance[accepted], measured)
         return InnovationRecord(
             moment.time, squared, int(accepted.sum()), tuple(keys[c] for c in rejected),
-            reaction is Reaction.COVARIANCE_RESET, keys, stack.split(test.normalised),
+            is_lost or reaction is Reaction.COVARIANCE_RESET, keys, stack.split(test.normalised),
         )  # fmt: skip
+
+    def _restart(self, filter: ErrorStateFilter) -> None:
+        """Begin anew from the reference where the state is no number: nothing that is measured could mend it."""
+        P = filter.process.initial_covariance(self._settings.initial)
+        filter.restart(P + filter.process.covariance_reset(P, self._settings.reset))

@@ -39,6 +39,14 @@ class _Sample:
         """Return whether ``other`` is of the same kind and has the same values to the digit."""
         return type(other) is type(self) and _same(self.pose, other.pose) and _same(self.motion, other.motion)
 
+    @property
+    def finite(self) -> Self:
+        """Return it with a pose or a motion that is not finite marked as not measured."""
+        pose, motion = sum(self.pose.tolist()), sum(self.motion.tolist())
+        if math.isfinite(pose + motion):
+            return self
+        return self.without(not math.isfinite(pose), not math.isfinite(motion))
+
     def without(self, pose: bool, motion: bool) -> Self:
         """Return a copy with the ``pose`` or the ``motion`` marked as not measured."""
         return type(self)(self.time, self.source, _masked(pose, self.pose), _masked(motion, self.motion))
@@ -108,7 +116,8 @@ def median_of(copies: Sequence[Measurement]) -> Measurement:
 
 
 def _same(a: Array, b: Array) -> bool:
-    return bool(a.tolist() == b.tolist() or (math.isnan(a[0]) and math.isnan(b[0])))
+    """Return whether values are the same, nan where nan."""
+    return all(x == y or (x != x and y != y) for x, y in zip(a.tolist(), b.tolist(), strict=True))
 
 
 def _masked(masked: bool, values: Array) -> Array:

@@ -1,5 +1,6 @@
 """Propagation of the filter's state from its last update to the time of the next set-points."""
 
+import math
 from itertools import pairwise
 
 import numpy as np
@@ -89,6 +90,15 @@ class ErrorStateFilter:
         Q = self.process.noise(interval.duration_us(k), force_scale)
         noise = SetpointNoise(_NONE if change is None else change, probability)
         self._kf.propagate(transition, delta_u, Q, noise)
+
+    @property
+    def is_finite(self) -> bool:
+        """Return whether state and covariance are numbers."""
+        return math.isfinite(float(self._kf.x.sum()) + float(self._kf.P.sum()))
+
+    def restart(self, P: Array) -> None:
+        """Begin anew from the reference with covariance ``P`` (n, n)."""
+        self._kf.x, self._kf.P = np.zeros(self.process.size), P
 
     def inflate(self, added: Array) -> None:
         """Add ``added`` (n, n) to the covariance."""

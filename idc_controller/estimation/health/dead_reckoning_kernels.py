@@ -67,6 +67,8 @@ def integrate(motions: Array, motion: Array, integral: Array, duration: float, p
 def drift_ratio(window: Array, n: int, error: float, sigmas: float) -> float:
     """Return how far differences have moved over the window, over what is allowed; the largest of the axes.
 
+    One that is not a number is inf: no evidence of consistency.
+
     Args:
         window: differences of poses and integrated motions, in order of time, each after its time (K, 4) (m or rad).
         n: samples at either end whose medians are compared.
@@ -80,5 +82,8 @@ def drift_ratio(window: Array, n: int, error: float, sigmas: float) -> float:
         values = window[:, c].copy()
         moved = abs(_median(values[-n:]) - _median(values[:n]))
         sigma = _FROM_STEPS * _median(np.abs(values[1:] - values[:-1]))
-        worst = max(worst, moved / (error + sigmas * of_medians * sigma))
+        ratio = moved / (error + sigmas * of_medians * sigma)
+        if ratio != ratio:
+            return np.inf
+        worst = max(worst, ratio)
     return worst

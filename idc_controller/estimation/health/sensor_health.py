@@ -77,13 +77,14 @@ class SensorHealth:
         )
 
     def received(self, measurement: Measurement) -> Measurement | None:
-        """Return a measurement that has arrived without its stuck channels; None if nothing is left."""
+        """Return what has arrived without channels that are stuck or not finite; None if nothing is left."""
+        measurement = measurement.finite
         stuck = self._stuck.check(measurement)
         if any(stuck):
             measurement = measurement.without(*stuck)
         if not measurement.has_pose:
             self._unusable_since[measurement.source, type(measurement)] = measurement.time
-        return None if all(stuck) else measurement
+        return measurement if measurement.has_pose or measurement.has_motion else None
 
     def usable(self, measurement: Measurement) -> Measurement:
         """Return a measurement without the channels of isolated groups."""
