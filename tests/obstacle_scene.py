@@ -6,7 +6,9 @@ import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.config import RangeSensorConfig
-from gcs.mavlink.telemetry import detection
+from gcs.mavlink.layout import LAYOUTS
+from gcs.mavlink.messages import Received
+from gcs.mavlink.telemetry import detections
 from gcs.mission.known_obstacles import known_obstacles
 from idc_controller.estimation.measurements import Attitude, Position
 from idc_controller.geometry.box import Wall
@@ -16,7 +18,7 @@ from idc_controller.perception.obstacle_map import ObstacleMap
 from idc_controller.perception.scan_assembly import SensorModel
 from idc_controller.perception.surfaces.points import SurfacePoints, joined
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
-from vehicle_sim.world.obstacle_bodies import Obstacle
+from vehicle_sim.world.obstacle_bodies import Obstacle, ScanTargets
 from vehicle_sim.world.range_sensor import RangeSensor
 
 REACH, NOISE = 10.0, 0.05
@@ -44,15 +46,16 @@ def messages_of(scan):
     return [
         mavlink.MAVLink_obstacle_distance_3d_message(
             round(scan.time * 1e3), mavlink.MAV_DISTANCE_SENSOR_LASER, mavlink.MAV_FRAME_BODY_FRD,
-            detection.obstacle_id, *detection.position_in_body, 0.05, scan.reach,
+            number, *point, 0.05, scan.reach,
         )
-        for detection in scan.detections
+        for number, point in zip(scan.obstacle_ids.tolist(), scan.points.tolist(), strict=True)
     ]  # fmt: skip
 
 
-def detection_of(message):
+def detections_of(message):
     """As the ground reads it."""
-    return detection(tuple(getattr(message, name) for name in message.ordered_fieldnames))
+    layout, payload = LAYOUTS[message.id].pack_message(message)
+    return detections(Received(layout, payload, 1, 1, 0))
 
 
 class Scene:
@@ -65,11 +68,11 @@ class Scene:
 
     def look(self, time, centre, obstacles):
         """Return [(uav, position, attitude, RangeSample)] at ``time``, the formation at ``centre`` (3,)."""
-        found = []
+        found, targets = [], ScanTargets.of(obstacles)
         for i, sensor in enumerate(self.sensors):
             position = np.asarray(centre) + FORMATION[i]
             angles = self.rng.normal(0.0, 0.05, 3)
-            scan = sensor.scan(time, position, tuple(quaternion_from_euler(*angles)), obstacles)
+            scan = sensor.scan(time, position, tuple(quaternion_from_euler(*angles)), targets)
             measured = position + self.rng.normal(0.0, POSITION_NOISE, 3)
             errors = self.rng.normal(0.0, ATTITUDE_NOISE, 3)
             if self.rng.uniform() >= self.loss:
@@ -81,8 +84,8 @@ class Scene:
         found = []
         for i, measured, quaternion, scan in self.look(time, centre, obstacles):
             rotation = rotation_from_quaternion(quaternion)
-            for number in sorted({d.obstacle_id for d in scan.detections}):
-                body = np.array([d.position_in_body for d in scan.detections if d.obstacle_id == number])
+            for number in sorted(set(scan.obstacle_ids.tolist())):
+                body = scan.points[scan.obstacle_ids == number]
                 distance = np.linalg.norm(body, axis=1)
                 found.append((i, number, SurfacePoints(
                     time, measured + body @ rotation.T, np.tile(measured, (len(body), 1)),
@@ -103,7 +106,7 @@ class Scene:
             if off is not None:
                 obstacle_map.scans.poses.add_estimated(Position(time, i, position, np.zeros(3)))
             for message in messages_of(scan):
-                obstacle_map.scans.add(detection_of(message), i, time)
+                obstacle_map.scans.add(detections_of(message), i, time)
 
     def frame(self, time, centre, obstacle):
         """All points on one obstacle; None if no vehicle detects it."""

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from fault_injection import STILL, TAKE_OFF, at, fault, injected
 
-from vehicle_sim.world.range_sensor import Detection, RangeSample
+from vehicle_sim.world.range_sensor import RangeSample
 
 
 def test_lost_sensors_are_missing_from_telemetry_or_on_board():
@@ -28,9 +28,11 @@ def test_lost_sensors_are_missing_from_telemetry_or_on_board():
 
     lost = injected(fault("payload_unit_lost", vehicles=(2,)))
     assert lost.payload_sample(2, at(1.0)) is None and lost.payload_sample(1, at(1.0)) == at(1.0)
-    scan = RangeSample(TAKE_OFF + 1.0, 9.0, (Detection(0, (1.0, 1.0, 1.0)),))
+    scan = RangeSample(TAKE_OFF + 1.0, 9.0, np.zeros(1, int), np.ones((1, 3)))
     dark = injected(fault("obstacle_sensing_lost", vehicles=(2,)))
-    assert dark.range_sample(2, scan) == scan._replace(detections=(), works=False)
+    failed = dark.range_sample(2, scan)
+    assert failed.points.shape == (0, 3) and failed.obstacle_ids.shape == (0,) and not failed.works
+    assert (failed.time, failed.reach, failed.range_min) == (scan.time, scan.reach, scan.range_min)
     assert dark.range_sample(1, scan) is scan
 
 

@@ -7,7 +7,7 @@ import pytest
 from fault_injection import STILL, SYSTEM, TAKE_OFF, at, fault, injected, positions, reported
 
 from gcs.faults import KINDS
-from vehicle_sim.world.range_sensor import Detection, RangeSample
+from vehicle_sim.world.range_sensor import RangeSample
 
 
 def test_bias_drift_scale_sign_frame_and_quantisation():
@@ -101,14 +101,15 @@ def test_payload_fault_is_in_all_relays_or_in_one():
 
 def test_points_of_obstacles_are_a_channel():
     def scan(time, distance):
-        return RangeSample(TAKE_OFF + time, 9.0, tuple(Detection(0, (distance, float(k), 0.0)) for k in range(3)))
+        points = np.array([[distance, float(k), 0.0] for k in range(3)])
+        return RangeSample(TAKE_OFF + time, 9.0, np.zeros(3, int), points)
 
     far = injected(fault("scale", channel="obstacles", factor=2.0)).range_sample(1, scan(1.0, 4.0))
-    assert [d.position_in_body for d in far.detections] == [(8.0, 0.0, 0.0), (8.0, 2.0, 0.0), (8.0, 4.0, 0.0)]
+    assert far.points.tolist() == [[8.0, 0.0, 0.0], [8.0, 2.0, 0.0], [8.0, 4.0, 0.0]]
     stuck = injected(fault("stuck", channel="obstacles"))
     stuck.range_sample(1, scan(1.0, 4.0))
-    later = stuck.range_sample(1, scan(1.1, 3.0)).detections
-    assert [d.position_in_body[:2] for d in later] == [(4, 0), (4, 1), (4, 2)]
+    later = stuck.range_sample(1, scan(1.1, 3.0))
+    assert later.points[:, :2].tolist() == [[4, 0], [4, 1], [4, 2]]
 
 
 def test_swapped_vehicles_report_each_others_data():
@@ -134,7 +135,7 @@ def test_every_value_fault_acts_on_every_channel_and_repeats(kind, channel):
                 position=(0.3 + i, 2.0, -5.0), velocity=(0.1 + i, 0.2, 0.3), rates=(0.01 * i, 0.02, 0.03),
                 attitude=(math.cos(0.01 * i), math.sin(0.01 * i), 0.0, 0.0),
             )  # fmt: skip
-            scan = RangeSample(sample.time, 9.0, (Detection(0, (1.3 + 0.01 * i, 2.0, 3.0)),))
+            scan = RangeSample(sample.time, 9.0, np.zeros(1, int), np.array([[1.3 + 0.01 * i, 2.0, 3.0]]))
             reported_values += [
                 disturbed.reported_sample(1, sample),
                 disturbed.payload_sample(1, sample),

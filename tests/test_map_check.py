@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from obstacle_scene import HERE, NOISE, Scene, detection_of, map_of, messages_of, pole, sphere, wall
+from obstacle_scene import HERE, NOISE, Scene, detections_of, map_of, messages_of, pole, sphere, wall
 
 from gcs.mission.model import Obstacle
 from idc_controller.estimation.measurements import Attitude, Position
@@ -37,7 +37,7 @@ def look(known, true, off, until=6.0, seed=0, noise=1.0):
             for message in messages_of(scan):
                 wrong = np.asarray(off(t, uav)) + rng.normal(0.0, np.sqrt(noise**2 - 1.0) * NOISE * (t >= 2.0), 3)
                 message.x, message.y, message.z = np.array([message.x, message.y, message.z]) + wrong
-                m.scans.add(detection_of(message), uav, t)
+                m.scans.add(detections_of(message), uav, t)
         m.update(t)
         yield t, m
 

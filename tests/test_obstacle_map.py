@@ -13,7 +13,7 @@ from obstacle_scene import (
     REACH,
     SENSORS,
     Scene,
-    detection_of,
+    detections_of,
     map_of,
     messages_of,
     pole,
@@ -332,7 +332,7 @@ def test_new_track_begins_with_scatter_of_earlier_ones():
             for message in messages_of(scan):
                 x, y, z = rng.normal(0.0, 5 * NOISE, 3)
                 message.x, message.y, message.z = message.x + x, message.y + y, message.z + z
-                m.scans.add(detection_of(message), i, 0.1 * k)
+                m.scans.add(detections_of(message), i, 0.1 * k)
         m.update(0.1 * k)
         scatter.append([track.filter.scatter**0.5 for track in m.tracks])
     assert len(scatter[29]) == 1 and scatter[29][0] > 3 * NOISE

@@ -8,7 +8,7 @@ from obstacle_scene import (
     REACH,
     SENSORS,
     Scene,
-    detection_of,
+    detections_of,
     map_of,
     messages_of,
     run,
@@ -17,7 +17,7 @@ from obstacle_scene import (
 
 from idc_controller.estimation.measurements import Attitude, Position
 from idc_controller.perception.scan_assembly import ScanAssembly
-from vehicle_sim.world.range_sensor import Detection, RangeSample
+from vehicle_sim.world.range_sensor import RangeSample
 
 
 def test_detections_are_placed_by_estimate_when_position_is_unusable():
@@ -38,8 +38,8 @@ def test_pose_is_extrapolated_by_estimated_motion_when_none_is_measured():
     scans.poses.add_measured(Position(0.0, 0, HERE, unknown))
     scans.poses.add_estimated(Attitude(0.0, 0, level, turning))
     scans.poses.add_estimated(Position(0.0, 0, HERE + 1.0, moving))
-    for message in messages_of(RangeSample(t, REACH, (Detection(1, (5.0, 0.0, 0.0)),))):
-        scans.add(detection_of(message), 0, t)
+    for message in messages_of(RangeSample(t, REACH, np.array([1]), np.array([[5.0, 0.0, 0.0]]))):
+        scans.add(detections_of(message), 0, t)
     [[cluster]] = scans.frames(t)
     assert cluster.surface_points.points[0] == pytest.approx(HERE + np.array([5.0, 2.0 * t, -5.0 * t]), abs=2e-3)
 
@@ -53,8 +53,8 @@ def test_scan_is_placed_by_the_pose_nearest_in_time(time, nearest):
         quaternion = np.array([np.cos(k * half), 0.0, 0.0, np.sin(k * half)])
         scans.poses.add_measured(Attitude(0.1 * k, 0, quaternion, np.zeros(3)))
         scans.poses.add_measured(Position(0.1 * k, 0, HERE + k, np.zeros(3)))
-    for message in messages_of(RangeSample(time, REACH, (Detection(1, (5.0, 0.0, 0.0)),))):
-        scans.add(detection_of(message), 0, time)
+    for message in messages_of(RangeSample(time, REACH, np.array([1]), np.array([[5.0, 0.0, 0.0]]))):
+        scans.add(detections_of(message), 0, time)
     [[cluster]] = scans.frames(0.4)
     heading = nearest * np.radians(10.0)
     expected = HERE + nearest + 5.0 * np.array([np.cos(heading), np.sin(heading), 0.0])
@@ -74,7 +74,7 @@ def test_scan_waits_for_pose_and_impossible_detections_are_discarded():
     scene = Scene(0)
     ((i, position, quaternion, scan),) = scene.look(1.0, HERE, [sphere((5.0, 0.0, -6.0))])[:1]
     for message in messages_of(scan):
-        m.scans.add(detection_of(message), i, 1.0)
+        m.scans.add(detections_of(message), i, 1.0)
     m.update(1.0)
     assert m.tracks == []
     m.scans.poses.add_measured(Position(1.0, i, position, np.full(3, np.nan)))  # of its motion nothing is known
@@ -94,14 +94,14 @@ def test_scan_waits_for_pose_and_impossible_detections_are_discarded():
         {"frame": mavlink.MAV_FRAME_GLOBAL}, {"x": float("nan")}, {"y": float("inf")}, {"x": 0.0}, {"x": 1e6},
         {"max_distance": 0.0}, {"max_distance": float("nan")},
     ):  # fmt: skip
-        m.scans.add(detection_of(nonsense(**bad)), 0, 1.1)
+        m.scans.add(detections_of(nonsense(**bad)), 0, 1.1)
     assert m.scans.discarded == 7
-    m.scans.add(detection_of(nonsense()), 3, 1.1)  # of a vehicle whose pose never comes
+    m.scans.add(detections_of(nonsense()), 3, 1.1)  # of a vehicle whose pose never comes
     m.update(1.1)
     m.update(1.5)
     assert m.scans.discarded == 8
     for k in range(5000):  # a flood
-        m.scans.add(detection_of(nonsense(time_boot_ms=2000 + k)), 2, 2.0)
+        m.scans.add(detections_of(nonsense(time_boot_ms=2000 + k)), 2, 2.0)
     assert m.scans.discarded > 3000
 
 
@@ -126,7 +126,7 @@ def with_invalid_sensors(kind):
                     message.time_boot_ms = round(t * 1e3)
                     if kind == "nan":
                         message.x = np.nan
-                    m.scans.add(detection_of(message), uav, t)
+                    m.scans.add(detections_of(message), uav, t)
         m.update(t)
         yield m
 

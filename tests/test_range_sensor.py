@@ -23,6 +23,7 @@ from idc_controller.geometry.visibility_kernels import points_of_pole, points_of
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
 from vehicle_sim.faults import FaultInjector
 from vehicle_sim.swarm import Swarm
+from vehicle_sim.world.obstacle_bodies import ScanTargets
 from vehicle_sim.world.range_sensor import RangeSensor, visible_rays
 from vehicle_sim.world.range_sensor_kernels import measured, rays_in_reach
 
@@ -92,6 +93,48 @@ def test_kernels_agree_with_plain_functions():
         np.testing.assert_allclose(found, np.where(ranges[:, None] < 5.0, np.nan, expected), atol=1e-12)
 
 
+def scanned_one_by_one(settings, seed, vehicle, scans):
+    """Points of scans [(pose, obstacles)], obstacle by obstacle, nan for those too near, and their obstacles' names."""
+    generator = np.random.default_rng([seed, 1_000_003, vehicle])
+    for place, attitude, obstacles in scans:
+        names, points = [], [np.empty((0, 3))]
+        for obstacle in obstacles:
+            if math.dist(obstacle.position_in_world, place) > settings.range + obstacle.bounding_radius:
+                continue
+            rays = visible_rays(obstacle, place, settings.range, generator.uniform(0.0, math.pi / 3.0))
+            errors = settings.noise * generator.standard_normal(len(rays))
+            points.append(measured(rays, errors, *attitude, settings.range_min))
+            names += [obstacle.name] * len(rays)
+        points = np.concatenate(points)
+        is_measured = ~np.isnan(points[:, 0])
+        yield np.array(names, dtype=object)[is_measured].tolist(), points[is_measured]
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_scan_of_many_obstacles_equals_that_of_one_after_another(seed):
+    """To the bit: the same points, and the same random numbers in the same order."""
+    settings, rng = RangeSensorConfig(range=8.0, noise=0.05), np.random.default_rng(seed)
+    sensor, scans = RangeSensor(settings, seed, 2), []
+    for _ in range(20):
+        obstacles = [
+            (
+                sphere(rng.normal(0.0, 6.0, 3), rng.uniform(0.1, 1.0), f"sphere {k}"),
+                pole(rng.normal(0.0, 6.0, 2), rng.uniform(0.1, 0.5), rng.uniform(1.0, 9.0), f"pole {k}"),
+                wall(rng.normal(0.0, 6.0, 3), name=f"wall {k}"),
+            )[rng.choice(3, p=[0.45, 0.45, 0.1])]
+            for k in range(rng.integers(0, 30))
+        ]
+        scans.append((tuple(rng.normal(0.0, 1.0, 3)), tuple(quaternion_from_euler(*rng.normal(size=3))), obstacles))
+    for (place, attitude, obstacles), (names, points) in zip(
+        scans, scanned_one_by_one(settings, seed, 2, scans), strict=True
+    ):
+        scan = sensor.scan(0.0, place, attitude, ScanTargets.of(obstacles))
+        np.testing.assert_array_equal(scan.points, points)
+        number_of = dict(zip(names, scan.obstacle_ids.tolist(), strict=True))
+        assert [number_of[name] for name in names] == scan.obstacle_ids.tolist()
+        assert len(set(number_of.values())) == len(number_of)
+
+
 def test_ends_are_hit_when_they_are_in_range():
     place = (-4.0, 0.0, -5.0)
     points = place + visible_rays(pole((0.0, 0.0), 0.2, 8.0), place, REACH, 0.0)
@@ -113,9 +156,10 @@ def test_noise_is_along_the_line_of_sight_with_the_given_deviation():
     )
     errors = []
     for k in range(300):
-        a = noisy.scan(0.1 * k, (0.0, 0.0, -6.0), attitude, [obstacle])
-        b = exact.scan(0.1 * k, (0.0, 0.0, -6.0), attitude, [obstacle])
-        p, q = (np.array([d.position_in_body for d in scan.detections]) for scan in (a, b))
+        p, q = (
+            sensor.scan(0.1 * k, (0.0, 0.0, -6.0), attitude, ScanTargets.of([obstacle])).points
+            for sensor in (noisy, exact)
+        )
         # The nearest point does not depend on how the pattern is turned.
         assert np.linalg.norm(np.cross(p[0], q[0])) < 1e-9
         errors.append(np.linalg.norm(p[0]) - np.linalg.norm(q[0]))
@@ -129,7 +173,8 @@ def test_noise_is_along_the_line_of_sight_with_the_given_deviation():
 def test_seed_and_vehicle_decide_the_noise():
     def run(seed, vehicle):
         sensor = RangeSensor(RangeSensorConfig(range=REACH, noise=0.05), seed, vehicle)
-        return [sensor.scan(0.1 * k, (0.0, 0.0, -6.0), LEVEL, OBSTACLES_AROUND) for k in range(5)]
+        scans = [sensor.scan(0.1 * k, (0.0, 0.0, -6.0), LEVEL, ScanTargets.of(OBSTACLES_AROUND)) for k in range(5)]
+        return [(scan.obstacle_ids.tolist(), scan.points.tolist()) for scan in scans]
 
     assert run(1, 1) == run(1, 1)
     assert run(1, 1) != run(1, 2)
@@ -144,7 +189,7 @@ def test_detection_numbers_are_per_vehicle_and_new_after_absence():
     first, second = sphere((9.0, 0.0, -6.0), name="first"), sphere((0.0, 9.0, -6.0), name="second")
 
     def numbers(position):
-        return {d.obstacle_id for d in sensor.scan(0.0, position, LEVEL, [first, second]).detections}
+        return set(sensor.scan(0.0, position, LEVEL, ScanTargets.of([first, second])).obstacle_ids.tolist())
 
     assert numbers((0.0, 6.0, -6.0)) == {0}  # the second of the mission is the first that is detected
     assert numbers((2.0, 2.0, -6.0)) == {0, 1}
@@ -235,7 +280,11 @@ def test_detections_are_independent_of_names_shapes_and_map():
 def test_fault_injector_may_suppress_scans():
     class SensorLoss(FaultInjector):
         def range_sample(self, vehicle, sample):
-            return None if vehicle == 2 else sample._replace(detections=sample.detections[:1])
+            return (
+                None
+                if vehicle == 2
+                else sample._replace(obstacle_ids=sample.obstacle_ids[:1], points=sample.points[:1])
+            )
 
     ground = detections(faults=SensorLoss(), until=0.6)
     assert ground.of_type("OBSTACLE_DISTANCE_3D", 2) == []

@@ -3,8 +3,6 @@
 import math
 from collections.abc import Sequence
 
-import numpy as np
-
 from gcs.config import SystemConfig
 from gcs.config.tables import SensorsConfig
 from idc_controller.arrays import Array
@@ -89,10 +87,9 @@ class Team:
 
     def scan(self, state: WorldState, obstacles: ObstacleBodies) -> None:
         """Let every vehicle scan for the obstacles."""
-        places = np.array([uav.position_in_world for uav in state.uavs])
-        near = obstacles.near(places, self._range_sensors[0].reach)
-        for vehicle, sensor, uav, some in zip(self.vehicles, self._range_sensors, state.uavs, near, strict=True):
-            scan = sensor.scan(state.time, uav.position_in_world, uav.quaternion, some)
+        targets = obstacles.scan_targets()
+        for vehicle, sensor, uav in zip(self.vehicles, self._range_sensors, state.uavs, strict=True):
+            scan = sensor.scan(state.time, uav.position_in_world, uav.quaternion, targets)
             vehicle.take_scan(self._faults.range_sample(vehicle.system_id, scan))
 
 

@@ -13,7 +13,7 @@ from gcs.mavlink.address import Address
 from gcs.mavlink.codec import Codec
 from gcs.mavlink.id_check import SystemIdCheck
 from gcs.mavlink.messages import Received
-from gcs.mavlink.telemetry import detection, measurement, setpoint_flown
+from gcs.mavlink.telemetry import detections, measurement, setpoint_flown
 from gcs.mavlink.vehicle_link import VehicleLink
 
 _SETPOINT, _DETECTION = mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET, mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D
@@ -46,7 +46,7 @@ class TelemetryRouter:
     def receive(self, datagram: bytes, sender: Address, now: float) -> bool:
         """Take a datagram; return whether it is from a vehicle of this flight."""
         unread = self._codec.unread
-        messages = self._codec.decode(datagram)
+        messages = self._codec.read(datagram)
         if self._codec.unread > unread and (link := self._link_at(sender)) is not None:
             link.statistics.damaged += 1
         known = False
@@ -86,7 +86,7 @@ class TelemetryRouter:
         return None
 
     def _route(self, received: Received, index: int, latest: float, now: float) -> float:
-        """Route a message with a time stamp; return that (s, team).
+        """Route a message, or a run of them, with a time stamp; return that (s, team).
 
         ``latest``: the latest stamp of the messages before it in its datagram.
         """
@@ -101,7 +101,7 @@ class TelemetryRouter:
             obstacle_map = self._flight.system.obstacle_map
             # Detections from before a clock jump have the stamp of another pose.
             if obstacle_map is not None and now - link.clock.jumped_at > self._clock_settled:
-                obstacle_map.scans.add(detection(received.fields), index, time)
+                obstacle_map.scans.add(detections(received), index, time)
         else:
             self._add_measurement(received, index, time)
         return time

@@ -3,10 +3,12 @@
 import struct
 from collections.abc import Callable, Iterable
 
+import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
+from gcs.mavlink.frame_kernels import AROUND, HEADER, framed_run, frames_in_run
 from gcs.mavlink.frames import SIGNED, V1, V2, end_of_frame, next_marker
-from gcs.mavlink.layout import LAYOUTS, Packed, packed
+from gcs.mavlink.layout import LAYOUTS, Packed, PackedRun, packed
 from gcs.mavlink.messages import Message, Received
 
 #: Frames are gathered into datagrams up to this size, which every usual path carries unfragmented (bytes).
@@ -23,6 +25,9 @@ _HEADER_V1 = struct.Struct("<BBBBB1s")
 _LAYOUTS = {layout.wire_id: layout for layout in LAYOUTS.values()}
 _LAYOUTS |= {number[:1]: layout for number, layout in _LAYOUTS.items() if number[1:] == b"\0\0"}
 """By the message id as it is sent, in a frame of MAVLink 2 or 1."""
+
+_POINT = LAYOUTS[mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D]
+"""The kind of message of which many come at once."""
 
 #: CRC-16/MCRF4XX: compiled where pymavlink has it compiled.
 _checksum: Callable[[bytes], int] = getattr(mavlink, "mcrf4xx", None) or (lambda data: mavlink.x25crc(data).crc)
@@ -67,8 +72,31 @@ class Codec:
         self._sequence = (self._sequence + 1) & 0xFF
         return body + _checksum(body[1:] + layout.crc_extra).to_bytes(2, "little")
 
+    def frames(self, run: PackedRun) -> list[bytes]:
+        """Return the MAVLink 2 frames of a run, as :meth:`frame` does one by one."""
+        layout, values = run
+        length = layout.dtype.itemsize
+        header = _HEADER_V2.pack(V2, length, 0, 0, self._sequence, self.system_id, self._component_id, layout.wire_id)
+        self._sequence = (self._sequence + len(values)) & 0xFF
+        payloads = values.view(np.uint8).reshape(-1, length)
+        data = framed_run(np.array(bytearray(header)), payloads, layout.crc_extra[0]).tobytes()
+        return [data[at : at + length + AROUND] for at in range(0, len(data), length + AROUND)]
+
     def decode(self, datagram: bytes) -> list[Received]:
         """Return all messages of one datagram, in order. Frames never reach across datagrams."""
+        messages: list[Received] = []
+        for received in self.read(datagram):
+            if received.run == 1:
+                messages.append(received)
+            else:
+                messages += received.split()
+        return messages
+
+    def read(self, datagram: bytes) -> list[Received]:
+        """Return the same as :meth:`decode`, but OBSTACLE_DISTANCE_3D of one scan, one behind the other, as one.
+
+        Of such a run, ``payload`` holds all payloads, each in full length, and ``sequence`` is that of the first.
+        """
         messages: list[Received] = []
         size = len(datagram)
         start = 0
@@ -95,6 +123,15 @@ class Codec:
                     self.skipped_bytes += 1
                     start += 1
                 continue
+            if layout is _POINT and length == _POINT.dtype.itemsize and datagram[start] == V2:
+                run = frames_in_run(np.frombuffer(datagram, np.uint8), start, layout.crc_extra[0])
+                if run > 1:
+                    end = start + run * (length + AROUND)
+                    frames = np.frombuffer(datagram, np.uint8, end - start, start).reshape(run, -1)
+                    payload = frames[:, HEADER : HEADER + length].tobytes()
+                    messages.append(Received(layout, payload, system, component, sequence, run=run))
+                    start = end
+                    continue
             behind = body + length
             checksum = _checksum(datagram[start + 1 : behind] + layout.crc_extra)
             if flags & ~SIGNED or checksum != datagram[behind] | datagram[behind + 1] << 8:

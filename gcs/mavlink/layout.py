@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from functools import cached_property
 from itertools import accumulate
 from operator import attrgetter, itemgetter
 from struct import calcsize
 from typing import Any, NamedTuple
 
+import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
+from numpy.typing import NDArray
 
 Message = mavlink.MAVLink_message
 
@@ -18,6 +21,13 @@ class Packed(NamedTuple):
 
     layout: Layout
     payload: bytes
+
+
+class PackedRun(NamedTuple):
+    """Messages of one kind and time stamp, as an array of :attr:`Layout.dtype`, the last byte of each not zero."""
+
+    layout: Layout
+    values: NDArray[np.void]
 
 
 class Layout:
@@ -51,6 +61,18 @@ class Layout:
         starts = dict(zip(kind.ordered_fieldnames, accumulate(sizes, initial=0), strict=False))
         self.target_offsets = [starts[name] for name in ("target_system", "target_component") if name in starts]
         """Where the payload holds the system and the component that a message is for, as far as it names them."""
+
+    @cached_property
+    def dtype(self) -> np.dtype[np.void]:
+        """The fields in the order of the wire, for arrays of messages."""
+        kind = self.kind
+        codes = kind.native_format.decode().lstrip("<")
+        return np.dtype(
+            [
+                (name, "S1" if code == "c" else f"<{code}", (length,) if length else ())
+                for name, code, length in zip(kind.ordered_fieldnames, codes, kind.array_lengths, strict=True)
+            ]
+        )
 
     def pack(self, *values: float) -> Packed:
         """Return a message of these fields, in the order of the wire, arrays number by number.

@@ -8,6 +8,7 @@ from gcs.mavlink.settings import LinkSettings
 NUMBERS = 256
 REMEMBERED = 96
 """Numbers known as received; less than half of all, so that behind and ahead are not confused."""
+_CYCLE = bytes(range(NUMBERS)) * 2
 
 
 class LinkStatistics:
@@ -56,6 +57,21 @@ class LinkStatistics:
         elif number in self._seen:
             self.duplicated += 1
         return False
+
+    def run(self, number: int, length: int, now: float) -> None:
+        """Count messages of consecutive numbers, ``number`` the first, as :meth:`message` does one by one."""
+        first = 0
+        # Where the first follows what came before, all do.
+        if self._newest is None or (number - self._newest) % NUMBERS != 1:
+            while first < length and not self.message((number + first) % NUMBERS, now):
+                first += 1
+            first += 1
+        if first < length:
+            if self._gaps:
+                self.settle(now)
+            begin = (number + first) % NUMBERS
+            self._seen.extend(_CYCLE[begin : begin + length - first])
+            self._newest = (number + length - 1) % NUMBERS
 
     def settle(self, now: float) -> None:
         """Count the gaps that are not filled by ``now`` (s) as losses."""

@@ -5,6 +5,8 @@ ArduPilot's dialect, which holds the common one; a class of another dialect is a
 sample is recognised by its message id instead, and its fields are read without a message object.
 """
 
+from __future__ import annotations
+
 from typing import Any, NamedTuple
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
@@ -27,6 +29,8 @@ class Received(NamedTuple):
     sequence: int
     target_system: int = BROADCAST
     target_component: int = BROADCAST
+    run: int = 1
+    """Number of messages: more than one only for a run, see :meth:`gcs.mavlink.codec.Codec.read`."""
 
     @property
     def message_id(self) -> int:
@@ -50,6 +54,14 @@ class Received(NamedTuple):
     def time_boot_ms(self) -> int:
         """The stamp of a streamed measurement, its first field."""
         return int.from_bytes(self.payload[:4], "little")
+
+    def split(self) -> list[Received]:
+        """Return the messages of a run one by one, as they are received elsewhere."""
+        size = len(self.payload) // self.run
+        return [
+            self._replace(payload=self.payload[k * size : (k + 1) * size], sequence=(self.sequence + k) & 0xFF, run=1)
+            for k in range(self.run)
+        ]
 
     def is_for(self, system: int, component: int | None = None) -> bool:
         """Return True if it is addressed to a component (None: to any) of a system, or to everybody."""

@@ -13,10 +13,11 @@ from gcs.mavlink.layout import LAYOUTS
 from gcs.mavlink.messages import Received
 from idc_controller.arrays import Array
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, Position
-from idc_controller.perception.scan_assembly import Detection
+from idc_controller.perception.scan_assembly import Detections
 
 _ATTITUDE = LAYOUTS[mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION]
 _POSITION = LAYOUTS[mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED]
+_POINT = LAYOUTS[mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D]
 _NAN = math.nan
 
 _Values = tuple[Array, Array] | None
@@ -56,14 +57,17 @@ def measurement(received: Received, uav: int, time: float) -> Measurement | None
     return (Attitude if layout is _ATTITUDE else Position)(time, source, *values)
 
 
-def detection(fields: tuple[Any, ...]) -> Detection:
-    """Return the detection in an OBSTACLE_DISTANCE_3D; one in a frame other than the body's has no point (nan).
+def detections(received: Received) -> Detections:
+    """Return the detections in an OBSTACLE_DISTANCE_3D or a run of them.
 
-    ``fields`` in the order of the wire.
+    One in a frame other than the body's has no point (nan).
     """
-    time_boot_ms, x, y, z, _, max_distance, obstacle_id, _, frame = fields
-    point = (x, y, z) if frame == mavlink.MAV_FRAME_BODY_FRD else (_NAN, _NAN, _NAN)
-    return Detection(time_boot_ms, obstacle_id, point, max_distance)
+    data = received.payload if received.run > 1 else received.payload.ljust(_POINT.dtype.itemsize, b"\0")
+    values = np.frombuffer(data, _POINT.dtype, received.run)
+    points = np.empty((len(values), 3))
+    points[:, 0], points[:, 1], points[:, 2] = values["x"], values["y"], values["z"]
+    points[values["frame"] != mavlink.MAV_FRAME_BODY_FRD] = _NAN
+    return Detections(received.time_boot_ms, values["obstacle_id"], points, values["max_distance"].astype(float))
 
 
 def _attitude(payload: bytes) -> _Values:

@@ -95,9 +95,13 @@ class VehicleLink:
         return min(self.attitude_received_at, self.position_received_at)
 
     def handle(self, received: Received, now: float) -> None:
-        """Take one message of this vehicle."""
+        """Take one message of this vehicle, or a run of them."""
         self.received_at = now
         of_autopilot = received.component == px4.AUTOPILOT_COMPONENT
+        if received.run > 1:
+            if of_autopilot:
+                self.statistics.run(received.sequence, received.run, now)
+            return
         in_order = of_autopilot and self.statistics.message(received.sequence, now)
         message_id = received.message_id
         if message_id in _NAVIGATION:

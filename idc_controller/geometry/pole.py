@@ -8,18 +8,28 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from idc_controller.arrays import Array
-from idc_controller.geometry.shape import LENGTH, CollisionGeometry, PlanView, RoundedBox, Shape, UprightBounds, Vector
+from idc_controller.geometry.shape import (
+    LENGTH,
+    CollisionGeometry,
+    PlanView,
+    RoundedBox,
+    ScanForm,
+    Shape,
+    UprightBounds,
+    Vector,
+)
 
 if TYPE_CHECKING:
     import coal
 
-#: A sensor's rays at the side, the nearest first: share of the radius to the right; share of the visible length up (1)
-#: or down (-1).
-_SIDE = np.array(
+SIDE = np.array(
     [[0.0, 0.0], [0.8, 0.0], [-0.8, 0.0], [0.5, 1.0], [-0.5, -1.0], [-0.85, 0.6], [0.85, -0.6], [-0.3, 1.0],
      [0.3, -1.0]]
 )  # fmt: skip
-_RIM = 0.95  # of the radius, for points on the end
+"""A sensor's rays at the side, the nearest first: share of the radius to the right; share of the visible length up (1)
+or down (-1)."""
+RIM = 0.95
+"""Share of the radius at which a sensor's rays hit the end."""
 
 
 @dataclass(frozen=True)
@@ -71,8 +81,13 @@ class Pole(Shape):
 
         return PlanView(shapely.Point(0.0, 0.0), self.radius)
 
+    @property
+    def scan_form(self) -> ScanForm:
+        """The body itself."""
+        return ScanForm(self.radius, self.height / 2.0)
+
     def visible_points(self, sensor: Vector, reach: float, turn: float) -> Array:
         """Points (n, 3) of the surface that a range sensor hits: the side up and down, and an end that faces it."""
         from idc_controller.geometry.visibility_kernels import points_of_pole  # only where something is scanned
 
-        return points_of_pole(*sensor, self.radius, self.height / 2.0, reach, _SIDE, _RIM)
+        return points_of_pole(*sensor, self.radius, self.height / 2.0, reach, SIDE, RIM)

@@ -8,13 +8,22 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from idc_controller.arrays import Array
-from idc_controller.geometry.shape import LENGTH, CollisionGeometry, PlanView, RoundedBox, Shape, UprightBounds, Vector
+from idc_controller.geometry.shape import (
+    LENGTH,
+    CollisionGeometry,
+    PlanView,
+    RoundedBox,
+    ScanForm,
+    Shape,
+    UprightBounds,
+    Vector,
+)
 
 if TYPE_CHECKING:
     import coal
 
-#: Off-axis positions of a sensor's rays: share of the radius; six of them, turned by a random angle.
-_RING = np.array([0.9, 0.6, 0.9, 0.6, 0.9, 0.6])
+RING = np.array([0.9, 0.6, 0.9, 0.6, 0.9, 0.6])
+"""Off-axis positions of a sensor's rays: share of the radius; six of them, turned by a random angle."""
 
 
 @dataclass(frozen=True)
@@ -62,8 +71,13 @@ class Sphere(Shape):
 
         return PlanView(shapely.Point(0.0, 0.0), self.radius)
 
+    @property
+    def scan_form(self) -> ScanForm:
+        """The body itself."""
+        return ScanForm(self.radius, 0.0)
+
     def visible_points(self, sensor: Vector, reach: float, turn: float) -> Array:
         """Points (n, 3) of the surface that a range sensor hits; the ring of rays is turned by ``turn`` (rad)."""
         from idc_controller.geometry.visibility_kernels import points_of_sphere  # only where something is scanned
 
-        return points_of_sphere(*sensor, self.radius, turn, _RING)
+        return points_of_sphere(*sensor, self.radius, turn, RING)

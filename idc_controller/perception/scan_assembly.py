@@ -2,10 +2,11 @@
 
 import math
 from collections.abc import Iterable, Set
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from idc_controller.arrays import Array
 from idc_controller.perception.pose_history import PoseHistory
@@ -14,7 +15,8 @@ from idc_controller.perception.settings import ScanSettings
 from idc_controller.perception.surfaces.points import SurfacePoints
 from idc_controller.rotations import rotation_from_quaternion
 
-Point = tuple[float, float, float]
+_POINT_BYTES = "V24"
+"""A row of three numbers as one value."""
 
 
 @dataclass(frozen=True)
@@ -29,17 +31,17 @@ class SensorModel:
     """Standard deviation of its attitude, every axis (rad)."""
 
 
-class Detection(NamedTuple):
-    """One point that a vehicle's range sensor detected, as its telemetry reports it."""
+class Detections(NamedTuple):
+    """Points of one scan that a vehicle's range sensor detected, as its telemetry reports them."""
 
     scan: int
     """The same for all points of one scan of a vehicle."""
-    obstacle: int
-    """The vehicle's own number for the obstacle that the point belongs to."""
-    point: Point
-    """Position in the vehicle's body frame, forward-right-down (m)."""
-    max_range: float
-    """Range of the sensor (m)."""
+    obstacles: NDArray[np.integer]
+    """The vehicle's own number for the obstacle that each point belongs to (n,)."""
+    points: Array
+    """Positions in the vehicle's body frame, forward-right-down (n, 3) (m)."""
+    max_range: Array
+    """Range of the sensor, by each message (n,) (m)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,12 +53,29 @@ class Cluster:
     surface_points: SurfacePoints
 
 
-@dataclass(eq=False)
 class _Scan:
-    time: float
-    max_range: float
-    points: dict[int, list[Point]] = field(default_factory=dict)
-    count: int = 0
+    """The usable detections of a scan as they come in."""
+
+    def __init__(self, time: float, max_range: float) -> None:
+        self.time, self.max_range = time, max_range
+        self.count = 0
+        self._points: list[Array] = []
+        self._numbers: list[NDArray[np.integer]] = []
+
+    def add(self, points: Array, numbers: NDArray[np.integer]) -> None:
+        """Add points (n, 3) and the vehicle's number for the obstacle of each (n,)."""
+        self._points.append(points)
+        self._numbers.append(numbers)
+        self.count += len(points)
+
+    def clusters(self) -> tuple[Array, list[int], list[int]]:
+        """Return all points obstacle by obstacle (n, 3), and number and end of each, in the order of their coming."""
+        points, numbers = np.concatenate(self._points), np.concatenate(self._numbers)
+        found, first, obstacle = np.unique(numbers, return_index=True, return_inverse=True)
+        order = np.argsort(first[obstacle], kind="stable")
+        coming = np.argsort(first)
+        ends = np.cumsum(np.bincount(obstacle)[coming])
+        return points[order], found[coming].tolist(), ends.tolist()
 
 
 class RangeSensors:
@@ -68,7 +87,7 @@ class RangeSensors:
         self._valid: dict[int, float] = {}
         self._invalid: dict[int, float] = {}
         self._failed: dict[int, float] = {}
-        self._points: dict[int, set[Point]] = {}
+        self._points: dict[int, set[bytes]] = {}
 
     def set_failed(self, uavs: Set[int], time: float) -> None:
         """Set the vehicles (0 .. N-1) that report a failure of their sensor."""
@@ -78,16 +97,18 @@ class RangeSensors:
         """Note an impossible detection of a vehicle."""
         self._invalid[uav] = time
 
-    def check(self, uav: int, time: float, points: Set[Point]) -> bool:
-        """Take the points of a scan; return whether the sensor is stuck.
+    def check(self, uav: int, time: float, scan: Array) -> bool:
+        """Take the points of a scan (n, 3); return whether the sensor is stuck.
 
         It is where most points repeat earlier ones to the digit: what has noise never does. Not all of them need do so:
         how many points there are may still follow the field of view.
         """
+        # As bytes, in which 0 has no sign.
+        points = set((scan + 0.0).view(_POINT_BYTES).ravel().tolist())
         before = self._points.get(uav, set())
         stuck = self._has_noise and 2 * len(points & before) > len(points)
         # While it is stuck, points that are out of view now may be repeated later.
-        self._points[uav] = {*points, *before} if stuck and len(before) < self._settings.points_max else set(points)
+        self._points[uav] = points | before if stuck and len(before) < self._settings.points_max else points
         (self._invalid if stuck else self._valid)[uav] = time
         return stuck
 
@@ -121,25 +142,25 @@ class ScanAssembly:
         self.discarded = 0
         """Detections that were impossible or stuck, or had no pose."""
 
-    def add(self, detection: Detection, uav: int, time: float) -> None:
-        """Add a detection of UAV ``uav`` (0 .. N-1), made at ``time`` (s)."""
-        point, max_range = detection.point, detection.max_range
+    def add(self, detections: Detections, uav: int, time: float) -> None:
+        """Add detections of UAV ``uav`` (0 .. N-1), made at ``time`` (s)."""
+        points, max_range = detections.points, detections.max_range
         waiting = self._waiting_points.get(uav, 0)
-        if (
-            not math.isfinite(sum(point) + max_range)
-            or not 0.0 < math.hypot(*point) < self._settings.range_factor * max_range
-            or waiting >= self._settings.points_max
-        ):
-            self.discarded += 1
+        distance = np.sqrt(np.einsum("ij,ij->i", points, points))
+        # Comparisons with nan are false.
+        is_usable = np.isfinite(max_range) & (distance > 0.0) & (distance < self._settings.range_factor * max_range)
+        usable = np.flatnonzero(is_usable)[: max(self._settings.points_max - waiting, 0)]
+        if len(usable) < len(points):
+            self.discarded += len(points) - len(usable)
             self.range_sensors.add_invalid(uav, time)
+        if not len(usable):
             return
-        key = uav, detection.scan
+        key = uav, detections.scan
         scan = self._waiting.get(key)
         if scan is None:
-            scan = self._waiting[key] = _Scan(time, max_range)
-        scan.points.setdefault(detection.obstacle, []).append(point)
-        scan.count += 1
-        self._waiting_points[uav] = waiting + 1
+            scan = self._waiting[key] = _Scan(time, float(max_range[usable[0]]))
+        scan.add(points[usable], detections.obstacles[usable])
+        self._waiting_points[uav] = waiting + len(usable)
 
     def frames(
         self,
@@ -169,12 +190,15 @@ class ScanAssembly:
             if pose is None:
                 estimated_attitude = True
                 pose = self.poses.pose(uav, scan.time, estimated_position=True, estimated_attitude=True)
-            stuck = self.range_sensors.check(uav, scan.time, {p for points in scan.points.values() for p in points})
+            points, numbers, ends = scan.clusters()
+            stuck = self.range_sensors.check(uav, scan.time, points)
             if pose is None or stuck:
                 self.discarded += scan.count
                 continue
             sigma = max(s.estimated_attitude_sigma * estimated_attitude, pose_noise_scale * self._sensors.attitude)
-            placed.append((scan.time, self._placed(uav, scan, *pose, pose_noise_scale * self._sensors.position, sigma)))
+            places = self._placed(scan, points, *pose, pose_noise_scale * self._sensors.position, sigma)
+            spans = zip(numbers, [0, *ends], ends, strict=False)
+            placed.append((scan.time, [Cluster(uav, number, places[begin:end]) for number, begin, end in spans]))
         placed.sort(key=lambda entry: entry[0])
         frames: list[list[Cluster]] = []
         begin = -math.inf
@@ -186,19 +210,12 @@ class ScanAssembly:
         return frames
 
     def _placed(
-        self, uav: int, scan: _Scan, position: Array, quaternion: Array, position_sigma: float, attitude_sigma: float
-    ) -> list[Cluster]:
+        self, scan: _Scan, body: Array, position: Array, quaternion: Array, position_sigma: float, attitude_sigma: float
+    ) -> SurfacePoints:
+        """Return the points of a scan, ``body`` (n, 3) in the body frame, in the world."""
         noise = self._sensors.range_noise
-        body = np.array([point for points in scan.points.values() for point in points])
         world, cut, variance = placed_points(
             body, np.ascontiguousarray(position), rotation_from_quaternion(quaternion),
             scan.max_range - self._settings.cut_sigmas * noise, position_sigma, attitude_sigma,
         )  # fmt: skip
-        origins = np.tile(position, (len(body), 1))
-        clusters, end = [], 0
-        for number, points in scan.points.items():
-            own = slice(end, end + len(points))
-            end = own.stop
-            placed = SurfacePoints(scan.time, world[own], origins[own], cut[own], noise, variance[own])
-            clusters.append(Cluster(uav, number, placed))
-        return clusters
+        return SurfacePoints(scan.time, world, np.tile(position, (len(body), 1)), cut, noise, variance)

@@ -126,7 +126,7 @@ class ObstacleSensingLost(SampleImpairment):
 
     def scan(self, vehicle: int, sample: RangeSample, moment: Moment) -> RangeSample:
         """Return an empty scan of a failed sensor: without any, the last one would stay in force."""
-        return sample._replace(detections=(), works=False)
+        return sample._replace(obstacle_ids=sample.obstacle_ids[:0], points=sample.points[:0], works=False)
 
 
 SAMPLE_IMPAIRMENTS: dict[type, type[SampleImpairment]] = {

@@ -134,11 +134,10 @@ class ValueImpairment(SampleImpairment):
 
     def scan(self, vehicle: int, sample: RangeSample, moment: Moment) -> RangeSample:
         """Return the scan with every point disturbed by itself."""
-        detections = tuple(
-            detection._replace(position_in_body=self._effect(detection.position_in_body, moment, i))
-            for i, detection in enumerate(sample.detections)
-        )
-        return sample if detections == sample.detections else sample._replace(detections=detections)
+        disturbed = [self._effect((x, y, z), moment, i) for i, (x, y, z) in enumerate(sample.points.tolist())]
+        points = np.array(disturbed).reshape(-1, 3)
+        unchanged = np.array_equal(points, sample.points, equal_nan=True)
+        return sample if unchanged else sample._replace(points=points)
 
     def _changed(self, sample: Measurement, moment: Moment) -> Measurement:
         changed = change(sample, self._channel, self._effect, moment)

@@ -8,9 +8,9 @@ from gcs.config.vehicle_settings import StreamIntervals, VehicleLinkSettings
 from gcs.mavlink import px4
 from gcs.mavlink.address import Address
 from gcs.mavlink.codec import Codec, gather
-from gcs.mavlink.layout import Packed, packed
+from gcs.mavlink.layout import Packed, PackedRun, packed
 from gcs.mavlink.messages import Message
-from vehicle_sim.mavlink.telemetry import TelemetrySample
+from vehicle_sim.mavlink.telemetry import Built, TelemetrySample
 
 TIME_TOLERANCE = 1e-6  # s: sums of steps are not exact
 
@@ -75,11 +75,12 @@ class Stream:
             self.repeats -= 1
             self.due = min(self.due, now + repeat_interval)
 
-    def is_new(self, message: Packed) -> bool:
-        """Return True if a message is not of the sample that was sent last."""
+    def is_new(self, messages: Built) -> bool:
+        """Return True if messages are not of the sample that was sent last."""
         if not self._of_one_sample:
             return True
-        last, self._last_stamp = self._last_stamp, message.payload[:_STAMP_LENGTH]
+        first = messages.values[0].tobytes() if isinstance(messages, PackedRun) else messages[0].payload
+        last, self._last_stamp = self._last_stamp, first[:_STAMP_LENGTH]
         return self._last_stamp != last
 
 
@@ -158,10 +159,13 @@ class Peer:
         for stream in self._streams:
             if stream.due <= latest:
                 messages = sample.messages(stream.key)
-                if messages and stream.is_new(messages[0]):
+                if messages and stream.is_new(messages):
                     codec = self._codecs[stream.key[0]]
-                    for message in messages:
-                        frames.append(codec.frame(message))
+                    if isinstance(messages, PackedRun):
+                        frames += codec.frames(messages)
+                    else:
+                        for message in messages:
+                            frames.append(codec.frame(message))
                 stream.advance(now, self._settings.repeat_interval)
             if stream.due < next_due:
                 next_due = stream.due

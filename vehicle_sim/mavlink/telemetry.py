@@ -1,12 +1,13 @@
 """The messages a vehicle streams, each built from the vehicle's state on demand."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
+import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink import px4
-from gcs.mavlink.layout import LAYOUTS, Packed, packed
+from gcs.mavlink.layout import LAYOUTS, Packed, PackedRun, packed
 from gcs.mission.model import Home
 from idc_controller.rotations_float import euler_of, into_body
 from vehicle_sim.autopilot.actuation import LEVEL
@@ -36,7 +37,8 @@ _VERSION = 0x00010000  # 0.1.0, a development version
 _CELLS = [4000, 4000, 4000, 4000, 65535, 65535, 65535, 65535, 65535, 65535]
 _NAN = math.nan
 
-Built = tuple[Packed, ...]
+Built = tuple[Packed, ...] | PackedRun
+"""Messages of one kind: one, several, or none."""
 
 # What is sent with every sample is packed without a message object, its fields in the order of the wire.
 _ATTITUDE_QUATERNION = LAYOUTS[mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION]
@@ -66,6 +68,7 @@ class Telemetry:
         self.payload: Measurement | None = None
         self.scan: RangeSample | None = None
         self._scan_messages: tuple[RangeSample | None, Built] = (None, ())
+        """The scan that was built last, and its messages."""
         unit = px4.PAYLOAD_UNIT_COMPONENT
         self._builders: dict[tuple[int, int], Callable[[float], Built]] = {
             (_OWN, mavlink.MAVLINK_MSG_ID_HEARTBEAT): self._heartbeat,
@@ -244,16 +247,17 @@ class Telemetry:
         """The points of the last scan, built once for all peers."""
         scan = self.scan
         if scan is not self._scan_messages[0]:
-            self._scan_messages = scan, () if scan is None else tuple(self._detections(scan))
+            self._scan_messages = scan, () if scan is None or not len(scan.points) else self._points(scan)
         return self._scan_messages[1]
 
-    def _detections(self, scan: RangeSample) -> Iterator[Packed]:
-        stamp = self.time_boot_ms(scan.time)
-        for detection in scan.detections:
-            yield _OBSTACLE_DISTANCE_3D.pack(
-                stamp, *detection.position_in_body, scan.range_min, scan.reach, detection.obstacle_id,
-                mavlink.MAV_DISTANCE_SENSOR_LASER, mavlink.MAV_FRAME_BODY_FRD,
-            )  # fmt: skip
+    def _points(self, scan: RangeSample) -> PackedRun:
+        points = np.empty(len(scan.points), _OBSTACLE_DISTANCE_3D.dtype)
+        points["time_boot_ms"] = self.time_boot_ms(scan.time)
+        points["x"], points["y"], points["z"] = scan.points.T
+        points["min_distance"], points["max_distance"] = scan.range_min, scan.reach
+        points["obstacle_id"] = scan.obstacle_ids
+        points["sensor_type"], points["frame"] = mavlink.MAV_DISTANCE_SENSOR_LASER, mavlink.MAV_FRAME_BODY_FRD
+        return PackedRun(_OBSTACLE_DISTANCE_3D, points)
 
     @property
     def _own_attitude(self) -> Measurement | None:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 import pybullet
@@ -15,9 +15,6 @@ from idc_controller.rotations_float import Quaternion, Vector
 from vehicle_sim.world.errors import SimulationError
 from vehicle_sim.world.world_state import flipped, quaternion_to_engine
 
-_ROUNDING = 1e-6
-"""m; more than the rounding of a distance."""
-
 
 class Obstacle(NamedTuple):
     """An obstacle at one time: its shape, and its centre in the world (NED, m)."""
@@ -25,6 +22,39 @@ class Obstacle(NamedTuple):
     name: str
     shape: Shape
     position_in_world: Vector
+
+    @property
+    def bounding_radius(self) -> float:
+        """Radius (m) of a ball about the centre that surely holds it."""
+        radius, (a, b, c), _ = self.shape.columns
+        return radius + 0.5 * math.sqrt(a * a + b * b + c * c)
+
+    @property
+    def scan_row(self) -> tuple[float, float, float]:
+        """Bounding radius and form for scans (m); nan: it has none."""
+        return self.bounding_radius, *(self.shape.scan_form or (math.nan, math.nan))
+
+
+class ScanTargets(NamedTuple):
+    """Obstacles as range sensors take them: all in arrays."""
+
+    obstacles: Sequence[Obstacle]
+    centres: Array
+    """NED (B, 3) (m)."""
+    forms: Array
+    """:attr:`Obstacle.scan_row` of each (B, 3)."""
+
+    @classmethod
+    def of(cls, obstacles: Sequence[Obstacle]) -> Self:
+        """Return them with their arrays."""
+        centres = np.array([obstacle.position_in_world for obstacle in obstacles]).reshape(-1, 3)
+        return cls(obstacles, centres, np.array([obstacle.scan_row for obstacle in obstacles]).reshape(-1, 3))
+
+    @property
+    def without_form(self) -> list[int]:
+        """Rows of obstacles that have to be scanned one by one."""
+        rows: list[int] = np.flatnonzero(np.isnan(self.forms[:, 1])).tolist()
+        return rows
 
 
 class _Body(NamedTuple):
@@ -43,18 +73,15 @@ class ObstacleBodies:
         self._obstacles: dict[str, Obstacle] = {}
         self._bodies: dict[str, _Body] = {}
         self._centres = np.empty((0, 3))
-        self._bounds = np.empty(0)
+        self._forms = np.empty((0, 3))
 
     def all(self) -> tuple[Obstacle, ...]:
         """Return the obstacles at the current time, in the order in which they were added."""
         return tuple(self._obstacles.values())
 
-    def near(self, places: Array, within: float) -> list[list[Obstacle]]:
-        """Return the obstacles that may be ``within`` that distance (m) of each of the ``places`` (P, 3), NED (m)."""
-        apart = self._centres - places[:, None]
-        far = np.einsum("poi,poi->po", apart, apart) > (self._bounds + within + _ROUNDING) ** 2
-        obstacles = self.all()
-        return [[obstacles[row] for row in np.flatnonzero(~rows).tolist()] for rows in far]
+    def scan_targets(self) -> ScanTargets:
+        """Return them as the range sensors take them."""
+        return ScanTargets(self.all(), self._centres, self._forms)
 
     def body(self, name: str) -> int:
         """Return the engine's handle. Raises :class:`SimulationError` for an unknown name."""
@@ -82,9 +109,9 @@ class ObstacleBodies:
             physicsClientId=self._client,
         )  # fmt: skip
         self._bodies[name] = _Body(handle, attitude, len(self._bodies))
-        self._obstacles[name] = Obstacle(name, shape, place)
+        obstacle = self._obstacles[name] = Obstacle(name, shape, place)
         self._centres = np.vstack([self._centres, place])
-        self._bounds = np.append(self._bounds, bounding_radius(shape))
+        self._forms = np.vstack([self._forms, obstacle.scan_row])
 
     def move(self, name: str, position_in_world: Sequence[float]) -> None:
         """Put an obstacle elsewhere, its centre (3,) in NED (m); it counts from the next step on."""
@@ -125,12 +152,6 @@ class MovingObstacles:
 
 def _moved(rest: Vector, by: Vector) -> Vector:
     return rest[0] + by[0], rest[1] + by[1], rest[2] + by[2]
-
-
-def bounding_radius(shape: Shape) -> float:
-    """Return the radius (m) of a ball about the centre of a shape that surely holds it."""
-    radius, (a, b, c), _ = shape.columns
-    return radius + 0.5 * math.sqrt(a * a + b * b + c * c)
 
 
 def _place(name: str, values: Sequence[float]) -> Vector:

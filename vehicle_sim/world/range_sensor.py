@@ -5,27 +5,20 @@ what an obstacle is, how large, how fast, or what it is called.
 """
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from gcs.config import RangeSensorConfig
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Indices
 from idc_controller.rotations_float import Quaternion, Vector
-from vehicle_sim.world.obstacle_bodies import Obstacle, bounding_radius
-from vehicle_sim.world.range_sensor_kernels import measured, rays_in_reach
+from vehicle_sim.world.obstacle_bodies import Obstacle, ScanTargets
+from vehicle_sim.world.range_sensor_kernels import measured, rays_in_reach, scanned
 
 #: Distinguishes these generators from the navigation sensors'.
 _STREAM = 1_000_003
 _IDS = 0xFFFE  # 0xFFFF says that an id is not known
-
-
-class Detection(NamedTuple):
-    """One point: the vehicle's number for the obstacle, and the place in the body frame, forward-right-down (m)."""
-
-    obstacle_id: int
-    position_in_body: Vector
 
 
 class RangeSample(NamedTuple):
@@ -33,7 +26,10 @@ class RangeSample(NamedTuple):
 
     time: float
     reach: float
-    detections: tuple[Detection, ...]
+    obstacle_ids: Indices
+    """The vehicle's number for the obstacle of each point (n,)."""
+    points: Array
+    """Places in the body frame, forward-right-down (n, 3) (m)."""
     works: bool = True
     range_min: float = RangeSensorConfig.range_min
 
@@ -47,39 +43,42 @@ class RangeSensor:
         self._ids: dict[str, int] = {}
         self._next_id = 0
 
-    @property
-    def reach(self) -> float:
-        """Largest distance of what it detects (m)."""
-        return self._settings.range
-
-    def scan(
-        self, now: float, position: Sequence[float], attitude: Quaternion, obstacles: Iterable[Obstacle]
-    ) -> RangeSample:
+    def scan(self, now: float, position: Sequence[float], attitude: Quaternion, targets: ScanTargets) -> RangeSample:
         """Return the scan at ``now`` (s) from ``position`` (3,) (NED, m) with ``attitude`` (body to world)."""
-        s = (float(position[0]), float(position[1]), float(position[2]))
-        reach, nearest = self._settings.range, self._settings.range_min
-        rays, errors, numbers = [np.empty((0, 3))], [np.empty(0)], list[int]()
-        detected: dict[str, int] = {}
-        for obstacle in obstacles:
-            if _is_beyond(obstacle, s, reach):
-                continue
-            found = visible_rays(obstacle, s, reach, float(self._generator.uniform(0.0, math.pi / 3.0)))
-            if not len(found):
-                continue
-            number = self._ids.get(obstacle.name)
+        s, generator = self._settings, self._generator
+        pose, limits = np.array([*position, *attitude], dtype=float), np.array([s.range, s.range_min, s.noise])
+        parts, begin = [], 0
+        for row in [*targets.without_form, len(targets.obstacles)]:
+            parts.append(scanned(generator, targets.centres, targets.forms, begin, row, pose, limits))
+            if row < len(targets.obstacles):
+                points = self._points(targets.obstacles[row], pose)
+                parts.append((np.full(len(points), row), points))
+            begin = row + 1
+        rows, points = (np.concatenate(part) for part in zip(*parts, strict=True))
+        numbers = self._numbers(targets.obstacles, rows)
+        is_measured = ~np.isnan(points[:, 0])
+        return RangeSample(now, s.range, numbers[is_measured], points[is_measured], range_min=s.range_min)
+
+    def _points(self, obstacle: Obstacle, pose: Array) -> Array:
+        """Return what is measured of an obstacle without form (n, 3), nan for points too near."""
+        s = self._settings
+        x, y, z, q_w, q_x, q_y, q_z = pose.tolist()
+        if math.dist(obstacle.position_in_world, (x, y, z)) > s.range + obstacle.bounding_radius:
+            return np.empty((0, 3))
+        rays = visible_rays(obstacle, (x, y, z), s.range, float(self._generator.uniform(0.0, math.pi / 3.0)))
+        return measured(rays, s.noise * self._generator.standard_normal(len(rays)), q_w, q_x, q_y, q_z, s.range_min)
+
+    def _numbers(self, obstacles: Sequence[Obstacle], rows: Indices) -> Indices:
+        """Return the number of each point's obstacle, given by ``rows`` (n,), in ascending order."""
+        numbers, detected = np.zeros(len(obstacles), dtype=np.intp), dict[str, int]()
+        for row in np.flatnonzero(np.bincount(rows)).tolist():
+            name = obstacles[row].name
+            number = self._ids.get(name)
             if number is None:
                 number, self._next_id = self._next_id, (self._next_id + 1) % _IDS
-            detected[obstacle.name] = number
-            rays.append(found)
-            errors.append(self._generator.standard_normal(len(found)))
-            numbers += [number] * len(found)
+            detected[name] = numbers[row] = number
         self._ids = detected  # one that leaves and comes back is a new one to the vehicle
-        noise = self._settings.noise * np.concatenate(errors)
-        places = measured(np.concatenate(rays), noise, *attitude, nearest).tolist()
-        detections = tuple(
-            Detection(number, (x, y, z)) for number, (x, y, z) in zip(numbers, places, strict=True) if not math.isnan(x)
-        )
-        return RangeSample(now, reach, detections, range_min=nearest)
+        return numbers[rows]
 
 
 def visible_rays(obstacle: Obstacle, sensor: Vector, reach: float, turn: float) -> Array:
@@ -90,8 +89,3 @@ def visible_rays(obstacle: Obstacle, sensor: Vector, reach: float, turn: float) 
     x, y, z = obstacle.position_in_world
     offset = (sensor[0] - x, sensor[1] - y, sensor[2] - z)
     return rays_in_reach(obstacle.shape.visible_points(offset, reach, turn), *offset, reach + 1e-9)
-
-
-def _is_beyond(obstacle: Obstacle, sensor: Vector, reach: float) -> bool:
-    """Return True for an obstacle that is surely out of reach: a cheap check before the others."""
-    return math.dist(obstacle.position_in_world, sensor) > reach + bounding_radius(obstacle.shape)

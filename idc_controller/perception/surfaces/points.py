@@ -33,6 +33,13 @@ class SurfacePoints:
     scatter: float = 0.0
     """Variance of each point on its own beyond that, on every axis (m2): of sensors worse than they should be."""
 
+    def __getitem__(self, part: slice) -> SurfacePoints:
+        """Return a part of the points."""
+        return SurfacePoints(
+            self.time, self.points[part], self.origins[part], self.cut[part], self.noise, self.pose_variance[part],
+            self.sensors, self.scatter,
+        )  # fmt: skip
+
     @property
     def rays(self) -> Array:
         """Unit vectors from the sensors to the points (n, 3)."""

@@ -1,0 +1,191 @@
+"""Runs of OBSTACLE_DISTANCE_3D, packed and read at once, against pymavlink's frames and messages one by one."""
+
+import random
+from unittest.mock import patch
+
+import numpy as np
+import pymavlink.dialects.v20.ardupilotmega as mavlink
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from gcs.mavlink.codec import Codec, gather
+from gcs.mavlink.frame_kernels import RUN_LIMIT, framed_run, frames_in_run
+from gcs.mavlink.layout import LAYOUTS, PackedRun
+from gcs.mavlink.link_statistics import LinkStatistics
+from gcs.mavlink.telemetry import detections
+
+POINT = LAYOUTS[mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D]
+LENGTH = POINT.dtype.itemsize
+
+
+def points(count, seed=1, stamp=5000):
+    """A run as a vehicle packs it."""
+    rng = np.random.default_rng(seed)
+    values = np.zeros(count, POINT.dtype)
+    values["time_boot_ms"] = stamp
+    for name in ("x", "y", "z"):
+        values[name] = rng.normal(0.0, 4.0, count)
+    values["x"][::3] = 0.0
+    values["min_distance"], values["max_distance"] = 0.05, 10.0
+    values["obstacle_id"] = np.sort(rng.integers(0, 5, count))
+    values["frame"] = mavlink.MAV_FRAME_BODY_FRD
+    return PackedRun(POINT, values)
+
+
+def plain_frames(run, sequence=0, system=3, signed=False):
+    """The same by pymavlink, message by message."""
+    sender = mavlink.MAVLink(None, system, 1)
+    sender.seq = sequence
+    if signed:
+        sender.signing.sign_outgoing, sender.signing.secret_key = True, bytes(32)
+    frames = []
+    for value in run.values:
+        fields = dict(zip(POINT.dtype.names, value.tolist(), strict=True))
+        frames.append(mavlink.MAVLink_obstacle_distance_3d_message(**fields).pack(sender))
+        sender.seq = (sender.seq + 1) % 256
+    return frames
+
+
+def plain_messages(datagram):
+    """All OBSTACLE_DISTANCE_3D of a datagram by pymavlink's own parser, as (sequence, system, fields)."""
+    parser = mavlink.MAVLink(None)
+    parser.robust_parsing = True
+    found = [parser.parse_char(datagram[at : at + 1]) for at in range(len(datagram))]
+    return [
+        (m.get_seq(), m.get_srcSystem(), m.to_dict()) for m in found if m is not None and m.get_type() != "BAD_DATA"
+    ]
+
+
+def messages(received):
+    return [(r.sequence, r.system, r.message.to_dict()) for r in received]
+
+
+def arrays(received):
+    """What the ground reads of runs and single messages together."""
+    found = [detections(r) for r in received]
+    return [np.concatenate(parts).tolist() for parts in zip(*(d[1:] for d in found), strict=True)]
+
+
+@pytest.mark.parametrize("count", [1, 2, 30, 255, 256, 257, 600])
+def test_frames_of_a_run_equal_those_of_pymavlink(count):
+    codec, run = Codec(3, 1), points(count)
+    for _ in range(254):
+        codec.encode(mavlink.MAVLink_ping_message(0, 0, 0, 0))
+    assert codec.frames(run) == plain_frames(run, sequence=254)
+    # The numbers go on behind the run.
+    assert codec.encode(mavlink.MAVLink_ping_message(0, 0, 0, 0))[4] == (254 + count) % 256
+
+
+@pytest.mark.parametrize("count", [1, 2, 30, 256, 257, 600])
+def test_a_run_is_read_at_once_and_equals_its_messages(count):
+    run = points(count)
+    datagram = b"".join(plain_frames(run, sequence=200))
+    whole, single = Codec(255, 190).read(datagram), Codec(255, 190).decode(datagram)
+    assert [r.run for r in whole] == [RUN_LIMIT] * (count // RUN_LIMIT) + [count % RUN_LIMIT] * (count % RUN_LIMIT > 0)
+    assert messages(single) == plain_messages(datagram)
+    assert arrays(whole) == arrays(single)
+    np.testing.assert_array_equal(np.array(arrays(whole)[1])[:, 0], run.values["x"])
+
+
+def test_a_run_ends_where_sender_scan_or_number_changes():
+    codec = Codec(255, 190)
+    first, later = plain_frames(points(4), 10), plain_frames(points(3, stamp=5100), 14)
+    other = plain_frames(points(2), 17, system=4)
+    gap = plain_frames(points(2), 20, system=4)
+    whole = codec.read(b"".join([*first, *later, *other, *gap]))
+    assert [(r.system, r.sequence, r.run, r.time_boot_ms) for r in whole] == [
+        (3, 10, 4, 5000), (3, 14, 3, 5100), (4, 17, 2, 5000), (4, 20, 2, 5000),
+    ]  # fmt: skip
+    assert codec.unread == 0
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_damaged_runs_are_read_as_pymavlink_reads_their_frames(seed):
+    """Frames of several kinds, some signed, cut short, of other senders, or with a wrong byte."""
+    rng = random.Random(seed)
+    attitude = mavlink.MAVLink_attitude_message(1, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0)
+    frames = []
+    for k in range(rng.randint(1, 5)):
+        run = points(rng.randint(1, 8), seed=10 * seed + k, stamp=rng.choice((5000, 5100)))
+        frames += plain_frames(run, rng.randrange(256), rng.choice((3, 4)), signed=rng.random() < 0.2)
+        if rng.random() < 0.5:
+            frames.append(Codec(3, 1).encode(attitude))
+    whole = [(frame, True) for frame in frames]
+    for _ in range(rng.randint(0, 3)):
+        at = rng.randrange(len(whole))
+        frame = bytearray(whole[at][0])
+        frame[rng.randrange(10, len(frame) - (13 if frame[2] else 0))] ^= rng.randint(1, 255)
+        whole[at] = bytes(frame), False
+    if rng.random() < 0.3:
+        whole[-1] = whole[-1][0][: rng.randrange(1, len(whole[-1][0]))], False
+    datagram = b"".join(frame for frame, _ in whole)
+    codec = Codec(255, 190)
+    decoded = codec.decode(datagram)
+    # pymavlink's parser loses its place behind a broken frame; each good frame for itself it reads.
+    assert messages(decoded) == [m for frame, good in whole if good for m in plain_messages(frame)]
+    ours = [r for r in codec.read(datagram) if r.layout is POINT]
+    assert not ours or arrays(ours) == arrays([r for r in decoded if r.layout is POINT])
+
+
+@settings(deadline=None, derandomize=True)
+@given(st.binary(max_size=300), st.integers(0, 4), st.integers(1, 6))
+def test_whatever_surrounds_a_run_it_is_read_as_frame_by_frame(noise, at, count):
+    frames = plain_frames(points(count))
+    frames.insert(min(at, count), noise)
+    datagram = b"".join(frames)
+    reader, decoder = Codec(255, 190), Codec(255, 190)
+    read = reader.decode(datagram)
+    with patch("gcs.mavlink.codec.frames_in_run", return_value=0):  # frame by frame
+        assert read == decoder.decode(datagram)
+    assert (reader.bad_frames, reader.skipped_bytes) == (decoder.bad_frames, decoder.skipped_bytes)
+
+
+def test_truncated_payload_is_a_single_message():
+    """Another sender may leave the frame at 0: its zeros are cut off."""
+    run = points(3)
+    run.values["frame"][1] = run.values["sensor_type"][1] = 0
+    frames = plain_frames(run)
+    assert len(frames[1]) < len(frames[0])
+    whole = Codec(255, 190).read(b"".join(frames))
+    assert [r.run for r in whole] == [1, 1, 1]
+    assert messages(whole) == plain_messages(b"".join(frames))
+    assert np.isnan(arrays(whole)[1][1]).all() and np.isfinite(arrays(whole)[1][2]).all()
+
+
+def test_kernels_agree_with_plain_functions():
+    run, layout = points(20), POINT
+    header = np.array(bytearray(plain_frames(run, 250)[0][:10]))
+    payloads = run.values.view(np.uint8).reshape(-1, LENGTH)
+    frames = framed_run(header, payloads, layout.crc_extra[0])
+    assert frames.tobytes() == b"".join(plain_frames(run, 250))
+    for cut in (0, 1, 400, 799, 800):
+        data = np.frombuffer(frames.tobytes()[: 800 - cut], np.uint8)
+        if len(data) >= 10:
+            assert frames_in_run(data, 0, layout.crc_extra[0]) == len(data) // 40
+    assert frames_in_run(np.frombuffer(frames.tobytes(), np.uint8), 0, layout.crc_extra[0] ^ 1) == 0
+
+
+@settings(deadline=None, derandomize=True)
+@given(st.lists(st.tuples(st.integers(0, 255), st.integers(1, 40), st.floats(0.0, 2.0)), max_size=30))
+def test_statistics_of_runs_equal_those_of_their_messages(runs):
+    together, apart = LinkStatistics(), LinkStatistics()
+    now, expected = 0.0, 0
+    for jump, length, pause in runs:
+        now += pause
+        first = (expected + (jump if jump < 60 or jump > 200 else 0)) % 256
+        expected = (first + length) % 256
+        together.run(first, length, now)
+        for k in range(length):
+            apart.message((first + k) % 256, now)
+        assert (together.lost, together.reordered, together.duplicated) == (
+            apart.lost, apart.reordered, apart.duplicated,
+        )  # fmt: skip
+    together.settle(now + 10.0)
+    apart.settle(now + 10.0)
+    assert vars(together) == vars(apart)
+
+
+def test_datagrams_of_a_run_are_as_full_as_those_of_its_messages():
+    frames = Codec(3, 1).frames(points(100))
+    assert [len(datagram) for datagram in gather(frames)] == [1200, 1200, 1200, 400]
