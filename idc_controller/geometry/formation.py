@@ -79,7 +79,7 @@ class Formation:
         self._rim = self.disc_radius * np.stack([np.cos(angle), np.sin(angle), np.zeros_like(angle)], axis=-1)
         # The facets of the hull in hover give the distance library the neighbours of each point; the shear of an
         # accelerated flight hardly changes them.
-        self._hulls: list[coal.Convex] = []
+        self._hull: coal.Convex | None = None
         self._facets = coal.StdVec_Triangle()
         for triangle in outward_facets(self.hull_points(np.zeros((1, 3)))[0]):
             self._facets.append(coal.Triangle(*map(int, triangle)))
@@ -105,16 +105,15 @@ class Formation:
         """Return :func:`formation_points` of this formation, rims coarsely."""
         return formation_points(self.corners, self._rim, position, quaternion, uav_position, uav_quaternion)
 
-    def hull(self, points: Array, number: int = 0) -> coal.ShapeBase:
-        """The hull of ``points`` (P, 3) for distance queries, until the next query under the same ``number``."""
-        while number >= len(self._hulls):
+    def hull(self, points: Array) -> coal.ShapeBase:
+        """The hull of ``points`` (P, 3) for distance queries, until the next call."""
+        if self._hull is None:
             vertices = coal.StdVec_Vec3s()
             vertices.extend(list(points))
-            self._hulls.append(coal.Convex(vertices, self._facets))
+            self._hull = coal.Convex(vertices, self._facets)
         # Its vertices are moved: to make it anew takes ten times as long.
-        hull = self._hulls[number]
-        hull.points()[:] = points
-        return hull
+        self._hull.points()[:] = points
+        return self._hull
 
     def disc_support(self, normals: Array, acceleration: Array) -> Array:
         """Largest ``n . x`` over the discs about the payload's centre without their lever's part (K,).

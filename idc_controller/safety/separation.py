@@ -7,11 +7,12 @@ from dataclasses import dataclass, replace
 
 import coal
 import numpy as np
-from numpy.typing import NDArray
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Mask
 from idc_controller.geometry.formation import Formation
+from idc_controller.geometry.gjk_kernels import measure_distances
 from idc_controller.geometry.obstacles import PredictedObstacle
+from idc_controller.geometry.shape import Shape
 from idc_controller.safety.planner_kernels import within_reach
 
 _IDENTITY = coal.Transform3s.Identity()
@@ -47,6 +48,12 @@ class PredictedObstacles:
             self.growth = np.array([obstacle.growth for obstacle in obstacles]) + extra_growth
             self.upright = np.array([obstacle.shape.is_upright for obstacle in obstacles])
             self.reach = np.array([_reach(obstacle) for obstacle in obstacles])
+            self.rows = np.array([obstacle.shape.row for obstacle in obstacles])
+            self.rounded = np.array([obstacle.shape.rounded_box is not None for obstacle in obstacles])
+
+    def shape(self, index: int) -> Shape:
+        """Return the shape of one obstacle."""
+        return self._obstacles[index].shape
 
     def __getitem__(self, index: int) -> PredictedObstacle:
         """Return one obstacle with all of its growth."""
@@ -66,39 +73,34 @@ def separations(
         return []
     points = formation.hull_points(acceleration)
     # Most obstacles are far at all stages: bounds of hull and obstacles show it.
-    indices, far, offsets, directions = within_reach(
+    indices, far, offsets, normals = within_reach(
         points, np.ascontiguousarray(position), obstacles.centres, obstacles.growth, obstacles.reach,
         obstacles.upright, within + _BROAD,
     )  # fmt: skip
-    hulls: dict[int, coal.ShapeBase] = {}
+    distances, missing = measure_distances(
+        points, indices, offsets, far, normals, obstacles.growth, obstacles.rows, obstacles.rounded, within,
+        within + _BROAD,
+    )  # fmt: skip
+    for i in np.flatnonzero(missing.any(axis=1)):
+        shape = obstacles.shape(indices[i])
+        _measure_by_library(formation, points, shape, offsets[i], distances[i], normals[i], missing[i])
+    near = (distances - obstacles.growth[indices]).min(axis=1) < within
+    return [Separation(obstacles[indices[i]], distances[i], normals[i]) for i in np.flatnonzero(near)]
+
+
+def _measure_by_library(
+    formation: Formation, points: Array, shape: Shape, offsets: Array, distances: Array, normals: Array, stages: Mask
+) -> None:
+    """Set ``distances`` (K + 1,) and ``normals`` (K + 1, 3) at some ``stages`` (K + 1,), also where bodies overlap."""
+    geometry, placed = shape.geometry(), coal.Transform3s(shape.rotation, offsets[0])
     request, result = coal.DistanceRequest(), coal.DistanceResult()
-    found = []
-    for index, apart, offset, normals in zip(indices.tolist(), far, offsets, directions, strict=True):
-        obstacle = obstacles[index]
-        geometry, placed = obstacle.shape.geometry(), coal.Transform3s(obstacle.shape.rotation, offset[0])
-        near = np.flatnonzero(apart - obstacle.growth < within + _BROAD)
-        distances, measured = [], np.empty((len(near), 3))
-        for row, k in zip(measured, near.tolist(), strict=True):
-            hull = hulls.get(k)
-            if hull is None:
-                hull = hulls[k] = formation.hull(points[k], k)
-            placed.setTranslation(offset[k])
-            result.clear()
-            distances.append(coal.distance(hull, _IDENTITY, geometry, placed, request, result))
-            row[:] = result.normal
-        distance = np.maximum(apart, within)
-        distance[near] = distances
-        if np.min(distance - obstacle.growth) < within:
-            _set_normals(normals, near, measured)
-            found.append(Separation(obstacle, distance, normals))
-    return found
-
-
-def _set_normals(normals: Array, stages: NDArray[np.int_], measured: Array) -> None:
-    """Set ``normals`` (K + 1, 3) at ``stages`` (M,) to those ``measured`` (M, 3), where the bodies have one."""
-    norms = np.sqrt(np.einsum("ij,ij->i", measured, measured))
-    given = norms > 0.5
-    normals[stages[given]] = measured[given] / norms[given, None]
+    for k in np.flatnonzero(stages).tolist():
+        placed.setTranslation(offsets[k])
+        result.clear()
+        distances[k] = coal.distance(formation.hull(points[k]), _IDENTITY, geometry, placed, request, result)
+        norm = float(np.linalg.norm(result.normal))
+        if norm > 0.5:  # the library has one
+            normals[k] = result.normal / norm
 
 
 def _reach(obstacle: PredictedObstacle) -> float:
