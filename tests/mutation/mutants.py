@@ -53,7 +53,7 @@ WANTED = 0.85
 FIRST_FILES = 3  # run before the others are collected
 PASSED = (pytest.ExitCode.OK, pytest.ExitCode.NO_TESTS_COLLECTED)
 WALL_TIME_LIMIT = 1200.0  # s, for a mutant that waits for ever
-SETTLING = 20.0  # s of CPU for imports and compilation, added to five times what the tests cost
+SETTLING = 60.0  # s of CPU for imports and compilation of kernels, added to five times what the tests cost
 WARM = ("numpy", "scipy.linalg", "scipy.optimize", "hypothesis", "pybullet", "pymavlink.dialects.v20.common",
         "pydantic", "shapely", "trimesh", "coal", "proxsuite", "daqp", "filterpy.kalman", "rich.progress")  # fmt: skip
 
@@ -147,7 +147,7 @@ def run_mutant(tree: Path, mutant: Mutant, files: list[TestFile]) -> Outcome:
     try:
         module.write_bytes(mutant.apply(source))
         for few in (files[:FIRST_FILES], files[FIRST_FILES:]):
-            killed_by = in_child(lambda few=few: first_failure(tree, mutant, few)) if few else None
+            killed_by = in_child(lambda few=few: first_failure(tree, few)) if few else None
             if killed_by is not None:
                 break
     finally:
@@ -156,15 +156,12 @@ def run_mutant(tree: Path, mutant: Mutant, files: list[TestFile]) -> Outcome:
     return Outcome(mutant, killed_by, cpu_seconds() - begin)
 
 
-def first_failure(tree: Path, mutant: Mutant, files: list[TestFile]) -> str | None:
+def first_failure(tree: Path, files: list[TestFile]) -> str | None:
     """Return the first test that fails; this process is limited in its CPU time."""
     limit = int(SETTLING + 5.0 * sum(file.cost for file in files))
     resource.setrlimit(resource.RLIMIT_CPU, (limit, limit + 5))
     first = FirstFailure([test for file in files for test in file.tests])
-    with tempfile.TemporaryDirectory() as cache:
-        if mutant.path.endswith("kernels.py"):
-            os.environ["NUMBA_CACHE_DIR"] = cache  # all compiled anew: a cache does not know which kernels inline it
-        status = run_pytest(tree, first, *(file.name for file in files))
+    status = run_pytest(tree, first, *(file.name for file in files))
     return first.failed or (None if status in PASSED else f"pytest ended with {status}")
 
 
