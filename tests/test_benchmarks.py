@@ -1,4 +1,4 @@
-"""The benchmark's anchor flies, its missions can be read, and its check tells more cost from scatter."""
+"""The benchmark's anchor flies, its missions can be read, and its check reports more cost, but no scatter."""
 
 import json
 import subprocess

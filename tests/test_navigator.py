@@ -32,23 +32,27 @@ def navigator():
     return Navigator(system(), NavigatorSettings(), Scene([]), STAGES)
 
 
+class WatchedScene(Scene):
+    """Keeps when its predictions were asked for: once a search."""
+
+    def __init__(self, obstacles):
+        super().__init__(obstacles)
+        self.asked = []
+
+    def predict(self, times):
+        self.asked.append(times[0] - STAGES[0])
+        return super().predict(times)
+
+
 def held_up(navigator, obstacles, seconds, rate=0.3, progress=5.0, begin=0.0, mission=None):
     """Watch at 20 Hz; the progress at the end, and when detours were searched."""
-    navigator.obstacles = Scene(obstacles)
-    searches, search = [], navigator._search
+    navigator.obstacles = scene = WatchedScene(obstacles)
     mission = mission or straight(18.0)
-
-    def watched(*arguments):
-        searches.append(time)
-        return search(*arguments)
-
-    navigator._search = watched
     for time in begin + 0.05 * np.arange(round(seconds / 0.05) + 1):
         progress = navigator.watch(time, progress, rate, mission, TRACKED)
         if navigator.detours:
             break
-    navigator._search = search
-    return progress, searches
+    return progress, scene.asked
 
 
 def test_mission_is_followed_while_progress_continues(navigator):

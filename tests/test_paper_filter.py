@@ -54,7 +54,7 @@ def test_row_is_the_second_derivative_of_h(model, obstacle):
     drift = A @ deviation - A[:, layout.f] @ deviation[layout.f]
     times = estimate.time + np.array([0.0, 0.05, 0.10])
     predicted = source.predict(times)[0]
-    row, bound = printed._row(predicted, estimate, drift, A[:, layout.f])
+    row, bound = printed.row(predicted, estimate, drift, A[:, layout.f])
 
     shape, position = predicted.shape, estimate.x[layout.r_0]
     result = coal.DistanceResult()
@@ -89,7 +89,7 @@ def test_row_of_pole_is_independent_of_thrust(model):
     printed = PrintedFilter(model, source, 0.5)
     estimate, layout = flying(model), model.layout
     predicted = source.predict(np.array([2.0, 2.05, 2.1]))[0]
-    row, _ = printed._row(predicted, estimate, np.zeros(3), model.A[layout.v_0][:, layout.f])
+    row, _ = printed.row(predicted, estimate, np.zeros(3), model.A[layout.v_0][:, layout.f])
     np.testing.assert_array_equal(row, 0.0)
     # So whatever is near, the set-points stay as they are.
     u = hover(model)

@@ -9,7 +9,7 @@ from vehicle_bench import ACCEPTED, ARM, GROUND, OFFBOARD, Bench, attitude_targe
 from world_runs import run, uav_array
 
 from gcs.config import RangeSensorConfig, read_system
-from gcs.config.tables import AirSettings, CradleSettings, PadSettings, WorldConfig
+from gcs.config.tables import AirSettings, BodySettings, CradleSettings, PadSettings, RestSettings, WorldConfig
 from gcs.config.vehicle_settings import SetpointSettings, StreamIntervals
 from gcs.mission.model import Fault
 from idc_controller.geometry.sphere import Sphere
@@ -19,12 +19,15 @@ from vehicle_sim.autopilot.parameter_table import vehicle_parameters
 from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
 from vehicle_sim.faults import FaultInjector
 from vehicle_sim.swarm import Swarm
+from vehicle_sim.world.multibody import urdf_text
 from vehicle_sim.world.obstacle_bodies import Obstacle
 from vehicle_sim.world.range_sensor import RangeSensor
 from vehicle_sim.world.sensors import Measurement
+from vehicle_sim.world.truth_log import TruthLog
 from vehicle_sim.world.world import World
 
 LEVEL = (1.0, 0.0, 0.0, 0.0)
+STEADY = [(0.0, 0.0, 0.0)] * 4
 
 
 def stop_of(config):
@@ -126,6 +129,53 @@ def test_cradle_opens_at_its_release_factor(factor, held):
     with World(config.parameters(), settings=settings) as world:
         state = run(world, 0.01, [1.2 * config.uav.mass * 9.81] * 4)
         assert uav_array(state, "cradled").tolist() == [held] * 4
+
+
+def drag(world, force):
+    """Pull the payload along the pad, below UAVs that carry little more than themselves."""
+    for _ in range(100):
+        world.step([8.0] * 4, STEADY, payload_force=(force, 0.0, 0.0))
+
+
+@pytest.mark.parametrize(("friction", "slides"), [(0.8, False), (0.1, True)])
+def test_payload_slides_on_the_pad_by_its_friction(friction, slides):
+    settings = WorldConfig(bodies=BodySettings(friction=friction))
+    with World(read_system().parameters(), settings=settings) as world:
+        drag(world, 4.0)
+        assert (world.state().payload_position_in_world[0] > 0.01) == slides
+
+
+def test_links_have_their_radius():
+    text = urdf_text(read_system().parameters(), link_radius=0.02)
+    assert text.count('<cylinder radius="0.02"') == 2 * 4  # as they look and as they touch
+
+
+@pytest.mark.parametrize(("speed", "at_rest"), [(0.1, False), (3.0, True)])
+def test_what_moves_is_at_rest_below_the_speed_of_rest(speed, at_rest):
+    config = replace(read_system(), world=WorldConfig(rest=RestSettings(speed=speed)))
+    with Swarm(config, seed=1) as swarm:
+        drag(swarm.world, 40.0)
+        swarm.world.step([0.0] * 4, STEADY)
+        assert 0.1 < np.linalg.norm(swarm.world.state().payload_velocity_in_world) < 3.0
+        assert swarm.at_rest == at_rest
+
+
+@pytest.mark.parametrize(("thrust", "at_rest"), [(0.1, False), (0.3, True)])
+def test_rotors_have_run_down_at_the_thrust_of_rest(thrust, at_rest):
+    config = replace(read_system(), world=WorldConfig(rest=RestSettings(thrust=thrust)))
+    with Swarm(config, seed=1) as swarm:
+        assert swarm.at_rest
+        swarm.world.step([0.2] * 4, STEADY)
+        assert swarm.at_rest == at_rest
+
+
+@pytest.mark.parametrize(("rate", "rows"), [(50, 10), (100, 20)])
+def test_truth_has_rows_at_its_rate(tmp_path, rate, rows):
+    with Swarm(system(rates={"truth": rate}), seed=1) as swarm:
+        swarm.record(TruthLog(tmp_path, 4))
+        swarm.advance_to(0.2)
+    header_and_start = 2
+    assert len((tmp_path / "truth.csv").read_text().splitlines()) == header_and_start + rows
 
 
 def test_wind_pushes_in_proportion_to_density_of_air():

@@ -20,9 +20,6 @@ from vehicle_sim.world.rotors import Rotors
 from vehicle_sim.world.truth_log import TruthLog
 from vehicle_sim.world.world import World
 
-TRUTH_RATE = 50  # Hz, at least
-REST_SPEED = 0.1  # m/s
-REST_THRUST = 0.1  # N
 _TIME_TOLERANCE = 1e-6  # s: sums of steps are not exact
 
 
@@ -65,11 +62,12 @@ class Swarm:
             self.world.close()
             raise
         self.failsafe = config.flight.failsafe
+        self._rest = config.world.rest
         self.take_off_time: float | None = None
         self._faults = faults or FaultInjector()
         self._truth: TruthLog | None = None
         self._periods = _Periods(
-            rates.physics // rates.onboard, rates.physics // TRUTH_RATE, rates.physics // config.range_sensor.rate
+            rates.physics // rates.onboard, rates.physics // rates.truth, rates.physics // config.range_sensor.rate
         )
         self._steps = 0
         self._contacts = 0
@@ -108,7 +106,7 @@ class Swarm:
         self._team.relay()
 
     def record(self, truth: TruthLog) -> None:
-        """Record the true state from here on, 50 times a second or more. The log is closed with the swarm."""
+        """Record the true state from here on, at ``rates.truth`` or more often. The log is closed with the swarm."""
         self._truth = truth
         self._modes_recorded = False
         truth.write(self.world.state(), self.world.contacts().pairs, self.world.obstacles.all())
@@ -131,10 +129,10 @@ class Swarm:
         if any(vehicle.autopilot.armed for vehicle in self.vehicles):
             return False
         state = self.world.state()
-        if any(uav.thrust > REST_THRUST for uav in state.uavs):
+        if any(uav.thrust > self._rest.thrust for uav in state.uavs):
             return False
         velocities = [state.payload_velocity_in_world, *(uav.velocity_in_world for uav in state.uavs)]
-        return max(math.hypot(*velocity) for velocity in velocities) < REST_SPEED
+        return max(math.hypot(*velocity) for velocity in velocities) < self._rest.speed
 
     # The wire
 

@@ -116,6 +116,7 @@ class RatesConfig:
         25, "Hz", "telemetry of each vehicle, and of the payload unit that it relays", gt=0, le=1_000_000
     )
     control: int = setting(CONTROL_RATE, "Hz", "set-points from the ground", gt=0, le=1_000_000)
+    truth: int = setting(50, "Hz", "rows of truth.csv, at least", gt=0, le=500)
 
 
 @dataclass(frozen=True)
@@ -164,10 +165,28 @@ class AirSettings:
 
 
 @dataclass(frozen=True)
+class BodySettings:
+    """Bodies of the system as they meet others and the ground; links have no friction."""
+
+    friction: float = setting(0.8, "", "coefficient of friction of payload and UAVs", ge=0.0)
+    link_radius: float = setting(0.01, "m", "radius of the links", gt=0.0)
+
+
+@dataclass(frozen=True)
+class RestSettings:
+    """What counts as rest at the end, when all are disarmed."""
+
+    speed: float = setting(0.1, "m/s", "speed below which payload and UAVs are at rest", gt=0.0)
+    thrust: float = setting(0.1, "N", "thrust of a UAV up to which its rotors have run down", gt=0.0)
+
+
+@dataclass(frozen=True)
 class WorldConfig:
     """The simulated world, and its difference from the controller's model."""
 
     payload_mass_factor: float = setting(1.0, "", "true payload mass over payload.mass", gt=0.0)
     pad: PadSettings = field(default_factory=PadSettings)
     cradles: CradleSettings = field(default_factory=CradleSettings)
+    bodies: BodySettings = field(default_factory=BodySettings)
+    rest: RestSettings = field(default_factory=RestSettings)
     air: AirSettings = field(default_factory=AirSettings)

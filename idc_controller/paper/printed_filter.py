@@ -52,7 +52,7 @@ class PrintedFilter(NoObstacles):
         deviation = estimate.x.copy()
         deviation[layout.f] -= parameters.hover_thrust
         drift = A @ deviation - A[:, layout.f] @ deviation[layout.f]
-        rows, bounds = zip(*(self._row(o, estimate, drift, A[:, layout.f]) for o in obstacles), strict=True)
+        rows, bounds = zip(*(self.row(o, estimate, drift, A[:, layout.f]) for o in obstacles), strict=True)
         N = parameters.number_of_uavs
         f = u[layout.f_setpoint]
         lower, upper = np.full(N, self._thrust_min), np.full(N, 0.95 * parameters.thrust_max)
@@ -67,7 +67,7 @@ class PrintedFilter(NoObstacles):
         corrected[layout.f_setpoint] = np.clip(x, lower, upper)
         return corrected
 
-    def _row(self, obstacle: PredictedObstacle, estimate: Estimate, drift: Array, B: Array) -> tuple[Array, float]:
+    def row(self, obstacle: PredictedObstacle, estimate: Estimate, drift: Array, B: Array) -> tuple[Array, float]:
         """A_obs (N,) and b_obs of one obstacle: h'' >= -K (h, h') solved for the thrusts."""
         layout, hover = self.model.layout, self.model.parameters.hover_thrust
         position, velocity = estimate.x[layout.r_0], estimate.x[layout.v_0]

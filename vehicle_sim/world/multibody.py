@@ -15,6 +15,7 @@ import pybullet
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 from scipy.spatial.transform import Rotation
 
+from gcs.config.tables import BodySettings
 from idc_controller.arrays import Array
 from idc_controller.parameters import SystemParameters
 from idc_controller.payload_hull import PayloadHull
@@ -25,7 +26,6 @@ from vehicle_sim.world.errors import UnsupportedWorld
 MAX_COORDINATES = 128
 MAX_VEHICLES = (MAX_COORDINATES - 7) // 8
 
-LINK_RADIUS = 0.01  # m, of the links' collision shape
 DISC_THICKNESS = 0.04  # m, of the UAVs' collision shape
 PAYLOAD_FILE = "payload.obj"
 _HULL_MARGIN = 0.001  # m, that the engine adds about a hull; unlike a box's it lies outside
@@ -36,7 +36,6 @@ _HULL_MARGIN = 0.001  # m, that the engine adds about a hull; unlike a box's it 
 # either missing it flies apart. The engine's reader rejects such a pair as no rigid body's: set after loading.
 _LINK_INERTIA = 1e-6
 _LINK_AXIAL_INERTIA = 1e-3
-_FRICTION = 0.8  # of payload and discs
 # The engine clips joint rates at 100 rad/s by default.
 _MAX_JOINT_VELOCITY = 1e3
 
@@ -87,7 +86,7 @@ def _payload_axes(parameters: SystemParameters) -> tuple[Array, Rotation]:
     return moments, Rotation.from_matrix(axes)
 
 
-def urdf_text(parameters: SystemParameters) -> str:
+def urdf_text(parameters: SystemParameters, link_radius: float) -> str:
     """Return the system as URDF. Attachment points off the payload's hull are on outriggers without mass or shape."""
     moments, axes = _payload_axes(parameters)
     edges = parameters.payload.box_edges
@@ -103,7 +102,7 @@ def urdf_text(parameters: SystemParameters) -> str:
     for i, (p_i, l_i, m_i, J_i) in enumerate(
         zip(parameters.p, parameters.l, parameters.m, parameters.J, strict=True), start=1
     ):
-        rod = f'<cylinder radius="{LINK_RADIUS}" length="{float(l_i)!r}"/>'
+        rod = f'<cylinder radius="{link_radius!r}" length="{float(l_i)!r}"/>'
         disc = f'<cylinder radius="{parameters.disc_radius!r}" length="{DISC_THICKNESS}"/>'
         attachment = (p_i[0], -p_i[1], -p_i[2])
         parts += [
@@ -116,7 +115,9 @@ def urdf_text(parameters: SystemParameters) -> str:
     return "\n".join([*parts, "</robot>", ""])
 
 
-def load_multibody(client: int, parameters: SystemParameters, position: tuple[float, float, float]) -> Multibody:
+def load_multibody(
+    client: int, parameters: SystemParameters, position: tuple[float, float, float], settings: BodySettings
+) -> Multibody:
     """Put the system into the world of physics client ``client``: level, links upright, ``position`` z-up (m).
 
     Nothing brakes it: joint motors off, no damping. Raises :class:`UnsupportedWorld`.
@@ -131,7 +132,7 @@ def load_multibody(client: int, parameters: SystemParameters, position: tuple[fl
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / PAYLOAD_FILE).write_text(_payload_text(parameters.payload))
         path = Path(folder) / "system.urdf"
-        path.write_text(urdf_text(parameters))
+        path.write_text(urdf_text(parameters, settings.link_radius))
         body = pybullet.loadURDF(str(path), basePosition=position, flags=flags, physicsClientId=client)
     index = {}
     for joint in range(pybullet.getNumJoints(body, physicsClientId=client)):
@@ -149,8 +150,8 @@ def load_multibody(client: int, parameters: SystemParameters, position: tuple[fl
     )
     for part in range(-1, len(index)):
         pybullet.changeDynamics(
-            body, part, jointDamping=0.0, restitution=0.0, lateralFriction=0.0 if part in links else _FRICTION,
-            physicsClientId=client,
+            body, part, jointDamping=0.0, restitution=0.0,
+            lateralFriction=0.0 if part in links else settings.friction, physicsClientId=client,
         )  # fmt: skip
         if part in links:
             pybullet.changeDynamics(

@@ -66,7 +66,8 @@ class World:
             physicsClientId=client,
         )  # fmt: skip
         self._ground = Ground(client, parameters.payload, settings.pad)
-        self._system = load_multibody(client, parameters, (0.0, 0.0, settings.pad.thickness + parameters.payload.below))
+        place = (0.0, 0.0, settings.pad.thickness + parameters.payload.below)
+        self._system = load_multibody(client, parameters, place, settings.bodies)
         self.obstacles = ObstacleBodies(client)
         weights = [float(m_i) * parameters.g for m_i in parameters.m]
         self._cradles = Cradles(client, self._system.body, self._system.uavs, weights, settings.cradles)
