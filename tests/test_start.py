@@ -1,5 +1,6 @@
 """The start of the commands: which modules they import. What takes long to import, only a flight may need."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -68,3 +69,12 @@ def test_check_imports_no_kinds_of_fault_without_faults() -> None:
     imported = set(done.stdout.split())
     assert "gcs.mission.read" in imported
     assert not imported & {"gcs.faults.kinds", "gcs.mission.compile", "gcs.mission.plan", "gcs.mission.wpl"}
+
+
+def test_commands_use_one_blas_thread() -> None:
+    script = "import sys, threadpoolctl; from gcs.app.cli import main; main(sys.argv[1:]); import scipy.linalg\n"
+    script += "print({library['num_threads'] for library in threadpoolctl.threadpool_info()})"
+    environment = {name: value for name, value in os.environ.items() if not name.endswith("_NUM_THREADS")}
+    command = [sys.executable, "-c", script, "check", "missions/figure_eight.toml"]
+    done = subprocess.run(command, cwd=REPOSITORY, capture_output=True, text=True, check=True, env=environment)
+    assert done.stdout.splitlines()[-1] == "{1}"

@@ -1,12 +1,12 @@
 """The command ``gcs``: a table of its sub-commands, each a module of :mod:`gcs.app.commands`."""
 
 import argparse
+import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
 
 from rich_argparse import RawDescriptionRichHelpFormatter
-from threadpoolctl import threadpool_limits
 
 from gcs.app.exit_status import ExitStatus
 from gcs.app.logs import LOG, add_log_arguments, logging_to
@@ -39,11 +39,12 @@ The ground station of cooplift: UAVs that carry one payload together.
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command, and return its exit status."""
     words = sys.argv[1:] if argv is None else list(argv)
+    # Small matrices: more threads cost time, and sums in another order are other sums. Read when numpy is imported.
+    os.environ |= {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
     arguments = _parser(words[0] if words else "").parse_args(words)
     with logging_to(arguments):
         try:
-            with threadpool_limits(limits=1):
-                return int(arguments.run(arguments))
+            return int(arguments.run(arguments))
         except UnusableInput as error:
             for reason in error.reasons:
                 LOG.error(reason)
