@@ -65,8 +65,8 @@ ALLOWED = {
     ),
     "idc_controller.trajectory": "idc_controller.model",
     "vehicle_sim.app": (
-        "gcs.app gcs.config gcs.faults gcs.mavlink gcs.mission gcs.record vehicle_sim.faults vehicle_sim.swarm "
-        "vehicle_sim.world"
+        "gcs.app gcs.config gcs.drivers gcs.faults gcs.mavlink gcs.mission gcs.record vehicle_sim.faults "
+        "vehicle_sim.swarm vehicle_sim.world"
     ),
     "vehicle_sim.autopilot": "gcs.config gcs.mavlink idc_controller.trajectory vehicle_sim.world",
     "vehicle_sim.faults": "gcs.config gcs.faults gcs.mavlink gcs.mission gcs.record vehicle_sim.world",

@@ -29,7 +29,7 @@ def flown(monkeypatch):
     """Nothing is flown: the flights are noted, and those of the second severity are outside their limits."""
     names = []
 
-    def fly(mission, options, run_dir, stop):
+    def fly(mission, options, run_dir, worker):
         names.append(mission.stem)
         run_dir.mkdir()
         bad = "0.3" in mission.stem
@@ -120,7 +120,7 @@ def test_campaign_passes_safe_landings_where_file_requires_no_more(tmp_path, flo
     aborted = SUMMARY | {"completed": False, "outcome": "aborted", "limits": {}, "landing": landing}
     ends = {"0.1": aborted, "0.3": aborted | OUTSIDE, "slow": aborted | {"outcome": "collided", "contacts": 1}}
 
-    def fly(mission, options, run_dir, stop):
+    def fly(mission, options, run_dir, worker):
         return FlownProcess(1, next(end for name, end in ends.items() if name in mission.stem), "", 1.0)
 
     monkeypatch.setattr(engine, "fly_process", fly)

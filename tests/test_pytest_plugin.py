@@ -76,7 +76,7 @@ def flown(monkeypatch):
     """The missions that would have been flown."""
     missions = []
 
-    def fly(mission, options, run_dir, stop):
+    def fly(mission, options, run_dir, worker):
         missions.append((read_mission(mission), options))
         run_dir.mkdir()
         return FlownProcess(0, SUMMARY, "", 1.0)

@@ -2,7 +2,6 @@
 
 import dataclasses
 import json
-import threading
 
 import numpy as np
 import pytest
@@ -10,6 +9,7 @@ from scenario_results import result_of
 
 from gcs.app.cli import main
 from gcs.campaign.engine import Campaign
+from gcs.campaign.flight_worker import FlightWorker
 from gcs.campaign.process_pool import FlownProcess
 from gcs.campaign.result import Result
 from gcs.campaign.scenarios.generator import KINDS, generate
@@ -227,15 +227,16 @@ def test_flight_outside_a_limit_fails(campaign, figures, failures):
 def test_flight_that_could_not_start_fails_with_its_reason(campaign, monkeypatch):
     monkeypatch.setenv("PATH", "")
     broken = dataclasses.replace(campaign.plans[0], options=("--controller", "none"))
-    result = campaign.fly_one(broken, threading.Event())
+    with FlightWorker() as worker:
+        result = campaign.fly_one(broken, worker)
     assert not result.passed and result.exit_code == 2
     assert "invalid choice" in result.reason
 
 
 def test_flight_ends_when_stop_event_is_set(campaign):
-    stop = threading.Event()
-    stop.set()
-    assert campaign.fly_one(campaign.plans[0], stop) is None
+    with FlightWorker() as worker:
+        worker.stop.set()
+        assert campaign.fly_one(campaign.plans[0], worker) is None
 
 
 # Campaign
@@ -249,7 +250,7 @@ def flown(monkeypatch):
     """Scenarios are not flown: their numbers are noted, and every fourth fails."""
     numbers = []
 
-    def fly(campaign, plan, stop):
+    def fly(campaign, plan, worker):
         numbers.append(plan.number)
         campaign.run_dir(plan).mkdir(parents=True)
         return result_of(campaign, plan, **({} if plan.number % 4 else FAILED))

@@ -42,7 +42,7 @@ def flown(monkeypatch):
     """Nothing is flown: what would be is noted; those without avoidance collide."""
     plans = []
 
-    def fly(campaign, plan, stop):
+    def fly(campaign, plan, worker):
         plans.append(plan)
         collides = "mpc" in plan.options and plan.labels["clearance_asked_m"]
         figures = (

@@ -15,10 +15,11 @@ from typing import Any
 from gcs.app.exit_status import ExitStatus
 from gcs.app.flight_log import FlightLog
 from gcs.drivers.connection import Connection
+from gcs.drivers.forked_program import ForkedProgram
 from gcs.drivers.interrupt import Interrupt
 from gcs.drivers.lockstep import run_in_lockstep
 from gcs.drivers.realtime import run_in_real_time
-from gcs.drivers.simulator import Simulator
+from gcs.drivers.simulator import PROGRAM, Simulator
 from gcs.errors import GcsError, UnusableInput
 from gcs.flight import stack
 from gcs.flight.alarms import AlarmLog
@@ -123,8 +124,16 @@ def _listens(options: FlyOptions) -> bool:
     return any(url.listens for url in options.connect)
 
 
-def fly(options: FlyOptions, mission: Mission, progress: Callable[[Flight], None]) -> FlightResult:
+def fly(
+    options: FlyOptions,
+    mission: Mission,
+    progress: Callable[[Flight], None],
+    vehicle_sim: ForkedProgram | None = None,
+) -> FlightResult:
     """Fly ``mission``; every record is closed however it ends.
+
+    ``vehicle_sim``: the program forked in advance, before this process had more threads than one; None: it is forked
+    here if it is needed.
 
     Raises :class:`UnusableInput` before anything is started, and :class:`GcsError` when no world could be started.
     """
@@ -132,8 +141,14 @@ def fly(options: FlyOptions, mission: Mission, progress: Callable[[Flight], None
     started = datetime.now(UTC)
     write_manifest(run_dir, command=sys.argv, seed=mission.seed, mission=mission, system=mission.system, start=started)
     with ExitStack() as resources:
+        if vehicle_sim is None and not options.connect:
+            vehicle_sim = resources.enter_context(ForkedProgram(PROGRAM))
         connection = resources.enter_context(closing(Connection(_local_address(options.connect))))
-        simulator, addresses = _swarm(options, mission, run_dir, resources)
+        simulator = None
+        if vehicle_sim is not None:
+            arguments = _simulator_arguments(options, mission, run_dir)
+            simulator = resources.enter_context(Simulator(vehicle_sim, arguments, mission.system.drivers))
+        addresses = _addresses(options, mission) if simulator is None else simulator.vehicles
         recorder = resources.enter_context(FlightRecorder(run_dir, started.timestamp()))
         station = ground_station(mission, addresses, recorder, options.controller)
         log = FlightLog(station)
@@ -229,22 +244,21 @@ def ground_station(
     return GroundStation(flight, recorder)
 
 
-def _swarm(
-    options: FlyOptions, mission: Mission, run_dir: Path, resources: ExitStack
-) -> tuple[Simulator | None, Sequence[Address | None]]:
-    """Return the addresses of a running swarm, or start one; an address is None until the vehicle calls in."""
+def _addresses(options: FlyOptions, mission: Mission) -> Sequence[Address | None]:
+    """Return the addresses of a running swarm; an address is None until the vehicle calls in."""
     if _listens(options):
-        return None, [None] * mission.system.team.vehicles
-    if options.connect:
-        return None, [url.address for url in options.connect]
+        return [None] * mission.system.team.vehicles
+    return [url.address for url in options.connect]
+
+
+def _simulator_arguments(options: FlyOptions, mission: Mission, run_dir: Path) -> list[str]:
+    """Return the arguments of a ``vehicle-sim`` for this flight."""
     arguments = ["--mission", str(options.mission), "--vehicles", str(mission.system.team.vehicles)]
     arguments += ["--seed", str(mission.seed), "--run-dir", str(run_dir), "--base-port", "0"]
     if options.config is not None:
         arguments += ["--config", str(options.config)]
     in_real_time = ["--realtime", "--speed", str(options.speed)]
-    arguments += in_real_time if options.realtime else ["--lockstep", "--ground-port", "0"]
-    simulator = resources.enter_context(Simulator(arguments, mission.system.drivers))
-    return simulator, simulator.vehicles
+    return arguments + (in_real_time if options.realtime else ["--lockstep", "--ground-port", "0"])
 
 
 def _clock_address(options: FlyOptions, simulator: Simulator | None) -> Address:

@@ -30,7 +30,7 @@ def add_log_arguments(parser: argparse.ArgumentParser) -> None:
 
 @contextmanager
 def logging_to(arguments: argparse.Namespace) -> Iterator[None]:
-    """Log by the arguments of :func:`add_log_arguments` until the context ends."""
+    """Log by the arguments of :func:`add_log_arguments`, and not as before, until the context ends."""
     console = _StandardError()
     console.setLevel(_LEVELS[min(max(_DEFAULT + arguments.verbose - arguments.quiet, 0), len(_LEVELS) - 1)])
     handlers: list[logging.Handler] = [console]
@@ -46,9 +46,8 @@ def logging_to(arguments: argparse.Namespace) -> Iterator[None]:
             logger = logging.getLogger(name)
             context.callback(logger.setLevel, logger.level)
             logger.setLevel(min(handler.level for handler in handlers))
-            for handler in handlers:
-                logger.addHandler(handler)
-                context.callback(logger.removeHandler, handler)
+            context.callback(setattr, logger, "handlers", logger.handlers)
+            logger.handlers = list(handlers)
         yield
 
 

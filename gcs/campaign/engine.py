@@ -2,7 +2,6 @@
 
 import dataclasses
 import shlex
-import threading
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -11,6 +10,7 @@ from typing import Any, ClassVar
 
 from rich.console import RenderableType
 
+from gcs.campaign.flight_worker import FlightWorker
 from gcs.campaign.folder import adopt_folder, folder_lock, remove_folder, write_text
 from gcs.campaign.process_pool import FlownProcess, all_cores, fly_process, run_parallel
 from gcs.campaign.result import Result, read_result, summary_columns
@@ -127,10 +127,10 @@ class Campaign:
             waiting = [plan for plan in self.plans if plan.name not in self._results]
             run_parallel(waiting, self._jobs, self.fly_one, started, keep)
 
-    def fly_one(self, plan: FlightPlan, stop: threading.Event) -> Result | None:
-        """Fly and judge; None if ``stop`` was set before the flight ended."""
+    def fly_one(self, plan: FlightPlan, worker: FlightWorker) -> Result | None:
+        """Fly and judge; None if ``worker.stop`` was set before the flight ended."""
         run_dir = self.run_dir(plan)
-        flown = fly_process(plan.mission, plan.options, run_dir, stop)
+        flown = fly_process(plan.mission, plan.options, run_dir, worker)
         return None if flown is None else self.result_of(plan, flown)
 
     def result_of(self, plan: FlightPlan, flown: FlownProcess) -> Result:

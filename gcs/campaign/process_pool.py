@@ -1,17 +1,18 @@
-"""Parallel flights: each a ``gcs fly`` process, all of which end with the process that started them."""
+"""Parallel flights: each a ``gcs fly`` of a warm worker, all of which end with the process that started them."""
 
 import json
 import os
-import subprocess
 import sys
 import threading
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
+from gcs.campaign.flight_worker import FlightWorker
 from gcs.campaign.folder import remove_folder
 
 P = TypeVar("P")
@@ -19,7 +20,6 @@ R = TypeVar("R")
 
 FLIGHT_TIMEOUT = 1800.0
 """s of wall time after which a flight is ended."""
-POLL = 0.2  # s
 BROKEN_OFF = "flight broken off: "
 
 
@@ -42,40 +42,24 @@ class FlownProcess:
         return "" if self.summary or not lines else lines[-1]
 
 
-def fly_process(mission: Path, options: Sequence[str], run_dir: Path, stop: threading.Event) -> FlownProcess | None:
+def fly_process(mission: Path, options: Sequence[str], run_dir: Path, worker: FlightWorker) -> FlownProcess | None:
     """Fly ``mission`` by ``gcs fly`` with ``options`` into ``run_dir``, which is replaced once the flight has ended.
 
     Returns:
-        None if ``stop`` was set before the flight ended; there is no run folder then.
+        None if ``worker.stop`` was set before the flight ended; there is no run folder then.
     """
     begin = time.monotonic()
     draft = run_dir.with_name(f".{run_dir.name}-{os.getpid()}")
-    command = [sys.executable, "-m", "gcs", "fly", str(mission), *options]
-    command += ["--run-dir", str(draft), "--json", "--no-pictures", "--with-parent"]
     remove_folder(draft)
-    # The flight holds the other end and reads its end of file when this process ends, however it does.
-    theirs, ours = os.pipe()
-    try:
-        process = subprocess.Popen(
-            command,
-            stdin=theirs,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            start_new_session=True,  # Ctrl-C is for this process, which ends its flights itself
-            env={**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
-        )
-        os.close(theirs)
-        output, messages = _output(process, stop, begin + FLIGHT_TIMEOUT)
-    finally:
-        os.close(ours)
-    if stop.is_set():
+    arguments = ["fly", str(mission), *options, "--run-dir", str(draft), "--json", "--no-pictures", "--with-parent"]
+    exit_code, output, messages = worker.run(arguments, FLIGHT_TIMEOUT)
+    if worker.stop.is_set():
         remove_folder(draft)
         return None
     remove_folder(run_dir)
     if draft.exists():
         draft.replace(run_dir)
-    return FlownProcess(process.returncode, _object(output), messages, time.monotonic() - begin)
+    return FlownProcess(exit_code, _object(output), messages, time.monotonic() - begin)
 
 
 def end_with_parent() -> None:
@@ -90,16 +74,6 @@ def end_with_parent() -> None:
         os._exit(1)
 
     threading.Thread(target=watch, daemon=True).start()
-
-
-def _output(process: subprocess.Popen[str], stop: threading.Event, deadline: float) -> tuple[str, str]:
-    """Return what the process wrote until it ended, or was ended."""
-    while True:
-        try:
-            return process.communicate(timeout=POLL)
-        except subprocess.TimeoutExpired:
-            if stop.is_set() or time.monotonic() > deadline:
-                process.kill()  # the simulator ends with it: it reads the end of its standard input
 
 
 def _object(text: str) -> dict[str, Any]:
@@ -118,27 +92,31 @@ def all_cores() -> int:
 def run_parallel(
     plans: Sequence[P],
     jobs: int,
-    fly: Callable[[P, threading.Event], R | None],
+    fly: Callable[[P, FlightWorker], R | None],
     started: Callable[[P], None],
     ended: Callable[[P, R], None],
 ) -> None:
-    """Call ``fly(plan, stop)`` for each of ``plans``, ``jobs`` at a time; an interrupt ends all.
+    """Call ``fly(plan, worker)`` for each of ``plans``, ``jobs`` at a time; an interrupt ends all.
 
-    ``fly`` returns None if ``stop`` was set before the flight ended. Both callbacks are called in the caller's thread.
+    ``fly`` has the worker for itself, and returns None if ``worker.stop`` was set before the flight ended. Both
+    callbacks are called in the caller's thread.
     """
     waiting = list(plans)
     stop = threading.Event()
-    flying: dict[Future[R | None], P] = {}
-    with ThreadPoolExecutor(jobs) as pool:
+    flying: dict[Future[R | None], tuple[P, FlightWorker]] = {}
+    with ExitStack() as resources:
+        idle = [resources.enter_context(FlightWorker(stop)) for _ in range(min(jobs, len(waiting)))]
+        pool = resources.enter_context(ThreadPoolExecutor(jobs))
         try:
             while waiting or flying:
-                while waiting and len(flying) < jobs:
-                    plan = waiting.pop(0)
-                    flying[pool.submit(fly, plan, stop)] = plan
+                while waiting and idle:
+                    plan, worker = waiting.pop(0), idle.pop()
+                    flying[pool.submit(fly, plan, worker)] = plan, worker
                     started(plan)
                 finished, _ = wait(flying, timeout=1.0, return_when=FIRST_COMPLETED)
                 for future in finished:
-                    plan = flying.pop(future)
+                    plan, worker = flying.pop(future)
+                    idle.append(worker)
                     if (result := future.result()) is not None:
                         ended(plan, result)
         finally:

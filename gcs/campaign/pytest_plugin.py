@@ -40,7 +40,8 @@ def fly_with_faults(request: pytest.FixtureRequest) -> Generator[FaultFlights, N
     shutil.rmtree(folder, ignore_errors=True)  # of an earlier run of the same test
     flights = FaultFlights(folder, beside=node.path.parent, shown_from=here)
     node.stash[_FLIGHTS] = flights
-    yield flights
+    with contextlib.closing(flights):
+        yield flights
     if not node.stash.get(_FAILED, False):
         shutil.rmtree(folder, ignore_errors=True)
         with contextlib.suppress(OSError):  # others have failed

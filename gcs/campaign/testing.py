@@ -1,7 +1,6 @@
 """Flights with faults in tests: the fixture ``fly_with_faults`` (:mod:`gcs.campaign.pytest_plugin`)."""
 
 import dataclasses
-import threading
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,6 +9,7 @@ from typing import Any, overload
 from gcs.campaign.engine import replay_command
 from gcs.campaign.faults.base_mission import read_base
 from gcs.campaign.faults.judgement import limits_not_held, verdict
+from gcs.campaign.flight_worker import FlightWorker
 from gcs.campaign.folder import plain, write_text
 from gcs.campaign.process_pool import FlownProcess, fly_process
 from gcs.errors import GcsError
@@ -78,7 +78,7 @@ class FlownWithFaults:
 
 
 class FaultFlights:
-    """Flies missions with faults in lockstep; missions and run folders are in ``folder``.
+    """Flies missions with faults in lockstep, to be closed in the end; missions and run folders are in ``folder``.
 
     ``beside``: where missions are looked for first; then in the current folder.
     """
@@ -89,6 +89,11 @@ class FaultFlights:
         self.log: list[str] = []
         """Verdict, run folder and replay command of every flight."""
         self._count = 0
+        self._worker = FlightWorker()
+
+    def close(self) -> None:
+        """End the process that flies."""
+        self._worker.close()
 
     @overload
     def __call__(
@@ -134,7 +139,7 @@ class FaultFlights:
     def _flown(self, path: Path, seed: int, controller: str) -> FlownWithFaults:
         options, run_dir = ("--controller", controller), path.with_suffix("")
         replay = replay_command(self._shown(path), options)
-        process = fly_process(path, options, run_dir, threading.Event()) or FlownProcess(1, {}, "", 0.0)
+        process = fly_process(path, options, run_dir, self._worker) or FlownProcess(1, {}, "", 0.0)
         if not process.summary:
             self.log.append(f"seed {seed}: not flown\n  {replay}")
             raise GcsError(f"{self._shown(path)}: not flown: {process.reason}")

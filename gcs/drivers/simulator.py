@@ -3,37 +3,32 @@
 from __future__ import annotations
 
 import re
-import subprocess
-import sys
 from collections.abc import Sequence
 from types import TracebackType
 
+from gcs.drivers.forked_program import ForkedProgram
 from gcs.drivers.settings import DriverSettings
 from gcs.errors import GcsError
 from gcs.mavlink.address import Address
 
+PROGRAM = "vehicle_sim"
 _LINE = re.compile(r"^(?P<who>clock|vehicle \d+): udp://(?P<host>[^:]+):(?P<port>\d+)$")
 
 
 class Simulator:
-    """A running ``vehicle-sim``; a context manager that ends it."""
+    """A running ``vehicle-sim``; a context manager that ends it.
 
-    def __init__(self, arguments: Sequence[str], settings: DriverSettings) -> None:
+    It has a session of its own: Ctrl-C at the terminal is for the ground, which lands the vehicles first.
+    """
+
+    def __init__(self, program: ForkedProgram, arguments: Sequence[str], settings: DriverSettings) -> None:
         """Start it and read where it listens. Raises :class:`GcsError` with its error output when it does not start."""
         self._settings = settings
-        # A session of its own: Ctrl-C at the terminal is for the ground, which lands the vehicles first.
-        self._process = subprocess.Popen(
-            [sys.executable, "-m", "vehicle_sim", "--with-parent", *arguments],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            start_new_session=True,
-        )
+        self._program = program
+        self._process = program.process
         self.clock_address: Address | None = None
         self.vehicles: list[Address] = []
-        assert self._process.stdout is not None
-        for line in self._process.stdout:
+        for line in program.begin(["--with-parent", *arguments]):
             if line.strip() == "ready":
                 return
             if match := _LINE.match(line.strip()):
@@ -42,14 +37,13 @@ class Simulator:
                     self.clock_address = address
                 else:
                     self.vehicles.append(address)
-        assert self._process.stderr is not None
-        error = self._process.stderr.read().strip()
-        self._process.wait()
+        self._process.join()
+        error = program.errors().strip()
         raise GcsError(f"vehicle-sim did not start: {error.splitlines()[-1] if error else 'no error output'}")
 
     def end_reason(self) -> str | None:
         """Return how it ended; None while it runs."""
-        code = self._process.poll()
+        code = self._process.exitcode
         if code is None:
             return None
         how = f"was killed by signal {-code}" if code < 0 else f"ended with exit code {code}"
@@ -58,13 +52,13 @@ class Simulator:
     def close(self) -> None:
         """Let it end, and wait until its records are closed: without its parent's pipe it lands what is in the air."""
         s = self._settings
+        self._program.end_input()
         for timeout, stop in ((s.landing_timeout, self._process.terminate), (s.end_timeout, self._process.kill)):
-            try:
-                self._process.communicate(timeout=timeout)
+            self._process.join(timeout)
+            if self._process.exitcode is not None:
                 return
-            except subprocess.TimeoutExpired:
-                stop()
-        self._process.communicate()
+            stop()
+        self._process.join()
 
     def __enter__(self) -> Simulator:
         return self

@@ -11,7 +11,8 @@ from typing import Any
 
 from threadpoolctl import threadpool_limits
 
-from gcs.campaign.process_pool import POLL, all_cores, fly_process, run_parallel
+from gcs.campaign.flight_worker import POLL, FlightWorker
+from gcs.campaign.process_pool import all_cores, fly_process, run_parallel
 from gcs.errors import GcsError
 from gcs.reproduce.plan import Plan
 from gcs.reproduce.simulation import Case, Flown, simulate
@@ -33,16 +34,16 @@ def run(plan: Plan, missions: Path, out: Path, jobs: int | None, done: Callable[
     """
     results, jobs = Results({name: out / "flights" / name for name in plan.flights}), jobs or all_cores()
 
-    def carry_out(task: tuple[str, str], stop: threading.Event) -> str | None:
+    def carry_out(task: tuple[str, str], worker: FlightWorker) -> str | None:
         section, name = task
         if task in plan.cases:
-            simulated = _simulated(plan.cases[task], processes, stop)
+            simulated = _simulated(plan.cases[task], processes, worker.stop)
             if simulated is None:
                 return None
             results.simulations[task] = simulated
         else:
             mission, controller = missions / plan.flights[name][0], plan.flights[name][1]
-            flown = fly_process(mission, ("--controller", controller), results.folders[name], stop)
+            flown = fly_process(mission, ("--controller", controller), results.folders[name], worker)
             if flown is None:
                 return None
             if not flown.summary:

@@ -46,8 +46,8 @@ def flown(mission, folder, count, jobs):
     """Fly ``count`` times; return simulated time per wall time, and the CPU time of one flight (s)."""
     durations = []
 
-    def flight(seed, stop):
-        return fly_process(mission, ("--seed", str(seed)), folder / f"flight-{jobs}-{seed}", stop)
+    def flight(seed, worker):
+        return fly_process(mission, ("--seed", str(seed)), folder / f"flight-{jobs}-{seed}", worker)
 
     def ended(_, process):
         if process.exit_code:

@@ -2,6 +2,7 @@
 
 import argparse
 import json
+from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
 
@@ -55,6 +56,8 @@ def run(arguments: argparse.Namespace) -> int:
     from gcs.app.fly import FlyOptions, fly, prepare
     from gcs.app.progress import FlightProgress
     from gcs.campaign.process_pool import BROKEN_OFF, end_with_parent
+    from gcs.drivers.forked_program import ForkedProgram
+    from gcs.drivers.simulator import PROGRAM
     from gcs.mavlink.address import parse_url
     from gcs.record.summary_table import summary_table
 
@@ -69,13 +72,16 @@ def run(arguments: argparse.Namespace) -> int:
         controller=arguments.controller,
         connect=tuple(parse_url(url) for url in arguments.connect),
     )
-    if arguments.with_parent:
-        end_with_parent()
     mission = prepare(options)
     # With --json standard output is the summary and nothing else.
     console = Console(stderr=arguments.json, highlight=False)
-    with FlightProgress(console) as progress:
-        result = fly(options, mission, progress.update)
+    with ExitStack() as started:
+        # Before there are threads: those of the progress line and of the parent's end.
+        vehicle_sim = None if options.connect else started.enter_context(ForkedProgram(PROGRAM))
+        if arguments.with_parent:
+            end_with_parent()
+        progress = started.enter_context(FlightProgress(console))
+        result = fly(options, mission, progress.update, vehicle_sim)
     pictures: list[Path] = []
     if result.flown and not arguments.no_pictures:
         from gcs.record.figures import report
