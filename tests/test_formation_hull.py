@@ -5,6 +5,7 @@ import pytest
 import trimesh
 from avoidance_scene import hull_of
 from paper_system import system
+from plain_barrier import disc_support
 from plain_flatness import flat_forces
 from proxsuite import proxqp
 
@@ -100,7 +101,7 @@ def test_discs_and_payload_supports_bound_the_exact_hull(n):
     lever = formation.levers(a)[:, 0]
     computed = np.maximum(
         formation.payload.support(normals),
-        formation.disc_support(normals, a) + lever * np.sum(normals[:, :2] * a[:, :2], axis=1),
+        disc_support(formation, normals, a) + lever * np.sum(normals[:, :2] * a[:, :2], axis=1),
     )
     true = np.einsum("kpi,ki->kp", exact, normals).max(axis=1)
     tilt = np.hypot(a[:, 0], a[:, 1]) / (parameters.g - a[:, 2])

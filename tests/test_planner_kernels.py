@@ -2,7 +2,13 @@
 
 import numpy as np
 import pytest
+from paper_system import system
+from plain_barrier import disc_support
 
+from idc_controller.geometry.box import Box, Wall
+from idc_controller.geometry.formation import Formation
+from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.sphere import Sphere
 from idc_controller.safety import planner_kernels as kernels
 from idc_controller.safety.constraints.exponential_barrier import barrier_operator
 from idc_controller.safety.settings import PlannerSettings
@@ -75,3 +81,37 @@ def test_rows_are_the_change_of_the_barrier_with_the_knots(rates):
     G = kernels.barrier_rows(normals, lever, CHAIN.response[1], operator, len(rates))
     assert G.shape == (2 * K * separations, 3 * knots)
     np.testing.assert_allclose(barrier(np.zeros_like(z)) - barrier(z), G @ z, atol=1e-9)
+
+
+@pytest.mark.parametrize("n", [3, 8])
+def test_points_of_the_hull_are_those_of_the_formation(n):
+    formation = Formation(system(n))
+    acceleration = np.random.default_rng(n).normal(size=(9, 3)) * [2.0, 2.0, 9.0]
+    points = kernels.hull_points(
+        formation.corners, formation.rims, formation.hover_offsets, formation.lengths, formation.g, acceleration
+    )
+    np.testing.assert_array_equal(points, formation.hull_points(acceleration))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_planes_are_those_of_the_supports_of_payload_discs_and_obstacles(seed):
+    formation, rng = Formation(system(3 + seed)), np.random.default_rng(seed)
+    box = Box(roll=0.3, pitch=-0.5, yaw=1.0, size=(0.4, 1.0, 3.0))
+    shapes = [Sphere(0.5), Pole(0.3, 6.0), Wall((0.3, 4.0, 5.0), yaw=0.4), box, box]
+    given = len(shapes) - 1  # the support of the last is given, as that of a mesh
+    normals = rng.normal(size=(len(shapes), K + 1, 3))
+    normals /= np.linalg.norm(normals, axis=2, keepdims=True)
+    centres, growth = rng.normal(size=normals.shape) * 5.0, rng.uniform(0.0, 0.5, normals.shape[:2])
+    acceleration = rng.normal(size=(K + 1, 3))
+    bodies, supports = np.array([shape.row for shape in shapes]), np.zeros_like(growth)
+    bodies[given], supports[given] = 0.0, box.support(-normals[given])
+    payload, discs, lever = kernels.barrier_planes(
+        normals, centres, growth, bodies, supports, formation.payload.vertices.copy(), formation.hover_offsets,
+        formation.lengths, formation.disc_radius, formation.g, 0.3, 0.02, acceleration,
+    )  # fmt: skip
+    np.testing.assert_array_equal(lever, formation.levers(acceleration)[:, 0])
+    for j, shape in enumerate(shapes):
+        surface = np.sum(normals[j] * centres[j], axis=1) - shape.support(-normals[j]) - growth[j] - 0.3
+        np.testing.assert_allclose(payload[j], surface - formation.payload.support(normals[j]), atol=1e-12)
+        reach = disc_support(formation, normals[j], acceleration)
+        np.testing.assert_allclose(discs[j], surface - 0.02 - reach, atol=1e-12)

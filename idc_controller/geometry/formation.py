@@ -64,11 +64,11 @@ class Formation:
         self.g = parameters.g
         self.payload = parameters.payload
         self.disc_radius = parameters.disc_radius
-        self.lengths = parameters.l
+        self.lengths = parameters.l.copy()
         self.hover_offsets = parameters.p - np.outer(parameters.l, [0.0, 0.0, 1.0])
         """UAVs from the payload's centre in hover (N, 3) (m)."""
         vertices, bounds = self.payload.vertices, self.payload.bounds
-        self.corners = vertices if len(vertices) <= _MOST_CORNERS else np.array(list(product(*bounds.T)))
+        self.corners = np.array(vertices if len(vertices) <= _MOST_CORNERS else list(product(*bounds.T)))
         """Points about the payload's centre whose hull holds the payload: of one with many corners, its box (C, 3)."""
         n = parameters.number_of_uavs
         # The rims' outward points alone can lie on the hull.
@@ -76,7 +76,8 @@ class Formation:
         bearing = np.arctan2(parameters.p[:, 1], parameters.p[:, 0])
         spread = np.linspace(-np.pi / 2, np.pi / 2, rim) if rim > 1 else np.zeros(1)
         angle = bearing[:, None] + spread
-        self._rim = self.disc_radius * np.stack([np.cos(angle), np.sin(angle), np.zeros_like(angle)], axis=-1)
+        self.rims = self.disc_radius * np.stack([np.cos(angle), np.sin(angle), np.zeros_like(angle)], axis=-1)
+        """Points on the rims of the discs about their centres (N, R, 3) (m)."""
         # The facets of the hull in hover give the distance library the neighbours of each point; the shear of an
         # accelerated flight hardly changes them.
         self._hull: coal.Convex | None = None
@@ -96,14 +97,14 @@ class Formation:
 
     def hull_points(self, acceleration: Array) -> Array:
         """Points about the payload's centre whose hull is the formation (K, P, 3) (m), rims coarsely."""
-        discs = self.uav_offsets(acceleration)[:, :, None, :] + self._rim
+        discs = self.uav_offsets(acceleration)[:, :, None, :] + self.rims
         K = len(acceleration)
         corners = np.repeat(self.corners[None], K, axis=0)
         return np.concatenate([corners, discs.reshape(K, -1, 3)], axis=1)
 
     def points_in_world(self, position: Array, quaternion: Array, uav_position: Array, uav_quaternion: Array) -> Array:
         """Return :func:`formation_points` of this formation, rims coarsely."""
-        return formation_points(self.corners, self._rim, position, quaternion, uav_position, uav_quaternion)
+        return formation_points(self.corners, self.rims, position, quaternion, uav_position, uav_quaternion)
 
     def hull(self, points: Array) -> coal.ShapeBase:
         """The hull of ``points`` (P, 3) for distance queries, until the next call."""
@@ -114,19 +115,6 @@ class Formation:
         # Its vertices are moved: to make it anew takes ten times as long.
         self._hull.points()[:] = points
         return self._hull
-
-    def disc_support(self, normals: Array, acceleration: Array) -> Array:
-        """Largest ``n . x`` over the discs about the payload's centre without their lever's part (K,).
-
-        The discs lie in the rotor planes, which in flight are about normal to g e3 - a; a little is added for what the
-        planes do beyond that.
-        """
-        thrust = acceleration - np.array([0.0, 0.0, self.g])
-        axis = thrust / np.linalg.norm(thrust, axis=1, keepdims=True)
-        along = np.sum(normals * axis, axis=1)
-        flat = np.sqrt(np.maximum(1.0 - along**2, 0.0)) + 0.1
-        support = np.max(normals @ self.hover_offsets.T, axis=1) + self.disc_radius * np.minimum(flat, 1.0)
-        return np.asarray(support)
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,37 @@ from idc_controller.compiled import kernel
 
 
 @kernel(
+    "float64[:, :, ::1](float64[:, ::1], float64[:, :, ::1], float64[:, ::1], float64[::1], float64, float64[:, ::1])"
+)
+def hull_points(
+    corners: Array, rims: Array, hover_offsets: Array, lengths: Array, g: float, acceleration: Array
+) -> Array:
+    """Return what :meth:`~idc_controller.geometry.formation.Formation.hull_points` does (K, C + N R, 3) (m).
+
+    Args:
+        corners: of the payload about its centre (C, 3) (m).
+        rims: points on the rims of the discs about their centres (N, R, 3) (m).
+        hover_offsets: UAVs from the payload's centre in hover (N, 3) (m).
+        lengths: of the links (N,) (m).
+        g: gravity (m/s2).
+        acceleration: of the payload (K, 3).
+    """
+    number, rim = rims.shape[0], rims.shape[1]
+    points = np.empty((len(acceleration), len(corners) + number * rim, 3))
+    for k in range(len(acceleration)):
+        points[k, : len(corners)] = corners
+        for i in range(number):
+            lever = lengths[i] / max(g - acceleration[k, 2], 0.2 * g)
+            for axis in range(3):
+                offset = hover_offsets[i, axis]
+                if axis < 2:
+                    offset += lever * acceleration[k, axis]
+                for r in range(rim):
+                    points[k, len(corners) + i * rim + r, axis] = offset + rims[i, r, axis]
+    return points
+
+
+@kernel(
     "Tuple((int64[::1], float64[:, ::1], float64[:, :, ::1], float64[:, :, ::1]))"
     "(float64[:, :, ::1], float64[:, ::1], float64[:, :, ::1], float64[:, ::1], float64[::1], boolean[::1], float64)"
 )
@@ -76,6 +107,72 @@ def within_reach(
                 normals[j, k, 2] = 0.0
             away[j, k] -= (level[k] if upright[i] else whole[k]) + reach[i]
     return found[:count].copy(), away[:count].copy(), offsets, normals
+
+
+@kernel(
+    "Tuple((float64[:, ::1], float64[:, ::1], float64[::1]))(float64[:, :, ::1], float64[:, :, ::1], float64[:, ::1],"
+    " float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[::1], float64, float64, float64,"
+    " float64, float64[:, ::1])"
+)
+def barrier_planes(
+    normals: Array,
+    centres: Array,
+    growth: Array,
+    bodies: Array,
+    supports: Array,
+    vertices: Array,
+    hover_offsets: Array,
+    lengths: Array,
+    disc_radius: float,
+    g: float,
+    margin: float,
+    uav_margin: float,
+    acceleration: Array,
+) -> tuple[Array, Array, Array]:
+    """Return the constants of h of payload and discs (S, K + 1) (m) and the lever of the discs (K + 1,) (s2).
+
+    Args:
+        normals: unit vectors from hull to obstacle of S separations (S, K + 1, 3).
+        centres: of the obstacles (S, K + 1, 3) (m).
+        growth: of the obstacles (S, K + 1) (m).
+        bodies: obstacles that are rounded boxes (S, 14), see :mod:`idc_controller.geometry.distance_kernels`.
+        supports: of all others: the largest ``-normal . y`` over the body (S, K + 1) (m); of rounded boxes zero.
+        vertices: of the payload (V, 3) (m).
+        hover_offsets: UAVs from the payload's centre in hover (N, 3) (m).
+        lengths: of the links (N,) (m).
+        disc_radius: (m).
+        g: gravity (m/s2).
+        margin: between payload and obstacle (m).
+        uav_margin: what the discs have to keep beyond it (m).
+        acceleration: of the payload (K + 1, 3).
+    """
+    number, stages = growth.shape
+    payload, discs, lever = np.empty((number, stages)), np.empty((number, stages)), np.empty(stages)
+    for k in range(stages):
+        lever[k] = lengths[0] / max(g - acceleration[k, 2], 0.2 * g)
+        # The discs lie about normal to the thrust; a little is added for what they do beyond that.
+        north, east, down = acceleration[k, 0], acceleration[k, 1], acceleration[k, 2] - g
+        thrust = math.sqrt(north * north + east * east + down * down)
+        for j in range(number):
+            x, y, z = normals[j, k, 0], normals[j, k, 1], normals[j, k, 2]
+            u = bodies[j, 5] * x + bodies[j, 8] * y + bodies[j, 11] * z
+            v = bodies[j, 6] * x + bodies[j, 9] * y + bodies[j, 12] * z
+            w = bodies[j, 7] * x + bodies[j, 10] * y + bodies[j, 13] * z
+            support = bodies[j, 0] * abs(u) + bodies[j, 1] * abs(v) + bodies[j, 2] * abs(w)
+            support += bodies[j, 3] * math.sqrt(u * u + v * v) + bodies[j, 4] + supports[j, k]
+            along = x * centres[j, k, 0] + y * centres[j, k, 1] + z * centres[j, k, 2]
+            surface = along - support - growth[j, k] - margin
+            reach = -math.inf
+            for corner in vertices:
+                reach = max(reach, x * corner[0] + y * corner[1] + z * corner[2])
+            payload[j, k] = surface - reach
+            reach = -math.inf
+            for offset in hover_offsets:
+                reach = max(reach, x * offset[0] + y * offset[1] + z * offset[2])
+            across = (x * north + y * east + z * down) / thrust
+            flat = math.sqrt(max(1.0 - across * across, 0.0)) + 0.1
+            discs[j, k] = surface - uav_margin - (reach + disc_radius * min(flat, 1.0))
+    return payload, discs, lever
 
 
 @kernel(

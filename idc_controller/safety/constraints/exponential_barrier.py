@@ -19,7 +19,7 @@ import numpy as np
 from idc_controller.arrays import Array
 from idc_controller.geometry.formation import Formation
 from idc_controller.safety.constraints.constraint import Penalty, PlanningStep
-from idc_controller.safety.planner_kernels import barrier_rows, barrier_values
+from idc_controller.safety.planner_kernels import barrier_planes, barrier_rows, barrier_values
 from idc_controller.safety.separation import Separation
 from idc_controller.safety.settings import PlannerSettings
 from idc_controller.trajectory.integrator_chain import Chain
@@ -33,6 +33,7 @@ class ExponentialBarrier:
         self.penalty = Penalty(settings.slack_linear, settings.slack_quadratic)
         chain = settings.chain
         self._response = chain.response[1]
+        self._vertices, self._lengths = formation.payload.vertices.copy(), formation.lengths.copy()
         self.operator = barrier_operator(settings.barrier_rates, chain)
         self._degree = len(settings.barrier_rates)
         fading = np.exp(-np.arange(chain.stages + 1) * chain.period / settings.slack_time_constant)
@@ -69,18 +70,21 @@ class ExponentialBarrier:
 
     def _planes(self, separations: Sequence[Separation], acceleration: Array) -> _Planes:
         """Return the planes of ``separations`` for a hull under ``acceleration`` (K + 1, 3)."""
-        s, stages = self.settings, len(acceleration)
+        s, f = self.settings, self.formation
         normals = np.array([separation.normals for separation in separations])
-        surface = np.array([_surface(separation) for separation in separations]) - (s.margin + s.tracking)
-        directions = normals.reshape(-1, 3)
-        payload = self.formation.payload.support(directions)
-        discs = self.formation.disc_support(directions, np.tile(acceleration, (len(separations), 1)))
-        return _Planes(
-            normals,
-            surface - payload.reshape(-1, stages),
-            surface - s.uav_tracking - discs.reshape(-1, stages),
-            np.ascontiguousarray(self.formation.levers(acceleration)[:, 0]),
-        )
+        obstacles = [separation.obstacle for separation in separations]
+        growth = np.array([obstacle.growth for obstacle in obstacles])
+        supports = np.zeros_like(growth)
+        for support, obstacle, outward in zip(supports, obstacles, normals, strict=True):
+            if obstacle.shape.rounded_box is None:
+                support[:] = obstacle.shape.support(-outward)
+        planes = barrier_planes(
+            normals, np.array([obstacle.positions for obstacle in obstacles]), growth,
+            np.array([obstacle.shape.row for obstacle in obstacles]), supports, self._vertices, f.hover_offsets,
+            self._lengths, f.disc_radius, f.g, s.margin + s.tracking, s.uav_tracking,
+            np.ascontiguousarray(acceleration),
+        )  # fmt: skip
+        return _Planes(normals, *planes)
 
 
 class _Planes(NamedTuple):
@@ -94,13 +98,6 @@ class _Planes(NamedTuple):
     """(O, K + 1) (m)"""
     lever: Array
     """Of the discs, by the payload's level acceleration (K + 1,) (s2)."""
-
-
-def _surface(separation: Separation) -> Array:
-    """Return where the obstacle's surface with its growth is along the normals (K + 1,) (m)."""
-    n, obstacle = separation.normals, separation.obstacle
-    along = np.einsum("ka,ka->k", n, obstacle.positions)
-    return np.asarray(along - obstacle.shape.support(-n) - obstacle.growth)
 
 
 def barrier_operator(rates: Sequence[float], chain: Chain) -> Array:
