@@ -1,11 +1,13 @@
 """Dead reckoning: positions that contradict their own velocities, attitudes their rates."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from idc_controller.estimation.health.dead_reckoning import DeadReckoning
 from idc_controller.estimation.health.dead_reckoning_kernels import drift_ratio, integrate
-from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position, SensorGroup
+from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position, SampleStack, SensorGroup
 from idc_controller.estimation.settings import DeadReckoningSettings
 from idc_controller.rotations import quaternion_from_euler, quaternion_product
 
@@ -14,6 +16,13 @@ WINDOW = DeadReckoningSettings().window
 INTERVAL = 0.04  # s
 NOISE = 0.02  # m and m/s
 POSITIONS = SensorGroup(of_payload=False, kind=Position)
+
+
+def add(reckoning, *samples):
+    """Add measurements of one moment."""
+    sources, is_position = np.array([s.source for s in samples]), np.array([isinstance(s, Position) for s in samples])
+    values = np.concatenate([part for sample in samples for part in (sample.pose, sample.motion)])
+    reckoning.add(SampleStack(np.array([sample.time for sample in samples]), sources, is_position, values))
 
 
 def path(t):
@@ -38,7 +47,7 @@ def inconsistent_after(duration, spoil, seed=1, begin=5.0, group=POSITIONS):
             velocity = velocity + NOISE * rng.standard_normal(3)
             if t >= begin:
                 position, velocity = spoil(source, t - begin, position, velocity, rng)
-            reckoning.add(Position(t, source, position, velocity))
+            add(reckoning, Position(t, source, position, velocity))
         if reckoning.inconsistent_groups:
             assert reckoning.inconsistent_groups == (group,)
             return t - begin
@@ -117,7 +126,7 @@ def attitude_inconsistent_after(duration, bias, jump=0.0, begin=5.0, seed=1):
         rates = np.array([0.3 * np.sin(t), 0.2 * np.cos(1.3 * t), 0.1])
         is_off = t >= begin
         noisy = quaternion_product(q, quaternion_from_euler(*(rng.normal(0.0, 0.0035, 3) + is_off * jump * NORTH)))
-        reckoning.add(Attitude(t, PAYLOAD, noisy, rates + rng.normal(0.0, 0.008, 3) + is_off * bias))
+        add(reckoning, Attitude(t, PAYLOAD, noisy, rates + rng.normal(0.0, 0.008, 3) + is_off * bias))
         for _ in range(10):
             q = quaternion_product(q, np.append(1.0, 0.05 * INTERVAL * rates))
         if reckoning.inconsistent_groups:
@@ -138,7 +147,7 @@ def test_positions_are_consistent_across_a_gap():
     for k in range(400):
         if k % 100 < 80:
             for source in (PAYLOAD, *range(VEHICLES)):
-                reckoning.add(Position(k * INTERVAL, source, *path(k * INTERVAL)))
+                add(reckoning, Position(k * INTERVAL, source, *path(k * INTERVAL)))
         assert not reckoning.inconsistent_groups
 
 
@@ -151,7 +160,7 @@ def test_repeated_sample_counts_once():
             p, v = path(t)
             sample = p + rng.normal(0.0, 0.02, 3), v + rng.normal(0.0, 0.008, 3)
             for late in (0.0, 0.006) if source == PAYLOAD else (0.0,):
-                reckoning.add(Position(t + late, source, *sample))
+                add(reckoning, Position(t + late, source, *sample))
         assert not reckoning.inconsistent_groups
 
 
@@ -192,3 +201,77 @@ def test_compiled_integral_equals_plain_one(is_position):
             expected = 2.0 * np.copysign(1.0, rest[0]) * rest[1:]
         assert integral == pytest.approx(plain, rel=1e-13, abs=1e-14)
         assert difference == pytest.approx(expected, rel=1e-12, abs=1e-13)
+
+
+class PlainCheck:
+    """Pose of one source less its integrated motion, one sample after the other."""
+
+    def __init__(self, settings, first):
+        self.settings, self.is_position = settings, isinstance(first, Position)
+        self.integral = np.zeros(3) if self.is_position else first.pose.copy()
+        self.motion, self.recent, self.window, self.untested, self.ratio, self.failed = np.zeros(3), [], [], 0, 0.0, 0
+
+    def add(self, sample):
+        s, recent = self.settings, self.recent
+        if recent and (sample.time <= recent[-1].time or sample.same_values(recent[-1])):
+            return
+        if recent and sample.time - recent[-1].time > s.gap:
+            self.recent, self.window = recent, _ = [], []
+        recent.append(sample)
+        del recent[: -s.smoothed]
+        if len(recent) == s.smoothed:
+            before, middle = recent[s.smoothed // 2 - 1], recent[s.smoothed // 2]
+            duration, difference = middle.time - before.time if self.window else 0.0, np.empty(3)
+            motions = np.array([near.motion for near in recent])
+            integrate(motions, self.motion, self.integral, duration, middle.pose, difference)
+            self.window.append([middle.time, *difference])
+        self.window = [row for row in self.window if row[0] >= sample.time - s.window]
+        self.untested += 1
+        if self.untested >= s.samples // 2:
+            error = s.position_error if self.is_position else s.attitude_error
+            filled = len(self.window) > 2 * s.samples
+            self.ratio = drift_ratio(np.array(self.window), s.samples, error, s.sigmas) if filled else 0.0
+            self.failed, self.untested = self.failed + 1 if self.ratio > 1.0 else 0, 0
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_all_sources_at_once_equal_one_after_the_other(seed):
+    rng, settings, checks = np.random.default_rng(seed), replace(DeadReckoningSettings(), window=13.0), {}
+    reckoning, before, was_inconsistent = DeadReckoning(VEHICLES, settings), {}, 0
+    for k in range(1200):
+        t, samples = k * INTERVAL + (k > 700) * 0.5, []
+        for source in (PAYLOAD, *range(VEHICLES)):
+            p, v = path(t)
+            drift = 0.1 * t * NORTH * (source % 2)
+            position = Position(t, source, p + drift + rng.normal(0.0, 0.02, 3), v + rng.normal(0.0, 0.02, 3))
+            turn = quaternion_from_euler(*rng.normal(0.0, 0.003, 3))
+            samples += [position, Attitude(t, source, turn, rng.normal(0.0, 0.008, 3))]
+        for j, sample in enumerate(samples):
+            chance = rng.random()
+            if chance < 0.05:
+                samples[j] = sample.without(pose=chance < 0.02, motion=chance > 0.01)
+            elif chance < 0.1:
+                samples[j] = replace(sample, time=t - 2.0 * INTERVAL)
+            elif chance < 0.15:
+                samples[j] = before.get(j, sample)
+        before = dict(enumerate(samples))
+        samples = [sample for sample in samples if rng.random() < 0.95]
+        add(reckoning, *samples)
+        for s in samples:
+            if s.has_pose and s.has_motion and (s.source == PAYLOAD or isinstance(s, Position)):
+                checks.setdefault((s.source, type(s)), PlainCheck(settings, s)).add(s)
+        uavs = [checks[i, Position] for i in range(VEHICLES) if (i, Position) in checks]
+        for i in range(VEHICLES):
+            assert reckoning.is_inconsistent(i) == ((i, Position) in checks and checks[i, Position].ratio > 1.0)
+        position, attitude, groups = checks.get((PAYLOAD, Position)), checks.get((PAYLOAD, Attitude)), []
+        consistent, failing = settings.consistent_ratio, settings.consecutive
+        if position and position.ratio <= consistent and 2 * sum(c.ratio > 1.0 for c in uavs) > VEHICLES:
+            groups.append(POSITIONS)
+        agreeing = sum(c.ratio <= consistent for c in uavs)
+        if position and position.failed >= failing and 2 * agreeing > VEHICLES:
+            groups.append(SensorGroup(True, Position))
+        if attitude and attitude.failed >= failing:
+            groups.append(SensorGroup(True, Attitude))
+        assert reckoning.inconsistent_groups == tuple(groups)
+        was_inconsistent += sum(reckoning.is_inconsistent(i) for i in range(VEHICLES))
+    assert 100 < was_inconsistent < 2500

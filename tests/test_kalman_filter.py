@@ -246,7 +246,7 @@ def test_compiled_measured_less_reference_equals_plain_one(vehicles):
     samples[-1] = samples[-1].without(pose=True, motion=False)
     expected[-2] = np.full(3, np.nan)
     observation = model.observation(tuple((sample.source, type(sample)) for sample in samples))
-    y = model.less_reference(observation, samples, flat, 1)
+    y = model.less_reference(observation, observation.samples(samples), flat, 1)
     assert y == pytest.approx(np.concatenate(expected), rel=1e-12, abs=1e-12, nan_ok=True)
 
 

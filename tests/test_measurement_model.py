@@ -33,7 +33,9 @@ def test_estimated_vehicles_match_measurement_model():
     for measurement in model.vehicles(0.0, moved):
         observation = model.observation(((measurement.source, type(measurement)),))
         expected = observation.rows.dense(LAYOUT.size) @ (moved - flat.x[0])
-        assert model.less_reference(observation, [measurement], flat, 0) == pytest.approx(expected, abs=2e-3)
+        assert model.less_reference(observation, observation.samples([measurement]), flat, 0) == pytest.approx(
+            expected, abs=2e-3
+        )
 
 
 def vehicle_states_in_arrays(x, layout, p, l):

@@ -10,7 +10,15 @@ import numpy as np
 
 from idc_controller.arrays import Array, Indices, Mask
 from idc_controller.estimation.kalman_filter import SparseRows
-from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, MeasurementNoise, Position, SensorKey
+from idc_controller.estimation.measurements import (
+    PAYLOAD,
+    Attitude,
+    Measurement,
+    MeasurementNoise,
+    Position,
+    SampleStack,
+    SensorKey,
+)
 from idc_controller.estimation.settings import MeasurementModelSettings
 from idc_controller.estimation.update_kernels import measured_less_reference
 from idc_controller.estimation.vehicle_kernels import vehicle_states
@@ -69,6 +77,11 @@ class Observation:
     """UAVs whose position is observed (P,)."""
     heights: Indices
     """Rows of their heights (P,); those of the vertical velocities are three below."""
+
+    def samples(self, measurements: Sequence[Measurement]) -> SampleStack:
+        """Return these measurements (K), one after the other."""
+        values = np.concatenate([part for sample in measurements for part in (sample.pose, sample.motion)])
+        return SampleStack(np.array([sample.time for sample in measurements]), self.sources, self.is_position, values)
 
 
 class MeasurementModel:
@@ -140,14 +153,11 @@ class MeasurementModel:
         coefficients[observation.heights, -2:] = coefficients[observation.heights + 3, -2:] = slope
         return SparseRows(columns, coefficients)
 
-    def less_reference(
-        self, observation: Observation, measurements: Sequence[Measurement], reference: FlatReference, k: int
-    ) -> Array:
+    def less_reference(self, observation: Observation, samples: SampleStack, reference: FlatReference, k: int) -> Array:
         """Return measured less reference (m,) at the reference's time ``k``; nan where nothing was measured."""
-        values = np.concatenate([part for sample in measurements for part in (sample.pose, sample.motion)])
         links, p = reference.links, self.parameters
         return measured_less_reference(
-            values, observation.sources, observation.is_position, len(observation.stack.variance),
+            samples.values, samples.sources, samples.is_position, len(observation.stack.variance),
             reference.x, reference.payload, links.q[k], links.q_dot[k], k, p.p, p.l,
         )  # fmt: skip
 

@@ -39,11 +39,13 @@ class MeasurementUpdate:
         if is_lost:
             self._restart(filter)
         measurements = [median_of(copies) for copies in moment.measurements.values()]
-        for measurement in measurements:
-            health.dead_reckoning.add(measurement)
         observation = model.observation(tuple(moment.measurements))
         whole, rows = observation.stack, model.rows(observation, flat, k)
-        y = model.less_reference(observation, [health.usable(measurement) for measurement in measurements], flat, k)
+        samples = observation.samples(measurements)
+        health.dead_reckoning.add(samples)
+        if health.isolated_groups:
+            samples = observation.samples([health.usable(measurement) for measurement in measurements])
+        y = model.less_reference(observation, samples, flat, k)
         innovation = filter.innovation(y, rows)
         present = health.usable_rows(whole, innovation)
         if not present.any():

@@ -10,13 +10,13 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Indices, Mask
 
 PAYLOAD = -1
 """``source`` of measurements of the payload's navigation unit; UAVs are 0 .. N-1."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False, slots=True)  # not frozen: its __init__ would take three times as long
 class _Sample:
     time: float
     """Time of validity (s)."""
@@ -55,6 +55,8 @@ class _Sample:
 class Attitude(_Sample):
     """Attitude and body rates of a UAV or of the payload."""
 
+    __slots__ = ()
+
     @property
     def quaternion(self) -> Array:
         """Body to world, w first (4,)."""
@@ -68,6 +70,8 @@ class Attitude(_Sample):
 
 class Position(_Sample):
     """Position and velocity of a UAV or of the payload's centre."""
+
+    __slots__ = ()
 
     @property
     def position(self) -> Array:
@@ -103,6 +107,19 @@ class SensorGroup(NamedTuple):
 
     of_payload: bool
     kind: type[Measurement]
+
+
+class SampleStack(NamedTuple):
+    """Measurements of one moment, one after the other."""
+
+    times: Array
+    """(K,) (s)"""
+    sources: Indices
+    """UAV (K,), or :data:`PAYLOAD`."""
+    is_position: Mask
+    """Whether each is a position; else it is an attitude (K,)."""
+    values: Array
+    """Poses and motions, each part whole or all nan."""
 
 
 def median_of(copies: Sequence[Measurement]) -> Measurement:

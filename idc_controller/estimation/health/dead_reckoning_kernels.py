@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Indices, Mask
 from idc_controller.compiled import inlined, kernel
 
 _MEDIAN_EFFICIENCY = 1.2533  # standard deviation of a median of n, times sqrt(n), over that of one sample
@@ -87,3 +87,105 @@ def drift_ratio(window: Array, n: int, error: float, sigmas: float) -> float:
             return np.inf
         worst = max(worst, ratio)
     return worst
+
+
+@kernel(
+    "Tuple((int64, int64))(float64[::1], int64[::1], boolean[::1], float64[::1], int64, float64, float64, int64, "
+    "float64, float64, float64, float64[:, :, ::1], float64[:, ::1], float64[:, ::1], float64[:, :, ::1], "
+    "int64[:, ::1], float64[::1])"
+)
+def reckon(
+    times: Array, sources: Indices, is_position: Mask, values: Array,
+    vehicles: int, window: float, gap: float, n: int, position_error: float, attitude_error: float, sigmas: float,
+    recent: Array, motion: Array, integral: Array, differences: Array, counts: Indices, ratio: Array,
+) -> tuple[int, int]:  # fmt: skip
+    """Take the poses and motions of one moment, and test the sources that have enough new ones.
+
+    Late ones, repetitions, those that lack either part, and vehicles' attitudes are passed over. The rows of the S
+    sources are the vehicles' positions, then position and attitude of the payload unit.
+
+    Args:
+        times: of the measurements (K,) (s).
+        sources: UAV (K,), or negative for the payload.
+        is_position: whether each is a position; else it is an attitude (K,).
+        values: poses and motions, one measurement after the other.
+        vehicles: number of vehicles N.
+        window: over which poses are compared with their integrated motion (s).
+        gap: without a sample after which the integration starts anew (s).
+        n: samples whose median is compared.
+        position_error, attitude_error: allowed of the integrated motion (m, rad).
+        sigmas: see :func:`drift_ratio`.
+        recent: last samples of each source (S, R, 8): time, pose, motion. This and all below are updated.
+        motion: median motion (S, 3).
+        integral: path (m), or attitude (S, 4).
+        differences: of poses and integrated motions over the window, each after its time (S, C, 4).
+        counts: of recent samples, begin and end of the window in its array, samples since the last test, failed tests
+            in a row (S, 5).
+        ratio: test ratios (S,); nan before the first sample.
+
+    Returns:
+        Length of the longest window, which must stay below C / 2, and the number of tests.
+    """
+    longest, tests, at = 0, 0, 0
+    kept, capacity = recent.shape[1], differences.shape[1]
+    for j in range(len(times)):
+        size = 3 if is_position[j] else 4
+        first, at = at, at + size + 3
+        if sources[j] < 0:
+            s = vehicles if is_position[j] else vehicles + 1
+        elif is_position[j]:
+            s = sources[j]
+        else:
+            continue
+        if not np.isfinite(values[first:at].sum()):
+            continue
+        count, samples = counts[s], recent[s]
+        if count[0]:
+            last = samples[count[0] - 1]
+            if times[j] <= last[0]:
+                continue
+            repeated = True
+            for c in range(size + 3):
+                repeated = repeated and last[1 + c] == values[first + c]
+            if repeated:
+                continue  # a relay of the same sample by a vehicle whose clock is off brings nothing new
+            if times[j] - last[0] > gap:
+                count[:3] = 0
+        elif ratio[s] != ratio[s]:
+            ratio[s] = 0.0
+            if size == 4:
+                integral[s] = values[first : first + 4]
+        if count[0] == kept:
+            for k in range(kept - 1):
+                samples[k] = samples[k + 1]
+        else:
+            count[0] += 1
+        newest = samples[count[0] - 1]
+        newest[0] = times[j]
+        newest[1 : 1 + size + 3] = values[first:at]
+        if count[0] == kept:
+            middle = samples[kept // 2]
+            duration = middle[0] - samples[kept // 2 - 1, 0] if count[2] > count[1] else 0.0
+            if count[2] == capacity:
+                length = count[2] - count[1]
+                for k in range(length):
+                    differences[s, k] = differences[s, count[1] + k]
+                count[1], count[2] = 0, length
+            row = differences[s, count[2]]
+            count[2] += 1
+            row[0] = middle[0]
+            motions = samples[:, 1 + size : 4 + size].copy()
+            integrate(motions, motion[s], integral[s, :size], duration, middle[1 : 1 + size], row[1:])
+        while count[1] < count[2] and differences[s, count[1], 0] < times[j] - window:
+            count[1] += 1
+        longest = max(longest, count[2] - count[1])
+        count[3] += 1
+        if count[3] >= n // 2:
+            count[3] = 0
+            tests += 1
+            ratio[s] = 0.0
+            if count[2] - count[1] > 2 * n:
+                error = position_error if is_position[j] else attitude_error
+                ratio[s] = drift_ratio(differences[s, count[1] : count[2]], n, error, sigmas)
+            count[4] = count[4] + 1 if ratio[s] > 1.0 else 0
+    return longest, tests

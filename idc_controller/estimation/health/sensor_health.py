@@ -88,8 +88,6 @@ class SensorHealth:
 
     def usable(self, measurement: Measurement) -> Measurement:
         """Return a measurement without the channels of isolated groups."""
-        if not self.isolated_groups:
-            return measurement
         isolated = self.isolated_groups.get(SensorGroup(measurement.source == PAYLOAD, type(measurement)))
         return measurement if isolated is None else measurement.without(*isolated)
 
