@@ -50,7 +50,7 @@ class TelemetryRouter:
         if self._codec.unread > unread and (link := self._link_at(sender)) is not None:
             link.statistics.damaged += 1
         known = False
-        latest = -math.inf
+        stamped: dict[int, list[Received]] = {}
         for received in messages:
             index = self._by_address.get((sender, received.system))
             if index is None:
@@ -58,12 +58,14 @@ class TelemetryRouter:
             if index is None:
                 continue
             known = True
-            if not received.is_for(self._codec.system_id):
+            if received.target_system and not received.is_for(self._codec.system_id):
                 continue  # an answer to another system behind this address
-            link = self._links[index]
-            link.handle(received, now)
-            if received.message_id in _STAMPED and link.clock.known:
-                latest = max(latest, self._route(received, index, latest, now))
+            self._links[index].handle(received, now)
+            if received.message_id in _STAMPED:
+                stamped.setdefault(index, []).append(received)
+        for index, group in stamped.items():
+            if self._links[index].clock.known:
+                self._route(group, index, now)
         self.refused += not known
         return known
 
@@ -85,26 +87,26 @@ class TelemetryRouter:
                 link.other_system_id = system_id
         return None
 
-    def _route(self, received: Received, index: int, latest: float, now: float) -> float:
-        """Route a message, or a run of them, with a time stamp; return that (s, team).
-
-        ``latest``: the latest stamp of the messages before it in its datagram.
-        """
-        message_id, link = received.message_id, self._links[index]
+    def _route(self, group: list[Received], index: int, now: float) -> None:
+        """Route the messages, and runs of them, with a time stamp of one vehicle in one datagram."""
+        link, obstacle_map = self._links[index], self._flight.system.obstacle_map
         offset = link.clock.offset
         if index == 0:
             self._clock.follow(offset + link.clock.set_back, now, connecting=self._flight.phase is Phase.CONNECT)
-        time = whole_ms(received.time_boot_ms * 1e-3 - offset + self._clock.offset)
-        if message_id == _SETPOINT:
-            self._confirm_setpoint(received, index, time, latest, now)
-        elif message_id == _DETECTION:
-            obstacle_map = self._flight.system.obstacle_map
-            # Detections from before a clock jump have the stamp of another pose.
-            if obstacle_map is not None and now - link.clock.jumped_at > self._clock_settled:
-                obstacle_map.scans.add(detections(received), index, time)
-        else:
-            self._add_measurement(received, index, time)
-        return time
+        team_offset = self._clock.offset
+        latest = -math.inf
+        for received in group:
+            message_id = received.message_id
+            time = whole_ms(received.time_boot_ms * 1e-3 - offset + team_offset)
+            if message_id == _SETPOINT:
+                self._confirm_setpoint(received, index, time, latest, now)
+            elif message_id == _DETECTION:
+                # Detections from before a clock jump have the stamp of another pose.
+                if obstacle_map is not None and now - link.clock.jumped_at > self._clock_settled:
+                    obstacle_map.scans.add(detections(received), index, time)
+            else:
+                self._add_measurement(received, index, time)
+            latest = max(latest, time)
 
     def _confirm_setpoint(self, received: Received, index: int, time: float, latest: float, now: float) -> None:
         link, flight = self._links[index], self._flight

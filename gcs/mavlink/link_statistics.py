@@ -42,10 +42,11 @@ class LinkStatistics:
         """Count a message by its sequence number (0 .. 255); return True if it was sent after all that came before."""
         if self._gaps:
             self.settle(now)
-        ahead = 1 if self._newest is None else (number - self._newest) % NUMBERS
+        newest = self._newest
+        ahead = 1 if newest is None else (number - newest) % NUMBERS
         if 0 < ahead < NUMBERS - REMEMBERED:
-            if self._newest is not None and ahead > 1:
-                missing = {(self._newest + k) % NUMBERS for k in range(1, ahead)}
+            if newest is not None and ahead > 1:
+                missing = {(newest + k) % NUMBERS for k in range(1, ahead)}
                 self._gaps.append((now, missing))
             self._newest = number
             self._seen.append(number)

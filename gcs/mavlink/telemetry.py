@@ -71,26 +71,29 @@ def detections(received: Received) -> Detections:
 
 
 def _attitude(payload: bytes) -> _Values:
-    _, w, x, y, z, *rates, _, _, _, _ = _ATTITUDE.fields(payload)
+    _, w, x, y, z, p, q, r, _, _, _, _ = _ATTITUDE.fields(payload)
     norm = math.sqrt(w * w + x * x + y * y + z * z)
     scale = norm or 1.0
     pose = (w / scale, x / scale, y / scale, z / scale)
-    return _usable(pose, rates, 0.9 < norm < 1.1, math.isfinite(sum(rates)))
+    return _usable(pose, (p, q, r), 0.9 < norm < 1.1, math.isfinite(p + q + r))
 
 
 def _position(payload: bytes) -> _Values:
-    _, x, y, z, *velocity = _POSITION.fields(payload)
-    return _usable((x, y, z), velocity, math.isfinite(x + y + z), math.isfinite(sum(velocity)))
+    _, x, y, z, v_x, v_y, v_z = _POSITION.fields(payload)
+    return _usable((x, y, z), (v_x, v_y, v_z), math.isfinite(x + y + z), math.isfinite(v_x + v_y + v_z))
 
 
 def _usable(pose: Sequence[float], motion: Sequence[float], has_pose: bool, has_motion: bool) -> _Values:
-    """Return pose and motion as arrays, without the part that cannot be a measurement."""
+    """Return pose and motion as arrays to read only, without the part that cannot be a measurement."""
     if not (has_pose or has_motion):
         return None
-    return (
+    values = (
         np.array(pose) if has_pose else np.full(len(pose), _NAN),
         np.array(motion) if has_motion else np.full(len(motion), _NAN),
     )
+    for array in values:
+        array.flags.writeable = False  # shared by all who relay it
+    return values
 
 
 _READ: dict[int, Callable[[bytes], _Values]] = {_ATTITUDE.message_id: _attitude, _POSITION.message_id: _position}

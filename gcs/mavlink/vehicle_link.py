@@ -17,7 +17,7 @@ from gcs.mavlink.settings import LinkSettings
 
 _ATTITUDE, _POSITION = mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED
 _NAVIGATION = (_ATTITUDE, _POSITION)
-#: What comes with every sample, and tells of the link no more than that it came.
+#: What comes with every sample and holds no status of the vehicle.
 _OF_SAMPLES = (mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET, mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D)
 
 
