@@ -3,6 +3,7 @@
 import math
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
+from packed_messages import message_of
 
 from gcs.mavlink import px4
 from gcs.mavlink.setpoints import attitude_target, stop_plan_message
@@ -43,11 +44,11 @@ def hostile_to_vehicle(i):
         for value, kind in ((60.0, 9), (0.1, 9), (NAN, 9), (HUGE, 9), (px4.parameter_to_wire(300, 6), 6), (1.0, 77)):
             messages.append(m.MAVLink_param_set_message(i, 1, name.encode(), value, kind))
     for direction, thrust in (((0, 0, -1), 0.0), ((0, 0, -1), 30.0), ((0.9, 0, -0.436), 20.0), ((0, 0, 1), 30.0)):
-        messages += [attitude_target(i, stamp, direction, thrust, 30.0) for stamp in (0.0, 10.0, 20.0, 4e6)]
+        messages += [message_of(attitude_target(i, stamp, direction, thrust, 30.0)) for stamp in (0.0, 10.0, 20.0, 4e6)]
     for q, mask, thrust in (([NAN] * 4, 7, 0.5), ([HUGE] * 4, 7, HUGE), ([1, 0, 0, 0], 0, NAN), ([0] * 4, 255, -1)):
         messages.append(m.MAVLink_set_attitude_target_message(0, i, 1, mask, q, HUGE, NAN, -HUGE, thrust))
     for points, duration in (([[0, 0, 0]] * 5, 1.0), ([[HUGE] * 3] * 5, HUGE), ([[NAN] * 3] * 5, NAN)):
-        messages += [stop_plan_message(start, duration, points) for start in (0.0, 10.0, 20.0, 30.0)]
+        messages += [message_of(stop_plan_message(start, duration, points)) for start in (0.0, 10.0, 20.0, 30.0)]
     messages += [
         m.MAVLink_set_position_target_local_ned_message(0, i, 1, 1, 0, *[HUGE] * 11),
         m.MAVLink_set_actuator_control_target_message(0, 0, i, 1, [NAN] * 8),

@@ -52,7 +52,7 @@ class ScriptedGround:
         thrust = self.top * min(max((now - 0.6) / 2.0, 0.0), 1.0)
         out = []
         for i, address in self.addresses.items():
-            out.append((self.codec.encode(attitude_target(i, now, UP, thrust, self.thrust_max)), address))
+            out.append((self.codec.frame(attitude_target(i, now, UP, thrust, self.thrust_max)), address))
             if now > 0.3 and not self.commanded:
                 mode = (mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, px4.MainMode.OFFBOARD, 0)
                 out.append((self.command(i, mavlink.MAV_CMD_DO_SET_MODE, *mode), address))

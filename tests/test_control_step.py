@@ -261,10 +261,10 @@ def test_setpoints_arrive_at_their_vehicle_as_decided():
     decision = controller().decide(estimated(s=lean, v_0=np.array([0.2, -0.1, 0.1])), REST)
     for i in range(N):
         message = attitude_target(i + 1, 12.3456, decision.directions[i], decision.thrusts[i], P.thrust_max)
-        [on_wire] = Codec(1, 1).decode(Codec(255, 190).encode(message))
+        [on_wire] = Codec(1, 1).decode(Codec(255, 190).frame(message))
         assert on_wire.message.target_system == i + 1
         assert on_wire.message.time_boot_ms == 12346
-        setpoint = read_setpoint(on_wire.message, SYSTEM.onboard().setpoints)
+        setpoint = read_setpoint(on_wire.fields, SYSTEM.onboard().setpoints)
         down = rotation_from_quaternion(np.array(setpoint.attitude))[:, 2]
         assert -down == pytest.approx(decision.directions[i], abs=1e-6)
         assert setpoint.thrust * P.thrust_max == pytest.approx(decision.thrusts[i], rel=1e-6)
@@ -283,9 +283,9 @@ def test_stop_plan_begins_at_estimated_state_of_each_vehicle_and_ends_at_rest():
     assert plan.control_points[:, 3] == pytest.approx(plan.control_points[:, 4])
     for i in range(N):
         [on_wire] = Codec(1, 1).decode(
-            Codec(255, 190).encode(stop_plan_message(8.25, plan.duration, plan.control_points[i].tolist()))
+            Codec(255, 190).frame(stop_plan_message(8.25, plan.duration, plan.control_points[i].tolist()))
         )
-        flown = read_stop_plan(on_wire.message, SYSTEM.onboard().setpoints)
+        flown = read_stop_plan(on_wire.fields, SYSTEM.onboard().setpoints)
         assert flown.start == pytest.approx(8.25)
         assert flown.duration == pytest.approx(plan.duration, rel=1e-6)
         assert np.array(flown.control_points) == pytest.approx(plan.control_points[i], abs=1e-5)

@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 import pytest
+from packed_messages import message_of
 from vehicle_bench import (
     ACCEPTED,
     GROUND,
@@ -84,7 +85,7 @@ def test_reordered_setpoints_are_dropped_but_not_after_clock_step(flying: Bench)
 def stop_plan(flying: Bench, start: float, x: float = 0.0, duration: float = 4.0, **changes: Any) -> Any:
     here = flying.body.position
     points = [(here[0] + x * k / 4, here[1], here[2]) for k in (0, 1, 4, 4, 4)]
-    message = stop_plan_message(start, duration, points)
+    message = message_of(stop_plan_message(start, duration, points))
     for name, value in changes.items():
         setattr(message, name, value)
     return message
@@ -125,7 +126,7 @@ def test_inconsistent_or_missing_stop_plan_is_not_followed(flying: Bench, late: 
 
 @pytest.mark.parametrize("duration", [0.05, 0.9, 4.0])
 def test_stop_plan_of_any_duration_is_taken(flying: Bench, duration: float) -> None:
-    flying.send(stop_plan_message(flying.now, duration, [(0.0, 0.0, -1.0)] * 5))
+    flying.send(message_of(stop_plan_message(flying.now, duration, [(0.0, 0.0, -1.0)] * 5)))
     taken = flying.vehicle.autopilot.state.stop_plan
     assert taken is not None and taken.duration == pytest.approx(duration)
 

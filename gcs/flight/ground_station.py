@@ -25,7 +25,7 @@ from gcs.mavlink import px4
 from gcs.mavlink.address import Address
 from gcs.mavlink.codec import Codec, gather
 from gcs.mavlink.id_check import SystemIdCheck
-from gcs.mavlink.messages import Message
+from gcs.mavlink.layout import Packed, packed
 from gcs.mavlink.setpoints import attitude_target, stop_plan_message
 from gcs.mavlink.vehicle_link import VehicleLink
 from idc_controller.control.controller import Decision
@@ -34,8 +34,10 @@ from idc_controller.perception.obstacle_map import ObstacleMap
 
 GROUND_SYSTEM = 255
 GROUND_COMPONENT = mavlink.MAV_COMP_ID_MISSIONPLANNER
-_HEARTBEAT = mavlink.MAVLink_heartbeat_message(
-    mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, mavlink.MAV_STATE_ACTIVE, 3
+_HEARTBEAT = packed(
+    mavlink.MAVLink_heartbeat_message(
+        mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, mavlink.MAV_STATE_ACTIVE, 3
+    )
 )
 
 
@@ -115,13 +117,13 @@ class GroundStation:
     def datagrams_to_send(self, now: float) -> list[tuple[bytes, Address]]:
         """Return all that is due at ``now`` (s), each with its address."""
         times, record = self._times, None
-        messages: list[list[Message]] = [[] for _ in self.links]
+        messages: list[list[Packed]] = [[] for _ in self.links]
         if self._heartbeat.is_due(now):
             for queue in messages:
-                queue.append(_HEARTBEAT)
+                queue += _HEARTBEAT
         if self._timesync.is_due(now):
             for link, queue in zip(self.links, messages, strict=True):
-                queue.append(mavlink.MAVLink_timesync_message(0, link.clock.request(now)))
+                queue += packed(mavlink.MAVLink_timesync_message(0, link.clock.request(now)))
         self._stepped = self._control.is_due(now)
         times.lap(Part.SETPOINTS)
         if self.flight.check_links(self._clock.time(now), now):
@@ -137,7 +139,7 @@ class GroundStation:
             messages[i].extend(due)
             carries_setpoints[i] = True
         for link, queue in zip(self.links, messages, strict=True):
-            queue.extend(link.requests.due(now))
+            queue += packed(*link.requests.due(now))
         out = self._encoded(now, messages, carries_setpoints)
         self._recorder.end_exchange()
         times.lap(Part.RECORDING)
@@ -167,7 +169,7 @@ class GroundStation:
             return None
         return max(min(self._control.next, self._heartbeat.next, self._timesync.next, self._schedule.next_due), 0.0)
 
-    def _step(self, now: float, messages: list[list[Message]]) -> StepRecord | None:
+    def _step(self, now: float, messages: list[list[Packed]]) -> StepRecord | None:
         """Make one control step and add its messages to those of each vehicle; return what was decided, if anything."""
         times = self._times
         time = self._clock.time(now)
@@ -217,32 +219,34 @@ class GroundStation:
                 obstacle_map.scans.poses.add_estimated(sample)
 
     def _encoded(
-        self, now: float, messages: Sequence[Sequence[Message]], carries_setpoints: Sequence[bool]
+        self, now: float, messages: Sequence[Sequence[Packed]], carries_setpoints: Sequence[bool]
     ) -> list[tuple[bytes, Address]]:
         """Return the datagrams of the messages to each vehicle, those with set-points as often as its link needs."""
-        out = []
+        out: list[tuple[bytes, Address]] = []
+        recorded: list[bytes] = []
         for link, queue, repeated in zip(self.links, messages, carries_setpoints, strict=True):
-            if link.address is None:
+            if link.address is None or not queue:
                 continue
             copies = link.setpoints.copies if repeated else 1
-            datagrams = gather(self._codec.encode(message) for message in queue)
-            self._times.lap(Part.SETPOINTS)
+            datagrams = gather([self._codec.frame(message) for message in queue])
             for datagram in datagrams:
                 out += [(datagram, link.address)] * copies
-                self._recorder.datagram(now, datagram)
-            self._times.lap(Part.RECORDING)
+            recorded += datagrams
+        self._times.lap(Part.SETPOINTS)
+        for datagram in recorded:
+            self._recorder.datagram(now, datagram)
         return out
 
-    def _setpoint_messages(self, i: int, now: float, setpoints: Setpoints | None) -> list[Message]:
+    def _setpoint_messages(self, i: int, now: float, setpoints: Setpoints | None) -> list[Packed]:
         """Return stop plan and set-point of vehicle ``i`` (0 .. N-1), as far as there are any."""
         link = self.links[i]
-        messages: list[Message] = []
+        messages: list[Packed] = []
         # The plan before the set-point: a vehicle that gets one of the two can still stop with the others.
         if (plan := self.flight.control.stop_plan) is not None:
             start = plan.start - self._clock.offset + link.clock.offset
             messages.append(stop_plan_message(start, plan.duration, plan.control_points[i].tolist()))
         if setpoints is not None:
-            direction, thrust = setpoints.directions[i], float(setpoints.thrusts[i])
+            direction, thrust = setpoints.directions[i].tolist(), float(setpoints.thrusts[i])
             thrust_max = link.status.parameters[px4.PARAM_THRUST_MAX]
             messages.append(attitude_target(link.system_id, link.setpoints.stamp(now), direction, thrust, thrust_max))
         return messages

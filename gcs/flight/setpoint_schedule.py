@@ -6,7 +6,7 @@ from statistics import median
 
 from gcs.config.flight_settings import DEFAULTS, TimingSettings
 from gcs.flight.team_clock import TOLERANCE
-from gcs.mavlink.messages import Message
+from gcs.mavlink.layout import Packed
 from idc_controller.arrays import Array
 
 
@@ -18,7 +18,7 @@ class SetpointSchedule:
         self._latencies: deque[float] = deque(maxlen=settings.latency_steps)
         self.latency = 0.0
         """Compute latency: from the beginning of a control step until its set-points are sent."""
-        self._waiting: list[tuple[float, int, list[Message]]] = []
+        self._waiting: list[tuple[float, int, list[Packed]]] = []
         """Time at which they are due, the vehicle's index, the messages."""
 
     def add_latency(self, duration: float) -> None:
@@ -32,11 +32,11 @@ class SetpointSchedule:
         waits[waits < self._simultaneous] = 0.0
         return waits
 
-    def add(self, due: float, vehicle: int, messages: list[Message]) -> None:
+    def add(self, due: float, vehicle: int, messages: list[Packed]) -> None:
         """Let ``messages`` to a vehicle (0 .. N-1) wait until ``due``."""
         self._waiting.append((due, vehicle, messages))
 
-    def take(self, now: float) -> list[tuple[int, list[Message]]]:
+    def take(self, now: float) -> list[tuple[int, list[Packed]]]:
         """Return what is due at ``now``, with the vehicle's index."""
         due = [(i, messages) for time, i, messages in self._waiting if time <= now + TOLERANCE]
         self._waiting = [entry for entry in self._waiting if entry[0] > now + TOLERANCE]

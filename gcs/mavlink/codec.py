@@ -1,7 +1,7 @@
 """Bytes to MAVLink messages and back, robust against whatever a datagram may hold. No socket, no clock."""
 
 import struct
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
@@ -148,11 +148,13 @@ class Codec:
         return messages
 
 
-def gather(frames: Iterable[bytes], limit: int = DATAGRAM_LIMIT) -> list[bytes]:
+def gather(frames: Sequence[bytes], limit: int = DATAGRAM_LIMIT) -> list[bytes]:
     """Return frames in order, joined into as few datagrams as possible of at most ``limit`` bytes each."""
     datagrams: list[bytes] = []
     group: list[bytes] = []
     size = 0
+    if sum(map(len, frames)) <= limit:
+        return [b"".join(frames)] if frames else []
     for frame in frames:
         if group and size + len(frame) > limit:
             datagrams.append(b"".join(group))

@@ -9,6 +9,7 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink import px4
 from gcs.mavlink.clock import RemoteClock
+from gcs.mavlink.layout import LAYOUTS, Packed
 from gcs.mavlink.settings import LinkSettings
 from idc_controller.estimation.setpoint_history import Confirmation
 from idc_controller.rotations_float import attitude_of_direction
@@ -18,43 +19,34 @@ IGNORE_RATES = (
     | mavlink.ATTITUDE_TARGET_TYPEMASK_BODY_PITCH_RATE_IGNORE
     | mavlink.ATTITUDE_TARGET_TYPEMASK_BODY_YAW_RATE_IGNORE
 )
+_NO_RATES = (0.0, 0.0, 0.0)
+
+# What goes out with every control step is packed without a message object, its fields in the order of the wire.
+_SET_ATTITUDE_TARGET = LAYOUTS[mavlink.MAVLINK_MSG_ID_SET_ATTITUDE_TARGET]
+_STOP_PLAN = LAYOUTS[mavlink.MAVLINK_MSG_ID_TRAJECTORY_REPRESENTATION_BEZIER]
 
 
 def attitude_target(
     system_id: int, boot_time: float, direction: Sequence[float], thrust: float, thrust_max: float
-) -> mavlink.MAVLink_set_attitude_target_message:
+) -> Packed:
     """Return SET_ATTITUDE_TARGET for vehicle ``system_id`` at its ``boot_time`` (s): thrust (N) along ``direction``."""
-    return mavlink.MAVLink_set_attitude_target_message(
-        time_boot_ms=max(round(boot_time * 1000.0), 0) & 0xFFFFFFFF,
-        target_system=system_id,
-        target_component=px4.AUTOPILOT_COMPONENT,
-        type_mask=IGNORE_RATES,
-        q=attitude_of_direction(direction),
-        body_roll_rate=0.0,
-        body_pitch_rate=0.0,
-        body_yaw_rate=0.0,
-        thrust=max(0.0, min(1.0, thrust / thrust_max)),
-    )
+    time_boot_ms = max(round(boot_time * 1000.0), 0) & 0xFFFFFFFF
+    share = max(0.0, min(1.0, thrust / thrust_max))
+    return _SET_ATTITUDE_TARGET.pack(
+        time_boot_ms, *attitude_of_direction(direction), *_NO_RATES, share,
+        system_id, px4.AUTOPILOT_COMPONENT, IGNORE_RATES,
+    )  # fmt: skip
 
 
-def stop_plan_message(
-    boot_time: float, duration: float, control_points: Sequence[Sequence[float]]
-) -> mavlink.MAVLink_trajectory_representation_bezier_message:
+def stop_plan_message(boot_time: float, duration: float, control_points: Sequence[Sequence[float]]) -> Packed:
     """Return TRAJECTORY_REPRESENTATION_BEZIER from a vehicle's ``boot_time`` (s) on, to rest in ``duration`` (s).
 
     ``control_points``: (5, 3) of its path (m, NED); heading north.
     """
     x, y, z = zip(*control_points, strict=True)
     points = len(x)
-    return mavlink.MAVLink_trajectory_representation_bezier_message(
-        time_usec=max(round(boot_time * 1e6), 0),
-        valid_points=points,
-        pos_x=x,
-        pos_y=y,
-        pos_z=z,
-        delta=[duration] * points,
-        pos_yaw=[0.0] * points,
-    )
+    time_usec = max(round(boot_time * 1e6), 0)
+    return _STOP_PLAN.pack(time_usec, *x, *y, *z, *[duration] * points, *[0.0] * points, points)
 
 
 class SetpointStream:

@@ -61,7 +61,7 @@ def test_cost_of_parts():
     parts = {
         "MPC, no constraint active": in_yardsticks(lambda: DEFAULT.track(small, STAGES), 300),
         "MPC, constraints active (ProxQP)": in_yardsticks(lambda: DEFAULT.track(active, STAGES), 100),
-        "encode one set-point": in_yardsticks(lambda: codec.encode(message), 2000),
+        "encode one set-point": in_yardsticks(lambda: codec.frame(message), 2000),
         "decode a datagram of four messages": in_yardsticks(lambda: reader.decode(datagram), 2000),
         "onboard loop, one vehicle": onboard(),
         "physics step, four vehicles": physics(),

@@ -1,7 +1,7 @@
 """Set-points and stop plans read from messages, or the reason why they cannot be flown."""
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
@@ -42,18 +42,20 @@ class AttitudeSetpoint(NamedTuple):
     time_boot_ms: int
 
 
-def read_setpoint(message: mavlink.MAVLink_set_attitude_target_message, limits: SetpointSettings) -> AttitudeSetpoint:
-    """The set-point in a SET_ATTITUDE_TARGET message. Raises :class:`SetpointError`.
+def read_setpoint(fields: tuple[Any, ...], limits: SetpointSettings) -> AttitudeSetpoint:
+    """Return the set-point in the ``fields`` of a SET_ATTITUDE_TARGET, in the order of the wire.
 
     The type mask's bits as MAVLink defines them. Without an attitude all three rates must be given.
+    Raises :class:`SetpointError`.
     """
-    mask, rate_max = message.type_mask, limits.rate_max
+    time_boot_ms, w, x, y, z, roll_rate, pitch_rate, yaw_rate, share, _, _, mask = fields
+    rate_max = limits.rate_max
     if mask & ~_KNOWN_BITS:
         raise SetpointError(f"type_mask {mask} has bits that cannot be flown")
     rates = (
-        0.0 if mask & _IGNORE_RATE[0] else message.body_roll_rate,
-        0.0 if mask & _IGNORE_RATE[1] else message.body_pitch_rate,
-        0.0 if mask & _IGNORE_RATE[2] else message.body_yaw_rate,
+        0.0 if mask & _IGNORE_RATE[0] else roll_rate,
+        0.0 if mask & _IGNORE_RATE[1] else pitch_rate,
+        0.0 if mask & _IGNORE_RATE[2] else yaw_rate,
     )
     # Comparisons are written so that NaN fails them.
     if not (abs(rates[0]) <= rate_max and abs(rates[1]) <= rate_max and abs(rates[2]) <= rate_max):
@@ -61,21 +63,19 @@ def read_setpoint(message: mavlink.MAVLink_set_attitude_target_message, limits: 
 
     attitude: Quaternion | None = None
     if not mask & _IGNORE_ATTITUDE:
-        w, x, y, z = message.q
         norm = math.sqrt(w * w + x * x + y * y + z * z)
         if not abs(norm - 1.0) <= limits.quaternion_norm_error_max:
-            raise SetpointError(f"quaternion {message.q} has the norm {norm}")
+            raise SetpointError(f"quaternion {(w, x, y, z)} has the norm {norm}")
         attitude = (w / norm, x / norm, y / norm, z / norm)
     elif mask & sum(_IGNORE_RATE):
         raise SetpointError(f"type_mask {mask} gives neither an attitude nor all three rates")
 
     thrust: float | None = None
     if not mask & _IGNORE_THRUST:
-        thrust = message.thrust
-        if not -THRUST_TOLERANCE <= thrust <= 1.0 + THRUST_TOLERANCE:
-            raise SetpointError(f"thrust {thrust} is outside 0 .. 1")
-        thrust = min(max(thrust, 0.0), 1.0)
-    return AttitudeSetpoint(attitude, rates, thrust, message.time_boot_ms)
+        if not -THRUST_TOLERANCE <= share <= 1.0 + THRUST_TOLERANCE:
+            raise SetpointError(f"thrust {share} is outside 0 .. 1")
+        thrust = min(max(share, 0.0), 1.0)
+    return AttitudeSetpoint(attitude, rates, thrust, time_boot_ms)
 
 
 class StopPlan(NamedTuple):
@@ -90,18 +90,21 @@ class StopPlan(NamedTuple):
     yaw: float
 
 
-def read_stop_plan(
-    message: mavlink.MAVLink_trajectory_representation_bezier_message, limits: SetpointSettings
-) -> StopPlan:
-    """The plan in a TRAJECTORY_REPRESENTATION_BEZIER of one segment. Raises :class:`SetpointError`."""
-    if message.valid_points != STOP_POINTS:
-        raise SetpointError(f"a stop plan has {STOP_POINTS} control points, not {message.valid_points}")
-    points = tuple(zip(message.pos_x, message.pos_y, message.pos_z, strict=True))
-    if not all(math.isfinite(value) for point in points for value in point):
+def read_stop_plan(fields: tuple[Any, ...], limits: SetpointSettings) -> StopPlan:
+    """Return the plan in the ``fields`` of a TRAJECTORY_REPRESENTATION_BEZIER of one segment, in the order of the wire.
+
+    Raises :class:`SetpointError`.
+    """
+    time_usec, valid_points = fields[0], fields[-1]
+    if valid_points != STOP_POINTS:
+        raise SetpointError(f"a stop plan has {STOP_POINTS} control points, not {valid_points}")
+    x, y, z, durations, yaws = (fields[1 + k * STOP_POINTS : 1 + (k + 1) * STOP_POINTS] for k in range(5))
+    if not math.isfinite(sum(x) + sum(y) + sum(z)):
         raise SetpointError("a control point is not finite")
-    duration, yaw = message.delta[0], message.pos_yaw[0]
+    points = tuple(zip(x, y, z, strict=True))
+    duration, yaw = durations[0], yaws[0]
     if not 0.0 < duration <= limits.stop_duration_max:
         raise SetpointError(f"delta {duration} is outside 0 .. {limits.stop_duration_max} s")
     if not math.isfinite(yaw):
         raise SetpointError("pos_yaw is not finite")
-    return StopPlan(message.time_usec * 1e-6, duration, points, yaw)
+    return StopPlan(time_usec * 1e-6, duration, points, yaw)

@@ -42,23 +42,23 @@ class Peers:
     def datagrams_to_send(self, telemetry: Telemetry, now: float) -> list[tuple[bytes, Address]]:
         """Return all that is due at ``now`` (s), each with its address."""
         out: list[tuple[bytes, Address]] = []
-        if now + TIME_TOLERANCE < self.next_due:
+        latest = now + TIME_TOLERANCE
+        due = [peer for peer in self._peers.values() if peer.next_due <= latest]
+        if not due:
             return out
         sample = TelemetrySample(telemetry, now)
-        for peer in tuple(self._peers.values()):
-            if now + TIME_TOLERANCE < peer.next_due:
-                continue
+        for peer in due:
             if self._is_silent(peer, now):
                 self._remove_silent(now)
                 if peer.address not in self._peers:
                     continue
-            out.extend([(datagram, peer.address) for datagram in peer.datagrams(sample, now)])
+            out += [(datagram, peer.address) for datagram in peer.datagrams(sample, now)]
         return out
 
     @property
     def next_due(self) -> float:
         """Time at which something is to be sent (s); -inf: at once, inf: never."""
-        return min((peer.next_due for peer in self._peers.values()), default=math.inf)
+        return min([peer.next_due for peer in self._peers.values()], default=math.inf)
 
     def repeat(self, *message_ids: int) -> None:
         """Send these messages to all at once, and repeatedly: their content has changed."""

@@ -1,6 +1,7 @@
 """Set-points and stop plans: from messages to the ground in control, or refused."""
 
 from collections.abc import Callable
+from typing import Any
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
@@ -27,29 +28,27 @@ class SetpointServer:
 
     def register(self, dispatcher: Dispatcher) -> None:
         """Take the messages of this service."""
-        dispatcher.register(mavlink.MAVLink_set_attitude_target_message, self._on_setpoint)
-        dispatcher.register(mavlink.MAVLink_trajectory_representation_bezier_message, self._on_stop_plan)
+        dispatcher.register_fields(mavlink.MAVLink_set_attitude_target_message, self._on_setpoint)
+        dispatcher.register_fields(mavlink.MAVLink_trajectory_representation_bezier_message, self._on_stop_plan)
 
-    def _on_setpoint(self, message: mavlink.MAVLink_set_attitude_target_message, request: Request) -> None:
+    def _on_setpoint(self, fields: tuple[Any, ...], request: Request) -> None:
         sender, now = request.sender, request.now
         if self._owner.is_stranger(sender, now):
             self.refused += 1
             return
         try:
-            setpoint = read_setpoint(message, self._autopilot.state.settings.setpoints)
+            setpoint = read_setpoint(fields, self._autopilot.state.settings.setpoints)
         except SetpointError:
             self.refused += 1
             return
         self._owner.take(setpoint, sender, now)
 
-    def _on_stop_plan(
-        self, message: mavlink.MAVLink_trajectory_representation_bezier_message, request: Request
-    ) -> None:
+    def _on_stop_plan(self, fields: tuple[Any, ...], request: Request) -> None:
         now = request.now
         if self._owner.in_control(now) != request.sender:
             return
         try:
-            plan = read_stop_plan(message, self._autopilot.state.settings.setpoints)
+            plan = read_stop_plan(fields, self._autopilot.state.settings.setpoints)
         except SetpointError:
             self.refused += 1
             return

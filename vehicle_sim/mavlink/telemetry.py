@@ -70,7 +70,8 @@ class Telemetry:
         self._scan_messages: tuple[RangeSample | None, Built] = (None, ())
         """The scan that was built last, and its messages."""
         unit = px4.PAYLOAD_UNIT_COMPONENT
-        self._builders: dict[tuple[int, int], Callable[[float], Built]] = {
+        #: By component and message id.
+        self.builders: dict[tuple[int, int], Callable[[float], Built]] = {
             (_OWN, mavlink.MAVLINK_MSG_ID_HEARTBEAT): self._heartbeat,
             (_OWN, mavlink.MAVLINK_MSG_ID_SYS_STATUS): self._sys_status,
             (_OWN, mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE): self._extended_sys_state,
@@ -94,11 +95,11 @@ class Telemetry:
 
     def knows(self, component: int, message_id: int) -> bool:
         """Return True if a component of this vehicle has such a message."""
-        return (component, message_id) in self._builders
+        return (component, message_id) in self.builders
 
     def build(self, now: float, component: int, message_id: int) -> Built:
         """Return the messages of a kind that :meth:`knows`: none while there is no data, several for a scan."""
-        return self._builders[component, message_id](now)
+        return self.builders[component, message_id](now)
 
     def time_boot_ms(self, time: float) -> int:
         """Return the stamp of a time (s)."""
@@ -311,7 +312,7 @@ class TelemetrySample:
     """The messages of one vehicle at ``now`` (s), each built when it is first due, once for all peers."""
 
     def __init__(self, telemetry: Telemetry, now: float) -> None:
-        self._telemetry = telemetry
+        self._builders = telemetry.builders
         self._now = now
         self._built: dict[tuple[int, int], Built] = {}
 
@@ -319,5 +320,5 @@ class TelemetrySample:
         """Return the messages of a component and message id."""
         built = self._built.get(key)
         if built is None:
-            built = self._built[key] = self._telemetry.build(self._now, *key)
+            built = self._built[key] = self._builders[key](self._now)
         return built

@@ -1,0 +1,9 @@
+"""Packed messages as message objects of pymavlink."""
+
+from typing import Any
+
+from gcs.mavlink.layout import Packed
+
+
+def message_of(packed: Packed) -> Any:
+    return packed.layout.message(packed.payload)
