@@ -1,5 +1,7 @@
 """Placement of scans, and vehicles whose range sensors are lost or invalid."""
 
+import math
+
 import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 import pytest
@@ -17,6 +19,7 @@ from obstacle_scene import (
 
 from idc_controller.estimation.measurements import Attitude, Position
 from idc_controller.perception.scan_assembly import ScanAssembly
+from idc_controller.perception.scan_kernels import possible_points
 from vehicle_sim.world.range_sensor import RangeSample
 
 
@@ -171,3 +174,15 @@ def test_track_deleted_before_sensing_loss_is_restored():
     assert not m.sensing_lost
     (back,) = m.predict(np.array([6.75]))
     assert np.linalg.norm(back.positions[0] - [5.0, 0.0, -6.0]) < 0.3
+
+
+def test_possible_points_agree_with_plain_conditions():
+    rng = np.random.default_rng(3)
+    special = np.array([0.0, -0.0, 1.0, 25.0, np.nan, np.inf, -np.inf, 3e38])
+    points, ranges = rng.choice(special, (2000, 3)), rng.choice([10.0, 1.0, np.nan, np.inf, -1.0, 0.0], 2000)
+    expected = [
+        k
+        for k, (point, reach) in enumerate(zip(points.tolist(), ranges.tolist(), strict=True))
+        if math.isfinite(sum(point) + reach) and 0.0 < math.hypot(*point) < 2.0 * reach
+    ]
+    assert possible_points(points, ranges, 2.0).tolist() == expected

@@ -2,6 +2,7 @@
 
 import dataclasses
 import json
+import math
 
 import coal
 import numpy as np
@@ -12,7 +13,7 @@ from idc_controller.errors import ShapeError
 from idc_controller.geometry.box import Box, Wall
 from idc_controller.geometry.capsule import Capsule
 from idc_controller.geometry.mesh import Mesh, MeshHull
-from idc_controller.geometry.obstacles import Bodies
+from idc_controller.geometry.obstacles import Bodies, PointGroups
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.shapes import SHAPES, shape_class
 from idc_controller.geometry.sphere import Sphere
@@ -105,6 +106,33 @@ def test_distances_of_several_shapes_equal_those_of_each_shape():
     together = Bodies(shapes).distance(points, centres)
     for shape, centre, distance in zip(shapes, centres, together, strict=True):
         np.testing.assert_array_equal(distance, Bodies([shape]).distance(points, centre[None])[0])
+
+
+@pytest.mark.parametrize("far", [math.inf, 1.0])
+def test_mean_distances_of_groups_equal_those_of_their_points(far):
+    rng = np.random.default_rng(2)
+    bodies, centres = Bodies(EXAMPLES), rng.uniform(-6.0, 6.0, (len(EXAMPLES), 3))
+    groups = [rng.normal(rng.uniform(-6.0, 6.0, 3), 0.3, (size, 3)) for size in (3, 0, 1, 9, 0)]
+    found = bodies.mean_distances(PointGroups.of(groups), centres, far)
+    expected = [
+        np.abs(bodies.distance(group, centres)).mean(axis=1) if len(group) else np.full(len(centres), np.inf)
+        for group in groups
+    ]
+    near = np.array(expected) <= far
+    assert found.shape == near.shape
+    np.testing.assert_allclose(found[near], np.array(expected)[near], rtol=1e-12)
+    assert (found[~near] > far).all() or far == math.inf
+    assert bodies.mean_distances(PointGroups.of([]), centres).shape == (0, len(centres))
+    assert Bodies(()).mean_distances(PointGroups.of(groups), np.empty((0, 3))).shape == (5, 0)
+
+
+def test_distance_of_one_point_from_each_body():
+    points, shapes = points_about(EXAMPLES[0], 20), [*EXAMPLES, *EXAMPLES]
+    indices = np.random.default_rng(1).integers(0, len(shapes), 20).tolist()
+    expected = [
+        Bodies([shapes[i]]).from_offsets(point[None, None])[0, 0] for i, point in zip(indices, points, strict=True)
+    ]
+    np.testing.assert_array_equal(Bodies(shapes).from_own_offsets(indices, points), expected)
 
 
 def test_support_is_reached_and_not_exceeded_by_the_body(shape):

@@ -79,7 +79,7 @@ class Codec:
         header = _HEADER_V2.pack(V2, length, 0, 0, self._sequence, self.system_id, self._component_id, layout.wire_id)
         self._sequence = (self._sequence + len(values)) & 0xFF
         payloads = values.view(np.uint8).reshape(-1, length)
-        data = framed_run(np.array(bytearray(header)), payloads, layout.crc_extra[0]).tobytes()
+        data = framed_run(np.frombuffer(bytearray(header), np.uint8), payloads, layout.crc_extra[0]).tobytes()
         return [data[at : at + length + AROUND] for at in range(0, len(data), length + AROUND)]
 
     def decode(self, datagram: bytes) -> list[Received]:
@@ -124,11 +124,11 @@ class Codec:
                     start += 1
                 continue
             if layout is _POINT and length == _POINT.dtype.itemsize and datagram[start] == V2:
-                run = frames_in_run(np.frombuffer(datagram, np.uint8), start, layout.crc_extra[0])
+                data = np.frombuffer(bytearray(datagram), np.uint8)
+                run = frames_in_run(data, start, layout.crc_extra[0])
                 if run > 1:
                     end = start + run * (length + AROUND)
-                    frames = np.frombuffer(datagram, np.uint8, end - start, start).reshape(run, -1)
-                    payload = frames[:, HEADER : HEADER + length].tobytes()
+                    payload = data[start:end].reshape(run, -1)[:, HEADER : HEADER + length].tobytes()
                     messages.append(Received(layout, payload, system, component, sequence, run=run))
                     start = end
                     continue

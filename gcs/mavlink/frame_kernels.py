@@ -31,7 +31,7 @@ def _checksum(data: Bytes, start: int, end: int, extra: int) -> int:
     return crc
 
 
-@kernel("int64(Array(uint8, 1, 'C', readonly=True), int64, int64)")
+@kernel("int64(uint8[::1], int64, int64)")
 def frames_in_run(datagram: Bytes, start: int, extra: int) -> int:
     """Return the number of frames of the run that begins at ``start``; 0: no valid unsigned frame begins there.
 

@@ -58,30 +58,32 @@ def distances_of_points(bodies: Array, points: Array, centres: Array) -> Array:
 def mean_distances_of_groups(
     bodies: Array, reach: Array, centres: Array, points: Array, starts: Indices, far: float
 ) -> Array:
-    """Return the mean distance of the points of G groups from the surfaces of B bodies (G, B) (m).
+    """Return the mean distance of the points of G groups from the surfaces of B bodies (G, B) (m), inf without points.
 
     Args:
         bodies: (B, 14).
-        reach: radius of the ball that holds each of them (B,) (m).
+        reach: radius of the upright cylinder that holds each of them (B,) (m).
         centres: of them (B, 3), world (m).
         points: of all groups, one group after the other (n, 3), world (m).
         starts: index of the first point of each group, then n (G + 1,).
-        far: distances that are surely above this (m) are replaced by a lower bound, itself above it.
+        far: distances that are surely above this (m) are inf.
     """
     groups, count = starts.shape[0] - 1, bodies.shape[0]
-    mean = np.empty((groups, count))
+    mean = np.full((groups, count), math.inf)
     for g in range(groups):
         first, size, spread = starts[g], starts[g + 1] - starts[g], 0.0
-        x, y, z = points[first, 0], points[first, 1], points[first, 2]
+        if size == 0:
+            continue
+        x, y = points[first, 0], points[first, 1]
         for i in range(first, starts[g + 1]):
-            apart = (points[i, 0] - x) ** 2 + (points[i, 1] - y) ** 2 + (points[i, 2] - z) ** 2
-            spread = max(spread, math.sqrt(apart))
+            spread = max(spread, (points[i, 0] - x) ** 2 + (points[i, 1] - y) ** 2)
+        spread = math.sqrt(spread)
         for b in range(count):
             cx, cy, cz = centres[b, 0], centres[b, 1], centres[b, 2]
-            mean[g, b] = math.sqrt((x - cx) ** 2 + (y - cy) ** 2 + (z - cz) ** 2) - spread - reach[b]
-            if mean[g, b] <= far:
-                total = 0.0
-                for i in range(first, starts[g + 1]):
-                    total += abs(distance_to(bodies, b, points[i, 0] - cx, points[i, 1] - cy, points[i, 2] - cz))
-                mean[g, b] = total / size
+            if (x - cx) ** 2 + (y - cy) ** 2 > (far + spread + reach[b]) ** 2:
+                continue
+            total = 0.0
+            for i in range(first, starts[g + 1]):
+                total += abs(distance_to(bodies, b, points[i, 0] - cx, points[i, 1] - cy, points[i, 2] - cz))
+            mean[g, b] = total / size
     return mean

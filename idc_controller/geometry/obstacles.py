@@ -1,5 +1,7 @@
 """Obstacles as the safety filter takes them: convex shapes, their predicted places, and the distances to them."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,7 +10,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Indices
 from idc_controller.geometry.distance_kernels import (
     distances_of_offsets,
     distances_of_points,
@@ -45,6 +47,20 @@ class ObstacleSource(Protocol):
         ...
 
 
+class PointGroups(NamedTuple):
+    """Groups of points, one behind the other."""
+
+    points: Array
+    """(n, 3), world (m)."""
+    starts: Indices
+    """Index of the first point of each group, then n (G + 1,)."""
+
+    @classmethod
+    def of(cls, groups: Sequence[Array]) -> PointGroups:
+        """Return groups of points (n, 3) each, none of them or empty ones included."""
+        return cls(np.concatenate([np.empty((0, 3)), *groups]), np.array([0, *accumulate(map(len, groups))]))
+
+
 class Bodies:
     """Shapes gathered for distances from points to all of them together."""
 
@@ -54,6 +70,7 @@ class Bodies:
         """Rounded boxes as :mod:`idc_controller.geometry.distance_kernels` takes them (B, 14)."""
         self.reach = np.array([shape.reach for shape in shapes])
         """Radius of the ball about its centre that holds each body (B,) (m)."""
+        self._horizontal_reach = np.array([shape.horizontal_reach for shape in shapes])
         self.others = [(i, shape) for i, shape in enumerate(shapes) if shape.rounded_box is None]
         """Bodies that are no rounded boxes, with their index."""
 
@@ -71,15 +88,29 @@ class Bodies:
             distance[i] = shape.distance(offsets[i] @ shape.rotation)
         return distance
 
-    def mean_distances(self, groups: Sequence[Array], centres: Array, far: float = math.inf) -> Array:
-        """Return the mean distance (m) of every group of points (n, 3) from every surface (groups, B).
+    def from_own_offsets(self, indices: Sequence[int], offsets: Array) -> Array:
+        """Return the signed distance (K,) (m) of one point relative to each centre (K, 3) from the body of each index.
 
-        Distances that are surely above ``far`` (m) may be replaced by a lower bound, itself above it.
+        An index may come more than once.
         """
-        starts = np.array([0, *accumulate(map(len, groups))])
-        points = np.concatenate(groups)
-        mean = mean_distances_of_groups(self.rows, self.reach, np.ascontiguousarray(centres), points, starts, far)
+        distance = distances_of_offsets(self.rows[indices], np.ascontiguousarray(offsets[:, None]))[:, 0]
+        for i, shape in self.others:
+            own = [k for k, index in enumerate(indices) if index == i]
+            if own:
+                distance[own] = shape.distance(offsets[own] @ shape.rotation)
+        return distance
+
+    def mean_distances(self, groups: PointGroups, centres: Array, far: float = math.inf) -> Array:
+        """Return the mean distance (m) of every group of points from every surface (groups, B), inf without points.
+
+        Distances that are surely above ``far`` (m) may be inf.
+        """
+        points, starts = groups
+        mean = mean_distances_of_groups(
+            self.rows, self._horizontal_reach, np.ascontiguousarray(centres), points, starts, far
+        )
         for i, shape in self.others:
             distance = np.abs(shape.distance((points - centres[i]) @ shape.rotation))
-            mean[:, i] = np.add.reduceat(distance, starts[:-1]) / np.diff(starts)
+            spans = zip(starts.tolist(), starts[1:].tolist(), strict=False)
+            mean[:, i] = [distance[begin:end].mean() if begin < end else math.inf for begin, end in spans]
         return mean

@@ -47,15 +47,20 @@ def associate(
     rows_of_uav: dict[int, list[int]] = defaultdict(list)
     for row, cluster in enumerate(clusters):
         rows_of_uav[cluster.uav].append(row)
-    for row, body in enumerate(remembered):
-        if body is not None and distances[row, body] < max(settings.remembered_gate, gates[body]):
-            cost[row, body] = distances[row, body] - settings.remembered_gain
+    pairs = [(row, body) for row, body in enumerate(remembered) if body is not None]
+    if pairs:
+        rows, bodies = np.array(pairs).T
+        again = distances[rows, bodies]
+        kept = again < np.maximum(settings.remembered_gate, gates[bodies])
+        cost[rows[kept], bodies[kept]] = again[kept] - settings.remembered_gain
     near = np.flatnonzero(cost.min(axis=0) < _FAR / 2.0)
     cost = cost[:, near]
-    for rows in rows_of_uav.values():
-        for i, column in zip(*linear_sum_assignment(cost[rows]), strict=True):
-            if cost[rows[i], column] < _FAR / 2.0:
-                result[rows[i]] = int(near[column])
+    for of_uav in rows_of_uav.values():
+        own = cost[of_uav]
+        assigned, columns = linear_sum_assignment(own)
+        is_near = own[assigned, columns] < _FAR / 2.0
+        for i, body in zip(assigned[is_near].tolist(), near[columns[is_near]].tolist(), strict=True):
+            result[of_uav[i]] = body
     return result
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from idc_controller.arrays import Array
-from idc_controller.geometry.obstacles import Bodies
+from idc_controller.geometry.obstacles import Bodies, PointGroups
 from idc_controller.geometry.shape import Shape
 from idc_controller.perception.obstacle_filter import surface_of
 from idc_controller.perception.scan_assembly import Cluster
@@ -69,6 +69,8 @@ class MapCheck:
             view_range: within which they are certainly detected (m).
             settings: of perception.
         """
+        self._bodies = Bodies([shape for _, shape, _ in standing])
+        self._centres = np.array([centre for *_, centre in standing]).reshape(-1, 3)
         self._standing, self._view_range, self._gate = standing, view_range, settings.association.remembered_gate
         self._settings, self._surfaces = settings.map_check, settings.tracking.surfaces
         self._agreements: dict[tuple[int, int], int] = {}
@@ -92,38 +94,40 @@ class MapCheck:
             if number is not None
         }
         taken = set(detected.values())
-        nearest = distances.argmin(axis=1).tolist()
-        for row in np.argsort(distances.min(axis=1)).tolist():
-            if row not in taken and distances[row, nearest[row]] <= self._gate:
+        nearest, least = distances.argmin(axis=1).tolist(), distances.min(axis=1)
+        order = np.argsort(least)
+        for row in order[least[order] <= self._gate].tolist():
+            if row not in taken:
                 detected.setdefault((clusters[row].uav, nearest[row]), row)
         if not detected:
             return
         numbers, rows = [number for _, number in detected], list(detected.values())
-        origins = np.array([clusters[row].surface_points.origins[0] for row in rows])
-        bodies = Bodies([self._standing[number][1] for number in numbers])
-        centres = np.array([self._standing[number][2] for number in numbers])
-        from_sensors = np.abs(bodies.from_offsets((origins - centres)[:, None])[:, 0]).tolist()
+        origins = np.array([clusters[row].scan.origins[clusters[row].part.start or 0] for row in rows])
+        from_sensors = np.abs(self._bodies.from_own_offsets(numbers, origins - self._centres[numbers])).tolist()
+        means, sigmas = distances[rows, numbers].tolist(), _sigmas([clusters[row] for row in rows])
         offset_uavs = self.offsets.keys()
-        for number, row, from_sensor in zip(numbers, rows, from_sensors, strict=True):
-            cluster = clusters[row]
+        for number, row, from_sensor, mean, sigma in zip(numbers, rows, from_sensors, means, sigmas, strict=True):
             if from_sensor <= self._view_range:
-                mean = None if cluster.uav in offset_uavs else float(distances[row, number])
-                self._detected(cluster, number, mean)
+                self._detected(clusters[row], number, None if clusters[row].uav in offset_uavs else mean, sigma)
 
-    def _detected(self, cluster: Cluster, number: int, mean: float | None) -> None:
-        """Take a cluster of an obstacle by its ``mean`` distance from that (m), None: not known yet."""
-        pair, detected, s = (cluster.uav, number), cluster.surface_points, self._settings
+    def _detected(self, cluster: Cluster, number: int, mean: float | None, sigma: float) -> None:
+        """Take a cluster of an obstacle by its ``mean`` distance from that (m), None: not known yet.
+
+        ``sigma``: standard deviation of its points (m).
+        """
+        pair, s = (cluster.uav, number), self._settings
         _, shape, centre = self._standing[number]
         if mean is None:
-            mean = float(Bodies([shape]).mean_distances([detected.points], centre[None])[0, 0])
-        if mean < s.agreement_sigmas * math.sqrt(detected.noise**2 + float(detected.pose_variance.mean())):
+            mean = float(Bodies([shape]).mean_distances(PointGroups.of([cluster.points]), centre[None])[0, 0])
+        if mean < s.agreement_sigmas * sigma:
             self._agreements[pair] = self._agreements.get(pair, 0) + 1
             self._offsets.pop(pair, None)
         elif self._agreements.get(pair, 0) >= s.agreements:
+            points = cluster.surface_points
             offset = self._offsets.get(pair)
             if offset is None:
-                offset = self._offsets[pair] = _Offset(detected.time, s, self._surfaces)
-            offset.update(detected, shape, centre)
+                offset = self._offsets[pair] = _Offset(points.time, s, self._surfaces)
+            offset.update(points, shape, centre)
 
     @property
     def offsets(self) -> dict[int, Array]:
@@ -139,7 +143,11 @@ class MapCheck:
         return bool(uavs) and self.offsets.keys() >= set(uavs)
 
 
-def shifted(cluster: Cluster, by: Array) -> Cluster:
-    """Return a cluster with its points shifted ``by`` (3,) (NED, m), detected from the same place."""
-    points = cluster.surface_points
-    return replace(cluster, surface_points=replace(points, points=points.points + by))
+def _sigmas(clusters: Sequence[Cluster]) -> list[float]:
+    """Return the standard deviation of the points of each cluster, by range noise and pose (m)."""
+    variances = [cluster.pose_variance for cluster in clusters]
+    sizes = np.array([len(values) for values in variances])
+    of_poses = np.add.reduceat(np.concatenate(variances), np.cumsum(sizes) - sizes) / sizes
+    of_ranges = np.array([cluster.scan.noise for cluster in clusters]) ** 2
+    sigmas: list[float] = np.sqrt(of_ranges + of_poses).tolist()
+    return sigmas

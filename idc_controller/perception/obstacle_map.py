@@ -8,10 +8,10 @@ from typing import NamedTuple
 import numpy as np
 
 from idc_controller.arrays import Array
-from idc_controller.geometry.obstacles import Bodies, PredictedObstacle, Region
+from idc_controller.geometry.obstacles import Bodies, PointGroups, PredictedObstacle, Region
 from idc_controller.geometry.shape import Shape
 from idc_controller.perception.association import associate, gating_shape
-from idc_controller.perception.map_check import MapCheck, shifted
+from idc_controller.perception.map_check import MapCheck
 from idc_controller.perception.motion_imm import MotionModels
 from idc_controller.perception.scan_assembly import Cluster, ScanAssembly, SensorModel
 from idc_controller.perception.settings import PerceptionSettings
@@ -125,9 +125,9 @@ class ObstacleMap:
 
     def _update(self, placed: list[Cluster]) -> None:
         """Take one frame: clusters of all vehicles at one time."""
-        time = max(cluster.surface_points.time for cluster in placed)
+        time = max(cluster.scan.time for cluster in placed)
         offsets = self._check.offsets
-        clusters = [shifted(c, -offsets[c.uav]) if c.uav in offsets else c for c in placed]
+        clusters = [c.shifted(-offsets[c.uav]) if c.uav in offsets else c for c in placed]
         # With their offset removed, they are used only if there are no others.
         excluded = frozenset() if self.map_offset_detected else frozenset(offsets)
         memory, standing = self._tracks.memory, self._standing.names
@@ -163,7 +163,7 @@ class ObstacleMap:
             centres.append(centre)
             gates.append(s.undetected_gate if track.filter is None or track.is_deleted else s.track_gate + sigma)
             shapes.append(gating_shape(track.shape, s.wall_extension) if track.map_shape is None else track.shape)
-        points = [cluster.surface_points.points for cluster in clusters]
+        points = PointGroups.of([cluster.points for cluster in clusters])
         of_tracks = Bodies(shapes).mean_distances(points, np.array(centres).reshape(-1, 3))
         # Beyond the gates it does not matter how far they are.
         far = max(s.map_gate, s.remembered_gate, s.merge_gate)

@@ -1,8 +1,10 @@
 """Assembly of scans: detections of the range sensors become points in the world, by the poses of their vehicles."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterable, Set
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -10,7 +12,7 @@ from numpy.typing import NDArray
 
 from idc_controller.arrays import Array
 from idc_controller.perception.pose_history import PoseHistory
-from idc_controller.perception.scan_kernels import placed_points
+from idc_controller.perception.scan_kernels import placed_points, possible_points
 from idc_controller.perception.settings import ScanSettings
 from idc_controller.perception.surfaces.points import SurfacePoints
 from idc_controller.rotations import rotation_from_quaternion
@@ -44,13 +46,33 @@ class Detections(NamedTuple):
     """Range of the sensor, by each message (n,) (m)."""
 
 
-@dataclass(frozen=True, eq=False)
-class Cluster:
-    """Points that one vehicle assigns to one obstacle, under a number of its own."""
+class Cluster(NamedTuple):
+    """Points that one vehicle assigns to one obstacle, under a number of its own: a part of a scan."""
 
     uav: int
     number: int
-    surface_points: SurfacePoints
+    scan: SurfacePoints
+    part: slice = slice(None)
+
+    @property
+    def surface_points(self) -> SurfacePoints:
+        """The points with all that is known of them."""
+        return self.scan[self.part]
+
+    @property
+    def points(self) -> Array:
+        """The points (n, 3) (NED, m)."""
+        return self.scan.points[self.part]
+
+    @property
+    def pose_variance(self) -> Array:
+        """Variance of each point from the sensor's pose, on every axis (n,) (m2)."""
+        return self.scan.pose_variance[self.part]
+
+    def shifted(self, by: Array) -> Cluster:
+        """Return the cluster with its points shifted ``by`` (3,) (NED, m), detected from the same place."""
+        own = self.surface_points
+        return Cluster(self.uav, self.number, replace(own, points=own.points + by))
 
 
 class _Scan:
@@ -146,10 +168,8 @@ class ScanAssembly:
         """Add detections of UAV ``uav`` (0 .. N-1), made at ``time`` (s)."""
         points, max_range = detections.points, detections.max_range
         waiting = self._waiting_points.get(uav, 0)
-        distance = np.sqrt(np.einsum("ij,ij->i", points, points))
-        # Comparisons with nan are false.
-        is_usable = np.isfinite(max_range) & (distance > 0.0) & (distance < self._settings.range_factor * max_range)
-        usable = np.flatnonzero(is_usable)[: max(self._settings.points_max - waiting, 0)]
+        possible = possible_points(points, max_range, self._settings.range_factor)
+        usable = possible[: max(self._settings.points_max - waiting, 0)]
         if len(usable) < len(points):
             self.discarded += len(points) - len(usable)
             self.range_sensors.add_invalid(uav, time)
@@ -159,7 +179,8 @@ class ScanAssembly:
         scan = self._waiting.get(key)
         if scan is None:
             scan = self._waiting[key] = _Scan(time, float(max_range[usable[0]]))
-        scan.add(points[usable], detections.obstacles[usable])
+        whole = len(usable) == len(points)
+        scan.add(points if whole else points[usable], detections.obstacles if whole else detections.obstacles[usable])
         self._waiting_points[uav] = waiting + len(usable)
 
     def frames(
@@ -197,8 +218,9 @@ class ScanAssembly:
                 continue
             sigma = max(s.estimated_attitude_sigma * estimated_attitude, pose_noise_scale * self._sensors.attitude)
             places = self._placed(scan, points, *pose, pose_noise_scale * self._sensors.position, sigma)
-            spans = zip(numbers, [0, *ends], ends, strict=False)
-            placed.append((scan.time, [Cluster(uav, number, places[begin:end]) for number, begin, end in spans]))
+            parts = map(slice, [0, *ends], ends)
+            clusters = [Cluster(uav, number, places, part) for number, part in zip(numbers, parts, strict=True)]
+            placed.append((scan.time, clusters))
         placed.sort(key=lambda entry: entry[0])
         frames: list[list[Cluster]] = []
         begin = -math.inf

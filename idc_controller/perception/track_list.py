@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from idc_controller.arrays import Array
-from idc_controller.geometry.obstacles import Bodies
+from idc_controller.geometry.obstacles import Bodies, PointGroups
 from idc_controller.perception.association import ClusterMemory, gating_shape
 from idc_controller.perception.motion_imm import MotionModels
 from idc_controller.perception.scan_assembly import Cluster
@@ -139,9 +139,10 @@ class TrackList:
             for members, trial in groups:
                 if any(member.uav == cluster.uav for member in members):
                     continue
-                centre, _ = trial.centre(cluster.surface_points.time)
+                centre, _ = trial.centre(cluster.scan.time)
                 shape = gating_shape(trial.shape, s.wall_extension)
-                if Bodies([shape]).mean_distances([cluster.surface_points.points], centre[None])[0, 0] < s.group_gate:
+                points = PointGroups.of([cluster.points])
+                if Bodies([shape]).mean_distances(points, centre[None])[0, 0] < s.group_gate:
                     members.append(cluster)
                     trial.filter = None
                     trial.update([member.surface_points for member in members])
