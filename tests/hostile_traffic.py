@@ -29,7 +29,13 @@ def with_random_contents(kind, contents, target_system, writer):
     for name, value in (("target_system", target_system), ("target_component", 1)):
         if name in kind.ordered_fieldnames:
             payload[offset_of(kind, name)] = value
-    return mavlink.MAVLink_message(kind.id, kind.msgname)._pack(writer, kind.crc_extra, bytes(payload))
+    contents = bytes(payload).rstrip(b"\0") or b"\0"
+    header = struct.pack(
+        "<BBBBBBHB", len(contents), 0, 0, writer.seq, writer.srcSystem, writer.srcComponent,
+        kind.id & 0xFFFF, kind.id >> 16,
+    )  # fmt: skip
+    checksum = mavlink.x25crc(header + contents + bytes([kind.crc_extra])).crc
+    return b"\xfd" + header + contents + struct.pack("<H", checksum)
 
 
 class Traffic(FaultInjector):

@@ -62,7 +62,6 @@ class Swarm:
             self.world.close()
             raise
         self.failsafe = config.flight.failsafe
-        self._rest = config.world.rest
         self.take_off_time: float | None = None
         self._faults = faults or FaultInjector()
         self._truth: TruthLog | None = None
@@ -126,13 +125,7 @@ class Swarm:
     @property
     def at_rest(self) -> bool:
         """Return True if all vehicles are disarmed, their rotors have run down, and nothing moves any more."""
-        if any(vehicle.autopilot.armed for vehicle in self.vehicles):
-            return False
-        state = self.world.state()
-        if any(uav.thrust > self._rest.thrust for uav in state.uavs):
-            return False
-        velocities = [state.payload_velocity_in_world, *(uav.velocity_in_world for uav in state.uavs)]
-        return max(math.hypot(*velocity) for velocity in velocities) < self._rest.speed
+        return self.world.at_rest and not any(vehicle.autopilot.armed for vehicle in self.vehicles)
 
     # The wire
 

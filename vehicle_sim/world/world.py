@@ -3,6 +3,7 @@
 All that crosses this boundary is SI, north-east-down, forward-right-down, quaternions w first.
 """
 
+import math
 from collections.abc import Sequence
 from typing import Self
 
@@ -49,6 +50,7 @@ class World:
         check_supported(parameters)
         self.parameters = parameters
         self.physics_hz = physics_hz
+        self._rest = settings.rest
         self._client = pybullet.connect(pybullet.GUI if gui else pybullet.DIRECT)
         if self._client < 0:
             raise SimulationError("the physics engine does not start" + (" (is there a display?)" if gui else ""))
@@ -82,6 +84,15 @@ class World:
     def time(self) -> float:
         """Seconds since the world was made."""
         return self._steps / self.physics_hz
+
+    @property
+    def at_rest(self) -> bool:
+        """Return True if the rotors have run down and nothing moves any more."""
+        state = self.state()
+        if any(uav.thrust > self._rest.thrust for uav in state.uavs):
+            return False
+        velocities = [state.payload_velocity_in_world, *(uav.velocity_in_world for uav in state.uavs)]
+        return max(math.hypot(*velocity) for velocity in velocities) < self._rest.speed
 
     def step(
         self,
