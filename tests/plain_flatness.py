@@ -1,7 +1,5 @@
 """The flat map in plain numpy: the reference of the compiled one."""
 
-from dataclasses import fields
-
 import numpy as np
 
 from idc_controller.model.drag import SMOOTHING
@@ -73,7 +71,7 @@ def flat_reference(parameters, trajectory, times, load):
     u = np.zeros((K, layout.inputs))
     u[:, layout.n_setpoint] = (n[:, 2] + (kd * n_dot + n_acc + T_m * n_jerk) / kp).reshape(K, -1)
     u[:, layout.f_setpoint] = f[:, 2] + T_m * f_dot
-    links = FlatForces(*(getattr(forces, field.name)[centre] for field in fields(FlatForces)))
+    links = FlatForces(*(values[centre] for values in forces))
     return FlatReference(payload, links, x, u)
 
 

@@ -31,7 +31,7 @@ class ParametricQp:
     ) -> None:
         self.P, self.G, self.slack_of_row = P, G, slack_of_row
         self.solver = solver or ProxqpSolver()
-        self._inverse = np.linalg.inv(P)
+        self._optimum = -np.linalg.inv(P)
         n, m = len(P), len(G)
         slacks = int(slack_of_row.max()) + 1 if m else 0
         columns = np.zeros((m, slacks))
@@ -44,7 +44,7 @@ class ParametricQp:
 
     def unconstrained(self, g: Array) -> Array:
         """Return the optimum (n,) without constraints for gradient ``g`` (n,)."""
-        return -self._inverse @ g
+        return self._optimum @ g
 
     def problem(self, g: Array, h: Array) -> QuadraticProgram:
         """Return the program with its slacks as variables, for gradient ``g`` (n,) and bounds ``h`` (m,)."""

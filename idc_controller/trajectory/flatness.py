@@ -13,15 +13,15 @@ No linearisation is made, so a linear controller about this reference acts on er
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields
-from typing import Protocol
+from dataclasses import dataclass, field
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from idc_controller.arrays import Array
 from idc_controller.model.drag import Air
 from idc_controller.parameters import SystemParameters
-from idc_controller.trajectory.flatness_kernels import flat_forces, flat_states, stencil_grid
+from idc_controller.trajectory.flatness_kernels import flat_map, stencil_grid
 
 # Spacing of the samples from which derivatives of the UAVs' forces are taken (s): the trajectory is smooth up to snap
 # only, and these derivatives go beyond it.
@@ -38,8 +38,7 @@ class PayloadTrajectory(Protocol):
         ...
 
 
-@dataclass(frozen=True)
-class FlatForces:
+class FlatForces(NamedTuple):
     """Links and UAV forces along a trajectory; K times, N UAVs, NED."""
 
     q: Array
@@ -58,8 +57,7 @@ class FlatForces:
     """Estimated force of the load on each of the UAVs (K, N, 3) (N)."""
 
 
-@dataclass(frozen=True)
-class FlatReference:
+class FlatReference(NamedTuple):
     """Exact states and inputs along a trajectory at K times."""
 
     payload: Array
@@ -72,7 +70,7 @@ class FlatReference:
 
     def part(self, which: slice) -> FlatReference:
         """The reference at some of its times."""
-        links = FlatForces(*(getattr(self.links, field.name)[which] for field in fields(FlatForces)))
+        links = FlatForces(*[values[which] for values in self.links])
         return FlatReference(self.payload[:, which], links, self.x[which], self.u[which])
 
 
@@ -103,15 +101,9 @@ def flat_reference(
     air = load.air or _STILL_AIR
     constant = np.empty((N, 3))
     constant[:] = load.uav_force
-    links, tension, on_payload, thrust, on_uav = flat_forces(
-        derivatives, load.mass, load.force, constant,
-        load.air is not None, air.wind, air.payload, air.uav, air.limit, p.g, p.p, p.l, p.m,
+    x, u, payload, (q, q_dot, q_ddot), tension, thrust, on_payload, on_uavs = flat_map(
+        derivatives, index, STENCIL, load.mass, load.force, constant,
+        load.air is not None, air.wind, air.payload, air.uav, air.limit,
+        p.g, p.p, p.l, p.m, p.attitude_kp, p.attitude_kd, p.motor_time_constant,
     )  # fmt: skip
-    x, u, payload, directions = flat_states(
-        derivatives, links, thrust, index, STENCIL, p.attitude_kp, p.attitude_kd, p.motor_time_constant
-    )
-    q, q_dot, q_ddot = directions
-    centre = index[:, 2]
-    on_uavs = constant + on_uav[centre][:, None]
-    forces = FlatForces(q, q_dot, q_ddot, tension[centre], thrust[centre], on_payload[centre], on_uavs)
-    return FlatReference(payload, forces, x, u)
+    return FlatReference(payload, FlatForces(q, q_dot, q_ddot, tension, thrust, on_payload, on_uavs), x, u)

@@ -121,12 +121,8 @@ def _share_tension(q: Array, total: float, p: Array, tension: Array) -> None:
         tension[i] = z0 + b * z1 + c * z2
 
 
-@kernel(
-    "Tuple((float64[:, :, ::1], float64[:, ::1], float64[:, ::1], float64[:, :, ::1], float64[:, ::1]))"
-    f"(float64[:, :, ::1], float64, {_VECTOR}, float64[:, ::1], "
-    f"boolean, {_VECTOR}, {_VECTOR}, float64, float64, float64, {_MATRIX}, {_VECTOR}, {_VECTOR})"
-)
-def flat_forces(
+@inlined
+def _forces(
     derivatives: Array,
     mass: float,
     force: Array,
@@ -209,14 +205,11 @@ def flat_forces(
     return links, tension, on_payload, thrust, on_uav
 
 
-@kernel(
-    "Tuple((float64[:, ::1], float64[:, ::1], float64[:, :, ::1], float64[:, :, ::1]))"
-    "(float64[:, :, ::1], float64[:, :, ::1], float64[:, :, ::1], int64[:, ::1], float64, float64, float64, float64)"
-)
-def flat_states(
+@inlined
+def _states(
     derivatives: Array, links: Array, thrust: Array, index: Indices, h: float, kp: float, kd: float, T_m: float
-) -> tuple[Array, Array, Array, Array]:
-    """Return the reference at K times, in the coordinates of the linear model.
+) -> tuple[Array, Array]:
+    """Return the states (K, 12 + 11 N) and set-points (K, 3 N) of the reference at K times.
 
     Args:
         derivatives: of the payload's position (5, G, 3).
@@ -225,22 +218,14 @@ def flat_states(
         index: instants of the five points of the stencil about each time (K, 5).
         h: spacing of these points (s).
         kp, kd, T_m: of the attitude loop and the motors, which are inverted: the set-point leads the attitude.
-
-    Returns:
-        States (K, 12 + 11 N), set-points (K, 3 N), and of ``derivatives`` and ``links`` those at the K times.
     """
     K, N = len(index), thrust.shape[1]
     x, u = np.zeros((K, 12 + 11 * N)), np.empty((K, 3 * N))
-    payload, directions = np.empty((5, K, 3)), np.empty((3, K, 3))
     s, s_dot, n_at, n_dot_at, n_acc_at, f_at = 12, 12 + 2 * N, 12 + 4 * N, 12 + 6 * N, 12 + 8 * N, 12 + 10 * N
     f, n = np.empty(5), np.empty(5)
     for k in range(K):
         centre = index[k, 2]
         for c in range(3):
-            for order in range(5):
-                payload[order, k, c] = derivatives[order, centre, c]
-            for order in range(3):
-                directions[order, k, c] = links[order, centre, c]
             x[k, c], x[k, 3 + c] = derivatives[0, centre, c], derivatives[1, centre, c]
         for i in range(N):
             for o in range(5):
@@ -258,4 +243,68 @@ def flat_states(
                 x[k, s + at], x[k, s_dot + at] = links[0, centre, c], links[1, centre, c]
                 x[k, n_at + at], x[k, n_dot_at + at], x[k, n_acc_at + at] = n[2], n_dot, n_acc
                 u[k, at] = n[2] + (kd * n_dot + n_acc + T_m * n_jerk) / kp
-    return x, u, payload, directions
+    return x, u
+
+
+@kernel(
+    "Tuple((float64[:, ::1], float64[:, ::1], float64[:, :, ::1], float64[:, :, ::1], float64[:, ::1], "
+    "float64[:, :, ::1], float64[:, ::1], float64[:, :, ::1]))"
+    f"(float64[:, :, ::1], int64[:, ::1], float64, float64, {_VECTOR}, float64[:, ::1], "
+    f"boolean, {_VECTOR}, {_VECTOR}, float64, float64, "
+    f"float64, {_MATRIX}, {_VECTOR}, {_VECTOR}, float64, float64, float64)"
+)
+def flat_map(
+    derivatives: Array,
+    index: Indices,
+    h: float,
+    mass: float,
+    force: Array,
+    uav_force: Array,
+    has_air: bool,
+    wind: Array,
+    payload_drag: Array,
+    uav_drag: float,
+    drag_limit: float,
+    g: float,
+    p: Array,
+    l: Array,
+    m: Array,
+    kp: float,
+    kd: float,
+    T_m: float,
+) -> tuple[Array, Array, Array, Array, Array, Array, Array, Array]:
+    """Return the reference at K times, in the coordinates of the linear model, and the forces there; NED, SI.
+
+    Args:
+        derivatives: of the payload's position at G instants, up to snap (5, G, 3).
+        index: instants of the five points of the stencil about each time (K, 5).
+        h: spacing of these points (s).
+        mass ... m: see ``_forces``.
+        kp, kd, T_m: see ``_states``.
+
+    Returns:
+        States (K, 12 + 11 N), set-points (K, 3 N), derivatives of the payload's position (5, K, 3), link directions
+        from UAV to payload with two derivatives (3, K, 3), tensions (K, N) (N), thrust vectors of the UAVs (K, N, 3)
+        (N), and the forces of the load on the payload (K, 3) and on the UAVs (K, N, 3) (N).
+    """
+    links, tension, on_payload, thrust, on_uav = _forces(
+        derivatives, mass, force, uav_force, has_air, wind, payload_drag, uav_drag, drag_limit, g, p, l, m
+    )
+    x, u = _states(derivatives, links, thrust, index, h, kp, kd, T_m)
+    K, N = len(index), len(m)
+    at, directions, at_tension = np.empty((5, K, 3)), np.empty((3, K, 3)), np.empty((K, N))
+    at_thrust, at_payload, at_uavs = np.empty((K, N, 3)), np.empty((K, 3)), np.empty((K, N, 3))
+    for k in range(K):
+        j = index[k, 2]
+        for c in range(3):
+            for order in range(5):
+                at[order, k, c] = derivatives[order, j, c]
+            for order in range(3):
+                directions[order, k, c] = links[order, j, c]
+            at_payload[k, c] = on_payload[j, c]
+            for i in range(N):
+                at_thrust[k, i, c] = thrust[j, i, c]
+                at_uavs[k, i, c] = uav_force[i, c] + on_uav[j, c]
+        for i in range(N):
+            at_tension[k, i] = tension[j, i]
+    return x, u, at, directions, at_tension, at_thrust, at_payload, at_uavs
