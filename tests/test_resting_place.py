@@ -115,6 +115,29 @@ def test_chosen_braking_is_kept_while_clear():
         assert chosen(0.05 * k, moved) == first
 
 
+class Changing:
+    """Obstacles that are exchanged for others."""
+
+    def __init__(self, source):
+        self.source = source
+
+    def predict(self, times, region=None):
+        return self.source.predict(times, region)
+
+
+@pytest.mark.parametrize("meanwhile", ["near", "far"])
+def test_chosen_braking_is_forgotten_once_no_obstacle_is_near(meanwhile):
+    source, other = Changing(sphere(REST)), sphere(np.add(REST, [0.3, 0.2, 0.0]))
+    choose = RestingPlace(PARAMETERS, source)
+    first, anew = choose(0.0, STATE), RestingPlace(PARAMETERS, other)(0.0, STATE)
+    assert len({USUAL, first, anew}) == 3
+    if meanwhile == "far":
+        source.source = StandingObstacles([])
+        assert choose(1.0, STATE) == USUAL
+    source.source = other
+    assert choose(2.0, STATE) == (anew if meanwhile == "far" else first)
+
+
 def test_braking_with_most_clearance_is_chosen_when_none_is_clear():
     everywhere = StandingObstacles(
         [(f"{x} {y}", Pole(0.2, 10.0), np.array([x, y, -5.0]))

@@ -13,19 +13,21 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.interpolate import BPoly
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Indices
 from idc_controller.geometry.obstacles import Bodies, ObstacleSource, PredictedObstacle, Region
 from idc_controller.geometry.shape import Shape
 from idc_controller.guidance.resting_place_kernels import least_distances
 from idc_controller.guidance.settings import RestingPlaceSettings
 from idc_controller.parameters import SystemParameters
 from idc_controller.trajectory.settings import BrakingSettings
-from idc_controller.trajectory.stop_plan import Braking
+from idc_controller.trajectory.stop_plan import Braking, control_points
 
 _AXIS = 9
 """Points on the formation's upright axis on its path."""
 _STEP = 0.4  # m, between points below the place of rest
 _ROUNDING = 1e-6  # m, more than the rounding of a distance
+_USUAL = 0
+"""Index of the usual stop among the choices."""
 
 
 class RestingPlace:
@@ -39,14 +41,14 @@ class RestingPlace:
         braking: BrakingSettings = BrakingSettings(),
     ) -> None:
         self.settings, self._obstacles = settings, obstacles
-        usual = Braking(settings=braking)
+        self._braking = braking
         beside = np.hypot(parameters.p[:, 0], parameters.p[:, 1]) + parameters.disc_radius
         self._radius = float(max(beside.max(), parameters.payload.horizontal_reach))
         self._axis = np.linspace(-float((parameters.l - parameters.p[:, 2]).max()), parameters.payload.below, _AXIS)
         self._elapsed = np.linspace(0.0, settings.look_ahead, settings.samples)
-        self._choices = [usual, usual, *_deflected(usual, settings)]
-        """The usual stop, the last one that was chosen, and all others."""
-        self._slowest = max(self._choices, key=lambda choice: choice.share)
+        usual = Braking(settings=braking)
+        self._choices = _Choices([usual, *_deflected(usual, settings)], settings)
+        self._last = _USUAL
 
     def __call__(self, time: float, state: Array) -> Braking:
         """Return the stop from ``state`` (3, 3) at ``time`` (s).
@@ -54,39 +56,57 @@ class RestingPlace:
         These are position, velocity and acceleration of a payload that hangs at rest below the UAVs, which
         brake. The usual stop, if that is clear; else the last one that was chosen, while it is; else the best of many.
         """
-        s, (usual, last) = self.settings, self._choices[:2]
-        obstacles = self._obstacles.predict(time + self._elapsed, Region(state[0], self._farthest(state)))
-        if not obstacles:
-            return usual
-        near = _Near(obstacles, s.growth_max)
-        for known in dict.fromkeys((usual, last)):
-            if self._clearances(near, state, [known])[0] >= s.clearance:
-                self._choices[1] = known
-                return known
-        effort = [math.hypot(*choice.aside) + s.duration_cost * abs(choice.share - 1.0) for choice in self._choices]
-        merits = np.minimum(self._clearances(near, state, self._choices), s.clearance) - s.cost * np.array(effort)
-        best = self._choices[1] = self._choices[int(np.argmax(merits))]
-        return best
+        usual_duration = self._braking.usual_duration(state[1])
+        region = Region(state[0], self._farthest(state, usual_duration))
+        obstacles = self._obstacles.predict(time + self._elapsed, region)
+        self._last = self._chosen(obstacles, state, usual_duration) if obstacles else _USUAL
+        return self._choices.stops[self._last]
 
-    def _farthest(self, state: Array) -> float:
+    def _chosen(self, obstacles: Sequence[PredictedObstacle], state: Array, usual_duration: float) -> int:
+        """Return the index of the stop chosen."""
+        least, choices = self.settings.clearance, self._choices
+        near = _Near(obstacles, self.settings.growth_max)
+        for known in (_USUAL, self._last) if self._last != _USUAL else (_USUAL,):
+            if self._clearances(near, state, usual_duration, np.array([known]))[0] >= least:
+                return known
+        # Of equally good ones the last that was chosen, unless it is the usual one.
+        order = np.array([_USUAL, self._last, *range(1, len(choices.stops))])
+        clearances = self._clearances(near, state, usual_duration, order)
+        return int(order[np.argmax(np.minimum(clearances, least) - choices.costs[order])])
+
+    def _farthest(self, state: Array, usual_duration: float) -> float:
         """Return how far (m) from where it is now an obstacle can be that matters, for the slowest stop."""
         s = self.settings
-        duration = self._slowest.duration(state[1])
+        duration = self._choices.largest_share * usual_duration
         _, speed, acceleration = np.linalg.norm(state, axis=1).tolist()
         # The control points of a path hold it.
         length = duration / 2.0 * speed + duration**2 / 12.0 * acceleration + max(s.aside, default=0.0)
         return float(length + self._radius + s.clearance + s.growth_max + _ROUNDING)
 
-    def _clearances(self, near: _Near, state: Array, choices: Sequence[Braking]) -> Array:
+    def _clearances(self, near: _Near, state: Array, usual_duration: float, which: Indices) -> Array:
         """Return the least distance (m) of the formation's upright hull on its path to rest, and down from there.
 
-        For each of the ``choices`` (C,); those beyond the clearance that is asked for are not distinguished.
+        For the choices of the indices ``which`` (C,); those beyond the clearance that is asked for are not
+        distinguished.
         """
-        durations = np.array([choice.duration(state[1]) for choice in choices])
-        control = np.array([choice.control_points(state, t) for choice, t in zip(choices, durations, strict=True)])
+        durations = self._choices.shares[which] * usual_duration
+        control = control_points(state, durations, self._choices.asides[which])
         limit = self._radius + self.settings.clearance + _ROUNDING
         least = near.least_distances(control, durations, self._elapsed, self._axis, limit)
         return least - self._radius
+
+
+class _Choices:
+    """The stops to choose from, the usual one first."""
+
+    def __init__(self, stops: Sequence[Braking], settings: RestingPlaceSettings) -> None:
+        self.stops = stops
+        self.shares = np.array([stop.share for stop in stops])
+        self.asides = np.array([stop.aside for stop in stops])
+        self.largest_share = float(self.shares.max())
+        effort = [math.hypot(*stop.aside) + settings.duration_cost * abs(stop.share - 1.0) for stop in stops]
+        self.costs = settings.cost * np.array(effort)
+        """What each is worse for being unusual (m)."""
 
 
 def _deflected(usual: Braking, s: RestingPlaceSettings) -> list[Braking]:

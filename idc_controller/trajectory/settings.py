@@ -57,3 +57,7 @@ class BrakingSettings:
     time: float = setting(4.0, "s", "least time in which a team without set-points comes to rest", gt=0.0)
     deceleration: float = derived(2.0)
     """Largest deceleration of that stop (m/s2); a faster team takes longer."""
+
+    def usual_duration(self, velocity: Array) -> float:
+        """Return the time from a ``velocity`` (3,) (m/s) to rest (s)."""
+        return max(self.time, 1.5 * float(np.linalg.norm(velocity)) / self.deceleration)

@@ -34,6 +34,20 @@ _CONTROL_POINTS = np.array(
 )
 
 
+def control_points(state: Array, duration: Array, aside: Array) -> Array:
+    """Return the control points (..., 5, 3) (m) of paths to rest.
+
+    Args:
+        state: position, velocity and acceleration at the start (..., 3, 3).
+        duration: of the paths (...) (s).
+        aside: place of rest less that to which the motion alone leads (..., 3) (m).
+    """
+    powers = np.stack([np.ones_like(duration), duration, duration**2], axis=-1)
+    points = _CONTROL_POINTS @ (state * powers[..., None])
+    points[..., 2:, :] += aside[..., None, :]
+    return np.asarray(points)
+
+
 class Braking(NamedTuple):
     """A stop; by default in the usual time, to where the motion leads."""
 
@@ -45,14 +59,11 @@ class Braking(NamedTuple):
 
     def duration(self, velocity: Array) -> float:
         """Return the time from a ``velocity`` (3,) (m/s) to rest (s)."""
-        speed = float(np.linalg.norm(velocity))
-        return self.share * max(self.settings.time, 1.5 * speed / self.settings.deceleration)
+        return self.share * self.settings.usual_duration(velocity)
 
     def control_points(self, state: Array, duration: float) -> Array:
         """Return those (..., 5, 3) (m) of the path from a ``state`` (..., 3, 3) of position, velocity, acceleration."""
-        points = _CONTROL_POINTS @ (state * np.array([1.0, duration, duration**2])[:, None])
-        points[..., 2:, :] += np.array(self.aside)
-        return np.asarray(points)
+        return control_points(state, np.array(duration), np.array(self.aside))
 
     def path(self, state: Array) -> BPoly:
         """Return the path from ``state`` (3, 3) on, over the time since then (s)."""
