@@ -69,10 +69,10 @@ class PayloadHull:
     @cached_property
     def areas(self) -> Array:
         """Areas of the silhouettes along the axes x, y, z (3,) (m2)."""
-        import shapely
+        from scipy.spatial import ConvexHull
 
-        views = [shapely.MultiPoint(np.delete(self.vertices, axis, axis=1)).convex_hull for axis in range(3)]
-        return np.array([view.area for view in views])
+        # The volume of a plane hull is its area.
+        return np.array([ConvexHull(np.delete(self.vertices, axis, axis=1)).volume for axis in range(3)])
 
     @cached_property
     def box_edges(self) -> Array | None:

@@ -8,6 +8,7 @@ import platform
 import re
 from collections.abc import Mapping, Sequence
 from datetime import date, datetime
+from functools import cache
 from importlib import metadata
 from pathlib import Path, PurePath
 from typing import Any
@@ -116,7 +117,8 @@ def write_json(path: Path | str, content: object) -> Path:
     return path
 
 
-def versions() -> dict[str, str]:
+@cache
+def versions() -> Mapping[str, str]:
     """Return the versions of Python, of this package and of its dependencies at run time."""
     found = {"python": platform.python_version()}
     try:

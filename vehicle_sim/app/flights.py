@@ -10,18 +10,22 @@ import json
 import os
 import sys
 
+import gcs.app.cli
 import gcs.app.fly
 import gcs.app.progress
 import gcs.record.summary_table  # noqa: F401
 from gcs.drivers.forked_program import FORK, run_program
+from gcs.record.run_folder import versions
 from vehicle_sim.world.engine_messages import greeting_of_engine_dropped
 
 with greeting_of_engine_dropped():
+    import vehicle_sim.app.cli
     import vehicle_sim.app.launch  # noqa: F401
 
 
 def main() -> None:
     """Fly until the end of standard input."""
+    versions()  # kept for the manifests
     gc.freeze()  # collections in the flights leave alone what they share
     stream = os.dup(sys.stdin.fileno())
     for line in sys.stdin:
