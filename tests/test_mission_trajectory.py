@@ -14,3 +14,16 @@ def test_figure_begins_with_a_climb_at_once(tmp_path):
     np.testing.assert_allclose(position[1, :2], [1.0, 2.0], atol=1e-12)
     assert position[1, 2] < -0.005
     assert flown.phase(3.0) == "climb"
+
+
+def test_figure_ends_where_the_climb_ended_and_descends_there(tmp_path):
+    mission = read_mission(short_figure(tmp_path))
+    flown = MissionTrajectory(mission, np.array([1.0, 2.0, 0.0]), start=3.0)
+    trajectory = flown.trajectory
+    trajectory.derivatives(np.array([200.0]), 0)
+    times = np.linspace(3.0, trajectory.end, 4000)
+    path, velocity = trajectory.derivatives(times, 1)
+    np.testing.assert_allclose(path[-1, :2], [1.0, 2.0], atol=0.01)
+    figure = path[path[:, 2] < -mission.reference.altitude + 0.01]
+    assert np.ptp(figure[:, 0]) > mission.reference.amplitude[0]
+    assert np.linalg.norm(velocity, axis=1).max() <= mission.system.motion.curve_speed

@@ -20,7 +20,7 @@ from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
 from vehicle_sim.faults import FaultInjector
 from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.multibody import urdf_text
-from vehicle_sim.world.obstacle_bodies import Obstacle
+from vehicle_sim.world.obstacle_bodies import Obstacle, ScanTargets
 from vehicle_sim.world.range_sensor import RangeSensor
 from vehicle_sim.world.sensors import Measurement
 from vehicle_sim.world.truth_log import TruthLog
@@ -192,9 +192,9 @@ def test_wind_pushes_in_proportion_to_density_of_air():
 
 
 def test_range_sensor_measures_nothing_below_its_least_distance():
-    obstacle = Obstacle("near", Sphere(0.5), (1.0, 0.0, -5.0))
+    targets = ScanTargets.of([Obstacle("near", Sphere(0.5), (1.0, 0.0, -5.0))])
     counts = [
-        len(RangeSensor(RangeSensorConfig(range_min=least), 1, 1).scan(0.0, (0.0, 0.0, -5.0), LEVEL, [obstacle])[2])
+        len(RangeSensor(RangeSensorConfig(range_min=least), 1, 1).scan(0.0, (0.0, 0.0, -5.0), LEVEL, targets)[2])
         for least in (0.05, 0.8)
     ]
     assert counts[0] > counts[1] == 0

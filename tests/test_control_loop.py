@@ -1,0 +1,161 @@
+"""The control step as a whole: telemetry comes in, an estimate and a decision are made of it, set-points go out."""
+
+from dataclasses import replace
+from itertools import count
+
+import numpy as np
+import pymavlink.dialects.v20.ardupilotmega as mavlink
+import pytest
+from test_control_step import AT_REST, HOVER, LAYOUT, MODEL, REST, SYSTEM, N, P, estimated, received
+
+from gcs.flight import stack
+from gcs.flight.compute_times import ComputeTimes, Part
+from gcs.flight.control_loop import STOP_PLANS, ControlLoop, Setpoints, StepRecord
+from gcs.mavlink import px4
+from gcs.mavlink.codec import Codec
+from gcs.mavlink.setpoints import attitude_target
+from gcs.mavlink.telemetry import measurement
+from idc_controller.rotations import rotation_from_quaternion
+from idc_controller.safety.filter_protocol import NoObstacles
+from idc_controller.trajectory.stop_plan import Braking
+from vehicle_sim.autopilot.setpoints import read_setpoint
+
+PERIOD = 1.0 / SYSTEM.rates.control
+SPOTS = np.array([HOVER, *(HOVER + P.p - P.l[:, None] * [0.0, 0.0, 1.0])])
+
+
+def control_loop(brake=lambda time, state: Braking(), stopwatch=lambda: 0.0):
+    controller = stack.controller(SYSTEM, MODEL, NoObstacles(), stopwatch)
+    loop = ControlLoop(stack.estimator(SYSTEM, MODEL), controller, ComputeTimes(stopwatch), brake)
+    loop.estimator.start(5.0, AT_REST)
+    return loop
+
+
+def telemetry(time, shift):
+    """Messages of payload and vehicles at rest in formation, all ``shift`` (m) from where they should be."""
+    for source, spot in enumerate(SPOTS + shift, start=-1):
+        component = px4.PAYLOAD_UNIT_COMPONENT if source < 0 else px4.AUTOPILOT_COMPONENT
+        for message in (
+            mavlink.MAVLink_local_position_ned_message(round(1000 * time), *spot, 0.0, 0.0, 0.0),
+            mavlink.MAVLink_attitude_quaternion_message(round(1000 * time), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        ):
+            yield measurement(received(message, max(source, 0) + 1, component), max(source, 0), time)
+
+
+def flown(loop, steps, shift):
+    """Control steps with telemetry before each; what was recorded."""
+    records = []
+    for k in range(steps):
+        time = 5.0 + PERIOD * k
+        for taken in telemetry(time, shift):
+            loop.estimator.add(taken)
+        estimate = loop.estimate(time + PERIOD, REST)
+        records.append(loop.decide(estimate, REST, on_ground=False, learn_load=False))
+        loop.send(records[-1], time + PERIOD, np.full(N, time))
+    return records
+
+
+@pytest.mark.parametrize(("axis", "sign"), [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)])
+def test_measured_shift_of_the_team_is_answered_by_thrust_against_it(axis, sign):
+    shift = 0.1 * sign * np.eye(3)[axis]
+    loop = control_loop()
+    loop.estimator.start(5.0, AT_REST + np.concatenate([shift, np.zeros(LAYOUT.size - 3)]))
+    [record] = flown(loop, 1, shift)
+    assert record.estimate.time == pytest.approx(5.0 + PERIOD)
+    assert record.decision.time == record.estimate.time
+    assert record.estimate.x[LAYOUT.r_0] == pytest.approx(HOVER + shift, abs=0.01)
+    for i in range(N):
+        message = attitude_target(
+            i + 1, record.estimate.time, record.decision.directions[i], record.decision.thrusts[i], P.thrust_max
+        )
+        [on_wire] = Codec(i + 1, 1).decode(Codec(255, 190).frame(message))
+        setpoint = read_setpoint(on_wire.fields, SYSTEM.onboard().setpoints)
+        thrust = -setpoint.thrust * P.thrust_max * rotation_from_quaternion(np.array(setpoint.attitude))[:, 2]
+        assert sign * thrust[axis] < -1e-3
+        assert abs(thrust[1 - axis]) < 0.3 * abs(thrust[axis])
+        assert thrust[2] == pytest.approx(-P.hover_thrust[i], rel=0.05)
+
+
+def test_sent_setpoints_act_on_the_estimate_from_their_time_on():
+    pulled = control_loop()
+    estimate = pulled.estimate(5.0 + PERIOD, REST)
+    record = pulled.decide(estimate, REST, on_ground=False, learn_load=False)
+    north = record.decision.u.copy()
+    north[0 : 2 * N : 2] = 0.2
+    leaning = StepRecord(record.estimate, replace(record.decision, u=north))
+    pulled.send(leaning, 5.0 + PERIOD, np.full(N, 5.0))
+    before = pulled.estimate(5.0 + PERIOD, REST)
+    after = pulled.estimate(5.0 + 8 * PERIOD, REST)
+    assert before.x[LAYOUT.n] == pytest.approx(np.zeros(2 * N), abs=1e-6)
+    assert np.all(after.x[LAYOUT.n][0::2] > 0.05)
+    assert after.x[LAYOUT.n][1::2] == pytest.approx(np.zeros(N), abs=1e-3)
+
+
+def test_stop_plan_goes_out_with_the_setpoints_and_brakes_as_asked():
+    asked = []
+
+    def brake(time, state):
+        asked.append((time, state))
+        return Braking(share=2.0)
+
+    usual, slow = control_loop(), control_loop(brake)
+    assert usual.stop_plan is None
+    for loop in (usual, slow):
+        record = loop.decide(estimated(v_0=np.array([0.5, 0.0, 0.0])), REST, on_ground=False, learn_load=False)
+        loop.send(record, 5.0, np.full(N, 4.95))
+    assert slow.stop_plan.start == usual.stop_plan.start == 5.0
+    assert slow.stop_plan.duration == pytest.approx(2.0 * usual.stop_plan.duration)
+    assert all(time == 5.0 for time, _ in asked) and asked
+    formation = SPOTS[1:]
+    assert usual.stop_plan.control_points[:, 0] == pytest.approx(formation, abs=1e-3)
+
+
+def test_vehicles_cut_off_follow_the_last_stop_plan_that_all_have_received():
+    loop = control_loop()
+    loop.choose_stop_plan(10.0)
+    assert loop.stop_plan is None
+    record = loop.decide(estimated(), REST, on_ground=False, learn_load=False)
+    times = [PERIOD * k for k in range(STOP_PLANS + 5)]
+    for time in times:
+        loop.send(record, time, np.full(N, time))
+    assert loop.stop_plan.start == times[-1]
+    loop.choose_stop_plan(times[-3] + 0.005)
+    assert loop.stop_plan.start == times[-3]
+    loop.choose_stop_plan(times[-2] - 0.005)  # stamps on the wire are whole milliseconds
+    assert loop.stop_plan.start == times[-2]
+    loop.choose_stop_plan(times[6] - 0.02)
+    assert loop.stop_plan.start == times[5]
+    # Of those before, none is kept: the last choice stays.
+    loop.choose_stop_plan(times[2])
+    assert loop.stop_plan.start == times[5]
+
+
+def test_load_is_learnt_in_the_air_where_it_is_clear():
+    on_uavs = np.zeros((N, 3))
+    on_uavs[:, 0] = 0.3
+    for options, learns in (
+        ({"on_ground": False, "learn_load": True}, True),
+        ({"on_ground": False, "learn_load": False}, False),
+        ({"on_ground": True, "learn_load": True}, False),
+    ):
+        loop = control_loop()
+        for _ in range(20):
+            loop.decide(estimated(uav_force=on_uavs), REST, **options)
+        assert (loop.controller.load.estimate.uav_force[0, 0] > 0.01) == learns
+
+
+def test_compute_times_of_a_step_go_to_their_parts():
+    ticks = count()
+    loop = control_loop(stopwatch=lambda: float(next(ticks)))
+    loop.compute_times.resume()
+    flown(loop, 1, np.zeros(3))
+    spent = loop.compute_times.take()
+    busy = {part for part in Part if spent[part] > 0.0}
+    assert busy == {Part.MONITORING, Part.ESTIMATION, Part.PLANNING, Part.CONTROL, Part.STOP_PLAN}
+    assert loop.compute_times.take() == (0.0,) * len(Part)
+
+
+def test_idle_setpoints_are_upright_rotors_without_thrust():
+    idle = Setpoints.idle(3)
+    assert idle.directions.tolist() == [[0.0, 0.0, -1.0]] * 3
+    assert idle.thrusts.tolist() == [0.0] * 3
