@@ -22,6 +22,7 @@ def add(reckoning, *samples):
     """Add measurements of one moment."""
     sources, is_position = np.array([s.source for s in samples]), np.array([isinstance(s, Position) for s in samples])
     values = np.concatenate([part for sample in samples for part in (sample.pose, sample.motion)])
+    values.flags.writeable = False
     reckoning.add(SampleStack(np.array([sample.time for sample in samples]), sources, is_position, values))
 
 

@@ -246,8 +246,15 @@ def test_compiled_measured_less_reference_equals_plain_one(vehicles):
     samples[-1] = samples[-1].without(pose=True, motion=False)
     expected[-2] = np.full(3, np.nan)
     observation = model.observation(tuple((sample.source, type(sample)) for sample in samples))
-    y = model.less_reference(observation, observation.samples(samples), flat, 1)
+    stacked = observation.samples(samples)
+    stacked.values.flags.writeable = False
+    y, rows = model.observe(observation, stacked, flat, 1)
     assert y == pytest.approx(np.concatenate(expected), rel=1e-12, abs=1e-12, nan_ok=True)
+    upright, tilted, n = observation.rows.dense(layout.size), rows.dense(layout.size), layout.s.start
+    for source, height in zip(observation.uavs, observation.heights, strict=True):
+        slope, at = parameters.l[source] * flat.links.q[1, :2] / flat.links.q[1, 2], n + 2 * source
+        upright[height, at : at + 2] = upright[height + 3, at + 2 * vehicles : at + 2 * vehicles + 2] = slope
+    assert tilted == pytest.approx(upright, rel=1e-14)
 
 
 def test_chi_squared_quantiles_equal_scipys():

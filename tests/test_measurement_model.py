@@ -33,7 +33,7 @@ def test_estimated_vehicles_match_measurement_model():
     for measurement in model.vehicles(0.0, moved):
         observation = model.observation(((measurement.source, type(measurement)),))
         expected = observation.rows.dense(LAYOUT.size) @ (moved - flat.x[0])
-        assert model.less_reference(observation, observation.samples([measurement]), flat, 0) == pytest.approx(
+        assert model.observe(observation, observation.samples([measurement]), flat, 0)[0] == pytest.approx(
             expected, abs=2e-3
         )
 

@@ -64,7 +64,11 @@ class Transition(NamedTuple):
     """Transition matrix F (n, n) and input matrix B (n, 3 N) over an interval."""
 
     dense: Array
-    """First rows of F (d, n)."""
+    """First rows of F (d, n), but for the last column."""
+    push: Array
+    """Columns by which a force on the payload moves these rows (d, 3)."""
+    direction: Array
+    """Force for one unit of the last state (3,); their product is the last column."""
     sparse: SparseRows
     """The others, whose elements are in the last n - d columns."""
     B: Array
@@ -72,7 +76,8 @@ class Transition(NamedTuple):
     @property
     def F(self) -> Array:
         """Transition matrix (n, n)."""
-        return np.vstack([self.dense, self.sparse.dense(self.dense.shape[1])])
+        dense = np.column_stack([self.dense[:, :-1], self.push @ self.direction])
+        return np.vstack([dense, self.sparse.dense(self.dense.shape[1])])
 
 
 class SetpointNoise(NamedTuple):
@@ -99,8 +104,8 @@ class StructuredKalmanFilter(KalmanFilter):  # type: ignore[misc]  # filterpy ha
             Q: covariance of the process noise (n, n).
             noise: of the input, which adds to it.
         """
-        dense, (columns, coefficients), B = transition
-        self.x, self.P = propagated(self.x, self.P, dense, columns, coefficients, B, u, Q, *noise)
+        dense, push, direction, sparse, B = transition
+        self.x, self.P = propagated(self.x, self.P, dense, push, direction, *sparse, B, u, Q, *noise)
 
     def innovation(self, y: Array, rows: SparseRows) -> Innovation:
         """Return the innovation of the measurements ``y`` (m,) that ``rows`` observe."""

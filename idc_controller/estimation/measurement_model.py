@@ -20,7 +20,7 @@ from idc_controller.estimation.measurements import (
     SensorKey,
 )
 from idc_controller.estimation.settings import MeasurementModelSettings
-from idc_controller.estimation.update_kernels import measured_less_reference
+from idc_controller.estimation.update_kernels import observed
 from idc_controller.estimation.vehicle_kernels import vehicle_states
 from idc_controller.model.linear import LinearModel
 from idc_controller.trajectory.flatness import FlatReference
@@ -141,25 +141,19 @@ class MeasurementModel:
             sparse.columns[heights + below, -2:] = part.start + 2 * uavs[:, None] + np.arange(2)
         return Observation(stack, sparse, sources, is_position, uavs, heights)
 
-    def rows(self, observation: Observation, reference: FlatReference, k: int) -> SparseRows:
-        """Return the rows that observe the error about the reference's time ``k``."""
-        columns, coefficients = observation.rows
-        if not len(observation.uavs):
-            return observation.rows
-        # The unit length of a tilted link: a change of its lateral part changes its height too.
-        q = reference.links.q[k]
-        slope = self.parameters.l[observation.uavs, None] * (q[:2] / q[2])
-        coefficients = coefficients.copy()
-        coefficients[observation.heights, -2:] = coefficients[observation.heights + 3, -2:] = slope
-        return SparseRows(columns, coefficients)
+    def observe(
+        self, observation: Observation, samples: SampleStack, reference: FlatReference, k: int
+    ) -> tuple[Array, SparseRows]:
+        """Return measured less reference (m,) at the reference's time ``k``, and the rows that observe the error there.
 
-    def less_reference(self, observation: Observation, samples: SampleStack, reference: FlatReference, k: int) -> Array:
-        """Return measured less reference (m,) at the reference's time ``k``; nan where nothing was measured."""
-        links, p = reference.links, self.parameters
-        return measured_less_reference(
-            samples.values, samples.sources, samples.is_position, len(observation.stack.variance),
-            reference.x, reference.payload, links.q[k], links.q_dot[k], k, p.p, p.l,
+        What was not measured is nan.
+        """
+        links, p, (columns, coefficients) = reference.links, self.parameters, observation.rows
+        y, coefficients = observed(
+            samples.values, samples.sources, samples.is_position, reference.x, reference.payload, links.q, links.q_dot,
+            k, p.p, p.l, coefficients, observation.uavs, observation.heights,
         )  # fmt: skip
+        return y, SparseRows(columns, coefficients)
 
     def vehicles(self, time: float, x: Array) -> list[Measurement]:
         """Return positions and attitudes of the UAVs in the state ``x`` (n,) at ``time`` (s), heading north."""

@@ -40,12 +40,12 @@ class MeasurementUpdate:
             self._restart(filter)
         measurements = [median_of(copies) for copies in moment.measurements.values()]
         observation = model.observation(tuple(moment.measurements))
-        whole, rows = observation.stack, model.rows(observation, flat, k)
+        whole = observation.stack
         samples = observation.samples(measurements)
         health.dead_reckoning.add(samples)
         if health.isolated_groups:
             samples = observation.samples([health.usable(measurement) for measurement in measurements])
-        y = model.less_reference(observation, samples, flat, k)
+        y, rows = model.observe(observation, samples, flat, k)
         innovation = filter.innovation(y, rows)
         present = health.usable_rows(whole, innovation)
         if not present.any():

@@ -23,7 +23,7 @@ class ProcessModel:
         self.forces = slice(n, self.mass)
         self._uav_columns = self._columns_of_uavs()
         self._noise = self._noise_of(densities)
-        self._plain = lru_cache(maxsize=256)(self._discretised)
+        self._hovering = lru_cache(maxsize=256)(self._discretised)
         self.noise = lru_cache(maxsize=256)(self._integrated_noise)
 
     def transition(self, interval_us: int, acceleration: Array) -> Transition:
@@ -31,11 +31,8 @@ class ProcessModel:
 
         ``acceleration`` of the payload (3,) (m/s2): an excess of mass acts along g e3 - a, which follows the manoeuvre.
         """
-        (dense, sparse, B), B_d = self._plain(interval_us)
-        direction = np.array([0.0, 0.0, self.model.parameters.g]) - acceleration
-        dense = dense.copy()
-        dense[:, self.mass] = B_d[: len(dense), :3] @ direction
-        return Transition(dense, sparse, B)
+        hover = self._hovering(interval_us)
+        return hover._replace(direction=hover.direction - acceleration)
 
     def per_vehicle_noise(self, measured: Indices) -> Array:
         """Return the variances (n,) added to the disturbance forces of the UAVs ``measured`` (K,) between samples.
@@ -82,7 +79,8 @@ class ProcessModel:
         N = self.layout.number_of_uavs
         return np.asarray(np.kron(common**2 * np.ones((N, N)) + own**2 * np.eye(N), np.eye(2)))
 
-    def _discretised(self, interval_us: int) -> tuple[Transition, Array]:
+    def _discretised(self, interval_us: int) -> Transition:
+        """Return the transition over an interval (us) without an acceleration of the payload."""
         n = self.layout.size
         A_k, B_k, B_dk = self.model.discretised(interval_us)
         F = np.eye(self.size)
@@ -90,9 +88,8 @@ class ProcessModel:
         B = np.vstack([B_k, np.zeros((self.size - n, self.layout.inputs))])
         columns, filled = self._uav_columns
         moved = self.size - len(columns)
-        return Transition(
-            F[:moved], SparseRows(columns, filled * F[np.arange(moved, self.size)[:, None], columns]), B
-        ), B_dk
+        sparse = SparseRows(columns, filled * F[np.arange(moved, self.size)[:, None], columns])
+        return Transition(F[:moved], B_dk[:moved, :3].copy(), np.array([0.0, 0.0, self.model.parameters.g]), sparse, B)
 
     def _columns_of_uavs(self) -> tuple[Indices, Mask]:
         """Return the columns (R, 3) of the elements in the rows below payload and links, and which of them count.

@@ -32,6 +32,10 @@ class PropagationInterval:
         times += [t for t in switches if min(abs(t - other) for other in times) > 1e-6]
         self.times = sorted(set(times))
         self.flat = reference.at(np.array(self.times))
+        self.u = (self.flat.u[:-1] + self.flat.u[1:]) / 2
+        """The reference's set-points from each time to the next (K - 1, 3 N)."""
+        self.acceleration = (self.flat.payload[2, :-1] + self.flat.payload[2, 1:]) / 2
+        """The reference's acceleration from each time to the next (K - 1, 3) (m/s2)."""
         self.setpoints = [setpoints.in_force(a, b) for a, b in pairwise(self.times)]
         """Set-points in force from each time to the next."""
         # The drag that is predicted changes with the velocity, so what is estimated of it is the rest.
@@ -41,14 +45,6 @@ class PropagationInterval:
         self.nominal[:, process.force] = self.flat.links.on_payload
         self.nominal[:, process.uav_force] = self.flat.links.on_uavs[..., :2].reshape(len(self.times), -1)
         self.nominal[:, process.mass] = reference.load.mass - process.model.parameters.m_0
-
-    def u(self, k: int) -> Array:
-        """Return the reference's set-points between time ``k`` and the next (3 N,)."""
-        return np.asarray((self.flat.u[k] + self.flat.u[k + 1]) / 2)
-
-    def acceleration(self, k: int) -> Array:
-        """Return the reference's acceleration between time ``k`` and the next (3,) (m/s2)."""
-        return np.asarray((self.flat.payload[2, k] + self.flat.payload[2, k + 1]) / 2)
 
     def duration_us(self, k: int) -> int:
         """Return the duration from time ``k`` to the next (us)."""
@@ -85,16 +81,17 @@ class ErrorStateFilter:
     def predict(self, interval: PropagationInterval, k: int, force_scale: float) -> None:
         """Propagate from time ``k`` to the next under the set-points in force; ``force_scale``: of process noise."""
         u, change, probability = interval.setpoints[k]
-        delta_u = np.zeros(self.process.layout.inputs) if u is None else u - interval.u(k)
-        transition = self.process.transition(interval.duration_us(k), interval.acceleration(k))
-        Q = self.process.noise(interval.duration_us(k), force_scale)
+        delta_u = np.zeros(self.process.layout.inputs) if u is None else u - interval.u[k]
+        duration = interval.duration_us(k)
+        transition = self.process.transition(duration, interval.acceleration[k])
+        Q = self.process.noise(duration, force_scale)
         noise = SetpointNoise(_NONE if change is None else change, probability)
         self._kf.propagate(transition, delta_u, Q, noise)
 
     @property
     def is_finite(self) -> bool:
         """Return whether state and covariance are numbers."""
-        return math.isfinite(float(self._kf.x.sum()) + float(self._kf.P.sum()))
+        return math.isfinite(self._kf.x @ self._kf.P @ self._kf.x)  # zero times inf or nan is nan
 
     def restart(self, P: Array) -> None:
         """Begin anew from the reference with covariance ``P`` (n, n)."""

@@ -12,11 +12,11 @@ _VECTOR, _MATRIX, _COLUMNS = (
 
 
 @kernel(
-    f"Tuple((float64[::1], float64[:, ::1]))({_VECTOR}, {_MATRIX}, {_MATRIX}, {_COLUMNS}, {_MATRIX}, {_MATRIX}, "
-    f"{_VECTOR}, {_MATRIX}, {_VECTOR}, {_VECTOR})"
+    f"Tuple((float64[::1], float64[:, ::1]))({_VECTOR}, {_MATRIX}, {_MATRIX}, {_MATRIX}, {_VECTOR}, {_COLUMNS}, "
+    f"{_MATRIX}, {_MATRIX}, {_VECTOR}, {_MATRIX}, {_VECTOR}, {_VECTOR})"
 )
 def propagated(
-    x: Array, P: Array, dense: Array, columns: Indices, coefficients: Array, B: Array,
+    x: Array, P: Array, dense: Array, push: Array, direction: Array, columns: Indices, coefficients: Array, B: Array,
     u: Array, Q: Array, change: Array, probability: Array,
 ) -> tuple[Array, Array]:  # fmt: skip
     """Return the state F x + B u (n,) and its covariance F P F' + Q (n, n) after an interval.
@@ -27,7 +27,8 @@ def propagated(
     Args:
         x: state (n,).
         P: its covariance, symmetric (n, n).
-        dense: first rows of F (d, n).
+        dense: first rows of F (d, n), but for the last column.
+        push, direction: factors of that, (d, 3) and (3,).
         columns, coefficients: elements of the other rows of F that are not zero (n - d, W).
         B: input matrix (n, 3 N).
         u: input (3 N,).
@@ -36,11 +37,14 @@ def propagated(
         probability: with which each vehicle does (N,).
     """
     n, d, W = len(x), len(dense), columns.shape[1]
+    first = dense.copy()
+    for r in range(d):
+        first[r, n - 1] = push[r, 0] * direction[0] + push[r, 1] * direction[1] + push[r, 2] * direction[2]
     result = np.dot(B, u)
-    result[:d] += np.dot(dense, x)
+    result[:d] += np.dot(first, x)
     covariance = np.empty((n, n))
-    top = np.dot(dense, P)
-    covariance[:d, :d] = np.dot(top, dense.T)
+    top = np.dot(first, P)
+    covariance[:d, :d] = np.dot(top, first.T)
     row = np.empty(n)
     for r in range(n - d):
         row[:] = 0.0

@@ -10,15 +10,12 @@ import numpy as np
 from idc_controller.arrays import Array, Indices, Mask
 from idc_controller.compiled import inlined, kernel
 
-_VECTOR, _MATRIX = (f"Array(float64, {axes}, 'C', readonly=True)" for axes in (1, 2))
-"""Types of arrays of parameters, which are read only."""
+_VECTOR, _MATRIX, _CUBE = (f"Array(float64, {axes}, 'C', readonly=True)" for axes in (1, 2, 3))
+"""Types of arrays that are only read."""
 
 
-@kernel(
-    "float64[::1](float64[::1], int64[::1], boolean[::1], int64, float64[:, ::1], float64[:, :, ::1], "
-    f"float64[::1], float64[::1], int64, {_MATRIX}, {_VECTOR})"
-)
-def measured_less_reference(
+@inlined
+def _measured_less_reference(
     values: Array, sources: Indices, is_position: Mask, m: int, x: Array, payload: Array,
     q: Array, q_dot: Array, k: int, p: Array, l: Array,
 ) -> Array:  # fmt: skip
@@ -71,6 +68,35 @@ def measured_less_reference(
             result[row + 3] = (1.0 - 2.0 * (a * a + c * c)) * omega_x - cross * omega_y - x[k, n_dot + 1]
             row += 4
     return result
+
+
+@kernel(
+    f"Tuple((float64[::1], float64[:, ::1]))({_VECTOR}, int64[::1], boolean[::1], {_MATRIX}, {_CUBE}, {_MATRIX}, "
+    f"{_MATRIX}, int64, {_MATRIX}, {_VECTOR}, {_MATRIX}, int64[::1], int64[::1])"
+)
+def observed(
+    values: Array, sources: Indices, is_position: Mask, x: Array, payload: Array, q: Array, q_dot: Array, k: int,
+    p: Array, l: Array, coefficients: Array, uavs: Indices, heights: Indices,
+) -> tuple[Array, Array]:  # fmt: skip
+    """Return measured less reference (m,), and the coefficients (m, W) of the rows that observe the error there.
+
+    A change of the lateral part of a tilted link changes its height too.
+
+    Args:
+        values, sources, is_position, x, payload, k, p, l: see :func:`_measured_less_reference`.
+        q, q_dot: direction of the links and its derivative (T, 3).
+        coefficients: with links upright (m, W); the last two of the heights' rows are those of the link.
+        uavs: UAVs whose position is observed (P,).
+        heights: rows of their heights (P,); those of the vertical velocities are three below.
+    """
+    tilted = coefficients.copy()
+    for j in range(len(uavs)):
+        for axis in range(2):
+            slope = l[uavs[j]] * (q[k, axis] / q[k, 2])
+            at = coefficients.shape[1] - 2 + axis
+            tilted[heights[j], at] = tilted[heights[j] + 3, at] = slope
+    m = len(coefficients)
+    return _measured_less_reference(values, sources, is_position, m, x, payload, q[k], q_dot[k], k, p, l), tilted
 
 
 @kernel(
