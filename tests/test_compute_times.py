@@ -33,6 +33,15 @@ def test_laps_add_up_by_part_and_idle_times_count_for_nothing():
     assert times.take() == (0.0,) * len(Part)
 
 
+def test_first_lap_begins_with_the_compute_times():
+    stopwatch = Stopwatch()
+    stopwatch.now = 1000.0
+    times = ComputeTimes(stopwatch)
+    stopwatch.now += 2.0
+    times.lap(Part.TELEMETRY)
+    assert times.take()[Part.TELEMETRY] == 2.0
+
+
 @pytest.mark.slow
 def test_all_that_the_ground_computes_in_flight_is_in_one_part(tmp_path, monkeypatch):
     """Each reading of the stopwatch is 1 ms after the one before: a step lasts as many as there were readings."""

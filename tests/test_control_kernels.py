@@ -5,6 +5,7 @@ import pytest
 from paper_system import system
 
 from idc_controller.control import force_kernels
+from idc_controller.control.load_kernels import followed_forces
 from idc_controller.model.linear import StateLayout
 from idc_controller.trajectory.stop_plan_kernels import motion
 
@@ -79,3 +80,23 @@ def test_motion_of_uavs_and_payload_is_that_of_whole_arrays(n):
     below = uavs.mean(axis=0)
     below[0] -= parameters.p.mean(axis=0) - [0.0, 0.0, parameters.l.mean()]
     np.testing.assert_allclose(found[-1], below, atol=1e-14)
+
+
+def shortened(vectors, limit):
+    norms = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return vectors * np.minimum(1.0, limit / norms)
+
+
+@pytest.mark.parametrize("limit", [0.5, 2.0, 10.0])
+@pytest.mark.parametrize("number", [3, 8])
+def test_forces_that_follow_the_estimated_ones_equal_plain_ones(number, limit):
+    rng, share = np.random.default_rng(number), 0.1
+    force, estimated, before, uav_before, drag, uav_drag = rng.normal(size=(6, 3))
+    uav_force, uav_estimated = rng.normal(size=(2, number, 3))
+    found, on_uavs = followed_forces(
+        force, uav_force, estimated, uav_estimated, before, uav_before, drag, uav_drag, share, limit, 0.5 * limit
+    )
+    rest, uav_rest = force + before - drag, uav_force + uav_before - uav_drag
+    assert found == pytest.approx(rest + share * (shortened(estimated, limit) - drag - rest), abs=1e-14)
+    expected = uav_rest + share * (shortened(uav_estimated, 0.5 * limit) - uav_drag - uav_rest)
+    assert on_uavs == pytest.approx(expected, abs=1e-14)

@@ -125,3 +125,12 @@ def test_succession_of_plans_equals_each_plan_by_itself(order, rates, deflected,
             elapsed = np.array([max(time - piece.start, 0.0)])
             at = at + chain_plainly(piece.deviation, CHAIN.period, elapsed)[: order + 1]
         np.testing.assert_allclose(found[:, i], at[:, 0], rtol=1e-12, atol=1e-12)
+
+
+def test_piece_with_integers_equals_the_one_with_floats():
+    times = np.linspace(13.0, 18.0, 11)
+    integers, floats = (
+        SafeTrajectory([Piece(ScaledReference(EIGHT, of(14), of(15), of(1)), None)], CHAIN).derivatives(times)
+        for of in (int, float)
+    )
+    assert np.array_equal(integers, floats)

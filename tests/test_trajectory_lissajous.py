@@ -32,6 +32,14 @@ def test_curve_of_the_paper_is_flown_at_full_rate_for_the_duration(eight):
     assert np.allclose(eight.derivatives(times, 0)[0], expected, atol=1e-12)
 
 
+def test_phase_is_the_same_at_scalar_strided_and_listed_times(eight):
+    times = np.linspace(0.0, 60.0, 41)
+    whole = eight.phase(times, 2)
+    assert np.array_equal(eight.phase(times[::2], 2), whole[:, ::2])
+    assert np.array_equal(eight.phase(times[::2].tolist(), 2), whole[:, ::2])
+    assert np.array_equal(eight.phase(30, 2), whole[:, 20:21])
+
+
 def test_curve_is_flown_from_rest_to_rest_within_limits(eight):
     times = np.arange(eight.start - 1, eight.end + 1, 0.003)
     derivatives = eight.derivatives(times)

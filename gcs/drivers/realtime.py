@@ -47,4 +47,4 @@ def run_in_real_time(
         wait = due / speed - (clock() - start)
         if wait > 0.0:
             connection.wait(min(wait, settings.wait_max))
-            station.resume()
+        station.resume()

@@ -29,7 +29,7 @@ class ComputeTimes:
 
     def __init__(self, stopwatch: Callable[[], float]) -> None:
         self._stopwatch = stopwatch
-        self._last = 0.0
+        self._last = stopwatch()
         self._spent = [0.0] * len(Part)
 
     def resume(self) -> None:

@@ -39,6 +39,8 @@ class MissionTrajectory:
     def reference(self, times: Array) -> tuple[Array, Array]:
         """Return position and velocity (K, 3) at ``times``: a descent ends on the ground, not below it."""
         position, velocity = self.trajectory.derivatives(times, 1)
+        if position[:, 2].max(initial=-math.inf) <= min(self._pad[2], self._ground):
+            return position, velocity
         on_pad = np.linalg.norm(position[:, :2] - self._pad[:2], axis=1) < self._settings.pad_radius
         lowest = np.where(on_pad, self._pad[2], self._ground)
         below = position[:, 2] > lowest
@@ -53,7 +55,7 @@ class MissionTrajectory:
         # Evaluated at each call: the end of a lazy trajectory is known only when it is reached.
         if self._climb is not None and time < self._climb.end:
             return "climb"
-        speed = np.linalg.norm(self.trajectory.derivatives(np.array([time]), 1)[1, 0])
+        speed = math.hypot(*self.trajectory.derivatives(np.array([time]), 1)[1, 0].tolist())
         return "fly" if speed > self._settings.hold_speed else "hold"
 
     def brake_and_land(self, followed: Trajectory, time: float) -> None:

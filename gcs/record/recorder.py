@@ -72,7 +72,9 @@ class FlightRecorder:
         estimate, decision = record.estimate, record.decision
         x = estimate.x[:12].tolist()
         attitude = quaternion_from_euler(*x[6:9]).tolist()
-        self._estimate.write([estimate.time, *x[0:3], *attitude, *x[3:6], *x[9:12], *estimate.force.tolist()])
+        self._estimate.write_numbers(
+            [float(estimate.time), *x[0:3], *attitude, *x[3:6], *x[9:12], *estimate.force.tolist()]
+        )
         if flight.phase in CLEAR_OF_GROUND:
             self._write_plan(estimate.time, decision)
 
@@ -119,8 +121,8 @@ class FlightRecorder:
         last = math.floor(time / REFERENCE_INTERVAL + _GRID_TOLERANCE)
         times = np.arange(self._next_row, last + 1, dtype=np.float64) * REFERENCE_INTERVAL
         if len(times):
-            rows = np.column_stack([times.round(6), *flight.reference(times)])
-            self._reference.write_all(rows.tolist())
+            rows = np.hstack([times.round(6)[:, None], *flight.reference(times)])
+            self._reference.write_numbers(*rows.tolist())
             self._next_row = last + 1
 
     def close(self) -> None:

@@ -75,10 +75,6 @@ class TableWriter(AppendOnlyFile):
         """Append one row, a value a column. Raises :class:`ValueError` for another number of values."""
         self.append(self._row(row))
 
-    def write_all(self, rows: Iterable[Iterable[Cell]]) -> None:
-        """Append rows in one record."""
-        self.append(b"".join(map(self._row, rows)))
-
     def write_behind(self, first: float, rests: Iterable[bytes]) -> None:
         """Append rows in one record: the number ``first``, and behind it what :meth:`rest` has made."""
         head = repr(first).encode() + b","
@@ -94,11 +90,14 @@ class TableWriter(AppendOnlyFile):
             raise ValueError(f"{self.path.name}: {len(cells)} values for {len(self.columns)} columns")
         return _line(cells)
 
-    def write_numbers(self, row: Sequence[float | int]) -> None:
-        """Append one row of plain floats and integers. Raises :class:`ValueError` for another number of values."""
-        if len(row) != len(self.columns):
-            raise ValueError(f"{self.path.name}: {len(row)} values for {len(self.columns)} columns")
-        self.append((",".join(map(repr, row)) + "\n").encode())
+    def write_numbers(self, *rows: Sequence[float | int]) -> None:
+        """Append rows of plain floats and integers in one record; see :meth:`write`."""
+        lines = []
+        for row in rows:
+            if len(row) != len(self.columns):
+                raise ValueError(f"{self.path.name}: {len(row)} values for {len(self.columns)} columns")
+            lines.append(",".join(map(repr, row)) + "\n")
+        self.append("".join(lines).encode())
 
 
 _FORMATS: dict[type, Callable[[Any], str]] = {float: repr, int: repr, str: str}

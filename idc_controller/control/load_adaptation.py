@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from idc_controller.arrays import Array
+from idc_controller.control.load_kernels import followed_forces
 from idc_controller.control.settings import ControllerSettings
 from idc_controller.estimation.estimate import Estimate
 from idc_controller.estimation.wind import WindEstimator
@@ -38,17 +39,14 @@ class LoadAdaptation:
         share = self.settings.period / self.settings.load_time_constant
         mass = load.mass + share * (self.parameters.m_0 + estimate.mass_excess - load.mass)
         velocity = estimate.x[self.layout.v_0]
-        drag, uav_drag = _drag(load.air, velocity)
-        force, uav_force = load.force + drag, load.uav_force + uav_drag
+        before = _drag(load.air, velocity)
         # What one of the UAVs has of its own is no wind.
         self.wind.learn(estimate.force, _median(estimate.uav_force), velocity)
-        drag, uav_drag = _drag(self.wind.air, velocity)
-        # The estimate of the wind changes what is left over, not the whole.
-        force, uav_force = force - drag, uav_force - uav_drag
         limit = self._weight * (self.settings.force_limit if self.wind.air is None else self.settings.drag_limit)
-        force = force + share * (limited(estimate.force, limit) - drag - force)
-        on_uavs = np.array([limited(force_i, self._uav_limit) for force_i in estimate.uav_force])
-        uav_force = uav_force + share * (on_uavs - uav_drag - uav_force)
+        force, uav_force = followed_forces(
+            load.force, load.uav_force, estimate.force, estimate.uav_force,
+            *before, *_drag(self.wind.air, velocity), share, limit, self._uav_limit,
+        )  # fmt: skip
         least, most = self.settings.mass_share
         mass = min(max(mass, least * self.parameters.m_0), most * self.parameters.m_0)
         self.estimate = Load(mass, force, uav_force, self.wind.air)

@@ -31,7 +31,7 @@ class SafeTrajectory:
     def __init__(self, pieces: Sequence[Piece], chain: Chain) -> None:
         self._chain = chain
         references = [piece.reference for piece in pieces]
-        self._scalings = np.array([(r.start, r.progress, r.rate) for r in references])
+        self._scalings = np.array([(r.start, r.progress, r.rate) for r in references], dtype=float)
         # Pieces that follow the same trajectory are evaluated together.
         self._trajectories = list({id(r.trajectory): r.trajectory for r in references}.values())
         numbers = {id(trajectory): number for number, trajectory in enumerate(self._trajectories)}

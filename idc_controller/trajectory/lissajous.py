@@ -107,7 +107,7 @@ class LissajousTrajectory(Trajectory):
 
     def phase(self, times: ArrayLike, order: int = 0) -> Array:
         """Phase and its derivatives at times (K,), s: (order + 1, K), rad / s^d."""
-        return phase_at(self._phase.c, self._phase.x, np.asarray(times, dtype=float), order, True)
+        return phase_at(self._phase.c, self._phase.x, np.ascontiguousarray(times, dtype=float), order, True)
 
     def evaluate(self, times: Times, order: int) -> Array:
         """See ``Trajectory.evaluate``; analytic, by the chain rule."""
