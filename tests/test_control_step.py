@@ -136,6 +136,14 @@ def test_positions_on_the_pad_are_averaged_for_the_settle_time():
     assert preflight.is_settled(7.0 + 1.01 * duration)
 
 
+def test_time_to_connect_counts_from_the_first_attempt():
+    preflight = Preflight(SimpleNamespace(links=[]), DEFAULTS)
+    assert np.isnan(preflight.connect_start)
+    for now in (3.0, 9.0):
+        preflight.connect(now)
+        assert preflight.connect_start == 3.0
+
+
 # Estimate, reference -> set-points
 
 

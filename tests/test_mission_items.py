@@ -163,7 +163,7 @@ def test_device_commands_are_listed_as_unsupported(tmp_path: Path, command: int)
     assert [note for note in mission.notes if "row 2" in note and "left out" in note]
 
 
-def test_heading_is_noted(tmp_path: Path) -> None:
-    assert any(
-        "heading 90 deg left out" in n for n in read(tmp_path, wpl(TAKE_OFF, row(16, 0, 0, 0, 90, north=9))).notes
-    )
+@pytest.mark.parametrize("command", [16, 17, 21], ids=["waypoint", "loiter", "land"])
+def test_heading_is_noted(tmp_path: Path, command: int) -> None:
+    mission = read(tmp_path, wpl(TAKE_OFF, A, row(command, 0, 0, 0, 90, north=9, alt=0 if command == 21 else 5)))
+    assert [note for note in mission.notes if "row 3" in note and "heading 90 deg left out" in note]
