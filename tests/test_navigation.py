@@ -140,3 +140,15 @@ def test_sensor_counts_as_stuck_after_so_many_samples_equal_to_the_digit():
     alive = body.sample()
     navigation.update(alive, (0.0,) * 3, body.time)
     assert navigation.reported.rates == alive.rates
+
+
+@pytest.mark.parametrize("attitude", [(0.0,) * 4, (0.5, 0.0, 0.0, 0.0)])
+def test_attitude_that_is_no_rotation_is_taken_for_lost(attitude):
+    """A quaternion of zeros has no direction: what is turned by it would be divided by zero."""
+    found = flown(lambda s: s._replace(attitude=attitude), duration=2.0)
+    assert max(angle(estimated.attitude, truth) for estimated, truth, *_ in found) < 0.03
+    steps = iter(range(10**6))
+    lost = {0: {"rates": NAN}, 1: {"rates": NAN, "attitude": (math.nan,) * 4}, 2: {}}
+    for estimated, *_ in flown(lambda s: s._replace(attitude=attitude)._replace(**lost[next(steps) % 3])):
+        assert math.hypot(*estimated.attitude) == pytest.approx(1.0)
+    assert Navigation(LAG, NavigationSettings()).update(Turning().sample(attitude=attitude), (0.0,) * 3, 0.0) is None

@@ -96,16 +96,18 @@ def test_vehicles_without_an_estimate_detect_nothing():
 
 def test_ordinary_samples_are_numbers_that_do_not_repeat():
     good = np.arange(1.0, 14.0)
-    samples, last, ordinary = np.tile(good, (7, 1)), np.tile(-good, (7, 1)), np.zeros(7, dtype=bool)
+    good[3:7] = 0.5, -0.5, 0.5, 0.5
+    samples, last, ordinary = np.tile(good, (8, 1)), np.tile(-good, (8, 1)), np.zeros(8, dtype=bool)
     samples[1, 4] = np.nan
     samples[2, 0] = np.inf
     samples[3, 8] = 1e7
     last[4, 3:7] = good[3:7]  # a stuck attitude
     last[5, 10:13] = good[10:13]  # stuck rates
     samples[6, 10:13] = last[6, 10:13] = 0.0  # at rest without noise
-    estimates = np.empty((7, 13))
+    samples[7, 3:7] = 0.0  # no rotation
+    estimates = np.empty((8, 13))
     find_ordinary(samples, last, estimates, ordinary)
-    assert ordinary.tolist() == [True, False, False, False, False, False, True]
+    assert ordinary.tolist() == [True, False, False, False, False, False, True, False]
     assert np.array_equal(last, samples, equal_nan=True) and np.array_equal(estimates, samples, equal_nan=True)
     find_ordinary(samples, last, estimates, ordinary)
     assert not ordinary.any()

@@ -101,3 +101,13 @@ def test_detection_has_point_and_range_of_the_message():
     assert (found.scan, found.obstacles.tolist(), found.max_range.tolist()) == (1234, [7], [10.0])
     assert found.points.tolist() == [[1.5, -2.0, 0.25]]
     assert np.isnan(read(mavlink.MAV_FRAME_GLOBAL).points).all()
+
+
+@pytest.mark.parametrize("component", [px4.AUTOPILOT_COMPONENT, px4.PAYLOAD_UNIT_COMPONENT])
+def test_measurements_are_arrays_to_read_only(component):
+    """What several vehicles relay is read once: whoever wrote to one measurement would change the others."""
+    message = mavlink.MAVLink_local_position_ned_message(1234, 1.0, 2.0, 3.0, 4.0, 5.0, math.nan)
+    sample = measurement(received(message, component=component), 2, 7.5)
+    for values in (sample.pose, sample.motion):
+        with pytest.raises(ValueError, match="read-only"):
+            values[0] = 0.0

@@ -108,11 +108,12 @@ class GroundStation:
 
     def receive(self, datagram: bytes, sender: Address, now: float) -> None:
         """Take a datagram from any address. Never raises for anything that a datagram can hold."""
+        times = self._times
         from_vehicle = self.router.receive(datagram, sender, now)
-        self._times.lap(Part.TELEMETRY)
+        times.lap(Part.TELEMETRY)
         if from_vehicle:
             self._recorder.datagram(now, datagram)
-            self._times.lap(Part.RECORDING)
+            times.lap(Part.RECORDING)
 
     def datagrams_to_send(self, now: float) -> list[tuple[bytes, Address]]:
         """Return all that is due at ``now`` (s), each with its address."""

@@ -19,6 +19,8 @@ class Phase(Enum):
     DISARM = "disarm"
     ENDED = "ended"
 
+    __hash__ = object.__hash__  # looked up in sets for every measurement; Enum's own hashes the name, in Python
+
 
 IN_AIR = frozenset({Phase.CLIMB, Phase.FLY, Phase.HOLD, Phase.LAND})
 CLEAR_OF_GROUND = frozenset({Phase.FLY, Phase.HOLD})

@@ -135,5 +135,8 @@ class TelemetryRouter:
 
 
 def whole_ms(time: float) -> float:
-    """Return ``time`` (s) in whole milliseconds, as stamps are: what is estimated for one of them serves them all."""
+    """Return ``time`` (s) in whole milliseconds, as stamps are: what is estimated for one of them serves them all.
+
+    Always finite: stamps are integers of 32 bits, and clock offsets and delays come from those and from arrivals.
+    """
     return round(time * 1e3) / 1e3

@@ -142,8 +142,11 @@ class Codec:
                 start += 1  # its length may be what is wrong
                 continue
             payload = datagram[body:behind]
-            targets = layout.targets(payload) if layout.target_offsets else ()
-            messages.append(Received(layout, payload, system, component, sequence, *targets))
+            if layout.target_offsets:
+                received = Received(layout, payload, system, component, sequence, *layout.targets(payload))
+            else:
+                received = Received(layout, payload, system, component, sequence)
+            messages.append(received)
             start = end
         return messages
 

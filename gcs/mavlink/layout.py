@@ -79,7 +79,9 @@ class Layout:
 
         Raises ``struct.error`` or ``OverflowError`` when a field does not fit its type.
         """
-        return Packed(self, _without_trailing_zeros(self._pack(*values)))
+        payload = self._pack(*values)
+        # Trailing zeros are not sent, but at least one byte is.
+        return Packed(self, payload.rstrip(b"\0") or payload[:1])
 
     def pack_message(self, message: Message) -> Packed:
         """Return a message of this kind, packed. Raises as :meth:`pack`."""
@@ -122,11 +124,6 @@ def _tuple_of(getter: Callable[..., Callable[[Any], Any]], keys: Sequence[Any]) 
     """Return a function that gets ``keys`` of its argument, always as a tuple."""
     get = getter(*keys)
     return get if len(keys) > 1 else lambda source: (get(source),)
-
-
-def _without_trailing_zeros(payload: bytes) -> bytes:
-    """Return a payload as MAVLink 2 sends it: at least one byte."""
-    return payload.rstrip(b"\0") or payload[:1]
 
 
 LAYOUTS: dict[int, Layout] = {number: Layout(kind) for number, kind in mavlink.mavlink_map.items()}

@@ -17,8 +17,18 @@ from gcs.mavlink.settings import LinkSettings
 
 _ATTITUDE, _POSITION = mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED
 _NAVIGATION = (_ATTITUDE, _POSITION)
-#: What comes with every sample and holds no status of the vehicle.
-_OF_SAMPLES = (mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET, mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D)
+_STATUS = frozenset(
+    (
+        mavlink.MAVLINK_MSG_ID_HEARTBEAT,
+        mavlink.MAVLINK_MSG_ID_TIMESYNC,
+        mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE,
+        mavlink.MAVLINK_MSG_ID_SYS_STATUS,
+        mavlink.MAVLINK_MSG_ID_STATUSTEXT,
+        mavlink.MAVLINK_MSG_ID_COMMAND_ACK,
+        mavlink.MAVLINK_MSG_ID_PARAM_VALUE,
+    )
+)
+"""Messages that are read as message objects; the others are not read here."""
 
 
 @dataclass
@@ -109,7 +119,7 @@ class VehicleLink:
                 self._handle_navigation(message_id, received.time_boot_ms, in_order, now)
             elif received.component == px4.PAYLOAD_UNIT_COMPONENT:
                 self.payload_received_at = now
-        elif message_id not in _OF_SAMPLES:
+        elif message_id in _STATUS:
             self._handle_message(received.message, of_autopilot, now)
 
     def _handle_navigation(self, message_id: int, time_boot_ms: int, in_order: bool, now: float) -> None:

@@ -4,7 +4,7 @@ import math
 
 from gcs.config.vehicle_settings import NavigationSettings
 from idc_controller.rotations_float import Quaternion, Vector, half_rotation, turned
-from vehicle_sim.world.sensors import Measurement
+from vehicle_sim.world.sensors import Measurement, is_rotation
 
 
 class Navigation:
@@ -67,7 +67,7 @@ class Navigation:
             return sample
         time = sample.time if math.isfinite(sample.time) else known.time
         step = time - known.time
-        has_attitude = self._is_alive("attitude", sample.attitude)
+        has_attitude = self._is_alive("attitude", sample.attitude) and is_rotation(sample.attitude)
         has_rates = self._has_rates = self._is_alive("rates", sample.rates)
         self._raw = sample
         if has_rates and has_attitude and sample.is_usable():

@@ -11,6 +11,7 @@ from idc_controller.arrays import Array, Mask
 from idc_controller.compiled import inlined, kernel
 from idc_controller.rotations_float import Quaternion, Vector
 from vehicle_sim.world.rotors import Four
+from vehicle_sim.world.sensors import NORM_ERROR_MAX
 
 # Columns of ``targets``: whether there is an attitude, the attitude (4), body rates (3) in rad/s, thrust (N).
 HAS_ATTITUDE, ATTITUDE, RATES, THRUST = 0, 1, 5, 8
@@ -129,7 +130,7 @@ def control_attitudes(airframes: Array, estimates: Array, targets: Array, accele
 
 @kernel("void(float64[:, ::1], float64[:, ::1], float64[:, ::1], boolean[::1])")
 def find_ordinary(samples: Array, last: Array, estimates: Array, ordinary: Mask) -> None:
-    """Write which ``samples`` (N, 13) are numbers and repeat neither attitude nor rates of the ``last`` ones.
+    """Write which ``samples`` (N, 13) are numbers, with a rotation for attitude, and do not repeat the ``last`` ones.
 
     Then copy them to ``last`` and ``estimates``. Sensors repeat themselves by chance, or because they are stuck:
     :mod:`.navigation` decides. Rates of zero are those of a vehicle at rest in a world without noise.
@@ -138,7 +139,10 @@ def find_ordinary(samples: Array, last: Array, estimates: Array, ordinary: Mask)
         s = samples[i]
         attitude, rates = s[3] + s[4] + s[5] + s[6], s[10] + s[11] + s[12]
         total = attitude + rates + (s[0] + s[1] + s[2]) + (s[7] + s[8] + s[9])
-        are_numbers = abs(attitude) < _FAR and abs(rates) < _FAR and abs(total) < _FAR
+        norm = math.sqrt(s[3] * s[3] + s[4] * s[4] + s[5] * s[5] + s[6] * s[6])
+        are_numbers = (
+            abs(norm - 1.0) < NORM_ERROR_MAX and abs(attitude) < _FAR and abs(rates) < _FAR and abs(total) < _FAR
+        )
         same_attitude, same_rates, still = True, True, True
         for k in range(3, 7):
             same_attitude = same_attitude and s[k] == last[i, k]

@@ -40,8 +40,12 @@ _NAN = math.nan
 Built = tuple[Packed, ...] | PackedRun
 """Messages of one kind: one, several, or none."""
 
-# What is sent with every sample is packed without a message object, its fields in the order of the wire.
+# What is sent often is packed without a message object, its fields in the order of the wire.
+_ATTITUDE = LAYOUTS[mavlink.MAVLINK_MSG_ID_ATTITUDE]
 _ATTITUDE_QUATERNION = LAYOUTS[mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION]
+_EXTENDED_SYS_STATE = LAYOUTS[mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE]
+_GLOBAL_POSITION_INT = LAYOUTS[mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT]
+_VFR_HUD = LAYOUTS[mavlink.MAVLINK_MSG_ID_VFR_HUD]
 _LOCAL_POSITION_NED = LAYOUTS[mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED]
 _ATTITUDE_TARGET = LAYOUTS[mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET]
 _OBSTACLE_DISTANCE_3D = LAYOUTS[mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D]
@@ -146,18 +150,14 @@ class Telemetry:
         )
 
     def _extended_sys_state(self, now: float) -> Built:
-        return packed(
-            mavlink.MAVLink_extended_sys_state_message(mavlink.MAV_VTOL_STATE_UNDEFINED, self._autopilot.landed_state)
-        )
+        return (_EXTENDED_SYS_STATE.pack(mavlink.MAV_VTOL_STATE_UNDEFINED, self._autopilot.landed_state),)
 
     def _attitude(self, now: float) -> Built:
         measured = self._own_attitude
         if measured is None or not is_finite(measured):
             return ()
         roll, pitch, yaw = euler_of(measured.attitude)
-        return packed(
-            mavlink.MAVLink_attitude_message(self.time_boot_ms(measured.time), roll, pitch, yaw, *measured.rates)
-        )
+        return (_ATTITUDE.pack(self.time_boot_ms(measured.time), roll, pitch, yaw, *measured.rates),)
 
     def _global_position(self, now: float) -> Built:
         measured = self._own_state
@@ -166,12 +166,9 @@ class Telemetry:
         latitude, longitude, altitude = self._frame.place_of(measured)
         v_x, v_y, v_z = (clamp(100.0 * v, 16) for v in measured.velocity)
         heading = round(math.degrees(euler_of(measured.attitude)[2]) * 100.0) % 36000
-        return packed(
-            mavlink.MAVLink_global_position_int_message(
-                self.time_boot_ms(measured.time), latitude, longitude, altitude,
-                clamp(-1e3 * measured.position[2], 32), v_x, v_y, v_z, heading,
-            )
-        )  # fmt: skip
+        height = clamp(-1e3 * measured.position[2], 32)
+        stamp = self.time_boot_ms(measured.time)
+        return (_GLOBAL_POSITION_INT.pack(stamp, latitude, longitude, altitude, height, v_x, v_y, v_z, heading),)
 
     def _gps_raw(self, now: float) -> Built:
         measured = self._own_state
@@ -222,7 +219,7 @@ class Telemetry:
         heading = round(math.degrees(euler_of(measured.attitude)[2])) % 360
         throttle = round(100.0 * self._autopilot.state.actuation.target[2])
         altitude = self._home.altitude - measured.position[2]
-        return packed(mavlink.MAVLink_vfr_hud_message(speed, speed, heading, throttle, altitude, -v_d))
+        return (_VFR_HUD.pack(speed, speed, altitude, -v_d, heading, throttle),)
 
     def _odometry(self, now: float) -> Built:
         measured = self._own_state

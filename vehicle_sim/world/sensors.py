@@ -18,6 +18,8 @@ _BLOCK = 256
 _CHANNELS = 12
 _FAR = 1e6
 _FLOAT32 = 3e38
+NORM_ERROR_MAX = 0.1
+"""Largest difference from 1 of the norm of a quaternion that is taken for an attitude."""
 
 
 class Measurement(NamedTuple):
@@ -44,9 +46,9 @@ class Measurement(NamedTuple):
         return [*self.position, *self.attitude, *self.velocity, *self.rates]
 
     def is_usable(self) -> bool:
-        """Return True if every number is finite and of a size that could be sent."""
+        """Return True if every number is finite and of a size that could be sent, and the attitude is a rotation."""
         total = sum(self.attitude) + sum(self.rates) + sum(self.position) + sum(self.velocity)
-        return _is_number(total) and math.isfinite(self.time)
+        return _is_number(total) and math.isfinite(self.time) and is_rotation(self.attitude)
 
     def is_encodable(self) -> bool:
         """Return whether every number fits a float of 32 bits: usable or not, NaN and infinity included."""
@@ -54,6 +56,11 @@ class Measurement(NamedTuple):
             return True
         numbers = (*self.attitude, *self.rates, *self.position, *self.velocity)
         return all(abs(x) < _FLOAT32 or x != x or math.isinf(x) for x in numbers)
+
+
+def is_rotation(attitude: tuple[float, float, float, float]) -> bool:
+    """Return True if a quaternion has about the norm 1: not where it is zero or holds no numbers."""
+    return abs(math.hypot(*attitude) - 1.0) < NORM_ERROR_MAX
 
 
 def _is_number(total: float) -> bool:
