@@ -10,7 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gcs.mavlink.codec import Codec, gather
-from gcs.mavlink.frame_kernels import RUN_LIMIT, framed_run, frames_in_run
+from gcs.mavlink.frame_kernels import RUN_LIMIT, framed_run, frames_in_run, stamped_frames
+from gcs.mavlink.frames import spans
 from gcs.mavlink.layout import LAYOUTS, PackedRun
 from gcs.mavlink.link_statistics import LinkStatistics
 from gcs.mavlink.telemetry import detections
@@ -151,6 +152,24 @@ def test_truncated_payload_is_a_single_message():
     assert [r.run for r in whole] == [1, 1, 1]
     assert messages(whole) == plain_messages(b"".join(frames))
     assert np.isnan(arrays(whole)[1][1]).all() and np.isfinite(arrays(whole)[1][2]).all()
+
+
+@settings(deadline=None, derandomize=True)
+@given(
+    st.lists(
+        st.one_of(
+            st.binary(max_size=12),
+            st.integers(1, 4).map(lambda count: b"".join(plain_frames(points(count)))),
+            st.integers(1, 2).map(lambda count: b"".join(plain_frames(points(count), signed=True))),
+            st.sampled_from([b"\xfe\x02\x00\x01\x01\x00ab\x00\x00", b"\xfe\x00", b"\xfd\x00\x00", b"\xfd\x05"]),
+        ),
+        max_size=6,
+    )
+)
+def test_records_are_those_of_the_splitter(parts):
+    datagram, stamp = b"".join(parts), b"12345678"
+    found = stamped_frames(*(np.frombuffer(bytearray(data), np.uint8) for data in (datagram, stamp)))
+    assert found.tobytes() == b"".join(stamp + datagram[start:end] for start, end in spans(datagram))
 
 
 def test_kernels_agree_with_plain_functions():

@@ -2,6 +2,7 @@
 
 import csv
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -154,6 +155,27 @@ def test_duplicate_tracks_are_merged():
     assert len(m.tracks) == 2
     run(m, lambda t: [obstacle], 2.0, begin=1.0, scene=Scene(0))
     assert m.tracks == [first]
+
+
+def test_overlaps_are_counted_in_a_row_and_stay_while_the_other_track_is_not_compared():
+    m = map_of()
+    run(m, lambda t: [sphere((6.0, 0.0, -6.0))], 1.0)
+    parts = [part for i, _, part in Scene(8).scans(1.0, HERE, [sphere((6.0, 0.0, -6.0))]) if i == 0]
+    clusters = [Cluster(0, 0, part) for part in parts]
+    m._tracks.begin(clusters, 1.0)
+    first, second = m.tracks
+    merge = partial(m._tracks.merge, clusters, [1] * len(clusters), standing=[])
+    near, far = np.zeros((len(clusters), 2)), np.full((len(clusters), 2), 9.0)
+    merge(near)
+    assert second.overlaps == {first.name: 1}
+    found, first.filter = first.filter, None
+    merge(near)
+    assert second.overlaps == {first.name: 1}
+    first.filter = found
+    merge(near)
+    assert second.overlaps == {first.name: 2}
+    merge(far)
+    assert second.overlaps == {}
 
 
 # Coming and going

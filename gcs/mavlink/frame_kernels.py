@@ -1,4 +1,4 @@
-"""Runs of MAVLink 2 frames that are equal but for sequence number and values, compiled: one call a run.
+"""Frames of a datagram, compiled: runs of MAVLink 2 frames that are equal but for sequence number and values, records.
 
 A run is of messages of one kind, sender, length and time stamp, unsigned, with consecutive sequence numbers and right
 checksums, one behind the other. That is how the points of a scan are sent.
@@ -7,6 +7,7 @@ checksums, one behind the other. That is how the points of a scan are sent.
 import numpy as np
 from numpy.typing import NDArray
 
+from gcs.mavlink.frames import SIGNATURE, SIGNED, V1, V2
 from idc_controller.compiled import inlined, kernel
 
 Bytes = NDArray[np.uint8]
@@ -75,3 +76,28 @@ def framed_run(header: Bytes, payloads: Bytes, extra: int) -> Bytes:
         checksum = _checksum(frame, 1, HEADER + length, extra)
         frame[HEADER + length], frame[HEADER + length + 1] = checksum & 0xFF, checksum >> 8
     return frames
+
+
+@kernel("uint8[::1](uint8[::1], uint8[::1])")
+def stamped_frames(datagram: Bytes, stamp: Bytes) -> Bytes:
+    """Return every frame that :func:`gcs.mavlink.frames.spans` finds in a datagram (n,), each behind a ``stamp`` (s,).
+
+    Bytes that belong to no frame are left out.
+    """
+    size, width = datagram.shape[0], stamp.shape[0]
+    records, count, at = np.empty(size + (size // 8 + 1) * width, np.uint8), 0, 0
+    while at < size:
+        end = size + 1
+        if datagram[at] == V2 and at + 2 < size:
+            end = at + datagram[at + 1] + (AROUND + SIGNATURE if datagram[at + 2] & SIGNED else AROUND)
+        elif datagram[at] == V1 and at + 1 < size:
+            end = at + datagram[at + 1] + 8
+        if end > size:
+            at += 1
+            continue
+        records[count : count + width] = stamp
+        count += width
+        records[count : count + end - at] = datagram[at:end]
+        count += end - at
+        at = end
+    return records[:count].copy()

@@ -6,7 +6,8 @@ V1, V2 = 0xFE, 0xFD
 """First byte of a frame of MAVLink 1 and 2."""
 SIGNED = 0x01
 """Incompatibility flag of a frame with a signature."""
-_SIGNATURE_LENGTH = 13
+SIGNATURE = 13
+"""Bytes of a signature, at the end of a frame."""
 
 _MARKER = re.compile(b"[%c%c]" % (V2, V1))
 
@@ -20,7 +21,7 @@ def end_of_frame(datagram: bytes, start: int) -> int:
     """
     size = len(datagram)
     if datagram[start] == V2 and start + 2 < size:
-        end = start + datagram[start + 1] + (12 + _SIGNATURE_LENGTH if datagram[start + 2] & SIGNED else 12)
+        end = start + datagram[start + 1] + (12 + SIGNATURE if datagram[start + 2] & SIGNED else 12)
     elif datagram[start] == V1 and start + 1 < size:
         end = start + datagram[start + 1] + 8
     else:

@@ -7,7 +7,9 @@ log several links keep the link's number in the two lowest bits of the time stam
 import struct
 from pathlib import Path
 
-from gcs.mavlink.frames import spans
+import numpy as np
+
+from gcs.mavlink.frame_kernels import stamped_frames
 from gcs.record.append_file import AppendOnlyFile
 
 _STAMP = struct.Struct(">Q")
@@ -30,13 +32,14 @@ class TelemetryLog(AppendOnlyFile):
         Bytes that belong to no frame, as a damaged datagram may hold, are left out.
         """
         stamp = _STAMP.pack((self._start_us + round(now * 1e6)) & ~0x3)
-        self._waiting += [stamp + datagram[start:end] for start, end in spans(datagram)]
+        data, stamps = np.frombuffer(bytearray(datagram), np.uint8), np.frombuffer(bytearray(stamp), np.uint8)
+        self._waiting.append(stamped_frames(data, stamps).tobytes())
 
     def flush(self) -> None:
         """Append the frames that were recorded since the last call."""
-        if self._waiting:
+        if any(self._waiting):
             self.append(b"".join(self._waiting))
-            self._waiting.clear()
+        self._waiting.clear()
 
     def close(self) -> None:
         """Append what waits, and close the file; harmless when it is closed already."""

@@ -72,7 +72,11 @@ class TrackList:
             uavs = {clusters[row].uav for row in rows}
             apart = {body for body, cluster in zip(bodies, clusters, strict=True) if cluster.uav in uavs}
             near = np.flatnonzero(distances[rows].max(axis=0) <= s.merge_gate).tolist()
-            overlaps: dict[str, int] = {}
+            # Of a track that is not compared now, the count stays.
+            omitted = (
+                {t.name for i, t in enumerate(tracks) if i >= younger or t.filter is None} if track.overlaps else ()
+            )
+            overlaps = {name: count for name, count in track.overlaps.items() if name in omitted}
             for older in near:
                 if older in apart or (older < len(tracks) and (older >= younger or tracks[older].filter is None)):
                     continue
