@@ -14,7 +14,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from idc_controller.arrays import Array, Indices, Mask
+from idc_controller.arrays import Array, Mask
 from idc_controller.errors import TrajectoryError
 from idc_controller.geometry.formation import BoundingCylinder
 from idc_controller.geometry.obstacles import PredictedObstacle
@@ -22,8 +22,6 @@ from idc_controller.geometry.shape import Shape
 
 TOUCHING = 1e-6
 """m; a place that keeps the margin to within this keeps it."""
-_GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
-_SEARCH_STEPS = 20  # golden section to 1e-4 of a segment
 
 
 class FreeSpace:
@@ -59,6 +57,7 @@ class FreeSpace:
         if self.growth.shape != (len(obstacles),) or not np.isfinite(self.centres).all():
             raise TrajectoryError("every obstacle needs a finite centre and one growth")
         self._bodies = _Bodies([shape for shape, _ in obstacles])
+        self._cylinder = np.array([formation.radius, formation.above, formation.below])
         self.lateral_reach = np.array([shape.horizontal_reach for shape, _ in obstacles]) + self.growth
         """Extent of each obstacle from its centre outwards (M,) (m)."""
         self.vertical_reach = self._bodies.half_height + self.growth
@@ -81,20 +80,9 @@ class FreeSpace:
         free = np.broadcast_to(altitude, (len(north), len(east), len(down))).copy()
         keep = self.margin + extra + self.growth - TOUCHING
         around = self.lateral_reach - self.growth + self.formation.radius + keep
-        for index, (centre, distance, reach) in enumerate(zip(self.centres, keep, around, strict=True)):
-            rows = slice(*np.searchsorted(north, [centre[0] - reach, centre[0] + reach]))
-            columns = slice(*np.searchsorted(east, [centre[1] - reach, centre[1] + reach]))
-            body = self._bodies.chosen(np.array([index]))
-            if not (len(north[rows]) and len(east[columns])):
-                continue
-            offsets = np.zeros((len(north[rows]), len(east[columns]), 1, 3))
-            offsets[..., 0, 0] = north[rows, None] - centre[0]
-            offsets[..., 0, 1] = east[None, columns] - centre[1]
-            across = np.maximum(body.gaps(offsets, self.formation)[0][..., 0], 0.0)
-            upright = np.zeros((len(down), 1, 3))
-            upright[:, 0, 2] = down - centre[2]
-            over = np.maximum(body.gaps(upright, self.formation)[1][:, 0], 0.0)
-            free[rows, columns] &= across[..., None] ** 2 + over**2 >= (distance + body.ball) ** 2
+        from idc_controller.geometry.free_space_kernels import bar_lattice  # only where a path is searched
+
+        bar_lattice(free, north, east, down, keep, around, self.centres, self._bodies.sizes, self._cylinder)
         return free
 
     def within_bounds(self, places: Array) -> Mask:
@@ -111,36 +99,12 @@ class FreeSpace:
         """Return whether the clearance is ``least`` (M,) or more on the segments ``starts`` to ``ends`` (E, 3)."""
         if not (len(self.centres) and len(starts)):
             return np.ones(len(starts), dtype=bool)
-        half = np.linalg.norm(ends - starts, axis=1)[:, None] / 2.0
-        middle = self.clearance((starts + ends) / 2.0) - least
-        outer = np.minimum(self.clearance(starts), self.clearance(ends)) - least
-        kept: Mask = np.all((middle >= 0.0) & (outer >= 0.0), axis=1)
-        # Nowhere does the distance change faster than the place.
-        undecided = (outer + middle < half) & kept[:, None]
-        segment, body = np.nonzero(undecided)
-        if len(segment):
-            lowest = self._least(starts[segment], ends[segment], body)
-            kept[segment[lowest < least[body]]] = False
-        return kept
+        from idc_controller.geometry.free_space_kernels import keep_away  # only where a path is searched
 
-    def _least(self, starts: Array, ends: Array, index: Indices) -> Array:
-        """Return the least clearance on each segment (E, 3) to the one obstacle of that ``index`` (E,) -> (E,)."""
-        bodies, offsets, segments = self._bodies.chosen(index), starts - self.centres[index], ends - starts
-
-        def at(fraction: Array) -> Array:
-            return bodies.distance(offsets + fraction[:, None] * segments, self.formation)
-
-        low, high = np.zeros(len(starts)), np.ones(len(starts))
-        left, right = np.full(len(starts), 1.0 - _GOLDEN), np.full(len(starts), _GOLDEN)
-        at_left, at_right = at(left), at(right)
-        for _ in range(_SEARCH_STEPS):
-            falls = at_left > at_right  # the least value lies to the right of `left`
-            low, high = np.where(falls, left, low), np.where(falls, high, right)
-            new = np.where(falls, low + _GOLDEN * (high - low), high - _GOLDEN * (high - low))
-            at_new = at(new)
-            left, right = np.where(falls, right, new), np.where(falls, new, left)
-            at_left, at_right = np.where(falls, at_right, at_new), np.where(falls, at_new, at_left)
-        return np.asarray(np.minimum(at_left, at_right) - self.growth[index])
+        return keep_away(
+            np.ascontiguousarray(starts), np.ascontiguousarray(ends), least, self.centres, self.growth,
+            self._bodies.sizes, self._cylinder,
+        )  # fmt: skip
 
 
 def first_conflict(
@@ -165,18 +129,9 @@ class _Bodies:
     """The obstacles' sizes as arrays: a box with half edges, rounded horizontally or in all directions."""
 
     def __init__(self, shapes: Sequence[Shape]) -> None:
-        self._take(np.array([shape.upright_bounds for shape in shapes]).reshape(len(shapes), 7))
-
-    def _take(self, sizes: Array) -> None:
-        self._sizes = sizes
-        self._half_x, self._half_y, self._half_z, self._upright, self.ball, self._cosine, self._sine = sizes.T
+        self.sizes = np.array([shape.upright_bounds for shape in shapes]).reshape(len(shapes), 7)
+        self._half_x, self._half_y, self._half_z, self._upright, self.ball, self._cosine, self._sine = self.sizes.T
         self._turned = bool(np.any(self._sine))
-
-    def chosen(self, index: Indices) -> _Bodies:
-        """Return the bodies of these indices, repeated as the indices are."""
-        bodies = _Bodies(())
-        bodies._take(self._sizes[index])
-        return bodies
 
     @property
     def half_height(self) -> Array:

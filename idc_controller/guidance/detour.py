@@ -221,28 +221,21 @@ class _Grid:
         flat, free = (2 * nodes[chosen] + 2) @ strides, self._free.ravel()
         number = np.full(free.size, -1, dtype=np.int32)
         number[flat] = np.arange(count)
-        steps = _DIRECTIONS @ strides
-        neighbours = number[flat[:, None] + 2 * steps]
-        edges = (neighbours >= 0) & free[flat[:, None] + steps]
         # Each edge costs its length less what it gains on the goal: Dijkstra then searches as A* does, and what
         # it counts is how much longer than straight the path is.
         to_goal = np.linalg.norm(places[chosen] - self._goal, axis=1)
         straight = float(np.linalg.norm(self._goal - self._start))
         lengths = np.linalg.norm(_DIRECTIONS * self._spacing, axis=1)
-        rows, columns = np.nonzero(edges)
-        heads = neighbours[rows, columns]
-        costs = lengths[columns] + to_goal[heads] - to_goal[rows]
         back = np.full(len(places), -1)
         back[chosen] = np.arange(count)
         first, last = (back[ends][back[ends] >= 0] for ends in (starts, goals))
         out = np.linalg.norm(places[chosen[first]] - self._start, axis=1) + to_goal[first] - straight
-        rows = np.concatenate([rows, last, np.full(len(first), count)])
-        heads = np.concatenate([heads, np.full(len(last), count + 1), first])
-        costs = np.concatenate([costs, np.zeros(len(last)), out])
-        starts_of_rows = np.concatenate([[0], np.cumsum(np.bincount(rows, minlength=count + 2))])
-        order = np.argsort(rows, kind="stable")
+        is_last = np.zeros(count, dtype=bool)
+        is_last[last] = True
+        from idc_controller.guidance.detour_kernels import lattice_graph  # only where a path is searched
+
         graph = csr_array(
-            (np.maximum(costs, 0.0)[order] + 1e-9, heads[order].astype(np.int32), starts_of_rows.astype(np.int32)),
+            lattice_graph(flat, number, free, _DIRECTIONS @ strides, lengths, to_goal, first, out, is_last),
             shape=(count + 2, count + 2),
         )
         limit = longer + 1e-3

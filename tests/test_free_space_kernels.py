@@ -1,0 +1,97 @@
+"""Free space on lattices and segments, and the lattice's graph, against plain numpy."""
+
+import numpy as np
+import pytest
+
+from idc_controller.geometry.box import Box, Wall
+from idc_controller.geometry.capsule import Capsule
+from idc_controller.geometry.formation import BoundingCylinder
+from idc_controller.geometry.free_space import TOUCHING, FreeSpace
+from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.sphere import Sphere
+from idc_controller.guidance.detour_kernels import lattice_graph
+
+FORMATION = BoundingCylinder(1.1, 1.3, 0.2)
+GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
+
+
+def space(seed, turned=True):
+    rng = np.random.default_rng(seed)
+    shapes = [Sphere(0.6), Pole(0.3, 6.0), Sphere(1.4)]
+    if turned:
+        shapes += [Wall((0.4, 3.0, 4.0), yaw=0.5), Box(roll=0.4, pitch=0.2, yaw=1.0, size=(0.5, 1.0, 2.0)),
+                   Capsule(roll=1.0, yaw=0.3, radius=0.3, length=2.0)]  # fmt: skip
+    obstacles = [(shape, rng.uniform([-5.0, -5.0, -8.0], [5.0, 5.0, -1.0])) for shape in shapes]
+    return FreeSpace(obstacles, FORMATION, 0.4, 0.5, 11.0, growth=rng.uniform(0.0, 0.3, len(shapes)))
+
+
+def least_clearance(space, start, end):
+    """To each obstacle on a segment (M,), by golden section."""
+
+    def at(fraction):
+        return np.diagonal(space.clearance(start + fraction[:, None] * (end - start)))
+
+    low, high = np.zeros(len(space.centres)), np.ones(len(space.centres))
+    left, right = np.full(len(low), 1.0 - GOLDEN), np.full(len(low), GOLDEN)
+    for _ in range(60):
+        falls = at(left) > at(right)
+        low, high = np.where(falls, left, low), np.where(falls, high, right)
+        left, right = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+    return np.minimum.reduce([at(left), at(right), at(np.zeros_like(low)), at(np.ones_like(low))])
+
+
+@pytest.mark.parametrize("turned", [True, False])
+@pytest.mark.parametrize("seed", range(3))
+def test_segments_that_keep_away_are_those_of_golden_section(seed, turned):
+    within, rng = space(seed, turned), np.random.default_rng(seed + 10)
+    starts = rng.uniform([-9.0, -9.0, -10.0], [9.0, 9.0, -1.0], (400, 3))
+    ends = starts + rng.normal(size=starts.shape) * rng.choice([0.3, 3.0, 9.0], (400, 1))
+    least = rng.uniform(0.0, 0.4, len(within.centres))
+    beyond = np.array([least_clearance(within, a, b) - least for a, b in zip(starts, ends, strict=True)]).min(axis=1)
+    clear = np.abs(beyond) > 1e-3
+    expected = beyond >= 0.0
+    assert clear.sum() > 350
+    assert 20 < expected[clear].sum() < clear.sum() - 20
+    np.testing.assert_array_equal(within.keep_away(starts, ends, least)[clear], expected[clear])
+
+
+@pytest.mark.parametrize("turned", [True, False])
+@pytest.mark.parametrize("seed", range(3))
+def test_free_lattice_is_that_of_its_places(seed, turned):
+    within = space(seed, turned)
+    axes = np.arange(-9.0, 9.0, 0.7), np.arange(-8.0, 8.0, 0.6), np.arange(-12.0, 0.5, 0.5)
+    places = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+    free = within.free_lattice(*axes, 0.2).ravel()
+    clearance = within.clearance(places).min(axis=1) - (within.margin + 0.2)
+    decided = np.abs(clearance + TOUCHING) > 1e-9
+    expected = within.within_bounds(places) & (clearance >= -TOUCHING)
+    assert expected.any()
+    np.testing.assert_array_equal(free[decided], expected[decided])
+
+
+def test_graph_of_lattice_has_its_edges_start_and_goal():
+    rng = np.random.default_rng(4)
+    shape = (9, 8, 7)
+    free = np.zeros(shape, dtype=bool)
+    free[2:-2, 2:-2, 2:-2] = rng.random((5, 4, 3)) < 0.8
+    strides = np.array([56, 7, 1])
+    nodes = np.argwhere(free & (np.indices(shape) % 2 == 0).all(axis=0))
+    flat, count = nodes @ strides, len(nodes)
+    number = np.full(free.size, -1, dtype=np.int32)
+    number[flat] = np.arange(count)
+    directions = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [1, 1, 0], [-1, -1, 0]])
+    lengths, to_goal = np.linalg.norm(directions, axis=1), rng.uniform(0.0, 1.5, count)
+    first, out, is_last = np.array([0, 2]), np.array([0.4, -0.1]), np.arange(count) == count - 1
+    costs, heads, begins = lattice_graph(
+        flat, number, free.ravel(), directions @ strides, lengths, to_goal, first, out, is_last
+    )
+    expected = {(count, 0): 0.4 + 1e-9, (count, 2): 1e-9, (count - 1, count + 1): 1e-9}
+    for a, node in enumerate(nodes.tolist()):
+        for direction, length in zip(directions, lengths, strict=True):
+            b = number[(node + 2 * direction) @ strides]
+            if b >= 0 and free[tuple(node + direction)]:
+                expected[a, int(b)] = max(length + to_goal[b] - to_goal[a], 0.0) + 1e-9
+    rows = np.repeat(np.arange(count + 2), np.diff(begins))
+    assert len(costs) == len(expected)
+    found = {(int(a), int(b)): cost for a, b, cost in zip(rows, heads, costs, strict=True)}
+    assert found == pytest.approx(expected, abs=1e-12)
