@@ -134,7 +134,8 @@ def median_of(copies: Sequence[Measurement]) -> Measurement:
 
 def _same(a: Array, b: Array) -> bool:
     """Return whether values are the same, nan where nan."""
-    return all(x == y or (x != x and y != y) for x, y in zip(a.tolist(), b.tolist(), strict=True))
+    first, second = a.tolist(), b.tolist()
+    return first == second or all(x == y or (x != x and y != y) for x, y in zip(first, second, strict=True))
 
 
 def _masked(masked: bool, values: Array) -> Array:

@@ -34,14 +34,14 @@ class ProcessModel:
         hover = self._hovering(interval_us)
         return hover._replace(direction=hover.direction - acceleration)
 
-    def per_vehicle_noise(self, measured: Indices) -> Array:
-        """Return the variances (n,) added to the disturbance forces of the UAVs ``measured`` (K,) between samples.
+    def add_per_vehicle_noise(self, P: Array, measured: Indices) -> None:
+        """Add variances to the disturbance forces in ``P`` (n, n) of the UAVs ``measured`` (K,), between samples.
 
         A UAV with a wrong attitude estimate pulls aside. The force of one that is not measured is not adapted.
         """
-        added = np.zeros(self.size)
-        added[self.uav_force].reshape(-1, 2)[measured] = self._densities.per_vehicle_force**2
-        return added
+        north = self.uav_force.start + 2 * measured
+        for force in (north, north + 1):
+            P[force, force] += self._densities.per_vehicle_force**2
 
     def initial_covariance(self, settings: InitialCovarianceSettings) -> Array:
         """Return the covariance (n, n) of the whole state of a team on the ground."""

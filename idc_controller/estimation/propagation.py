@@ -114,5 +114,5 @@ class ErrorStateFilter:
             measured: UAVs whose position and velocity are among them.
         """
         squared = self._kf.correct(innovation, variance)
-        self._kf.P.flat[:: self.process.size + 1] += self.process.per_vehicle_noise(measured)
+        self.process.add_per_vehicle_noise(self._kf.P, measured)
         return squared

@@ -88,10 +88,11 @@ class ReplayBuffer:
 
     def add(self, measurement: Measurement) -> bool:
         """Add a measurement and return to before it; returns False for one that is too old."""
-        if measurement.time <= max(self.snapshots[0].time, self.time - self._duration):
+        applied = self.snapshots[-1].time
+        if measurement.time <= max(self.snapshots[0].time, applied - self._duration):
             return False
-        moment = self.measurements.add(measurement, self.time)
-        if moment is not None:
+        moment = self.measurements.add(measurement, applied)
+        if moment is not None and moment <= applied:
             self.rewind(moment)
         return True
 

@@ -2,7 +2,7 @@
 
 import bisect
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from operator import attrgetter
 from typing import NamedTuple
 
@@ -12,7 +12,7 @@ from idc_controller.arrays import Array, Mask
 from idc_controller.estimation.settings import SetpointHistorySettings
 
 
-@dataclass
+@dataclass(slots=True)
 class _Entry:
     """Set-points of all vehicles, as sent and as estimated to be flown; None: the vehicles are held."""
 
@@ -20,13 +20,20 @@ class _Entry:
     sent_at: Array
     """Times at which they are sent to each vehicle (N,) (s)."""
     sent: Array | None
+    """(3 N,)"""
     flown: Array | None
+    """(3 N,); the same object as ``sent`` where that is what all vehicles fly."""
     starts: Array
     """Times at which they take effect on each vehicle (N,) (s)."""
     confirmed: Mask
     """Vehicles (N,) that have reported that, or that they never flew them."""
     exact: bool = True
     """True if all take effect at ``effective``."""
+    numbers: list[float] = field(init=False)
+    """Those of ``sent``; of held vehicles none."""
+
+    def __post_init__(self) -> None:
+        self.numbers = [] if self.sent is None else self.sent.tolist()
 
 
 class InForce(NamedTuple):
@@ -136,9 +143,10 @@ class SetpointHistory:
         north, east, thrust = which = [2 * uav, 2 * uav + 1, 2 * self._N + uav]
         tilt_north, tilt_east, lift = reported.tolist()
 
-        def is_reported(u: Array | None) -> bool:
+        def is_reported(entry: _Entry) -> bool:
+            u = entry.numbers
             return (
-                u is not None
+                len(u) > 0
                 and abs(u[thrust] - lift) < s.thrust_tolerance
                 and abs(u[north] - tilt_north) < s.tilt_tolerance
                 and abs(u[east] - tilt_east) < s.tilt_tolerance
@@ -147,7 +155,7 @@ class SetpointHistory:
         newest = self._at(until + tolerance)
         # Those that should be in force already; then those that would come earlier than they should.
         candidates = (*range(newest, max(newest - s.losses_max, -1), -1), *range(newest + 1, len(entries)))
-        flown = next((k for k in candidates if is_reported(entries[k].sent)), None)
+        flown = next((k for k in candidates if is_reported(entries[k])), None)
         if flown is None:
             return None
         changed = math.inf
@@ -155,7 +163,7 @@ class SetpointHistory:
         for k in overdue:
             changed = min(changed, self._set_lost(entries[k], uav, which, reported))
         first = flown
-        while first > 0 and is_reported(entries[first - 1].sent):
+        while first > 0 and is_reported(entries[first - 1]):
             first -= 1
         delay = None
         latency = since - float(entries[first].sent_at[uav])
@@ -186,7 +194,7 @@ class SetpointHistory:
         entry.confirmed[uav] = True
         assert entry.flown is not None and entry.sent is not None
         changed = math.inf
-        if any(entry.flown[k] != entry.sent[k] for k in which):
+        if entry.flown is not entry.sent and any(entry.flown[k] != entry.sent[k] for k in which):
             entry.flown = entry.flown.copy()
             entry.flown[which] = entry.sent[which]
             changed = entry.effective

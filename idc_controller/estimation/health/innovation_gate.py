@@ -1,6 +1,6 @@
 """Innovation test of the measurements of one moment: a gate on each, and on each channel of a rejected one."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,8 +11,7 @@ from idc_controller.estimation.measurement_model import ObservationStack
 from idc_controller.estimation.update_kernels import gated
 
 
-@dataclass(frozen=True, eq=False)
-class InnovationTest:
+class InnovationTest(NamedTuple):
     """Result for K measurements with m rows in all."""
 
     variance: Array

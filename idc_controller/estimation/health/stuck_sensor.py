@@ -6,13 +6,15 @@ from idc_controller.estimation.measurements import PAYLOAD, Attitude, Channel, M
 from idc_controller.estimation.settings import StuckSensorSettings
 
 
-@dataclass
+@dataclass(slots=True)
 class _Last:
     time: float
     pose: list[float]
     motion: list[float]
     repeats: tuple[int, int] = (0, 0)
     """Of the pose and of the motion."""
+    stuck: tuple[bool, bool] = (False, False)
+    """Whether the pose, and whether the motion, is stuck."""
 
 
 class StuckSensors:
@@ -26,31 +28,29 @@ class StuckSensors:
         """Take a measurement and return whether its pose, and whether its motion, is stuck."""
         key = measurement.source, type(measurement)
         last = self._last.get(key)
-        relayed = self._settings.relay_interval if measurement.source == PAYLOAD else 0.0
-        if last is None or measurement.time > last.time + relayed:
-            pose, motion = measurement.pose.tolist(), measurement.motion.tolist()
-            now = self._last[key] = _Last(measurement.time, pose, motion)
-            if last is not None:
-                of_pose, of_motion = last.repeats
-                now.repeats = of_pose + 1 if pose == last.pose else 0, of_motion + 1 if motion == last.motion else 0
-            last = now
-        return self._stuck_parts(key, last)
+        if last is not None:
+            relayed = self._settings.relay_interval if measurement.source == PAYLOAD else 0.0
+            if measurement.time <= last.time + relayed:
+                return last.stuck
+        now = self._last[key] = _Last(measurement.time, measurement.pose.tolist(), measurement.motion.tolist())
+        if last is not None and (now.pose == last.pose or now.motion == last.motion):
+            of_pose, of_motion = last.repeats
+            now.repeats = of_pose + 1 if now.pose == last.pose else 0, of_motion + 1 if now.motion == last.motion else 0
+            now.stuck = self._stuck_parts(key, now.repeats)
+        return now.stuck
 
     def channels(self) -> list[Channel]:
         """Return the channels that are stuck now."""
         return [
             Channel(source, kind, part)
             for (source, kind), last in self._last.items()
-            for part, stuck in enumerate(self._stuck_parts((source, kind), last))
+            if True in last.stuck
+            for part, stuck in enumerate(last.stuck)
             if stuck
         ]
 
-    def _stuck_parts(self, key: SensorKey, last: _Last) -> tuple[bool, bool]:
-        pose, motion = last.repeats
-        limit = self._settings.repeats
-        if pose < limit and motion < limit:
-            return False, False
-        pose_sigma, motion_sigma = self._sigmas(*key)
+    def _stuck_parts(self, key: SensorKey, repeats: tuple[int, int]) -> tuple[bool, bool]:
+        limit, (pose, motion), (pose_sigma, motion_sigma) = self._settings.repeats, repeats, self._sigmas(*key)
         return pose >= limit and pose_sigma > 0.0, motion >= limit and motion_sigma > 0.0
 
     def _sigmas(self, source: int, kind: type) -> tuple[float, float]:
