@@ -53,7 +53,18 @@ def test_force_components_are_those_of_whole_arrays(n, tilt):
         np.testing.assert_allclose(
             force_kernels.states(x, hover, layout.n.start), states_plainly(x, layout, hover), rtol=1e-14
         )
-        np.testing.assert_allclose(force_kernels.inputs(u, hover), inputs_plainly(u, layout, hover), rtol=1e-14)
+        stages, limits = np.array([2, 0, 1]), np.sort(rng.normal(size=(2, layout.inputs)), axis=0)
+        bounds = np.stack([limits[1] - inputs_plainly(u[stages], layout, hover),
+                           inputs_plainly(u[stages], layout, hover) - limits[0]], axis=1)  # fmt: skip
+        np.testing.assert_allclose(
+            force_kernels.input_bounds(u, stages, hover, *limits), bounds.ravel(), rtol=1e-13, atol=1e-13
+        )
+        for limit in (0.5, 50.0):
+            found = force_kernels.tracking_error(x[0].copy(), x[1:], hover, layout.n.start, limit, 2.0 * limit)
+            error = np.subtract(*states_plainly(x[:2], layout, hover))
+            error[layout.r_0] = shortened(error[layout.r_0], limit)
+            error[layout.v_0] = shortened(error[layout.v_0], 2.0 * limit)
+            np.testing.assert_allclose(found, error, rtol=1e-13, atol=1e-13)
         found = force_kernels.setpoints(delta, u[0], hover, LEAST_LIFT)
         np.testing.assert_allclose(found, setpoints_plainly(delta, u[0], layout, hover), rtol=1e-13)
         directions = force_kernels.directions(found)

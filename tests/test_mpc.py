@@ -5,13 +5,10 @@ import pytest
 from flight_in_process import MISSIONS
 from mpc_oracle import optimal_moves
 from scipy.linalg import solve_discrete_are
+from test_control_kernels import inputs_plainly
 
 from gcs.config import read_system
-from idc_controller.control.force_components import (
-    inputs_in_force_components,
-    setpoints_from_force_components,
-    state_in_force_components,
-)
+from idc_controller.control.force_components import setpoints_from_force_components, state_in_force_components
 from idc_controller.control.mpc import ModelPredictiveController, input_weight, state_weight
 from idc_controller.control.prediction import move_blocks
 from idc_controller.control.settings import MpcSettings, MpcTuning
@@ -26,6 +23,11 @@ CONFIG = read_system(MISSIONS / "system.toml")
 MODEL = LinearModel(CONFIG.parameters())
 LAYOUT = MODEL.layout
 DEFAULT = ModelPredictiveController(MODEL, MpcSettings())
+
+
+def inputs_in_force_components(u, hover):
+    """Set-points (..., 3 N) as F_xy / f_hover and -F_z."""
+    return inputs_plainly(u, LAYOUT, hover)
 
 
 def stages_at(height, settings=DEFAULT.settings, model=MODEL):

@@ -1,7 +1,6 @@
 """One flight, from connecting to disarming: its phases, the control step in each, and the reactions to failsafes."""
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -15,7 +14,7 @@ from gcs.flight.mission_trajectory import MissionTrajectory
 from gcs.flight.payload_monitor import PayloadMonitor
 from gcs.flight.phase import CONTROLLED, IN_AIR, Phase
 from gcs.flight.preflight import Preflight
-from gcs.flight.spool import SpoolDown, spool_up_share
+from gcs.flight.spool import SpoolDown, Touchdown, spool_up_share
 from gcs.flight.team import Team
 from gcs.mission.model import Mission
 from idc_controller.arrays import Array
@@ -24,17 +23,6 @@ from idc_controller.estimation.measurements import Measurement
 from idc_controller.perception.obstacle_map import ObstacleMap
 from idc_controller.trajectory.reference import Reference
 from idc_controller.trajectory.trajectory import RestTrajectory, Trajectory
-
-
-@dataclass(frozen=True, eq=False)
-class Touchdown:
-    """The payload on the ground after the flight."""
-
-    trajectory: Trajectory
-    """Rest where it touched down."""
-    yaw: float
-    """rad"""
-    spool_down: SpoolDown
 
 
 class Flight:

@@ -1,6 +1,9 @@
 """Share of the hover thrust while the payload is on the ground: spool-up before the climb, spool-down after landing."""
 
+from dataclasses import dataclass
+
 from gcs.config.flight_settings import DEFAULTS, TakeoffLandingSettings
+from idc_controller.trajectory.trajectory import Trajectory
 
 
 def spool_up_share(elapsed: float, settings: TakeoffLandingSettings = DEFAULTS.takeoff_landing) -> float:
@@ -24,3 +27,14 @@ class SpoolDown:
                 return share
             self._leaning, self._since = False, time - (1.0 - s.standing_share) * s.spool_down_time
         return max(1.0 - (time - self._since) / s.spool_down_time, 0.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Touchdown:
+    """The payload on the ground after the flight."""
+
+    trajectory: Trajectory
+    """Rest where it touched down."""
+    yaw: float
+    """rad"""
+    spool_down: SpoolDown

@@ -12,10 +12,10 @@ from typing import NamedTuple
 import numpy as np
 
 from idc_controller.arrays import Array
-from idc_controller.control.force_components import setpoints_from_force_components, state_in_force_components
-from idc_controller.control.force_kernels import directions
+from idc_controller.control.force_components import setpoints_from_force_components
+from idc_controller.control.force_kernels import directions, tracking_error
 from idc_controller.control.ground_controller import GroundController
-from idc_controller.control.load_adaptation import LoadAdaptation, limited
+from idc_controller.control.load_adaptation import LoadAdaptation
 from idc_controller.control.settings import ControllerSettings
 from idc_controller.control.tracker import Tracker
 from idc_controller.estimation.estimate import Estimate
@@ -120,11 +120,10 @@ class IntegratedDecisionController:
         # the middle of it leaves the least error.
         flat = reference.at(estimate.time + self._times)
         stages = flat.part(slice(0, -1))
-        hover = self._hover
-        state, referred = state_in_force_components(np.array([estimate.x, stages.x[0]]), self.layout, hover)
-        error, s = state - referred, self.settings
-        error[self.layout.r_0] = limited(error[self.layout.r_0], s.position_error_limit)
-        error[self.layout.v_0] = limited(error[self.layout.v_0], s.velocity_error_limit)
+        hover, s = self._hover, self.settings
+        error = tracking_error(
+            estimate.x, stages.x, hover, self.layout.n.start, s.position_error_limit, s.velocity_error_limit
+        )
         ready = self._stopwatch()
         output = (self._ground_controller if on_ground else self.tracker).track(error, stages)
         tracked = self._stopwatch()

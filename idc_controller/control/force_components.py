@@ -21,8 +21,3 @@ def setpoints_from_force_components(delta: Array, u_reference: Array, hover: Arr
     The force points up whatever is commanded, with ``least_lift`` of the hover thrust at least.
     """
     return force_kernels.setpoints(delta, u_reference, hover, least_lift)
-
-
-def inputs_in_force_components(u: Array, hover: Array) -> Array:
-    """Set-points (..., 3 N) as F_xy / f_hover and -F_z."""
-    return force_kernels.inputs(u.reshape(-1, 3 * len(hover)), hover).reshape(u.shape)

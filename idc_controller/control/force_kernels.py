@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Indices
 from idc_controller.compiled import inlined, kernel
 
 _PARAMETER = "Array(float64, 1, 'C', readonly=True)"
@@ -19,6 +19,20 @@ def _cosine(north: float, east: float) -> float:
     return math.sqrt(max(1.0 - (north * north + east * east), _LEAST_SQUARE))
 
 
+@inlined
+def _convert(x: Array, hover: Array, tilts: int) -> None:
+    """Turn states (K, 12 + 11 N) into components of force in place; see ``states``."""
+    number = len(hover)
+    for k in range(len(x)):
+        for i in range(number):
+            f = x[k, tilts + 6 * number + i]
+            upward = f * _cosine(x[k, tilts + 2 * i], x[k, tilts + 2 * i + 1])
+            for part in range(3):
+                for axis in range(2):
+                    x[k, tilts + 2 * (part * number + i) + axis] *= f / hover[i]
+            x[k, tilts + 6 * number + i] = upward
+
+
 @kernel(f"float64[:, ::1](float64[:, ::1], {_PARAMETER}, int64)")
 def states(x: Array, hover: Array, tilts: int) -> Array:
     """Return states (K, 12 + 11 N) with tilts as F_xy / f_hover and thrusts as -F_z.
@@ -28,28 +42,60 @@ def states(x: Array, hover: Array, tilts: int) -> Array:
         hover: thrusts in hover (N,) (N).
         tilts: index of the first UAV's tilt; their rates, their accelerations and the thrusts follow.
     """
-    number, result = len(hover), x.copy()
-    for k in range(len(x)):
-        for i in range(number):
-            f = x[k, tilts + 6 * number + i]
-            for part in range(3):
-                for axis in range(2):
-                    result[k, tilts + 2 * (part * number + i) + axis] *= f / hover[i]
-            result[k, tilts + 6 * number + i] = f * _cosine(x[k, tilts + 2 * i], x[k, tilts + 2 * i + 1])
+    result = x.copy()
+    _convert(result, hover, tilts)
     return result
 
 
-@kernel(f"float64[:, ::1](float64[:, ::1], {_PARAMETER})")
-def inputs(u: Array, hover: Array) -> Array:
-    """Return set-points (M, 3 N) as F_xy / f_hover and -F_z, of tilts and thrusts (M, 3 N); ``hover`` (N,) (N)."""
-    number, result = len(hover), np.empty(u.shape)
-    for k in range(len(u)):
+@inlined
+def _limit(vector: Array, limit: float) -> None:
+    """Shorten ``vector`` (3,) to ``limit`` in place if it is longer."""
+    norm = math.sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2])
+    if norm > limit:
+        for axis in range(3):
+            vector[axis] *= limit / norm
+
+
+@kernel(f"float64[::1](float64[::1], float64[:, ::1], {_PARAMETER}, int64, float64, float64)")
+def tracking_error(x: Array, reference: Array, hover: Array, tilts: int, position: float, velocity: float) -> Array:
+    """Return the error (12 + 11 N,) of a state about its reference, in components of force.
+
+    Args:
+        x: state in the model's coordinates (12 + 11 N,).
+        reference: its reference in the first row (K, 12 + 11 N).
+        hover, tilts: see ``states``.
+        position, velocity: to which the payload's errors of position (m) and velocity (m/s) are shortened.
+    """
+    both = np.empty((2, len(x)))
+    both[0], both[1] = x, reference[0]
+    _convert(both, hover, tilts)
+    error: Array = both[0] - both[1]
+    _limit(error[0:3], position)
+    _limit(error[3:6], velocity)
+    return error
+
+
+@kernel(f"float64[::1](float64[:, ::1], int64[::1], {_PARAMETER}, {_PARAMETER}, {_PARAMETER})")
+def input_bounds(u: Array, stages: Indices, hover: Array, lower: Array, upper: Array) -> Array:
+    """Return how far set-points are from their limits, upper then lower ones of each stage (M 6 N,).
+
+    Args:
+        u: tilts and thrusts of the reference at all stages (K, 3 N).
+        stages: those whose bounds are returned (M,).
+        hover: thrusts in hover (N,) (N).
+        lower, upper: limits in components of force (3 N,).
+    """
+    number, inputs = len(hover), u.shape[1]
+    bounds = np.empty(2 * len(stages) * inputs)
+    for k in range(len(stages)):
+        above, below = bounds[2 * k * inputs :], bounds[(2 * k + 1) * inputs :]
         for i in range(number):
-            f = u[k, 2 * number + i]
-            for axis in range(2):
-                result[k, 2 * i + axis] = u[k, 2 * i + axis] * (f / hover[i])
-            result[k, 2 * number + i] = f * _cosine(u[k, 2 * i], u[k, 2 * i + 1])
-    return result
+            n_x, n_y, f = u[stages[k], 2 * i], u[stages[k], 2 * i + 1], u[stages[k], 2 * number + i]
+            x, y, z = 2 * i, 2 * i + 1, 2 * number + i
+            north, east, upward = n_x * (f / hover[i]), n_y * (f / hover[i]), f * _cosine(n_x, n_y)
+            above[x], above[y], above[z] = upper[x] - north, upper[y] - east, upper[z] - upward
+            below[x], below[y], below[z] = north - lower[x], east - lower[y], upward - lower[z]
+    return bounds
 
 
 @kernel(f"float64[::1](float64[::1], float64[::1], {_PARAMETER}, float64)")

@@ -1,7 +1,5 @@
 """The load that the reference is made for: payload mass, disturbance forces and wind, learnt from the estimates."""
 
-import math
-
 import numpy as np
 
 from idc_controller.arrays import Array
@@ -61,9 +59,3 @@ def _median(vectors: Array) -> Array:
     """Return the median (3,) of finite ``vectors`` (N, 3), axis by axis."""
     ordered, half = np.sort(vectors, axis=0), len(vectors) // 2
     return np.asarray(ordered[half] if len(vectors) % 2 else (ordered[half - 1] + ordered[half]) / 2.0)
-
-
-def limited(vector: Array, limit: float) -> Array:
-    """Return ``vector`` (3,), shortened to ``limit`` if it is longer."""
-    norm = math.sqrt(float(vector @ vector))
-    return vector * (limit / norm) if norm > limit else vector

@@ -73,11 +73,11 @@ class ModelPredictiveController:
 
     def bounds(self, error: Array, reference: FlatReference) -> Array:
         """Return h of the QP: of the inputs of every move, then of the states at every constrained stage."""
-        inputs = self._input_limits.h(reference.u[self.prediction.first_stages])
+        inputs = self._input_limits.h(reference.u, self.prediction.first_stages)
         states = np.concatenate(
             [constraint.h(reference, self._stages) for constraint in self.state_constraints], axis=1
         )
-        return np.concatenate([inputs.ravel(), states.ravel() - self._free_response @ error])
+        return np.concatenate([inputs, states.ravel() - self._free_response @ error])
 
 
 def _numbered(slacks: list[NDArray[np.int_]]) -> NDArray[np.int_]:

@@ -16,7 +16,7 @@ from idc_controller.arrays import Array
 from idc_controller.errors import TrajectoryError
 from idc_controller.trajectory.settings import Limits
 from idc_controller.trajectory.trajectory import Times, Trajectory, finite, positive
-from idc_controller.trajectory.trajectory_kernels import figure_eight
+from idc_controller.trajectory.trajectory_kernels import figure_eight, figure_eight_at
 from idc_controller.trajectory.trajectory_kernels import phase as phase_at
 
 SHORTEST_RAMP, LONGEST_RAMP = 0.25, 60.0
@@ -102,7 +102,7 @@ class LissajousTrajectory(Trajectory):
         self._set_phase(_phase(knots, [0.0, rate, rate, 0.0], 0.0))
 
     def _set_phase(self, phase: PPoly) -> None:
-        self._phase, self._rate = phase, phase.derivative()
+        self._phase, self._rate, self._shape = phase, phase.derivative(), self.curve.as_array()
         self.start, self._end = float(phase.x[0]), float(phase.x[-1])
 
     def phase(self, times: ArrayLike, order: int = 0) -> Array:
@@ -111,7 +111,7 @@ class LissajousTrajectory(Trajectory):
 
     def evaluate(self, times: Times, order: int) -> Array:
         """See ``Trajectory.evaluate``; analytic, by the chain rule."""
-        return figure_eight(self.curve.as_array(), self.phase(times.values, order))
+        return figure_eight_at(self._shape, self._phase.c, self._phase.x, times.values, order)
 
     def stop(self, time: float) -> Trajectory:
         """See ``Trajectory.stop``; stays on the curve."""

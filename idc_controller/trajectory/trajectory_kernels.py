@@ -77,8 +77,8 @@ def _polynomial(coefficients: Array, knots: Array, time: float, values: Array) -
         values[d] = value
 
 
-@kernel("float64[:, ::1](float64[:, ::1], float64[::1], float64[::1], int64, boolean)")
-def phase(coefficients: Array, knots: Array, times: Array, order: int, at_rest: bool) -> Array:
+@inlined
+def _phase(coefficients: Array, knots: Array, times: Array, order: int, at_rest: bool) -> Array:
     """Return a piecewise polynomial and its derivatives (order + 1, K).
 
     Args:
@@ -99,8 +99,14 @@ def phase(coefficients: Array, knots: Array, times: Array, order: int, at_rest: 
     return result
 
 
-@kernel("float64[:, :, ::1](float64[::1], float64[:, ::1])")
-def figure_eight(curve: Array, phases: Array) -> Array:
+@kernel("float64[:, ::1](float64[:, ::1], float64[::1], float64[::1], int64, boolean)")
+def phase(coefficients: Array, knots: Array, times: Array, order: int, at_rest: bool) -> Array:
+    """Return a piecewise polynomial and its derivatives (order + 1, K); see ``_phase``."""
+    return _phase(coefficients, knots, times, order, at_rest)
+
+
+@inlined
+def _figure_eight(curve: Array, phases: Array) -> Array:
     """Return position and derivatives by time (order + 1, K, 3) on the figure eight, by the chain rule (Faa di Bruno).
 
     Args:
@@ -135,6 +141,25 @@ def figure_eight(curve: Array, phases: Array) -> Array:
                 curved = r_2 * (3.0 * s_2**2 + 4.0 * s_1 * s_3)
                 result[4, i, axis] = r_4 * s_1**4 + 6.0 * r_3 * s_1**2 * s_2 + curved + r_1 * s_4
     return result
+
+
+@kernel("float64[:, :, ::1](float64[::1], float64[:, ::1])")
+def figure_eight(curve: Array, phases: Array) -> Array:
+    """Return position and derivatives by time (order + 1, K, 3) on the figure eight; see ``_figure_eight``."""
+    return _figure_eight(curve, phases)
+
+
+@kernel("float64[:, :, ::1](float64[::1], float64[:, ::1], float64[::1], float64[::1], int64)")
+def figure_eight_at(curve: Array, coefficients: Array, knots: Array, times: Array, order: int) -> Array:
+    """Return position and derivatives (order + 1, K, 3) on the figure eight at ``times`` (K,) (s).
+
+    Args:
+        curve: see ``_figure_eight``.
+        coefficients, knots: of the phase, which rests before and after; see ``_phase``.
+        times: (K,) (s).
+        order: highest derivative.
+    """
+    return _figure_eight(curve, _phase(coefficients, knots, times, order, True))
 
 
 @inlined

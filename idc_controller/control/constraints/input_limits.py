@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from idc_controller.arrays import Array
-from idc_controller.control.force_components import inputs_in_force_components
+from idc_controller.arrays import Array, Indices
+from idc_controller.control.force_kernels import input_bounds
 from idc_controller.control.settings import MpcSettings
 from idc_controller.model.linear import LinearModel
 
@@ -21,10 +21,9 @@ class InputLimits:
         self.G = np.vstack([np.eye(3 * N), -np.eye(3 * N)])
         """(6 N, 3 N)"""
 
-    def h(self, u: Array) -> Array:
-        """Return the bounds (M, 2, 3 N), upper then lower, for set-points ``u`` (M, 3 N) of the reference."""
-        u = inputs_in_force_components(u, self._hover)
-        bounds = np.empty((len(u), 2, u.shape[1]))
-        np.subtract(self._upper, u, out=bounds[:, 0])
-        np.subtract(u, self._lower, out=bounds[:, 1])
-        return bounds
+    def h(self, u: Array, stages: Indices) -> Array:
+        """Return the bounds (M 6 N,) at ``stages`` (M,), upper then lower ones, for the reference's set-points.
+
+        These are ``u`` (K, 3 N) at all stages.
+        """
+        return input_bounds(u, stages, self._hover, self._lower, self._upper)
