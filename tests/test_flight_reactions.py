@@ -1,0 +1,109 @@
+"""What a flight does about a failsafe, in each of its phases: the phase that follows, what vehicles are told."""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pymavlink.dialects.v20.ardupilotmega as mavlink
+import pytest
+from flight_in_process import MISSIONS
+
+from gcs.flight.alarms import AlarmLog
+from gcs.flight.condition import Trigger
+from gcs.flight.failsafe import Failsafe
+from gcs.flight.flight import Flight
+from gcs.flight.mission_trajectory import MissionTrajectory
+from gcs.flight.phase import Phase
+from gcs.mavlink import px4
+from gcs.mission.read import read_mission
+from idc_controller.guidance.progress import Guidance
+
+MISSION = read_mission(MISSIONS / "short_leg.toml")
+PARAMETERS = MISSION.system.parameters()
+ARM, MODE = mavlink.MAV_CMD_COMPONENT_ARM_DISARM, mavlink.MAV_CMD_DO_SET_MODE
+
+
+class Watched(Flight):
+    """A flight that keeps the commands to the team and the choices of stop plans."""
+
+    def __init__(self, phase):
+        self.commands, self.chosen = [], []
+        team = SimpleNamespace(links=(), command_all=lambda *command: self.commands.append(command))
+        control = SimpleNamespace(
+            estimator=None, controller=SimpleNamespace(parameters=PARAMETERS, guidance=Guidance()),
+            choose_stop_plan=self.chosen.append,
+        )  # fmt: skip
+        super().__init__(MISSION, team, control, AlarmLog())
+        self.phase = phase
+        if phase in (Phase.CLIMB, Phase.FLY, Phase.LAND):
+            self.mission_trajectory = MissionTrajectory(MISSION, np.zeros(3), 0.0)
+
+    def fails(self, failsafe, time=5.0, **trigger):
+        self.raise_failsafe(time, failsafe, Trigger("a reason", **trigger))
+
+
+@pytest.mark.parametrize("phase", [Phase.CONNECT, Phase.CHECK])
+def test_flight_that_has_not_begun_is_refused(phase):
+    flight = Watched(phase)
+    flight.fails(Failsafe.PREARM_CHECK_FAILED)
+    assert (flight.phase, flight.commands, flight.reason) == (Phase.ENDED, [], "a reason")
+    assert flight.ended and not flight.landed
+
+
+@pytest.mark.parametrize("phase", [Phase.ARM, Phase.SPOOL_UP])
+def test_vehicles_still_on_the_ground_are_disarmed(phase):
+    flight = Watched(phase)
+    flight.fails(Failsafe.OFFBOARD_LEFT)
+    assert flight.phase is Phase.DISARM
+    assert [command[:2] for command in flight.commands] == [(ARM, 0.0)]
+
+
+@pytest.mark.parametrize("phase", [Phase.CLIMB, Phase.FLY])
+def test_interrupted_flight_brakes_and_lands_under_control(phase):
+    undisturbed, flight = Watched(phase), Watched(phase)
+    flight.fails(Failsafe.INTERRUPTED)
+    assert (flight.phase, flight.commands, flight.chosen) == (phase, [], [])
+    assert flight.expected_end < undisturbed.expected_end or math.isinf(undisturbed.expected_end)
+    path = flight.mission_trajectory.trajectory.derivatives(np.linspace(5.0, 60.0, 200), 0)[0]
+    assert np.ptp(path[:, :2], axis=0).max() < 2.0
+
+
+def test_lost_vehicle_lands_all_by_the_stop_plan_that_it_has():
+    flight = Watched(Phase.FLY)
+    flight.fails(Failsafe.TELEMETRY_LOST, vehicles=(), cut_off=0.3)
+    assert flight.phase is Phase.AUTONOMOUS_LANDING
+    assert flight.chosen == [pytest.approx(4.7)]
+    assert flight.commands == [
+        (MODE, mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, px4.MainMode.AUTO, px4.AutoMode.LOITER)
+    ]
+
+
+def test_ground_that_has_lost_all_sends_nothing_more():
+    flight = Watched(Phase.FLY)
+    flight.fails(Failsafe.INTERRUPTED_TWICE)
+    assert (flight.phase, flight.commands) == (Phase.ENDED, [])
+
+
+def test_more_severe_reaction_takes_over_and_is_not_taken_back():
+    flight = Watched(Phase.FLY)
+    flight.fails(Failsafe.INTERRUPTED)
+    flight.fails(Failsafe.TELEMETRY_LOST)
+    assert flight.phase is Phase.AUTONOMOUS_LANDING
+    told = list(flight.commands)
+    flight.fails(Failsafe.NO_PATH)
+    assert (flight.phase, flight.commands) == (Phase.AUTONOMOUS_LANDING, told)
+    assert flight.failsafes.raised == {Failsafe.INTERRUPTED, Failsafe.TELEMETRY_LOST, Failsafe.NO_PATH}
+
+
+def test_failsafe_after_the_end_is_left_alone():
+    flight = Watched(Phase.ENDED)
+    flight.fails(Failsafe.TELEMETRY_LOST)
+    assert (flight.phase, flight.commands, flight.reason) == (Phase.ENDED, [], "")
+
+
+def test_links_are_checked_in_the_air_alone():
+    for phase in Phase:
+        flight, asked = Watched(phase), []
+        flight.failsafes.evaluate = lambda check, moment, asked=asked: asked.append(moment)
+        assert not flight.check_links(1.0, 2.0)
+        assert bool(asked) == (phase in (Phase.SPOOL_UP, Phase.CLIMB, Phase.FLY, Phase.HOLD, Phase.LAND))

@@ -1,0 +1,64 @@
+"""Requests to a vehicle: repeated until they are answered, and not for ever."""
+
+import pymavlink.dialects.v20.ardupilotmega as mavlink
+import pytest
+
+from gcs.mavlink.requests import CommandState, Requests
+from gcs.mavlink.settings import LinkSettings
+
+SETTINGS = LinkSettings()
+ARM = mavlink.MAV_CMD_COMPONENT_ARM_DISARM
+RETRY = SETTINGS.retry_interval
+
+
+@pytest.fixture
+def requests():
+    return Requests(3, {}, SETTINGS)
+
+
+def value_of(name, value, kind=mavlink.MAV_PARAM_TYPE_REAL32):
+    return mavlink.MAVLink_param_value_message(name.encode(), value, kind, 1, 0)
+
+
+def test_parameter_is_requested_at_once_and_again_until_it_is_known():
+    known = {"KNOWN": 1.0}
+    requests = Requests(3, known, SETTINGS)
+    requests.want_parameters(("KNOWN", "WANTED"))
+    [first] = requests.due(5.0)
+    assert (first.param_id, first.target_system) == ("WANTED", 3)
+    requests.want_parameters(("WANTED",))
+    assert requests.due(5.0 + 0.9 * RETRY) == []
+    assert len(requests.due(5.0 + 1.1 * RETRY)) == 1
+    requests.handle(value_of("WANTED", float("nan")))
+    assert len(requests.due(5.0 + 2.2 * RETRY)) == 1
+    requests.handle(value_of("WANTED", 2.5))
+    assert known["WANTED"] == 2.5
+    assert requests.due(100.0) == []
+
+
+def test_command_is_repeated_with_its_number_of_tries_until_it_counts_as_unanswered(requests):
+    command = requests.command(ARM, 1.0)
+    sent = [message for k in range(50) for message in requests.due(0.5 * RETRY * k)]
+    assert [message.confirmation for message in sent] == list(range(SETTINGS.tries))
+    assert {(message.target_system, message.command, message.param1, message.param7) for message in sent} == {
+        (3, ARM, 1.0, 0.0)
+    }
+    assert command.state is CommandState.UNANSWERED
+    requests.handle(mavlink.MAVLink_command_ack_message(ARM, mavlink.MAV_RESULT_ACCEPTED))
+    assert command.state is CommandState.UNANSWERED
+
+
+@pytest.mark.parametrize(
+    ("result", "state"),
+    [
+        (mavlink.MAV_RESULT_ACCEPTED, CommandState.ACCEPTED),
+        (mavlink.MAV_RESULT_DENIED, CommandState.REFUSED),
+        (mavlink.MAV_RESULT_IN_PROGRESS, CommandState.PENDING),
+    ],
+)
+def test_answer_ends_its_own_command(requests, result, state):
+    other, command = requests.command(ARM + 1), requests.command(ARM, 1.0)
+    requests.due(0.0)
+    requests.handle(mavlink.MAVLink_command_ack_message(ARM, result))
+    assert (command.state, other.state) == (state, CommandState.PENDING)
+    assert len(requests.due(2.0 * RETRY)) == (2 if state is CommandState.PENDING else 1)
