@@ -17,7 +17,7 @@ class SystemIdCheck:
     def __init__(self, number_of_uavs: int, settings: IdCheckSettings | None = None) -> None:
         self._settings = settings or IdCheckSettings()
         self._vehicle_of = list(range(number_of_uavs))
-        self._positions: dict[int, Array] = {}
+        self._positions: dict[int, list[float]] = {}
         self._suspected: dict[int, int] = {}
         self._steps = 0
 
@@ -33,7 +33,7 @@ class SystemIdCheck:
     def add(self, sample: Measurement) -> None:
         """Take a sample that was received as of the vehicle that is its source."""
         if sample.source != PAYLOAD and isinstance(sample, Position) and sample.has_pose:
-            self._positions[sample.source] = sample.position
+            self._positions[sample.source] = sample.position.tolist()
 
     def compare(self, places: Array) -> None:
         """Compare the samples since the last time with the estimated ``places`` (N, 3); once a control step."""
@@ -46,7 +46,7 @@ class SystemIdCheck:
             self._suspected, self._steps = {}, 0
 
 
-def _swapped(positions: dict[int, Array], places: list[list[float]], distance_ratio: float) -> dict[int, int]:
+def _swapped(positions: dict[int, list[float]], places: list[list[float]], distance_ratio: float) -> dict[int, int]:
     """Return vehicles whose ``positions`` are at each other's ``places`` (N, 3), and at which; otherwise none."""
     at = {}
     for vehicle, position in positions.items():

@@ -17,18 +17,16 @@ from gcs.mavlink.settings import LinkSettings
 
 _ATTITUDE, _POSITION = mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED
 _NAVIGATION = (_ATTITUDE, _POSITION)
-_STATUS = frozenset(
+#: What comes often and holds nothing that is kept here: not read.
+_NOT_READ = frozenset(
     (
-        mavlink.MAVLINK_MSG_ID_HEARTBEAT,
-        mavlink.MAVLINK_MSG_ID_TIMESYNC,
-        mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE,
-        mavlink.MAVLINK_MSG_ID_SYS_STATUS,
-        mavlink.MAVLINK_MSG_ID_STATUSTEXT,
-        mavlink.MAVLINK_MSG_ID_COMMAND_ACK,
-        mavlink.MAVLINK_MSG_ID_PARAM_VALUE,
+        mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET,
+        mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D,
+        mavlink.MAVLINK_MSG_ID_ATTITUDE,
+        mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT,
+        mavlink.MAVLINK_MSG_ID_VFR_HUD,
     )
 )
-"""Messages that are read as message objects; the others are not read here."""
 
 
 @dataclass
@@ -119,7 +117,7 @@ class VehicleLink:
                 self._handle_navigation(message_id, received.time_boot_ms, in_order, now)
             elif received.component == px4.PAYLOAD_UNIT_COMPONENT:
                 self.payload_received_at = now
-        elif message_id in _STATUS:
+        elif message_id not in _NOT_READ:
             self._handle_message(received.message, of_autopilot, now)
 
     def _handle_navigation(self, message_id: int, time_boot_ms: int, in_order: bool, now: float) -> None:

@@ -10,7 +10,8 @@ from gcs.mavlink.address import Address
 from gcs.mavlink.codec import Codec, gather
 from gcs.mavlink.layout import Packed, PackedRun, packed
 from gcs.mavlink.messages import Message
-from vehicle_sim.mavlink.telemetry import Built, TelemetrySample
+from vehicle_sim.mavlink.telemetry import Built
+from vehicle_sim.mavlink.telemetry_sample import TelemetrySample
 
 TIME_TOLERANCE = 1e-6  # s: sums of steps are not exact
 

@@ -6,7 +6,8 @@ from collections.abc import Callable, Iterator
 from gcs.config.vehicle_settings import VehicleLinkSettings
 from gcs.mavlink.address import Address
 from vehicle_sim.mavlink.peer import TIME_TOLERANCE, Peer
-from vehicle_sim.mavlink.telemetry import Telemetry, TelemetrySample
+from vehicle_sim.mavlink.telemetry import Telemetry
+from vehicle_sim.mavlink.telemetry_sample import TelemetrySample
 
 
 class Peers:
