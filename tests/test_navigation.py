@@ -4,14 +4,21 @@ import math
 
 import numpy as np
 import pytest
+from flying import AIRFRAME
 
-from gcs.config.vehicle_settings import NavigationSettings
+from gcs.config.vehicle_settings import LandDetectorSettings, NavigationSettings
 from idc_controller.rotations import quaternion_product
 from vehicle_sim.autopilot.navigation import Navigation
+from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
 from vehicle_sim.world.sensors import Measurement
 
 STEP, LAG, NOISE = 0.004, 0.05, math.radians(0.2)
 NAN = (math.nan,) * 3
+
+
+def navigation_alone():
+    """The navigation of a team of one, whose samples all come to ``update``."""
+    return Navigation(LAG, NavigationSettings(), OnboardArrays.of([AIRFRAME], LandDetectorSettings()))
 
 
 class Turning:
@@ -45,7 +52,7 @@ def angle(a, b):
 
 def flown(wrong, duration=4.0, healthy=0.5):
     """[(estimated, true attitude, true rates, reported)] of samples of which ``wrong(sample)`` is off after a while."""
-    body, navigation, found = Turning(), Navigation(LAG, NavigationSettings()), []
+    body, navigation, found = Turning(), navigation_alone(), []
     while body.time < duration:
         body.step()
         sample = body.sample()
@@ -68,7 +75,7 @@ def stuck(channel):
 
 
 def test_valid_samples_are_used_unchanged():
-    navigation, body = Navigation(LAG, NavigationSettings()), Turning()
+    navigation, body = navigation_alone(), Turning()
     for _ in range(10):
         body.step()
         sample = body.sample()
@@ -102,7 +109,7 @@ def test_last_valid_position_and_velocity_are_kept_when_lost():
 
 
 def test_recovered_rates_are_used_again():
-    body, navigation = Turning(), Navigation(LAG, NavigationSettings())
+    body, navigation = Turning(), navigation_alone()
     for k in range(200):
         body.step()
         sample = body.sample(**({"rates": NAN} if 50 <= k < 150 else {}))
@@ -111,14 +118,14 @@ def test_recovered_rates_are_used_again():
 
 
 def test_navigation_has_no_state_before_first_valid_sample():
-    navigation = Navigation(LAG, NavigationSettings())
+    navigation = navigation_alone()
     assert navigation.update(Turning().sample(rates=NAN), (0.0, 0.0, 0.0), 0.0) is None
     assert navigation.reported is None
 
 
 def test_constant_samples_without_noise_are_not_stuck():
     rest = Measurement(0.0, (1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, -0.5), (0.0, 0.0, 0.0))
-    navigation = Navigation(LAG, NavigationSettings())
+    navigation = navigation_alone()
     for k in range(3 * NavigationSettings.stuck_after):
         sample = rest._replace(time=k * STEP)
         assert navigation.update(sample, (0.0, 0.0, 0.0), sample.time) == sample == navigation.reported
@@ -127,7 +134,7 @@ def test_constant_samples_without_noise_are_not_stuck():
 def test_sensor_counts_as_stuck_after_so_many_samples_equal_to_the_digit():
     """Until then its samples are flown; another value ends it at once."""
     limit = NavigationSettings().stuck_after
-    body, navigation = Turning(), Navigation(LAG, NavigationSettings())
+    body, navigation = Turning(), navigation_alone()
     body.step()
     first = body.sample()
     navigation.update(first, (0.0,) * 3, body.time)
@@ -151,4 +158,4 @@ def test_attitude_that_is_no_rotation_is_taken_for_lost(attitude):
     lost = {0: {"rates": NAN}, 1: {"rates": NAN, "attitude": (math.nan,) * 4}, 2: {}}
     for estimated, *_ in flown(lambda s: s._replace(attitude=attitude)._replace(**lost[next(steps) % 3])):
         assert math.hypot(*estimated.attitude) == pytest.approx(1.0)
-    assert Navigation(LAG, NavigationSettings()).update(Turning().sample(attitude=attitude), (0.0,) * 3, 0.0) is None
+    assert navigation_alone().update(Turning().sample(attitude=attitude), (0.0,) * 3, 0.0) is None

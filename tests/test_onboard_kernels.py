@@ -6,11 +6,17 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 from flying import AIRFRAME
+from onboard import step_alone
 
 from gcs.config.vehicle_settings import LandDetectorSettings
+from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.land_detector import LandDetector
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
-from vehicle_sim.autopilot.onboard_kernels import THRUST, detect_landings, find_ordinary
+from vehicle_sim.autopilot.onboard_kernels import THRUST, detect_landings, take_fresh_samples
+from vehicle_sim.autopilot.onboard_loop import step_together
+from vehicle_sim.autopilot.parameter_table import vehicle_parameters
+from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
+from vehicle_sim.world.sensors import Measurement
 
 SETTINGS = LandDetectorSettings()
 WEIGHT, THRUST_MAX = AIRFRAME.mass * AIRFRAME.g, AIRFRAME.rotors.thrust_max
@@ -94,10 +100,10 @@ def test_vehicles_without_an_estimate_detect_nothing():
     assert np.array_equal(arrays.landings, before, equal_nan=True)
 
 
-def test_ordinary_samples_are_numbers_that_do_not_repeat():
+def test_fresh_samples_are_numbers_that_do_not_repeat():
     good = np.arange(1.0, 14.0)
     good[3:7] = 0.5, -0.5, 0.5, 0.5
-    samples, last, ordinary = np.tile(good, (8, 1)), np.tile(-good, (8, 1)), np.zeros(8, dtype=bool)
+    samples, last, fresh = np.tile(good, (9, 1)), np.tile(-good, (9, 1)), np.zeros(9, dtype=bool)
     samples[1, 4] = np.nan
     samples[2, 0] = np.inf
     samples[3, 8] = 1e7
@@ -105,9 +111,52 @@ def test_ordinary_samples_are_numbers_that_do_not_repeat():
     last[5, 10:13] = good[10:13]  # stuck rates
     samples[6, 10:13] = last[6, 10:13] = 0.0  # at rest without noise
     samples[7, 3:7] = 0.0  # no rotation
-    estimates = np.empty((8, 13))
-    find_ordinary(samples, last, estimates, ordinary)
-    assert ordinary.tolist() == [True, False, False, False, False, False, True, False]
-    assert np.array_equal(last, samples, equal_nan=True) and np.array_equal(estimates, samples, equal_nan=True)
-    find_ordinary(samples, last, estimates, ordinary)
-    assert not ordinary.any()
+    times = np.arange(9.0)
+    times[8] = np.nan
+    estimates, stamps = np.zeros((9, 13)), np.full((9, 2), -np.inf)
+    take_fresh_samples(samples, times, 9.0, last, estimates, stamps, fresh)
+    assert fresh.tolist() == [True, False, False, False, False, False, True, False, False]
+    assert np.array_equal(last, samples, equal_nan=True)
+    assert np.array_equal(estimates[fresh], samples[fresh]) and not estimates[~fresh].any()
+    assert stamps[fresh].tolist() == [[0.0, 9.0], [6.0, 9.0]] and np.isneginf(stamps[~fresh]).all()
+    take_fresh_samples(samples, times, 9.5, last, estimates, stamps, fresh)
+    assert not fresh.any() and stamps[fresh].tolist() == []
+
+
+def test_vehicles_of_a_team_fly_as_each_alone_when_samples_of_the_second_are_missing_stuck_or_late():
+    """Estimates and rotor speeds, while the second gets no samples, the same rates, old samples, and good ones."""
+
+    rng, stuck = np.random.default_rng(5), None
+    arrays = OnboardArrays.of([AIRFRAME] * 3, SETTINGS)
+    team = [
+        Autopilot(AIRFRAME, vehicle_parameters(AIRFRAME, i + 1, 250), arrays=arrays.of_vehicle(i)) for i in range(3)
+    ]
+    alone, kinds = [Autopilot(AIRFRAME, vehicle_parameters(AIRFRAME, i, 250)) for i in (1, 2, 3)], set()
+    for k in range(600):
+        now, phase = 0.004 * k, k // 100
+        samples = np.hstack([rng.normal(size=(3, 3)), rng.normal(size=(3, 4)), rng.normal(size=(3, 6))])
+        samples[:, 3:7] = samples[:, 3:7] * 0.05 + (1.0, 0.0, 0.0, 0.0)
+        samples[:, 3:7] /= np.linalg.norm(samples[:, 3:7], axis=1)[:, None]
+        times = np.full(3, now)
+        missing = [1] if phase in (0, 2) else []
+        if phase == 3:
+            stuck = samples[1, 10:13].copy() if stuck is None else stuck
+            samples[1, 10:13] = stuck
+        if phase == 4:
+            times[1] = math.nan if k % 2 else now - 0.1
+        given = [None if i in missing else Measurement.of_row(times[i], samples[i].tolist()) for i in range(3)]
+        step_together(team, arrays, samples, times, now, missing)
+        speeds = [step_alone(pilot, sample, now) for pilot, sample in zip(alone, given, strict=True)]
+        assert arrays.speeds.tolist() == [list(four) for four in speeds]
+        for i, (one, other) in enumerate(zip(team, alone, strict=True)):
+            mine, others = one.state.navigation, other.state.navigation
+            assert repr(mine.estimate) == repr(others.estimate) and repr(mine.reported) == repr(others.reported)
+            assert mine.is_valid(now) == others.is_valid(now)
+            assert i == 1 or mine.estimate == Measurement.of_row(now, samples[i].tolist())
+        known = team[1].state.navigation
+        kinds.add((known.estimate is None, known.is_valid(now), math.isnan((known.reported or given[0]).rates[0])))
+        if k == 120:
+            for pilot in (*team, *alone):
+                pilot.enter_offboard(AttitudeSetpoint((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.5, 0), now, now)
+                assert pilot.arm(now, force=True).text == ""
+    assert kinds == {(True, False, False), (False, True, False), (False, False, False), (False, True, True)}

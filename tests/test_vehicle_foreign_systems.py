@@ -6,6 +6,7 @@ import numpy as np
 import pymavlink.dialects.v20.common as mavlink
 import pytest
 from hostile_traffic import with_random_contents
+from onboard import step_alone
 from vehicle_bench import (
     ACCEPTED,
     ARM,
@@ -34,7 +35,7 @@ def test_controlled_vehicle_refuses_commands_of_foreign_systems(flying: Bench) -
         refused = flying.vehicle.refused_setpoints
         flying.send(attitude_target(thrust=0.0), sender, system)
         assert flying.vehicle.refused_setpoints == refused + 1
-    flying.vehicle.step(flying.body.measure(), flying.now)
+    step_alone(flying.vehicle.autopilot, flying.body.measure(), flying.now)
     assert flying.vehicle.autopilot.armed and flying.vehicle.autopilot.mode == px4.MODE_OFFBOARD
     assert flying.vehicle.autopilot.state.actuation.target[2] == pytest.approx(HOVER)
     assert flying.vehicle.parameters["COM_OF_LOSS_T"] == pytest.approx(VehicleFailsafeSettings.setpoint_loss)
@@ -108,7 +109,7 @@ def test_mutated_datagrams_neither_raise_nor_command(flying: Bench) -> None:
         vehicle.receive(bytes(frame), GROUND, now)
         if number % 100 == 0:
             flying.send(attitude_target(), GROUND)
-            vehicle.step(flying.body.measure(), now)
+            step_alone(vehicle.autopilot, flying.body.measure(), now)
             vehicle.datagrams_to_send(now)
     assert vehicle.autopilot.armed and vehicle.autopilot.mode == px4.MODE_OFFBOARD
     assert vehicle.autopilot.changes == before
@@ -126,7 +127,7 @@ def test_random_messages_of_foreign_system_neither_raise_nor_change_state(flying
             frame = with_random_contents(kind, rng.bytes(kind.unpacker.size), 1, writer)
             vehicle.receive(frame, STRANGER, flying.now)
         flying.send(attitude_target())
-        vehicle.step(flying.body.measure(), flying.now)
+        step_alone(vehicle.autopilot, flying.body.measure(), flying.now)
         vehicle.datagrams_to_send(flying.now)
     assert vehicle.autopilot.changes == before
     assert vehicle.autopilot.armed and vehicle.parameters["COM_OF_LOSS_T"] == pytest.approx(

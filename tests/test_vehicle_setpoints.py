@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 import pytest
+from onboard import step_alone
 from packed_messages import message_of
 from vehicle_bench import (
     ACCEPTED,
@@ -61,7 +62,7 @@ def test_invalid_setpoints_are_ignored(flying: Bench, message: Any) -> None:
 )
 def test_type_masks_of_setpoints_are_followed(flying: Bench, message: Any, target: Any) -> None:
     flying.send(message)
-    flying.body.command = flying.vehicle.step(flying.body.measure(), flying.now)
+    flying.body.command = step_alone(flying.vehicle.autopilot, flying.body.measure(), flying.now)
     attitude, rates, thrust = flying.vehicle.autopilot.state.actuation.target
     assert attitude == (None if target[0] is None else pytest.approx(target[0], abs=1e-6))
     assert rates == pytest.approx(target[1], abs=1e-6) and thrust == pytest.approx(target[2], abs=1e-6)
@@ -70,7 +71,7 @@ def test_type_masks_of_setpoints_are_followed(flying: Bench, message: Any, targe
 def test_reordered_setpoints_are_dropped_but_not_after_clock_step(flying: Bench) -> None:
     def thrust_after(stamp: int, thrust: float) -> float:
         flying.send(attitude_target(stamp=stamp, thrust=thrust))
-        flying.vehicle.step(flying.body.measure(), flying.now)
+        step_alone(flying.vehicle.autopilot, flying.body.measure(), flying.now)
         return flying.vehicle.autopilot.state.actuation.target[2]
 
     assert thrust_after(5000, 0.2) == pytest.approx(0.2)

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from onboard import step_alone
 from test_settings_followed import system
 from vehicle_bench import ACCEPTED, ARM, GROUND, OFFBOARD, Bench, attitude_target
 from world_runs import run, uav_array
@@ -37,7 +38,7 @@ def stop_of(config):
     setpoint = AttitudeSetpoint(LEVEL, (0.0, 0.0, 0.0), 0.9, 0)
     for step in range(1000):
         now = 0.004 * step
-        pilot.step(Measurement(now, LEVEL, (0.0, 0.0, 0.0), (0.0, 0.0, -5.0), (3.0, 0.0, 0.0)), now)
+        step_alone(pilot, Measurement(now, LEVEL, (0.0, 0.0, 0.0), (0.0, 0.0, -5.0), (3.0, 0.0, 0.0)), now)
         if step == 0:
             pilot.enter_offboard(setpoint, now, now)
             pilot.arm(now, force=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pymavlink.dialects.v20.common as mavlink
 import pytest
+from onboard import step_alone
 from vehicle_bench import (
     ARM,
     GROUND,
@@ -114,12 +115,12 @@ def test_peers_time_out_and_their_number_is_bounded(bench: Bench) -> None:
 
 def test_lost_samples_stop_the_telemetry_and_the_health_bits(bench: Bench) -> None:
     for _ in range(200):
-        bench.vehicle.step(None, bench.now)
+        step_alone(bench.vehicle.autopilot, None, bench.now)
         bench.collect()
         bench.body.tick += 1
     bench.inbox.clear()
     for _ in range(600):
-        bench.vehicle.step(None, bench.now)
+        step_alone(bench.vehicle.autopilot, None, bench.now)
         bench.collect()
         bench.body.tick += 1
     assert not bench.got("ATTITUDE_QUATERNION") and not bench.got("LOCAL_POSITION_NED")

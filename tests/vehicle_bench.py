@@ -6,6 +6,7 @@ from typing import Any
 
 import pymavlink.dialects.v20.common as mavlink
 from flying import AIRFRAME, Body
+from onboard import step_alone
 
 from gcs.mavlink import px4
 from gcs.mavlink.codec import Codec
@@ -82,7 +83,7 @@ class Bench:
                     self.send(message, sender, system)
             if self.body.tick % 2 == 0:
                 measured = self.body.measure()
-                self.body.command = self.vehicle.step(measured, self.now)
+                self.body.command = step_alone(self.vehicle.autopilot, measured, self.now)
                 self.vehicle.relay(Measurement(self.now, (1, 0, 0, 0), (0, 0, 0), (1, 2, -3), (4, 5, 6)))
             self.collect()
             self.body.advance()

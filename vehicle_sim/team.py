@@ -3,6 +3,8 @@
 import math
 from collections.abc import Sequence
 
+import numpy as np
+
 from gcs.config import SystemConfig
 from gcs.config.tables import SensorsConfig
 from idc_controller.arrays import Array
@@ -39,6 +41,7 @@ class Team:
         self._range_sensors = [RangeSensor(config.range_sensor, seed, i) for i in ids]
         self._faults = faults
         self._disturbed = [vehicle for vehicle in vehicles if faults.disturbs_samples(vehicle.system_id)]
+        self._times = np.empty(len(ids))
         self._payload_sample: tuple[float, Array] | None = None
 
     def wrenches(self) -> tuple[list[float], list[list[float]]]:
@@ -49,11 +52,10 @@ class Team:
         """Measure the true ``states``, and let every autopilot take a step; return True if a HEARTBEAT changes."""
         rows = self._sensors.measure(states)
         self._payload_sample = now, rows[0]
-        own_rows = rows[1:]
-        samples: list[Measurement | None] = [Measurement.of_row(now, row) for row in own_rows.tolist()]
-        if self._disturbed:
-            self._disturb(samples, own_rows)
-        changed = step_together(self._autopilots, self._arrays, samples, own_rows, now)
+        samples, times = rows[1:], self._times
+        times.fill(now)
+        missing = self._disturb(samples, times) if self._disturbed else ()
+        changed = step_together(self._autopilots, self._arrays, samples, times, now, missing)
         for i in changed:
             self.vehicles[i].send_changes()
         for vehicle in self._disturbed:
@@ -71,19 +73,25 @@ class Team:
             if vehicle not in self._disturbed:
                 vehicle.relay(sample)
 
-    def _disturb(self, samples: list[Measurement | None], rows: Array) -> None:
-        """Let the faults act on the samples of the vehicles, also as ``rows`` (N, 13), and on what they relay."""
+    def _disturb(self, samples: Array, times: Array) -> list[int]:
+        """Let the faults act on the vehicles' ``samples`` (N, 13), their ``times`` (N,), and what they relay.
+
+        Return the vehicles (from 0) to which no sample comes.
+        """
+        missing = []
         assert self._payload_sample is not None
         time, row = self._payload_sample
         payload_sample = Measurement.of_row(time, row.tolist())
         for vehicle in self._disturbed:
             number = vehicle.system_id
             vehicle.relay(self._faults.payload_sample(number, payload_sample))
-            before = samples[number - 1]
-            assert before is not None
-            sample = samples[number - 1] = self._faults.own_sample(number, before)
-            if sample is not None and sample is not before:
-                rows[number - 1] = sample.as_row()
+            before = Measurement.of_row(time, samples[number - 1].tolist())
+            sample = self._faults.own_sample(number, before)
+            if sample is None:
+                missing.append(number - 1)
+            elif sample is not before:
+                samples[number - 1], times[number - 1] = sample.as_row(), sample.time
+        return missing
 
     def scan(self, state: WorldState, obstacles: ObstacleBodies) -> None:
         """Let every vehicle scan for the obstacles."""

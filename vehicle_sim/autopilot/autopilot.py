@@ -6,7 +6,6 @@ failsafes in :mod:`.failsafe`, prearm checks in :mod:`.arming`, what they share 
 
 import math
 
-import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.config.vehicle_settings import AutopilotSettings
@@ -22,17 +21,17 @@ from vehicle_sim.autopilot.flight_state import FlightState
 from vehicle_sim.autopilot.land_detector import LandDetector
 from vehicle_sim.autopilot.navigation import Navigation
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
-from vehicle_sim.autopilot.onboard_loop import step_together
 from vehicle_sim.autopilot.parameter_table import ParameterTable
 from vehicle_sim.autopilot.setpoint_stream import SetpointStream
 from vehicle_sim.autopilot.setpoints import AttitudeSetpoint, StopPlan
-from vehicle_sim.world.rotors import Four
 from vehicle_sim.world.sensors import Measurement
-from vehicle_sim.world.state_kernels import STATE_COLUMNS
 
 
 class Autopilot:
-    """One vehicle's autopilot. ``changes`` rises with every change of a HEARTBEAT; ``state`` is to be read only."""
+    """One vehicle's autopilot, which takes its steps with its team in :func:`.onboard_loop.step_together`.
+
+    ``arrays``: its row of the team's. ``changes`` rises with every change of a HEARTBEAT; ``state`` is to be read only.
+    """
 
     def __init__(
         self,
@@ -41,15 +40,15 @@ class Autopilot:
         settings: AutopilotSettings = AutopilotSettings(),
         arrays: OnboardArrays | None = None,
     ) -> None:
-        """``arrays`` of this vehicle, in a team that is stepped together; None: it is stepped alone."""
-        self._arrays = arrays or OnboardArrays.of([airframe], settings.land_detector)
+        """``arrays`` of this vehicle in its team; None: it is a team of its own."""
+        self.arrays = arrays or OnboardArrays.of([airframe], settings.land_detector)
         self.state = FlightState(
             airframe,
             parameters,
             settings,
-            Navigation(airframe.motor_time_constant, settings.navigation),
-            LandDetector(self._arrays),
-            Actuation(airframe.rotors.thrust_max, self._arrays),
+            Navigation(airframe.motor_time_constant, settings.navigation, self.arrays),
+            LandDetector(self.arrays),
+            Actuation(airframe.rotors.thrust_max, self.arrays),
             SetpointStream(settings.setpoints),
         )
         self._shown: tuple[int, bool, bool, int] | None = None
@@ -144,37 +143,23 @@ class Autopilot:
 
     # The onboard loop
 
-    def step(self, measurement: Measurement | None, now: float) -> Four:
-        """One step of the onboard loop alone: four rotor-speed commands (rad/s). None: no sample came this time."""
-        row = np.array([measurement.as_row() if measurement is not None else [math.nan] * STATE_COLUMNS])
-        step_together((self,), self._arrays, (measurement,), row, now)
-        a, b, c, d = self._arrays.speeds[0].tolist()
-        return a, b, c, d
-
-    def sense(self, sample: Measurement | None, ordinary: bool, now: float) -> None:
-        """Take what the sensors delivered; ``ordinary`` samples need no closer look."""
-        navigation = self.state.navigation
-        self.state.now = now
-        if sample is not None and ordinary and math.isfinite(sample.time):
-            navigation.take(sample, now)
-            return
-        if sample is not None:
-            navigation.update(sample, self.state.actuation.commanded_acceleration, now)
-        estimate = navigation.estimate
-        self._arrays.estimates[0] = math.nan if estimate is None else estimate.as_row()
+    def sense(self, sample: Measurement, now: float) -> None:
+        """Take a sample that is not fresh."""
+        estimate = self.state.navigation.update(sample, self.state.actuation.commanded_acceleration, now)
+        self.arrays.estimates[0] = math.nan if estimate is None else estimate.as_row()
 
     def decide(self, now: float) -> bool:
         """Check the failsafes, and say what the rotors are to do; return True if a HEARTBEAT changes."""
         state = self.state
-        measured = state.navigation.estimate
-        if measured is None:
+        state.now = now
+        if not state.navigation.has_estimate:
             return False
         check_failsafes(state, now)
         if state.hold is not None:
             self._check_touchdown(now)
         if state.armed:
-            self._fly(measured, now)
-        shown = (self.mode, state.armed, state.failsafe, self.landed_state)
+            self._fly(now)
+        shown = (state.flown_mode, state.armed, state.failsafe, self.landed_state)
         if shown == self._shown:
             return False
         self._shown = shown
@@ -187,14 +172,17 @@ class Autopilot:
         state = self.state
         return state.armed and state.mode == px4.MODE_OFFBOARD and not state.failsafe
 
-    def _fly(self, measured: Measurement, now: float) -> None:
+    def _fly(self, now: float) -> None:
         """The control law of what is flown: hold and descent, the set-points of OFFBOARD, or waiting armed."""
         state = self.state
+        if state.hold is None and state.mode == px4.MODE_OFFBOARD and (setpoint := state.setpoints.at(now)) is not None:
+            state.actuation.follow(setpoint, now)
+            return
+        measured = state.navigation.estimate
+        assert measured is not None
         if state.hold is not None:
             attitude, thrust = state.hold.command(measured, now, state.is_supported(now))
             state.actuation.command(attitude, NO_RATES, thrust, now)
-        elif state.mode == px4.MODE_OFFBOARD and (setpoint := state.setpoints.at(now)) is not None:
-            state.actuation.follow(setpoint, now)
         else:
             level = attitude_of_force(0.0, 0.0, -1.0, euler_of(measured.attitude)[2])
             state.actuation.command(level, NO_RATES, 0.0, now)

@@ -4,6 +4,8 @@ import math
 
 from gcs.config.vehicle_settings import NavigationSettings
 from idc_controller.rotations_float import Quaternion, Vector, half_rotation, turned
+from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
+from vehicle_sim.autopilot.onboard_kernels import FRESH_AT, SAMPLE_TIME
 from vehicle_sim.world.sensors import Measurement, is_rotation
 
 
@@ -14,14 +16,16 @@ class Navigation:
     observer of second order; position and velocity stay what they were. A vehicle needs its rates hundreds of times a
     second: with old ones it turns over.
 
-    ``measured_at`` (s): when a usable sample came last.
+    Fresh samples are taken with those of the whole team, in :func:`.onboard_kernels.take_fresh_samples`; the others
+    come to :meth:`update`.
     """
 
-    def __init__(self, motor_lag: float, settings: NavigationSettings) -> None:
-        """``motor_lag`` (s): time constant with which torques follow their commands."""
+    def __init__(self, motor_lag: float, settings: NavigationSettings, arrays: OnboardArrays) -> None:
+        """``motor_lag`` (s): time constant with which torques follow their commands; ``arrays`` of one vehicle."""
         self._motor_lag = motor_lag
         self._settings = settings
-        self.measured_at = -math.inf
+        self._row, self._stamps = arrays.estimates[0], arrays.stamps[0]
+        self._usable_at = self._updated_at = -math.inf
         self._known: Measurement | None = None
         self._raw: Measurement | None = None
         self._repeated = {"attitude": 0, "rates": 0}
@@ -31,34 +35,42 @@ class Navigation:
     @property
     def estimate(self) -> Measurement | None:
         """The state to fly by; None before the first usable sample."""
+        if self._is_fresh:
+            return Measurement.of_row(float(self._stamps[SAMPLE_TIME]), self._row.tolist())
         return self._known
+
+    @property
+    def has_estimate(self) -> bool:
+        """Return True from the first usable sample on."""
+        return self._known is not None or self._is_fresh
+
+    @property
+    def _is_fresh(self) -> bool:
+        return bool(self._stamps[FRESH_AT] > self._updated_at)
 
     def is_valid(self, now: float) -> bool:
         """Return True if usable samples come."""
-        return now - self.measured_at <= self._settings.timeout
+        return now - max(self._usable_at, float(self._stamps[FRESH_AT])) <= self._settings.timeout
 
     @property
     def reported(self) -> Measurement | None:
         """The estimate as telemetry sends it: rates that were not measured are NaN, as in MAVLink."""
-        if self._known is None or self._has_rates:
-            return self._known
+        if self._known is None or self._has_rates or self._is_fresh:
+            return self.estimate
         return self._known._replace(rates=(math.nan, math.nan, math.nan))
 
-    def take(self, sample: Measurement, now: float) -> None:
-        """Take an ordinary ``sample``: usable, and of other attitude and rates than the last one."""
-        self.measured_at = now
-        self._known = self._raw = sample
-        self._observed = None
-        self._has_rates = True
-        self._repeated["attitude"] = self._repeated["rates"] = 0
-
     def update(self, sample: Measurement, commanded: Vector, now: float) -> Measurement | None:
-        """Return the estimate after a ``sample`` that came at ``now`` (s); None before the first usable one.
+        """Return the estimate after a ``sample`` that came at ``now`` (s) and is not fresh; None before a usable one.
 
         ``commanded``: the angular acceleration for which the torque was last set (rad/s2).
         """
+        if self._is_fresh:  # the sample before this one was
+            self._known = self._raw = self.estimate
+            self._observed = None
+            self._repeated["attitude"] = self._repeated["rates"] = 0
+        self._updated_at = now
         if sample.is_usable():
-            self.measured_at = now
+            self._usable_at = now
         known = self._known
         if known is None:
             if not sample.is_usable():

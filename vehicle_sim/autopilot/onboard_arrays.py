@@ -14,6 +14,7 @@ from vehicle_sim.autopilot.onboard_kernels import (
     LANDING_COLUMNS,
     LAST_TIME,
     LIGHT_SINCE,
+    STAMP_COLUMNS,
     TARGET_COLUMNS,
     TOUCHING_SINCE,
     VELOCITY,
@@ -32,9 +33,11 @@ class OnboardArrays:
     detectors: Array
     last_samples: Array
     """The newest sample of each, as it came."""
-    ordinary: Mask
-    """Samples that need no closer look."""
+    fresh: Mask
+    """Vehicles whose newest sample is the new estimate."""
     estimates: Array
+    stamps: Array
+    """Times of the last fresh samples, and when they came (N, 2) (s)."""
     learns: Mask
     """Vehicles that learn the thrust that they hover with."""
     landings: Array
@@ -57,6 +60,7 @@ class OnboardArrays:
             np.full((n, STATE_COLUMNS), np.nan),
             np.zeros(n, dtype=np.bool_),
             np.full((n, STATE_COLUMNS), np.nan),
+            np.full((n, STAMP_COLUMNS), -np.inf),
             np.zeros(n, dtype=np.bool_),
             landings,
             np.zeros((n, TARGET_COLUMNS)),

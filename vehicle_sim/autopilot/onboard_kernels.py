@@ -31,6 +31,10 @@ LANDING_COLUMNS = 8
     ALTITUDE_FILTER, HOVER_FILTER, UNLOADED_SHARE,
 ) = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10  # fmt: skip
 
+# Columns of ``stamps``: the time of the last fresh sample, and when it came (s); -inf: there has been none.
+SAMPLE_TIME, FRESH_AT = 0, 1
+STAMP_COLUMNS = 2
+
 _FAR = 1e6
 
 _half_rotation = inlined(rotations_float.half_rotation)
@@ -128,12 +132,16 @@ def control_attitudes(airframes: Array, estimates: Array, targets: Array, accele
             speeds[i, k] = math.sqrt(forces[k] * a[PER_K_F]) if forces[k] > 0.0 else 0.0
 
 
-@kernel("void(float64[:, ::1], float64[:, ::1], float64[:, ::1], boolean[::1])")
-def find_ordinary(samples: Array, last: Array, estimates: Array, ordinary: Mask) -> None:
-    """Write which ``samples`` (N, 13) are numbers, with a rotation for attitude, and do not repeat the ``last`` ones.
+@kernel("void(float64[:, ::1], float64[::1], float64, float64[:, ::1], float64[:, ::1], float64[:, ::1], boolean[::1])")
+def take_fresh_samples(
+    samples: Array, times: Array, now: float, last: Array, estimates: Array, stamps: Array, fresh: Mask
+) -> None:
+    """Write which ``samples`` (N, 13) are ``fresh``: numbers, with a rotation for attitude, and no repeated ones.
 
-    Then copy them to ``last`` and ``estimates``. Sensors repeat themselves by chance, or because they are stuck:
-    :mod:`.navigation` decides. Rates of zero are those of a vehicle at rest in a world without noise.
+    Fresh ones repeat neither attitude nor rates of the ``last``. They are the new ``estimates`` (N, 13), with
+    ``stamps`` (N, 2): the sample's of ``times`` (N,), and ``now`` (s). For the others :mod:`.navigation` decides:
+    sensors repeat themselves by chance, or because they are stuck. Rates of zero are those of a vehicle at rest in a
+    world without noise. All ``samples`` are then the ``last``.
     """
     for i in range(samples.shape[0]):
         s = samples[i]
@@ -141,7 +149,11 @@ def find_ordinary(samples: Array, last: Array, estimates: Array, ordinary: Mask)
         total = attitude + rates + (s[0] + s[1] + s[2]) + (s[7] + s[8] + s[9])
         norm = math.sqrt(s[3] * s[3] + s[4] * s[4] + s[5] * s[5] + s[6] * s[6])
         are_numbers = (
-            abs(norm - 1.0) < NORM_ERROR_MAX and abs(attitude) < _FAR and abs(rates) < _FAR and abs(total) < _FAR
+            math.isfinite(times[i])
+            and abs(norm - 1.0) < NORM_ERROR_MAX
+            and abs(attitude) < _FAR
+            and abs(rates) < _FAR
+            and abs(total) < _FAR
         )
         same_attitude, same_rates, still = True, True, True
         for k in range(3, 7):
@@ -149,9 +161,11 @@ def find_ordinary(samples: Array, last: Array, estimates: Array, ordinary: Mask)
         for k in range(10, 13):
             same_rates = same_rates and s[k] == last[i, k]
             still = still and s[k] == 0.0
-        ordinary[i] = are_numbers and not same_attitude and (still or not same_rates)
+        fresh[i] = are_numbers and not same_attitude and (still or not same_rates)
         last[i] = s
-        estimates[i] = s
+        if fresh[i]:
+            estimates[i] = s
+            stamps[i, SAMPLE_TIME], stamps[i, FRESH_AT] = times[i], now
 
 
 @kernel("void(float64[:, ::1], float64[:, ::1], float64[:, ::1], boolean[::1], float64, float64[:, ::1])")

@@ -1,19 +1,19 @@
 """The onboard loop of a team: its arithmetic in one call for all vehicles, its decisions vehicle by vehicle."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Protocol
 
 from idc_controller.arrays import Array
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
-from vehicle_sim.autopilot.onboard_kernels import control_attitudes, detect_landings, find_ordinary
+from vehicle_sim.autopilot.onboard_kernels import control_attitudes, detect_landings, take_fresh_samples
 from vehicle_sim.world.sensors import Measurement
 
 
 class Decisions(Protocol):
     """What a vehicle decides on its own; see :class:`~vehicle_sim.autopilot.autopilot.Autopilot`."""
 
-    def sense(self, sample: Measurement | None, ordinary: bool, now: float) -> None:
-        """Take what the sensors delivered; ``ordinary`` samples need no closer look."""
+    def sense(self, sample: Measurement, now: float) -> None:
+        """Take a sample that is not fresh."""
 
     @property
     def flies_setpoints(self) -> bool:
@@ -26,21 +26,22 @@ class Decisions(Protocol):
 def step_together(
     autopilots: Sequence[Decisions],
     arrays: OnboardArrays,
-    samples: Sequence[Measurement | None],
-    rows: Array,
+    samples: Array,
+    times: Array,
     now: float,
+    missing: Collection[int] = (),
 ) -> list[int]:
     """Take one step of the onboard loops: rotor-speed commands in ``arrays``; return whose HEARTBEAT changes.
 
-    ``samples``: what the vehicles' sensors delivered, None where no sample came this time; ``rows`` (N, 13): the same
-    as rows of states, of missing ones anything. No vehicle learns anything of another.
+    ``samples`` (N, 13): what the vehicles' sensors delivered, rows of states, measured at ``times`` (N,) (s);
+    ``missing``: vehicles (from 0) to which no sample came this time. No vehicle learns anything of another.
     """
-    if None in samples:
-        missing = [sample is None for sample in samples]
-        rows[missing] = arrays.last_samples[missing]
-    find_ordinary(rows, arrays.last_samples, arrays.estimates, arrays.ordinary)
-    for autopilot, sample, ordinary in zip(autopilots, samples, arrays.ordinary.tolist(), strict=True):
-        autopilot.sense(sample, ordinary, now)
+    for i in missing:
+        samples[i] = arrays.last_samples[i]
+    take_fresh_samples(samples, times, now, arrays.last_samples, arrays.estimates, arrays.stamps, arrays.fresh)
+    for i, fresh in enumerate(arrays.fresh.tolist()):
+        if not fresh and i not in missing:
+            autopilots[i].sense(Measurement.of_row(float(times[i]), samples[i].tolist()), now)
     arrays.learns[:] = [autopilot.flies_setpoints for autopilot in autopilots]
     detect_landings(arrays.detectors, arrays.estimates, arrays.targets, arrays.learns, now, arrays.landings)
     changed = [i for i, autopilot in enumerate(autopilots) if autopilot.decide(now)]

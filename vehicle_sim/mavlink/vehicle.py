@@ -1,4 +1,4 @@
-"""One vehicle on the wire: bytes in, bytes out, and the onboard loop behind them. No socket, no clock."""
+"""One vehicle on the wire: bytes in, bytes out, and the autopilot behind them. No socket, no clock."""
 
 import math
 from collections.abc import Callable
@@ -25,7 +25,6 @@ from vehicle_sim.mavlink.peers import Peers
 from vehicle_sim.mavlink.setpoint_server import SetpointServer
 from vehicle_sim.mavlink.telemetry import Telemetry
 from vehicle_sim.world.range_sensor import RangeSample
-from vehicle_sim.world.rotors import Four
 from vehicle_sim.world.sensors import Measurement, ReportedState
 
 
@@ -33,10 +32,9 @@ class Vehicle:
     """A quadrotor that speaks MAVLink like a PX4 autopilot.
 
     It answers every address that sends it valid MAVLink, up to a bounded number, and offers itself with heartbeats to
-    ``ground_address``. A driver calls, at any time:
-
-    - :meth:`step` at the onboard rate with what the sensors measured; its rotor speeds drive the rotors
-    - :meth:`receive` with every datagram, :meth:`datagrams_to_send` after it and whenever :meth:`next_timer` is due
+    ``ground_address``. A driver calls, at any time,
+    :meth:`receive` with every datagram, :meth:`datagrams_to_send` after it and whenever :meth:`next_timer` is due.
+    Its autopilot takes its steps with the team.
     """
 
     def __init__(
@@ -82,16 +80,6 @@ class Vehicle:
         return self._setpoints.refused
 
     # The simulator's side
-
-    def step(self, measurement: Measurement | None, now: float) -> Four:
-        """Take one step of the onboard loop: rotor speeds (rad/s) in the order of :mod:`vehicle_sim.world.rotors`.
-
-        ``measurement`` is what the vehicle's sensor delivered, None if it delivered nothing.
-        """
-        speeds = self.autopilot.step(measurement, now)
-        if self.autopilot.changes != self._sent_changes:
-            self.send_changes()
-        return speeds
 
     def report(self, reported: ReportedState) -> None:
         """Send this from now on as the vehicle's own state, where that is not its estimate."""
