@@ -2,6 +2,7 @@
 
   python tests/mutation/mutants.py                              60 mutants, seed 1
   python tests/mutation/mutants.py --number 100 --seed 2
+  python tests/mutation/mutants.py --number 20 --skip 40        the last third of a sample of 60 alone
   python tests/mutation/mutants.py --module gcs/flight          of these modules only (repeatable)
   python tests/mutation/mutants.py --list                       list the sample, run nothing
 
@@ -237,13 +238,14 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--number", type=int, default=60, help="mutants to draw (default: %(default)s)")
     parser.add_argument("--seed", type=int, default=1, help="of the sample (default: %(default)s)")
+    parser.add_argument("--skip", type=int, default=0, help="mutants of the sample to leave out, the first ones")
     parser.add_argument("--module", action="append", help="path, or begin of a path, to draw from; repeatable")
     parser.add_argument(
         "--jobs", type=int, default=min(2, os.cpu_count() or 1), help="processes (default: %(default)s)"
     )
     parser.add_argument("--list", action="store_true", help="list the sample and run nothing")
     options = parser.parse_args()
-    mutants = sample(options.module or FLIGHT_PATH, options.number, options.seed)
+    mutants = sample(options.module or FLIGHT_PATH, options.skip + options.number, options.seed)[options.skip :]
     if options.list:
         print(*mutants, sep="\n")
         return 0
