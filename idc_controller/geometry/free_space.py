@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 
 from idc_controller.arrays import Array, Mask
 from idc_controller.errors import TrajectoryError
+from idc_controller.geometry import free_space_kernels as kernels
 from idc_controller.geometry.formation import BoundingCylinder
 from idc_controller.geometry.obstacles import PredictedObstacle
 from idc_controller.geometry.shape import Shape
@@ -80,9 +81,7 @@ class FreeSpace:
         free = np.broadcast_to(altitude, (len(north), len(east), len(down))).copy()
         keep = self.margin + extra + self.growth - TOUCHING
         around = self.lateral_reach - self.growth + self.formation.radius + keep
-        from idc_controller.geometry.free_space_kernels import bar_lattice  # only where a path is searched
-
-        bar_lattice(free, north, east, down, keep, around, self.centres, self._bodies.sizes, self._cylinder)
+        kernels.bar_lattice(free, north, east, down, keep, around, self.centres, self._bodies.sizes, self._cylinder)
         return free
 
     def within_bounds(self, places: Array) -> Mask:
@@ -99,9 +98,7 @@ class FreeSpace:
         """Return whether the clearance is ``least`` (M,) or more on the segments ``starts`` to ``ends`` (E, 3)."""
         if not (len(self.centres) and len(starts)):
             return np.ones(len(starts), dtype=bool)
-        from idc_controller.geometry.free_space_kernels import keep_away  # only where a path is searched
-
-        return keep_away(
+        return kernels.keep_away(
             np.ascontiguousarray(starts), np.ascontiguousarray(ends), least, self.centres, self.growth,
             self._bodies.sizes, self._cylinder,
         )  # fmt: skip

@@ -20,6 +20,7 @@ from idc_controller.errors import TrajectoryError
 from idc_controller.geometry.formation import BoundingCylinder
 from idc_controller.geometry.free_space import FreeSpace, first_conflict
 from idc_controller.geometry.shape import Shape
+from idc_controller.guidance.detour_kernels import lattice_graph
 from idc_controller.guidance.settings import DetourSettings
 from idc_controller.guidance.straighten import free_segments_from, straightened
 from idc_controller.trajectory.trajectory import point
@@ -232,8 +233,6 @@ class _Grid:
         out = np.linalg.norm(places[chosen[first]] - self._start, axis=1) + to_goal[first] - straight
         is_last = np.zeros(count, dtype=bool)
         is_last[last] = True
-        from idc_controller.guidance.detour_kernels import lattice_graph  # only where a path is searched
-
         graph = csr_array(
             lattice_graph(flat, number, free, _DIRECTIONS @ strides, lengths, to_goal, first, out, is_last),
             shape=(count + 2, count + 2),
