@@ -207,7 +207,7 @@ class Shape(ABC):
     def row(self) -> Array:
         """:attr:`rounded_box` and :attr:`rotation` in one row (14,), for arrays of bodies; of other bodies zeros."""
         box = self.rounded_box
-        return np.zeros(ROW) if box is None else np.concatenate([box, self.rotation.ravel()])
+        return np.zeros(ROW) if box is None else np.array([*box, *self.rotation.ravel().tolist()])
 
     @cached_property
     def reach(self) -> float:

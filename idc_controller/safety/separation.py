@@ -84,11 +84,13 @@ def separations(
         points, indices, offsets, far, normals, obstacles.growth, obstacles.rows, obstacles.rounded, within,
         within + _BROAD,
     )  # fmt: skip
-    for i in np.flatnonzero(missing.any(axis=1)):
-        shape = obstacles.shape(indices[i])
-        _measure_by_library(formation, points, shape, offsets[i], distances[i], normals[i], missing[i])
-    near = (distances - obstacles.growth[indices]).min(axis=1) < within
-    return [Separation(obstacles[indices[i]], distances[i], normals[i]) for i in np.flatnonzero(near)]
+    numbers = indices.tolist()
+    if missing.any():
+        for i, number in enumerate(numbers):
+            shape = obstacles.shape(number)
+            _measure_by_library(formation, points, shape, offsets[i], distances[i], normals[i], missing[i])
+    found = [Separation(obstacles[number], distances[i], normals[i]) for i, number in enumerate(numbers)]
+    return [separation for separation in found if separation.clearance < within]
 
 
 def _measure_by_library(

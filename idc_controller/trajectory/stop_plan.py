@@ -42,7 +42,8 @@ def control_points(state: Array, duration: Array, aside: Array) -> Array:
         duration: of the paths (...) (s).
         aside: place of rest less that to which the motion alone leads (..., 3) (m).
     """
-    powers = np.stack([np.ones_like(duration), duration, duration**2], axis=-1)
+    powers = np.ones((*duration.shape, 3))
+    powers[..., 1], powers[..., 2] = duration, duration**2
     points = _CONTROL_POINTS @ (state * powers[..., None])
     points[..., 2:, :] += aside[..., None, :]
     return np.asarray(points)
