@@ -23,7 +23,7 @@ def test_states_are_the_readings_in_the_projects_frames_half_a_step_on():
     readings[:, 3:7] = quaternions(5)
     payload_in_axes = quaternions(6)[5]
     states = np.empty((5, 13))
-    states_from_engine(readings, before, payload_in_axes, states)
+    states_from_engine(np.hstack([readings, before]), payload_in_axes, states)
     for i, (now, earlier) in enumerate(zip(readings.tolist(), before.tolist(), strict=True)):
         attitude = quaternion_from_engine(product(now[3:7], payload_in_axes.tolist()) if i == 0 else now[3:7])
         on = [x + 0.5 * (x - a) for x, a in zip(now[7:], earlier, strict=True)]

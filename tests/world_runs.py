@@ -9,6 +9,7 @@ from paper_system import system
 
 from idc_controller.rotations import quaternion_product, rotation_from_quaternion
 from idc_controller.rotations_float import into_body
+from vehicle_sim.world.readings import Readings
 from vehicle_sim.world.world_state import flipped, quaternion_to_engine
 
 STANDING_ON_PAD = -0.30
@@ -90,7 +91,7 @@ def place(world, state):
             system.body, system.uavs[i], _product(_conjugate(link_quaternion), uav_quaternion),
             _rotate_back(uav_quaternion, flipped(uav_rates.tolist())), physicsClientId=client,
         )  # fmt: skip
-    world._readings.restart()
+    world._readings = Readings(client, system)
     world._contacts = None
 
 

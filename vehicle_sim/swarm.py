@@ -68,7 +68,6 @@ class Swarm:
         self._periods = _Periods(
             rates.physics // rates.onboard, rates.physics // rates.truth, rates.physics // config.range_sensor.rate
         )
-        self._steps = 0
         self._contacts = 0
         airframes = [Airframe.of_system(system, i, config.uav) for i in range(system.number_of_uavs)]
         onboard = config.onboard()
@@ -100,7 +99,7 @@ class Swarm:
     def advance_to(self, now: float) -> None:
         """Let the world go on to ``now`` (s): ends with the last physics step before it, measured if it is due."""
         last = math.floor((now + _TIME_TOLERANCE) * self.world.physics_hz)
-        while self._steps < last:
+        while self.world.steps < last:
             self._step()
         self._team.relay()
 
@@ -158,18 +157,17 @@ class Swarm:
         """Take one physics step."""
         world = self.world
         if self.take_off_time is not None:
-            self._obstacles.move((self._steps + 1) / world.physics_hz - self.take_off_time)
+            self._obstacles.move((world.steps + 1) / world.physics_hz - self.take_off_time)
         forces = self._faults.disturb(world, world.time)
         world.step(*self._team.wrenches(), *(forces or ()))
-        self._steps += 1
         if self._truth is not None:
             self._contacts = max(self._contacts, world.contacts().pairs)
         if self.take_off_time is None and not world.all_cradled:
             self.take_off_time = world.time
             self._faults.took_off(world.time)
-        measures = self._steps % self._periods.onboard == 0
-        scans = self._steps % self._periods.scan == 0 and bool(world.obstacles.all())
-        records = self._steps % self._periods.row == 0 and self._truth is not None
+        measures = world.steps % self._periods.onboard == 0
+        scans = world.steps % self._periods.scan == 0 and bool(world.obstacles.all())
+        records = world.steps % self._periods.row == 0 and self._truth is not None
         if not (measures or scans or records):
             return
         states = world.states()

@@ -11,7 +11,7 @@ from idc_controller.arrays import Array
 from idc_controller.rotations_float import Vector
 from vehicle_sim.world.ground import Pose
 from vehicle_sim.world.multibody import Multibody
-from vehicle_sim.world.state_kernels import STATE_COLUMNS, states_from_engine
+from vehicle_sim.world.state_kernels import READING_COLUMNS, STATE_COLUMNS, states_from_engine
 
 
 class Reading(NamedTuple):
@@ -24,25 +24,21 @@ class Reading(NamedTuple):
     payload_velocity: tuple[Vector, Vector]
     uavs: Sequence[tuple[tuple[float, ...], ...]]
 
-    def velocities(self) -> list[float]:
-        """Return velocities and angular velocities of payload and UAVs, six numbers each."""
-        velocity, rates = self.payload_velocity
-        numbers = [*velocity, *rates]
-        for _, _, _, _, _, _, uav_velocity, uav_rates in self.uavs:
-            numbers += uav_velocity
-            numbers += uav_rates
-        return numbers
 
-    def poses_and_velocities(self) -> list[float]:
-        """Return positions, attitudes, velocities and angular velocities of payload and UAVs, thirteen numbers each."""
-        (position, attitude), (velocity, rates) = self.payload, self.payload_velocity
-        numbers = [*position, *attitude, *velocity, *rates]
-        for uav_position, uav_attitude, _, _, _, _, uav_velocity, uav_rates in self.uavs:
-            numbers += uav_position
-            numbers += uav_attitude
-            numbers += uav_velocity
-            numbers += uav_rates
-        return numbers
+def _numbers(now: Reading, before: Reading) -> list[float]:
+    """Return the rows of payload and UAVs for :func:`.states_from_engine`, one after the other."""
+    numbers = [*now.payload[0], *now.payload[1]]
+    for numbers_of_payload in (*now.payload_velocity, *before.payload_velocity):
+        numbers += numbers_of_payload
+    for uav, earlier in zip(now.uavs, before.uavs, strict=True):
+        position, attitude, _, _, _, _, velocity, rates = uav
+        numbers += position
+        numbers += attitude
+        numbers += velocity
+        numbers += rates
+        numbers += earlier[6]
+        numbers += earlier[7]
+    return numbers
 
 
 class Readings:
@@ -53,14 +49,9 @@ class Readings:
         self._system = system
         rows = len(system.uavs) + 1
         self._payload_in_axes = np.array(system.payload_in_axes)
-        self._poses_and_velocities, self._velocities = np.empty((rows, STATE_COLUMNS)), np.empty((rows, 6))
+        self._rows = np.empty((rows, READING_COLUMNS))
         # A third of the time that an assignment of lists takes.
-        self._pack_poses_and_velocities = struct.Struct(f"{self._poses_and_velocities.size}d").pack_into
-        self._pack_velocities = struct.Struct(f"{self._velocities.size}d").pack_into
-        self.restart()
-
-    def restart(self) -> None:
-        """Take the engine's state to be the first."""
+        self._pack = struct.Struct(f"{self._rows.size}d").pack_into
         self.now = self.before = self._read()
 
     def update(self) -> None:
@@ -69,10 +60,9 @@ class Readings:
 
     def states(self) -> Array:
         """Return the true states of payload and UAVs now, (N + 1, 13) as in :mod:`.state_kernels`."""
-        self._pack_poses_and_velocities(self._poses_and_velocities.data, 0, *self.now.poses_and_velocities())
-        self._pack_velocities(self._velocities.data, 0, *self.before.velocities())
-        states = np.empty_like(self._poses_and_velocities)
-        states_from_engine(self._poses_and_velocities, self._velocities, self._payload_in_axes, states)
+        self._pack(self._rows.data, 0, *_numbers(self.now, self.before))
+        states = np.empty((len(self._rows), STATE_COLUMNS))
+        states_from_engine(self._rows, self._payload_in_axes, states)
         return states
 
     def _read(self) -> Reading:

@@ -13,24 +13,26 @@ from vehicle_sim.world import world_state
 
 #: Columns of a row of a state.
 STATE_COLUMNS = 13
+#: Columns of a row of what the engine gives.
+READING_COLUMNS = 19
 
 _into_body = inlined(rotations_float.into_body)
 _product = inlined(world_state.product)
 _quaternion_from_engine = inlined(world_state.quaternion_from_engine)
 
 
-@kernel("void(float64[:, ::1], float64[:, ::1], float64[::1], float64[:, ::1])")
-def states_from_engine(readings: Array, before: Array, payload_in_axes: Array, states: Array) -> None:
+@kernel("void(float64[:, ::1], float64[::1], float64[:, ::1])")
+def states_from_engine(readings: Array, payload_in_axes: Array, states: Array) -> None:
     """Write the true ``states`` (M, 13), velocities to second order in the physics step.
 
-    ``readings`` (M, 13) of the engine: position, attitude x first, velocity and angular velocity in its z-up world;
-    ``before`` (M, 6): the velocities one step earlier; ``payload_in_axes`` (4,): payload frame to principal axes,
+    ``readings`` (M, 19) of the engine: position, attitude x first, velocity and angular velocity in its z-up world, and
+    those velocities one step earlier; ``payload_in_axes`` (4,): payload frame to principal axes,
     x first, in which the engine has the payload's attitude.
 
     The engine integrates semi-implicitly: its velocities are those of the middles of the steps.
     """
     for i in range(readings.shape[0]):
-        r, b = readings[i], before[i]
+        r = readings[i]
         q = (r[3], r[4], r[5], r[6])
         if i == 0:
             a = payload_in_axes
@@ -39,15 +41,15 @@ def states_from_engine(readings: Array, before: Array, payload_in_axes: Array, s
         states[i, 0], states[i, 1], states[i, 2] = r[0], -r[1], -r[2]
         for k in range(4):
             states[i, 3 + k] = attitude[k]
-        states[i, 7] = r[7] + 0.5 * (r[7] - b[0])
-        states[i, 8] = -(r[8] + 0.5 * (r[8] - b[1]))
-        states[i, 9] = -(r[9] + 0.5 * (r[9] - b[2]))
+        states[i, 7] = r[7] + 0.5 * (r[7] - r[13])
+        states[i, 8] = -(r[8] + 0.5 * (r[8] - r[14]))
+        states[i, 9] = -(r[9] + 0.5 * (r[9] - r[15]))
         rates = _into_body(
             attitude,
             (
-                r[10] + 0.5 * (r[10] - b[3]),
-                -(r[11] + 0.5 * (r[11] - b[4])),
-                -(r[12] + 0.5 * (r[12] - b[5])),
+                r[10] + 0.5 * (r[10] - r[16]),
+                -(r[11] + 0.5 * (r[11] - r[17])),
+                -(r[12] + 0.5 * (r[12] - r[18])),
             ),
         )
         states[i, 10], states[i, 11], states[i, 12] = rates

@@ -33,8 +33,8 @@ class World:
     the UAV is then, once the payload stands on pad or ground, or hangs low on the links of UAVs that are held, and the
     UAV is slow and no longer lifts its weight.
 
-    ``physics_hz`` steps a second; ``obstacles`` may be added and moved. Equal calls give equal results to the last bit
-    on one machine.
+    ``physics_hz`` steps a second, ``steps`` so far; ``obstacles`` may be added and moved. Equal calls give equal
+    results to the last bit on one machine.
     Raises :class:`~vehicle_sim.world.errors.UnsupportedWorld` for a system that the engine would compute wrongly.
     """
 
@@ -74,7 +74,7 @@ class World:
         weights = [float(m_i) * parameters.g for m_i in parameters.m]
         self._cradles = Cradles(client, self._system.body, self._system.uavs, weights, settings.cradles)
         self._readings = Readings(client, self._system)
-        self._steps = 0
+        self.steps = 0
         self._thrusts = (0.0,) * parameters.number_of_uavs
         self._contacts: Contacts | None = None
         for i, uav in enumerate(self._readings.now.uavs):
@@ -83,7 +83,7 @@ class World:
     @property
     def time(self) -> float:
         """Seconds since the world was made."""
-        return self._steps / self.physics_hz
+        return self.steps / self.physics_hz
 
     @property
     def at_rest(self) -> bool:
@@ -125,7 +125,7 @@ class World:
         if payload_force is not None:
             apply_force(body, -1, flipped(payload_force), self._readings.now.payload[0], _WORLD_FRAME, client)
         pybullet.stepSimulation(client)
-        self._steps += 1
+        self.steps += 1
         self._thrusts = tuple(thrusts)
         self._contacts = None
         self._readings.update()
@@ -152,7 +152,7 @@ class World:
         (position, quaternion, velocity, rates), *uavs = map(_parts, rows.tolist())
         held = self._cradles.held
         return WorldState(
-            self._steps / self.physics_hz, position, quaternion, velocity, rates,
+            self.steps / self.physics_hz, position, quaternion, velocity, rates,
             tuple(UavState(*parts, self._thrusts[i], held(i)) for i, parts in enumerate(uavs)),
         )  # fmt: skip
 
