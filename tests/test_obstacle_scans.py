@@ -19,7 +19,7 @@ from obstacle_scene import (
 
 from idc_controller.estimation.measurements import Attitude, Position
 from idc_controller.perception.scan_assembly import ScanAssembly
-from idc_controller.perception.scan_kernels import possible_points
+from idc_controller.perception.scan_kernels import grouped, possible_points
 from vehicle_sim.world.range_sensor import RangeSample
 
 
@@ -186,3 +186,16 @@ def test_possible_points_agree_with_plain_conditions():
         if math.isfinite(sum(point) + reach) and 0.0 < math.hypot(*point) < 2.0 * reach
     ]
     assert possible_points(points, ranges, 2.0).tolist() == expected
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_points_are_grouped_by_number_in_the_order_of_their_coming(seed):
+    rng = np.random.default_rng(seed)
+    numbers = rng.integers(0, rng.integers(1, 9), rng.integers(0, 40))
+    groups = {}
+    for i, number in enumerate(numbers.tolist()):
+        groups.setdefault(number, []).append(i)
+    order, found, ends = grouped(numbers)
+    assert order.tolist() == [i for members in groups.values() for i in members]
+    assert found.tolist() == list(groups)
+    assert ends.tolist() == np.cumsum([len(members) for members in groups.values()]).tolist()

@@ -67,7 +67,8 @@ def detections(received: Received) -> Detections:
     points = np.empty((len(values), 3))
     points[:, 0], points[:, 1], points[:, 2] = values["x"], values["y"], values["z"]
     points[values["frame"] != mavlink.MAV_FRAME_BODY_FRD] = _NAN
-    return Detections(received.time_boot_ms, values["obstacle_id"], points, values["max_distance"].astype(float))
+    numbers, max_range = values["obstacle_id"].astype(np.intp), values["max_distance"].astype(float)
+    return Detections(received.time_boot_ms, numbers, points, max_range)
 
 
 def _attitude(payload: bytes) -> _Values:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import accumulate
 from typing import NamedTuple, Protocol
 
@@ -68,11 +69,17 @@ class Bodies:
         self.shapes = shapes
         self.rows = np.array([shape.row for shape in shapes]).reshape(len(shapes), ROW)
         """Rounded boxes as :mod:`idc_controller.geometry.distance_kernels` takes them (B, 14)."""
-        self.reach = np.array([shape.reach for shape in shapes])
-        """Radius of the ball about its centre that holds each body (B,) (m)."""
-        self._horizontal_reach = np.array([shape.horizontal_reach for shape in shapes])
         self.others = [(i, shape) for i, shape in enumerate(shapes) if shape.rounded_box is None]
         """Bodies that are no rounded boxes, with their index."""
+
+    @cached_property
+    def reach(self) -> Array:
+        """Radius of the ball about its centre that holds each body (B,) (m)."""
+        return np.array([shape.reach for shape in self.shapes])
+
+    @cached_property
+    def _horizontal_reach(self) -> Array:
+        return np.array([shape.horizontal_reach for shape in self.shapes])
 
     def distance(self, points: Array, centres: Array) -> Array:
         """Signed distance (m) from ``points`` (n, 3) to the surfaces of bodies at ``centres`` (B, 3): (B, n)."""
@@ -106,9 +113,8 @@ class Bodies:
         Distances that are surely above ``far`` (m) may be inf.
         """
         points, starts = groups
-        mean = mean_distances_of_groups(
-            self.rows, self._horizontal_reach, np.ascontiguousarray(centres), points, starts, far
-        )
+        reach = self._horizontal_reach if far < math.inf else np.zeros(len(self.shapes))
+        mean = mean_distances_of_groups(self.rows, reach, np.ascontiguousarray(centres), points, starts, far)
         for i, shape in self.others:
             distance = np.abs(shape.distance((points - centres[i]) @ shape.rotation))
             spans = zip(starts.tolist(), starts[1:].tolist(), strict=False)

@@ -8,11 +8,10 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Indices
 from idc_controller.perception.pose_history import PoseHistory
-from idc_controller.perception.scan_kernels import placed_points, possible_points
+from idc_controller.perception.scan_kernels import grouped, placed_points, possible_points
 from idc_controller.perception.settings import ScanSettings
 from idc_controller.perception.surfaces.points import SurfacePoints
 from idc_controller.rotations import rotation_from_quaternion
@@ -38,7 +37,7 @@ class Detections(NamedTuple):
 
     scan: int
     """The same for all points of one scan of a vehicle."""
-    obstacles: NDArray[np.integer]
+    obstacles: Indices
     """The vehicle's own number for the obstacle that each point belongs to (n,)."""
     points: Array
     """Positions in the vehicle's body frame, forward-right-down (n, 3) (m)."""
@@ -82,9 +81,9 @@ class _Scan:
         self.time, self.max_range = time, max_range
         self.count = 0
         self._points: list[Array] = []
-        self._numbers: list[NDArray[np.integer]] = []
+        self._numbers: list[Indices] = []
 
-    def add(self, points: Array, numbers: NDArray[np.integer]) -> None:
+    def add(self, points: Array, numbers: Indices) -> None:
         """Add points (n, 3) and the vehicle's number for the obstacle of each (n,)."""
         self._points.append(points)
         self._numbers.append(numbers)
@@ -93,11 +92,8 @@ class _Scan:
     def clusters(self) -> tuple[Array, list[int], list[int]]:
         """Return all points obstacle by obstacle (n, 3), and number and end of each, in the order of their coming."""
         points, numbers = np.concatenate(self._points), np.concatenate(self._numbers)
-        found, first, obstacle = np.unique(numbers, return_index=True, return_inverse=True)
-        order = np.argsort(first[obstacle], kind="stable")
-        coming = np.argsort(first)
-        ends = np.cumsum(np.bincount(obstacle)[coming])
-        return points[order], found[coming].tolist(), ends.tolist()
+        order, found, ends = grouped(numbers)
+        return points[order], found.tolist(), ends.tolist()
 
 
 class RangeSensors:

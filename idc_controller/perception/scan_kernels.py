@@ -50,3 +50,28 @@ def possible_points(body: Array, max_range: Array, factor: float) -> Indices:
             found[count] = p
             count += 1
     return found[:count].copy()
+
+
+@kernel("Tuple((int64[::1], int64[::1], int64[::1]))(int64[::1])")
+def grouped(numbers: Indices) -> tuple[Indices, Indices, Indices]:
+    """Return the order of ``numbers`` (n,) by which equal ones stand together, each number (G,), and its end (G,).
+
+    Numbers come in the order of their first appearance, equal ones in their own order.
+    """
+    n = numbers.shape[0]
+    group, found, sizes, count = np.empty(n, np.int64), np.empty(n, np.int64), np.zeros(n, np.int64), 0
+    for i in range(n):
+        g = group[i - 1] if i > 0 and numbers[i] == numbers[i - 1] else 0
+        while g < count and found[g] != numbers[i]:
+            g += 1
+        if g == count:
+            found[g] = numbers[i]
+            count += 1
+        group[i] = g
+        sizes[g] += 1
+    ends = np.cumsum(sizes[:count])
+    order, next_place = np.empty(n, np.int64), ends - sizes[:count]
+    for i in range(n):
+        order[next_place[group[i]]] = i
+        next_place[group[i]] += 1
+    return order, found[:count].copy(), ends

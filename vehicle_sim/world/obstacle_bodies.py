@@ -120,9 +120,7 @@ class ObstacleBodies:
             return
         self._obstacles[name] = Obstacle(name, obstacle.shape, place)
         self._centres[body.row] = place
-        pybullet.resetBasePositionAndOrientation(
-            body.handle, flipped(place), body.attitude, physicsClientId=self._client
-        )
+        pybullet.resetBasePositionAndOrientation(body.handle, flipped(place), body.attitude, self._client)
 
     def _body(self, name: str) -> _Body:
         if name not in self._bodies:
