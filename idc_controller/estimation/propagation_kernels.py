@@ -66,13 +66,18 @@ def propagated(
             covariance[d + r, d + o] = total
     if len(change):
         N = len(probability)
-        lost = np.zeros((n, 2 * N))
-        for i in range(N):
-            share = np.sqrt(probability[i])
-            for r in range(n):
-                lost[r, i] = share * (B[r, 2 * i] * change[2 * i] + B[r, 2 * i + 1] * change[2 * i + 1])
-                lost[r, N + i] = share * B[r, 2 * N + i] * change[2 * N + i]
-        covariance += np.dot(lost, lost.T)
+        share = np.sqrt(probability)
+        lost = np.empty((2 * N, n))
+        for r in range(n):
+            for i in range(N):
+                lost[i, r] = share[i] * (B[r, 2 * i] * change[2 * i] + B[r, 2 * i + 1] * change[2 * i + 1])
+                lost[N + i, r] = share[i] * B[r, 2 * N + i] * change[2 * N + i]
+        for r in range(n):
+            for c in range(2 * N):
+                weight = lost[c, r]
+                if weight != 0.0:  # a set-point moves payload, links and its own vehicle
+                    for o in range(r + 1):
+                        covariance[r, o] += weight * lost[c, o]
     for r in range(n):
         for o in range(r + 1):
             covariance[r, o] += Q[r, o]
