@@ -164,12 +164,21 @@ def test_truncated_payload_is_a_single_message():
             st.sampled_from([b"\xfe\x02\x00\x01\x01\x00ab\x00\x00", b"\xfe\x00", b"\xfd\x00\x00", b"\xfd\x05"]),
         ),
         max_size=6,
-    )
+    ),
+    st.lists(st.integers(0, 400), max_size=3),
 )
-def test_records_are_those_of_the_splitter(parts):
-    datagram, stamp = b"".join(parts), b"12345678"
-    found = stamped_frames(*(np.frombuffer(bytearray(data), np.uint8) for data in (datagram, stamp)))
-    assert found.tobytes() == b"".join(stamp + datagram[start:end] for start, end in spans(datagram))
+def test_records_are_those_of_the_splitter(parts, cuts):
+    data = b"".join(parts)
+    ends = sorted(min(cut, len(data)) for cut in (*cuts, len(data)))
+    datagrams = [data[start:end] for start, end in zip([0, *ends], ends, strict=False)]
+    stamps = [bytes([k] * 8) for k in range(len(datagrams))]
+    found = stamped_frames(
+        np.frombuffer(bytearray(data), np.uint8),
+        np.array(ends),
+        np.frombuffer(bytearray(b"".join(stamps)), np.uint8).reshape(-1, 8),
+    )
+    expected = [stamp + d[start:end] for stamp, d in zip(stamps, datagrams, strict=True) for start, end in spans(d)]
+    assert found.tobytes() == b"".join(expected)
 
 
 def test_kernels_agree_with_plain_functions():

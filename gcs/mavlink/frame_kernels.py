@@ -78,26 +78,33 @@ def framed_run(header: Bytes, payloads: Bytes, extra: int) -> Bytes:
     return frames
 
 
-@kernel("uint8[::1](uint8[::1], uint8[::1])")
-def stamped_frames(datagram: Bytes, stamp: Bytes) -> Bytes:
-    """Return every frame that :func:`gcs.mavlink.frames.spans` finds in a datagram (n,), each behind a ``stamp`` (s,).
+@kernel("uint8[::1](uint8[::1], int64[::1], uint8[:, ::1])")
+def stamped_frames(data: Bytes, ends: NDArray[np.int64], stamps: Bytes) -> Bytes:
+    """Return every frame that :func:`gcs.mavlink.frames.spans` finds in datagrams, each behind its datagram's stamp.
 
     Bytes that belong to no frame are left out.
+
+    Args:
+        data: The datagrams (n,), one behind the other.
+        ends: Where in ``data`` each of them ends (k,).
+        stamps: Of each of them (k, s).
     """
-    size, width = datagram.shape[0], stamp.shape[0]
-    records, count, at = np.empty(size + (size // 8 + 1) * width, np.uint8), 0, 0
-    while at < size:
-        end = size + 1
-        if datagram[at] == V2 and at + 2 < size:
-            end = at + datagram[at + 1] + (AROUND + SIGNATURE if datagram[at + 2] & SIGNED else AROUND)
-        elif datagram[at] == V1 and at + 1 < size:
-            end = at + datagram[at + 1] + 8
-        if end > size:
-            at += 1
-            continue
-        records[count : count + width] = stamp
-        count += width
-        records[count : count + end - at] = datagram[at:end]
-        count += end - at
-        at = end
+    all_bytes, width = data.shape[0], stamps.shape[1]
+    records, count, at = np.empty(all_bytes + (all_bytes // 8 + 1) * width, np.uint8), 0, 0
+    for k in range(ends.shape[0]):
+        size = ends[k]
+        while at < size:
+            end = size + 1
+            if data[at] == V2 and at + 2 < size:
+                end = at + data[at + 1] + (AROUND + SIGNATURE if data[at + 2] & SIGNED else AROUND)
+            elif data[at] == V1 and at + 1 < size:
+                end = at + data[at + 1] + 8
+            if end > size:
+                at += 1
+                continue
+            records[count : count + width] = stamps[k]
+            count += width
+            records[count : count + end - at] = data[at:end]
+            count += end - at
+            at = end
     return records[:count].copy()

@@ -5,6 +5,7 @@ log several links keep the link's number in the two lowest bits of the time stam
 """
 
 import struct
+from itertools import accumulate
 from pathlib import Path
 
 import numpy as np
@@ -24,22 +25,28 @@ class TelemetryLog(AppendOnlyFile):
     def __init__(self, path: Path | str, start_epoch: float) -> None:
         super().__init__(path)
         self._start_us = round(start_epoch * 1e6)
-        self._waiting: list[bytes] = []
+        self._stamps: list[bytes] = []
+        self._datagrams: list[bytes] = []
 
     def write(self, now: float, datagram: bytes) -> None:
         """Record a datagram that was sent or received at flight time ``now`` (s): one record a frame.
 
         Bytes that belong to no frame, as a damaged datagram may hold, are left out.
         """
-        stamp = _STAMP.pack((self._start_us + round(now * 1e6)) & ~0x3)
-        data, stamps = np.frombuffer(bytearray(datagram), np.uint8), np.frombuffer(bytearray(stamp), np.uint8)
-        self._waiting.append(stamped_frames(data, stamps).tobytes())
+        self._stamps.append(_STAMP.pack((self._start_us + round(now * 1e6)) & ~0x3))
+        self._datagrams.append(datagram)
 
     def flush(self) -> None:
         """Append the frames that were recorded since the last call."""
-        if any(self._waiting):
-            self.append(b"".join(self._waiting))
-        self._waiting.clear()
+        if not self._datagrams:
+            return
+        data = np.frombuffer(bytearray().join(self._datagrams), np.uint8)
+        ends = np.fromiter(accumulate(map(len, self._datagrams)), np.int64)
+        stamps = np.frombuffer(bytearray().join(self._stamps), np.uint8).reshape(-1, _STAMP.size)
+        self._stamps.clear()
+        self._datagrams.clear()
+        if records := stamped_frames(data, ends, stamps).tobytes():
+            self.append(records)
 
     def close(self) -> None:
         """Append what waits, and close the file; harmless when it is closed already."""
