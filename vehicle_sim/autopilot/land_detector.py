@@ -30,7 +30,7 @@ class LandDetector:
     @property
     def in_air(self) -> bool:
         """Return True from take-off to touchdown."""
-        return bool(self._found[IN_AIR])
+        return bool(self._found.item(IN_AIR))
 
     @property
     def hover_thrust(self) -> float | None:

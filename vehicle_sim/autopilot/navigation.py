@@ -36,7 +36,7 @@ class Navigation:
     def estimate(self) -> Measurement | None:
         """The state to fly by; None before the first usable sample."""
         if self._is_fresh:
-            return Measurement.of_row(float(self._stamps[SAMPLE_TIME]), self._row.tolist())
+            return Measurement.of_row(self._stamps.item(SAMPLE_TIME), self._row.tolist())
         return self._known
 
     @property
@@ -46,7 +46,7 @@ class Navigation:
 
     @property
     def _is_fresh(self) -> bool:
-        return bool(self._stamps[FRESH_AT] > self._updated_at)
+        return bool(self._stamps.item(FRESH_AT) > self._updated_at)
 
     def is_valid(self, now: float) -> bool:
         """Return True if usable samples come."""

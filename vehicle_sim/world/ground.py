@@ -36,15 +36,19 @@ class Ground:
     """Ground and pad in one physics client."""
 
     def __init__(self, client: int, payload: PayloadHull, pad: PadSettings) -> None:
+        # Rigid bodies: the engine spends more at each step on bases without links.
         plane = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=client)
-        ground = pybullet.createMultiBody(0.0, plane, physicsClientId=client)
+        ground = pybullet.createMultiBody(0.0, plane, useMaximalCoordinates=1, physicsClientId=client)
         x, y, _ = (np.ptp(payload.bounds, axis=0) / 2.0).tolist()
         half_extents = [x + pad.margin, y + pad.margin, pad.thickness / 2]
         north, east, _ = payload.bounds.mean(axis=0).tolist()
         box = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=half_extents, physicsClientId=client)
         middle = flipped((north, east, -pad.thickness / 2))
+        stand = pybullet.createMultiBody(
+            0.0, box, basePosition=middle, useMaximalCoordinates=1, physicsClientId=client
+        )  # fmt: skip
         self._client = client
-        self._bodies = ground, pybullet.createMultiBody(0.0, box, basePosition=middle, physicsClientId=client)
+        self._bodies = ground, stand
         self._lower_face = payload.below - _STANDING_DEPTH
         # Above this height of its centre the payload cannot stand on anything, whatever its attitude.
         self._standing_height = pad.thickness + payload.reach + 0.05
