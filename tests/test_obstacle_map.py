@@ -143,17 +143,32 @@ def test_late_vehicle_joins_existing_track():
     assert len(m.tracks) == 1
 
 
-def test_duplicate_tracks_are_merged():
+class OneMisplaced(Scene):
+    """A scene in which the first vehicle's reported position is wrong by ``off(time)`` (3,) (m)."""
+
+    def __init__(self, off):
+        super().__init__()
+        self.off = off
+
+    def look(self, time, centre, obstacles):
+        first, *others = super().look(time, centre, obstacles)
+        return [(0, first[1] + self.off(time), *first[2:]), *others]
+
+
+@pytest.mark.parametrize("error", [2.0, 3.0])
+def test_duplicate_tracks_are_merged(error):
     m = map_of()
-    obstacle = sphere((6.0, 0.0, -6.0), 0.5)
-    run(m, lambda t: [obstacle], 1.0)
+    numbers = []
+
+    def seen(t):
+        numbers.append(len(m.tracks))
+        return [sphere((6.0, 0.0, -6.0), 0.5)]
+
+    run(m, seen, 1.0)
     (first,) = m.tracks
-    # A second track of the same obstacle, as a bad pose might have begun it, with a vehicle's number bound to it.
-    parts = [cluster for i, _, cluster in Scene(8).scans(1.0, HERE, [obstacle]) if i == 0]
-    m._tracks.begin([Cluster(0, 0, part) for part in parts], 1.0)
-    m.tracks[-1].clusters = 5
-    assert len(m.tracks) == 2
-    run(m, lambda t: [obstacle], 2.0, begin=1.0, scene=Scene(0))
+    # A bad pose begins a second track of the obstacle, which comes to the first one as the pose is corrected.
+    run(m, seen, 4.0, begin=1.0, scene=OneMisplaced(lambda t: np.array([0.0, max(0.0, error - 2.0 * (t - 1.0)), 0.0])))
+    assert max(numbers) == 2
     assert m.tracks == [first]
 
 
