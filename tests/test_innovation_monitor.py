@@ -5,7 +5,7 @@ import pytest
 
 from idc_controller.estimation.health.chi_squared import lower_quantile
 from idc_controller.estimation.health.innovation_monitor import Finding, InnovationMonitor
-from idc_controller.estimation.health.innovation_monitor_kernels import running_means
+from idc_controller.estimation.health.innovation_monitor_kernels import exceeded, normalised_square, running_means
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
 from idc_controller.estimation.settings import InnovationMonitorSettings
 
@@ -117,3 +117,23 @@ def test_compiled_running_means_equal_plain_ones():
                 plain_square[i] += share * (min(bounded @ bounded, gates[size]) / size - plain_square[i])
     assert mean == pytest.approx(plain_mean, rel=1e-12, abs=1e-15)
     assert square == pytest.approx(plain_square, rel=1e-12)
+
+
+def test_compiled_limits_equal_those_of_whole_arrays():
+    rng = np.random.default_rng(8)
+    for factor in (1.0, 100.0):
+        mean, square = rng.normal(size=(12, 6)), rng.uniform(size=12)
+        mean_limits, square_limits = factor * rng.uniform(0.0, 12.0, 12), factor * rng.uniform(size=12)
+        found, biased, noisy = exceeded(mean, square, mean_limits, square_limits)
+        np.testing.assert_array_equal(biased, (mean**2).sum(axis=1) > mean_limits)
+        np.testing.assert_array_equal(noisy, square > square_limits)
+        assert found == bool(biased.any() or noisy.any()) == (factor == 1.0)
+
+
+def test_normalised_square_equals_that_of_a_linear_solver():
+    rng = np.random.default_rng(9)
+    for _ in range(20):
+        root, vector = rng.normal(size=(3, 3)), rng.normal(size=3)
+        covariance = root @ root.T + 0.1 * np.eye(3)
+        assert normalised_square(vector, covariance) == pytest.approx(vector @ np.linalg.solve(covariance, vector))
+    assert np.isnan(normalised_square(vector, -np.eye(3)))

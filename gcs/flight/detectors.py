@@ -14,6 +14,7 @@ from gcs.flight.monitor_step import Detector, MonitorStep, Scope, ScopedAlarm
 from gcs.flight.sliding_window import EventCounter, SlidingRange
 from idc_controller.estimation.health.chi_squared import upper_quantile
 from idc_controller.estimation.health.innovation_monitor import Finding, InnovationMonitor
+from idc_controller.estimation.health.innovation_monitor_kernels import normalised_square
 from idc_controller.estimation.measurements import PAYLOAD, Position
 from idc_controller.estimation.settings import InnovationMonitorSettings
 
@@ -237,7 +238,7 @@ class _ModelMismatch:
             step.raise_alarm("payload", MonitorAlarm.PROCESS_NOISE)
         n, force = len(estimate.x), estimate.force
         covariance = estimate.covariance[n : n + 3, n : n + 3]
-        if float(force @ np.linalg.solve(covariance, force)) > self._force_limit:
+        if normalised_square(force, covariance) > self._force_limit:
             text = " ".join(f"{f:.1f}" for f in force) + " N north east down"
             step.raise_alarm("payload", MonitorAlarm.DISTURBANCE_FORCE, text)
 

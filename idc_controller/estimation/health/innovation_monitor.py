@@ -13,7 +13,7 @@ import numpy as np
 
 from idc_controller.arrays import Array, Mask
 from idc_controller.estimation.health.chi_squared import lower_quantile, upper_quantile
-from idc_controller.estimation.health.innovation_monitor_kernels import running_means
+from idc_controller.estimation.health.innovation_monitor_kernels import exceeded, running_means
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, SensorKey
 from idc_controller.estimation.settings import InnovationMonitorSettings
 
@@ -109,15 +109,16 @@ class InnovationMonitor:
     def findings(self, time: float) -> dict[SensorKey, list[Finding]]:
         """Return what is wrong with sensors at ``time`` (s)."""
         s, statistics = self._settings, self._statistics
-        biased = np.einsum("sc,sc->s", statistics.mean, statistics.mean) > statistics.mean_limits
-        noisy = statistics.square > statistics.square_limits
+        found_any, biased, noisy = exceeded(
+            statistics.mean, statistics.square, statistics.mean_limits, statistics.square_limits
+        )
         for entry, times in tuple(self._rejections.items()):
             while times and time - times[0] > s.rejection_time:
                 times.popleft()
             if not times:
                 del self._rejections[entry]
         found: dict[SensorKey, list[Finding]] = defaultdict(list)
-        if self._rejections or biased.any() or noisy.any():
+        if self._rejections or found_any:
             for entry, at in self._sensors.items():
                 factor = s.manoeuvre_factor if statistics.of_uav_attitude[at] else 1.0
                 if len(self._rejections.get(entry, ())) >= factor * s.rejections:

@@ -1,4 +1,4 @@
-"""Compiled kernel of the innovation monitor; see :mod:`idc_controller.estimation.health.innovation_monitor`."""
+"""Compiled kernels of the innovation monitor; see :mod:`idc_controller.estimation.health.innovation_monitor`."""
 
 import numpy as np
 
@@ -46,3 +46,42 @@ def running_means(
             square[at] += share * (min(total, gate) / size - square[at])
         first += size
     return new
+
+
+@kernel("Tuple((boolean, boolean[::1], boolean[::1]))(float64[:, ::1], float64[::1], float64[::1], float64[::1])")
+def exceeded(mean: Array, square: Array, mean_limits: Array, square_limits: Array) -> tuple[bool, Mask, Mask]:
+    """Return whether a running mean is too large, and of which of S sensors the innovation (S,) and the square (S,).
+
+    Args:
+        mean: running means of the innovations (S, 6).
+        square: running means of their mean squares (S,).
+        mean_limits: largest square sums of ``mean`` (S,).
+        square_limits: largest values of ``square`` (S,).
+    """
+    biased, noisy, found = np.empty(len(square), np.bool_), np.empty(len(square), np.bool_), False
+    for at in range(len(square)):
+        total = 0.0
+        for c in range(mean.shape[1]):
+            total += mean[at, c] * mean[at, c]
+        biased[at], noisy[at] = total > mean_limits[at], square[at] > square_limits[at]
+        found = found or biased[at] or noisy[at]
+    return found, biased, noisy
+
+
+@kernel("float64(float64[:], float64[:, :])")
+def normalised_square(vector: Array, covariance: Array) -> float:
+    """Return v' P^-1 v of a ``vector`` (3,) and its ``covariance`` (3, 3), by Cholesky; nan if that is not definite."""
+    factor, total = np.zeros((3, 3)), 0.0
+    scaled = np.empty(3)
+    for i in range(3):
+        for j in range(i + 1):
+            value = covariance[i, j]
+            for k in range(j):
+                value -= factor[i, k] * factor[j, k]
+            factor[i, j] = np.sqrt(value) if i == j else value / factor[j, j]
+        value = vector[i]
+        for k in range(i):
+            value -= factor[i, k] * scaled[k]
+        scaled[i] = value / factor[i, i]
+        total += scaled[i] * scaled[i]
+    return total
