@@ -76,6 +76,7 @@ benchmark-check: $(COMPILED)
 docs: $(INSTALLED)
 	$(VENV)/bin/python -m gcs.config.settings_page > docs/settings.md
 	$(VENV)/bin/python -m gcs.flight.listing > docs/failsafes.md
+	$(VENV)/bin/python -m gcs.faults.listing docs/faults.md
 	$(VENV)/bin/python tests/packaging/notice.py > NOTICE
 
 install: $(COMPILED)

@@ -1,6 +1,8 @@
 """The kinds of fault as text: as a list on the terminal, and as tables of the documentation."""
 
+import sys
 from dataclasses import dataclass, fields
+from pathlib import Path
 from typing import Any
 
 from rich.console import Group, RenderableType
@@ -79,6 +81,12 @@ def kinds_markdown() -> str:
     return "\n".join(lines).strip() + "\n"
 
 
+def renewed(page: str) -> str:
+    """Return ``docs/faults.md``, which ends with the tables, with those of the present kinds."""
+    text, heading, _ = page.rpartition("## Kinds\n\n")
+    return text + heading + kinds_markdown()
+
+
 def _shared() -> list[Parameter]:
     """Return the parameters that all faults of values have."""
     return [p for p in parameters(KINDS["stuck"]) if p.name in _SHARED]
@@ -151,3 +159,8 @@ def _value(value: Any) -> str:
     if isinstance(value, list | tuple):
         return ", ".join(map(str, value))
     return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+if __name__ == "__main__":
+    documentation = Path(sys.argv[1])
+    documentation.write_text(renewed(documentation.read_text(encoding="utf-8")), encoding="utf-8")
