@@ -21,7 +21,6 @@ class ProcessModel:
         self.mass = self.size - 1
         self.force, self.uav_force = slice(n, n + 3), slice(n + 3, self.mass)
         self.forces = slice(n, self.mass)
-        self._uav_forces = np.arange(self.uav_force.start, self.uav_force.stop).reshape(-1, 2)
         self._uav_columns = self._columns_of_uavs()
         self._noise = self._noise_of(densities)
         self._hovering = lru_cache(maxsize=256)(self._discretised)
@@ -40,7 +39,8 @@ class ProcessModel:
 
         A UAV with a wrong attitude estimate pulls aside. The force of one that is not measured is not adapted.
         """
-        force = self._uav_forces[measured].ravel()
+        north = self.uav_force.start + 2 * measured
+        force = np.concatenate([north, north + 1])
         P[force, force] += self._densities.per_vehicle_force**2
 
     def initial_covariance(self, settings: InitialCovarianceSettings) -> Array:
