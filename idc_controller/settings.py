@@ -1,7 +1,8 @@
 """Declaration of a setting: a field of a frozen dataclass with its default, unit, meaning and range.
 
 Every sub-package whose behaviour depends on numbers has a ``settings.py`` with such dataclasses. Each is a table of the
-system file; ``docs/settings.md`` lists them all.
+system file; ``docs/settings.md`` lists them all. They have neither comparison nor representation: nobody needs them,
+and every command would compile them at its start.
 """
 
 from dataclasses import dataclass, field
@@ -54,7 +55,7 @@ def derived(default: Any) -> Any:
     return field(default=default, metadata={DERIVED_KEY: True})
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class SampledSettings:
     """Settings of what counts samples: times are declared, the counts follow from the ``rate``."""
 

@@ -41,6 +41,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     words = sys.argv[1:] if argv is None else list(argv)
     # Small matrices: more threads cost time, and sums in another order are other sums. Read when numpy is imported.
     os.environ |= {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+    # pydantic would read the metadata of all that is installed.
+    os.environ["PYDANTIC_DISABLE_PLUGINS"] = "__all__"
     arguments = _parser(words[0] if words else "").parse_args(words)
     with logging_to(arguments):
         try:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from idc_controller.settings import setting
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class FailsafeSettings:
     """Thresholds of the conditions in :mod:`gcs.flight.failsafe`."""
 
@@ -31,7 +31,7 @@ class FailsafeSettings:
     landing_timeout: float = setting(120.0, "s", "until all have landed autonomously", gt=0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class MonitorSettings:
     """Thresholds of the detectors in :mod:`gcs.flight.detectors`."""
 
@@ -55,7 +55,7 @@ class MonitorSettings:
     noise_factor: float = setting(4.0, "", "of the variances of all sensors; clean flights reach 2", gt=1.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class TakeoffLandingSettings:
     """Spool-up, touchdown detection and spool-down."""
 
@@ -84,7 +84,7 @@ class TakeoffLandingSettings:
     pad_radius: float = setting(0.2, "m", "about the take-off position, in which a landing is on the pad", ge=0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class TimingSettings:
     """Timers of the ground station and the estimate of team time."""
 
@@ -98,7 +98,7 @@ class TimingSettings:
     simultaneous: float = setting(0.004, "s", "difference of set-point delays that needs no waiting", ge=0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class FlightSettings:
     """Settings of a flight."""
 

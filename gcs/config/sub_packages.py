@@ -9,7 +9,7 @@ from idc_controller.safety.settings import FilterSettings, PlannerSettings
 from idc_controller.trajectory.settings import BrakingSettings
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class EstimationConfig:
     """Estimator, wind estimate and the monitor of its innovations."""
 
@@ -18,7 +18,7 @@ class EstimationConfig:
     innovation_monitor: InnovationMonitorSettings = field(default_factory=InnovationMonitorSettings)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class GuidanceConfig:
     """Progress along the mission, detours, and the stop of a team without set-points."""
 
@@ -29,7 +29,7 @@ class GuidanceConfig:
     braking: BrakingSettings = field(default_factory=BrakingSettings)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class SafetyConfig:
     """The planner of the safety filter, and when it acts."""
 
@@ -37,7 +37,7 @@ class SafetyConfig:
     filter: FilterSettings = field(default_factory=FilterSettings)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class ControlConfig:
     """The controller beside table ``controller``: adaptation to the load, model predictive control, on the ground."""
 

@@ -18,7 +18,7 @@ from idc_controller.trajectory.settings import CORNER, Limits
 Vector = tuple[float, float, float]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class PayloadConfig:
     """The payload: a box, or the body of a mesh, from which size and inertia follow."""
 
@@ -52,7 +52,7 @@ class PayloadConfig:
         return np.zeros(3) if self.mesh is None else self.mesh.centre_of_mass
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class UavConfig:
     """One UAV; all are alike."""
 
@@ -68,7 +68,7 @@ class UavConfig:
     attitude_kd: float = setting(16.0, "1/s", "derivative gain of the onboard attitude loop", gt=0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class TeamConfig:
     """The number of UAVs, and the attachment of their links to the payload."""
 
@@ -84,7 +84,7 @@ class TeamConfig:
     )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class SensorsConfig:
     """Navigation sensors: standard deviations of the white noise on every axis; 0 switches a noise off."""
 
@@ -96,7 +96,7 @@ class SensorsConfig:
     payload_rates: float = setting(0.008, "rad/s", "body rates of the payload", ge=0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class RangeSensorConfig:
     """The obstacle sensor of every vehicle."""
 
@@ -106,7 +106,7 @@ class RangeSensorConfig:
     range_min: float = setting(0.05, "m", "distance below which nothing is measured", ge=0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class RatesConfig:
     """Rates; each divides that of the physics."""
 
@@ -119,7 +119,7 @@ class RatesConfig:
     truth: int = setting(50, "Hz", "rows of truth.csv, at least", gt=0, le=500)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class MotionConfig:
     """Limits of the payload's trajectories."""
 
@@ -137,7 +137,7 @@ class MotionConfig:
     curve_snap: float = setting(8.0, "m/s4", "snap on figure eights", gt=0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class PadSettings:
     """The pad on which the payload stands before take-off."""
 
@@ -145,7 +145,7 @@ class PadSettings:
     margin: float = setting(0.25, "m", "by which the pad is larger than the payload on every side", ge=0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class CradleSettings:
     """Cradles that keep the UAVs on top of their links on the ground."""
 
@@ -155,7 +155,7 @@ class CradleSettings:
     latch_speed: float = setting(0.3, "m/s", "speed above which a cradle does not close", gt=0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class AirSettings:
     """Drag in wind, quadratic in the velocity of the air against a body."""
 
@@ -164,7 +164,7 @@ class AirSettings:
     uav_drag_area: float = setting(0.03, "m2", "drag coefficient times area of a UAV: a quadrotor of 0.7 kg", ge=0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class BodySettings:
     """Bodies of the system as they meet others and the ground; links have no friction."""
 
@@ -172,7 +172,7 @@ class BodySettings:
     link_radius: float = setting(0.01, "m", "radius of the links", gt=0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class RestSettings:
     """What counts as rest at the end, when all are disarmed."""
 
@@ -180,7 +180,7 @@ class RestSettings:
     thrust: float = setting(0.1, "N", "thrust of a UAV up to which its rotors have run down", gt=0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class WorldConfig:
     """The simulated world, and its difference from the controller's model."""
 

@@ -9,7 +9,7 @@ from idc_controller.settings import derived, setting
 from idc_controller.trajectory.settings import BrakingSettings
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class ArmingSettings:
     """Limits of the prearm checks."""
 
@@ -20,7 +20,7 @@ class ArmingSettings:
     rate_max: float = setting(2.0, "rad/s", "body rate above which the vehicle is not armed", gt=0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class VehicleFailsafeSettings:
     """Defaults of the failsafe parameters, which the ground may set, and what a failsafe follows."""
 
@@ -36,7 +36,7 @@ class VehicleFailsafeSettings:
     )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class NavigationSettings:
     """Estimate of the vehicle's own state while a sensor on board fails."""
 
@@ -48,7 +48,7 @@ class NavigationSettings:
     gap_max: float = setting(0.05, "s", "between samples; after a longer gap that estimate begins anew", gt=0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class SetpointSettings:
     """Set-points of the ground: what is flown of them, and which are refused."""
 
@@ -61,7 +61,7 @@ class SetpointSettings:
     stop_duration_max: float = setting(60.0, "s", "longest stop plan", gt=0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class HoldSettings:
     """Gains and limits of HOLD and LAND.
 
@@ -84,7 +84,7 @@ class HoldSettings:
     """Braking of a vehicle without a stop plan, as of the team: by ``guidance`` and ``motion``."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class LandDetectorSettings:
     """Conditions of a vehicle in the air and of one on the ground."""
 
@@ -109,7 +109,7 @@ class LandDetectorSettings:
     )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class AutopilotSettings:
     """All settings of one autopilot."""
 
@@ -124,7 +124,7 @@ class AutopilotSettings:
     )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class StreamIntervals:
     """Default intervals of the streams: PX4's of its normal mode, or near."""
 
@@ -139,7 +139,7 @@ class StreamIntervals:
     vfr_hud: float = setting(0.5, "s", "VFR_HUD", gt=0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class VehicleLinkSettings:
     """Service of a vehicle to its peers: every address that sends it valid MAVLink."""
 

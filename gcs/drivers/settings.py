@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from idc_controller.settings import setting
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class DriverSettings:
     """Wall times of the drivers."""
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from idc_controller.settings import setting
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class ClockSettings:
     """Estimate of a vehicle's clock from TIMESYNC round trips and the stamps of its telemetry."""
 
@@ -21,7 +21,7 @@ class ClockSettings:
     reboot: float = setting(1.0, "s", "a boot time that falls behind by more is of another boot", gt=0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class LinkSettings:
     """Latency, loss and repetition on a link."""
 
@@ -46,7 +46,7 @@ class LinkSettings:
     clock: ClockSettings = field(default_factory=ClockSettings)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class IdCheckSettings:
     """Detection of swapped system ids."""
 
@@ -56,7 +56,7 @@ class IdCheckSettings:
     steps: int = setting(3, "", "consecutive control steps in which it must be so", ge=1)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class MavlinkSettings:
     """All of the above."""
 

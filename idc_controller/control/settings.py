@@ -13,7 +13,7 @@ CONTROL_RATE = 20
 """Control steps a second of the default system (Hz): ``rates.control``."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class MpcWeights:
     """Diagonal of the MPC's cost, a unit of squared error each; lists are x, y, z or roll, pitch, yaw."""
 
@@ -34,7 +34,7 @@ class MpcWeights:
     thrust_setpoint: float = setting(0.02, "1/N2", "weight of a thrust set-point", gt=0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class MpcTuning:
     """Horizon, tilt limits and weights of the MPC: table ``controller``."""
 
@@ -54,7 +54,7 @@ class MpcTuning:
         return float(np.radians(self.uav_tilt_limit_deg))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class MpcSettings:
     """Limits of the MPC and the cost of exceeding them."""
 
@@ -84,7 +84,7 @@ class MpcSettings:
         return list(range(1, self.tuning.horizon + 1, self.constraint_interval))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class GroundControlSettings:
     """Regulator that keeps the UAVs upright over a payload on the ground."""
 
@@ -97,7 +97,7 @@ class GroundControlSettings:
     )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class ControllerSettings:
     """Adaptation to the load, and the largest errors that are answered at once."""
 

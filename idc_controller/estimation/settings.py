@@ -7,7 +7,7 @@ from idc_controller.errors import ParameterError
 from idc_controller.settings import SampleCount, SampledSettings, SampleShare, derived, setting
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class ProcessNoiseSettings:
     """Densities of the white noise that drives what the linear model leaves out, per square root of a second."""
 
@@ -22,7 +22,7 @@ class ProcessNoiseSettings:
     mass: float = setting(0.005, "kg/sqrt(s)", "random walk of the payload's mass", ge=0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class InitialCovarianceSettings:
     """Standard deviations of the state of a team that stands on the ground."""
 
@@ -42,7 +42,7 @@ class InitialCovarianceSettings:
     per_vehicle_force: float = setting(0.05, "N", "initial uncertainty of each UAV's own disturbance force", ge=0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class CovarianceResetSettings(SampledSettings):
     """Standard deviations added to a prediction that most measurements contradict: what a gust or a blow changes."""
 
@@ -55,7 +55,7 @@ class CovarianceResetSettings(SampledSettings):
     """Rejections of the payload unit in a row after which the prediction is reset rather than the unit."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class MeasurementModelSettings:
     """Least standard deviations of measurements: the linear model's own errors, whatever the sensor's noise is."""
 
@@ -65,7 +65,7 @@ class MeasurementModelSettings:
     rates_noise_min: float = setting(1e-3, "rad/s", "least noise assumed of body rates", gt=0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class StuckSensorSettings:
     """Detection of repeated values, which are no measurements."""
 
@@ -73,7 +73,7 @@ class StuckSensorSettings:
     relay_interval: float = setting(0.02, "s", "by which the stamps of relayed copies of one sample differ", ge=0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class ChannelIsolationSettings(SampledSettings):
     """Isolation and restoration of a vehicle's channels."""
 
@@ -87,7 +87,7 @@ class ChannelIsolationSettings(SampledSettings):
     """Consistent samples in a row after which it is restored."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class DeadReckoningSettings(SampledSettings):
     """Consistency of poses with the motion measured with them."""
 
@@ -107,7 +107,7 @@ class DeadReckoningSettings(SampledSettings):
     """Samples whose median motion is integrated."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class NoiseAdaptationSettings(SampledSettings):
     """Adaptation of measurement and process noise to the innovations."""
 
@@ -130,7 +130,7 @@ class NoiseAdaptationSettings(SampledSettings):
     """Updates between two changes of the level."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class SetpointHistorySettings(SampledSettings):
     """Matching of commanded set-points with those the vehicles report to have flown."""
 
@@ -153,7 +153,7 @@ class SetpointHistorySettings(SampledSettings):
     """Set-points before and after one that may act in its place."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class WindSettings:
     """Memory, uncertainties and extent of the wind estimate."""
 
@@ -175,7 +175,7 @@ class WindSettings:
             raise ParameterError(f"explained_full ({high:g}) is not above explained_min ({low:g})")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class InnovationMonitorSettings(SampledSettings):
     """Detection of bias and noise by the innovations of one sensor over about a second."""
 
@@ -188,7 +188,7 @@ class InnovationMonitorSettings(SampledSettings):
     """Share of one sample in the running means."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class EstimatorSettings:
     """All settings of the estimator, by part."""
 

@@ -6,7 +6,7 @@ from idc_controller.settings import derived, setting
 from idc_controller.trajectory.settings import AvoidanceSettings, Limits
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class ProgressSettings:
     """Answer of the progress along the mission to lag and wind."""
 
@@ -33,7 +33,7 @@ class ProgressSettings:
     )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class DetourSettings:
     """Search of a path on a grid, and its straightening."""
 
@@ -49,7 +49,7 @@ class DetourSettings:
     straightened: int = setting(40, "", "points among which the straightening chooses its waypoints", ge=2)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class NavigatorSettings:
     """Conditions in which a detour is searched, and how it is flown."""
 
@@ -80,7 +80,7 @@ class NavigatorSettings:
     """Table ``guidance.detour``."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class RestingPlaceSettings:
     """Choice of the place where a team without set-points comes to rest."""
 

@@ -7,7 +7,7 @@ from idc_controller.errors import ParameterError
 from idc_controller.settings import SampleCount, SampledSettings, derived, setting
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class ScanSettings(SampledSettings):
     """Placing of detections in the world, and validity of a range sensor's telemetry."""
 
@@ -25,7 +25,7 @@ class ScanSettings(SampledSettings):
     """Poses of a vehicle that are kept."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class AssociationSettings:
     """Gating distances between clusters of points and surfaces."""
 
@@ -41,7 +41,7 @@ class AssociationSettings:
     merge_frames: int = setting(3, "", "frames in a row for which that must hold", ge=1)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class RetentionSettings:
     """Confirmation, coasting and deletion of tracks."""
 
@@ -56,7 +56,7 @@ class RetentionSettings:
     undetected_growth: float = setting(0.5, "m", "growth of a moving map obstacle not detected yet", ge=0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class MapCheckSettings:
     """Detection of an offset of the obstacles from their places on the map."""
 
@@ -70,7 +70,7 @@ class MapCheckSettings:
     smoothing: float = setting(0.3, "", "share of one scan in the mean scatter of points", gt=0.0, le=1.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class ImmSettings:
     """Motion models of the interacting multiple model (IMM) filter, and their process noise."""
 
@@ -92,7 +92,7 @@ class ImmSettings:
             raise ParameterError(f"singer_accelerations has {sigmas} values and singer_times {times}: one each a model")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class ManoeuvreSettings(SampledSettings):
     """Manoeuvres that no motion model contains, and the growth of predictions for them."""
 
@@ -123,7 +123,7 @@ class ManoeuvreSettings(SampledSettings):
             )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class SurfaceSettings:
     """Fits of spheres, poles, walls and known shapes to the points of one frame."""
 
@@ -153,7 +153,7 @@ class SurfaceSettings:
     end_retreat: float = setting(0.15, "", "the same where the surface seems much shorter", gt=0.0, le=1.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class ObstacleFilterSettings:
     """Shape and motion of one track."""
 
@@ -177,7 +177,7 @@ class ObstacleFilterSettings:
     manoeuvre: ManoeuvreSettings = field(default_factory=ManoeuvreSettings)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class PerceptionSettings:
     """All settings of the obstacle map, by part."""
 

@@ -15,7 +15,7 @@ from idc_controller.trajectory.settings import AvoidanceSettings, Limits
 Triple = tuple[float, float, float]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class PlannerSettings:
     """The safety QP: weights of the deviation per axis (x, y, z), limits of the plan, and the barrier."""
 
@@ -97,7 +97,7 @@ class PlannerSettings:
             )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class FilterSettings:
     """Obstacles that take part in a plan, and the succession of plans."""
 

@@ -13,7 +13,7 @@ CORNER = 0.2
 """Distance (m) within which the default system passes a waypoint without hold: ``motion.corner``."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True)  # compared: what follows from equal limits is computed once
 class Limits:
     """Largest Euclidean norms that a trajectory's derivatives may reach; the defaults are those between waypoints.
 
@@ -40,7 +40,7 @@ class Limits:
         return np.array([self.speed, self.acceleration, self.jerk, self.snap])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class AvoidanceSettings:
     """Clearance from obstacles, and how fast they are approached: table ``avoidance``."""
 
@@ -50,7 +50,7 @@ class AvoidanceSettings:
     )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class BrakingSettings:
     """Duration of a stop: the least, or as long as the deceleration demands."""
 
