@@ -9,6 +9,7 @@ from flying import AIRFRAME
 from onboard import step_alone
 
 from gcs.config.vehicle_settings import LandDetectorSettings
+from gcs.mavlink import px4
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.land_detector import LandDetector
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
@@ -84,7 +85,9 @@ def test_landings_are_detected_for_a_team_as_for_each():
                 plain[i].start()
                 detectors[i].start()
             plain[i].update(arrays.estimates[i].tolist(), thrust, now, phase < 6.0)
-        detect_landings(arrays.detectors, arrays.estimates, arrays.targets, arrays.learns, now, arrays.landings)
+        detect_landings(
+            arrays.detectors, arrays.estimates, arrays.targets, arrays.learns, now, arrays.landings, arrays.idle_until
+        )
         for one, other in zip(detectors, plain, strict=True):
             assert (one.in_air, one.hover_thrust) == (other.in_air, pytest.approx(other.hover_thrust))
             assert one.touching == (other.touching_since < other.last_time)
@@ -96,7 +99,9 @@ def test_landings_are_detected_for_a_team_as_for_each():
 def test_vehicles_without_an_estimate_detect_nothing():
     arrays = OnboardArrays.of([AIRFRAME], SETTINGS)
     before = arrays.landings.copy()
-    detect_landings(arrays.detectors, arrays.estimates, arrays.targets, arrays.learns, 1.0, arrays.landings)
+    detect_landings(
+        arrays.detectors, arrays.estimates, arrays.targets, arrays.learns, 1.0, arrays.landings, arrays.idle_until
+    )
     assert np.array_equal(arrays.landings, before, equal_nan=True)
 
 
@@ -160,3 +165,76 @@ def test_vehicles_of_a_team_fly_as_each_alone_when_samples_of_the_second_are_mis
                 pilot.enter_offboard(AttitudeSetpoint((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.5, 0), now, now)
                 assert pilot.arm(now, force=True).text == ""
     assert kinds == {(True, False, False), (False, True, False), (False, False, False), (False, True, True)}
+
+
+class Ground:
+    """Random commands of a ground to one vehicle: often set-points, sometimes a pause of seconds, seldom all else."""
+
+    def __init__(self, seed: int) -> None:
+        self._rng = np.random.default_rng(seed)
+        self._silent_until = 0.0
+
+    def act(self, pilots: list[Autopilot], now: float) -> None:
+        """Command all ``pilots`` the same."""
+        rng = self._rng
+        thrust = 0.3 + 0.4 * rng.random()
+        setpoint = AttitudeSetpoint((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.1 * rng.random()), thrust, 0)
+        mode = int(rng.choice([px4.MODE_HOLD, px4.MODE_LAND, px4.MODE_MANUAL, px4.MODE_MISSION]))
+        kind, loss = rng.random(), 0.2 + rng.random()
+        if now < self._silent_until:
+            return
+        for pilot in pilots:
+            if kind < 0.1:
+                pilot.follow(setpoint, now)
+            elif kind < 0.104:
+                self._silent_until = now + 3.0 * loss
+            elif kind < 0.108:
+                pilot.enter_offboard(setpoint, now - 0.1 * thrust, now)
+            elif kind < 0.112:
+                pilot.arm(now, force=True)
+            elif kind < 0.113:
+                pilot.enter_mode(mode, now)
+            elif kind < 0.114:
+                pilot.disarm(force=thrust < 0.4)
+            elif kind < 0.115:
+                pilot.state.parameters.by_name(px4.PARAM_SETPOINT_LOSS).value = loss
+                pilot.ground_message_received(now)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_idle_vehicles_would_decide_what_they_did(seed):
+    """Equal teams, one of which decides at every step: equal targets, landings, modes and notices at every step."""
+    rng, idle, seen = np.random.default_rng(seed), 0, set()
+    teams, all_arrays = [], [OnboardArrays.of([AIRFRAME] * 3, SETTINGS) for _ in range(2)]
+    for arrays in all_arrays:
+        parameters = [vehicle_parameters(AIRFRAME, i + 1, 250) for i in range(3)]
+        teams.append([Autopilot(AIRFRAME, parameters[i], arrays=arrays.of_vehicle(i)) for i in range(3)])
+    grounds, heights = [Ground(10 * seed + i) for i in range(3)], np.zeros(3)
+    for k in range(1, 5000):
+        now = 0.004 * k
+        for ground, pilots in zip(grounds, zip(*teams, strict=True), strict=True):
+            ground.act(list(pilots), now)
+        climbing = np.where(np.sin(0.5 * now + np.arange(3)) > 0.0, 1.0, -1.0)
+        heights = np.clip(heights + 0.004 * climbing, 0.0, 2.0)
+        samples = np.zeros((3, 13))
+        samples[:, 2], samples[:, 9] = -heights, np.where((heights > 0.0) & (heights < 2.0), -climbing, 0.0)
+        samples[:, 3:7] = (1.0, 0.0, 0.0, 0.0) + 0.01 * rng.normal(size=(3, 4))
+        samples[:, 3:7] /= np.linalg.norm(samples[:, 3:7], axis=1)[:, None]
+        samples[:, 10:] = 0.01 * rng.normal(size=(3, 3))
+        all_arrays[1].idle_until[:] = -np.inf
+        missing = [2] if 2000 < k < 2100 or k < 100 else []
+        for team, arrays in zip(teams, all_arrays, strict=True):
+            step_together(team, arrays, samples.copy(), np.full(3, now), now, missing)
+        for name in ("targets", "landings", "learns", "speeds"):
+            one, other = (getattr(arrays, name) for arrays in all_arrays)
+            assert np.array_equal(one, other, equal_nan=True), (name, now)
+        for one, other in zip(*teams, strict=True):
+            shown, others = (
+                (pilot.mode, pilot.armed, pilot.failsafe, pilot.landed_state, pilot.changes, pilot.state.hold is None,
+                 pilot.state.actuation.target, pilot.state.actuation.target_since, tuple(pilot.take_notices()))
+                for pilot in (one, other)
+            )  # fmt: skip
+            assert shown == others
+            seen.add(shown[:4])
+        idle += np.count_nonzero(all_arrays[0].idle_until > now)
+    assert idle > 4000 and len(seen) > 8

@@ -17,7 +17,7 @@ from vehicle_sim.autopilot.airframe import Airframe
 from vehicle_sim.autopilot.answer import ACCEPTED, Answer, denied, rejected_for_now
 from vehicle_sim.autopilot.arming import arming_problem
 from vehicle_sim.autopilot.failsafe import check_failsafes
-from vehicle_sim.autopilot.flight_state import FlightState
+from vehicle_sim.autopilot.flight_state import TIME_TOLERANCE, FlightState
 from vehicle_sim.autopilot.land_detector import LandDetector
 from vehicle_sim.autopilot.navigation import Navigation
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
@@ -96,14 +96,16 @@ class Autopilot:
     # What the ground commands
 
     def ground_message_received(self, now: float) -> None:
-        """A message of any ground has come: the data link is up."""
+        """A message of any ground has come: the data link is up. It may have set a parameter."""
         self.state.link_time = now
+        self._decide_anew()
 
     def arm(self, now: float, force: bool = False) -> Answer:
         """Arm, unless something is wrong; ``force`` skips the checks except that of the sensors."""
         state = self.state
         if state.armed:
             return ACCEPTED
+        self._decide_anew()
         problem = self.arming_problem(now)
         if problem is not None and (not force or not state.navigation.is_valid(now)):
             return rejected_for_now(f"Arming denied: {problem}")
@@ -118,6 +120,7 @@ class Autopilot:
         if self.state.armed and self.state.land.in_air and not force:
             return denied("Disarming denied: in the air")
         self.state.stop()
+        self._decide_anew()
         return ACCEPTED
 
     def follow(self, setpoint: AttitudeSetpoint, now: float) -> None:
@@ -128,6 +131,7 @@ class Autopilot:
             state.hold = None
             state.notices.append("Set-points are back")
         state.setpoints.add(setpoint, now)
+        self._decide_anew()
 
     def take_stop_plan(self, plan: StopPlan) -> None:
         """A stop plan of the ground in control, in place of the last one."""
@@ -135,10 +139,12 @@ class Autopilot:
 
     def enter_offboard(self, setpoint: AttitudeSetpoint, received: float, now: float) -> Answer:
         """Fly the set-points of a ground, the last of which was ``received`` (s) a moment ago."""
+        self._decide_anew()
         return modes.enter_offboard(self.state, setpoint, received, now)
 
     def enter_mode(self, custom_mode: int, now: float) -> Answer:
         """Any mode but OFFBOARD."""
+        self._decide_anew()
         return modes.enter_mode(self.state, custom_mode, now)
 
     # The onboard loop
@@ -151,7 +157,6 @@ class Autopilot:
     def decide(self, now: float) -> bool:
         """Check the failsafes, and say what the rotors are to do; return True if a HEARTBEAT changes."""
         state = self.state
-        state.now = now
         if not state.navigation.has_estimate:
             return False
         check_failsafes(state, now)
@@ -160,11 +165,24 @@ class Autopilot:
         if state.armed:
             self._fly(now)
         shown = (state.flown_mode, state.armed, state.failsafe, self.landed_state)
-        if shown == self._shown:
-            return False
+        changed = shown != self._shown
         self._shown = shown
-        self.changes += 1
-        return True
+        self.changes += changed
+        self.arrays.idle_until[0] = -math.inf if changed else self._idle_until()
+        return changed
+
+    def _decide_anew(self) -> None:
+        self.arrays.idle_until[0] = -math.inf
+
+    def _idle_until(self) -> float:
+        """Return until when (s) it would decide as it just did, without a ground's message, lift-off or landing."""
+        state = self.state
+        if state.hold is not None:
+            return -math.inf  # its target follows the estimate
+        if state.mode == px4.MODE_OFFBOARD:
+            setpoints = state.setpoints
+            return min(setpoints.held_until, setpoints.last_time + state.setpoint_loss_time) - 2.0 * TIME_TOLERANCE
+        return -math.inf if state.armed else math.inf
 
     @property
     def flies_setpoints(self) -> bool:

@@ -44,8 +44,6 @@ class FlightState:
     """The newest of the ground in control."""
     link_time: float = -math.inf
     """Time of the last message of any ground (s)."""
-    now: float = -math.inf
-    """Time of the last step (s)."""
     notices: list[str] = field(default_factory=list)
     """STATUSTEXTs to the operator, not sent yet."""
 
@@ -55,6 +53,11 @@ class FlightState:
         if not self.failsafe:
             return self.mode
         return px4.MODE_LAND if self.is_descending else px4.MODE_HOLD
+
+    @property
+    def now(self) -> float:
+        """Time of the last step (s)."""
+        return self.land.last_time
 
     @property
     def setpoint_loss_time(self) -> float:

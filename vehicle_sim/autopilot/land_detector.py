@@ -33,6 +33,11 @@ class LandDetector:
         return bool(self._found.item(IN_AIR))
 
     @property
+    def last_time(self) -> float:
+        """Time of the last step (s); zero before the first estimate."""
+        return float(self._found[LAST_TIME])
+
+    @property
     def hover_thrust(self) -> float | None:
         """The vertical thrust that it flew with (N), low-passed; None before the first flight."""
         thrust = float(self._found[HOVER_THRUST])

@@ -46,6 +46,8 @@ class OnboardArrays:
     """Angular accelerations (N, 3) for which the torques were last set (rad/s2)."""
     speeds: Array
     """Commanded rotor speeds (N, 4) (rad/s)."""
+    idle_until: Array
+    """Times (N,) (s) before which the vehicles have nothing to decide; -inf: they have at the next step."""
 
     @classmethod
     def of(cls, airframes: Sequence[Airframe], settings: LandDetectorSettings) -> Self:
@@ -66,6 +68,7 @@ class OnboardArrays:
             np.zeros((n, TARGET_COLUMNS)),
             np.zeros((n, 3)),
             np.zeros((n, 4)),
+            np.full(n, -np.inf),
         )
 
     def of_vehicle(self, i: int) -> Self:

@@ -168,13 +168,14 @@ def take_fresh_samples(
             stamps[i, SAMPLE_TIME], stamps[i, FRESH_AT] = times[i], now
 
 
-@kernel("void(float64[:, ::1], float64[:, ::1], float64[:, ::1], boolean[::1], float64, float64[:, ::1])")
+@kernel("void(float64[:, ::1], float64[:, ::1], float64[:, ::1], boolean[::1], float64, float64[:, ::1], float64[::1])")
 def detect_landings(
-    detectors: Array, estimates: Array, targets: Array, learns: Mask, now: float, landings: Array
+    detectors: Array, estimates: Array, targets: Array, learns: Mask, now: float, landings: Array, idle_until: Array
 ) -> None:
     """Take one step of landing detection at ``now`` (s); see :class:`.land_detector.LandDetector`.
 
-    The thrust is that of ``targets``; ``learns``: vehicles that learn their hover thrust from it.
+    The thrust is that of ``targets``; ``learns``: vehicles that learn their hover thrust from it. Those that lift off
+    or land are ``idle_until`` (N,) -inf: they have something to decide.
     """
     for i in range(landings.shape[0]):
         s, d, found, thrust = estimates[i], detectors[i], landings[i], targets[i, THRUST]
@@ -194,6 +195,7 @@ def detect_landings(
             if found[GROUND] - found[ALTITUDE] > d[LIFTED]:  # not where the ground is not known
                 found[IN_AIR] = 1.0
                 found[HOVER_THRUST] = lift
+                idle_until[i] = -math.inf
             continue
         if math.isnan(found[HOVER_THRUST]) or learns[i]:
             hover = lift if math.isnan(found[HOVER_THRUST]) else found[HOVER_THRUST]
@@ -208,3 +210,4 @@ def detect_landings(
         found[TOUCHING_SINCE] = min(found[TOUCHING_SINCE], now)
         if now - found[LIGHT_SINCE] >= d[TIME]:
             landed(found)
+            idle_until[i] = -math.inf

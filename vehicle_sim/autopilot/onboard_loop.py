@@ -20,7 +20,10 @@ class Decisions(Protocol):
         """Return True if it flies set-points of the ground."""
 
     def decide(self, now: float) -> bool:
-        """Check the failsafes, and say what the rotors are to do; return True if a HEARTBEAT changes."""
+        """Check the failsafes, and say what the rotors are to do; return True if a HEARTBEAT changes.
+
+        It also says in ``arrays.idle_until`` how long that stays so.
+        """
 
 
 def step_together(
@@ -34,7 +37,8 @@ def step_together(
     """Take one step of the onboard loops: rotor-speed commands in ``arrays``; return whose HEARTBEAT changes.
 
     ``samples`` (N, 13): what the vehicles' sensors delivered, rows of states, measured at ``times`` (N,) (s);
-    ``missing``: vehicles (from 0) to which no sample came this time. No vehicle learns anything of another.
+    ``missing``: vehicles (from 0) to which no sample came this time. No vehicle learns anything of another. Only
+    vehicles that are not idle decide: the others would decide what they did.
     """
     for i in missing:
         samples[i] = arrays.last_samples[i]
@@ -42,8 +46,16 @@ def step_together(
     for i, fresh in enumerate(arrays.fresh.tolist()):
         if not fresh and i not in missing:
             autopilots[i].sense(Measurement.of_row(float(times[i]), samples[i].tolist()), now)
-    arrays.learns[:] = [autopilot.flies_setpoints for autopilot in autopilots]
-    detect_landings(arrays.detectors, arrays.estimates, arrays.targets, arrays.learns, now, arrays.landings)
-    changed = [i for i, autopilot in enumerate(autopilots) if autopilot.decide(now)]
+    for i in _busy(arrays, now):
+        arrays.learns[i] = autopilots[i].flies_setpoints
+    detect_landings(
+        arrays.detectors, arrays.estimates, arrays.targets, arrays.learns, now, arrays.landings, arrays.idle_until
+    )
+    changed = [i for i in _busy(arrays, now) if autopilots[i].decide(now)]
     control_attitudes(arrays.airframes, arrays.estimates, arrays.targets, arrays.accelerations, arrays.speeds)
     return changed
+
+
+def _busy(arrays: OnboardArrays, now: float) -> list[int]:
+    """Return the vehicles (from 0) that have something to decide at ``now`` (s)."""
+    return [i for i, until in enumerate(arrays.idle_until.tolist()) if until <= now]

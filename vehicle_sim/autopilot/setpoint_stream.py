@@ -43,6 +43,11 @@ class SetpointStream:
             self._mean = _mean([setpoint for _, setpoint in self._recent])
         return self._mean
 
+    @property
+    def held_until(self) -> float:
+        """Time until which the last one is flown (s)."""
+        return self.last_time + self._settings.hold
+
     def clear(self) -> None:
         """Forget all."""
         self._recent.clear()
