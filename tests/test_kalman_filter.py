@@ -14,7 +14,7 @@ from test_flatness import Wave
 from gcs.config import read_system
 from idc_controller.estimation.estimator import Estimator
 from idc_controller.estimation.health.chi_squared import lower_quantile, upper_quantile
-from idc_controller.estimation.kalman_filter import SetpointNoise, SparseRows, StructuredKalmanFilter
+from idc_controller.estimation.kalman_filter import SparseRows, StructuredKalmanFilter
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
 from idc_controller.estimation.process_model import ProcessModel
 from idc_controller.estimation.settings import ProcessNoiseSettings
@@ -123,21 +123,23 @@ def test_propagation_by_blocks_equals_filterpys_prediction(vehicles, is_changed)
     model = LinearModel(read_system(MISSIONS / "system.toml").with_vehicles(vehicles).parameters())
     process, rng = ProcessModel(model, ProcessNoiseSettings()), np.random.default_rng(vehicles)
     compiled, plain = both(rng, positive_definite(rng, process.size))
-    transition, Q = process.transition(37_000, np.array([0.5, -1.0, 2.0])), process.noise(37_000, 5.0)
+    transition, Q = process.transition(37_000), process.noise(37_000, 5.0)
+    direction = process.force_of_mass(np.array([0.5, -1.0, 2.0]))
+    F = transition.F(direction)
     A_k, B_k, B_dk = model.discretised(37_000)
     n, B = len(A_k), transition.B
-    assert (transition.F[:n, :n] == A_k).all()
-    assert (transition.F[:n, process.forces] == B_dk).all()
-    assert transition.F[:n, process.mass] == pytest.approx(B_dk[:, :3] @ [-0.5, 1.0, model.parameters.g - 2.0])
-    assert (transition.F[n:, n:] == np.eye(process.size - n)).all()
+    assert (F[:n, :n] == A_k).all()
+    assert (F[:n, process.forces] == B_dk).all()
+    assert F[:n, process.mass] == pytest.approx(B_dk[:, :3] @ [-0.5, 1.0, model.parameters.g - 2.0])
+    assert (F[n:, n:] == np.eye(process.size - n)).all()
     assert (B[:n] == B_k).all()
     u, change, probability = rng.standard_normal(3 * vehicles), rng.standard_normal(3 * vehicles), rng.random(vehicles)
-    compiled.propagate(transition, u, Q, SetpointNoise(change if is_changed else np.zeros(0), probability))
+    compiled.propagate(transition, direction, u, Q, change if is_changed else np.zeros(0), probability)
     # The tilts of one vehicle are lost together, its thrust by itself.
     error = is_changed * B * (change * np.sqrt(np.concatenate([np.repeat(probability, 2), probability])))
     tilts, thrusts = error[:, : 2 * vehicles], error[:, 2 * vehicles :]
     lost = np.hstack([tilts[:, ::2] + tilts[:, 1::2], thrusts])
-    plain.predict(u=u, F=transition.F, B=B, Q=Q + lost @ lost.T)
+    plain.predict(u=u, F=F, B=B, Q=Q + lost @ lost.T)
     assert np.allclose(compiled.x, plain.x, rtol=1e-12, atol=1e-12)
     assert np.allclose(compiled.P, plain.P, rtol=1e-12, atol=1e-12)
     assert (compiled.P == compiled.P.T).all()
@@ -158,12 +160,8 @@ def test_propagation_by_blocks_equals_dense_product_for_slow_motors_and_long_int
     A_k, B_k, B_dk = model.discretised(interval_us)
     n, F, B = len(A_k), np.eye(process.size), np.zeros((process.size, 9))
     F[:n, :n], F[:n, process.forces], F[:n, process.mass], B[:n] = A_k, B_dk, B_dk[:, 2] * parameters.g, B_k
-    u, Q, nothing = (
-        rng.standard_normal(9),
-        positive_definite(rng, process.size),
-        SetpointNoise(np.zeros(0), np.zeros(3)),
-    )
-    compiled.propagate(process.transition(interval_us, np.zeros(3)), u, Q, nothing)
+    u, Q, hovering = rng.standard_normal(9), positive_definite(rng, process.size), process.force_of_mass(np.zeros(3))
+    compiled.propagate(process.transition(interval_us), hovering, u, Q, np.zeros(0), np.zeros(3))
     plain.predict(u=u, F=F, B=B, Q=Q)
     scale = np.sqrt(np.diag(plain.P))
     assert (np.abs(compiled.x - plain.x) <= 1e-10 * scale).all()

@@ -66,27 +66,15 @@ class Transition(NamedTuple):
     dense: Array
     """First rows of F (d, n), but for the last column."""
     push: Array
-    """Columns by which a force on the payload moves these rows (d, 3)."""
-    direction: Array
-    """Force for one unit of the last state (3,); their product is the last column."""
+    """Columns by which a force on the payload moves these rows (d, 3); the last state is such a force's size."""
     sparse: SparseRows
     """The others, whose elements are in the last n - d columns."""
     B: Array
 
-    @property
-    def F(self) -> Array:
-        """Transition matrix (n, n)."""
-        dense = np.column_stack([self.dense[:, :-1], self.push @ self.direction])
+    def F(self, direction: Array) -> Array:
+        """Return the transition matrix (n, n), where ``direction`` (3,) is the force for one unit of the last state."""
+        dense = np.column_stack([self.dense[:, :-1], self.push @ direction])
         return np.vstack([dense, self.sparse.dense(self.dense.shape[1])])
-
-
-class SetpointNoise(NamedTuple):
-    """Set-points that may not act yet, or never."""
-
-    change: Array
-    """Difference from the set-points before (3 N,); empty: there are none."""
-    probability: Array
-    """With which each vehicle still flies those before (N,)."""
 
 
 class StructuredKalmanFilter(KalmanFilter):  # type: ignore[misc]  # filterpy has no types
@@ -95,17 +83,23 @@ class StructuredKalmanFilter(KalmanFilter):  # type: ignore[misc]  # filterpy ha
     x: Array
     P: Array
 
-    def propagate(self, transition: Transition, u: Array, Q: Array, noise: SetpointNoise) -> None:
+    def propagate(
+        self, transition: Transition, direction: Array, u: Array, Q: Array, change: Array, probability: Array
+    ) -> None:
         """Predict over an interval; filterpy's ``predict`` with these matrices gives the same.
 
         Args:
             transition: over the interval.
+            direction: force for one unit of the last state (3,).
             u: input (3 N,).
             Q: covariance of the process noise (n, n).
-            noise: of the input, which adds to it.
+            change: of the input (3 N,), which may not act yet, or never; empty: there is none.
+            probability: with which each vehicle still flies the input before (N,).
         """
-        dense, push, direction, sparse, B = transition
-        self.x, self.P = propagated(self.x, self.P, dense, push, direction, *sparse, B, u, Q, *noise)
+        dense, push, (columns, coefficients), B = transition
+        self.x, self.P = propagated(
+            self.x, self.P, dense, push, direction, columns, coefficients, B, u, Q, change, probability
+        )
 
     def innovation(self, y: Array, rows: SparseRows) -> Innovation:
         """Return the innovation of the measurements ``y`` (m,) that ``rows`` observe."""

@@ -28,12 +28,12 @@ class _Sample:
     @property
     def has_pose(self) -> bool:
         """Return whether the pose was measured."""
-        return not math.isnan(self.pose[0])
+        return not math.isnan(self.pose.item(0))
 
     @property
     def has_motion(self) -> bool:
         """Return whether the motion was measured."""
-        return not math.isnan(self.motion[0])
+        return not math.isnan(self.motion.item(0))
 
     def same_values(self, other: object) -> bool:
         """Return whether ``other`` is of the same kind and has the same values to the digit."""

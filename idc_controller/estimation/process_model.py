@@ -23,16 +23,16 @@ class ProcessModel:
         self.forces = slice(n, self.mass)
         self._uav_columns = self._columns_of_uavs()
         self._noise = self._noise_of(densities)
-        self._hovering = lru_cache(maxsize=256)(self._discretised)
+        self._gravity = np.array([0.0, 0.0, model.parameters.g])
+        self.transition = lru_cache(maxsize=256)(self._discretised)
         self.noise = lru_cache(maxsize=256)(self._integrated_noise)
 
-    def transition(self, interval_us: int, acceleration: Array) -> Transition:
-        """Return the transition over an interval (us).
+    def force_of_mass(self, acceleration: Array) -> Array:
+        """Return the force (..., 3) of one kilogram of excess of mass at an ``acceleration`` of the payload (..., 3).
 
-        ``acceleration`` of the payload (3,) (m/s2): an excess of mass acts along g e3 - a, which follows the manoeuvre.
+        It acts along g e3 - a, which follows the manoeuvre (m/s2).
         """
-        hover = self._hovering(interval_us)
-        return hover._replace(direction=hover.direction - acceleration)
+        return self._gravity - acceleration
 
     def add_per_vehicle_noise(self, P: Array, measured: Indices) -> None:
         """Add variances to the disturbance forces in ``P`` (n, n) of the UAVs ``measured`` (K,), between samples.
@@ -80,7 +80,7 @@ class ProcessModel:
         return np.asarray(np.kron(common**2 * np.ones((N, N)) + own**2 * np.eye(N), np.eye(2)))
 
     def _discretised(self, interval_us: int) -> Transition:
-        """Return the transition over an interval (us) without an acceleration of the payload."""
+        """Return the transition over an interval (us)."""
         n = self.layout.size
         A_k, B_k, B_dk = self.model.discretised(interval_us)
         F = np.eye(self.size)
@@ -89,7 +89,7 @@ class ProcessModel:
         columns, filled = self._uav_columns
         moved = self.size - len(columns)
         sparse = SparseRows(columns, filled * F[np.arange(moved, self.size)[:, None], columns])
-        return Transition(F[:moved], B_dk[:moved, :3].copy(), np.array([0.0, 0.0, self.model.parameters.g]), sparse, B)
+        return Transition(F[:moved], B_dk[:moved, :3].copy(), sparse, B)
 
     def _columns_of_uavs(self) -> tuple[Indices, Mask]:
         """Return the columns (R, 3) of the elements in the rows below payload and links, and which of them count.
@@ -110,7 +110,7 @@ class ProcessModel:
         if duration <= self._noise.duration_max:
             return self._noise.covariance(duration, (1.0, force_scale**2))
         half = interval_us // 2
-        F = self.transition(half, np.zeros(3)).F
+        F = self.transition(half).F(self._gravity)
         return np.asarray(F @ self.noise(interval_us - half, force_scale) @ F.T + self.noise(half, force_scale))
 
     def _noise_of(self, p: ProcessNoiseSettings) -> IntegratedNoise:

@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 
 from idc_controller.arrays import Array, Indices
-from idc_controller.estimation.kalman_filter import Innovation, SetpointNoise, SparseRows, StructuredKalmanFilter
+from idc_controller.estimation.kalman_filter import Innovation, SparseRows, StructuredKalmanFilter
 from idc_controller.estimation.process_model import ProcessModel
 from idc_controller.estimation.setpoint_history import SetpointHistory
 from idc_controller.trajectory.reference import Reference
@@ -34,8 +34,8 @@ class PropagationInterval:
         self.flat = reference.at(np.array(self.times))
         self.u = (self.flat.u[:-1] + self.flat.u[1:]) / 2
         """The reference's set-points from each time to the next (K - 1, 3 N)."""
-        self.acceleration = (self.flat.payload[2, :-1] + self.flat.payload[2, 1:]) / 2
-        """The reference's acceleration from each time to the next (K - 1, 3) (m/s2)."""
+        self.force_of_mass = process.force_of_mass((self.flat.payload[2, :-1] + self.flat.payload[2, 1:]) / 2)
+        """Force of one kilogram of excess of mass from each time to the next (K - 1, 3) (N/kg)."""
         self.setpoints = [setpoints.in_force(a, b) for a, b in pairwise(self.times)]
         """Set-points in force from each time to the next."""
         # The drag that is predicted changes with the velocity, so what is estimated of it is the rest.
@@ -83,10 +83,10 @@ class ErrorStateFilter:
         u, change, probability = interval.setpoints[k]
         delta_u = np.zeros(self.process.layout.inputs) if u is None else u - interval.u[k]
         duration = interval.duration_us(k)
-        transition = self.process.transition(duration, interval.acceleration[k])
-        Q = self.process.noise(duration, force_scale)
-        noise = SetpointNoise(_NONE if change is None else change, probability)
-        self._kf.propagate(transition, delta_u, Q, noise)
+        self._kf.propagate(
+            self.process.transition(duration), interval.force_of_mass[k], delta_u,
+            self.process.noise(duration, force_scale), _NONE if change is None else change, probability,
+        )  # fmt: skip
 
     @property
     def is_finite(self) -> bool:

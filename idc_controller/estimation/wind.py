@@ -31,10 +31,30 @@ class _Sums:
         self.mean, self.time = np.zeros(2), 0.0  # F (N s), and how much of the memory is filled (s)
         self.uav_product = self.uav_square = 0.0  # of a UAV, its drag as the square of the airspeed (N m2, m4/s3)
 
-    def add(self, **values: Array | float) -> None:
-        """Add to each of these integrals its value over one period; 0: only the past fades."""
-        for name, value in values.items():
-            setattr(self, name, self._keep * getattr(self, name) + self._period * value)
+    def fade(self) -> None:
+        """Let the past of all integrals fade over one period."""
+        keep = self._keep
+        self.product *= keep
+        self.square *= keep
+        self.mean *= keep
+        self.force_square, self.time = keep * self.force_square, keep * self.time
+        self.uav_product, self.uav_square = keep * self.uav_product, keep * self.uav_square
+
+    def add_force(self, force: Array) -> None:
+        """Add the level force F (2,) (N) over one period."""
+        self.force_square += self._period * float(force @ force)
+        self.mean += self._period * force
+        self.time += self._period
+
+    def add_drag(self, force: Array, drag: Array) -> None:
+        """Add what the ``drag`` (..., 2) (N) of each wind explains of F (2,) (N) over one period."""
+        self.product += self._period * (drag @ force)
+        self.square += self._period * np.einsum("ijk,ijk->ij", drag, drag)
+
+    def add_uav_drag(self, force: Array, drag: Array) -> None:
+        """Add the same of a UAV: its force (2,) (N), and its ``drag`` (2,) as the square of the airspeed (m2/s2)."""
+        self.uav_product += self._period * float(force @ drag)
+        self.uav_square += self._period * float(drag @ drag)
 
 
 class WindEstimator:
@@ -73,14 +93,14 @@ class WindEstimator:
             velocity: of the payload (3,) (m/s, NED).
         """
         s, sums = self.settings, self._sums
-        sums.add(force_square=float(force[:2] @ force[:2]), mean=force[:2], time=1.0)
+        sums.fade()
+        sums.add_force(force[:2])
         least = s.force_min**2 * s.memory
         if sums.force_square < least:
             self.air = None
-            sums.add(product=0.0, square=0.0, uav_product=0.0, uav_square=0.0)
             return
         drag = payload_drag(self._coefficients, self._winds - velocity)[..., :2]
-        sums.add(product=drag @ force[:2], square=np.einsum("ijk,ijk->ij", drag, drag))
+        sums.add_drag(force[:2], drag)
         prior = self._factor_prior
         factor = np.clip((sums.product + prior) / (sums.square + prior), 0.0, s.factor_max)
         cost = factor * (factor * sums.square - 2.0 * sums.product)
@@ -90,7 +110,7 @@ class WindEstimator:
                          self._axis[best[1]] + self._vertex(cost[best[0]], int(best[1])), 0.0])  # fmt: skip
         airspeed = wind - velocity
         uav_drag = float(np.linalg.norm(airspeed)) * airspeed[:2]
-        sums.add(uav_product=float(uav_force[:2] @ uav_drag), uav_square=float(uav_drag @ uav_drag))
+        sums.add_uav_drag(uav_force[:2], uav_drag)
         low, high = s.explained_min, s.explained_full
         explained = -(float(cost[best]) + least) / sums.force_square
         weight = float(np.clip((explained - low) / (high - low), 0.0, 1.0))

@@ -78,13 +78,15 @@ class SensorHealth:
 
     def received(self, measurement: Measurement) -> Measurement | None:
         """Return what has arrived without channels that are stuck or not finite; None if nothing is left."""
-        measurement = measurement.finite
-        stuck = self._stuck.check(measurement)
-        if any(stuck):
-            measurement = measurement.without(*stuck)
-        if not measurement.has_pose:
-            self._unusable_since[measurement.source, type(measurement)] = measurement.time
-        return measurement if measurement.has_pose or measurement.has_motion else None
+        usable = measurement.finite
+        stuck = self._stuck.check(usable)
+        if True in stuck:
+            usable = usable.without(*stuck)
+        if usable is measurement:  # with pose and motion
+            return usable
+        if not usable.has_pose:
+            self._unusable_since[usable.source, type(usable)] = usable.time
+        return usable if usable.has_pose or usable.has_motion else None
 
     def usable(self, measurement: Measurement) -> Measurement:
         """Return a measurement without the channels of isolated groups."""
