@@ -1,13 +1,12 @@
 """Declaration of a setting: a field of a frozen dataclass with its default, unit, meaning and range.
 
 Every sub-package whose behaviour depends on numbers has a ``settings.py`` with such dataclasses. Each is a table of the
-system file; ``docs/settings.md`` lists them all. They have neither comparison nor representation: nobody needs them,
-and every command would compile them at its start.
+system file; ``docs/settings.md`` lists them all.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
-from typing import Any
+from typing import Any, cast
 
 METADATA_KEY = "setting"
 DERIVED_KEY = "derived"
@@ -55,8 +54,30 @@ def derived(default: Any) -> Any:
     return field(default=default, metadata={DERIVED_KEY: True})
 
 
+class SettingsTable:
+    """Base of the tables: equal if all fields are.
+
+    For dataclasses without methods of their own for that, which every command would compile, table by table.
+    """
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether ``other`` is the same table with equal fields."""
+        return type(other) is type(self) and self._values() == other._values()
+
+    def __hash__(self) -> int:
+        """Return the hash of the fields."""
+        return hash(self._values())
+
+    def __repr__(self) -> str:
+        """Return the name of the table with its fields."""
+        return f"{type(self).__name__}{self._values()}"
+
+    def _values(self) -> tuple[Any, ...]:
+        return tuple(getattr(self, entry.name) for entry in fields(cast(Any, self)))
+
+
 @dataclass(frozen=True, eq=False, repr=False)
-class SampledSettings:
+class SampledSettings(SettingsTable):
     """Settings of what counts samples: times are declared, the counts follow from the ``rate``."""
 
     rate: float = derived(25.0)

@@ -3,11 +3,11 @@
 import math
 from dataclasses import dataclass, field
 
-from idc_controller.settings import setting
+from idc_controller.settings import SettingsTable, setting
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class FailsafeSettings:
+class FailsafeSettings(SettingsTable):
     """Thresholds of the conditions in :mod:`gcs.flight.failsafe`."""
 
     connect_timeout: float = setting(10.0, "s", "until every vehicle has sent all that a flight needs", gt=0.0)
@@ -32,7 +32,7 @@ class FailsafeSettings:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class MonitorSettings:
+class MonitorSettings(SettingsTable):
     """Thresholds of the detectors in :mod:`gcs.flight.detectors`."""
 
     hold_time: float = setting(2.0, "s", "a condition that is absent for longer raises a new alarm", ge=0.0)
@@ -56,7 +56,7 @@ class MonitorSettings:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class TakeoffLandingSettings:
+class TakeoffLandingSettings(SettingsTable):
     """Spool-up, touchdown detection and spool-down."""
 
     settle_time: float = setting(0.5, "s", "of telemetry averaged on the ground before take-off", ge=0.0)
@@ -85,7 +85,7 @@ class TakeoffLandingSettings:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class TimingSettings:
+class TimingSettings(SettingsTable):
     """Timers of the ground station and the estimate of team time."""
 
     heartbeat_interval: float = setting(1.0, "s", "between heartbeats of the ground", gt=0.0)
@@ -99,7 +99,7 @@ class TimingSettings:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class FlightSettings:
+class FlightSettings(SettingsTable):
     """Settings of a flight."""
 
     failsafe: FailsafeSettings = field(default_factory=FailsafeSettings)

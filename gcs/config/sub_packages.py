@@ -6,11 +6,12 @@ from idc_controller.control.settings import ControllerSettings, GroundControlSet
 from idc_controller.estimation.settings import EstimatorSettings, InnovationMonitorSettings, WindSettings
 from idc_controller.guidance.settings import DetourSettings, NavigatorSettings, ProgressSettings, RestingPlaceSettings
 from idc_controller.safety.settings import FilterSettings, PlannerSettings
+from idc_controller.settings import SettingsTable
 from idc_controller.trajectory.settings import BrakingSettings
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class EstimationConfig:
+class EstimationConfig(SettingsTable):
     """Estimator, wind estimate and the monitor of its innovations."""
 
     estimator: EstimatorSettings = field(default_factory=EstimatorSettings)
@@ -19,7 +20,7 @@ class EstimationConfig:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class GuidanceConfig:
+class GuidanceConfig(SettingsTable):
     """Progress along the mission, detours, and the stop of a team without set-points."""
 
     progress: ProgressSettings = field(default_factory=ProgressSettings)
@@ -30,7 +31,7 @@ class GuidanceConfig:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SafetyConfig:
+class SafetyConfig(SettingsTable):
     """The planner of the safety filter, and when it acts."""
 
     planner: PlannerSettings = field(default_factory=PlannerSettings)
@@ -38,7 +39,7 @@ class SafetyConfig:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ControlConfig:
+class ControlConfig(SettingsTable):
     """The controller beside table ``controller``: adaptation to the load, model predictive control, on the ground."""
 
     controller: ControllerSettings = field(default_factory=ControllerSettings)

@@ -12,14 +12,14 @@ from gcs.config.payload_mesh import PayloadMesh
 from idc_controller.arrays import Array
 from idc_controller.control.settings import CONTROL_RATE
 from idc_controller.payload_hull import PayloadHull
-from idc_controller.settings import setting
+from idc_controller.settings import SettingsTable, setting
 from idc_controller.trajectory.settings import CORNER, Limits
 
 Vector = tuple[float, float, float]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PayloadConfig:
+class PayloadConfig(SettingsTable):
     """The payload: a box, or the body of a mesh, from which size and inertia follow."""
 
     mass: float = setting(3.1, "kg", "mass in the controller's model", gt=0.0)
@@ -53,7 +53,7 @@ class PayloadConfig:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class UavConfig:
+class UavConfig(SettingsTable):
     """One UAV; all are alike."""
 
     mass: float = setting(0.7, "kg", "mass", gt=0.0)
@@ -69,7 +69,7 @@ class UavConfig:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class TeamConfig:
+class TeamConfig(SettingsTable):
     """The number of UAVs, and the attachment of their links to the payload."""
 
     vehicles: int = setting(4, "", "number of UAVs; vehicle-sim simulates up to 15", ge=3, le=254)
@@ -85,7 +85,7 @@ class TeamConfig:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SensorsConfig:
+class SensorsConfig(SettingsTable):
     """Navigation sensors: standard deviations of the white noise on every axis; 0 switches a noise off."""
 
     position: float = setting(0.02, "m", "position of payload and UAVs", ge=0.0)
@@ -97,7 +97,7 @@ class SensorsConfig:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class RangeSensorConfig:
+class RangeSensorConfig(SettingsTable):
     """The obstacle sensor of every vehicle."""
 
     range: float = setting(10.0, "m", "largest distance at which an obstacle is detected", gt=0.0)
@@ -107,7 +107,7 @@ class RangeSensorConfig:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class RatesConfig:
+class RatesConfig(SettingsTable):
     """Rates; each divides that of the physics."""
 
     physics: int = setting(500, "Hz", "steps of the simulated world", ge=500, le=100_000)
@@ -120,7 +120,7 @@ class RatesConfig:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class MotionConfig:
+class MotionConfig(SettingsTable):
     """Limits of the payload's trajectories."""
 
     speed: float = setting(Limits.speed, "m/s", "speed where a mission names none", gt=0.0)
@@ -138,7 +138,7 @@ class MotionConfig:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PadSettings:
+class PadSettings(SettingsTable):
     """The pad on which the payload stands before take-off."""
 
     thickness: float = setting(0.05, "m", "height of the pad above the ground", gt=0.0)
@@ -146,7 +146,7 @@ class PadSettings:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class CradleSettings:
+class CradleSettings(SettingsTable):
     """Cradles that keep the UAVs on top of their links on the ground."""
 
     release_factor: float = setting(
@@ -156,7 +156,7 @@ class CradleSettings:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class AirSettings:
+class AirSettings(SettingsTable):
     """Drag in wind, quadratic in the velocity of the air against a body."""
 
     density: float = setting(1.225, "kg/m3", "density of the air", ge=0.0)
@@ -165,7 +165,7 @@ class AirSettings:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class BodySettings:
+class BodySettings(SettingsTable):
     """Bodies of the system as they meet others and the ground; links have no friction."""
 
     friction: float = setting(0.8, "", "coefficient of friction of payload and UAVs", ge=0.0)
@@ -173,7 +173,7 @@ class BodySettings:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class RestSettings:
+class RestSettings(SettingsTable):
     """What counts as rest at the end, when all are disarmed."""
 
     speed: float = setting(0.1, "m/s", "speed below which payload and UAVs are at rest", gt=0.0)
@@ -181,7 +181,7 @@ class RestSettings:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class WorldConfig:
+class WorldConfig(SettingsTable):
     """The simulated world, and its difference from the controller's model."""
 
     payload_mass_factor: float = setting(1.0, "", "true payload mass over payload.mass", gt=0.0)

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from gcs.config.flight_settings import DEFAULTS
-from idc_controller.settings import derived, setting
+from idc_controller.settings import SettingsTable, derived, setting
 from idc_controller.trajectory.settings import BrakingSettings
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ArmingSettings:
+class ArmingSettings(SettingsTable):
     """Limits of the prearm checks."""
 
     tilt_max_deg: float = setting(
@@ -21,7 +21,7 @@ class ArmingSettings:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class VehicleFailsafeSettings:
+class VehicleFailsafeSettings(SettingsTable):
     """Defaults of the failsafe parameters, which the ground may set, and what a failsafe follows."""
 
     setpoint_loss: float = derived(DEFAULTS.failsafe.telemetry_timeout)
@@ -37,7 +37,7 @@ class VehicleFailsafeSettings:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class NavigationSettings:
+class NavigationSettings(SettingsTable):
     """Estimate of the vehicle's own state while a sensor on board fails."""
 
     timeout: float = setting(0.2, "s", "without a usable sample until the navigation counts as failed", gt=0.0)
@@ -49,7 +49,7 @@ class NavigationSettings:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SetpointSettings:
+class SetpointSettings(SettingsTable):
     """Set-points of the ground: what is flown of them, and which are refused."""
 
     hold: float = setting(
@@ -62,7 +62,7 @@ class SetpointSettings:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class HoldSettings:
+class HoldSettings(SettingsTable):
     """Gains and limits of HOLD and LAND.
 
     There is no vertical integral: four altitudes over-constrain a rigid payload, and integrals would load one link
@@ -85,7 +85,7 @@ class HoldSettings:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class LandDetectorSettings:
+class LandDetectorSettings(SettingsTable):
     """Conditions of a vehicle in the air and of one on the ground."""
 
     lifted: float = setting(0.15, "m", "above where it was armed: the vehicle is in the air", gt=0.0)
@@ -110,7 +110,7 @@ class LandDetectorSettings:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class AutopilotSettings:
+class AutopilotSettings(SettingsTable):
     """All settings of one autopilot."""
 
     failsafe: VehicleFailsafeSettings = field(default_factory=VehicleFailsafeSettings)
@@ -125,7 +125,7 @@ class AutopilotSettings:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class StreamIntervals:
+class StreamIntervals(SettingsTable):
     """Default intervals of the streams: PX4's of its normal mode, or near."""
 
     heartbeat: float = setting(1.0, "s", "HEARTBEAT of the autopilot and of the payload unit", gt=0.0)
@@ -140,7 +140,7 @@ class StreamIntervals:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class VehicleLinkSettings:
+class VehicleLinkSettings(SettingsTable):
     """Service of a vehicle to its peers: every address that sends it valid MAVLink."""
 
     peer_timeout: float = setting(10.0, "s", "without a message from a peer until its streams stop", gt=0.0)

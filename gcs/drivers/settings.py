@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass
 
-from idc_controller.settings import setting
+from idc_controller.settings import SettingsTable, setting
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class DriverSettings:
+class DriverSettings(SettingsTable):
     """Wall times of the drivers."""
 
     join_interval: float = setting(0.5, "s", "after which an unanswered request to join the world is repeated", gt=0.0)

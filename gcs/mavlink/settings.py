@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass, field
 
-from idc_controller.settings import setting
+from idc_controller.settings import SettingsTable, setting
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ClockSettings:
+class ClockSettings(SettingsTable):
     """Estimate of a vehicle's clock from TIMESYNC round trips and the stamps of its telemetry."""
 
     round_trips: int = setting(10, "", "round trips kept: as long as the stamps, so that both are of one time", ge=4)
@@ -22,7 +22,7 @@ class ClockSettings:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class LinkSettings:
+class LinkSettings(SettingsTable):
     """Latency, loss and repetition on a link."""
 
     delays: int = setting(3, "", "set-points whose median delay is used: a growing latency must be followed", ge=1)
@@ -47,7 +47,7 @@ class LinkSettings:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class IdCheckSettings:
+class IdCheckSettings(SettingsTable):
     """Detection of swapped system ids."""
 
     distance_ratio: float = setting(
@@ -57,7 +57,7 @@ class IdCheckSettings:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class MavlinkSettings:
+class MavlinkSettings(SettingsTable):
     """All of the above."""
 
     link: LinkSettings = field(default_factory=LinkSettings)

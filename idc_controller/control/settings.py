@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from idc_controller.estimation.settings import WindSettings
-from idc_controller.settings import derived, setting
+from idc_controller.settings import SettingsTable, derived, setting
 
 Triple = tuple[float, float, float]
 
@@ -14,7 +14,7 @@ CONTROL_RATE = 20
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class MpcWeights:
+class MpcWeights(SettingsTable):
     """Diagonal of the MPC's cost, a unit of squared error each; lists are x, y, z or roll, pitch, yaw."""
 
     position: Triple = setting((60.0, 60.0, 80.0), "1/m2", "weight of the payload's position", ge=0.0)
@@ -35,7 +35,7 @@ class MpcWeights:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class MpcTuning:
+class MpcTuning(SettingsTable):
     """Horizon, tilt limits and weights of the MPC: table ``controller``."""
 
     horizon: int = setting(20, "", "control steps of the prediction", ge=2, le=200)
@@ -55,7 +55,7 @@ class MpcTuning:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class MpcSettings:
+class MpcSettings(SettingsTable):
     """Limits of the MPC and the cost of exceeding them."""
 
     period: float = derived(1.0 / CONTROL_RATE)
@@ -85,7 +85,7 @@ class MpcSettings:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class GroundControlSettings:
+class GroundControlSettings(SettingsTable):
     """Regulator that keeps the UAVs upright over a payload on the ground."""
 
     design_share: float = setting(0.8, "", "thrust for which the gain is designed, over hover thrust", gt=0.0)
@@ -98,7 +98,7 @@ class GroundControlSettings:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ControllerSettings:
+class ControllerSettings(SettingsTable):
     """Adaptation to the load, and the largest errors that are answered at once."""
 
     period: float = derived(1.0 / CONTROL_RATE)

@@ -4,11 +4,11 @@ from dataclasses import dataclass, field, replace
 from typing import Self
 
 from idc_controller.errors import ParameterError
-from idc_controller.settings import SampleCount, SampledSettings, SampleShare, derived, setting
+from idc_controller.settings import SampleCount, SampledSettings, SampleShare, SettingsTable, derived, setting
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ProcessNoiseSettings:
+class ProcessNoiseSettings(SettingsTable):
     """Densities of the white noise that drives what the linear model leaves out, per square root of a second."""
 
     payload_acceleration: float = setting(0.003, "m/s2/sqrt(s)", "noise of the payload's acceleration", ge=0.0)
@@ -23,7 +23,7 @@ class ProcessNoiseSettings:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class InitialCovarianceSettings:
+class InitialCovarianceSettings(SettingsTable):
     """Standard deviations of the state of a team that stands on the ground."""
 
     position: float = setting(0.05, "m", "initial uncertainty of the payload's position", gt=0.0)
@@ -56,7 +56,7 @@ class CovarianceResetSettings(SampledSettings):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class MeasurementModelSettings:
+class MeasurementModelSettings(SettingsTable):
     """Least standard deviations of measurements: the linear model's own errors, whatever the sensor's noise is."""
 
     position_noise_min: float = setting(2e-3, "m", "least noise assumed of a position", gt=0.0)
@@ -66,7 +66,7 @@ class MeasurementModelSettings:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class StuckSensorSettings:
+class StuckSensorSettings(SettingsTable):
     """Detection of repeated values, which are no measurements."""
 
     repeats: int = setting(2, "", "repetitions to the digit after which a channel is stuck", ge=1)
@@ -154,7 +154,7 @@ class SetpointHistorySettings(SampledSettings):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class WindSettings:
+class WindSettings(SettingsTable):
     """Memory, uncertainties and extent of the wind estimate."""
 
     memory: float = setting(10.0, "s", "time constant with which the past is discounted", gt=0.0)
@@ -189,7 +189,7 @@ class InnovationMonitorSettings(SampledSettings):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class EstimatorSettings:
+class EstimatorSettings(SettingsTable):
     """All settings of the estimator, by part."""
 
     gate_probability: float = setting(1.0 - 1e-6, "", "share of nominal measurements accepted", gt=0.0, lt=1.0)

@@ -2,12 +2,12 @@
 
 from dataclasses import dataclass
 
-from idc_controller.settings import derived, setting
+from idc_controller.settings import SettingsTable, derived, setting
 from idc_controller.trajectory.settings import AvoidanceSettings, Limits
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ProgressSettings:
+class ProgressSettings(SettingsTable):
     """Answer of the progress along the mission to lag and wind."""
 
     stage_share: float = setting(
@@ -34,7 +34,7 @@ class ProgressSettings:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class DetourSettings:
+class DetourSettings(SettingsTable):
     """Search of a path on a grid, and its straightening."""
 
     spacing: float = setting(0.5, "m", "between the nodes of the grid", gt=0.0)
@@ -50,7 +50,7 @@ class DetourSettings:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class NavigatorSettings:
+class NavigatorSettings(SettingsTable):
     """Conditions in which a detour is searched, and how it is flown."""
 
     limits: Limits = derived(Limits())
@@ -81,7 +81,7 @@ class NavigatorSettings:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class RestingPlaceSettings:
+class RestingPlaceSettings(SettingsTable):
     """Choice of the place where a team without set-points comes to rest."""
 
     margin: float = derived(AvoidanceSettings.margin)

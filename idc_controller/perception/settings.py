@@ -4,7 +4,7 @@ from dataclasses import dataclass, field, replace
 from typing import Self
 
 from idc_controller.errors import ParameterError
-from idc_controller.settings import SampleCount, SampledSettings, derived, setting
+from idc_controller.settings import SampleCount, SampledSettings, SettingsTable, derived, setting
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -26,7 +26,7 @@ class ScanSettings(SampledSettings):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class AssociationSettings:
+class AssociationSettings(SettingsTable):
     """Gating distances between clusters of points and surfaces."""
 
     map_gate: float = setting(0.25, "m", "mean distance of a cluster from a standing obstacle of the map", gt=0.0)
@@ -42,7 +42,7 @@ class AssociationSettings:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class RetentionSettings:
+class RetentionSettings(SettingsTable):
     """Confirmation, coasting and deletion of tracks."""
 
     confirmations: int = setting(2, "", "clusters after which a track is confirmed", ge=1)
@@ -57,7 +57,7 @@ class RetentionSettings:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class MapCheckSettings:
+class MapCheckSettings(SettingsTable):
     """Detection of an offset of the obstacles from their places on the map."""
 
     offset_min: float = setting(0.2, "m", "offset from which on detections contradict the map", gt=0.0)
@@ -71,7 +71,7 @@ class MapCheckSettings:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ImmSettings:
+class ImmSettings(SettingsTable):
     """Motion models of the interacting multiple model (IMM) filter, and their process noise."""
 
     static_walk: float = setting(0.01, "m/sqrt(s)", "static model: random walk of the position", ge=0.0)
@@ -124,7 +124,7 @@ class ManoeuvreSettings(SampledSettings):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SurfaceSettings:
+class SurfaceSettings(SettingsTable):
     """Fits of spheres, poles, walls and known shapes to the points of one frame."""
 
     model_sigma: float = setting(0.015, "m", "standard deviation of a real surface about its shape", ge=0.0)
@@ -154,7 +154,7 @@ class SurfaceSettings:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ObstacleFilterSettings:
+class ObstacleFilterSettings(SettingsTable):
     """Shape and motion of one track."""
 
     static_speed: float = setting(0.1, "m/s", "speed below which a track is static", gt=0.0)
@@ -178,7 +178,7 @@ class ObstacleFilterSettings:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PerceptionSettings:
+class PerceptionSettings(SettingsTable):
     """All settings of the obstacle map, by part."""
 
     scans: ScanSettings = field(default_factory=ScanSettings)

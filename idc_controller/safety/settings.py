@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from idc_controller.arrays import Array
 from idc_controller.errors import ParameterError
-from idc_controller.settings import derived, setting
+from idc_controller.settings import SettingsTable, derived, setting
 from idc_controller.trajectory.integrator_chain import Chain
 from idc_controller.trajectory.settings import AvoidanceSettings, Limits
 
@@ -16,7 +16,7 @@ Triple = tuple[float, float, float]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PlannerSettings:
+class PlannerSettings(SettingsTable):
     """The safety QP: weights of the deviation per axis (x, y, z), limits of the plan, and the barrier."""
 
     stage: float = setting(0.1, "s", "from stage to stage of a plan", gt=0.0)
@@ -98,7 +98,7 @@ class PlannerSettings:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class FilterSettings:
+class FilterSettings(SettingsTable):
     """Obstacles that take part in a plan, and the succession of plans."""
 
     watch: float = setting(2.5, "m", "obstacles that come closer to the hull than this take part in the QP", gt=0.0)

@@ -7,14 +7,14 @@ import numpy as np
 
 from idc_controller.arrays import Array
 from idc_controller.errors import TrajectoryError
-from idc_controller.settings import derived, setting
+from idc_controller.settings import SettingsTable, derived, setting
 
 CORNER = 0.2
 """Distance (m) within which the default system passes a waypoint without hold: ``motion.corner``."""
 
 
-@dataclass(frozen=True)  # compared: what follows from equal limits is computed once
-class Limits:
+@dataclass(frozen=True, eq=False, repr=False)
+class Limits(SettingsTable):
     """Largest Euclidean norms that a trajectory's derivatives may reach; the defaults are those between waypoints.
 
     Raises:
@@ -41,7 +41,7 @@ class Limits:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class AvoidanceSettings:
+class AvoidanceSettings(SettingsTable):
     """Clearance from obstacles, and how fast they are approached: table ``avoidance``."""
 
     margin: float = setting(0.5, "m", "clearance to keep between hull and obstacles", gt=0.0)
@@ -51,7 +51,7 @@ class AvoidanceSettings:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class BrakingSettings:
+class BrakingSettings(SettingsTable):
     """Duration of a stop: the least, or as long as the deceleration demands."""
 
     time: float = setting(4.0, "s", "least time in which a team without set-points comes to rest", gt=0.0)
