@@ -57,8 +57,7 @@ class TruthLog:
         ]
         for uav in state.uavs:
             row += (*uav.position_in_world, *uav.quaternion, uav.thrust)
-        # Always as doubles, so that 0 and 0.0 are the same to the byte.
-        self._truth.write_numbers([*map(float, row), int(contacts)])
+        self._truth.write_numbers([[*row, contacts]])
         if not obstacles or self._closed:
             return
         if self._obstacles is None:
