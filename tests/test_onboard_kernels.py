@@ -177,8 +177,8 @@ class Ground:
     def act(self, pilots: list[Autopilot], now: float) -> None:
         """Command all ``pilots`` the same."""
         rng = self._rng
-        thrust = 0.3 + 0.4 * rng.random()
-        setpoint = AttitudeSetpoint((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.1 * rng.random()), thrust, 0)
+        thrust, turn = 0.3 + 0.4 * rng.random(), 0.1 * rng.normal()
+        setpoint = AttitudeSetpoint((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, turn), thrust, 0)
         mode = int(rng.choice([px4.MODE_HOLD, px4.MODE_LAND, px4.MODE_MANUAL, px4.MODE_MISSION]))
         kind, loss = rng.random(), 0.2 + rng.random()
         if now < self._silent_until:
@@ -189,7 +189,9 @@ class Ground:
             elif kind < 0.104:
                 self._silent_until = now + 3.0 * loss
             elif kind < 0.108:
-                pilot.enter_offboard(setpoint, now - 0.1 * thrust, now)
+                pilot.enter_offboard(setpoint, now - thrust, now)
+                if turn < 0.0:
+                    pilot.arm(now, force=True)
             elif kind < 0.112:
                 pilot.arm(now, force=True)
             elif kind < 0.113:
@@ -228,6 +230,8 @@ def test_idle_vehicles_would_decide_what_they_did(seed):
         for name in ("targets", "landings", "learns", "speeds"):
             one, other = (getattr(arrays, name) for arrays in all_arrays)
             assert np.array_equal(one, other, equal_nan=True), (name, now)
+        flying = [pilot.armed and pilot.wants_setpoints and not pilot.failsafe for pilot in teams[0]]
+        assert all_arrays[0].learns.tolist() == flying
         for one, other in zip(*teams, strict=True):
             shown, others = (
                 (pilot.mode, pilot.armed, pilot.failsafe, pilot.landed_state, pilot.changes, pilot.state.hold is None,

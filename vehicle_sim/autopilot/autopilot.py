@@ -105,7 +105,6 @@ class Autopilot:
         state = self.state
         if state.armed:
             return ACCEPTED
-        self._decide_anew()
         problem = self.arming_problem(now)
         if problem is not None and (not force or not state.navigation.is_valid(now)):
             return rejected_for_now(f"Arming denied: {problem}")
@@ -113,6 +112,7 @@ class Autopilot:
         state.failsafe = False
         state.hold = None
         state.land.start()
+        self._decide_anew()
         return ACCEPTED
 
     def disarm(self, force: bool = False) -> Answer:
@@ -139,13 +139,15 @@ class Autopilot:
 
     def enter_offboard(self, setpoint: AttitudeSetpoint, received: float, now: float) -> Answer:
         """Fly the set-points of a ground, the last of which was ``received`` (s) a moment ago."""
+        answer = modes.enter_offboard(self.state, setpoint, received, now)
         self._decide_anew()
-        return modes.enter_offboard(self.state, setpoint, received, now)
+        return answer
 
     def enter_mode(self, custom_mode: int, now: float) -> Answer:
         """Any mode but OFFBOARD."""
+        answer = modes.enter_mode(self.state, custom_mode, now)
         self._decide_anew()
-        return modes.enter_mode(self.state, custom_mode, now)
+        return answer
 
     # The onboard loop
 
@@ -165,14 +167,19 @@ class Autopilot:
         if state.armed:
             self._fly(now)
         shown = (state.flown_mode, state.armed, state.failsafe, self.landed_state)
-        changed = shown != self._shown
+        self._decide_anew()
+        if shown == self._shown:
+            self.arrays.idle_until[0] = self._idle_until()
+            return False
         self._shown = shown
-        self.changes += changed
-        self.arrays.idle_until[0] = -math.inf if changed else self._idle_until()
-        return changed
+        self.changes += 1
+        return True
 
     def _decide_anew(self) -> None:
+        """Decide with the next step, too: a message of a ground, or the last decision, may have changed anything."""
+        state = self.state
         self.arrays.idle_until[0] = -math.inf
+        self.arrays.learns[0] = state.armed and state.mode == px4.MODE_OFFBOARD and not state.failsafe
 
     def _idle_until(self) -> float:
         """Return until when (s) it would decide as it just did, without a ground's message, lift-off or landing."""
@@ -183,12 +190,6 @@ class Autopilot:
             setpoints = state.setpoints
             return min(setpoints.held_until, setpoints.last_time + state.setpoint_loss_time) - 2.0 * TIME_TOLERANCE
         return -math.inf if state.armed else math.inf
-
-    @property
-    def flies_setpoints(self) -> bool:
-        """Return True if it flies set-points of the ground."""
-        state = self.state
-        return state.armed and state.mode == px4.MODE_OFFBOARD and not state.failsafe
 
     def _fly(self, now: float) -> None:
         """The control law of what is flown: hold and descent, the set-points of OFFBOARD, or waiting armed."""

@@ -39,7 +39,7 @@ class OnboardArrays:
     stamps: Array
     """Times of the last fresh samples, and when they came (N, 2) (s)."""
     learns: Mask
-    """Vehicles that learn the thrust that they hover with."""
+    """Vehicles that fly set-points of the ground, and learn the thrust that they hover with."""
     landings: Array
     targets: Array
     accelerations: Array

@@ -15,10 +15,6 @@ class Decisions(Protocol):
     def sense(self, sample: Measurement, now: float) -> None:
         """Take a sample that is not fresh."""
 
-    @property
-    def flies_setpoints(self) -> bool:
-        """Return True if it flies set-points of the ground."""
-
     def decide(self, now: float) -> bool:
         """Check the failsafes, and say what the rotors are to do; return True if a HEARTBEAT changes.
 
@@ -46,16 +42,11 @@ def step_together(
     for i, fresh in enumerate(arrays.fresh.tolist()):
         if not fresh and i not in missing:
             autopilots[i].sense(Measurement.of_row(float(times[i]), samples[i].tolist()), now)
-    for i in _busy(arrays, now):
-        arrays.learns[i] = autopilots[i].flies_setpoints
     detect_landings(
         arrays.detectors, arrays.estimates, arrays.targets, arrays.learns, now, arrays.landings, arrays.idle_until
     )
-    changed = [i for i in _busy(arrays, now) if autopilots[i].decide(now)]
+    changed = [
+        i for i, idle_until in enumerate(arrays.idle_until.tolist()) if idle_until <= now and autopilots[i].decide(now)
+    ]
     control_attitudes(arrays.airframes, arrays.estimates, arrays.targets, arrays.accelerations, arrays.speeds)
     return changed
-
-
-def _busy(arrays: OnboardArrays, now: float) -> list[int]:
-    """Return the vehicles (from 0) that have something to decide at ``now`` (s)."""
-    return [i for i, until in enumerate(arrays.idle_until.tolist()) if until <= now]
