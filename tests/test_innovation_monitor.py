@@ -10,7 +10,7 @@ from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
 from idc_controller.estimation.settings import InnovationMonitorSettings
 
 KEYS = ((PAYLOAD, Position), (0, Position), (1, Position), (1, Attitude))
-SIZES = (6, 6, 6, 4)
+SIZES = np.array([6, 6, 6, 4])
 GATE = 1.0 - 1e-6
 REJECTIONS = InnovationMonitorSettings().rejections
 
@@ -21,7 +21,7 @@ def findings(samples, *, changed=lambda k, i, nu: nu, rejected=lambda k: ()):
     for k in range(samples):
         time = 0.04 * k
         nu = [changed(k, i, random.standard_normal(size)) for i, size in enumerate(SIZES)]
-        monitor.learn(time, KEYS, nu, rejected(k))
+        monitor.learn(time, KEYS, SIZES, np.concatenate(nu), rejected(k))
         for key, names in monitor.findings(time).items():
             for name in names:
                 found.setdefault((key, name), time)
@@ -44,10 +44,10 @@ def test_monitor_finds_repeated_rejections():
 
 def test_rejections_count_for_their_time_and_no_longer():
     settings = InnovationMonitorSettings()
-    monitor, none = InnovationMonitor(GATE), [np.zeros(size) for size in SIZES]
+    monitor, none = InnovationMonitor(GATE), np.zeros(SIZES.sum())
     times = np.linspace(0.0, 0.9 * settings.rejection_time, REJECTIONS)
     for time in times:
-        monitor.learn(time, KEYS, none, [(1, Position)])
+        monitor.learn(time, KEYS, SIZES, none, [(1, Position)])
     assert monitor.findings(times[-1]) == {(1, Position): [Finding.REJECTED]}
     assert monitor.findings(0.999 * settings.rejection_time) == {(1, Position): [Finding.REJECTED]}
     assert monitor.findings(1.001 * settings.rejection_time) == {}
@@ -75,7 +75,7 @@ def test_monitor_allows_attitudes_larger_innovations():
 def test_monitor_forgets_attitudes_of_uavs_only():
     monitor = InnovationMonitor(GATE)
     for k in range(50):
-        monitor.learn(0.04 * k, KEYS, [np.full(size, 5.0) for size in SIZES], ())
+        monitor.learn(0.04 * k, KEYS, SIZES, np.full(SIZES.sum(), 5.0), ())
     monitor.forget_attitudes()
     assert set(monitor.findings(2.0)) == set(KEYS[:3])
 
@@ -84,7 +84,7 @@ def test_monitor_treats_single_channel_by_itself():
     rng, monitor, key = np.random.default_rng(4), InnovationMonitor(GATE), (1, Position)
     for k in range(200):
         nu = rng.standard_normal(6) if k < 50 else rng.standard_normal(3) + (2.0 if k >= 100 else 0.0)
-        monitor.learn(0.04 * k, [key], [nu], [])
+        monitor.learn(0.04 * k, [key], np.array([len(nu)]), nu, [])
         found = monitor.findings(0.04 * k)
         if k < 100:
             assert found == {}
@@ -94,7 +94,7 @@ def test_monitor_treats_single_channel_by_itself():
 def test_monitor_counts_replayed_moment_once():
     monitor = InnovationMonitor(GATE)
     for k in range(2 * REJECTIONS):
-        monitor.learn(0.1, KEYS[:1], [np.zeros(6)], [(PAYLOAD, Position)])
+        monitor.learn(0.1, KEYS[:1], SIZES[:1], np.zeros(6), [(PAYLOAD, Position)])
         assert monitor.findings(0.1 + 0.01 * k) == {}
 
 

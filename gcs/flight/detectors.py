@@ -176,7 +176,9 @@ class _Innovations:
     def __call__(self, step: MonitorStep) -> None:
         if step.clear and step.record is not None:
             for innovation in step.record.estimate.innovations:
-                self._tests.learn(innovation.time, innovation.keys, innovation.normalised, innovation.rejected)
+                self._tests.learn(
+                    innovation.time, innovation.keys, innovation.sizes, innovation.normalised, innovation.rejected
+                )
                 if innovation.covariance_reset and step.steady:
                     self._resets.add(("team", MonitorAlarm.COVARIANCE_RESET), innovation.time)
             if not step.steady:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Indices
 from idc_controller.estimation.measurements import SensorKey
 
 
@@ -17,12 +17,14 @@ class InnovationRecord:
     degrees_of_freedom: int
     rejected: tuple[SensorKey, ...]
     """Sources and kinds that failed the test."""
-    covariance_reset: bool = False
+    covariance_reset: bool
     """Most sources disagreed with the prediction, or it was no number: its covariance was reset."""
-    keys: tuple[SensorKey, ...] = ()
+    keys: tuple[SensorKey, ...]
     """Sources and kinds of all measurements (K,)."""
-    normalised: tuple[Array, ...] = ()
-    """Innovation of each, normalised to variance 1 (m,)."""
+    sizes: Indices
+    """Rows of each (K,); they add up to m."""
+    normalised: Array
+    """Innovations, one measurement after the other, normalised to variance 1 (m,)."""
 
 
 @dataclass(frozen=True, eq=False)

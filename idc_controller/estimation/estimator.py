@@ -127,7 +127,8 @@ class Estimator:
     def _misfit(self, record: InnovationRecord) -> float:
         """Return the mean square of the normalised innovations, each bounded."""
         limit = self.settings.dead_reckoning.misfit_limit
-        return float(np.mean([min(float(y @ y) / len(y), limit) for y in record.normalised]))
+        innovations = np.split(record.normalised, np.cumsum(record.sizes)[:-1])
+        return float(np.mean([min(float(y @ y) / len(y), limit) for y in innovations]))
 
     def _advance(self, time: float, reference: Reference, adapt: bool = True) -> Estimate:
         """Apply the pending measurements and predict to ``time`` (s)."""

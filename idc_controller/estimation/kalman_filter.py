@@ -53,7 +53,7 @@ class Innovation(NamedTuple):
 
     def subset(self, which: Mask) -> Innovation:
         """Return that of some rows (m,); all of them: this one."""
-        if which.all():
+        if np.count_nonzero(which) == len(which):
             return self
         columns, coefficients = self.rows
         rows = SparseRows(columns[which], coefficients[which])

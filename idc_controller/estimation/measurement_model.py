@@ -44,14 +44,9 @@ class ObservationStack:
     of_payload: Mask
     """Rows (m,) of the payload."""
 
-    def split(self, rows: Array) -> tuple[Array, ...]:
-        """Return ``rows`` (m,) by measurement."""
-        ends = self.starts + self.sizes
-        return tuple(rows[a:b] for a, b in zip(self.starts.tolist(), ends.tolist(), strict=True))
-
     def subset(self, present: Mask) -> ObservationStack:
         """Return the stack of the rows ``present`` (m,) alone; all of them: this one."""
-        if present.all():
+        if np.count_nonzero(present) == len(present):
             return self
         sizes = np.add.reduceat(present, self.starts, dtype=int)
         left = sizes > 0

@@ -1,5 +1,7 @@
 """Measurement update: innovations of one moment, their test, and the correction of the filter."""
 
+import numpy as np
+
 from idc_controller.estimation.estimate import InnovationRecord
 from idc_controller.estimation.health.innovation_gate import InnovationGate
 from idc_controller.estimation.health.noise_adaptation import Reaction
@@ -48,7 +50,7 @@ class MeasurementUpdate:
         y, rows = model.observe(observation, samples, flat, k)
         innovation = filter.innovation(y, rows)
         present = health.usable_rows(whole, innovation)
-        if not present.any():
+        if not np.count_nonzero(present):
             return None
         stack, innovation = whole.subset(present), innovation.subset(present)
         keys, adaptation = stack.keys, health.adaptation
@@ -68,14 +70,14 @@ class MeasurementUpdate:
         if adapt:
             health.isolation.learn(whole, present, accepted_of_all, health.dead_reckoning.is_inconsistent)
             adaptation.learn(moment.time, keys, test.normalised, test.mean_squares, accepted, stack.of_payload)
-        squared = 0.0
-        if accepted.any():
+        squared, degrees_of_freedom = 0.0, int(np.count_nonzero(accepted))
+        if degrees_of_freedom:
             heights = observation.heights
             measured = observation.uavs[accepted_of_all[heights] & accepted_of_all[heights + 3]]
             squared = filter.update(innovation.subset(accepted), test.variance[accepted], measured)
         return InnovationRecord(
-            moment.time, squared, int(accepted.sum()), tuple(keys[c] for c in rejected),
-            is_lost or reaction is Reaction.COVARIANCE_RESET, keys, stack.split(test.normalised),
+            moment.time, squared, degrees_of_freedom, tuple(keys[c] for c in rejected),
+            is_lost or reaction is Reaction.COVARIANCE_RESET, keys, stack.sizes, test.normalised,
         )  # fmt: skip
 
     def _restart(self, filter: ErrorStateFilter) -> None:

@@ -11,7 +11,7 @@ from enum import Enum
 
 import numpy as np
 
-from idc_controller.arrays import Array, Mask
+from idc_controller.arrays import Array, Indices, Mask
 from idc_controller.estimation.health.chi_squared import lower_quantile, upper_quantile
 from idc_controller.estimation.health.innovation_monitor_kernels import exceeded, running_means
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, SensorKey
@@ -76,26 +76,27 @@ class InnovationMonitor:
         self._square_limits = np.append(0.0, upper_quantile(s.false_alarm, freedom) / freedom)
 
     def learn(
-        self, time: float, keys: Sequence[SensorKey], normalised: Sequence[Array], rejected: Sequence[SensorKey]
+        self, time: float, keys: Sequence[SensorKey], sizes: Indices, normalised: Array, rejected: Sequence[SensorKey]
     ) -> None:
         """Learn from one moment; one that is replayed counts only for what is new in it.
 
         Args:
             time: s.
             keys: the sensors.
-            normalised: their normalised innovations.
+            sizes: rows of each (K,).
+            normalised: their normalised innovations, one after the other (m,).
             rejected: those of them that the innovation test rejected.
         """
-        sizes = [len(innovation) for innovation in normalised]
-        which = np.array([self._index(key, size) for key, size in zip(keys, sizes, strict=True)])
+        sensors = list(zip(keys, sizes.tolist(), strict=True))
+        which = np.array([self._index(sensor) for sensor in sensors])
         statistics = self._statistics
         new = running_means(
-            time, which, np.array(sizes), np.concatenate(normalised), self._gates, self._settings.share,
+            time, which, sizes, normalised, self._gates, self._settings.share,
             statistics.mean, statistics.square, statistics.last,
         )  # fmt: skip
-        for key, size, is_new in zip(keys, sizes, new.tolist(), strict=True) if rejected else ():
-            if is_new and key in rejected:
-                self._rejections.setdefault((key, size), deque()).append(time)
+        for sensor, is_new in zip(sensors, new.tolist(), strict=True) if rejected else ():
+            if is_new and sensor[0] in rejected:
+                self._rejections.setdefault(sensor, deque()).append(time)
 
     def forget_attitudes(self) -> None:
         """Discard what was learnt of the UAVs' attitudes."""
@@ -129,10 +130,11 @@ class InnovationMonitor:
                     found[entry[0]].append(Finding.NOISY)
         return dict(found)
 
-    def _index(self, key: SensorKey, size: int) -> int:
-        at = self._sensors.get((key, size))
+    def _index(self, sensor: tuple[SensorKey, int]) -> int:
+        at = self._sensors.get(sensor)
         if at is None:
-            at = self._sensors[key, size] = len(self._sensors)
+            key, size = sensor
+            at = self._sensors[sensor] = len(self._sensors)
             wide = _is_uav_attitude(key)
             factor = self._settings.manoeuvre_factor if wide else 1.0
             self._statistics.append(wide, factor * self._mean_limits[size], factor * self._square_limits[size])

@@ -69,7 +69,7 @@ class NoiseAdaptation:
         a disturbance of the payload first, is right when it persists. Otherwise a filter that kept to its prediction
         would reject every measurement from here on.
         """
-        if test.accepted.all():
+        if False not in test.accepted.tolist():
             self._payload_rejections = 0
             return Reaction.NONE
         sources = {source for source, _ in keys}
