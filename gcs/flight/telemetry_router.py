@@ -61,7 +61,7 @@ class TelemetryRouter:
             if received.target_system and not received.is_for(self._codec.system_id):
                 continue  # an answer to another system behind this address
             self._links[index].handle(received, now)
-            if received.message_id in _STAMPED:
+            if received.layout.message_id in _STAMPED:
                 stamped.setdefault(index, []).append(received)
         for index, group in stamped.items():
             if self._links[index].clock.known:
@@ -95,9 +95,12 @@ class TelemetryRouter:
             self._clock.follow(offset + link.clock.set_back, now, connecting=self._flight.phase is Phase.CONNECT)
         team_offset = self._clock.offset
         latest = -math.inf
+        stamp, time = -1, math.nan
         for received in group:
-            message_id = received.message_id
-            time = whole_ms(received.time_boot_ms * 1e-3 - offset + team_offset)
+            message_id = received.layout.message_id
+            if received.time_boot_ms != stamp:
+                stamp = received.time_boot_ms
+                time = whole_ms(stamp * 1e-3 - offset + team_offset)
             if message_id == _SETPOINT:
                 self._confirm_setpoint(received, index, time, latest, now)
             elif message_id == _DETECTION:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Sequence
 from functools import lru_cache
+from struct import Struct
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,7 @@ _ATTITUDE = LAYOUTS[mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION]
 _POSITION = LAYOUTS[mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED]
 _POINT = LAYOUTS[mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D]
 _NAN = math.nan
+_PACK = {3: Struct("3d").pack, 4: Struct("4d").pack}
 
 _Values = tuple[Array, Array] | None
 """Pose and motion, one of them nan if it cannot be a measurement; None: neither can."""
@@ -88,13 +90,15 @@ def _usable(pose: Sequence[float], motion: Sequence[float], has_pose: bool, has_
     """Return pose and motion as arrays to read only, without the part that cannot be a measurement."""
     if not (has_pose or has_motion):
         return None
-    values = (
-        np.array(pose) if has_pose else np.full(len(pose), _NAN),
-        np.array(motion) if has_motion else np.full(len(motion), _NAN),
+    return (
+        _read_only(pose if has_pose else [_NAN] * len(pose)),
+        _read_only(motion if has_motion else [_NAN] * len(motion)),
     )
-    for array in values:
-        array.flags.writeable = False  # shared by all who relay it
-    return values
+
+
+def _read_only(numbers: Sequence[float]) -> Array:
+    """Return three or four numbers as an array that nobody can write to: all who relay them share it."""
+    return np.frombuffer(_PACK[len(numbers)](*numbers))
 
 
 _READ: dict[int, Callable[[bytes], _Values]] = {_ATTITUDE.message_id: _attitude, _POSITION.message_id: _position}

@@ -111,7 +111,7 @@ class VehicleLink:
                 self.statistics.run(received.sequence, received.run, now)
             return
         in_order = of_autopilot and self.statistics.message(received.sequence, now)
-        message_id = received.message_id
+        message_id = received.layout.message_id
         if message_id in _NAVIGATION:
             if of_autopilot:
                 self._handle_navigation(message_id, received.time_boot_ms, in_order, now)
