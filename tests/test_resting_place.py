@@ -59,7 +59,7 @@ def test_least_distance_of_kernel_agrees_with_plain_formula(shape, place, veloci
     centres, growth = np.array(place) + elapsed[:, None] * np.array(velocity), 0.05 * elapsed
     duration = USUAL.duration(state[1])
     least = least_distances(
-        USUAL.control_points(state, duration)[None], np.array([duration]), elapsed, axis, 0.4,
+        USUAL.control_points(state[None], duration), np.array([duration]), elapsed, axis, 0.4,
         shape.row[None], np.array([shape.reach]), centres[None], growth[None], 2.0,
     )  # fmt: skip
     places = USUAL.path(state)(np.minimum(elapsed, duration))

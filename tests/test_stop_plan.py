@@ -10,6 +10,7 @@ from idc_controller.trajectory.flatness import Load, flat_reference
 from idc_controller.trajectory.lissajous import LissajousCurve, LissajousTrajectory
 from idc_controller.trajectory.settings import BrakingSettings, Limits
 from idc_controller.trajectory.stop_plan import Braking, stop_plan
+from idc_controller.trajectory.stop_plan_kernels import control_points
 
 PARAMETERS = read_system().parameters()
 LIMITS = Limits(20.0, 6.0, 20.0, 80.0)
@@ -94,3 +95,14 @@ def test_stop_plan_starts_at_current_positions_and_translates_all_uavs_alike():
     # What is not known is not reckoned with.
     x[layout.r_0] = np.nan
     assert stop_plan(PARAMETERS, flat, 13.7, x).control_points == pytest.approx(usual.control_points)
+
+
+@pytest.mark.parametrize("paths", [(4, 1), (1, 5), (3, 3)])
+def test_control_points_are_those_of_the_quartic(paths):
+    rng = np.random.default_rng(4)
+    states, durations = rng.normal(size=(paths[0], 3, 3)), rng.uniform(2.0, 9.0, paths[1])
+    asides = rng.normal(size=(paths[1], 3))
+    shares = np.array([[1.0, 0.0, 0.0], [1.0, 1 / 4, 0.0], *[[1.0, 1 / 2, 1 / 12]] * 3])
+    points = shares @ (states * durations[:, None, None] ** np.arange(3)[:, None])
+    points[:, 2:] += asides[:, None]
+    assert control_points(states, durations, asides) == pytest.approx(points, abs=1e-12)

@@ -20,7 +20,8 @@ from idc_controller.guidance.resting_place_kernels import least_distances
 from idc_controller.guidance.settings import RestingPlaceSettings
 from idc_controller.parameters import SystemParameters
 from idc_controller.trajectory.settings import BrakingSettings
-from idc_controller.trajectory.stop_plan import Braking, control_points
+from idc_controller.trajectory.stop_plan import Braking
+from idc_controller.trajectory.stop_plan_kernels import control_points
 
 _AXIS = 9
 """Points on the formation's upright axis on its path."""
@@ -90,7 +91,7 @@ class RestingPlace:
         distinguished.
         """
         durations = self._choices.shares[which] * usual_duration
-        control = control_points(state, durations, self._choices.asides[which])
+        control = control_points(state[None], durations, self._choices.asides[which])
         limit = self._radius + self.settings.clearance + _ROUNDING
         least = near.least_distances(control, durations, self._elapsed, self._axis, limit)
         return least - self._radius

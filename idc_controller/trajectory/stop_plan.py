@@ -20,33 +20,7 @@ from idc_controller.model.linear import StateLayout
 from idc_controller.parameters import SystemParameters
 from idc_controller.trajectory.flatness import FlatReference
 from idc_controller.trajectory.settings import BrakingSettings
-from idc_controller.trajectory.stop_plan_kernels import motion
-
-# Control points of the quartic from (position, T velocity, T^2 acceleration) at its start.
-_CONTROL_POINTS = np.array(
-    [
-        [1.0, 0.0, 0.0],
-        [1.0, 1.0 / 4.0, 0.0],
-        [1.0, 1.0 / 2.0, 1.0 / 12.0],
-        [1.0, 1.0 / 2.0, 1.0 / 12.0],
-        [1.0, 1.0 / 2.0, 1.0 / 12.0],
-    ]
-)
-
-
-def control_points(state: Array, duration: Array, aside: Array) -> Array:
-    """Return the control points (..., 5, 3) (m) of paths to rest.
-
-    Args:
-        state: position, velocity and acceleration at the start (..., 3, 3).
-        duration: of the paths (...) (s).
-        aside: place of rest less that to which the motion alone leads (..., 3) (m).
-    """
-    powers = np.ones((*duration.shape, 3))
-    powers[..., 1], powers[..., 2] = duration, duration**2
-    points = _CONTROL_POINTS @ (state * powers[..., None])
-    points[..., 2:, :] += aside[..., None, :]
-    return np.asarray(points)
+from idc_controller.trajectory.stop_plan_kernels import control_points, motion
 
 
 class Braking(NamedTuple):
@@ -62,14 +36,14 @@ class Braking(NamedTuple):
         """Return the time from a ``velocity`` (3,) (m/s) to rest (s)."""
         return self.share * self.settings.usual_duration(velocity)
 
-    def control_points(self, state: Array, duration: float) -> Array:
-        """Return those (..., 5, 3) (m) of the path from a ``state`` (..., 3, 3) of position, velocity, acceleration."""
-        return control_points(state, np.array(duration), np.array(self.aside))
+    def control_points(self, states: Array, duration: float) -> Array:
+        """Return those of the paths (P, 5, 3) (m) from position, velocity and acceleration in ``states`` (P, 3, 3)."""
+        return control_points(states, np.array([duration]), np.array([self.aside]))
 
     def path(self, state: Array) -> BPoly:
         """Return the path from ``state`` (3, 3) on, over the time since then (s)."""
         duration = self.duration(state[1])
-        return BPoly(self.control_points(state, duration)[:, None, :], [0.0, duration])
+        return BPoly(self.control_points(state[None], duration)[0][:, None, :], [0.0, duration])
 
 
 @dataclass(frozen=True, eq=False)

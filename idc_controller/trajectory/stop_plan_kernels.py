@@ -56,3 +56,24 @@ def motion(
             result[number, 1, axis] += result[i, 1, axis] / number
             result[number, 2, axis] += result[i, 2, axis] / number
     return result
+
+
+@kernel("float64[:, :, ::1](float64[:, :, ::1], float64[::1], float64[:, ::1])")
+def control_points(states: Array, durations: Array, asides: Array) -> Array:
+    """Return the control points (P, 5, 3) (m) of paths to rest: quartics as Bezier curves.
+
+    Args:
+        states: position, velocity and acceleration at the start of each path (P, 3, 3); or of all of them (1, 3, 3).
+        durations: of the paths (P,) (s); or of all of them (1,).
+        asides: place of rest less that to which the motion alone leads (P, 3) (m); (1, 3) with one duration.
+    """
+    points = np.empty((max(len(states), len(durations)), 5, 3))
+    for path in range(len(points)):
+        state, other = states[path if len(states) > 1 else 0], path if len(durations) > 1 else 0
+        for axis in range(3):
+            position, turn = state[0, axis], durations[other] * state[1, axis]
+            bend = durations[other] ** 2 * state[2, axis]
+            points[path, 0, axis] = position
+            points[path, 1, axis] = position + turn / 4.0
+            points[path, 2:, axis] = position + turn / 2.0 + (1.0 / 12.0) * bend + asides[other, axis]
+    return points
