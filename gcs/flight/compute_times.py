@@ -8,7 +8,7 @@ class Part(IntEnum):
     """Part of what the ground computes in a control period."""
 
     TELEMETRY = 0
-    """Receiving: decoding, links, clocks, measurements into the estimator."""
+    """Receiving: decoding, links, clocks, measurements into the estimator; datagrams put by for the telemetry log."""
     ESTIMATION = 1
     PERCEPTION = 2
     """Obstacle map."""

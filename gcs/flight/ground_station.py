@@ -108,16 +108,13 @@ class GroundStation:
 
     def receive(self, datagram: bytes, sender: Address, now: float) -> None:
         """Take a datagram from any address. Never raises for anything that a datagram can hold."""
-        times = self._times
-        from_vehicle = self.router.receive(datagram, sender, now)
-        times.lap(Part.TELEMETRY)
-        if from_vehicle:
+        if self.router.receive(datagram, sender, now):
             self._recorder.datagram(now, datagram)
-            times.lap(Part.RECORDING)
 
     def datagrams_to_send(self, now: float) -> list[tuple[bytes, Address]]:
         """Return all that is due at ``now`` (s), each with its address."""
         times, record = self._times, None
+        times.lap(Part.TELEMETRY)
         messages: list[list[Packed]] = [[] for _ in self.links]
         if self._heartbeat.is_due(now):
             for queue in messages:
