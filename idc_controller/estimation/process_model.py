@@ -23,7 +23,6 @@ class ProcessModel:
         self.forces = slice(n, self.mass)
         self._uav_columns = self._columns_of_uavs()
         self._noise = self._noise_of(densities)
-        self._gravity = np.array([0.0, 0.0, model.parameters.g])
         self.transition = lru_cache(maxsize=256)(self._discretised)
         self.noise = lru_cache(maxsize=256)(self._integrated_noise)
 
@@ -32,7 +31,7 @@ class ProcessModel:
 
         It acts along g e3 - a, which follows the manoeuvre (m/s2).
         """
-        return self._gravity - acceleration
+        return np.array([0.0, 0.0, self.model.parameters.g]) - acceleration
 
     def add_per_vehicle_noise(self, P: Array, measured: Indices) -> None:
         """Add variances to the disturbance forces in ``P`` (n, n) of the UAVs ``measured`` (K,), between samples.
@@ -110,7 +109,7 @@ class ProcessModel:
         if duration <= self._noise.duration_max:
             return self._noise.covariance(duration, (1.0, force_scale**2))
         half = interval_us // 2
-        F = self.transition(half).F(self._gravity)
+        F = self.transition(half).F(self.force_of_mass(np.zeros(3)))
         return np.asarray(F @ self.noise(interval_us - half, force_scale) @ F.T + self.noise(half, force_scale))
 
     def _noise_of(self, p: ProcessNoiseSettings) -> IntegratedNoise:
