@@ -10,7 +10,7 @@ from gcs.mavlink.layout import LAYOUTS
 from gcs.mavlink.messages import Received
 from gcs.mavlink.telemetry import detections
 from gcs.mission.known_obstacles import known_obstacles
-from idc_controller.estimation.measurements import Attitude, Position
+from idc_controller.estimation.measurements import Attitude, Position, VehicleStates
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
@@ -99,12 +99,15 @@ class Scene:
 
         ``off`` (3,): error of the reported positions (m), of which the ground has estimates.
         """
-        for i, position, quaternion, scan in self.look(time, centre, obstacles):
+        seen, states = self.look(time, centre, obstacles), np.zeros((len(self.sensors), 13))
+        for i, position, quaternion, _ in seen:
+            states[i, 0:3], states[i, 6:10] = position, quaternion
+        if off is not None:
+            obstacle_map.scans.poses.add_estimated(VehicleStates(time, states))
+        for i, position, quaternion, scan in seen:
             obstacle_map.scans.poses.add_measured(Attitude(time, i, quaternion, np.zeros(3)))
             reported = position if off is None else position + off
             obstacle_map.scans.poses.add_measured(Position(time, i, reported, np.zeros(3)))
-            if off is not None:
-                obstacle_map.scans.poses.add_estimated(Position(time, i, position, np.zeros(3)))
             for message in messages_of(scan):
                 obstacle_map.scans.add(detections_of(message), i, time)
 

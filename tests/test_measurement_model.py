@@ -30,7 +30,8 @@ def test_estimated_vehicles_match_measurement_model():
     moved = REFERENCE.at(np.zeros(1)).x[0] + 0.01 * rng.standard_normal(LAYOUT.size)
     flat = REFERENCE.at(np.zeros(1))
     model = Estimator(MODEL).measurement_model
-    for measurement in model.vehicles(0.0, moved):
+    vehicles = model.vehicles(0.0, moved)
+    for measurement in (vehicles.sample(i, kind) for i in range(len(vehicles.values)) for kind in (Position, Attitude)):
         observation = model.observation(((measurement.source, type(measurement)),))
         expected = observation.rows.dense(LAYOUT.size) @ (moved - flat.x[0])
         assert model.observe(observation, observation.samples([measurement]), flat, 0)[0] == pytest.approx(
@@ -82,7 +83,7 @@ def test_estimated_vehicles_head_north_at_any_tilt(tilt):
     attitudes = []
     for time in (0.0, step):
         x[LAYOUT.n] = n + time * n_dot
-        attitudes.append(next(t for t in model.vehicles(time, x) if isinstance(t, Attitude)))
+        attitudes.append(model.vehicles(time, x).sample(0, Attitude))
     now, then = attitudes
     direction = [*tilt, -np.sqrt(1.0 - np.square(tilt).sum())]
     assert now.quaternion == pytest.approx(attitude_of_direction(direction), abs=1e-12)

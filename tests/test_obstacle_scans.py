@@ -17,7 +17,7 @@ from obstacle_scene import (
     sphere,
 )
 
-from idc_controller.estimation.measurements import Attitude, Position
+from idc_controller.estimation.measurements import Attitude, Position, VehicleStates
 from idc_controller.perception.scan_assembly import ScanAssembly
 from idc_controller.perception.scan_kernels import grouped, possible_points
 from vehicle_sim.world.range_sensor import RangeSample
@@ -39,8 +39,7 @@ def test_pose_is_extrapolated_by_estimated_motion_when_none_is_measured():
     level, unknown, moving = np.array([1.0, 0.0, 0.0, 0.0]), np.full(3, np.nan), np.array([0.0, 2.0, 0.0])
     scans.poses.add_measured(Attitude(0.0, 0, level, unknown))
     scans.poses.add_measured(Position(0.0, 0, HERE, unknown))
-    scans.poses.add_estimated(Attitude(0.0, 0, level, turning))
-    scans.poses.add_estimated(Position(0.0, 0, HERE + 1.0, moving))
+    scans.poses.add_estimated(VehicleStates(0.0, np.hstack([HERE + 1.0, moving, level, turning])[None]))
     for message in messages_of(RangeSample(t, REACH, np.array([1]), np.array([[5.0, 0.0, 0.0]]))):
         scans.add(detections_of(message), 0, t)
     [[cluster]] = scans.frames(t)

@@ -211,10 +211,9 @@ class GroundStation:
     def _compare(self, record: StepRecord) -> None:
         """Compare estimated vehicle states with what each system id sends; place the detections by them."""
         estimated = self.flight.control.estimator.measurement_model.vehicles(record.estimate.time, record.estimate.x)
-        self._id_check.compare(np.array([sample.pose for sample in estimated[: len(self.links)]]))
+        self._id_check.compare(estimated.values[:, :3])
         if (obstacle_map := self.flight.system.obstacle_map) is not None:
-            for sample in estimated:
-                obstacle_map.scans.poses.add_estimated(sample)
+            obstacle_map.scans.poses.add_estimated(estimated)
 
     def _encoded(
         self, now: float, messages: Sequence[Sequence[Packed]], carries_setpoints: Sequence[bool]

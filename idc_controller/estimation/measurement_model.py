@@ -18,6 +18,7 @@ from idc_controller.estimation.measurements import (
     Position,
     SampleStack,
     SensorKey,
+    VehicleStates,
 )
 from idc_controller.estimation.settings import MeasurementModelSettings
 from idc_controller.estimation.update_kernels import observed
@@ -150,10 +151,8 @@ class MeasurementModel:
         )  # fmt: skip
         return y, SparseRows(columns, coefficients)
 
-    def vehicles(self, time: float, x: Array) -> list[Measurement]:
-        """Return positions and attitudes of the UAVs in the state ``x`` (n,) at ``time`` (s), heading north."""
+    def vehicles(self, time: float, x: Array) -> VehicleStates:
+        """Return the UAVs in the state ``x`` (n,) at ``time`` (s), heading north."""
         layout, p = self.layout, self.parameters
         links = x[layout.s.start : layout.s_dot.stop]
-        states = vehicle_states(x[:12], links, x[layout.n], x[layout.n_dot], p.p, p.l)
-        positions: list[Measurement] = [Position(time, i, state[0:3], state[3:6]) for i, state in enumerate(states)]
-        return positions + [Attitude(time, i, state[6:10], state[10:13]) for i, state in enumerate(states)]
+        return VehicleStates(time, vehicle_states(x[:12], links, x[layout.n], x[layout.n_dot], p.p, p.l))

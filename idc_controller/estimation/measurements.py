@@ -122,6 +122,22 @@ class SampleStack(NamedTuple):
     """Poses and motions, each part whole or all nan."""
 
 
+class VehicleStates(NamedTuple):
+    """Estimated states of all UAVs at one time."""
+
+    time: float
+    """s"""
+    values: Array
+    """Position, velocity, quaternion (body to world, w first) and body rates (N, 13), NED, SI."""
+
+    def sample(self, uav: int, kind: type[Measurement]) -> Measurement:
+        """Return what a perfect sensor of a ``kind`` would measure on a UAV (0 .. N-1)."""
+        state = self.values[uav]
+        if kind is Position:
+            return Position(self.time, uav, state[0:3], state[3:6])
+        return Attitude(self.time, uav, state[6:10], state[10:13])
+
+
 def median_of(copies: Sequence[Measurement]) -> Measurement:
     """Return the median of relayed copies of one measurement: right where few of them are corrupted."""
     first = copies[0]

@@ -1,13 +1,16 @@
 """Poses of the vehicles over the last second, measured and estimated, by which their scans are placed."""
 
 from collections import defaultdict, deque
+from typing import TypeVar
 
 import numpy as np
 
 from idc_controller.arrays import Array
-from idc_controller.estimation.measurements import Attitude, Measurement, Position, SensorKey
+from idc_controller.estimation.measurements import Attitude, Measurement, Position, SensorKey, VehicleStates
 from idc_controller.perception.settings import ScanSettings
 from idc_controller.rotations import quaternion_product
+
+Timed = TypeVar("Timed", Measurement, VehicleStates)
 
 
 class PoseHistory:
@@ -15,18 +18,17 @@ class PoseHistory:
 
     def __init__(self, settings: ScanSettings) -> None:
         self._gap = settings.pose_gap
-        self._measured, self._estimated = (
-            defaultdict[SensorKey, deque[Measurement]](lambda: deque(maxlen=settings.poses)) for _ in range(2)
-        )
+        self._measured = defaultdict[SensorKey, deque[Measurement]](lambda: deque(maxlen=settings.poses))
+        self._estimated = deque[VehicleStates](maxlen=settings.poses)
 
     def add_measured(self, sample: Measurement) -> None:
         """Add a measured position or attitude of a vehicle; those of the payload are passed over."""
         if sample.source >= 0 and sample.has_pose:
             self._measured[sample.source, type(sample)].append(sample)
 
-    def add_estimated(self, sample: Measurement) -> None:
-        """Add an estimated position or attitude of a vehicle."""
-        self._estimated[sample.source, type(sample)].append(sample)
+    def add_estimated(self, states: VehicleStates) -> None:
+        """Add the estimated states of all vehicles."""
+        self._estimated.append(states)
 
     @property
     def uavs(self) -> tuple[int, ...]:
@@ -47,14 +49,12 @@ class PoseHistory:
 
         ``estimated_position`` and ``estimated_attitude``: take the estimated ones instead of the measured ones.
         """
-        measured, estimated = self._measured, self._estimated
-        attitudes, positions = estimated.get((uav, Attitude)), estimated.get((uav, Position))
-        attitude = self._nearest(attitudes if estimated_attitude else measured.get((uav, Attitude)), time)
-        position = self._nearest(positions if estimated_position else measured.get((uav, Position)), time)
+        attitude = self._sample(uav, Attitude, time, estimated_attitude)
+        position = self._sample(uav, Position, time, estimated_position)
         if attitude is None or position is None:
             return None
-        turning = attitude if attitude.has_motion else self._nearest(attitudes, time)
-        moving = position if position.has_motion else self._nearest(positions, time)
+        turning = attitude if attitude.has_motion else self._sample(uav, Attitude, time, True)
+        moving = position if position.has_motion else self._sample(uav, Position, time, True)
         quaternion, place = attitude.pose, position.pose
         if turning is not None and abs(dt := time - attitude.time) > 1e-4:
             quaternion = quaternion_product(quaternion, np.append(1.0, 0.5 * dt * turning.motion))
@@ -63,7 +63,13 @@ class PoseHistory:
             place = place + (time - position.time) * moving.motion
         return place, quaternion
 
-    def _nearest(self, history: deque[Measurement] | None, time: float) -> Measurement | None:
+    def _sample(self, uav: int, kind: type[Measurement], time: float, estimated: bool) -> Measurement | None:
+        if not estimated:
+            return self._nearest(self._measured.get((uav, kind)), time)
+        states = self._nearest(self._estimated, time)
+        return None if states is None else states.sample(uav, kind)
+
+    def _nearest(self, history: deque[Timed] | None, time: float) -> Timed | None:
         if not history:
             return None
         found = history[-1]
