@@ -170,6 +170,26 @@ def test_numbers_read_back_to_the_bit(tmp_path) -> None:
     assert np.array_equal(np.column_stack(list(columns.values())), rows)
 
 
+@pytest.mark.parametrize("special", [math.nan, math.inf, -math.inf, -0.0, 5e-324, 1.7976931348623157e308, 1e-5, 1e22])
+def test_rows_of_numbers_read_back_to_the_bit(tmp_path, special) -> None:
+    rows = np.random.default_rng(3).normal(size=(50, 3)) * 10.0 ** np.arange(-150, 301, 150)[:3]
+    with TableWriter(tmp_path / "a.csv", ("a", "b", "c", "special", "count")) as table:
+        table.write_numbers(*([*row, special, 7] for row in rows.tolist()))
+        table.write_numbers([np.float64(0.1), 1.0, 2.0, np.float64(special), np.int64(7)])
+    assert b",7\n" in (tmp_path / "a.csv").read_bytes()
+    columns = read_table(tmp_path / "a.csv")
+    written = np.column_stack(list(columns.values()))
+    expected = np.vstack([np.column_stack([rows, np.full(50, special), np.full(50, 7.0)]), [0.1, 1.0, 2.0, special, 7]])
+    assert np.array_equal(written, expected, equal_nan=True) and np.array_equal(
+        np.signbit(written), np.signbit(expected)
+    )
+
+
+def test_row_of_numbers_of_another_length_is_an_error(tmp_path) -> None:
+    with TableWriter(tmp_path / "a.csv", ("a", "b")) as table, pytest.raises(ValueError, match="1 values for 2"):
+        table.write_numbers([1.0])
+
+
 def test_csv_bytes_are_independent_of_number_type(tmp_path) -> None:
     with TableWriter(tmp_path / "a.csv", ("a", "b", "c", "d")) as table:
         table.write([0.1, 2, True, float("nan")])

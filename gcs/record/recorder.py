@@ -72,7 +72,9 @@ class FlightRecorder:
         estimate, decision = record.estimate, record.decision
         x = estimate.x[:12].tolist()
         attitude = quaternion_from_euler(*x[6:9]).tolist()
-        self._estimate.write_numbers([[estimate.time, *x[0:3], *attitude, *x[3:6], *x[9:12], *estimate.force.tolist()]])
+        self._estimate.write_numbers(
+            [float(estimate.time), *x[0:3], *attitude, *x[3:6], *x[9:12], *estimate.force.tolist()]
+        )
         if flight.phase in CLEAR_OF_GROUND:
             self._write_plan(estimate.time, decision)
 
@@ -81,15 +83,15 @@ class FlightRecorder:
         safety = decision.safety
         bounds = (math.nan if b is None else b for b in (safety.payload_bound, safety.uav_bound))
         progress = (safety.slack, safety.lag, decision.progress_rate, decision.detours)
-        self._plan.write_numbers([[time, *position, *acceleration, *progress, *bounds]])
+        self._plan.write_numbers([time, *position, *acceleration, *progress, *bounds])
 
     def compute_times(self, time: float, decision: Decision, parts: Sequence[float]) -> None:
         """Record the compute times (s) of the control step at team ``time`` (s), as :class:`Part` orders them."""
         milliseconds = [1e3 * part for part in parts]
         telemetry, estimation, perception, planning, *others = milliseconds
         self._steps.write_numbers(
-            [[time, estimation, planning, 1e3 * decision.compute_time.tracker, sum(milliseconds), decision.iterations,
-              decision.infeasible, telemetry, perception, *others]]
+            [time, estimation, planning, 1e3 * decision.compute_time.tracker, sum(milliseconds), decision.iterations,
+             int(decision.infeasible), telemetry, perception, *others]
         )  # fmt: skip
 
     def obstacles(self, obstacle_map: ObstacleMap, time: float) -> None:
@@ -119,7 +121,8 @@ class FlightRecorder:
         last = math.floor(time / REFERENCE_INTERVAL + _GRID_TOLERANCE)
         times = np.arange(self._next_row, last + 1, dtype=np.float64) * REFERENCE_INTERVAL
         if len(times):
-            self._reference.write_numbers(np.hstack([times.round(6)[:, None], *flight.reference(times)]))
+            rows = np.hstack([times.round(6)[:, None], *flight.reference(times)])
+            self._reference.write_numbers(*rows.tolist())
             self._next_row = last + 1
 
     def close(self) -> None:

@@ -7,11 +7,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+import orjson
 
 from gcs.errors import UnusableInput
 from gcs.record.append_file import AppendOnlyFile
-from gcs.record.number_kernels import lines
 from idc_controller.arrays import Array
 
 PAYLOAD_COLUMNS = (
@@ -52,9 +51,6 @@ MODE_COLUMNS = ("time_s", "vehicle", "mode", "armed", "failsafe")
 ALARMS = "alarms.csv"
 ALARM_COLUMNS = ("time_s", "source", "code", "severity", "text")
 
-_WHOLE = frozenset({"solver_iterations", "infeasible", "detours", "contacts"})
-"""Columns of whole numbers in tables of numbers only."""
-
 Cell = float | int | bool | str
 
 
@@ -74,7 +70,6 @@ class TableWriter(AppendOnlyFile):
     def __init__(self, path: Path | str, columns: Sequence[str]) -> None:
         super().__init__(path)
         self.columns = tuple(columns)
-        self._is_whole = np.array([column in _WHOLE for column in columns])
         self.append(_line(self.columns))
 
     def write(self, row: Iterable[Cell]) -> None:
@@ -96,12 +91,15 @@ class TableWriter(AppendOnlyFile):
             raise ValueError(f"{self.path.name}: {len(cells)} values for {len(self.columns)} columns")
         return _line(cells)
 
-    def write_numbers(self, rows: ArrayLike) -> None:
-        """Append rows of numbers (R, C) in one record; see :meth:`write`."""
-        numbers = np.ascontiguousarray(rows, dtype=float)
-        if numbers.shape[1] != len(self.columns):
-            raise ValueError(f"{self.path.name}: {numbers.shape[1]} values for {len(self.columns)} columns")
-        self.append(lines(numbers, self._is_whole).tobytes())
+    def write_numbers(self, *rows: Sequence[float | int]) -> None:
+        """Append rows of floats and integers in one record; see :meth:`write`."""
+        self.append(b"".join(map(self._numbers, rows)))
+
+    def _numbers(self, row: Sequence[float | int]) -> bytes:
+        if len(row) != len(self.columns):
+            raise ValueError(f"{self.path.name}: {len(row)} values for {len(self.columns)} columns")
+        line = orjson.dumps(row, option=orjson.OPT_SERIALIZE_NUMPY)[1:-1]
+        return self._row(row) if b"null" in line else line + b"\n"  # JSON has neither inf nor nan
 
 
 _FORMATS: dict[type, Callable[[Any], str]] = {float: repr, int: repr, str: str}

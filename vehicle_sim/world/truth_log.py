@@ -57,7 +57,8 @@ class TruthLog:
         ]
         for uav in state.uavs:
             row += (*uav.position_in_world, *uav.quaternion, uav.thrust)
-        self._truth.write_numbers([[*row, contacts]])
+        # Always as doubles, so that 0 and 0.0 are the same to the byte.
+        self._truth.write_numbers([*map(float, row), int(contacts)])
         if not obstacles or self._closed:
             return
         if self._obstacles is None:
