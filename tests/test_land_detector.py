@@ -36,8 +36,9 @@ class Bench:
             arrays.estimates[0] = [0.0, 0.0, -self.height, *LEVEL, 0.0, 0.0, -climb, 0.0, 0.0, 0.0]
             arrays.targets[0, THRUST], arrays.learns[0] = thrust, learn
             detect_landings(
-                arrays.detectors, arrays.estimates, arrays.targets, arrays.learns, self.now, arrays.landings
-            )
+                arrays.detectors, arrays.estimates, arrays.targets, arrays.learns, self.now, arrays.landings,
+                arrays.idle_until,
+            )  # fmt: skip
         return self.detector
 
     def fly(self) -> LandDetector:
