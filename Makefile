@@ -85,7 +85,7 @@ install: $(COMPILED)
 $(INSTALLED): pyproject.toml constraints.txt
 	@for python in $(PYTHON) python3.11 python3 python3.12 python3.13 python; do \
 		if $$python -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; then \
-			echo "Installing into $(VENV) with $$($$python --version) (once, about a minute)"; \
+			echo "Installing into $(VENV) with $$($$python --version) (once, two to three minutes)"; \
 			exec $$python -m venv --clear $(VENV); \
 		fi; \
 	done; \
