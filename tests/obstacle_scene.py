@@ -166,3 +166,14 @@ def run(obstacle_map, obstacles, until, begin=0.0, scene=None, centre=lambda t: 
         obstacle_map.update(t)
         each(t)
     return obstacle_map
+
+
+def places(obstacle_map, time):
+    return {b.name: b.position for b in obstacle_map.confirmed_tracks(time)}
+
+
+def nearest(obstacle_map, time, place):
+    """Name and error of the track next to a place."""
+    found = places(obstacle_map, time)
+    name = min(found, key=lambda n: np.linalg.norm(found[n] - place))
+    return name, float(np.linalg.norm(found[name] - place))

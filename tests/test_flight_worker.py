@@ -67,6 +67,7 @@ def marked(mark):
 
 
 def wait_until(condition):
+    """Look again until it holds: what is waited for happens in other processes."""
     deadline = time.monotonic() + PATIENCE
     while not condition():
         assert time.monotonic() < deadline

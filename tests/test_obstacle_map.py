@@ -1,4 +1,4 @@
-"""Obstacle map: association across vehicles and time, track retention, and the obstacles of the mission."""
+"""Obstacle map: association across vehicles and time, merging, and predictions."""
 
 import csv
 from dataclasses import replace
@@ -17,6 +17,7 @@ from obstacle_scene import (
     detections_of,
     map_of,
     messages_of,
+    nearest,
     pole,
     run,
     sphere,
@@ -25,10 +26,9 @@ from obstacle_scene import (
 
 from gcs.flight import stack
 from gcs.mission.model import Obstacle
-from gcs.mission.motion import HarmonicMotion
 from gcs.mission.read import read_mission
 from idc_controller.estimation.measurements import Attitude, Position
-from idc_controller.geometry.box import Box, Wall
+from idc_controller.geometry.box import Box
 from idc_controller.geometry.capsule import Capsule
 from idc_controller.geometry.obstacles import Bodies
 from idc_controller.geometry.pole import Pole
@@ -39,18 +39,6 @@ from idc_controller.perception.scan_assembly import Cluster
 from idc_controller.perception.track import Track
 from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.obstacle_bodies import Obstacle as WorldObstacle
-
-
-def places(obstacle_map, time):
-    return {b.name: b.position for b in obstacle_map.confirmed_tracks(time)}
-
-
-def nearest(obstacle_map, time, place):
-    """Name and error of the track next to a place."""
-    found = places(obstacle_map, time)
-    name = min(found, key=lambda n: np.linalg.norm(found[n] - place))
-    return name, float(np.linalg.norm(found[name] - place))
-
 
 FOUR = {
     "a": (lambda t: np.array([6.0, 0.0, -6.0]) + MOTIONS["harmonic"](t) * [0.5, 0, 0]),
@@ -194,125 +182,6 @@ def test_overlaps_are_counted_in_a_row_and_stay_while_the_other_track_is_not_com
 
 
 # Coming and going
-
-
-def test_track_is_deleted_in_field_of_view_and_single_detection_never_confirmed():
-    m = map_of()
-    run(m, lambda t: [sphere((5.0, 0.0, -6.0))], 1.0)
-    assert len(m.predict(np.array([1.0]))) == 1
-    run(m, lambda t: [], 1.8, begin=1.0)
-    assert len(m.predict(np.array([1.8]))) == 1  # still predicted while it coasts briefly
-    run(m, lambda t: [], 2.5, begin=1.8)
-    assert m.predict(np.array([2.5])) == []
-    m = map_of()
-    counts = []
-    run(m, lambda t: [sphere((5.0, 0.0, -6.0))] if t < 0.05 else [], 1.0, scene=Scene(0, uavs=1),
-        each=lambda t: counts.append(len(m.predict(np.array([t])))))  # fmt: skip
-    assert set(counts) == {0}
-    assert m.tracks == []
-
-
-def leaving(t):
-    return np.array([-max(t - 1.0, 0.0) * 3.0, 0.0, -6.0])
-
-
-def test_out_of_range_static_track_is_kept_and_moving_one_deleted():
-    def things(t):
-        return [sphere((5.0, 0.0, -6.0), 0.5, "stands"), sphere((5.0, -2.0 + 1.5 * t, -6.0), 0.4, "moves")]
-
-    m = map_of()
-    run(m, things, 12.0, centre=leaving)
-    (left,) = m.predict(np.array([12.0, 13.0]))
-    assert np.linalg.norm(left.positions[0] - [5.0, 0.0, -6.0]) < 0.1
-    assert left.growth[0] < 0.1  # as certain as when it was last detected
-
-
-def test_moving_track_coasts_after_it_left_the_range():
-    m = map_of()
-    run(m, lambda t: [sphere((5.0 + 1.8 * t, 0.0, -6.0))], 4.0)  # out of range after 3 s
-    (o,) = m.predict(np.array([4.0]))
-    assert np.linalg.norm(o.positions[0] - [5.0 + 1.8 * 4.0, 0.0, -6.0]) < 0.5
-    run(m, lambda t: [], 6.0, begin=4.0)
-    assert m.predict(np.array([6.0])) == []
-
-
-def test_no_track_is_deleted_when_telemetry_of_all_vehicles_times_out():
-    m = map_of()
-    run(m, lambda t: [sphere((5.0, 0.0, -6.0))], 1.0)
-    for k in range(20, 60):
-        m.update(k / 20)
-    assert len(m.predict(np.array([3.0]))) == 1
-
-
-def test_static_obstacles_of_the_map_are_predicted_from_the_start_and_begin_no_tracks():
-    known = (
-        Obstacle("ball", (5.0, 0.0, -6.0), Sphere(0.5)), Obstacle("mast", (0.0, 6.0, -6.0), Pole(0.3, 12.0)),
-        Obstacle("house", (-6.0, 0.0, -4.0), Wall((0.3, 5.0, 8.0), np.radians(12.0))),
-    )  # fmt: skip
-    m = map_of(*known, Obstacle("secret", (0.0, -5.0, -6.0), Sphere(0.5), known=False))
-    before = m.predict(np.array([0.0, 1.0]))
-    assert [o.name for o in before] == ["ball", "mast", "house"]
-    true = [
-        sphere((5.0, 0.0, -6.0), 0.5, "ball"), pole((0.0, 6.0), 0.3, 12.0, "mast"),
-        wall((-6.0, 0.0, -4.0), (0.3, 5.0, 8.0), np.radians(12.0), "house"),
-    ]  # fmt: skip
-    run(m, lambda t: true, 3.0)
-    assert m.tracks == []
-    for a, b in zip(before, m.predict(np.array([3.0, 4.0])), strict=True):
-        assert a.shape == b.shape
-        np.testing.assert_array_equal(a.positions, b.positions)
-        assert not b.growth.any()
-    run(m, lambda t: [*true, sphere((0.0, -5.0, -6.0), 0.5, "secret")], 5.0, begin=3.0)
-    assert [track.name for track in m.tracks] == ["track 1"]
-
-
-def test_track_is_kept_when_its_obstacle_passes_one_of_the_map():
-    m = map_of(Obstacle("house", (5.0, 0.0, -4.0), Wall((0.3, 6.0, 8.0))))
-    house = wall((5.0, 0.0, -4.0), (0.3, 6.0, 8.0), 0.0, "house")
-
-    def ball(t):
-        return np.array([4.2, -4.0 + 1.5 * t, -6.0])
-
-    errors = []
-
-    def each(t):
-        if 1.0 < t < 5.0:
-            assert len(m.tracks) == 1
-            errors.append(nearest(m, t, ball(t))[1])
-
-    run(m, lambda t: [house, sphere(ball(t), 0.4, "ball")], 5.2, each=each)
-    assert max(errors) < 0.25
-
-
-def test_moving_obstacle_of_the_map_keeps_its_shape_and_is_tracked():
-    def place(t):
-        return np.array([6.0 + 1.5 * np.sin(t), 0.0, -6.0])
-
-    motion = HarmonicMotion((1.5, 0.0, 0.0), 1.0)
-    m = map_of(Obstacle("swing", (6.0, 0.0, -6.0), Sphere(0.45), motion=motion))
-    (before,) = m.predict(np.array([0.0]))
-    np.testing.assert_array_equal(before.positions[0], [6.0, 0.0, -6.0])
-    assert before.growth[0] == 0.5
-    errors = []
-
-    def each(t):
-        (o,) = m.predict(np.array([t]))
-        assert o.name == "swing"
-        assert o.shape.radius == 0.45
-        if t > 1.5:
-            errors.append(np.linalg.norm(o.positions[0] - place(t)))
-
-    run(m, lambda t: [sphere(place(t), 0.45)], 7.0, each=each)
-    assert np.sqrt(np.mean(np.square(errors))) < 0.1
-
-
-def test_moving_obstacle_of_the_map_is_deleted_until_detected_where_it_is_missing():
-    m = map_of(Obstacle("swing", (6.0, 0.0, -6.0), Sphere(0.45), motion=HarmonicMotion((1.5, 0.0, 0.0), 1.0)))
-    run(m, lambda t: [], 2.0)
-    assert m.predict(np.array([2.0])) == []
-    run(m, lambda t: [sphere((6.5, 0.5, -6.0), 0.45)], 3.0, begin=2.0)
-    (o,) = m.predict(np.array([3.0]))
-    assert o.name == "swing"
 
 
 def test_equal_seeds_give_equal_maps():

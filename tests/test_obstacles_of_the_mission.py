@@ -1,0 +1,88 @@
+"""Obstacles of the mission on the obstacle map: predicted from the start, tracked where they move."""
+
+import numpy as np
+from obstacle_scene import (
+    map_of,
+    nearest,
+    pole,
+    run,
+    sphere,
+    wall,
+)
+
+from gcs.mission.model import Obstacle
+from gcs.mission.motion import HarmonicMotion
+from idc_controller.geometry.box import Wall
+from idc_controller.geometry.pole import Pole
+from idc_controller.geometry.sphere import Sphere
+
+
+def test_static_obstacles_of_the_map_are_predicted_from_the_start_and_begin_no_tracks():
+    known = (
+        Obstacle("ball", (5.0, 0.0, -6.0), Sphere(0.5)), Obstacle("mast", (0.0, 6.0, -6.0), Pole(0.3, 12.0)),
+        Obstacle("house", (-6.0, 0.0, -4.0), Wall((0.3, 5.0, 8.0), np.radians(12.0))),
+    )  # fmt: skip
+    m = map_of(*known, Obstacle("secret", (0.0, -5.0, -6.0), Sphere(0.5), known=False))
+    before = m.predict(np.array([0.0, 1.0]))
+    assert [o.name for o in before] == ["ball", "mast", "house"]
+    true = [
+        sphere((5.0, 0.0, -6.0), 0.5, "ball"), pole((0.0, 6.0), 0.3, 12.0, "mast"),
+        wall((-6.0, 0.0, -4.0), (0.3, 5.0, 8.0), np.radians(12.0), "house"),
+    ]  # fmt: skip
+    run(m, lambda t: true, 3.0)
+    assert m.tracks == []
+    for a, b in zip(before, m.predict(np.array([3.0, 4.0])), strict=True):
+        assert a.shape == b.shape
+        np.testing.assert_array_equal(a.positions, b.positions)
+        assert not b.growth.any()
+    run(m, lambda t: [*true, sphere((0.0, -5.0, -6.0), 0.5, "secret")], 5.0, begin=3.0)
+    assert [track.name for track in m.tracks] == ["track 1"]
+
+
+def test_track_is_kept_when_its_obstacle_passes_one_of_the_map():
+    m = map_of(Obstacle("house", (5.0, 0.0, -4.0), Wall((0.3, 6.0, 8.0))))
+    house = wall((5.0, 0.0, -4.0), (0.3, 6.0, 8.0), 0.0, "house")
+
+    def ball(t):
+        return np.array([4.2, -4.0 + 1.5 * t, -6.0])
+
+    errors = []
+
+    def each(t):
+        if 1.0 < t < 5.0:
+            assert len(m.tracks) == 1
+            errors.append(nearest(m, t, ball(t))[1])
+
+    run(m, lambda t: [house, sphere(ball(t), 0.4, "ball")], 5.2, each=each)
+    assert max(errors) < 0.25
+
+
+def test_moving_obstacle_of_the_map_keeps_its_shape_and_is_tracked():
+    def place(t):
+        return np.array([6.0 + 1.5 * np.sin(t), 0.0, -6.0])
+
+    motion = HarmonicMotion((1.5, 0.0, 0.0), 1.0)
+    m = map_of(Obstacle("swing", (6.0, 0.0, -6.0), Sphere(0.45), motion=motion))
+    (before,) = m.predict(np.array([0.0]))
+    np.testing.assert_array_equal(before.positions[0], [6.0, 0.0, -6.0])
+    assert before.growth[0] == 0.5
+    errors = []
+
+    def each(t):
+        (o,) = m.predict(np.array([t]))
+        assert o.name == "swing"
+        assert o.shape.radius == 0.45
+        if t > 1.5:
+            errors.append(np.linalg.norm(o.positions[0] - place(t)))
+
+    run(m, lambda t: [sphere(place(t), 0.45)], 7.0, each=each)
+    assert np.sqrt(np.mean(np.square(errors))) < 0.1
+
+
+def test_moving_obstacle_of_the_map_is_deleted_until_detected_where_it_is_missing():
+    m = map_of(Obstacle("swing", (6.0, 0.0, -6.0), Sphere(0.45), motion=HarmonicMotion((1.5, 0.0, 0.0), 1.0)))
+    run(m, lambda t: [], 2.0)
+    assert m.predict(np.array([2.0])) == []
+    run(m, lambda t: [sphere((6.5, 0.5, -6.0), 0.45)], 3.0, begin=2.0)
+    (o,) = m.predict(np.array([3.0]))
+    assert o.name == "swing"
