@@ -78,7 +78,9 @@ ALLOWED = {
     "vehicle_sim.team": (
         "gcs.config gcs.mission vehicle_sim.autopilot vehicle_sim.faults vehicle_sim.mavlink vehicle_sim.world"
     ),
-    "vehicle_sim.world": "gcs.config gcs.mission gcs.record idc_controller.geometry idc_controller.model",
+    "vehicle_sim.world": (
+        "gcs.config gcs.mission gcs.record idc_controller.geometry idc_controller.model idc_controller.perception"
+    ),
 }
 SETTINGS = sorted((*ROOT.glob("idc_controller/*/settings.py"), *ROOT.glob("gcs/*/settings.py")))
 COMMON = {

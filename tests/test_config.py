@@ -180,6 +180,7 @@ def test_wrong_file_is_refused_with_line_and_key(tmp_path: Path, old: str, new: 
         ("[safety.planner]\nlimit_interval = 100", "safety.planner: limit_interval 100 is longer than the horizon"),
         ("[safety.planner]\nblocks = []", "longer than the horizon, 0 stages"),
         ("[range_sensor]\nrange_min = 10.0", "line 2: range_sensor.range_min: 10.0 m is not below range, 10.0 m"),
+        ("[range_sensor]\nelevation_min_deg = 40.0", "line 2: range_sensor.elevation_min_deg: 40.0 deg is not below"),
     ],
 )
 def test_settings_that_do_not_agree_are_refused(tmp_path: Path, text: str, reason: str) -> None:

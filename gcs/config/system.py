@@ -191,6 +191,10 @@ def _disagreements(config: SystemConfig, file: TomlFile) -> list[str]:
     if config.range_sensor.range_min >= config.range_sensor.range:
         reason = f"{config.range_sensor.range_min} m is not below range, {config.range_sensor.range} m"
         found.append((("range_sensor", "range_min"), reason))
+    if config.range_sensor.elevation_min_deg >= config.range_sensor.elevation_max_deg:
+        lowest, highest = config.range_sensor.elevation_min_deg, config.range_sensor.elevation_max_deg
+        reason = f"{lowest} deg is not below elevation_max_deg, {highest} deg"
+        found.append((("range_sensor", "elevation_min_deg"), reason))
     if motion.speed > motion.speed_max:
         found.append((("motion", "speed"), f"{motion.speed} is more than speed_max, {motion.speed_max}"))
     return [file.problem(key, reason) for key, reason in found]

@@ -98,12 +98,32 @@ class SensorsConfig(SettingsTable):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class RangeSensorConfig(SettingsTable):
-    """The obstacle sensor of every vehicle."""
+    """The range sensor of every vehicle, for obstacles: a lidar with a known pattern of rays, to all sides.
+
+    The default field of view is part of what two hemispherical lidars see (RoboSense Airy: 90 deg from top to bottom,
+    each): down to obstacles beside the payload, 3.7 m below, that are 1.3 m away, up to what is higher than the team
+    where it flies to. Such lidars measure 10^5 to 10^6 rays a second; the default number is what a telemetry link
+    carries of them.
+    """
 
     range: float = setting(10.0, "m", "largest distance at which an obstacle is detected", gt=0.0)
     rate: int = setting(10, "Hz", "scans; divides rates.physics", gt=0, le=1_000_000)
     noise: float = setting(0.05, "m", "standard deviation along the line of sight", ge=0.0)
-    range_min: float = setting(0.05, "m", "distance below which nothing is measured", ge=0.0)
+    range_min: float = setting(
+        0.05, "m", "distance below which nothing is measured; a ray that ends there looks free", ge=0.0
+    )
+    rays: int = setting(500, "", "rays of one scan, evenly over the field of view", ge=1, le=20_000)
+    elevation_min_deg: float = setting(
+        -70.0, "deg", "lower end of the field of view, upwards from the vehicle's horizontal plane", ge=-90.0, lt=90.0
+    )
+    elevation_max_deg: float = setting(30.0, "deg", "upper end of the field of view", gt=-90.0, le=90.0)
+    missed_share: float = setting(0.02, "", "share of the rays that return nothing though they hit", ge=0.0, lt=1.0)
+    ground_height: float = setting(
+        0.3,
+        "m",
+        "height above the ground, by its own pose, up to which a vehicle takes a return for the ground",
+        ge=0.0,
+    )
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -77,7 +77,7 @@ class Mesh(OrientedShape):
 
         request, result, here = coal.DistanceRequest(), coal.DistanceResult(), coal.Transform3s.Identity()
         # Inside, the nearest of the planes of the faces.
-        distance = (points @ self._planes[0].T - self._planes[1]).max(axis=1)
+        distance = (points @ self.planes[0].T - self.planes[1]).max(axis=1)
         probe = coal.Sphere(1e-9)
         for i in np.flatnonzero(distance > 0.0).tolist():
             result.clear()
@@ -87,7 +87,7 @@ class Mesh(OrientedShape):
         return np.asarray(distance)
 
     @cached_property
-    def _planes(self) -> tuple[Array, Array]:
-        """Outward normals of the faces (f, 3), and their distances from the centre (f,)."""
+    def planes(self) -> tuple[Array, Array]:
+        """Outward normals of the faces (f, 3), and their distances from the centre (f,) (m)."""
         normals = np.array(self._hull.face_normals)
         return normals, np.einsum("ij,ij->i", normals, self._hull.triangles[:, 0])

@@ -199,6 +199,14 @@ class Shape(ABC):
         raise NotImplementedError
 
     @property
+    def planes(self) -> tuple[Array, Array]:
+        """Outward normals of the faces (f, 3), shape's own frame, and their distances from the centre (f,) (m).
+
+        Of a body that is no rounded box.
+        """
+        raise NotImplementedError
+
+    @property
     def scan_form(self) -> ScanForm | None:
         """The body for scans of many bodies together; None: a sensor's points are those of :meth:`visible_points`."""
         return None

@@ -13,6 +13,7 @@ from idc_controller.errors import ShapeError
 from idc_controller.geometry.shape import Shape
 from idc_controller.rotations_float import Quaternion, Vector
 from vehicle_sim.world.errors import SimulationError
+from vehicle_sim.world.ray_bodies import RayBodies
 from vehicle_sim.world.world_state import flipped, quaternion_to_engine
 
 
@@ -74,6 +75,7 @@ class ObstacleBodies:
         self._bodies: dict[str, _Body] = {}
         self._centres = np.empty((0, 3))
         self._forms = np.empty((0, 3))
+        self._ray_bodies = RayBodies.of(())
 
     def all(self) -> tuple[Obstacle, ...]:
         """Return the obstacles at the current time, in the order in which they were added."""
@@ -82,6 +84,11 @@ class ObstacleBodies:
     def scan_targets(self) -> ScanTargets:
         """Return them as the range sensors take them."""
         return ScanTargets(self.all(), self._centres, self._forms)
+
+    @property
+    def ray_bodies(self) -> RayBodies:
+        """The obstacles as rays meet them."""
+        return self._ray_bodies
 
     def body(self, name: str) -> int:
         """Return the engine's handle. Raises :class:`SimulationError` for an unknown name."""
@@ -112,6 +119,7 @@ class ObstacleBodies:
         obstacle = self._obstacles[name] = Obstacle(name, shape, place)
         self._centres = np.vstack([self._centres, place])
         self._forms = np.vstack([self._forms, obstacle.scan_row])
+        self._ray_bodies = self._ray_bodies.and_body(shape, place)
 
     def move(self, name: str, position_in_world: Sequence[float]) -> None:
         """Put an obstacle elsewhere, its centre (3,) in NED (m); it counts from the next step on."""
@@ -119,7 +127,7 @@ class ObstacleBodies:
         if place == obstacle.position_in_world:
             return
         self._obstacles[name] = Obstacle(name, obstacle.shape, place)
-        self._centres[body.row] = place
+        self._centres[body.row] = self._ray_bodies.centres[body.row] = place
         pybullet.resetBasePositionAndOrientation(body.handle, flipped(place), body.attitude, self._client)
 
     def _body(self, name: str) -> _Body:

@@ -1,0 +1,71 @@
+"""The range sensor of a vehicle: a lidar that measures, on each ray of a known pattern, the first surface.
+
+It reports points, not which obstacle they belong to. Obstacles hide what is behind them; the vehicles, payload and
+links of the team neither hide anything nor are measured: returns of its own bodies are masked, and rays that meet them
+are few. The vehicle leaves out what is low above the ground by its own estimate of its pose, be that right or wrong.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from gcs.config import RangeSensorConfig
+from idc_controller.arrays import Array
+from idc_controller.perception.ray_pattern import RayPattern
+from idc_controller.rotations_float import Quaternion
+from vehicle_sim.world.ray_bodies import RayBodies
+from vehicle_sim.world.ray_cast_kernels import first_hits, measured_returns
+from vehicle_sim.world.sensors import Measurement
+
+#: Distinguishes these generators from the navigation sensors'.
+_STREAM = 1_000_003
+_NO_POSE = np.full(7, math.nan)
+
+
+class RaySample(NamedTuple):
+    """All returns of one scan at ``time`` (s); the sensor's largest and least distance (m), and whether it works."""
+
+    time: float
+    reach: float
+    points: Array
+    """Places in the body frame, forward-right-down (n, 3) (m), in the order of the rays."""
+    works: bool = True
+    range_min: float = RangeSensorConfig.range_min
+
+
+class RaySensor:
+    """The same seed and id give the same noise, whatever is in view; different ids independent noise."""
+
+    def __init__(self, settings: RangeSensorConfig, seed: int, system_id: int) -> None:
+        self._settings = s = settings
+        self._generator = np.random.default_rng([seed, _STREAM, system_id])
+        self._pattern = RayPattern(s.rays, math.radians(s.elevation_min_deg), math.radians(s.elevation_max_deg))
+        self._limits = np.array([s.range_min, s.missed_share, s.ground_height])
+
+    def scan(
+        self,
+        now: float,
+        index: int,
+        position: Sequence[float],
+        attitude: Quaternion,
+        estimate: Measurement | None,
+        bodies: RayBodies,
+    ) -> RaySample:
+        """Return the scan at ``now`` (s).
+
+        Args:
+            now: time (s).
+            index: of the scan, see :func:`idc_controller.perception.ray_pattern.scan_index`.
+            position, attitude: true pose of the sensor (NED, m; body to world).
+            estimate: of the vehicle's pose, its own, by which the ground is left out; None: it has none yet.
+            bodies: all that can be hit beside the ground.
+        """
+        s, generator = self._settings, self._generator
+        directions = self._pattern.directions(index)
+        errors, chances = s.noise * generator.standard_normal(s.rays), generator.random(s.rays)
+        distances = first_hits(directions, np.array([*position, *attitude], dtype=float), s.range, *bodies)
+        own = _NO_POSE if estimate is None else np.array([*estimate.position, *estimate.attitude], dtype=float)
+        points = measured_returns(directions, distances, errors, chances, own, self._limits)
+        return RaySample(now, s.range, points, range_min=s.range_min)
