@@ -63,6 +63,11 @@ class Result:
     nominal_arrival_s: float | None = None
     delay_s: float | None = None
     goal_error_m: float | None = None
+    passage: str = ""
+    """Whether standing obstacles leave a way: passable, marginal, impassable; empty where a way is there by design."""
+    gap_m: float | None = None
+    gap_named_m: float | None = None
+    """The narrowest gap, and what the reason of the abort says it is."""
 
     # Judgement of a flight with faults, from the start of its case's first fault: to the abort, to the stop of the
     # last vehicle (then from the first vehicle's), to the first alarm; and alarms before any fault.

@@ -11,7 +11,9 @@ from idc_controller.arrays import Array
 from idc_controller.geometry.formation import BoundingCylinder
 from idc_controller.geometry.free_space import TOUCHING, FreeSpace
 from idc_controller.geometry.obstacles import ObstacleSource, PredictedObstacle
+from idc_controller.geometry.shape import Shape
 from idc_controller.guidance.detour import find_detour
+from idc_controller.guidance.narrowest_gap import narrowest_gap
 from idc_controller.guidance.settings import NavigatorSettings
 from idc_controller.parameters import SystemParameters
 from idc_controller.trajectory.flatness import PayloadTrajectory
@@ -178,4 +180,29 @@ class Navigator:
         if bodies:
             nearest = names[int(np.argmin(space.clearance(position[None])[0]))]
             reason = f"the path to the rest of the mission is blocked by {nearest}"
-        return f"{reason}: {detour.reason}" if detour.reason.startswith("the formation at the goal") else reason
+        if detour.reason.startswith("the formation at the goal"):
+            return f"{reason}: {detour.reason}"
+        return f"{reason}{self._narrowest_gap(bodies, growth, names, position, path[goals[-1]], highest)}"
+
+    def _narrowest_gap(
+        self,
+        bodies: list[tuple[Shape, Array]],
+        growth: list[float],
+        names: list[str],
+        position: Array,
+        goal: Array,
+        highest: float,
+    ) -> str:
+        """Return the narrowest gap from ``position`` to ``goal`` in words, by estimates, else as the search sees it."""
+        keep = self.settings.margin + self.settings.spare
+        for more in (None, growth):
+            gap = narrowest_gap(
+                bodies, position, goal, self.formation, keep, lowest=self.lowest, highest=highest, growth=more,
+                names=names,
+            )  # fmt: skip
+            if gap is not None:
+                needed = gap.width + 2.0 * (keep - gap.clearance)
+                if gap.is_height:
+                    needed = gap.width + keep - gap.clearance
+                return f"; the narrowest gap is {gap}, {needed:.2f} m are needed"
+        return ""

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from gcs.app.arguments import CONTROLLERS, number, whole_number
 from gcs.app.campaigns import add_campaign_arguments, run_campaign
-from gcs.campaign.scenarios.generator import KINDS
+from gcs.campaign.scenarios.generator import DEFAULT_KINDS, KINDS
 from gcs.campaign.scenarios.plans import Scenarios
 
 DESCRIPTION = """\
@@ -30,8 +30,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="number of scenarios (default: 200)")  # fmt: skip
     add("--seed", type=partial(whole_number, least=0, most=2**63 - 1), default=1, metavar="S",
         help="seed of the scenarios (default: 1)")  # fmt: skip
-    add("--kinds", nargs="+", choices=KINDS, default=list(KINDS), metavar="KIND",
-        help=f"kinds of scenarios, taken in turn: {', '.join(KINDS)} (default: all)")  # fmt: skip
+    add("--kinds", nargs="+", choices=KINDS, default=list(DEFAULT_KINDS), metavar="KIND",
+        help=f"kinds of scenarios, taken in turn: {', '.join(KINDS)} (default: the first five)")  # fmt: skip
     add("--controller", choices=CONTROLLERS, default="idc", help="as for gcs fly (default: idc)")
     add("--config", type=Path, metavar="C", help="system file in place of the default system")
     add("--obstacle-speed", type=partial(number, least=0.5, most=20.0), default=2.0, metavar="V",

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gcs.campaign.scenarios.moving import FLIGHT, MOTIONS, displacement, motion_for, top_speed
+from gcs.campaign.scenarios.moving import FLIGHT, MOTIONS, displacement, motion_for, stop_and_go, top_speed
 from gcs.campaign.scenarios.schedule import Schedule
 from gcs.config import SystemConfig
 from gcs.mission.model import Lissajous, Mission, Obstacle
@@ -179,6 +179,17 @@ class Draft:
         self._moving.append((along, where))
         rest = _rounded(where - [0.0, 0.0, up] - then)
         self.obstacles.append(Obstacle(self._name("moving sphere"), rest, shape, known, motion))
+
+    def add_stop_and_go(self, along: float) -> None:
+        """Add a sphere that stops and goes about where the undisturbed payload passes, not on the map."""
+        random = self.random
+        where, direction, time = self._place(along, random.uniform(-0.5, 0.5))
+        shape, up = Sphere(self._uniform(0.3, 0.6)), random.uniform(-0.2, 3.0)
+        motion = stop_and_go(random, time, direction)
+        [then] = displacement(motion, np.array([time]))
+        self._moving.append((along, where))
+        rest = _rounded(where - [0.0, 0.0, up] - then)
+        self.obstacles.append(Obstacle(self._name("moving sphere"), rest, shape, False, motion))
 
     def _add_static(self, along: float, shape: Shape, position: tuple[float, float, float]) -> None:
         known = bool(self.random.random() < ON_THE_MAP)

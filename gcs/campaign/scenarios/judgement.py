@@ -1,6 +1,10 @@
-"""The judgement of a flight through an obstacle scenario: contacts, clearance, angles, and arrival at the goal."""
+"""The judgement of a flight through an obstacle scenario: contacts, clearance, angles, and arrival at the goal.
+
+Where the standing obstacles leave no way, the flight must be broken off, and its reason name the narrowest gap.
+"""
 
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -8,6 +12,7 @@ import numpy as np
 
 from gcs.campaign.process_pool import FlownProcess
 from gcs.campaign.result import summary_columns
+from gcs.campaign.scenarios.passage import Passage
 from gcs.campaign.scenarios.schedule import Schedule, arrival
 from gcs.config import SystemConfig
 from gcs.errors import GcsError
@@ -17,6 +22,9 @@ from gcs.record.run_data import read_run
 
 AT_GOAL = 0.5
 """m, horizontally, within which the payload has arrived."""
+GAP_TOLERANCE = 0.3
+"""m, within which the reason of an abort must name the narrowest gap."""
+_NAMED_GAP = re.compile(r"narrowest gap is (\d+\.\d+) m (?:wide|high)")
 SEPARATION_TOLERANCE = 0.05
 """Share of the gap between neighbouring rotor discs in hover by which a flight may fall below the controller's limit,
 whose rows are soft: with a spacing of 1 m 0.75 m where the controller keeps 0.77 m."""
@@ -24,9 +32,9 @@ COLUMNS = (
     "number", "name", "kind", "passed", "failures", "outcome", "reason", "exit_code", "clearance_min_m",
     "tilt_max_deg", "uav_separation_min_m", "contacts", "arrival_s", "nominal_arrival_s", "delay_s", "goal_error_m",
     "duration_s", "step_time_p50_ms", "step_time_p99_ms", "infeasible_steps", "real_time_factor", "wall_s", "replay",
-    "position_rmse_m", "slack_max_m",
+    "position_rmse_m", "slack_max_m", "passage", "gap_m", "gap_named_m",
 )  # fmt: skip
-OPTIONAL = ("position_rmse_m", "slack_max_m")
+OPTIONAL = ("position_rmse_m", "slack_max_m", "passage", "gap_m", "gap_named_m")
 """Columns that results of earlier versions lack."""
 
 
@@ -35,8 +43,18 @@ def least_separation(system: SystemConfig) -> float:
     return system.parameters().separation(system.control.mpc.separation_share - SEPARATION_TOLERANCE)
 
 
-def judge(mission: Path, config: Path | None, held_to: Limits, flown: FlownProcess, run_dir: Path) -> dict[str, Any]:
-    """Return the columns of a flight of ``mission`` by the system file ``config``, held to the limits ``held_to``."""
+def judge(
+    mission: Path,
+    config: Path | None,
+    held_to: Limits,
+    passage: Passage | None,
+    flown: FlownProcess,
+    run_dir: Path,
+) -> dict[str, Any]:
+    """Return the columns of a flight of ``mission`` by the system file ``config``, held to the limits ``held_to``.
+
+    ``passage``: of the standing obstacles; None: there is a way.
+    """
     summary = flown.summary
     as_flown = read_mission(mission, config)
     schedule = Schedule(as_flown)
@@ -48,13 +66,16 @@ def judge(mission: Path, config: Path | None, held_to: Limits, flown: FlownProce
     figures = summary_columns(flown, run_dir)
     clearance, tilt = figures["clearance_min_m"], figures["tilt_max_deg"]
     separation, outcome = figures["uav_separation_min_m"], summary.get("outcome", "failed")
+    named = named_gap(flown.reason)
+    may_end = passage is not None and passage.verdict != "passable" and outcome == "aborted"
     failures = {
-        outcome: not summary.get("completed"),
+        outcome: not summary.get("completed") and not may_end,
+        "gap": may_end and not names_the_gap(passage, flown.reason),
         "contact": bool(figures["contacts"]),
         "clearance": clearance is not None and clearance < (held_to.clearance or 0.0),
         "tilt": tilt is not None and tilt > (held_to.payload_tilt_deg or math.inf),
         "separation": separation is not None and separation < least_separation(as_flown.system),
-        "arrival": bool(summary) and arrived is None,
+        "arrival": bool(summary) and arrived is None and not may_end,
     }
     return {
         "failures": " ".join(name for name, failed in failures.items() if failed),
@@ -63,7 +84,26 @@ def judge(mission: Path, config: Path | None, held_to: Limits, flown: FlownProce
         "nominal_arrival_s": round(nominal + spent, 2),
         "delay_s": None if arrived is None else round(arrived - nominal - spent, 2),
         "goal_error_m": goal_error,
+        "passage": "" if passage is None else passage.verdict,
+        "gap_m": None if passage is None or passage.gap is None else round(passage.gap.width, 2),
+        "gap_named_m": named,
     }
+
+
+def named_gap(reason: str) -> float | None:
+    """Return the width (m) of the narrowest gap that the ``reason`` of an abort names."""
+    found = _NAMED_GAP.search(reason)
+    return None if found is None else float(found[1])
+
+
+def names_the_gap(passage: Passage | None, reason: str) -> bool:
+    """Return whether the ``reason`` of an abort names the narrowest gap, or the waypoint that is not free."""
+    if passage is None or passage.gap is None:
+        return False
+    if passage.gap.is_at_waypoint and "at the waypoint" in reason:
+        return True
+    named = named_gap(reason)
+    return named is not None and abs(named - passage.gap.width) <= GAP_TOLERANCE
 
 
 def _arrival(run_dir: Path, schedule: Schedule) -> tuple[float | None, float | None]:

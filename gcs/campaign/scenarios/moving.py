@@ -12,6 +12,8 @@ Array = NDArray[np.float64]
 Random = np.random.Generator
 
 SLOWEST = 0.4  # m/s
+STOP_AND_GO_SPEEDS, STOP_AND_GO_ACCELERATIONS, STOP_AND_GO_HOLDS = (1.5, 3.0), (2.0, 5.0), (0.2, 1.2)
+"""Of what stops and goes: m/s, m/s2, s."""
 FLIGHT = np.arange(0.0, 120.0, 0.05)
 """Times (s) at which a motion is sampled."""
 
@@ -77,6 +79,20 @@ def _waypoints(random: Random, time: float, travel: Array, fastest: float) -> An
     return WaypointsMotion(
         tuple(corners), speed, round(random.uniform(0.0, 2.0), 2), round(acceleration, 2), repeat=True
     )
+
+
+def stop_and_go(random: Random, time: float, travel: Array) -> WaypointsMotion:
+    """Return a motion to and fro across ``travel`` that starts and stops hard, at full speed near the origin then."""
+    speed, acceleration = random.uniform(*STOP_AND_GO_SPEEDS), random.uniform(*STOP_AND_GO_ACCELERATIONS)
+    x, y, _ = _against(random, travel)
+    # Long enough for the speed to be reached.
+    length = speed**2 / acceleration + random.uniform(0.3, 2.5)
+    corners = [(-0.5 * length, 0.0), (0.5 * length, 0.0)]
+    if random.random() < 0.5:
+        corners.append((random.uniform(-0.5, 0.5) * length, random.uniform(1.5, 3.0)))
+    points = tuple(_rounded(u * x - v * y, u * y + v * x, 0.0) for u, v in corners)
+    hold = round(random.uniform(*STOP_AND_GO_HOLDS), 2)
+    return WaypointsMotion(points, round(speed, 3), hold, round(acceleration, 2), repeat=True)
 
 
 def _random_walk(random: Random, time: float, travel: Array, fastest: float) -> AnyMotion:

@@ -11,7 +11,7 @@ from rich.console import RenderableType
 
 from gcs.campaign.engine import FlightPlan, PlanGenerator
 from gcs.campaign.result import Result
-from gcs.campaign.scenarios.generator import HELD_TO, KINDS, generate
+from gcs.campaign.scenarios.generator import DEFAULT_KINDS, HELD_TO, generate
 from gcs.campaign.scenarios.judgement import COLUMNS, OPTIONAL, judge, least_separation
 from gcs.config import read_system
 
@@ -22,7 +22,7 @@ class Scenarios(PlanGenerator):
 
     count: int
     seed: int
-    kinds: tuple[str, ...] = KINDS
+    kinds: tuple[str, ...] = DEFAULT_KINDS
     controller: str = "idc"
     config: Path | None = None
     fastest: float = 2.0
@@ -59,7 +59,7 @@ class Scenarios(PlanGenerator):
             kind = self.kinds[(number - 1) % len(self.kinds)]
             scenario = generate(self.seed, number, kind, system, self.fastest)
             mission = out / "missions" / f"{scenario.name}.toml"
-            judgement = partial(judge, mission, self.config, HELD_TO)
+            judgement = partial(judge, mission, self.config, HELD_TO, scenario.passage)
             labels, files = {"kind": kind}, {mission: scenario.text}
             yield FlightPlan(number, scenario.name, mission, tuple(options), judgement, labels, files)
 

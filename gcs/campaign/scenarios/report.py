@@ -50,6 +50,7 @@ def _kinds(results: Sequence[Result]) -> Table:
                 "flown": str(len(chosen)),
                 "passed": str(sum(r.passed for r in chosen)),
                 "arrived": str(sum(r.arrival_s is not None and r.outcome == "completed" for r in chosen)),
+                "broken off": str(sum(r.outcome == "aborted" for r in chosen)),
                 "contacts": str(sum(bool(r.contacts) for r in chosen)),
                 "least clearance": extreme(chosen, "clearance_min_m", min, 3, "m"),
             }

@@ -92,7 +92,9 @@ class StudyFlights(PlanGenerator):
             "kind": variant.label, "mission": mission, "variant": variant.label, "seed": seed,
             "clearance_asked_m": held_to.clearance, "tilt_limit_deg": held_to.payload_tilt_deg,
         }  # fmt: skip
-        return FlightPlan(number, name, path, tuple(options), partial(judge, path, config, held_to), labels, files)
+        return FlightPlan(
+            number, name, path, tuple(options), partial(judge, path, config, held_to, None), labels, files
+        )
 
     def _moving_scenario(self, fastest: float, number: int) -> str:
         """Return the mission of a random scenario of seed 1."""
