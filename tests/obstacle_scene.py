@@ -15,7 +15,7 @@ from idc_controller.geometry.box import Wall
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
 from idc_controller.perception.obstacle_map import ObstacleMap
-from idc_controller.perception.scan_assembly import SensorModel
+from idc_controller.perception.range_sensors import SensorModel
 from idc_controller.perception.surfaces.points import SurfacePoints, joined
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
 from vehicle_sim.world.obstacle_bodies import Obstacle, ScanTargets

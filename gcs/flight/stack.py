@@ -19,7 +19,7 @@ from idc_controller.guidance.progress import AdaptiveGuidance, Guidance
 from idc_controller.guidance.resting_place import RestingPlace
 from idc_controller.model.linear import LinearModel
 from idc_controller.perception.obstacle_map import ObstacleMap
-from idc_controller.perception.scan_assembly import SensorModel
+from idc_controller.perception.range_sensors import SensorModel
 from idc_controller.perception.settings import PerceptionSettings
 from idc_controller.safety.filter_protocol import SafetyFilter
 from idc_controller.safety.safety_filter import AvoidanceFilter

@@ -29,6 +29,8 @@ class LinkStatistics:
         """The vehicle's measurements that hold no number."""
         self.payload_not_finite = 0
         """Measurements of the payload that it relays and that hold no number."""
+        self.breaks = 0
+        """Messages that do not follow the newest one: there was a gap, or they came late or again; or the first."""
         self._newest: int | None = None
         self._seen: deque[int] = deque(maxlen=REMEMBERED)
         self._gaps: deque[tuple[float, set[int]]] = deque()
@@ -44,6 +46,7 @@ class LinkStatistics:
             self.settle(now)
         newest = self._newest
         ahead = 1 if newest is None else (number - newest) % NUMBERS
+        self.breaks += newest is None or ahead != 1
         if 0 < ahead < NUMBERS - REMEMBERED:
             if newest is not None and ahead > 1:
                 missing = {(newest + k) % NUMBERS for k in range(1, ahead)}

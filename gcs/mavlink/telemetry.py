@@ -12,13 +12,16 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 from gcs.mavlink import px4
 from gcs.mavlink.layout import LAYOUTS
 from gcs.mavlink.messages import Received
+from gcs.mavlink.scan_sequence import ScanSequence, scan_stamp
 from idc_controller.arrays import Array
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, Position
 from idc_controller.perception.scan_assembly import Detections
+from idc_controller.perception.scan_placement import Returns, ScanEnd
 
 _ATTITUDE = LAYOUTS[mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION]
 _POSITION = LAYOUTS[mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED]
 _POINT = LAYOUTS[mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D]
+_SCAN_END = LAYOUTS[mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE]
 _NAN = math.nan
 _PACK = {3: Struct("3d").pack, 4: Struct("4d").pack}
 
@@ -71,6 +74,22 @@ def detections(received: Received) -> Detections:
     points[values["frame"] != mavlink.MAV_FRAME_BODY_FRD] = _NAN
     numbers, max_range = values["obstacle_id"].astype(np.intp), values["max_distance"].astype(float)
     return Detections(received.time_boot_ms, numbers, points, max_range)
+
+
+def scan_returns(received: Received) -> Returns:
+    """Return the returns of a range sensor in an OBSTACLE_DISTANCE_3D or a run of them.
+
+    One in a frame other than the body's has no place (nan).
+    """
+    stamp, _, points, max_range = detections(received)
+    return Returns(stamp, points, max_range)
+
+
+def scan_end(received: Received, scans: ScanSequence) -> ScanEnd:
+    """Return what an OBSTACLE_DISTANCE says: that a scan was made, whose messages are in ``scans``."""
+    stamp, size = scan_stamp(received), _SCAN_END.dtype.itemsize
+    values = np.frombuffer(received.payload[:size].ljust(size, b"\0"), _SCAN_END.dtype)
+    return ScanEnd(stamp, 0.01 * values["max_distance"].item(), scans.is_complete(stamp))
 
 
 def _attitude(payload: bytes) -> _Values:

@@ -13,7 +13,8 @@ from idc_controller.geometry.shape import Shape
 from idc_controller.perception.association import associate, gating_shape
 from idc_controller.perception.map_check import MapCheck
 from idc_controller.perception.motion_imm import MotionModels
-from idc_controller.perception.scan_assembly import Cluster, ScanAssembly, SensorModel
+from idc_controller.perception.range_sensors import SensorModel
+from idc_controller.perception.scan_assembly import Cluster, ScanAssembly
 from idc_controller.perception.settings import PerceptionSettings
 from idc_controller.perception.track import Track
 from idc_controller.perception.track_list import TrackList

@@ -27,8 +27,13 @@ class PlacedScan:
     The errors of the pose are common to all returns of a scan.
     """
     free_rays: Array
-    """Ends (m, 3) of the rays without a return: at the sensor's range, or where they meet the ground.
+    """Ends (m, 3) of the rays without a return: at the sensor's range, or above the ground, which the vehicle leaves
+    out of its returns.
 
     A ray may return nothing by chance (the sensor's missed share) though a surface is there. Empty where parts of the
     scan may be lost, as then a ray without a return says nothing.
     """
+    position_sigma: float = 0.0
+    """Standard deviation of the origin on every axis (m), contained in :attr:`return_variance`."""
+    attitude_sigma: float = 0.0
+    """Standard deviation of the sensor's attitude about every axis (rad), contained in :attr:`return_variance`."""

@@ -13,6 +13,7 @@ class ScanSettings(SampledSettings):
 
     pose_gap: float = setting(0.1, "s", "largest time between a scan and the pose that places it", gt=0.0)
     pose_wait: float = setting(0.3, "s", "for which a scan waits for a measured pose", ge=0.0)
+    assembly: float = setting(0.1, "s", "for which a scan waits for messages that are missing", ge=0.0)
     pose_memory: float = setting(1.2, "s", "for which poses are kept", gt=0.0)
     simultaneous: float = setting(0.02, "s", "within which scans of several vehicles are one frame", ge=0.0)
     estimated_attitude_sigma: float = setting(0.03, "rad", "standard deviation of estimated attitudes", ge=0.0)

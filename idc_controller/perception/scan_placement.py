@@ -1,0 +1,190 @@
+"""Placement of scans: what a range sensor returned, and what it did not, in the world by the pose of its vehicle."""
+
+import math
+from collections import defaultdict, deque
+from typing import NamedTuple
+
+import numpy as np
+
+from idc_controller.arrays import Array
+from idc_controller.perception.placed_scan import PlacedScan
+from idc_controller.perception.pose_history import PoseHistory
+from idc_controller.perception.range_sensors import RangeSensors, SensorModel
+from idc_controller.perception.ray_pattern import RayPattern, scan_index
+from idc_controller.perception.scan_kernels import possible_points
+from idc_controller.perception.scan_placement_kernels import (
+    free_ends,
+    placed_returns,
+    rays_of_returns,
+    repeated_returns,
+)
+from idc_controller.perception.settings import ScanSettings
+from idc_controller.rotations import rotation_from_quaternion
+
+_OFF_RAY = 0.25
+"""Share of the mean angle between rays by which a return may lie off the next one, to be that ray's surely."""
+_GROUND_SIGMAS = 3.0
+"""Standard deviations of a place at the end of the range by which free rays end above the ground."""
+_REMEMBERED = 16
+"""Scans of a vehicle of which late messages are recognised."""
+
+
+class SensorRays(NamedTuple):
+    """What is known of the rays of every range sensor."""
+
+    pattern: RayPattern
+    rate: float
+    """Scans a second (Hz)."""
+    ground_height: float
+    """Height above the ground up to which a vehicle leaves returns out (m)."""
+
+
+class Returns(NamedTuple):
+    """Returns of one scan of a vehicle, all of them or a part, as its telemetry reports them."""
+
+    stamp: int
+    """Time stamp of the scan, by the vehicle's clock (ms)."""
+    points: Array
+    """Positions in the vehicle's body frame, forward-right-down (n, 3) (m)."""
+    max_range: Array
+    """Range of the sensor, by each message (n,) (m)."""
+
+
+class ScanEnd(NamedTuple):
+    """The end of a scan, as telemetry reports it behind the returns; also of a scan that has none."""
+
+    stamp: int
+    """Time stamp of the scan, by the vehicle's clock (ms)."""
+    max_range: float
+    """Range of the sensor (m)."""
+    is_complete: bool
+    """Whether no message of the scan is missing."""
+
+
+class _Waiting:
+    """What has come of a scan."""
+
+    def __init__(self, stamp: int, time: float, since: float) -> None:
+        self.stamp, self.time, self.since = stamp, time, since
+        self.parts: list[Array] = []
+        self.count = 0
+        self.max_range: float | None = None
+        self.is_complete = False
+        """Whether all of its returns have come, all of them possible."""
+        self.is_spoilt = False
+        """Whether there was an impossible one."""
+
+
+class ScanPlacement:
+    """Collects returns until all of a scan and its vehicle's pose are known. Times are the team's (s)."""
+
+    def __init__(self, sensors: SensorModel, rays: SensorRays, settings: ScanSettings = ScanSettings()) -> None:
+        self._sensors, self._rays, self._settings = sensors, rays, settings
+        self.poses = PoseHistory(self._settings)
+        self.range_sensors = RangeSensors(sensors.range_noise > 0.0, self._settings)
+        self._waiting: dict[tuple[int, int], _Waiting] = {}
+        self._waiting_points: dict[int, int] = defaultdict(int)
+        self._placed = defaultdict[int, deque[int]](lambda: deque(maxlen=_REMEMBERED))
+        """Stamps of the last scans of each vehicle that have been placed or discarded."""
+        self.discarded = 0
+        """Returns that were impossible, stuck, too late or too many, or had no pose."""
+
+    def add(self, returns: Returns, uav: int, time: float, now: float) -> None:
+        """Add returns of UAV ``uav`` (0 .. N-1) of a scan made at ``time``, that came at ``now`` (s)."""
+        points = returns.points
+        scan = self._scan(uav, returns.stamp, time, now)
+        if scan is None:
+            self.discarded += len(points)
+            return
+        possible = possible_points(points, returns.max_range, self._settings.range_factor)
+        usable = possible[: max(self._settings.points_max - self._waiting_points[uav], 0)]
+        if len(usable) < len(points):
+            self.discarded += len(points) - len(usable)
+            self.range_sensors.add_invalid(uav, time)
+            scan.is_spoilt = True
+            points = points[usable]
+        scan.parts.append(points)
+        scan.count += len(points)
+        self._waiting_points[uav] += len(points)
+
+    def end(self, end: ScanEnd, uav: int, time: float, now: float) -> None:
+        """Add the end of a scan of UAV ``uav`` made at ``time``, that came at ``now`` (s)."""
+        scan = self._scan(uav, end.stamp, time, now)
+        if scan is not None and end.max_range > 0.0:
+            scan.max_range, scan.is_complete = end.max_range, end.is_complete
+
+    def scans(
+        self,
+        now: float,
+        pose_noise_scale: float = 1.0,
+        unusable_positions: frozenset[int] = frozenset(),
+        unusable_attitudes: frozenset[int] = frozenset(),
+    ) -> list[PlacedScan]:
+        """Return the scans that can be placed, oldest first.
+
+        A complete scan is placed at once; another one when no part of it is likely to come any more.
+
+        Args:
+            now: s.
+            pose_noise_scale: scale of the poses' standard deviations in :class:`SensorModel`.
+            unusable_positions: vehicles whose measured position is not used but the estimated one.
+            unusable_attitudes: vehicles whose measured attitude is not.
+        """
+        s = self._settings
+        placed: list[PlacedScan] = []
+        for key, scan in tuple(self._waiting.items()):
+            uav = key[0]
+            if not scan.is_complete and now - scan.since < s.assembly:
+                continue
+            estimated_attitude = uav in unusable_attitudes
+            pose = self.poses.pose(uav, scan.time, uav in unusable_positions, estimated_attitude)
+            if pose is None and now - scan.time <= s.pose_wait:
+                continue
+            if pose is None:
+                estimated_attitude = True
+                pose = self.poses.pose(uav, scan.time, estimated_position=True, estimated_attitude=True)
+            del self._waiting[key]
+            self._waiting_points[uav] -= scan.count
+            self._placed[uav].append(scan.stamp)
+            points = np.concatenate([np.empty((0, 3)), *scan.parts])
+            stuck = bool(scan.count) and self.range_sensors.check(uav, scan.time, points)
+            if pose is None or stuck:
+                self.discarded += scan.count
+                continue
+            sigma = max(s.estimated_attitude_sigma * estimated_attitude, pose_noise_scale * self._sensors.attitude)
+            placed.append(self._place(uav, scan, points, pose, (pose_noise_scale * self._sensors.position, sigma)))
+        placed.sort(key=lambda scan: scan.time)
+        return placed
+
+    def _scan(self, uav: int, stamp: int, time: float, now: float) -> _Waiting | None:
+        """Return the scan with a ``stamp`` that waits; None: it has been placed, and this is late or a duplicate."""
+        scan = self._waiting.get((uav, stamp))
+        if scan is None and stamp not in self._placed[uav]:
+            scan = self._waiting[uav, stamp] = _Waiting(stamp, time, now)
+        return scan
+
+    def _place(
+        self, uav: int, scan: _Waiting, points: Array, pose: tuple[Array, Array], sigmas: tuple[float, float]
+    ) -> PlacedScan:
+        """Return the scan with its returns ``points`` (n, 3) in the body frame, ``sigmas`` of the pose (m, rad)."""
+        pattern, rate, ground_height = self._rays
+        position, rotation = np.ascontiguousarray(pose[0]), rotation_from_quaternion(pose[1])
+        directions = pattern.directions(scan_index(scan.stamp, rate))
+        rays, angles = rays_of_returns(points, directions)
+        repeated = repeated_returns(points, rays, len(directions))
+        if repeated.any():
+            points, rays, angles = points[~repeated], rays[~repeated], angles[~repeated]
+        along, (anywhere, turning) = self._sensors.range_noise, sigmas
+        # Returns lie on the sensor's rays: how far they are off tells of an error that its noise is not.
+        sideways = angles * np.linalg.norm(points, axis=1)
+        off = math.sqrt(0.5 * float(np.mean(sideways * sideways))) if len(points) else 0.0
+        returns, variance = placed_returns(
+            points, position, rotation, np.array([along, math.hypot(anywhere, off), turning])
+        )
+        free = np.empty((0, 3))
+        is_sure = scan.is_complete and not scan.is_spoilt
+        if is_sure and scan.max_range is not None and not (angles > _OFF_RAY * pattern.spacing).any():
+            reach = scan.max_range
+            height = ground_height + _GROUND_SIGMAS * math.hypot(along, anywhere, turning * reach)
+            free = free_ends(directions, rays, position, rotation, reach, height)
+        return PlacedScan(uav, scan.time, position, returns, variance, free, anywhere, turning)

@@ -1,0 +1,115 @@
+"""Returns of a scan: the rays on which they lie, their places and covariances in the world, and free rays, compiled."""
+
+import math
+
+import numpy as np
+
+from idc_controller.arrays import Array, Indices, Mask
+from idc_controller.compiled import kernel
+
+_ON_RAY = 2e-4
+"""Angle (rad) within which a return lies on a ray; far more than the rounding of the wire's 32-bit floats."""
+
+
+@kernel("Tuple((int64[::1], float64[::1]))(float64[:, ::1], float64[:, ::1])")
+def rays_of_returns(points: Array, directions: Array) -> tuple[Indices, Array]:
+    """Return the ray next to each return (n,), and the angle between them (n,) (rad).
+
+    Args:
+        points: returns in the body frame (n, 3), finite and not 0 (m).
+        directions: of the rays (m, 3), unit vectors, sorted by their third component, the largest first, in which they
+            are evenly distributed.
+    """
+    n, m = points.shape[0], directions.shape[0]
+    rays, angles = np.empty(n, np.int64), np.empty(n)
+    low = directions[0, 2]
+    step = (directions[m - 1, 2] - low) / max(m - 1, 1)
+    for i in range(n):
+        x, y, z = points[i, 0], points[i, 1], points[i, 2]
+        distance = math.sqrt(x * x + y * y + z * z)
+        guess = 0 if m == 1 else round((z / distance - low) / step)
+        first, last = max(guess - 1, 0), min(guess + 2, m)
+        for _attempt in range(2):  # where no ray of that elevation fits, look at all
+            least = math.inf
+            for j in range(first, last):
+                u, v, w = (
+                    x - distance * directions[j, 0],
+                    y - distance * directions[j, 1],
+                    z - distance * directions[j, 2],
+                )
+                apart = math.sqrt(u * u + v * v + w * w) / distance
+                if apart < least:
+                    least, rays[i] = apart, j
+            if least < _ON_RAY:
+                break
+            first, last = 0, m
+        angles[i] = 2.0 * math.asin(min(0.5 * least, 1.0))
+    return rays, angles
+
+
+@kernel("boolean[::1](float64[:, ::1], int64[::1], int64)")
+def repeated_returns(points: Array, rays: Indices, count: int) -> Mask:
+    """Return which returns (n, 3) repeat the one before on their ray (n,), of ``count`` rays, to the digit."""
+    n = points.shape[0]
+    last, repeated = np.full(count, -1, np.int64), np.zeros(n, np.bool_)
+    for i in range(n):
+        k = last[rays[i]]
+        if k >= 0 and points[i, 0] == points[k, 0] and points[i, 1] == points[k, 1] and points[i, 2] == points[k, 2]:
+            repeated[i] = True
+        last[rays[i]] = i
+    return repeated
+
+
+@kernel("Tuple((float64[:, ::1], float64[:, :, ::1]))(float64[:, ::1], float64[::1], float64[:, ::1], float64[::1])")
+def placed_returns(points: Array, position: Array, rotation: Array, sigmas: Array) -> tuple[Array, Array]:
+    """Return the places (n, 3) (NED, m) and covariances (n, 3, 3) (m2) of returns.
+
+    Args:
+        points: returns in the body frame (n, 3) (m).
+        position: of the vehicle (3,), NED (m).
+        rotation: its attitude, body to world (3, 3).
+        sigmas: standard deviations along the ray, of the position on every axis (m), and of the attitude about every
+            axis (rad) (3,).
+    """
+    n = points.shape[0]
+    places, variance = np.empty((n, 3)), np.empty((n, 3, 3))
+    along, anywhere, turning = sigmas[0] ** 2, sigmas[1] ** 2, sigmas[2] ** 2
+    for p in range(n):
+        a, b, c = points[p, 0], points[p, 1], points[p, 2]
+        square = a * a + b * b + c * c
+        # Range noise along the ray; the attitude's error moves the return across it.
+        of_ray, of_axes = along / square - turning, anywhere + turning * square
+        ray = rotation[:, 0] * a + rotation[:, 1] * b + rotation[:, 2] * c
+        for i in range(3):
+            places[p, i] = position[i] + ray[i]
+            for j in range(3):
+                variance[p, i, j] = of_ray * ray[i] * ray[j]
+            variance[p, i, i] += of_axes
+    return places, variance
+
+
+@kernel("float64[:, ::1](float64[:, ::1], int64[::1], float64[::1], float64[:, ::1], float64, float64)")
+def free_ends(directions: Array, rays: Indices, position: Array, rotation: Array, reach: float, height: float) -> Array:
+    """Return the ends (k, 3) (NED, m) of the rays without a return.
+
+    Args:
+        directions: of all rays (m, 3), unit vectors in the body frame.
+        rays: those with a return (n,).
+        position: of the vehicle (3,), NED (m).
+        rotation: its attitude, body to world (3, 3).
+        reach: range, at which they end (m).
+        height: above the ground, at which they end as well (m).
+    """
+    m = directions.shape[0]
+    is_free, ends, count = np.ones(m, np.bool_), np.empty((m, 3)), 0
+    for i in range(rays.shape[0]):
+        is_free[rays[i]] = False
+    above = -position[2] - height
+    for i in range(m):
+        if not is_free[i] or above <= 0.0:
+            continue
+        ray = rotation[:, 0] * directions[i, 0] + rotation[:, 1] * directions[i, 1] + rotation[:, 2] * directions[i, 2]
+        length = min(reach, above / ray[2]) if ray[2] > 0.0 else reach
+        ends[count] = position + length * ray
+        count += 1
+    return ends[:count].copy()

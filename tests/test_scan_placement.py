@@ -1,0 +1,279 @@
+"""Placement of scans: returns with their covariances, rays without a return, and what may be missing."""
+
+import math
+
+import numpy as np
+import pytest
+from test_ray_sensor import random_scene
+
+from gcs.config import RangeSensorConfig
+from idc_controller.estimation.measurements import Attitude, Position
+from idc_controller.geometry.box import Wall
+from idc_controller.geometry.pole import Pole
+from idc_controller.perception.range_sensors import SensorModel
+from idc_controller.perception.ray_pattern import RayPattern
+from idc_controller.perception.scan_placement import Returns, ScanEnd, ScanPlacement, SensorRays
+from idc_controller.perception.scan_placement_kernels import (
+    free_ends,
+    placed_returns,
+    rays_of_returns,
+    repeated_returns,
+)
+from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
+from vehicle_sim.world.ray_bodies import RayBodies
+from vehicle_sim.world.ray_cast_kernels import first_hits
+from vehicle_sim.world.ray_sensor import RaySensor
+from vehicle_sim.world.sensors import Measurement
+
+CONFIG = RangeSensorConfig()
+PATTERN = RayPattern(CONFIG.rays, math.radians(CONFIG.elevation_min_deg), math.radians(CONFIG.elevation_max_deg))
+RAYS = SensorRays(PATTERN, CONFIG.rate, CONFIG.ground_height)
+SENSORS = SensorModel(0.05, 0.02, math.radians(0.2))
+EXACT = SensorModel(0.0, 0.0, 0.0)
+HERE = np.array([1.0, -2.0, -6.0])
+TILTED = quaternion_from_euler(0.1, -0.15, 2.0)
+SCENE = [(Wall((0.3, 6.0, 5.0), 0.4), (5.0, -1.0, -3.0)), (Pole(0.2, 12.0), (-2.0, 2.0, -6.0))]
+NOT_MISSED = RangeSensorConfig(noise=0.0, missed_share=0.0)
+
+
+def measure(config=NOT_MISSED, stamp=1300, bodies=SCENE, place=HERE, attitude=TILTED, seed=1):
+    """The points of a scan (n, 3) as the wire holds them."""
+    own = Measurement(0.0, tuple(attitude), (0.0,) * 3, tuple(place), (0.0,) * 3)
+    scan = RaySensor(config, seed, 1).scan(0.0, stamp // 100, place, tuple(attitude), own, RayBodies.of(bodies))
+    return scan.points.astype(np.float32).astype(float)
+
+
+def placement(sensors=EXACT, uav=0, time=1.3, place=HERE, attitude=TILTED):
+    """A placement that knows the pose of a vehicle at a time."""
+    placing = ScanPlacement(sensors, RAYS)
+    placing.poses.add_measured(Position(time, uav, np.array(place), np.zeros(3)))
+    placing.poses.add_measured(Attitude(time, uav, np.array(attitude), np.zeros(3)))
+    return placing
+
+
+def returns_of(points, stamp=1300):
+    return Returns(stamp, points, np.full(len(points), 10.0))
+
+
+def placed(points, complete=True, sensors=EXACT, stamp=1300, now=1.4, **pose):
+    placing = placement(sensors, **pose)
+    placing.add(returns_of(points, stamp), 0, 1.3, 1.31)
+    placing.end(ScanEnd(stamp, 10.0, complete), 0, 1.3, 1.31)
+    return placing.scans(now)
+
+
+# Kernels
+
+
+def brute_rays(points, directions):
+    unit = points / np.linalg.norm(points, axis=1)[:, None]
+    angles = np.arctan2(np.linalg.norm(np.cross(unit[:, None], directions[None]), axis=2), unit @ directions.T)
+    return angles.argmin(axis=1), angles.min(axis=1)
+
+
+@pytest.mark.parametrize(
+    "pattern", [PATTERN, RayPattern(1, -0.3, 0.3), RayPattern(37, -1.5, 1.5)], ids=lambda p: p.rays
+)
+def test_return_is_assigned_to_the_ray_next_to_it(pattern):
+    rng = np.random.default_rng(1)
+    for scan in range(10):
+        directions = pattern.directions(scan)
+        on = (directions * rng.uniform(0.05, 10.0, (pattern.rays, 1))).astype(np.float32).astype(float)
+        rays, angles = rays_of_returns(on, directions)
+        np.testing.assert_array_equal(rays, np.arange(pattern.rays))
+        assert angles.max() < 1e-6
+        anywhere = rng.normal(size=(60, 3)) * 5.0
+        rays, angles = rays_of_returns(anywhere, directions)
+        expected_rays, expected = brute_rays(anywhere, directions)
+        np.testing.assert_array_equal(rays, expected_rays)
+        np.testing.assert_allclose(angles, expected, atol=1e-9)
+
+
+def test_repeated_returns_are_those_that_came_before():
+    points = np.array([[1.0, 0, 0], [2.0, 0, 0], [1.0, 0, 0], [0, 1.0, 0], [0, 1.0, 0], [1.0, 0, 0], [1.0, 0, 0]])
+    rays = np.array([3, 4, 3, 0, 0, 1, 3])
+    assert repeated_returns(points, rays, 5).tolist() == [False, False, True, False, True, False, True]
+
+
+def test_covariances_are_those_of_noise_along_the_ray_and_of_the_pose():
+    rng = np.random.default_rng(1)
+    points, rotation = rng.normal(size=(30, 3)) * 4.0, rotation_from_quaternion(TILTED)
+    places, variance = placed_returns(points, HERE, rotation, np.array([0.05, 0.02, 0.03]))
+    np.testing.assert_allclose(places, HERE + points @ rotation.T, atol=1e-12)
+    for point, found in zip(points @ rotation.T, variance, strict=True):
+        unit = point / np.linalg.norm(point)
+        across = np.array([[0, -point[2], point[1]], [point[2], 0, -point[0]], [-point[1], point[0], 0]])
+        expected = 0.05**2 * np.outer(unit, unit) + 0.02**2 * np.eye(3) + 0.03**2 * across @ across.T
+        np.testing.assert_allclose(found, expected, atol=1e-12)
+
+
+def test_free_rays_end_at_the_range_and_above_the_ground():
+    directions, rotation = PATTERN.directions(5), rotation_from_quaternion(TILTED)
+    hit = np.arange(0, 500, 7)
+    ends = free_ends(directions, hit, HERE, rotation, 10.0, 0.4)
+    world = np.delete(directions, hit, axis=0) @ rotation.T
+    with np.errstate(divide="ignore"):
+        lengths = np.where(world[:, 2] > 0.0, np.minimum((6.0 - 0.4) / world[:, 2], 10.0), 10.0)
+    np.testing.assert_allclose(ends, HERE + lengths[:, None] * world, atol=1e-9)
+    assert ends[:, 2].max() <= -0.4 + 1e-9
+    assert len(free_ends(directions, hit, np.array([0.0, 0.0, -0.3]), rotation, 10.0, 0.4)) == 0
+
+
+# Scans
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_returns_lie_on_surfaces_and_free_rays_meet_nothing(seed):
+    """Without noise: in random scenes, by first hits from the sensor towards all of them."""
+    bodies = random_scene(seed, 10, high=-6.0)
+    place, attitude = (
+        np.array([0.0, 0.0, -6.0]),
+        quaternion_from_euler(*np.random.default_rng(seed).normal(0.0, 0.2, 3)),
+    )
+    points = measure(bodies=bodies, place=place, attitude=attitude)
+    [scan] = placed(points, place=place, attitude=attitude)
+    assert (scan.uav, scan.time) == (0, 1.3)
+    np.testing.assert_array_equal(scan.origin, place)
+    pose, targets = np.array([*place, 1.0, 0.0, 0.0, 0.0]), RayBodies.of(bodies)
+    for ends, are_hits in ((scan.returns, True), (scan.free_rays, False)):
+        lengths = np.linalg.norm(ends - place, axis=1)
+        first = first_hits((ends - place) / lengths[:, None], pose, 20.0, *targets)
+        if are_hits:
+            np.testing.assert_allclose(first, lengths, atol=1e-5)
+        else:
+            assert np.all(first >= lengths - 1e-5)
+    assert len(scan.returns) == len(points) > 0
+    # The others met the ground's lowest part, or are obstacles' lowest returns.
+    assert len(scan.returns) + len(scan.free_rays) == 500
+
+
+def test_errors_of_returns_agree_with_their_covariances():
+    """Normalised squared errors of places, over 300 poses with the stated errors: 3 on average."""
+    rng, total, count = np.random.default_rng(1), 0.0, 0
+    wall = [(Wall((0.2, 40.0, 40.0)), (5.0, 0.0, -50.0))]
+    true_place = np.array([0.0, 0.0, -50.0])
+    for k in range(300):
+        points = measure(RangeSensorConfig(missed_share=0.0), 100 * k, wall, true_place, (1.0, 0.0, 0.0, 0.0), seed=k)
+        exact = measure(NOT_MISSED, 100 * k, wall, true_place, (1.0, 0.0, 0.0, 0.0), seed=k)
+        assert len(points) == len(exact)
+        turned = quaternion_from_euler(*rng.normal(0.0, SENSORS.attitude, 3))
+        [scan] = placed(
+            points, sensors=SENSORS, stamp=100 * k, place=true_place + rng.normal(0.0, SENSORS.position, 3),
+            attitude=turned,
+        )  # fmt: skip
+        errors = scan.returns - (true_place + exact)
+        total += np.einsum("ni,nij,nj->", errors, np.linalg.inv(scan.return_variance), errors)
+        count += len(errors)
+        assert (scan.position_sigma, scan.attitude_sigma) == (SENSORS.position, SENSORS.attitude)
+    # Of one scan the pose's error is common: about 300 independent samples of 3 of the directions.
+    assert total / count == pytest.approx(3.0, rel=0.1)
+
+
+def test_incomplete_scan_has_no_free_rays():
+    points = measure()
+    [whole], [part] = placed(points), placed(points[::2].copy(), complete=False, now=1.5)
+    assert len(whole.free_rays) > 300 and len(part.free_rays) == 0
+    np.testing.assert_array_equal(part.returns, whole.returns[::2])
+
+
+def test_incomplete_scan_waits_for_late_messages_and_a_complete_one_does_not():
+    points = measure()
+    placing = placement()
+    placing.add(returns_of(points[:20]), 0, 1.3, 1.31)
+    assert placing.scans(1.35) == []
+    placing.end(ScanEnd(1300, 10.0, False), 0, 1.3, 1.35)
+    placing.add(returns_of(points[20:40]), 0, 1.3, 1.36)
+    [scan] = placing.scans(1.42)
+    assert len(scan.returns) == 40
+    placing.add(returns_of(points[40:]), 0, 1.3, 1.45)  # too late
+    assert placing.discarded == len(points) - 40
+    assert placing.scans(2.0) == []
+
+
+def test_scan_that_hit_nothing_has_only_free_rays():
+    placing = placement()
+    placing.end(ScanEnd(1300, 10.0, True), 0, 1.3, 1.3)
+    [scan] = placing.scans(1.3)
+    assert scan.returns.shape == (0, 3) and scan.return_variance.shape == (0, 3, 3)
+    assert len(scan.free_rays) == 500
+    assert np.linalg.norm(scan.free_rays - HERE, axis=1).max() == pytest.approx(10.0)
+
+
+def test_duplicated_messages_count_once():
+    points = measure()
+    placing = placement()
+    for _ in range(2):
+        placing.add(returns_of(points), 0, 1.3, 1.31)
+        placing.end(ScanEnd(1300, 10.0, True), 0, 1.3, 1.31)
+    [scan] = placing.scans(1.35)
+    assert len(scan.returns) == len(points)
+    placing.end(ScanEnd(1300, 10.0, True), 0, 1.3, 1.4)
+    assert placing.scans(1.4) == []
+
+
+def test_impossible_returns_spoil_the_free_rays():
+    points = measure()
+    points[3] = math.nan
+    [scan] = placed(points)
+    assert len(scan.returns) == len(points) - 1
+    assert len(scan.free_rays) == 0
+
+
+@pytest.mark.parametrize(
+    "disturbed",
+    [
+        lambda p: p + np.random.default_rng(1).normal(0.0, 0.3, p.shape),
+        lambda p: p + 0.3,
+        lambda p: p * [1.0, -1.0, 1.0],
+    ],
+    ids=["noise", "bias", "mirrored"],
+)
+def test_returns_off_the_rays_have_the_variance_that_they_show_and_no_free_rays(disturbed):
+    points = measure()
+    [right], [wrong] = placed(points, sensors=SENSORS), placed(disturbed(points), sensors=SENSORS)
+    assert len(wrong.free_rays) == 0 < len(right.free_rays)
+    smallest = np.linalg.eigvalsh(right.return_variance)[:, 0], np.linalg.eigvalsh(wrong.return_variance)[:, 0]
+    assert np.sqrt(smallest[0]).max() < 0.05
+    assert np.sqrt(smallest[1]).min() > 0.12
+
+
+def test_scan_of_another_index_is_off_the_rays():
+    """Old points under a new stamp, as of a sensor that is stuck."""
+    [scan] = placed(measure(stamp=1200))
+    assert len(scan.free_rays) == 0
+
+
+def test_placement_scales_and_replaces_poses_as_asked():
+    points = measure()
+    placing = placement(SENSORS)
+    placing.add(returns_of(points), 0, 1.3, 1.31)
+    placing.end(ScanEnd(1300, 10.0, True), 0, 1.3, 1.31)
+    [scan] = placing.scans(1.35, pose_noise_scale=3.0)
+    assert (scan.position_sigma, scan.attitude_sigma) == pytest.approx((0.06, math.radians(0.6)))
+    assert placing.scans(1.4) == []
+    unknown = placement(SENSORS)
+    unknown.add(returns_of(points), 0, 1.3, 1.31)
+    assert unknown.scans(1.5, unusable_attitudes=frozenset({0})) == []  # it waits for an estimate
+    assert unknown.scans(1.7, unusable_attitudes=frozenset({0})) == []
+    assert unknown.discarded == len(points)
+
+
+def test_flood_of_returns_is_bounded():
+    placing = placement()
+    for k in range(5000):
+        placing.add(returns_of(np.ones((1, 3)), 5000 + k), 0, 5.0, 5.0)
+    assert placing.discarded > 2500
+
+
+def test_stuck_sensor_is_invalid():
+    points, placing = measure(), ScanPlacement(SENSORS, RAYS)
+    for k in range(20):
+        stamp = 1300 + 100 * k
+        time = stamp * 1e-3
+        placing.poses.add_measured(Position(time, 0, HERE, np.zeros(3)))
+        placing.poses.add_measured(Attitude(time, 0, np.array(TILTED), np.zeros(3)))
+        placing.add(returns_of(points, stamp), 0, time, time)
+        placing.end(ScanEnd(stamp, 10.0, True), 0, time, time)
+        scans = placing.scans(time)
+        assert bool(scans) == (k == 0)
+    assert placing.range_sensors.valid((0,), 3.2) == ()

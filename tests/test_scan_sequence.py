@@ -1,0 +1,124 @@
+"""Completeness of scans on a MAVLink link that loses, repeats and reorders datagrams."""
+
+import random
+
+import numpy as np
+import pymavlink.dialects.v20.ardupilotmega as mavlink
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from gcs.mavlink.codec import Codec, gather
+from gcs.mavlink.layout import LAYOUTS, PackedRun
+from gcs.mavlink.scan_sequence import RETURNS, SCAN_END, scan_stamp
+from gcs.mavlink.telemetry import scan_end, scan_returns
+from gcs.mavlink.vehicle_link import VehicleLink
+
+POINT = LAYOUTS[RETURNS]
+ATTITUDE = mavlink.MAVLink_attitude_quaternion_message(1, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+def returns(stamp, count):
+    values = np.zeros(count, POINT.dtype)
+    values["time_boot_ms"], values["x"], values["y"] = stamp, 3.0, np.arange(count)
+    values["obstacle_id"], values["max_distance"], values["frame"] = 65535, 10.0, mavlink.MAV_FRAME_BODY_FRD
+    return PackedRun(POINT, values)
+
+
+def end_of(stamp):
+    return mavlink.MAVLink_obstacle_distance_message(
+        stamp * 1000, mavlink.MAV_DISTANCE_SENSOR_LASER, [65535] * 72, 5, 5, 1000, 0.0, 0.0, mavlink.MAV_FRAME_BODY_FRD
+    )
+
+
+def datagrams_of(codec, stamp, count):
+    """What a vehicle sends with a scan: attitudes before it, and its end behind it."""
+    frames = [codec.encode(ATTITUDE) for _ in range(4)]
+    if count:
+        frames += codec.frames(returns(stamp, count))
+    return gather([*frames, codec.encode(end_of(stamp))])
+
+
+class Ground:
+    """Reads scans as the ground does: those that ended, with the number of their returns and whether complete."""
+
+    def __init__(self):
+        self.codec, self.link = Codec(255, 190), VehicleLink(3, None)
+        self.counts, self.ends = {}, []
+
+    def receive(self, datagram, now=0.0):
+        messages = self.codec.read(datagram)
+        for received in messages:
+            self.link.handle(received, now)
+        for received in messages:
+            if received.message_id == RETURNS:
+                part = scan_returns(received)
+                self.counts[part.stamp] = self.counts.get(part.stamp, 0) + len(part.points)
+            elif received.message_id == SCAN_END:
+                self.ends.append(scan_end(received, self.link.scans))
+
+
+@pytest.mark.parametrize("count", [0, 1, 29, 100, 256, 600])
+def test_scan_of_which_all_messages_came_is_complete(count):
+    ground, vehicle = Ground(), Codec(3, 1)
+    for stamp in (100, 200, 2**32 - 5):
+        for datagram in datagrams_of(vehicle, stamp, count):
+            ground.receive(datagram)
+    assert ground.counts == (dict.fromkeys((100, 200, 2**32 - 5), count) if count else {})
+    assert [(end.stamp, end.max_range, end.is_complete) for end in ground.ends] == [
+        (stamp, 10.0, True) for stamp in (100, 200, 2**32 - 5)
+    ]
+
+
+@pytest.mark.parametrize("lost", range(4))
+def test_scan_of_which_a_datagram_was_lost_is_not_complete(lost):
+    ground, vehicle = Ground(), Codec(3, 1)
+    for datagram in datagrams_of(vehicle, 100, 100):
+        ground.receive(datagram)
+    sent = datagrams_of(vehicle, 200, 100)
+    assert len(sent) == 4
+    for k, datagram in enumerate(sent):
+        if k != lost:
+            ground.receive(datagram)
+    for datagram in datagrams_of(vehicle, 300, 100):
+        ground.receive(datagram)
+    # Without its last datagram it has no end; of the next one, the gap is before its attitudes.
+    assert [(end.stamp, end.is_complete) for end in ground.ends] == [
+        (100, True), *([(200, False)] if lost < 3 else []), (300, True),
+    ]  # fmt: skip
+
+
+@settings(deadline=None, derandomize=True, max_examples=200)
+@given(
+    st.integers(0, 10_000), st.sampled_from((0.0, 0.05, 0.3)), st.sampled_from((0.0, 0.1)), st.sampled_from((0.0, 0.1))
+)
+def test_complete_scan_has_all_its_returns(seed, loss, repetition, swap):
+    """Whatever the link loses, repeats or reorders; and without any of that, every scan is complete."""
+    chance, vehicle, ground = random.Random(seed), Codec(3, 1), Ground()
+    sent, stream = {}, []
+    for k in range(12):
+        sent[k] = chance.choice((0, 3, 40, 150))
+        stream += datagrams_of(vehicle, k, sent[k])
+    arriving = [d for d in stream if chance.random() >= loss]
+    arriving = [d for d in arriving for _ in range(1 + (chance.random() < repetition))]
+    for i in range(len(arriving) - 1):
+        if chance.random() < swap:
+            arriving[i], arriving[i + 1] = arriving[i + 1], arriving[i]
+    for datagram in arriving:
+        ground.receive(datagram)
+        complete = [end for end in ground.ends if end.is_complete]
+        assert all(ground.counts.get(end.stamp, 0) >= sent[end.stamp] for end in complete)
+    if loss == repetition == swap == 0.0:
+        assert [end.stamp for end in ground.ends if end.is_complete] == list(range(12))
+
+
+def test_stamp_of_a_scans_end_is_in_milliseconds():
+    [received] = Codec(1, 1).decode(Codec(3, 1).encode(end_of(2**32 - 1)))
+    assert scan_stamp(received) == 2**32 - 1
+
+
+def test_messages_of_another_component_are_no_scan():
+    ground, vehicle, camera = Ground(), Codec(3, 1), Codec(3, 100)
+    ground.receive(vehicle.encode(ATTITUDE))
+    ground.receive(camera.encode(end_of(100)))
+    assert not ground.ends[0].is_complete
