@@ -12,17 +12,17 @@ from gcs.mavlink.clock import RemoteClock
 from gcs.mavlink.link_statistics import LinkStatistics
 from gcs.mavlink.messages import Message, Received
 from gcs.mavlink.requests import Requests
-from gcs.mavlink.scan_sequence import RETURNS, SCAN_END, ScanSequence
 from gcs.mavlink.setpoints import SetpointStream
 from gcs.mavlink.settings import LinkSettings
 
 _ATTITUDE, _POSITION = mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED
 _NAVIGATION = (_ATTITUDE, _POSITION)
-_SCAN = (RETURNS, SCAN_END)
 #: What comes often and holds nothing that is kept here: not read.
 _NOT_READ = frozenset(
     (
         mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET,
+        mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D,
+        mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE,
         mavlink.MAVLINK_MSG_ID_ATTITUDE,
         mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT,
         mavlink.MAVLINK_MSG_ID_VFR_HUD,
@@ -85,7 +85,6 @@ class VehicleLink:
         self.status = VehicleStatus()
         self.clock = RemoteClock(settings.clock)
         self.statistics = LinkStatistics(settings.reordering_time)
-        self.scans = ScanSequence()
         self.requests = Requests(system_id, self.status.parameters, settings)
         self.setpoints = SetpointStream(self.clock, self.status.parameters, settings)
         self.received_at = -math.inf
@@ -108,18 +107,13 @@ class VehicleLink:
         """Take one message of this vehicle, or a run of them."""
         self.received_at = now
         of_autopilot = received.component == px4.AUTOPILOT_COMPONENT
-        breaks = self.statistics.breaks
         if received.run > 1:
             if of_autopilot:
                 self.statistics.run(received.sequence, received.run, now)
-                self.scans.add(received, breaks, self.statistics.breaks)
             return
         in_order = of_autopilot and self.statistics.message(received.sequence, now)
         message_id = received.layout.message_id
-        if message_id in _SCAN:
-            if of_autopilot:
-                self.scans.add(received, breaks, self.statistics.breaks)
-        elif message_id in _NAVIGATION:
+        if message_id in _NAVIGATION:
             if of_autopilot:
                 self._handle_navigation(message_id, received.time_boot_ms, in_order, now)
             elif received.component == px4.PAYLOAD_UNIT_COMPONENT:
