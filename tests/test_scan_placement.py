@@ -10,15 +10,11 @@ from gcs.config import RangeSensorConfig
 from idc_controller.estimation.measurements import Attitude, Position
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.pole import Pole
+from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.range_sensors import SensorModel
 from idc_controller.perception.ray_pattern import RayPattern
 from idc_controller.perception.scan_placement import Returns, ScanEnd, ScanPlacement, SensorRays
-from idc_controller.perception.scan_placement_kernels import (
-    free_ends,
-    placed_returns,
-    rays_of_returns,
-    repeated_returns,
-)
+from idc_controller.perception.scan_placement_kernels import free_ends, rays_of_returns, repeated_returns
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
 from vehicle_sim.world.ray_bodies import RayBodies
 from vehicle_sim.world.ray_cast_kernels import first_hits
@@ -96,11 +92,9 @@ def test_repeated_returns_are_those_that_came_before():
 
 
 def test_covariances_are_those_of_noise_along_the_ray_and_of_the_pose():
-    rng = np.random.default_rng(1)
-    points, rotation = rng.normal(size=(30, 3)) * 4.0, rotation_from_quaternion(TILTED)
-    places, variance = placed_returns(points, HERE, rotation, np.array([0.05, 0.02, 0.03]))
-    np.testing.assert_allclose(places, HERE + points @ rotation.T, atol=1e-12)
-    for point, found in zip(points @ rotation.T, variance, strict=True):
+    points = np.random.default_rng(1).normal(size=(30, 3)) * 4.0
+    scan = PlacedScan(0.0, HERE, HERE + points, 0.05, 0.02, 0.03)
+    for point, found in zip(points, scan.return_variance, strict=True):
         unit = point / np.linalg.norm(point)
         across = np.array([[0, -point[2], point[1]], [point[2], 0, -point[0]], [-point[1], point[0], 0]])
         expected = 0.05**2 * np.outer(unit, unit) + 0.02**2 * np.eye(3) + 0.03**2 * across @ across.T
@@ -164,7 +158,7 @@ def test_errors_of_returns_agree_with_their_covariances():
         errors = scan.returns - (true_place + exact)
         total += np.einsum("ni,nij,nj->", errors, np.linalg.inv(scan.return_variance), errors)
         count += len(errors)
-        assert (scan.position_sigma, scan.attitude_sigma) == (SENSORS.position, SENSORS.attitude)
+        assert (scan.position_sigma, scan.attitude_sigma) == pytest.approx((SENSORS.position, SENSORS.attitude))
     # Of one scan the pose's error is common: about 300 independent samples of 3 of the directions.
     assert total / count == pytest.approx(3.0, rel=0.1)
 

@@ -1,39 +1,51 @@
-"""A scan of a range sensor, placed in the world: what the standing map takes."""
+"""One scan of a range sensor, placed in the world by the pose of its vehicle."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+import numpy as np
 
 from idc_controller.arrays import Array
 
 
+def _none() -> Array:
+    return np.empty((0, 3))
+
+
 @dataclass(frozen=True, eq=False)
 class PlacedScan:
-    """Returns of one scan of one vehicle, and its rays that returned nothing, in the world (NED, m).
+    """Returns and rays without return of one scan. SI units, NED; times are the team's (s).
 
-    Each return lies on the first surface of its ray: what is between origin and return was seen free. Nothing says to
-    which obstacle a return belongs.
+    Each return lies on the first surface of its ray; nothing says to which obstacle it belongs. The noise of a return
+    is kept as three standard deviations, of which its covariance follows: see :attr:`return_variance`.
     """
 
-    uav: int
-    """The vehicle (0 .. N-1)."""
     time: float
-    """When the scan was made (s, team time)."""
     origin: Array
-    """Position of the sensor (3,)."""
+    """Place of the sensor (3,)."""
     returns: Array
-    """Where rays met a surface (n, 3), measured."""
-    return_variance: Array
-    """Covariance of each return (n, 3, 3) (m2): noise along its ray, and errors of the vehicle's position and attitude.
+    """Points that rays hit (n, 3)."""
+    range_sigma: float
+    """Standard deviation of a return along its ray (m)."""
+    position_sigma: float
+    """Standard deviation of the vehicle's position, every axis (m); larger where returns do not lie on the rays."""
+    attitude_sigma: float
+    """Standard deviation of its attitude, every axis (rad)."""
+    free_rays: Array = field(default_factory=_none)
+    """Ends of the rays that returned nothing up to there (m, 3): at the sensor's range, or above the ground, which
+    vehicles leave out of their returns; none where returns may have been lost.
 
-    The errors of the pose are common to all returns of a scan.
+    A ray may also return nothing by chance, by the sensor's missed share.
     """
-    free_rays: Array
-    """Ends (m, 3) of the rays without a return: at the sensor's range, or above the ground, which the vehicle leaves
-    out of its returns.
+    uav: int = 0
+    """The vehicle (0 .. N-1)."""
 
-    A ray may return nothing by chance (the sensor's missed share) though a surface is there. Empty where parts of the
-    scan may be lost, as then a ray without a return says nothing.
-    """
-    position_sigma: float = 0.0
-    """Standard deviation of the origin on every axis (m), contained in :attr:`return_variance`."""
-    attitude_sigma: float = 0.0
-    """Standard deviation of the sensor's attitude about every axis (rad), contained in :attr:`return_variance`."""
+    @property
+    def return_variance(self) -> Array:
+        """Covariance of each return (n, 3, 3) (m2), as the kernels compute it where they need it."""
+        ways = self.returns - self.origin
+        square = np.einsum("ni,ni->n", ways, ways)[:, None, None]
+        along = ways[:, :, None] * ways[:, None, :] / np.maximum(square, 1e-12)
+        across = np.eye(3) - along
+        return np.asarray(
+            self.position_sigma**2 * np.eye(3) + self.range_sigma**2 * along + self.attitude_sigma**2 * square * across
+        )

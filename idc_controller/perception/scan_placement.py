@@ -12,12 +12,7 @@ from idc_controller.perception.pose_history import PoseHistory
 from idc_controller.perception.range_sensors import RangeSensors, SensorModel
 from idc_controller.perception.ray_pattern import RayPattern, scan_index
 from idc_controller.perception.scan_kernels import possible_points
-from idc_controller.perception.scan_placement_kernels import (
-    free_ends,
-    placed_returns,
-    rays_of_returns,
-    repeated_returns,
-)
+from idc_controller.perception.scan_placement_kernels import free_ends, rays_of_returns, repeated_returns
 from idc_controller.perception.settings import ScanSettings
 from idc_controller.rotations import rotation_from_quaternion
 
@@ -178,13 +173,11 @@ class ScanPlacement:
         # Returns lie on the sensor's rays: how far they are off tells of an error that its noise is not.
         sideways = angles * np.linalg.norm(points, axis=1)
         off = math.sqrt(0.5 * float(np.mean(sideways * sideways))) if len(points) else 0.0
-        returns, variance = placed_returns(
-            points, position, rotation, np.array([along, math.hypot(anywhere, off), turning])
-        )
         free = np.empty((0, 3))
         is_sure = scan.is_complete and not scan.is_spoilt
         if is_sure and scan.max_range is not None and not (angles > _OFF_RAY * pattern.spacing).any():
             reach = scan.max_range
             height = ground_height + _GROUND_SIGMAS * math.hypot(along, anywhere, turning * reach)
             free = free_ends(directions, rays, position, rotation, reach, height)
-        return PlacedScan(uav, scan.time, position, returns, variance, free, anywhere, turning)
+        returns = position + points @ rotation.T
+        return PlacedScan(scan.time, position, returns, along, math.hypot(anywhere, off), turning, free, uav)

@@ -1,4 +1,4 @@
-"""Returns of a scan: the rays on which they lie, their places and covariances in the world, and free rays, compiled."""
+"""Rays of a scan: those on which its returns lie, and the ends of those without a return, compiled."""
 
 import math
 
@@ -58,34 +58,6 @@ def repeated_returns(points: Array, rays: Indices, count: int) -> Mask:
             repeated[i] = True
         last[rays[i]] = i
     return repeated
-
-
-@kernel("Tuple((float64[:, ::1], float64[:, :, ::1]))(float64[:, ::1], float64[::1], float64[:, ::1], float64[::1])")
-def placed_returns(points: Array, position: Array, rotation: Array, sigmas: Array) -> tuple[Array, Array]:
-    """Return the places (n, 3) (NED, m) and covariances (n, 3, 3) (m2) of returns.
-
-    Args:
-        points: returns in the body frame (n, 3) (m).
-        position: of the vehicle (3,), NED (m).
-        rotation: its attitude, body to world (3, 3).
-        sigmas: standard deviations along the ray, of the position on every axis (m), and of the attitude about every
-            axis (rad) (3,).
-    """
-    n = points.shape[0]
-    places, variance = np.empty((n, 3)), np.empty((n, 3, 3))
-    along, anywhere, turning = sigmas[0] ** 2, sigmas[1] ** 2, sigmas[2] ** 2
-    for p in range(n):
-        a, b, c = points[p, 0], points[p, 1], points[p, 2]
-        square = a * a + b * b + c * c
-        # Range noise along the ray; the attitude's error moves the return across it.
-        of_ray, of_axes = along / square - turning, anywhere + turning * square
-        ray = rotation[:, 0] * a + rotation[:, 1] * b + rotation[:, 2] * c
-        for i in range(3):
-            places[p, i] = position[i] + ray[i]
-            for j in range(3):
-                variance[p, i, j] = of_ray * ray[i] * ray[j]
-            variance[p, i, i] += of_axes
-    return places, variance
 
 
 @kernel("float64[:, ::1](float64[:, ::1], int64[::1], float64[::1], float64[:, ::1], float64, float64)")
