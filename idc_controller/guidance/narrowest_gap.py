@@ -118,8 +118,7 @@ class _Bodies:
         )
         self._radii = np.array([view.radius for view in views], dtype=float) + more
         half = np.array([shape.half_height for shape, _ in obstacles], dtype=float) + more
-        self._middle = -centres[:, 2]
-        self._top, self._bottom = self._middle + half, self._middle - half
+        self._top, self._bottom = half - centres[:, 2], -half - centres[:, 2]
         self._is_round = np.array([shape.round_axes == (1.0, 1.0, 1.0) for shape, _ in obstacles], dtype=bool)
         pad = formation.radius + WIDEST + 1.0
         places = np.vstack([start[:2], goal[:2]])
@@ -268,7 +267,8 @@ class _Bodies:
         radii = self._radii.copy()
         low, high = altitude - self._formation.below, altitude + self._formation.above
         for i in np.flatnonzero(active & self._is_round):  # the widest section at the formation's heights
-            beyond = max(low - self._middle[i], self._middle[i] - high, 0.0)
+            middle = (self._top[i] + self._bottom[i]) / 2.0
+            beyond = max(low - middle, middle - high, 0.0)
             radii[i] = math.sqrt(max(radii[i] ** 2 - beyond**2, 0.0))
         chosen = radii[active] + self._formation.radius + clearance
         key = active.tobytes() + chosen.tobytes()
