@@ -88,7 +88,7 @@ def _draw(results: Sequence[Result], quantities: Sequence[_Quantity], folder: Pa
         if limit is not None:
             ax.axvline(limit, color="#D55E00", lw=1.5, label=f"limit {limit:g} {unit}")
             ax.legend(frameon=False, fontsize=9)
-    figure.suptitle(f"{len(results)} random scenarios, {sum(result.passed for result in results)} passed")
+    figure.suptitle(f"{len(results)} scenarios, {sum(result.passed for result in results)} passed")
     return save_picture(figure, folder / _PICTURE, 130)
 
 

@@ -1,0 +1,1 @@
+"""Suites of obstacle scenarios by other people."""

@@ -1,0 +1,110 @@
+"""Plans of suites of other people's obstacle scenarios (``gcs courses --suite``)."""
+
+import hashlib
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from rich.console import RenderableType
+
+from gcs.campaign.engine import FlightPlan, PlanGenerator
+from gcs.campaign.folder import plain
+from gcs.campaign.result import Result
+from gcs.campaign.scenarios.generator import HELD_TO
+from gcs.campaign.scenarios.judgement import COLUMNS, OPTIONAL, judge, least_separation
+from gcs.campaign.scenarios.passage import passage_of
+from gcs.campaign.scenarios.plans import Scenarios
+from gcs.campaign.suites.course import Course
+from gcs.config import UnusableFile, read_system
+from gcs.mission.read import read_mission
+
+AERIALIST, LISTS = (".yaml", ".yml"), (".jsonl", ".ndjson")
+MISSION = "mission"
+
+
+def read_suite(files: Sequence[Path], config: Path | None, speed: float, seed: int) -> list[Course]:
+    """Return the courses of ``files``: tests of Aerialist, lists in JSON lines, missions; by their suffix.
+
+    Args:
+        config: system file; None: the default system.
+        speed: of missions that do not say (m/s).
+        seed: of the noise.
+
+    Raises:
+        UnusableFile: with every reason found in all files.
+    """
+    # Neither is needed where random scenarios are flown.
+    from gcs.campaign.suites.aerialist import read_aerialist
+    from gcs.campaign.suites.course_list import read_list
+
+    system = read_system(config)
+    speed = min(speed, system.motion.speed_max)
+    courses: list[Course] = []
+    problems: list[str] = []
+    for path in files:
+        try:
+            if path.suffix.lower() in AERIALIST:
+                courses.append(read_aerialist(path, config, speed, seed))
+            elif path.suffix.lower() in LISTS:
+                courses += read_list(path, system, speed, seed)
+            else:
+                courses.append(_mission(path, config))
+        except UnusableFile as error:
+            problems += error.reasons
+    if problems:
+        raise UnusableFile(problems)
+    return courses
+
+
+def _mission(path: Path, config: Path | None) -> Course:
+    """Return a mission that is flown as it is."""
+    return Course(path.stem, MISSION, str(path), passage_of(read_mission(path, config)))
+
+
+@dataclass(frozen=True)
+class Suite(PlanGenerator):
+    """``courses`` of other people, with noise of ``seed`` where they do not say."""
+
+    courses: tuple[Course, ...]
+    seed: int
+    speed: float
+    controller: str = "idc"
+    config: Path | None = None
+
+    what = "courses"
+    passed_means = "passed"
+    columns = COLUMNS
+    optional = OPTIONAL
+    shown = Scenarios.shown
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """All but the courses: one that has changed is flown again."""
+        return {
+            "suite": True,
+            "seed": self.seed,
+            "speed": self.speed,
+            "controller": self.controller,
+            "config": None if self.config is None else hashlib.sha256(self.config.read_bytes()).hexdigest()[:16],
+        }
+
+    def plans(self, out: Path) -> Iterator[FlightPlan]:
+        """Yield a flight for each course."""
+        options = ["--controller", self.controller]
+        if self.config is not None:
+            options += ["--config", str(self.config)]
+        for number, course in enumerate(self.courses, start=1):
+            name = f"{number:04d}-{plain(course.name)}"
+            mission = out / "missions" / f"{name}.toml" if course.text else Path(course.source)
+            files = {mission: course.text} if course.text else {}
+            files |= {out / "missions" / beside: text for beside, text in course.files.items()}
+            judgement = partial(judge, mission, self.config, HELD_TO, course.passage)
+            yield FlightPlan(number, name, mission, tuple(options), judgement, {"kind": course.kind}, files)
+
+    def report(self, results: Sequence[Result], out: Path) -> tuple[list[RenderableType], list[Path]]:
+        """Write ``results.csv``, ``results.json`` and the distribution."""
+        from gcs.campaign.scenarios.report import report  # matplotlib takes long to import
+
+        return report(results, out, least_separation(read_system(self.config)))
