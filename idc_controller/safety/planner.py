@@ -59,7 +59,12 @@ class Planner:
         return Plan(knots, self.settings.chain.roll_out(start, knots), self.cost.of(start, z), 0.0)
 
     def solve(
-        self, start: Array, reference: Array, separations: Sequence[Separation], acceleration: Array
+        self,
+        start: Array,
+        reference: Array,
+        separations: Sequence[Separation],
+        acceleration: Array,
+        crackle: Array = np.zeros(3),
     ) -> Plan | None:
         """Return the plan that keeps to the planes of ``separations``; None: the QP has no solution.
 
@@ -68,9 +73,11 @@ class Planner:
             reference: position to snap at the stages (5, K + 1, 3), NED, SI.
             separations: of the obstacles that take part.
             acceleration: of the plan before, about which the hull's shear is linear (K + 1, 3).
+            crackle: of the plan in force until now (3,).
         """
         chain = self.settings.chain
-        step = PlanningStep(reference, chain.response[0] @ start, acceleration, separations)
+        snap = reference[4, 0] + start[4]
+        step = PlanningStep(reference, chain.response[0] @ start, acceleration, separations, snap, crackle)
         layout = self._layout(len(separations))
         problem = self._problem(start, step, layout)
         try:
@@ -84,10 +91,14 @@ class Planner:
         knots = x[:n].reshape(3, chain.knots).T
         return Plan(knots, chain.roll_out(start, knots), self.cost.of(start, x[:n]) + penalty, float(missed))
 
-    def is_within_limits(self, plan: Plan, reference: Array) -> bool:
-        """Return whether a plan about ``reference`` (5, K + 1, 3) keeps snap, acceleration and height."""
-        z = plan.knots.T.ravel()
-        step = PlanningStep(reference, self.settings.chain.response[0] @ plan.deviation[0], reference[2], ())
+    def is_within_limits(self, plan: Plan, reference: Array, crackle: Array = np.zeros(3)) -> bool:
+        """Return whether a plan about ``reference`` (5, K + 1, 3) keeps pop, snap, acceleration and height.
+
+        ``crackle`` of the plan in force until now (3,).
+        """
+        z, start = plan.knots.T.ravel(), plan.deviation[0]
+        free, snap = self.settings.chain.response[0] @ start, reference[4, 0] + start[4]
+        step = PlanningStep(reference, free, reference[2], (), snap, crackle)
         lower, upper = self.snap_bounds.bounds(step)
         rows = (constraint.rows(step) for constraint in self.constraints)
         return bool(np.all(z <= upper + 1e-9) and np.all(z >= lower - 1e-9)) and all(

@@ -52,14 +52,14 @@ class AvoidanceFilter:
         if self._trajectory is not None and reference is self._pieces[-1].reference:
             return self._trajectory
         predicted = self.obstacles.predict(time + chain.times)
-        now = None if self._trajectory is None else self._trajectory.derivatives(np.array([time]))[:, 0]
+        now, crackle = self._in_force(time)
         ahead = reference.after(chain.times)
         start = np.zeros((5, 3)) if now is None else now - ahead[:, 0]
         if np.abs(start).max() < NEGLIGIBLE:
             start[:] = 0.0
         off = 0.0 if now is None else float(np.linalg.norm(estimate.x[0:3] - now[0]))
         obstacles = PredictedObstacles(predicted, self._extra_growth(off))
-        plan, nearest, infeasible, qp_count = self._decide(time, start, ahead, obstacles)
+        plan, nearest, infeasible, qp_count = self._decide(time, start, crackle, ahead, obstacles)
         negligible = plan is None or bool(np.abs(plan.deviation).max() < NEGLIGIBLE)
         deviation = None if negligible or plan is None else plan.deviation
         self._pieces.append(Piece(reference, deviation))
@@ -79,6 +79,17 @@ class AvoidanceFilter:
         self._trajectory = SafeTrajectory(self._pieces, chain)
         return self._trajectory
 
+    def _in_force(self, time: float) -> tuple[Array | None, Array]:
+        """Return position to snap (5, 3) at ``time`` (s) of the trajectory in force, and its crackle until then (3,).
+
+        None, and no crackle, where there is none.
+        """
+        if self._trajectory is None:
+            return None, np.zeros(3)
+        interval = 0.5 * self.settings.chain.period
+        before, now = self._trajectory.derivatives(np.array([time - interval, time])).transpose(1, 0, 2)
+        return now, (now[4] - before[4]) / interval
+
     def _extra_growth(self, error: float) -> Array | float:
         """Growth of all obstacles (K + 1,) by what the payload is off the plan (m) beyond the bound, as it returns."""
         s = self.filter_settings
@@ -86,14 +97,14 @@ class AvoidanceFilter:
         return excess * np.exp(-self.settings.chain.times / s.recovery) if excess > 0.0 else 0.0
 
     def _decide(
-        self, time: float, start: Array, ahead: Array, obstacles: PredictedObstacles
+        self, time: float, start: Array, crackle: Array, ahead: Array, obstacles: PredictedObstacles
     ) -> tuple[Plan | None, str, bool, int]:
         """Plan (None: the reference itself), nearest obstacle, whether no QP had a solution, and QPs solved."""
         planner = self.planner
         free = planner.free(start) if start.any() else None
-        if free is not None and not planner.is_within_limits(free, ahead):
+        if free is not None and not planner.is_within_limits(free, ahead, crackle):
             # Far from the reference the return must be no faster than the departure from it.
-            free = planner.solve(start, ahead, [], ahead[2]) or free
+            free = planner.solve(start, ahead, [], ahead[2], crackle) or free
         position, acceleration = _absolute(ahead, free)
         near = self._near(position, acceleration, obstacles)
         if not near:
@@ -106,17 +117,17 @@ class AvoidanceFilter:
         best: Plan | None = None
         if self._plan is not None:
             before = self._shifted(self._plan, time)
-            best, count = self._refine(start, ahead, ahead[0] + before[0], ahead[2] + before[2], obstacles, 2)
+            best, count = self._refine(start, crackle, ahead, ahead[0] + before[0], ahead[2] + before[2], obstacles, 2)
             qp_count += count
         sets = alternatives(planner.barrier, near, position, acceleration, ahead[1])
         tries = range(len(sets)) if best is None else (self._turn % len(sets),)
         self._turn += 1
         for i in tries:
-            first = planner.solve(start, ahead, sets[i], acceleration)
+            first = planner.solve(start, ahead, sets[i], acceleration, crackle)
             qp_count += 1
             if first is None:
                 continue
-            other, count = self._refine(start, ahead, *_absolute(ahead, first), obstacles, 1)
+            other, count = self._refine(start, crackle, ahead, *_absolute(ahead, first), obstacles, 1)
             qp_count += count
             share = self.filter_settings.switching_share
             if other is not None and (best is None or other.cost < share * best.cost - 1e-6):
@@ -127,14 +138,14 @@ class AvoidanceFilter:
         return best, nearest.obstacle.name, False, qp_count
 
     def _refine(
-        self, start: Array, ahead: Array, position: Array, acceleration: Array,
+        self, start: Array, crackle: Array, ahead: Array, position: Array, acceleration: Array,
         obstacles: PredictedObstacles, passes: int,
     ) -> tuple[Plan | None, int]:  # fmt: skip
         """Solve again with the planes of the plan before, ``passes`` times; also returns the QPs solved."""
         plan = None
         for count in range(1, passes + 1):
             near = self._near(position, acceleration, obstacles)
-            plan = self.planner.solve(start, ahead, near, acceleration)
+            plan = self.planner.solve(start, ahead, near, acceleration, crackle)
             if plan is None:
                 return None, count
             position, acceleration = _absolute(ahead, plan)

@@ -62,6 +62,10 @@ class PlannerSettings(SettingsTable):
         0.1, "m/s2", "beyond the reference's own acceleration, which a plan may always have", ge=0.0
     )
     snap_spare: float = setting(1.0, "m/s4", "beyond the reference's own snap, which a plan may always have", ge=0.0)
+    pop_limit: Triple = setting(
+        (60.0, 60.0, 300.0), "m/s6", "largest pop of a plan, the change of its crackle over time, x, y, z", gt=0.0
+    )
+    pop_spare: float = setting(5.0, "m/s6", "beyond the reference's own pop, which a plan may always have", ge=0.0)
     limit_slack_linear: float = setting(
         3000.0, "", "linear cost of exceeding the plan's limits: beyond them it cannot be tracked", gt=0.0
     )

@@ -4,6 +4,7 @@ from idc_controller.safety.constraints.acceleration_bounds import AccelerationBo
 from idc_controller.safety.constraints.constraint import Constraint, Penalty
 from idc_controller.safety.constraints.exponential_barrier import ExponentialBarrier
 from idc_controller.safety.constraints.lowest_altitude import LowestAltitude
+from idc_controller.safety.constraints.pop_bounds import PopBounds
 from idc_controller.safety.settings import PlannerSettings
 
 __all__ = ["planner_constraints"]
@@ -16,4 +17,5 @@ def planner_constraints(barrier: ExponentialBarrier, settings: PlannerSettings) 
         barrier,
         AccelerationBounds(settings, limits),
         LowestAltitude(barrier.formation, settings, limits),
+        PopBounds(settings, Penalty(settings.limit_slack_linear, settings.limit_slack_quadratic)),
     )

@@ -19,6 +19,10 @@ class PlanningStep:
     acceleration: Array
     """Acceleration of the plan before, about which the hull's shear is linear (K + 1, 3)."""
     separations: Sequence[Separation]
+    snap: Array
+    """Snap of the plan in force now (3,)."""
+    crackle: Array
+    """Crackle of the plan in force until now (3,)."""
 
 
 @dataclass(frozen=True, eq=False)
