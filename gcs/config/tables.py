@@ -148,6 +148,9 @@ class MotionConfig(SettingsTable):
     acceleration: float = setting(Limits.acceleration, "m/s2", "acceleration between waypoints", gt=0.0)
     jerk: float = setting(Limits.jerk, "m/s3", "jerk between waypoints", gt=0.0)
     snap: float = setting(Limits.snap, "m/s4", "snap between waypoints", gt=0.0)
+    crackle: float = setting(
+        Limits.crackle, "m/s5", "crackle between waypoints: the UAVs' tilt set-points jump where it does", gt=0.0
+    )
     corner: float = setting(CORNER, "m", "distance within which a waypoint without hold is passed", gt=0.0)
     climb_speed: float = setting(1.0, "m/s", "vertical speed of take-off and descent", gt=0.0)
     landing_speed: float = setting(0.3, "m/s", "vertical speed at touch-down", gt=0.0)

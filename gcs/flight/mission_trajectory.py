@@ -135,4 +135,4 @@ class MissionTrajectory:
 
     def _limits(self, speed: float) -> Limits:
         m = self._motion
-        return Limits(speed, m.acceleration, m.jerk, m.snap)
+        return Limits(speed, m.acceleration, m.jerk, m.snap, m.crackle)

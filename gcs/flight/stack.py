@@ -91,7 +91,7 @@ def resting_place(config: SystemConfig, model: LinearModel, obstacles: ObstacleS
 def motion_limits(config: SystemConfig) -> Limits:
     """Return the limits of the motion between waypoints."""
     motion = config.motion
-    return Limits(motion.speed, motion.acceleration, motion.jerk, motion.snap)
+    return Limits(motion.speed, motion.acceleration, motion.jerk, motion.snap, motion.crackle)
 
 
 def controller(

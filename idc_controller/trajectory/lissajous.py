@@ -5,7 +5,7 @@ follow exactly by the chain rule: the trajectory never leaves the curve.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -187,13 +187,13 @@ def _largest(curve: LissajousCurve, rate: float) -> Array:
 
 def _gentler(curve: LissajousCurve, rate: float, limits: Limits) -> Limits:
     """Limits halfway between what the curve needs anyway and what is allowed, but not below 85 %."""
-    allowed = limits.as_array()
+    allowed = limits.as_array()[:4]
     gentler = np.maximum(0.5 * (allowed + _largest(curve, rate)), 0.85 * allowed)
-    return Limits(*map(float, gentler))
+    return replace(limits, **dict(zip(vars(limits), gentler.tolist(), strict=False)))
 
 
 def _check_full_rate(curve: LissajousCurve, rate: float, limits: Limits) -> None:
-    for (name, limit), largest in zip(vars(limits).items(), _largest(curve, rate), strict=True):
+    for (name, limit), largest in zip(vars(limits).items(), _largest(curve, rate), strict=False):
         if largest > limit * (1.0 - 1e-3):
             raise TrajectoryError(
                 f"the curve at {rate:g} rad/s reaches a {name} of {largest:.3g}, the limit is {limit:g}"
@@ -233,4 +233,4 @@ def _holds_limits_at(curve: LissajousCurve, limits: Limits, phase: PPoly, times:
     phases = phase_at(phase.c, phase.x, times, 4, False)
     norms = np.linalg.norm(figure_eight(curve.as_array(), phases)[1:], axis=2).max(axis=1)
     # Never backwards; samples may miss a peak by a little.
-    return bool(phases[1].min() >= -1e-9 and np.all(norms <= limits.as_array() * (1.0 - 1e-3)))
+    return bool(phases[1].min() >= -1e-9 and np.all(norms <= limits.as_array()[:4] * (1.0 - 1e-3)))

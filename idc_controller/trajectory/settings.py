@@ -29,6 +29,8 @@ class Limits(SettingsTable):
     """m/s3"""
     snap: float = 6.0
     """m/s4"""
+    crackle: float = 12.0
+    """m/s5, of splines: the UAVs' tilt set-points jump where it does"""
 
     def __post_init__(self) -> None:
         for name, value in vars(self).items():
@@ -36,8 +38,8 @@ class Limits(SettingsTable):
                 raise TrajectoryError(f"limit {name} must be a positive number, not {value}")
 
     def as_array(self) -> Array:
-        """Return the four limits by order of derivative (4,)."""
-        return np.array([self.speed, self.acceleration, self.jerk, self.snap])
+        """Return the limits by order of derivative (5,)."""
+        return np.array([self.speed, self.acceleration, self.jerk, self.snap, self.crackle])
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -1,4 +1,4 @@
-"""The filter that turns a path flown at constant speed into one within limits of acceleration, jerk and snap.
+"""The filter that turns a path flown at constant speed into one within limits of acceleration up to crackle.
 
 A path sampled at an interval is averaged by three boxes and used as control points of a spline of degree 5.
 Averages stay in the convex hull, so nothing overshoots. Three boxes in the right proportion need about two
@@ -70,10 +70,10 @@ def smoothing_for(limits: Limits) -> Smoothing:
 
 
 def _interval(weights: Array, limits: Limits) -> float:
-    """The interval at which a right angle at full speed holds acceleration, jerk and snap."""
+    """The interval at which a right angle at full speed holds acceleration, jerk, snap and crackle."""
     shortest = SHORTEST_INTERVAL
     differences = weights
-    for power, limit in ((1, limits.acceleration), (2, limits.jerk), (3, limits.snap)):
+    for power, limit in enumerate(limits.as_array()[1:].tolist(), start=1):
         needed = TURN * limits.speed * np.abs(differences).max() / (0.999 * limit)
         shortest = max(shortest, float(needed ** (1.0 / power)))
         differences = np.diff(np.concatenate([[0.0], differences, [0.0]]))

@@ -61,7 +61,7 @@ def evaluate(control_points: Array, interval: float, arguments: Array, order: in
 
 
 def within_limits(control_points: Array, interval: float, limits: Limits, slack: float = 1e-7) -> bool:
-    """Return whether the differences of control points (M, 3) hold all four limits: then the spline does."""
+    """Return whether the differences of control points (M, 3) hold all limits: then the spline does."""
     differences = control_points
     for d, limit in enumerate(limits.as_array(), start=1):
         differences = differences[1:] - differences[:-1]
