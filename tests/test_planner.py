@@ -193,7 +193,8 @@ def test_free_plan_is_the_linear_quadratic_optimum(planner):
     for _ in range(20):
         assert cost(free.knots + 0.05 * rng.normal(size=free.knots.shape)) > free.cost
     # With nothing near and no limit touched the QP finds the same.
-    plan = planner.solve(start, cruising(), [], np.zeros((K + 1, 3)))
+    unlimited = Planner(planner.formation, PlannerSettings(pop_limit=(1e6, 1e6, 1e6)))
+    plan = unlimited.solve(start, cruising(), [], np.zeros((K + 1, 3)))
     np.testing.assert_allclose(plan.knots, free.knots, atol=1e-5)
     assert plan.cost == pytest.approx(free.cost, rel=1e-6)
     assert plan.slack == 0.0
@@ -268,6 +269,39 @@ def test_limits_hold_far_from_the_mission(planner, start):
     assert np.all(np.abs(plan.deviation[limited, 2]) <= np.array(SETTINGS.acceleration_limit) + 1e-6)
     assert np.all(np.abs(plan.deviation[1:, 4]) <= np.array(SETTINGS.snap_limit) + 1e-6)
     assert np.all(mission[0, limited, 2] + plan.deviation[limited, 0, 2] <= LOWEST + 1e-6)
+
+
+def pops(plan, start, mission, crackle):
+    """Pop at the knots of a plan's snap, the one at its start included (knots, 3)."""
+    intervals = SETTINGS.chain.period * np.array(SETTINGS.blocks)
+    at = np.cumsum([0, *SETTINGS.blocks])
+    snap = mission[4, at] + np.vstack([start[4], plan.knots])
+    crackles = np.vstack([crackle, np.diff(snap, axis=0) / intervals[:, None]])
+    spans = 0.5 * (intervals + np.concatenate([intervals[:1], intervals[:-1]]))
+    return np.diff(crackles, axis=0) / spans[:, None]
+
+
+@pytest.mark.parametrize("crackle", [[0.0, 0.0, 0.0], [12.0, -8.0, 20.0]])
+def test_pop_of_an_evasion_is_bounded_from_the_crackle_in_force_on(planner, crackle):
+    mission, start = cruising(1.5), np.zeros((5, 3))
+    start[4] = [1.0, 0.5, -2.0]
+    obstacle = standing(Sphere(0.6), [2.5, 0.2, -5.0])
+    near = separations(planner.formation, mission[0], mission[2], PredictedObstacles([obstacle]), 2.5)
+    plan = planner.solve(start, mission, near, mission[2], np.array(crackle))
+    found = pops(plan, start, mission, crackle)
+    limit = np.array(SETTINGS.pop_limit)
+    assert np.all(np.abs(found) <= limit + 1e-4)
+    # The evasion needs it: without the bound it would be exceeded.
+    free = Planner(planner.formation, PlannerSettings(pop_limit=(1e6, 1e6, 1e6)))
+    assert np.abs(pops(free.solve(start, mission, near, mission[2]), start, mission, crackle)).max() > limit.max()
+
+
+def test_pop_of_the_mission_is_always_allowed(planner):
+    mission = cruising(1.0)
+    mission[4, 3::2, 0] = 8.0
+    assert planner.is_within_limits(planner.free(np.zeros((5, 3))), mission)
+    plan = planner.solve(np.zeros((5, 3)), mission, [], mission[2])
+    np.testing.assert_allclose(plan.knots, 0.0, atol=1e-6)
 
 
 def test_limits_never_forbid_the_mission_itself(planner):

@@ -19,10 +19,10 @@ def running_means(*lengths):
 @pytest.mark.parametrize(
     ("limits", "lengths"),
     [
-        (Limits(speed=1.5, acceleration=0.5, jerk=AMPLE, snap=AMPLE), (10,)),
-        (Limits(speed=1.5, acceleration=AMPLE, jerk=2.0, snap=AMPLE), (6, 5)),
-        (Limits(speed=1.5, acceleration=AMPLE, jerk=AMPLE, snap=2.0), (6, 3, 3)),
-        (Limits(speed=1.5, acceleration=2.0, jerk=4.0, snap=6.0), (6, 3, 3)),
+        (Limits(speed=1.5, acceleration=0.5, jerk=AMPLE, snap=AMPLE, crackle=AMPLE), (10,)),
+        (Limits(speed=1.5, acceleration=AMPLE, jerk=2.0, snap=AMPLE, crackle=AMPLE), (6, 5)),
+        (Limits(speed=1.5, acceleration=AMPLE, jerk=AMPLE, snap=2.0, crackle=AMPLE), (6, 3, 3)),
+        (Limits(speed=1.5, acceleration=2.0, jerk=4.0, snap=6.0, crackle=AMPLE), (6, 3, 3)),
     ],
     ids=["acceleration", "jerk", "snap", "all"],
 )
@@ -33,9 +33,9 @@ def test_filter_has_a_running_mean_for_each_derivative_that_is_limited(limits, l
 @pytest.mark.parametrize(
     "limits",
     [
-        Limits(speed=1.5, acceleration=2.0, jerk=4.0, snap=6.0),
-        Limits(speed=3.0, acceleration=1.0, jerk=AMPLE, snap=AMPLE),
-        Limits(speed=0.5, acceleration=AMPLE, jerk=2.0, snap=AMPLE),
+        Limits(speed=1.5, acceleration=2.0, jerk=4.0, snap=6.0, crackle=AMPLE),
+        Limits(speed=3.0, acceleration=1.0, jerk=AMPLE, snap=AMPLE, crackle=AMPLE),
+        Limits(speed=0.5, acceleration=AMPLE, jerk=2.0, snap=AMPLE, crackle=AMPLE),
     ],
 )
 def test_right_angle_at_full_speed_takes_one_limit_whole_and_exceeds_none(limits):
@@ -45,11 +45,16 @@ def test_right_angle_at_full_speed_takes_one_limit_whole_and_exceeds_none(limits
     corner = step * np.stack([np.minimum(along, 0), np.maximum(along, 0), np.zeros_like(along)], axis=1)
     control = smoothing.control_points(corner.astype(float))
     arguments = np.linspace(2.0 * SUPPORT, len(control) - 2.0 * SUPPORT, 8000)
-    norms = np.linalg.norm(evaluate(control, smoothing.interval, arguments, 4), axis=2).max(axis=1)
-    shares = norms[1:] / limits.as_array()
+    derivatives = evaluate(control, smoothing.interval, arguments, 4)
+    crackle = np.diff(derivatives[4:], axis=1) / (smoothing.interval * (arguments[1] - arguments[0]))
+    norms = [np.linalg.norm(derivative, axis=1).max() for derivative in (*derivatives[1:], crackle[0])]
+    shares = norms / limits.as_array()
     assert shares.max() <= 1.0 + 1e-9
     assert shares[1:].max() > 0.9
 
 
 def test_interval_is_no_shorter_than_a_spline_needs():
-    assert smoothing_for(Limits(speed=0.01, acceleration=AMPLE, jerk=AMPLE, snap=AMPLE)).interval == SHORTEST_INTERVAL
+    assert (
+        smoothing_for(Limits(speed=0.001, acceleration=AMPLE, jerk=AMPLE, snap=AMPLE, crackle=AMPLE)).interval
+        == SHORTEST_INTERVAL
+    )

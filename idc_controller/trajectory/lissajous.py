@@ -25,8 +25,8 @@ RAMP_LONGER = 1.08
 """Factor from one ramp tried to the next."""
 _FEW = 16
 """Every so many of the times at which limits are checked, first: the others only where these keep them."""
-_RAMP = np.array([-20.0, 70.0, -84.0, 35.0]) / [8.0, 7.0, 6.0, 5.0]
-"""Integral of the polynomial from 0 to 1 whose three derivatives are zero at both ends: its powers 8 to 5."""
+_RAMP = np.array([70.0, -315.0, 540.0, -420.0, 126.0]) / [10.0, 9.0, 8.0, 7.0, 6.0]
+"""Integral of the polynomial from 0 to 1 whose four derivatives are zero at both ends: its powers 10 to 6."""
 
 
 @dataclass(frozen=True)
@@ -143,7 +143,7 @@ class LissajousTrajectory(Trajectory):
         knots = np.unique([*rate.x[rate.x < time + duration], time, time + duration])
         knots = knots[np.append(True, np.diff(knots) > 1e-9)]
         factor = PPoly.from_bernstein_basis(
-            BPoly.from_derivatives([time, time + duration], [[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0]])
+            BPoly.from_derivatives([time, time + duration], [[1.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 0.0]])
         )
         coefficients = np.zeros((rate.c.shape[0] + factor.c.shape[0] - 1, len(knots) - 1))
         for i, begin in enumerate(knots[:-1]):
@@ -169,11 +169,11 @@ class _Stopped(LissajousTrajectory):
 
 
 def _phase(knots: Array, rates: Sequence[float], first: float) -> PPoly:
-    """Phase from ``first`` on, whose rate is given at the knots (s), where its three derivatives are zero."""
-    coefficients = np.zeros((9, len(rates) - 1))
+    """Phase from ``first`` on, whose rate is given at the knots (s), where its four derivatives are zero."""
+    coefficients = np.zeros((11, len(rates) - 1))
     for i, duration in enumerate(np.diff(knots)):
         change = rates[i + 1] - rates[i]
-        coefficients[:4, i] = change * _RAMP / duration ** np.arange(7, 3, -1)
+        coefficients[:5, i] = change * _RAMP / duration ** np.arange(9, 4, -1)
         coefficients[-2:, i] = rates[i], first
         first += (rates[i] + 0.5 * change) * duration
     return PPoly(coefficients, knots)
