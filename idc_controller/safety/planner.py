@@ -26,6 +26,9 @@ from idc_controller.safety.constraints.snap_bounds import SnapBounds
 from idc_controller.safety.separation import Separation
 from idc_controller.safety.settings import PlannerSettings
 
+STEADY = np.zeros(3)
+"""The crackle of a plan whose snap does not change."""
+
 
 @dataclass(frozen=True, eq=False)
 class Plan:
@@ -64,7 +67,7 @@ class Planner:
         reference: Array,
         separations: Sequence[Separation],
         acceleration: Array,
-        crackle: Array = np.zeros(3),
+        crackle: Array = STEADY,
     ) -> Plan | None:
         """Return the plan that keeps to the planes of ``separations``; None: the QP has no solution.
 
@@ -91,7 +94,7 @@ class Planner:
         knots = x[:n].reshape(3, chain.knots).T
         return Plan(knots, chain.roll_out(start, knots), self.cost.of(start, x[:n]) + penalty, float(missed))
 
-    def is_within_limits(self, plan: Plan, reference: Array, crackle: Array = np.zeros(3)) -> bool:
+    def is_within_limits(self, plan: Plan, reference: Array, crackle: Array = STEADY) -> bool:
         """Return whether a plan about ``reference`` (5, K + 1, 3) keeps pop, snap, acceleration and height.
 
         ``crackle`` of the plan in force until now (3,).

@@ -11,7 +11,7 @@ from idc_controller.geometry.obstacles import ObstacleSource
 from idc_controller.parameters import SystemParameters
 from idc_controller.safety.alternatives import alternatives
 from idc_controller.safety.filter_protocol import SafetyReport
-from idc_controller.safety.planner import Plan, Planner
+from idc_controller.safety.planner import STEADY, Plan, Planner
 from idc_controller.safety.safe_trajectory import Piece, SafeTrajectory
 from idc_controller.safety.separation import PredictedObstacles, Separation, separations
 from idc_controller.safety.settings import FilterSettings, PlannerSettings
@@ -85,7 +85,7 @@ class AvoidanceFilter:
         None, and no crackle, where there is none.
         """
         if self._trajectory is None:
-            return None, np.zeros(3)
+            return None, STEADY
         interval = 0.5 * self.settings.chain.period
         before, now = self._trajectory.derivatives(np.array([time - interval, time])).transpose(1, 0, 2)
         return now, (now[4] - before[4]) / interval
