@@ -305,6 +305,14 @@ def test_suite_writes_missions_with_their_plans_and_flies_a_mission_as_it_is(fol
     assert len(list((folder / "out" / "missions").glob("mission-*.plan"))) == 1
 
 
+def test_mission_without_end_is_refused(tmp_path):
+    path = tmp_path / "loop.plan"
+    around = item(3, 177, 0.0, 0.0, 0)
+    around["params"] = [1, -1, 0, 0, 0, 0, 0]
+    path.write_text(plan_text(item(1, 22, 0.0, 0.0, 5), item(2, 16, 9.0, 0.0, 5), around))
+    assert refused(path) == (f"{path}: the mission lasts longer than 3600 s",)
+
+
 def test_plan_that_has_changed_makes_another_mission(folder):
     before = suite(test_file(folder))[0].text
     (folder / "tests" / "mission.plan").write_text(plan_text(item(1, 22, 0.0, 0.0, 9), item(2, 21, 0.0, 53.0, 0)))

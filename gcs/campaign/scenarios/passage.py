@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 from gcs.config import SystemConfig
+from gcs.mission.fence import boundary_walls
 from gcs.mission.model import Mission, Obstacle
 from gcs.mission.route import FlyTo, Land, Route, TakeOff
 from idc_controller.geometry.formation import BoundingCylinder, Formation
@@ -108,6 +109,9 @@ def places_of(mission: Mission) -> tuple[Place, ...]:
 
 
 def passage_of(mission: Mission) -> Passage | None:
-    """Return the passage of a mission past its standing obstacles; None of a curve."""
+    """Return the passage of a mission past its standing obstacles and within its fence; None of a curve."""
     places = places_of(mission)
-    return Passages(mission.system).between(places, mission.obstacles) if len(places) > 1 else None
+    if len(places) < 2:
+        return None
+    fence = boundary_walls(mission.boundary) if mission.boundary is not None else ()
+    return Passages(mission.system).between(places, (*mission.obstacles, *fence))

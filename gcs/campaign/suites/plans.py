@@ -14,9 +14,8 @@ from gcs.campaign.folder import plain
 from gcs.campaign.result import Result
 from gcs.campaign.scenarios.generator import HELD_TO
 from gcs.campaign.scenarios.judgement import COLUMNS, OPTIONAL, judge, least_separation
-from gcs.campaign.scenarios.passage import passage_of
 from gcs.campaign.scenarios.plans import Scenarios
-from gcs.campaign.suites.course import Course
+from gcs.campaign.suites.course import Course, checked_passage
 from gcs.config import UnusableFile, read_system
 from gcs.mission.read import read_mission
 
@@ -60,7 +59,10 @@ def read_suite(files: Sequence[Path], config: Path | None, speed: float, seed: i
 
 def _mission(path: Path, config: Path | None) -> Course:
     """Return a mission that is flown as it is."""
-    return Course(path.stem, MISSION, str(path), passage_of(read_mission(path, config)))
+    passage, problems = checked_passage(read_mission(path, config), (), lambda _, reason: f"{path}: {reason}")
+    if problems:
+        raise UnusableFile(problems)
+    return Course(path.stem, MISSION, str(path), passage)
 
 
 @dataclass(frozen=True)
