@@ -113,7 +113,7 @@ def test_forest_has_the_stated_density_and_trunks():
         crowns = [o for o in layout.obstacles if isinstance(o.shape, Sphere)]
         crowned += bool(crowns)
         assert len(trunks) + len(crowns) == len(layout.obstacles)
-        assert all(0.08 <= o.shape.radius <= 0.35 and 4.0 <= o.shape.height <= 18.0 for o in trunks)
+        assert all(0.08 <= o.shape.radius <= 0.35 and 4.0 <= o.shape.height <= 25.0 for o in trunks)
         places = np.array([o.position[:2] for o in trunks])
         between = np.linalg.norm(places[:, None] - places, axis=2)[~np.eye(len(places), dtype=bool)]
         assert between.min() >= APART - 1e-3
@@ -125,7 +125,7 @@ def test_forest_has_the_stated_density_and_trunks():
             top = trunk.shape.height
             assert top - crown.shape.radius <= -crown.position[2] <= top + crown.shape.radius
     assert crowned > 20
-    assert DENSITIES[0] <= min(densities) and max(densities) <= 1.25 * DENSITIES[1]  # of the bounding rectangle
+    assert 0.75 * DENSITIES[0] <= min(densities) and max(densities) <= 1.25 * DENSITIES[1]  # of the bounding rectangle
     assert min(densities) < 0.07 and max(densities) > 0.1
 
 
