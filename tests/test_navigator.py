@@ -5,6 +5,7 @@ import pytest
 from avoidance_scene import Scene, pole, straight, wall
 from paper_system import system
 
+from idc_controller.geometry.box import Wall
 from idc_controller.geometry.free_space import BoundingCylinder, first_conflict
 from idc_controller.guidance.navigator import Navigator
 from idc_controller.guidance.settings import NavigatorSettings
@@ -126,6 +127,35 @@ def test_blocked_path_is_reported_with_blocking_obstacle_after_timeout(navigator
     since = searches[0]
     assert navigator.hold_up.blocked(since + settings.give_up - 0.1) == ""
     assert "the long wall" in navigator.hold_up.blocked(since + settings.give_up)
+
+
+def hanging(name, east, size, bottom=0.0, growth=0.0):
+    """A box 10 m north with its underside so high."""
+    place = np.array([10.0, east, -bottom - size[2] / 2.0])
+    return name, Wall(size), lambda t: np.tile(place, (len(t), 1)), growth
+
+
+@pytest.mark.parametrize("door", [0.8, 1.7, 2.6])
+@pytest.mark.parametrize("growth", [0.0, 0.05])
+def test_narrowest_gap_is_named_in_reason_by_estimates(navigator, door, growth):
+    """Two walls across the region of the search, with a door 2 m beside the mission; the growth is uncertainty."""
+    edge = 100.0
+    left, right = 2.0 - (edge + door) / 2.0, 2.0 + (edge + door) / 2.0
+    walls = [hanging(name, y, (0.3, edge, 40.0), 0.0, growth) for name, y in (("left", left), ("right", right))]
+    held_up(navigator, walls, 3.0)
+    reason = navigator.hold_up.reason
+    assert f"; the narrowest gap is {door:.2f} m wide at " in reason
+    assert reason.endswith("(left and right), 3.97 m are needed")
+    north, east = (float(part.split()[-1]) for part in reason.split(" m wide at ")[1].split(" m ")[:2])
+    assert (north, east) == pytest.approx((10.0, 2.0), abs=0.25)
+
+
+def test_lintel_too_low_is_named_with_its_height(navigator):
+    walls = [hanging("left", -53.0, (0.3, 100.0, 40.0)), hanging("right", 53.0, (0.3, 100.0, 40.0))]
+    held_up(navigator, [*walls, hanging("lintel", 0.0, (0.3, 6.0, 36.0), bottom=4.0)], 3.0)
+    reason = navigator.hold_up.reason
+    assert "; the narrowest gap is 4.00 m high at " in reason
+    assert reason.endswith("(lintel), 4.53 m are needed")
 
 
 def test_detour_is_flown_and_reason_cleared_when_path_opens(navigator):

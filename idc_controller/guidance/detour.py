@@ -89,7 +89,7 @@ def find_detour(
         return Detour(None, reason)
     if free_segments_from(space, begin, end[None])[0]:
         return Detour(np.array([begin, end]))
-    box = _region(space, begin, end, settings) if region is None else _box(region, space)
+    box = search_region(space, begin, end, settings) if region is None else _box(region, space)
     spacing, fine = settings.spacing, settings.fine_spacing
     coarser = max(1.0, (float(np.prod((box[1] - box[0]) / spacing + 1.0)) / settings.nodes_max) ** (1.0 / 3.0))
     reason = ""
@@ -121,8 +121,11 @@ def _refused(space: FreeSpace, place: Array, what: str, names: Sequence[str]) ->
     return None
 
 
-def _region(space: FreeSpace, start: Array, goal: Array, settings: DetourSettings) -> Box:
-    """A box about start and goal that holds the obstacles in between, and a path round them."""
+def search_region(space: FreeSpace, start: Array, goal: Array, settings: DetourSettings) -> Box:
+    """Return a box about start and goal that holds the obstacles in between, and a path round them.
+
+    It is ``region_max`` wide at most: a path that leads farther round is none.
+    """
     keep = space.formation.radius + space.margin + settings.around
     low, high = np.minimum(start, goal)[:2] - keep, np.maximum(start, goal)[:2] + keep
     lows = space.centres[:, :2] - (space.lateral_reach + keep)[:, None]

@@ -20,7 +20,10 @@ from scipy.sparse.csgraph import connected_components
 
 from idc_controller.arrays import Array
 from idc_controller.geometry.formation import BoundingCylinder
+from idc_controller.geometry.free_space import FreeSpace
 from idc_controller.geometry.shape import Shape
+from idc_controller.guidance.detour import search_region
+from idc_controller.guidance.settings import DetourSettings
 
 WIDEST = 2.0
 """Clearance (m) beyond which no gap is narrow."""
@@ -68,6 +71,7 @@ def narrowest_gap(
     highest: float,
     growth: ArrayLike | None = None,
     names: Sequence[str] | None = None,
+    settings: DetourSettings = DetourSettings(),
 ) -> Gap | None:
     """Return the narrowest gap of the widest path from ``start`` to ``goal`` (3,), NED (m).
 
@@ -78,9 +82,10 @@ def narrowest_gap(
         obstacles, growth: (shape, centre (3,)) and by how much each is taken larger (m).
         lowest, highest: altitudes of the payload's centre (m, up).
         names: the obstacles' names, for the gap.
+        settings: of the search for detours, whose region bounds the paths.
     """
     begin, end = np.asarray(start, dtype=float), np.asarray(goal, dtype=float)
-    bodies = _Bodies(obstacles, growth, formation, margin, begin, end, lowest, highest)
+    bodies = _Bodies(obstacles, growth, FreeSpace(obstacles, formation, margin, lowest, highest), begin, end, settings)
     if bodies.joins(WIDEST):
         return None
     low, high = -formation.radius + 1e-3, WIDEST
@@ -99,18 +104,15 @@ class _Bodies:
         self,
         obstacles: Sequence[tuple[Shape, ArrayLike]],
         growth: ArrayLike | None,
-        formation: BoundingCylinder,
-        margin: float,
+        space: FreeSpace,
         start: Array,
         goal: Array,
-        lowest: float,
-        highest: float,
+        settings: DetourSettings,
     ) -> None:
-        self._formation, self._margin, self._start, self._goal = formation, margin, start, goal
-        self._lowest, self._highest = lowest, highest
-        count = len(obstacles)
-        centres = np.array([centre for _, centre in obstacles], dtype=float).reshape(count, 3)
-        more = np.zeros(count) if growth is None else np.array(growth, dtype=float)
+        self._formation, self._margin, self._start, self._goal = space.formation, space.margin, start, goal
+        self._lowest, self._highest = space.lowest, space.highest
+        centres = space.centres
+        more = np.zeros(len(centres)) if growth is None else np.array(growth, dtype=float)
         views = [shape.plan_view for shape, _ in obstacles]
         self._cores = np.array(
             [shapely.affinity.translate(v.core, x, y) for v, (x, y, _) in zip(views, centres.tolist(), strict=True)],
@@ -120,14 +122,8 @@ class _Bodies:
         half = np.array([shape.half_height for shape, _ in obstacles], dtype=float) + more
         self._top, self._bottom = half - centres[:, 2], -half - centres[:, 2]
         self._is_round = np.array([shape.round_axes == (1.0, 1.0, 1.0) for shape, _ in obstacles], dtype=bool)
-        pad = formation.radius + WIDEST + 1.0
-        places = np.vstack([start[:2], goal[:2]])
-        low, high = places.min(axis=0), places.max(axis=0)
-        if count:
-            bounds = shapely.bounds(self._cores)
-            low = np.minimum(low, (bounds[:, :2] - self._radii[:, None]).min(axis=0))
-            high = np.maximum(high, (bounds[:, 2:] + self._radii[:, None]).max(axis=0))
-        self._region = shapely.box(*(low - pad), *(high + pad))
+        low, high = search_region(space, start, goal, settings)
+        self._region = shapely.box(*low[:2], *high[:2])
 
     def joins(self, clearance: float) -> bool:
         """Return whether a path from start to goal has this ``clearance`` (m)."""
@@ -138,12 +134,8 @@ class _Bodies:
         """Return the gap that no longer joins start and goal at this ``clearance`` (m)."""
         begin, end, part, free = self._parts(clearance)
         for at, place in ((begin, self._start), (end, self._goal)):
-            if at < 0:  # the place itself is too near a body
-                away = shapely.distance(self._cores, shapely.Point(place[:2])) - self._radii
-                away[~self._active(-place[2], clearance)] = math.inf
-                nearest = int(np.argmin(away))
-                width = max(0.0, 2.0 * float(away[nearest]))
-                return Gap(clearance, width, _place(*place.tolist()), (names[nearest],), is_at_waypoint=True)
+            if at < 0:
+                return self._about(place, clearance, names)
         sides = [shapely.union_all(free[part == part[at]]) for at in (begin, end)]
         if closed:
             place = shapely.shortest_line(*sides).interpolate(0.5, normalized=True)
@@ -153,8 +145,20 @@ class _Bodies:
         if (pair := self._pair(width, sides)) is not None:
             (first, second), place, distance = pair
             altitude = self._altitude_between(first, second)
-            return Gap(clearance, distance, _place(place.x, place.y, -altitude), (names[first], names[second]))
+            exact = distance / 2.0 - self._formation.radius
+            return Gap(exact, distance, _place(place.x, place.y, -altitude), (names[first], names[second]))
         return self._under(clearance, names, sides)
+
+    def _about(self, place: Array, clearance: float, names: Sequence[str]) -> Gap:
+        """Return the gap about a start or goal that is itself too near a body, beside or above it."""
+        away = shapely.distance(self._cores, shapely.Point(place[:2])) - self._radii
+        away[~self._active(-float(place[2]), clearance)] = math.inf
+        nearest = int(np.argmin(away))
+        beside, above = float(away[nearest]), float(self._bottom[nearest])
+        is_height = beside <= 0.0 and above > 0.0
+        width = above if is_height else max(0.0, 2.0 * beside)
+        exact = clearance if beside <= 0.0 else beside - self._formation.radius
+        return Gap(exact, width, _place(*place.tolist()), (names[nearest],), is_height, is_at_waypoint=True)
 
     def _pair(self, width: float, sides: list[Any]) -> tuple[tuple[int, int], Any, float] | None:
         """Return the two bodies so far apart between the ``sides``, the middle between them, and their distance (m)."""
@@ -163,7 +167,7 @@ class _Bodies:
         for i, core in enumerate(self._cores):
             near = tree.query(core, predicate="dwithin", distance=width + _NEAR + self._radii[i])
             for j in near[near > i].tolist():
-                distance = float(shapely.distance(core, self._cores[j])) - self._radii[i] - self._radii[j]
+                distance = float(shapely.distance(core, self._cores[j]) - self._radii[i] - self._radii[j])
                 apart = max(self._bottom[i] - self._top[j], self._bottom[j] - self._top[i])
                 if abs(distance - width) < 2.0 * _NEAR and apart < self._height:
                     line = shapely.shortest_line(core, self._cores[j])
@@ -205,7 +209,8 @@ class _Bodies:
         base = 0.0 if support == 0 else float(self._top[support - 1])
         altitude = (base + float(self._bottom[body])) / 2.0
         called = (names[body],) if support == 0 else (names[body], names[support - 1])
-        return Gap(clearance, float(self._bottom[body]) - base, _place(place.x, place.y, -altitude), called, True)
+        exact = clearance + float(heights[body, support])
+        return Gap(exact, float(self._bottom[body]) - base, _place(place.x, place.y, -altitude), called, True)
 
     # Layers
 

@@ -198,7 +198,7 @@ class Navigator:
         for more in (None, growth):
             gap = narrowest_gap(
                 bodies, position, goal, self.formation, keep, lowest=self.lowest, highest=highest, growth=more,
-                names=names,
+                names=names, settings=self.settings.detour,
             )  # fmt: skip
             if gap is not None:
                 needed = gap.width + 2.0 * (keep - gap.clearance)

@@ -62,8 +62,9 @@ class Passages:
         narrowest: Gap | None = None
         for begin, end in pairwise(places):
             gap = narrowest_gap(
-                bodies, begin, end, self.formation, self._keep, lowest=self._lowest, highest=highest, names=names
-            )
+                bodies, begin, end, self.formation, self._keep, lowest=self._lowest, highest=highest, names=names,
+                settings=self._system.guidance.detour,
+            )  # fmt: skip
             if gap is not None and (narrowest is None or gap.clearance < narrowest.clearance):
                 narrowest = gap
         return Passage(self._verdict(narrowest), narrowest)
