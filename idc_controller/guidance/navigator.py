@@ -5,6 +5,9 @@ the obstacle, safe but held up. Then a detour is searched on the present map and
 again behind the obstacle. Where there is no detour the reason is kept: the flight ends for it.
 """
 
+from collections.abc import Callable
+from typing import NamedTuple
+
 import numpy as np
 
 from idc_controller.arrays import Array
@@ -33,19 +36,20 @@ class HoldUp:
         self._blocked_since: float | None = None
         self.reason = ""
         """Reason why the last search found no detour; empty: it found one."""
+        self._more: Callable[[], str] | None = None
 
     def clear(self) -> None:
         """Forget all but the intervals of the search."""
-        self._since, self._blocked_since, self.reason = None, None, ""
+        self._since, self._blocked_since, self.reason, self._more = None, None, "", None
 
     def found(self) -> None:
         """Note a search that found a detour."""
         self.clear()
         self._interval = self._settings.search_interval
 
-    def not_found(self, time: float, reason: str) -> None:
-        """Note a search at ``time`` (s) that found none."""
-        self.reason = reason
+    def not_found(self, time: float, reason: str, more: Callable[[], str] | None = None) -> None:
+        """Note a search at ``time`` (s) that found none; ``more`` of the reason is computed where it is reported."""
+        self.reason, self._more = reason, more
         if self._blocked_since is None:
             self._blocked_since = time
 
@@ -70,7 +74,16 @@ class HoldUp:
         """Return the reason, once there has been no detour for long; empty: the mission can go on."""
         if self._blocked_since is None or time - self._blocked_since < self._settings.give_up:
             return ""
+        if self._more is not None:
+            self.reason, self._more = self.reason + self._more(), None
         return self.reason
+
+
+class _NoPath(NamedTuple):
+    """Reason why a search found no detour, and what is computed of it where it is reported."""
+
+    reason: str
+    more: Callable[[], str] | None = None
 
 
 class Navigator:
@@ -127,8 +140,8 @@ class Navigator:
         position = tracked.derivatives(np.array([time]), 0)[0, 0]
         obstacles = list(self.obstacles.predict(time + self._stages))
         found = self._search(self.mission_progress(progress), mission, position, obstacles)
-        if isinstance(found, str):
-            self.hold_up.not_found(time, found)
+        if isinstance(found, _NoPath):
+            self.hold_up.not_found(time, *found)
             return progress
         self.hold_up.found()
         waypoints, self._resume = found
@@ -140,7 +153,7 @@ class Navigator:
 
     def _search(
         self, progress: float, mission: Trajectory, position: Array, obstacles: list[PredictedObstacle]
-    ) -> tuple[Array, float] | str:
+    ) -> tuple[Array, float] | _NoPath:
         """Return waypoints of a detour and the mission's progress where it leads, or why there is no detour."""
         s = self.settings
         ahead = progress + np.arange(0.0, s.look_ahead, s.sample)
@@ -162,7 +175,7 @@ class Navigator:
             if (clearance < -TOUCHING).any():
                 north, east, down = waypoint
                 place = f"{north:.1f} m north, {east:.1f} m east, {-down:.1f} m high"
-                return f"{names[fixed[int(np.argmax(clearance < -TOUCHING))]]} stands at the waypoint {place}"
+                return _NoPath(f"{names[fixed[int(np.argmax(clearance < -TOUCHING))]]} stands at the waypoint {place}")
         goals = (
             [int(free[0]), int(free[min(round(s.goal_spare / s.sample), len(free) - 1)])]
             if len(free)
@@ -181,8 +194,9 @@ class Navigator:
             nearest = names[int(np.argmin(space.clearance(position[None])[0]))]
             reason = f"the path to the rest of the mission is blocked by {nearest}"
         if detour.reason.startswith("the formation at the goal"):
-            return f"{reason}: {detour.reason}"
-        return f"{reason}{self._narrowest_gap(bodies, growth, names, position, path[goals[-1]], highest)}"
+            return _NoPath(f"{reason}: {detour.reason}")
+        last = path[goals[-1]]
+        return _NoPath(reason, lambda: self._narrowest_gap(bodies, growth, names, position, last, highest))
 
     def _narrowest_gap(
         self,

@@ -100,7 +100,7 @@ def names_the_gap(passage: Passage | None, reason: str) -> bool:
     """Return whether the ``reason`` of an abort names the narrowest gap, or the waypoint that is not free."""
     if passage is None or passage.gap is None:
         return False
-    if passage.gap.is_at_waypoint and "at the waypoint" in reason:
+    if passage.gap.is_at_waypoint and ("at the waypoint" in reason or "at the goal" in reason):
         return True
     named = named_gap(reason)
     return named is not None and abs(named - passage.gap.width) <= GAP_TOLERANCE
