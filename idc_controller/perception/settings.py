@@ -1,6 +1,8 @@
 """Settings of perception: scans, association, tracks and their retention, map check, surfaces, motion models."""
 
+import math
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Self
 
 from idc_controller.errors import ParameterError
@@ -179,6 +181,53 @@ class ObstacleFilterSettings(SettingsTable):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class StandingMapSettings(SettingsTable):
+    """Standing map: voxels, evidence of free and occupied space, and the bodies that cover it."""
+
+    voxel: float = setting(
+        0.25, "m", "edge of a voxel: three standard deviations of a return at most of the range", gt=0.0
+    )
+    missed_share: float = setting(0.02, "", "share of rays that return nothing though they hit", gt=0.0, lt=1.0)
+    false_share: float = setting(0.01, "", "share of returns where nothing is", gt=0.0, lt=1.0)
+    false_free: float = setting(1e-3, "", "probability that what fills a voxel is seen free", gt=0.0, lt=1.0)
+    false_removal: float = setting(
+        1e-8, "", "probability that what stands is freed by one run of scans that pass it", gt=0.0, lt=1.0
+    )
+    false_alarm: float = setting(1e-3, "", "probability that noise leaves a return unexplained", gt=0.0, lt=1.0)
+    uncovered: float = setting(1e-3, "", "probability that a surface lies beyond what covers it", gt=0.0, lt=1.0)
+    prior_hits: float = setting(4.0, "", "scans that hit what stands at a ray's place, before any was counted", gt=0.0)
+    prior_passes: float = setting(1.0, "", "scans that pass it by the poses' noise, before any was counted", gt=0.0)
+    memory: float = setting(64.0, "", "scans whose hits and passes are remembered", ge=2.0)
+    sigmas_beyond: float = setting(3.0, "", "standard deviations by which a ray must end beyond what it passes", gt=0.0)
+    incidence_min: float = setting(
+        0.5, "", "least cosine between a ray that passes through points and their surface's normal", ge=0.0, lt=1.0
+    )
+    standing_speed: float = setting(0.15, "m/s", "speed of points below which they count as standing", gt=0.0)
+    tolerance: float = setting(0.03, "m", "to which surfaces are covered without being computed anew", gt=0.0)
+    bridged_gap: float = setting(1.0, "m", "between points that one body covers without what lies between", gt=0.0)
+
+    @cached_property
+    def free_passes(self) -> int:
+        """Rays through a voxel from which on it counts as seen free: each of them may have been missed."""
+        return max(math.ceil(math.log(self.false_free) / math.log(self.missed_share)), 1)
+
+    @cached_property
+    def evidence_of_hit(self) -> float:
+        """Evidence of a scan's hit that something stands (nats)."""
+        return math.log(self.prior_hits / (self.prior_hits + self.prior_passes) / self.false_share)
+
+    @property
+    def evidence_max(self) -> float:
+        """Evidence of a run of passes that frees what was hit often (nats)."""
+        return -math.log(self.false_removal)
+
+    @property
+    def settling_time(self) -> float:
+        """Time for which points must stay in one voxel that was seen free to count as standing (s)."""
+        return self.voxel / self.standing_speed
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class PerceptionSettings(SettingsTable):
     """All settings of the obstacle map, by part."""
 
@@ -187,6 +236,7 @@ class PerceptionSettings(SettingsTable):
     retention: RetentionSettings = field(default_factory=RetentionSettings)
     map_check: MapCheckSettings = field(default_factory=MapCheckSettings)
     tracking: ObstacleFilterSettings = field(default_factory=ObstacleFilterSettings)
+    standing_map: StandingMapSettings = field(default_factory=StandingMapSettings)
 
     def at_rates(self, telemetry: float, scans: float) -> Self:
         """Return the settings at the rates (Hz) of telemetry and of the range sensors."""

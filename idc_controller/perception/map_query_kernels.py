@@ -1,0 +1,186 @@
+"""Questions to the standing map, compiled; arrays: see ``voxel_kernels``."""
+
+import math
+
+import numpy as np
+
+from idc_controller.arrays import Array, Cells, Indices, Links, Mask
+from idc_controller.compiled import inlined, kernel
+from idc_controller.perception.voxel_kernels import (
+    BLOCK,
+    CELL,
+    CELLS,
+    HELD,
+    KEY,
+    MEAN,
+    NUMBER,
+    PASSED,
+    PROVEN,
+    SCATTER,
+    USED,
+    WEIGHT,
+    cell_index,
+    element_at,
+    find_block,
+    key_corner,
+    voxel,
+)
+
+
+@kernel("uint8[::1](int64[:, ::1], int32[:, ::1], uint8[:, ::1], float64[:, ::1], float64)")
+def cells_at(table: Indices, pages: Links, cells: Cells, points: Array, size: float) -> Cells:
+    """Return the cells (n,) of the voxels with ``points`` (n, 3), 0 where nothing was ever seen."""
+    found = np.zeros(points.shape[0], np.uint8)
+    for p in range(points.shape[0]):
+        x, y, z = voxel(points[p, 0], size), voxel(points[p, 1], size), voxel(points[p, 2], size)
+        block = find_block(table, pages, x, y, z)
+        if block >= 0:
+            found[p] = cells[block, cell_index(x, y, z)]
+    return found
+
+
+@kernel("int64[::1](float64[:, ::1], int64[::1])")
+def used_elements(elements: Array, counts: Indices) -> Indices:
+    """Return the indices of the elements that are no spare ones."""
+    found, n = np.empty(counts[USED], np.int64), 0
+    for e in range(counts[USED]):
+        if elements[e, NUMBER] > 0.0:
+            found[n] = e
+            n += 1
+    return found[:n].copy()
+
+
+@kernel("int64[::1](int32[:, ::1], int64[::1])")
+def elements_of_blocks(links: Links, blocks: Indices) -> Indices:
+    """Return the indices of the elements in some ``blocks`` (n,)."""
+    found, n = np.empty(blocks.shape[0] * CELLS, np.int64), 0
+    for b in blocks:
+        for cell in range(CELLS):
+            index = (links[b, cell] >> 8) - 1
+            if index >= 0:
+                found[n] = index
+                n += 1
+    return found[:n].copy()
+
+
+@kernel("int64[:, ::1](int64[:, ::1], float64[:, ::1], int64[::1])")
+def voxels_of_elements(blocks: Indices, elements: Array, indices: Indices) -> Indices:
+    """Return the voxels (n, 3) of the elements with ``indices`` (n,)."""
+    found = np.empty((indices.shape[0], 3), np.int64)
+    for n in range(indices.shape[0]):
+        key, cell = blocks[int(elements[indices[n], BLOCK]), KEY], int(elements[indices[n], CELL])
+        found[n, 0] = key_corner(key, 0) + (cell >> 6)
+        found[n, 1] = key_corner(key, 1) + (cell >> 3 & 7)
+        found[n, 2] = key_corner(key, 2) + (cell & 7)
+    return found
+
+
+@inlined
+def _square_distance(c: Array, d: Array) -> float:
+    """Return d' inv(c) d of a symmetric positive definite matrix (3, 3) and a vector (3,)."""
+    l00 = math.sqrt(c[0, 0])
+    l10, l20 = c[1, 0] / l00, c[2, 0] / l00
+    l11 = math.sqrt(c[1, 1] - l10 * l10)
+    l21 = (c[2, 1] - l20 * l10) / l11
+    l22 = math.sqrt(c[2, 2] - l20 * l20 - l21 * l21)
+    a = d[0] / l00
+    b = (d[1] - l10 * a) / l11
+    e = (d[2] - l20 * a - l21 * b) / l22
+    return float(a * a + b * b + e * e)
+
+
+@inlined
+def _is_free_about(
+    table: Indices,
+    pages: Links,
+    cells: Cells,
+    links: Links,
+    elements: Array,
+    point: Array,
+    radius: float,
+    size: float,
+    free_passes: int,
+) -> bool:
+    """Return whether all voxels that a ball reaches into were seen free and hold no standing points."""
+    x, y, z = point[0], point[1], point[2]
+    for i in range(voxel(x - radius, size), voxel(x + radius, size) + 1):
+        u = max(i * size - x, x - (i + 1) * size, 0.0)
+        for j in range(voxel(y - radius, size), voxel(y + radius, size) + 1):
+            v = max(j * size - y, y - (j + 1) * size, 0.0)
+            for k in range(voxel(z - radius, size), voxel(z + radius, size) + 1):
+                w = max(k * size - z, z - (k + 1) * size, 0.0)
+                if u * u + v * v + w * w > radius * radius:
+                    continue
+                block, cell = find_block(table, pages, i, j, k), cell_index(i, j, k)
+                if block < 0 or cells[block, cell] & PASSED < free_passes:
+                    return False
+                if cells[block, cell] & HELD and elements[(links[block, cell] >> 8) - 1, PROVEN] == 1.0:
+                    return False
+    return True
+
+
+@kernel(
+    "boolean[::1](int64[:, ::1], int32[:, ::1], uint8[:, ::1], int32[:, ::1], float64[:, ::1], float64[::1],"
+    " float64[:, ::1], float64[::1], float64, int64, float64)"
+)
+def unexplained_returns(
+    table: Indices,
+    pages: Links,
+    cells: Cells,
+    links: Links,
+    elements: Array,
+    origin: Array,
+    returns: Array,
+    sigmas: Array,
+    size: float,
+    free_passes: int,
+    chi_squared: float,
+) -> Mask:
+    """Return which returns (n,) lie in what was seen free and farther from standing points than noise explains.
+
+    Args:
+        table, pages, cells, links, elements: see :mod:`idc_controller.perception.voxel_kernels`.
+        origin: place of the sensor (3,).
+        returns: (n, 3), NED (m).
+        sigmas: standard deviations of range (m), position (m) and attitude (rad).
+        size: edge of a voxel (m).
+        free_passes: rays through a voxel from which on it was seen free.
+        chi_squared: square of the distance, in standard deviations, from which on noise explains it no more.
+    """
+    found = np.zeros(returns.shape[0], np.bool_)
+    way, offset, covariance, own = np.empty(3), np.empty(3), np.empty((3, 3)), np.empty((3, 3))
+    for p in range(returns.shape[0]):
+        square = 0.0
+        for i in range(3):
+            way[i] = returns[p, i] - origin[i]
+            square += way[i] * way[i]
+        if not 0.0 < square < math.inf:
+            continue
+        across = sigmas[1] ** 2 + sigmas[2] ** 2 * square
+        along = sigmas[1] ** 2 + sigmas[0] ** 2
+        radius = math.sqrt(chi_squared * max(across, along))
+        if not _is_free_about(table, pages, cells, links, elements, returns[p], radius, size, free_passes):
+            continue
+        for i in range(3):
+            for j in range(3):
+                own[i, j] = (along - across) * way[i] * way[j] / square + (across if i == j else 0.0)
+        # Of points that fill a voxel.
+        reach = math.sqrt(chi_squared * (max(across, along) + size * size / 12.0 + along))
+        explained = False
+        for x in range(voxel(returns[p, 0] - reach, size), voxel(returns[p, 0] + reach, size) + 1):
+            for y in range(voxel(returns[p, 1] - reach, size), voxel(returns[p, 1] + reach, size) + 1):
+                for z in range(voxel(returns[p, 2] - reach, size), voxel(returns[p, 2] + reach, size) + 1):
+                    index = element_at(table, pages, links, x, y, z)
+                    if explained or index < 0 or elements[index, PROVEN] == 0.0:
+                        continue
+                    element = elements[index]
+                    column = SCATTER
+                    for i in range(3):
+                        offset[i] = returns[p, i] - element[MEAN + i]
+                        for j in range(i, 3):
+                            covariance[i, j] = own[i, j] + element[column] / element[WEIGHT]
+                            covariance[j, i] = covariance[i, j]
+                            column += 1
+                    explained = _square_distance(covariance, offset) <= chi_squared
+        found[p] = not explained
+    return found

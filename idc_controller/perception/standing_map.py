@@ -1,0 +1,159 @@
+"""Standing map: what range sensors have hit, kept until it is looked through, and what they have seen free.
+
+Sparse voxels, each of which holds the rays that passed it and, where it was hit, a surface element: mean, covariance
+and bounds of its points, with their variance at the pose of that moment (as in NDT occupancy maps: Saarinen et al., "3D
+normal distributions transform occupancy maps", 2013). A voxel is never freed by time nor by rays that pass beside its
+points or along their surface, but by rays through the place of its points that end beyond, in as many scans as their
+own record of hits and passes makes improbable while they stand.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from idc_controller.arrays import Array, Cells, Indices, Mask
+from idc_controller.estimation.health.chi_squared import upper_quantile
+from idc_controller.perception import map_query_kernels as queries
+from idc_controller.perception import standing_map_kernels as kernels
+from idc_controller.perception.placed_scan import PlacedScan
+from idc_controller.perception.settings import StandingMapSettings
+from idc_controller.perception.voxel_kernels import (
+    BLOCKS,
+    CHANGE,
+    EDGE,
+    HELD,
+    HIGH,
+    HITS,
+    KEY,
+    LOW,
+    MEAN,
+    NUMBER,
+    POINTS,
+    PROVEN,
+    WEIGHT,
+)
+from idc_controller.perception.voxel_store import VoxelStore
+
+
+class SurfaceElements(NamedTuple):
+    """What is known of the points in n voxels. SI units, NED."""
+
+    indices: Indices
+    """Index of each in the map (n,): used again once it is freed."""
+    numbers: Indices
+    """Serial number (n,): never used again."""
+    voxels: Indices
+    """Voxel along each axis (n, 3)."""
+    means: Array
+    """Mean of the points (n, 3)."""
+    low: Array
+    """Lower bounds of the points (n, 3)."""
+    high: Array
+    """Upper bounds (n, 3)."""
+    sigma: Array
+    """Standard deviation of one point, mean of the axes (n,)."""
+    hits: Array
+    """Scans that hit it (n,), not more than are remembered."""
+    standing: Mask
+    """Whether it counts as standing (n,): it appeared in unknown space, or has lasted."""
+
+
+class StandingMap:
+    """Occupied, seen free and unknown space. Times are the team's (s); rays are counted until a voxel is seen free."""
+
+    def __init__(self, settings: StandingMapSettings = StandingMapSettings()) -> None:
+        self.settings = s = settings
+        self._store = VoxelStore(s.voxel)
+        self._scan = 0
+        self._prior = np.array([s.prior_hits, s.prior_passes])
+        self._evidence = np.array([s.evidence_of_hit, s.evidence_max])
+        self._chi_squared = float(upper_quantile(s.false_alarm, 3))
+
+    def add(self, scan: PlacedScan, moving: Mask | None = None) -> None:
+        """Add one scan; ``moving``: returns (n,) of what is known to move, which leave no points."""
+        s, returns = self.settings, np.ascontiguousarray(scan.returns)
+        ends = np.concatenate([returns, scan.free_rays])
+        taken = np.asarray(np.isfinite(returns).all(axis=1))
+        if moving is not None:
+            taken &= ~moving
+        self._scan += 1
+        v, origin = self._store, np.ascontiguousarray(scan.origin)
+        v.reserve(origin, ends, len(returns))
+        arrays = v.table, v.pages, v.blocks, v.cells, v.links, v.elements, v.counts
+        sigmas, number = _sigmas(scan), float(self._scan)
+        kernels.add_returns(
+            *arrays, origin, returns, taken, sigmas, scan.time, number, s.voxel, s.free_passes, s.settling_time,
+            s.tolerance, s.memory,
+        )  # fmt: skip
+        kernels.carve(
+            *arrays, origin, ends, len(returns), sigmas, number, s.voxel, s.free_passes, s.sigmas_beyond,
+            s.incidence_min, self._prior, self._evidence, s.memory,
+        )  # fmt: skip
+
+    def is_occupied(self, points: Array) -> Mask:
+        """Return whether the voxels with ``points`` (n, 3) hold points that were hit (n,)."""
+        return np.asarray(self._cells_at(points) & HELD > 0)
+
+    def is_seen_free(self, points: Array) -> Mask:
+        """Return whether the voxels with ``points`` (n, 3) were seen free and hold no point that was hit (n,)."""
+        cells = self._cells_at(points)
+        return np.asarray(cells == self.settings.free_passes)
+
+    def unexplained(self, scan: PlacedScan) -> Mask:
+        """Return the returns (n,) of a scan, before it is added, that standing points and noise do not explain.
+
+        All that lies within their noise was seen free, and they are farther from all standing points than their noise
+        and those points' spread explain, at the stated false-alarm probability.
+        """
+        s, v = self.settings, self._store
+        return queries.unexplained_returns(
+            v.table, v.pages, v.cells, v.links, v.elements, np.ascontiguousarray(scan.origin),
+            np.ascontiguousarray(scan.returns), _sigmas(scan), s.voxel, s.free_passes, self._chi_squared,
+        )  # fmt: skip
+
+    def occupied(self) -> SurfaceElements:
+        """Return all surface elements."""
+        return self.elements(queries.used_elements(self._store.elements, self._store.counts))
+
+    def take_changed_blocks(self) -> tuple[Indices, Indices]:
+        """Return the blocks that changed since the last call: numbers (n,), and first voxels of each (n, 3).
+
+        A block has ``EDGE`` voxels along each edge.
+        """
+        count = int(self._store.counts[BLOCKS])
+        changed = np.flatnonzero(self._store.blocks[:count, CHANGE])
+        self._store.blocks[changed, CHANGE] = 0
+        keys = self._store.blocks[changed, KEY]
+        corners = np.stack([(keys >> shift & 0x1FFFFF) - (1 << 20) for shift in (42, 21, 0)], axis=1) * EDGE
+        return changed, corners
+
+    def elements_of(self, blocks: Indices) -> SurfaceElements:
+        """Return the surface elements in some ``blocks`` (n,)."""
+        return self.elements(queries.elements_of_blocks(self._store.links, blocks))
+
+    def elements(self, indices: Indices) -> SurfaceElements:
+        """Return the surface elements with these ``indices`` (n,)."""
+        rows = self._store.elements[indices]
+        return SurfaceElements(
+            indices,
+            rows[:, NUMBER].astype(np.int64),
+            queries.voxels_of_elements(self._store.blocks, self._store.elements, indices),
+            rows[:, MEAN : MEAN + 3],
+            rows[:, LOW : LOW + 3],
+            rows[:, HIGH : HIGH + 3],
+            np.sqrt(rows[:, POINTS] / np.maximum(rows[:, WEIGHT], 1e-12)),
+            rows[:, HITS],
+            rows[:, PROVEN] == 1.0,
+        )
+
+    def are_current(self, indices: Indices, numbers: Indices) -> Mask:
+        """Return whether elements are still those with these serial ``numbers`` (n,)."""
+        return np.asarray(self._store.elements[indices, NUMBER] == numbers)
+
+    def _cells_at(self, points: Array) -> Cells:
+        points = np.ascontiguousarray(points, dtype=float).reshape(-1, 3)
+        return queries.cells_at(self._store.table, self._store.pages, self._store.cells, points, self.settings.voxel)
+
+
+def _sigmas(scan: PlacedScan) -> Array:
+    return np.array([scan.range_sigma, scan.position_sigma, scan.attitude_sigma])

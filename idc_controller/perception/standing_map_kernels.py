@@ -1,0 +1,385 @@
+"""Returns and rays of a scan in the sparse voxels of the standing map, compiled; arrays: see ``voxel_kernels``."""
+
+import math
+
+import numpy as np
+
+from idc_controller.arrays import Array, Cells, Indices, Links, Mask
+from idc_controller.compiled import inlined, kernel
+from idc_controller.perception.normal_kernels import surface_normal
+from idc_controller.perception.voxel_kernels import (
+    ARRAYS,
+    BLOCK,
+    BORN,
+    CELL,
+    CELLS,
+    CHANGE,
+    FREE,
+    FREE_CELLS,
+    GONE,
+    HELD,
+    HELD_CELLS,
+    HIGH,
+    HITS,
+    KEY,
+    LAST_HIT,
+    LAST_PASS,
+    LOW,
+    MEAN,
+    NEXT_SPARE,
+    NUMBER,
+    PASSED,
+    PASSES,
+    POINTS,
+    PROVEN,
+    SCATTER,
+    SERIAL,
+    SPARE,
+    SURFACE,
+    USED,
+    WEIGHT,
+    add_near,
+    block_in_page,
+    block_key,
+    block_of,
+    cell_index,
+    insert_page,
+    key_corner,
+    page_key,
+    page_of,
+    voxel,
+)
+
+
+@kernel("void(int64[:, ::1], int32[:, ::1], int64[:, ::1], int64)")
+def enter_pages(table: Indices, pages: Links, blocks: Indices, count: int) -> None:
+    """Enter the first ``count`` pages into an empty ``table``."""
+    for page in range(count):
+        for block in pages[page]:
+            if block >= 0:
+                key = blocks[block, KEY]
+                x, y, z = key_corner(key, 0), key_corner(key, 1), key_corner(key, 2)
+                insert_page(table, page_key(x, y, z), page)
+                break
+
+
+@inlined
+def _new_element(
+    table: Indices, pages: Links, blocks: Indices, cells: Cells, links: Links, elements: Array, counts: Indices,
+    block: int, cell: int,
+) -> int:  # fmt: skip
+    """Return the index of a new element of a voxel that has none."""
+    index = counts[SPARE] - 1
+    if index < 0:
+        index = counts[USED]
+        counts[USED] += 1
+    else:
+        counts[SPARE] = int(elements[index, NEXT_SPARE])
+    counts[SERIAL] += 1
+    elements[index] = 0.0
+    elements[index, BLOCK], elements[index, CELL], elements[index, NUMBER] = block, cell, counts[SERIAL]
+    cells[block, cell] |= HELD
+    links[block, cell] += (index + 1) << 8
+    blocks[block, CHANGE] |= SURFACE
+    blocks[block, HELD_CELLS] += 1
+    add_near(table, pages, blocks, links, counts, elements[index], 1)
+    return int(index)
+
+
+@inlined
+def _free_element(
+    table: Indices, pages: Links, blocks: Indices, cells: Cells, links: Links, elements: Array, counts: Indices,
+    index: int, free_passes: int,
+) -> None:  # fmt: skip
+    """Remove an element; its voxel is one that was seen free."""
+    element = elements[index]
+    block, cell = int(element[BLOCK]), int(element[CELL])
+    add_near(table, pages, blocks, links, counts, element, -1)
+    if cells[block, cell] & PASSED < free_passes:
+        blocks[block, FREE_CELLS] += 1
+    cells[block, cell] = free_passes
+    links[block, cell] &= 255
+    blocks[block, CHANGE] |= SURFACE | FREE
+    blocks[block, HELD_CELLS] -= 1
+    element[NUMBER], element[NEXT_SPARE] = 0.0, counts[SPARE]
+    counts[SPARE] = index + 1
+
+
+@inlined
+def _halve_memory(element: Array, most: float) -> None:
+    """Halve the weight of past scans when they are more than ``most``."""
+    if element[HITS] + element[PASSES] > most:
+        element[HITS] /= 2.0
+        element[PASSES] /= 2.0
+        for i in range(SCATTER, WEIGHT + 1):
+            element[i] /= 2.0
+        element[POINTS] /= 2.0
+
+
+@kernel(
+    f"void({ARRAYS}, float64[::1], float64[:, ::1], boolean[::1], float64[::1], float64, float64, float64, int64,"
+    " float64, float64, float64)"
+)
+def add_returns(
+    table: Indices,
+    pages: Links,
+    blocks: Indices,
+    cells: Cells,
+    links: Links,
+    elements: Array,
+    counts: Indices,
+    origin: Array,
+    returns: Array,
+    taken: Mask,
+    sigmas: Array,
+    time: float,
+    scan: float,
+    size: float,
+    free_passes: int,
+    settling: float,
+    tolerance: float,
+    memory: float,
+) -> None:
+    """Add the returns of a scan to the elements of their voxels.
+
+    Args:
+        table, pages, blocks, cells, links, elements, counts: see ``voxel_kernels``; with room enough.
+        origin: place of the sensor (3,).
+        returns: (n, 3), NED (m).
+        taken: which of them are added (n,).
+        sigmas: standard deviations of range (m), position (m) and attitude (rad).
+        time, scan: time (s) and number of the scan.
+        size: edge of a voxel (m).
+        free_passes: rays through a voxel from which on it was seen free.
+        settling: time (s) for which points in what was seen free must last to count as standing.
+        tolerance: by which bounds that grow are set beyond the point (m).
+        memory: scans that an element remembers.
+    """
+    for p in range(returns.shape[0]):
+        if not taken[p]:
+            continue
+        x, y, z = voxel(returns[p, 0], size), voxel(returns[p, 1], size), voxel(returns[p, 2], size)
+        block, cell = block_of(table, pages, blocks, counts, x, y, z), cell_index(x, y, z)
+        square = 0.0
+        for i in range(3):
+            square += (returns[p, i] - origin[i]) ** 2
+        variance = sigmas[1] ** 2 + (sigmas[0] ** 2 + 2.0 * sigmas[2] ** 2 * square) / 3.0
+        index = (links[block, cell] >> 8) - 1
+        if index < 0:
+            was_free = cells[block, cell] & PASSED >= free_passes
+            index = _new_element(table, pages, blocks, cells, links, elements, counts, block, cell)
+            elements[index, BORN], elements[index, PROVEN] = time, 0.0 if was_free else 1.0
+            for i in range(3):
+                elements[index, MEAN + i] = elements[index, LOW + i] = elements[index, HIGH + i] = returns[p, i]
+        element = elements[index]
+        if element[LAST_HIT] != scan:
+            element[LAST_HIT] = scan
+            element[HITS] += 1.0
+            element[GONE] = 0.0
+            _halve_memory(element, memory)
+            if time - element[BORN] >= settling:
+                element[PROVEN] = 1.0
+        weight = 1.0 / max(variance, 1e-6)
+        element[WEIGHT] += weight
+        element[POINTS] += 1.0
+        share = weight / element[WEIGHT]
+        column = SCATTER
+        for i in range(3):
+            offset = returns[p, i] - element[MEAN + i]
+            for j in range(i, 3):
+                element[column] += weight * (1.0 - share) * offset * (returns[p, j] - element[MEAN + j])
+                column += 1
+        for i in range(3):
+            element[MEAN + i] += share * (returns[p, i] - element[MEAN + i])
+            if returns[p, i] < element[LOW + i]:
+                element[LOW + i] = returns[p, i] - tolerance
+                blocks[block, CHANGE] |= SURFACE
+            if returns[p, i] > element[HIGH + i]:
+                element[HIGH + i] = returns[p, i] + tolerance
+                blocks[block, CHANGE] |= SURFACE
+
+
+@inlined
+def _is_passed(
+    table: Indices, pages: Links, blocks: Indices, links: Links, elements: Array, element: Array, origin: Array,
+    way: Array, length: float, range_variance: float, sigmas: Array, sigmas_beyond: float, incidence: float,
+    normal: Array,
+) -> bool:  # fmt: skip
+    """Return whether a ray goes through the place of an element's points and ends beyond, not along their surface.
+
+    Args:
+        way: unit vector along the ray (3,); ``length``: to its end (m).
+        range_variance: of the end along the ray (m2).
+        sigmas_beyond: standard deviations by which the end must lie beyond the points.
+        incidence: least cosine between ray and normal of the surface about the points.
+        normal: (3,), to be written to.
+    """
+    along, square = 0.0, 0.0
+    for i in range(3):
+        offset = element[MEAN + i] - origin[i]
+        along += offset * way[i]
+        square += offset * offset
+    if along <= 0.0:
+        return False
+    weight = element[WEIGHT]
+    xx, xy, xz = element[SCATTER], element[SCATTER + 1], element[SCATTER + 2]
+    yy, yz, zz = element[SCATTER + 3], element[SCATTER + 4], element[SCATTER + 5]
+    depth = (
+        xx * way[0] ** 2 + yy * way[1] ** 2 + zz * way[2] ** 2
+        + 2.0 * (xy * way[0] * way[1] + xz * way[0] * way[2] + yz * way[1] * way[2])
+    ) / weight  # fmt: skip
+    beyond = length - along
+    if beyond <= 0.0 or beyond * beyond <= sigmas_beyond**2 * (range_variance + max(depth, element[POINTS] / weight)):
+        return False
+    # Within the spread of the points, without what is noise of it, or within the noise of the ray.
+    spread = max((xx + yy + zz) / weight - depth, 0.0) / 2.0 - element[POINTS] / weight
+    across = sigmas[1] ** 2 + (sigmas[2] * along) ** 2
+    if square - along * along > max(spread, across):
+        return False
+    surface_normal(table, pages, blocks, links, elements, element, normal)
+    dot = normal[0] * way[0] + normal[1] * way[1] + normal[2] * way[2]
+    return bool(abs(dot) >= incidence or normal[0] ** 2 + normal[1] ** 2 + normal[2] ** 2 == 0.0)
+
+
+@inlined
+def _first_side(start: float, way: float, size: float) -> tuple[int, int, float, float]:
+    """Return for one axis: voxel, step, length to the voxel's side along the ray and between sides (m)."""
+    first = voxel(start, size)
+    if abs(way) < 1e-9:
+        return first, 0, math.inf, math.inf
+    if way > 0.0:
+        return first, 1, ((first + 1) * size - start) / way, size / way
+    return first, -1, (first * size - start) / way, -size / way
+
+
+@inlined
+def _sides_before(at: int, step: int) -> int:
+    """Return how many sides of voxels come before the side of the block along one axis."""
+    return 7 - (at & 7) if step > 0 else at & 7
+
+
+@kernel(
+    f"void({ARRAYS}, float64[::1], float64[:, ::1], int64, float64[::1], float64, float64, int64, float64, float64,"
+    " float64[::1], float64[::1], float64)"
+)
+def carve(
+    table: Indices,
+    pages: Links,
+    blocks: Indices,
+    cells: Cells,
+    links: Links,
+    elements: Array,
+    counts: Indices,
+    origin: Array,
+    ends: Array,
+    returned: int,
+    sigmas: Array,
+    scan: float,
+    size: float,
+    free_passes: int,
+    sigmas_beyond: float,
+    incidence: float,
+    prior: Array,
+    evidence: Array,
+    memory: float,
+) -> None:
+    """Count the rays of a scan through the voxels they pass, and free elements that enough scans have passed.
+
+    A ray that has met the voxel of an element is no evidence for free voxels beyond: it may go along its surface.
+    An element is passed at most once a scan, as the error of the pose is common to its rays, and not in a scan that
+    hit it. The run of scans that pass it is compared with what its own record of hits and passes predicts
+    (beta-binomial).
+
+    Args:
+        table, pages, blocks, cells, links, elements, counts: see ``voxel_kernels``; with room enough.
+        origin: place of the sensor (3,).
+        ends: of the rays (n, 3), NED (m); the first ``returned`` of them are returns.
+        sigmas: standard deviations of range (m), position (m) and attitude (rad).
+        scan: number of the scan.
+        size: edge of a voxel (m).
+        free_passes: rays through a voxel from which on it was seen free.
+        sigmas_beyond: standard deviations by which a ray must end beyond what it passes.
+        incidence: least cosine between a ray that passes through points, and their surface's normal.
+        prior: scans that hit and that pass what stands, before any has told otherwise (2,).
+        evidence: nats of one scan's hit, and most of them (2,).
+        memory: scans that an element remembers.
+    """
+    way, normal = np.empty(3), np.empty(3)
+    for r in range(ends.shape[0]):
+        length = 0.0
+        for i in range(3):
+            way[i] = ends[r, i] - origin[i]
+            length += way[i] * way[i]
+        length = math.sqrt(length)
+        if not 0.0 < length < math.inf:
+            continue
+        range_variance = sigmas[1] ** 2 + (sigmas[0] ** 2 if r < returned else 0.0)
+        last = length - sigmas_beyond * math.sqrt(range_variance) if r < returned else length
+        way /= length
+        # Voxels in the order in which the ray leaves them (Amanatides and Woo, 1987): place along it of the next side.
+        x, x_step, x_next, x_apart = _first_side(origin[0], way[0], size)
+        y, y_step, y_next, y_apart = _first_side(origin[1], way[1], size)
+        z, z_step, z_next, z_apart = _first_side(origin[2], way[2], size)
+        key, in_page, page, block, met = -1, -1, -1, -1, False
+        while min(x_next, y_next, z_next) <= last:
+            now = block_key(x, y, z)
+            if now != key:
+                key = now
+                if page_key(x, y, z) != in_page:
+                    in_page, page = page_key(x, y, z), page_of(table, counts, x, y, z)
+                block = pages[page, block_in_page(x, y, z)]
+                if block < 0 and not met:
+                    block = block_of(table, pages, blocks, counts, x, y, z)
+                if block < 0 or (blocks[block, HELD_CELLS] == 0 and (met or blocks[block, FREE_CELLS] == CELLS)):
+                    # Nothing to do in the whole block.
+                    out = min(
+                        x_next + _sides_before(x, x_step) * x_apart if x_step else math.inf,
+                        y_next + _sides_before(y, y_step) * y_apart if y_step else math.inf,
+                        z_next + _sides_before(z, z_step) * z_apart if z_step else math.inf,
+                    )
+                    while x_next <= out:
+                        x += x_step
+                        x_next += x_apart
+                    while y_next <= out:
+                        y += y_step
+                        y_next += y_apart
+                    while z_next <= out:
+                        z += z_step
+                        z_next += z_apart
+                    continue
+            cell = cell_index(x, y, z)
+            value = cells[block, cell]
+            if value & HELD:
+                met = True
+                index = (links[block, cell] >> 8) - 1
+                element = elements[index]
+                if (
+                    element[LAST_HIT] != scan
+                    and element[LAST_PASS] != scan
+                    and _is_passed(
+                        table, pages, blocks, links, elements, element, origin, way, length, range_variance, sigmas,
+                        sigmas_beyond, incidence, normal,
+                    )
+                ):  # fmt: skip
+                    element[LAST_PASS] = scan
+                    hit, passed = prior[0] + element[HITS], prior[1] + element[PASSES]
+                    element[GONE] += math.log((hit + passed) / passed)
+                    element[PASSES] += 1.0
+                    if element[GONE] >= min(element[HITS] * evidence[0], evidence[1]):
+                        _free_element(table, pages, blocks, cells, links, elements, counts, index, free_passes)
+                    else:
+                        _halve_memory(element, memory)
+            elif not met and value < free_passes:
+                cells[block, cell] = value + 1
+                if value + 1 == free_passes:
+                    blocks[block, CHANGE] |= FREE
+                    blocks[block, FREE_CELLS] += 1
+            if x_next <= y_next and x_next <= z_next:
+                x += x_step
+                x_next += x_apart
+            elif y_next <= z_next:
+                y += y_step
+                y_next += y_apart
+            else:
+                z += z_step
+                z_next += z_apart

@@ -1,0 +1,166 @@
+"""Sparse voxels: blocks of 8 x 8 x 8 in pages of 16 x 16 x 16, compiled; the arrays that the map's kernels share.
+
+- ``table`` (2^k, 2): hash table of the pages by open addressing, key and number; key -1: empty.
+- ``pages`` (P, 4096): number of each block of a page, -1: none. A ray stays in few pages, which the cache holds.
+- ``blocks`` (B, 4): key of a block; whether it has changed (bits :data:`SURFACE` and :data:`FREE`); its voxels that
+  were seen free; its voxels with points.
+- ``cells`` (B, 512): one byte a voxel: how many rays have passed, up to as many as make it seen free, and
+  :data:`HELD`, if it holds points. Small, as every ray reads some forty of them.
+- ``links`` (B, 512): in bits 0 to 7 how many of the 27 voxels about a voxel hold points, above that the index of its
+  surface element plus one (0: it holds no point).
+- ``elements`` (E, COLUMNS): what is known of the points in a voxel.
+- ``counts`` (5,): blocks, elements ever used, first spare element plus one, serial number of the last element,
+  pages.
+"""
+
+import math
+
+from idc_controller.arrays import Array, Indices, Links
+from idc_controller.compiled import inlined
+
+ARRAYS = "int64[:, ::1], int32[:, ::1], int64[:, ::1], uint8[:, ::1], int32[:, ::1], float64[:, ::1], int64[::1]"
+"""Types of table, pages, blocks, cells, links, elements and counts in the signature of a kernel."""
+EDGE = 8
+"""Voxels along the edge of a block."""
+CELLS = EDGE**3
+PAGE_EDGE = 16
+"""Blocks along the edge of a page."""
+PAGE_BLOCKS = PAGE_EDGE**3
+KEY, CHANGE, FREE_CELLS, HELD_CELLS = range(4)
+"""Columns of ``blocks``."""
+SURFACE, FREE = 1, 2
+"""Bits of a block's change: points came or went; voxels came to be free."""
+HELD, PASSED = 128, 127
+"""Bits of a cell: it holds points; rays that have passed."""
+BLOCKS, USED, SPARE, SERIAL, PAGES = range(5)
+"""Indices of ``counts``."""
+
+MEAN, SCATTER, WEIGHT, LOW, HIGH = 0, 3, 9, 10, 13
+"""Columns of an element: weighted mean (3), sums of weighted squares about it xx, xy, xz, yy, yz, zz (6), sum of the
+weights (1/m2), bounds of the points (3 each)."""
+POINTS, HITS, PASSES, GONE, BORN, PROVEN = 16, 17, 18, 19, 20, 21
+"""Columns: number of points; scans that hit it; scans that passed through it; evidence that it is gone (nats) since it
+was hit last; time of the first point (s); 1 if it counts as standing."""
+LAST_HIT, LAST_PASS, BLOCK, CELL, NUMBER, NEXT_SPARE = 22, 23, 24, 25, 26, 27
+"""Columns: the scans in which it was hit and passed last; its block and voxel; its serial number (0: it is spare); the
+spare element after it."""
+COLUMNS = 28
+
+_OFFSET = 1 << 20
+_FIELD = (1 << 21) - 1
+_MIXING = -7046029254386353131
+"""2^64 over the golden ratio (Knuth, "Sorting and Searching", 6.4), as a signed number: products wrap around."""
+
+
+@inlined
+def block_key(x: int, y: int, z: int) -> int:
+    """Return the key of the block with voxel (x, y, z)."""
+    return ((x >> 3) + _OFFSET) << 42 | ((y >> 3) + _OFFSET) << 21 | ((z >> 3) + _OFFSET)
+
+
+@inlined
+def page_key(x: int, y: int, z: int) -> int:
+    """Return the key of the page with voxel (x, y, z)."""
+    return ((x >> 7) + _OFFSET) << 42 | ((y >> 7) + _OFFSET) << 21 | ((z >> 7) + _OFFSET)
+
+
+@inlined
+def block_in_page(x: int, y: int, z: int) -> int:
+    """Return the index in its page of the block with voxel (x, y, z)."""
+    return (x >> 3 & 15) << 8 | (y >> 3 & 15) << 4 | (z >> 3 & 15)
+
+
+@inlined
+def key_corner(key: int, axis: int) -> int:
+    """Return the first voxel of a block along one axis."""
+    return (((key >> (42 - 21 * axis)) & _FIELD) - _OFFSET) * 8
+
+
+@inlined
+def cell_index(x: int, y: int, z: int) -> int:
+    """Return the index in its block of voxel (x, y, z)."""
+    return (x & 7) << 6 | (y & 7) << 3 | (z & 7)
+
+
+@inlined
+def _first_place(key: int, mask: int) -> int:
+    return (key * _MIXING >> 32) & mask
+
+
+@inlined
+def find_page(table: Indices, key: int) -> int:
+    """Return the number of the page with that key, -1 if there is none."""
+    mask = table.shape[0] - 1
+    i = (key * _MIXING >> 32) & mask
+    while table[i, 0] != key:
+        if table[i, 0] == -1:
+            return -1
+        i = (i + 1) & mask
+    return int(table[i, 1])
+
+
+@inlined
+def insert_page(table: Indices, key: int, number: int) -> None:
+    """Enter a page that is not in the table."""
+    mask = table.shape[0] - 1
+    i = (key * _MIXING >> 32) & mask
+    while table[i, 0] != -1:
+        i = (i + 1) & mask
+    table[i, 0], table[i, 1] = key, number
+
+
+@inlined
+def find_block(table: Indices, pages: Links, x: int, y: int, z: int) -> int:
+    """Return the number of the block with voxel (x, y, z), -1 if there is none."""
+    page = find_page(table, page_key(x, y, z))
+    return -1 if page < 0 else int(pages[page, block_in_page(x, y, z)])
+
+
+@inlined
+def page_of(table: Indices, counts: Indices, x: int, y: int, z: int) -> int:
+    """Return the number of the page with voxel (x, y, z), a new one if there is none yet."""
+    key = page_key(x, y, z)
+    page = find_page(table, key)
+    if page < 0:
+        page = counts[PAGES]
+        counts[PAGES] += 1
+        insert_page(table, key, page)
+    return int(page)
+
+
+@inlined
+def block_of(table: Indices, pages: Links, blocks: Indices, counts: Indices, x: int, y: int, z: int) -> int:
+    """Return the number of the block with voxel (x, y, z), a new one if there is none yet."""
+    page, place = page_of(table, counts, x, y, z), block_in_page(x, y, z)
+    if pages[page, place] < 0:
+        pages[page, place] = counts[BLOCKS]
+        blocks[counts[BLOCKS], KEY] = block_key(x, y, z)
+        counts[BLOCKS] += 1
+    return int(pages[page, place])
+
+
+@inlined
+def element_at(table: Indices, pages: Links, links: Links, x: int, y: int, z: int) -> int:
+    """Return the index of the element of voxel (x, y, z), -1 where there is none."""
+    block = find_block(table, pages, x, y, z)
+    return -1 if block < 0 else int(links[block, cell_index(x, y, z)] >> 8) - 1
+
+
+@inlined
+def add_near(
+    table: Indices, pages: Links, blocks: Indices, links: Links, counts: Indices, element: Array, change: int
+) -> None:
+    """Add ``change`` to the number of voxels with points about each of the 27 voxels about an ``element``."""
+    key, cell = blocks[int(element[BLOCK]), KEY], int(element[CELL])
+    x, y, z = key_corner(key, 0) + (cell >> 6), key_corner(key, 1) + (cell >> 3 & 7), key_corner(key, 2) + (cell & 7)
+    for i in range(x - 1, x + 2):
+        for j in range(y - 1, y + 2):
+            for k in range(z - 1, z + 2):
+                block = block_of(table, pages, blocks, counts, i, j, k)
+                links[block, cell_index(i, j, k)] += change
+
+
+@inlined
+def voxel(coordinate: float, size: float) -> int:
+    """Return the voxel along one axis."""
+    return math.floor(coordinate / size)
