@@ -7,11 +7,8 @@ import numpy as np
 from idc_controller.arrays import Array, Cells, Indices, Links, Mask
 from idc_controller.compiled import inlined, kernel
 from idc_controller.perception.voxel_kernels import (
-    BLOCK,
-    CELL,
     CELLS,
     HELD,
-    KEY,
     MEAN,
     NUMBER,
     PASSED,
@@ -21,8 +18,8 @@ from idc_controller.perception.voxel_kernels import (
     WEIGHT,
     cell_index,
     element_at,
+    element_voxel,
     find_block,
-    key_corner,
     voxel,
 )
 
@@ -68,10 +65,7 @@ def voxels_of_elements(blocks: Indices, elements: Array, indices: Indices) -> In
     """Return the voxels (n, 3) of the elements with ``indices`` (n,)."""
     found = np.empty((indices.shape[0], 3), np.int64)
     for n in range(indices.shape[0]):
-        key, cell = blocks[int(elements[indices[n], BLOCK]), KEY], int(elements[indices[n], CELL])
-        found[n, 0] = key_corner(key, 0) + (cell >> 6)
-        found[n, 1] = key_corner(key, 1) + (cell >> 3 & 7)
-        found[n, 2] = key_corner(key, 2) + (cell & 7)
+        found[n, 0], found[n, 1], found[n, 2] = element_voxel(blocks, elements[indices[n]])
     return found
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from idc_controller.arrays import Array, Indices, Links
 from idc_controller.compiled import inlined
-from idc_controller.perception.voxel_kernels import BLOCK, CELL, HITS, KEY, MEAN, element_at, key_corner
+from idc_controller.perception.voxel_kernels import HITS, MEAN, element_at, element_voxel
 
 _FEWEST = 3
 """Voxels with points about a voxel, itself included, from which on they have a normal."""
@@ -51,8 +51,7 @@ def surface_normal(
     table: Indices, pages: Links, blocks: Indices, links: Links, elements: Array, element: Array, normal: Array
 ) -> None:
     """Write the normal of the surface about an ``element`` into ``normal`` (3,); zero where there is none."""
-    key, cell = blocks[int(element[BLOCK]), KEY], int(element[CELL])
-    x, y, z = key_corner(key, 0) + (cell >> 6), key_corner(key, 1) + (cell >> 3 & 7), key_corner(key, 2) + (cell & 7)
+    x, y, z = element_voxel(blocks, element)
     mean, square, weight, count = np.zeros(3), np.zeros((3, 3)), 0.0, 0
     for i in range(x - 1, x + 2):
         for j in range(y - 1, y + 2):

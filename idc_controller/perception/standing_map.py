@@ -7,14 +7,18 @@ points or along their surface, but by rays through the place of its points that 
 own record of hits and passes makes improbable while they stand.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
+from scipy.special import ndtri
 
 from idc_controller.arrays import Array, Cells, Indices, Mask
 from idc_controller.estimation.health.chi_squared import upper_quantile
 from idc_controller.perception import map_query_kernels as queries
 from idc_controller.perception import standing_map_kernels as kernels
+from idc_controller.perception import upright_box_kernels as boxes
+from idc_controller.perception.convex_pieces_kernels import nearest_owners
 from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.settings import StandingMapSettings
 from idc_controller.perception.voxel_kernels import (
@@ -30,9 +34,13 @@ from idc_controller.perception.voxel_kernels import (
     NUMBER,
     POINTS,
     PROVEN,
+    SURFACE,
+    USED,
     WEIGHT,
 )
 from idc_controller.perception.voxel_store import VoxelStore
+
+_ALL = np.empty(0, dtype=np.int64)
 
 
 class SurfaceElements(NamedTuple):
@@ -64,6 +72,10 @@ class StandingMap:
     def __init__(self, settings: StandingMapSettings = StandingMapSettings()) -> None:
         self.settings = s = settings
         self._store = VoxelStore(s.voxel)
+        scans = np.arange(1.0, s.memory + 1.0)
+        # All of so many scans report a surface short of where it is with the stated probability. Inwards, not more than
+        # one: not all points need lie on one surface.
+        self._sigmas = np.maximum(-ndtri(s.uncovered ** (1.0 / scans)), -1.0)
         self._scan = 0
         self._prior = np.array([s.prior_hits, s.prior_passes])
         self._evidence = np.array([s.evidence_of_hit, s.evidence_max])
@@ -83,7 +95,7 @@ class StandingMap:
         sigmas, number = _sigmas(scan), float(self._scan)
         kernels.add_returns(
             *arrays, origin, returns, taken, sigmas, scan.time, number, s.voxel, s.free_passes, s.settling_time,
-            s.tolerance, s.memory,
+            s.tolerance, s.memory, self._chi_squared,
         )  # fmt: skip
         kernels.carve(
             *arrays, origin, ends, len(returns), sigmas, number, s.voxel, s.free_passes, s.sigmas_beyond,
@@ -115,17 +127,20 @@ class StandingMap:
         """Return all surface elements."""
         return self.elements(queries.used_elements(self._store.elements, self._store.counts))
 
-    def take_changed_blocks(self) -> tuple[Indices, Indices]:
-        """Return the blocks that changed since the last call: numbers (n,), and first voxels of each (n, 3).
+    def take_changed_blocks(self) -> tuple[Indices, Indices, Mask]:
+        """Return the blocks that changed since the last call.
 
-        A block has ``EDGE`` voxels along each edge.
+        Numbers (n,); first voxels of each (n, 3), which has ``EDGE`` along each edge; whether points came or went (n,),
+        not only free voxels.
         """
         count = int(self._store.counts[BLOCKS])
-        changed = np.flatnonzero(self._store.blocks[:count, CHANGE])
-        self._store.blocks[changed, CHANGE] = 0
+        changes = self._store.blocks[:count, CHANGE]
+        changed = np.flatnonzero(changes)
+        surface = changes[changed] & SURFACE != 0
+        changes[changed] = 0
         keys = self._store.blocks[changed, KEY]
         corners = np.stack([(keys >> shift & 0x1FFFFF) - (1 << 20) for shift in (42, 21, 0)], axis=1) * EDGE
-        return changed, corners
+        return changed, corners, np.asarray(surface)
 
     def elements_of(self, blocks: Indices) -> SurfaceElements:
         """Return the surface elements in some ``blocks`` (n,)."""
@@ -149,6 +164,42 @@ class StandingMap:
     def are_current(self, indices: Indices, numbers: Indices) -> Mask:
         """Return whether elements are still those with these serial ``numbers`` (n,)."""
         return np.asarray(self._store.elements[indices, NUMBER] == numbers)
+
+    def gaps(self, box: Array, most: int, among: Indices = _ALL) -> Array:
+        """Return the middles (n, 3) of up to ``most`` gaps in a box: seen free, with no point in the 27 voxels about.
+
+        ``box`` (8,): see :mod:`idc_controller.perception.upright_box_kernels`; ``among``: blocks that are searched.
+        """
+        s, v = self.settings, self._store
+        return boxes.gaps_within(v.table, v.pages, v.blocks, v.cells, v.links, among, box, s.voxel, s.free_passes, most)
+
+    def cover(self, indices: Indices, bounds: Array) -> None:
+        """Write the bounds of the true surface at elements ``indices`` (n,) into ``bounds`` (E, 6) (m)."""
+        v = self._store
+        boxes.cover_points(
+            v.table, v.pages, v.blocks, v.links, v.elements, indices, self._sigmas, self.settings.tolerance, bounds
+        )
+
+    def nearest_owners(self, indices: Indices, owners: Indices) -> Indices:
+        """Return for elements ``indices`` (n,) the owner of the nearest that has one within the bridged gap, or -1.
+
+        ``owners``: owner and serial number of each element (E, 2); of another serial number: none.
+        """
+        v, reach = self._store, math.ceil(self.settings.bridged_gap / self.settings.voxel)
+        return nearest_owners(v.table, v.pages, v.blocks, v.links, v.elements, indices, owners, reach)
+
+    def hits(self, indices: Indices) -> float:
+        """Return the sum of the scans that hit elements ``indices`` (n,)."""
+        return float(self._store.elements[indices, HITS].sum())
+
+    def numbers(self, indices: Indices) -> Indices:
+        """Return the serial numbers of elements ``indices`` (n,)."""
+        return np.asarray(self._store.elements[indices, NUMBER].astype(np.int64))
+
+    @property
+    def element_count(self) -> int:
+        """Elements ever used: their indices are smaller."""
+        return int(self._store.counts[USED])
 
     def _cells_at(self, points: Array) -> Cells:
         points = np.ascontiguousarray(points, dtype=float).reshape(-1, 3)

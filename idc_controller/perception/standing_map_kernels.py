@@ -43,12 +43,17 @@ from idc_controller.perception.voxel_kernels import (
     block_key,
     block_of,
     cell_index,
+    element_at,
+    element_voxel,
     insert_page,
     key_corner,
     page_key,
     page_of,
     voxel,
 )
+
+_RARER, _NOISIER = 8.0, 1.3
+"""Points may be noise of others that were hit by so many times as many scans, at so much smaller variance."""
 
 
 @kernel("void(int64[:, ::1], int32[:, ::1], int64[:, ::1], int64)")
@@ -89,15 +94,17 @@ def _new_element(
 @inlined
 def _free_element(
     table: Indices, pages: Links, blocks: Indices, cells: Cells, links: Links, elements: Array, counts: Indices,
-    index: int, free_passes: int,
+    index: int, free_passes: int, least_passes: int,
 ) -> None:  # fmt: skip
-    """Remove an element; its voxel is one that was seen free."""
+    """Remove an element; its voxel counts as passed by ``least_passes`` rays, if there were not more."""
     element = elements[index]
     block, cell = int(element[BLOCK]), int(element[CELL])
     add_near(table, pages, blocks, links, counts, element, -1)
-    if cells[block, cell] & PASSED < free_passes:
-        blocks[block, FREE_CELLS] += 1
-    cells[block, cell] = free_passes
+    passed = cells[block, cell] & PASSED
+    if passed < least_passes:
+        blocks[block, FREE_CELLS] += least_passes == free_passes
+        passed = least_passes
+    cells[block, cell] = passed
     links[block, cell] &= 255
     blocks[block, CHANGE] |= SURFACE | FREE
     blocks[block, HELD_CELLS] -= 1
@@ -116,9 +123,36 @@ def _halve_memory(element: Array, most: float) -> None:
         element[POINTS] /= 2.0
 
 
+@inlined
+def _absorb_noise(
+    table: Indices, pages: Links, blocks: Indices, cells: Cells, links: Links, elements: Array, counts: Indices,
+    element: Array, free_passes: int, chi_squared: float,
+) -> None:  # fmt: skip
+    """Remove elements in the voxels about an element that its surface explains, with the noise of their points.
+
+    Such are less accurate and were hit by much fewer scans: what is there, better scans would have hit as often.
+    """
+    x, y, z = element_voxel(blocks, element)
+    variance = element[POINTS] / element[WEIGHT]
+    for i in range(x - 1, x + 2):
+        for j in range(y - 1, y + 2):
+            for k in range(z - 1, z + 2):
+                index = element_at(table, pages, links, i, j, k)
+                if index < 0 or elements[index, HITS] * _RARER > element[HITS]:
+                    continue
+                other = elements[index, POINTS] / elements[index, WEIGHT]
+                if other < _NOISIER * variance:
+                    continue
+                square = 0.0
+                for axis in range(3):
+                    square += (elements[index, MEAN + axis] - element[MEAN + axis]) ** 2
+                if square <= chi_squared * other:
+                    _free_element(table, pages, blocks, cells, links, elements, counts, index, free_passes, 0)
+
+
 @kernel(
     f"void({ARRAYS}, float64[::1], float64[:, ::1], boolean[::1], float64[::1], float64, float64, float64, int64,"
-    " float64, float64, float64)"
+    " float64, float64, float64, float64)"
 )
 def add_returns(
     table: Indices,
@@ -139,6 +173,7 @@ def add_returns(
     settling: float,
     tolerance: float,
     memory: float,
+    chi_squared: float,
 ) -> None:
     """Add the returns of a scan to the elements of their voxels.
 
@@ -154,6 +189,7 @@ def add_returns(
         settling: time (s) for which points in what was seen free must last to count as standing.
         tolerance: by which bounds that grow are set beyond the point (m).
         memory: scans that an element remembers.
+        chi_squared: square of the distance, in standard deviations, up to which noise explains it.
     """
     for p in range(returns.shape[0]):
         if not taken[p]:
@@ -179,6 +215,8 @@ def add_returns(
             _halve_memory(element, memory)
             if time - element[BORN] >= settling:
                 element[PROVEN] = 1.0
+            if element[HITS] >= _RARER:
+                _absorb_noise(table, pages, blocks, cells, links, elements, counts, element, free_passes, chi_squared)
         weight = 1.0 / max(variance, 1e-6)
         element[WEIGHT] += weight
         element[POINTS] += 1.0
@@ -366,7 +404,9 @@ def carve(
                     element[GONE] += math.log((hit + passed) / passed)
                     element[PASSES] += 1.0
                     if element[GONE] >= min(element[HITS] * evidence[0], evidence[1]):
-                        _free_element(table, pages, blocks, cells, links, elements, counts, index, free_passes)
+                        _free_element(
+                            table, pages, blocks, cells, links, elements, counts, index, free_passes, free_passes
+                        )
                     else:
                         _halve_memory(element, memory)
             elif not met and value < free_passes:

@@ -147,12 +147,18 @@ def element_at(table: Indices, pages: Links, links: Links, x: int, y: int, z: in
 
 
 @inlined
+def element_voxel(blocks: Indices, element: Array) -> tuple[int, int, int]:
+    """Return the voxel of an element."""
+    key, cell = blocks[int(element[BLOCK]), KEY], int(element[CELL])
+    return key_corner(key, 0) + (cell >> 6), key_corner(key, 1) + (cell >> 3 & 7), key_corner(key, 2) + (cell & 7)
+
+
+@inlined
 def add_near(
     table: Indices, pages: Links, blocks: Indices, links: Links, counts: Indices, element: Array, change: int
 ) -> None:
     """Add ``change`` to the number of voxels with points about each of the 27 voxels about an ``element``."""
-    key, cell = blocks[int(element[BLOCK]), KEY], int(element[CELL])
-    x, y, z = key_corner(key, 0) + (cell >> 6), key_corner(key, 1) + (cell >> 3 & 7), key_corner(key, 2) + (cell & 7)
+    x, y, z = element_voxel(blocks, element)
     for i in range(x - 1, x + 2):
         for j in range(y - 1, y + 2):
             for k in range(z - 1, z + 2):

@@ -1,0 +1,243 @@
+"""Upright boxes that hold points of the standing map, and the gaps in them, compiled.
+
+A box is a row of 8 numbers: centre (3,), half edges along its heading, across it and vertically (m), cosine and sine of
+the heading. Bounds are rows of 6: lower (3,) and upper (3,) (m).
+"""
+
+import math
+
+import numpy as np
+
+from idc_controller.arrays import Array, Cells, Indices, Links, Mask
+from idc_controller.compiled import inlined, kernel
+from idc_controller.perception.voxel_kernels import (
+    EDGE,
+    FREE_CELLS,
+    HIGH,
+    HITS,
+    KEY,
+    LOW,
+    MEAN,
+    POINTS,
+    WEIGHT,
+    cell_index,
+    element_at,
+    element_voxel,
+    find_block,
+    key_corner,
+    voxel,
+)
+
+_COARSE, _FINE = 18, 5
+"""Headings tried of a quarter turn, and on each side of the best of them."""
+
+
+@inlined
+def _spans(bounds: Array, rows: Indices, cosine: float, sine: float) -> tuple[float, float, float, float]:
+    """Return the least and largest coordinate of bounds along a heading and across it (m)."""
+    low_u, high_u, low_v, high_v = math.inf, -math.inf, math.inf, -math.inf
+    a, b = abs(cosine), abs(sine)
+    for r in rows:
+        x, y = (bounds[r, 0] + bounds[r, 3]) / 2.0, (bounds[r, 1] + bounds[r, 4]) / 2.0
+        p, q = (bounds[r, 3] - bounds[r, 0]) / 2.0, (bounds[r, 4] - bounds[r, 1]) / 2.0
+        u, v = cosine * x + sine * y, cosine * y - sine * x
+        du, dv = a * p + b * q, a * q + b * p
+        low_u, high_u = min(low_u, u - du), max(high_u, u + du)
+        low_v, high_v = min(low_v, v - dv), max(high_v, v + dv)
+    return low_u, high_u, low_v, high_v
+
+
+@inlined
+def _set_box(
+    box: Array, low_u: float, high_u: float, low_v: float, high_v: float, top: float, bottom: float, cosine: float,
+    sine: float,
+) -> None:  # fmt: skip
+    u, v = (low_u + high_u) / 2.0, (low_v + high_v) / 2.0
+    box[0], box[1], box[2] = cosine * u - sine * v, sine * u + cosine * v, (top + bottom) / 2.0
+    box[3], box[4], box[5] = (high_u - low_u) / 2.0, (high_v - low_v) / 2.0, (bottom - top) / 2.0
+    box[6], box[7] = cosine, sine
+
+
+@kernel("float64[::1](float64[:, ::1], int64[::1])")
+def fitted_box(bounds: Array, rows: Indices) -> Array:
+    """Return the upright box (8,) with about the least plan view that holds ``bounds`` (E, 6) of some ``rows`` (n,).
+
+    The heading is the best of some, found to half a degree.
+    """
+    box, least, best = np.empty(8), math.inf, 0.0
+    step = math.pi / 2.0 / _COARSE
+    for i in range(_COARSE + 2 * _FINE):
+        if i < _COARSE:
+            heading = i * step
+        else:
+            if i == _COARSE:
+                middle = best
+            j = i - _COARSE - _FINE
+            heading = middle + (j + 1 if j >= 0 else j) * step / (2.0 * _FINE)
+        low_u, high_u, low_v, high_v = _spans(bounds, rows, math.cos(heading), math.sin(heading))
+        area = (high_u - low_u) * (high_v - low_v)
+        if area < least * (1.0 - 1e-9):
+            least, best = area, heading
+    top, bottom = math.inf, -math.inf
+    for r in rows:
+        top, bottom = min(top, bounds[r, 2]), max(bottom, bounds[r, 5])
+    low_u, high_u, low_v, high_v = _spans(bounds, rows, math.cos(best), math.sin(best))
+    _set_box(box, low_u, high_u, low_v, high_v, top, bottom, math.cos(best), math.sin(best))
+    return box
+
+
+@kernel("float64[::1](float64[::1], float64[:, ::1], int64[::1])")
+def extended_box(box: Array, bounds: Array, rows: Indices) -> Array:
+    """Return a ``box`` (8,) extended, at its heading, to hold the ``bounds`` (E, 6) of some ``rows`` (n,)."""
+    cosine, sine, found = box[6], box[7], np.empty(8)
+    low_u, high_u, low_v, high_v = _spans(bounds, rows, cosine, sine)
+    u, v = cosine * box[0] + sine * box[1], cosine * box[1] - sine * box[0]
+    top, bottom = box[2] - box[5], box[2] + box[5]
+    for r in rows:
+        top, bottom = min(top, bounds[r, 2]), max(bottom, bounds[r, 5])
+    _set_box(
+        found, min(low_u, u - box[3]), max(high_u, u + box[3]), min(low_v, v - box[4]), max(high_v, v + box[4]), top,
+        bottom, cosine, sine,
+    )  # fmt: skip
+    return found
+
+
+@kernel("boolean[::1](float64[::1], float64[:, ::1], int64[::1], float64)")
+def reaches_out(box: Array, bounds: Array, rows: Indices, tolerance: float) -> Mask:
+    """Return which of ``bounds`` (E, 6), at ``rows`` (n,), reach out of a ``box`` (8,) by more than ``tolerance`` (m)."""
+    found, one = np.empty(rows.shape[0], np.bool_), np.empty(1, np.int64)
+    u, v = box[6] * box[0] + box[7] * box[1], box[6] * box[1] - box[7] * box[0]
+    for i in range(rows.shape[0]):
+        one[0] = rows[i]
+        low_u, high_u, low_v, high_v = _spans(bounds, one, box[6], box[7])
+        beyond = max(u - box[3] - low_u, high_u - u - box[3])
+        beyond = max(beyond, v - box[4] - low_v, high_v - v - box[4])
+        beyond = max(beyond, box[2] - box[5] - bounds[rows[i], 2], bounds[rows[i], 5] - box[2] - box[5])
+        found[i] = beyond > tolerance
+    return found
+
+
+@kernel(
+    "void(int64[:, ::1], int32[:, ::1], int64[:, ::1], int32[:, ::1], float64[:, ::1], int64[::1], float64[::1],"
+    " float64, float64[:, ::1])"
+)
+def cover_points(
+    table: Indices,
+    pages: Links,
+    blocks: Indices,
+    links: Links,
+    elements: Array,
+    indices: Indices,
+    sigmas: Array,
+    tolerance: float,
+    bounds: Array,
+) -> None:
+    """Write the bounds within which the true surface in the voxels of some elements lies into ``bounds`` (E, 6).
+
+    Bounds of the measured points, moved outwards by as many standard deviations as the number of scans that hit the
+    surface there asks for: inwards, towards the mean, where many scans make it certain that noise has spread them.
+
+    Args:
+        table, pages, blocks, links, elements: see ``voxel_kernels``.
+        indices: of the elements (n,).
+        sigmas: standard deviations for 1, 2, ... scans (s,).
+        tolerance: added on all sides (m).
+        bounds: to be written to.
+    """
+    mean = np.empty(3)
+    for e in indices:
+        x, y, z = element_voxel(blocks, elements[e])
+        hits = 0.0
+        mean[:] = 0.0
+        for i in range(x - 1, x + 2):
+            for j in range(y - 1, y + 2):
+                for k in range(z - 1, z + 2):
+                    other = element_at(table, pages, links, i, j, k)
+                    if other >= 0:
+                        hits += elements[other, HITS]
+                        for axis in range(3):
+                            mean[axis] += elements[other, HITS] * elements[other, MEAN + axis]
+        count = min(max(int(hits), 1), sigmas.shape[0])
+        out = sigmas[count - 1] * math.sqrt(elements[e, POINTS] / elements[e, WEIGHT])
+        for axis in range(3):
+            low, high, middle = elements[e, LOW + axis], elements[e, HIGH + axis], mean[axis] / max(hits, 1e-9)
+            if out >= 0.0:
+                low, high = low - out, high + out
+            else:
+                high = max(high + out, middle) if high > middle else high
+                low = min(low - out, middle) if low < middle else low
+                if low > high:
+                    low = high = high if high > middle else low
+            bounds[e, axis], bounds[e, 3 + axis] = low - tolerance, high + tolerance
+
+
+@inlined
+def _gaps_of_block(
+    blocks: Indices, cells: Cells, links: Links, block: int, box: Array, reach: Array, size: float, free_passes: int,
+    found: Array, count: int,
+) -> int:  # fmt: skip
+    """Write the gaps of one block into ``found`` from row ``count`` on; return how many there are then."""
+    if blocks[block, FREE_CELLS] == 0:
+        return count
+    key = blocks[block, KEY]
+    x0, y0, z0 = key_corner(key, 0), key_corner(key, 1), key_corner(key, 2)
+    for x in range(max(x0, voxel(box[0] - reach[0], size)), min(x0 + EDGE, voxel(box[0] + reach[0], size) + 1)):
+        for y in range(max(y0, voxel(box[1] - reach[1], size)), min(y0 + EDGE, voxel(box[1] + reach[1], size) + 1)):
+            p, q = (x + 0.5) * size - box[0], (y + 0.5) * size - box[1]
+            if abs(box[6] * p + box[7] * q) > box[3] or abs(box[6] * q - box[7] * p) > box[4]:
+                continue
+            for z in range(max(z0, voxel(box[2] - reach[2], size)), min(z0 + EDGE, voxel(box[2] + reach[2], size) + 1)):
+                cell = cell_index(x, y, z)
+                if cells[block, cell] != free_passes or links[block, cell] & 255:
+                    continue
+                if abs((z + 0.5) * size - box[2]) > box[5]:
+                    continue
+                found[count, 0], found[count, 1], found[count, 2] = (x + 0.5) * size, (y + 0.5) * size, (z + 0.5) * size
+                count += 1
+                if count == found.shape[0]:
+                    return count
+    return count
+
+
+@kernel(
+    "float64[:, ::1](int64[:, ::1], int32[:, ::1], int64[:, ::1], uint8[:, ::1], int32[:, ::1], int64[::1],"
+    " float64[::1], float64, int64, int64)"
+)
+def gaps_within(
+    table: Indices,
+    pages: Links,
+    blocks: Indices,
+    cells: Cells,
+    links: Links,
+    among: Indices,
+    box: Array,
+    size: float,
+    free_passes: int,
+    most: int,
+) -> Array:
+    """Return the middles (n, 3) of the gaps in a box: voxels seen free, with no point in the 27 voxels about them.
+
+    Args:
+        table, pages, blocks, cells, links: see ``voxel_kernels``.
+        among: blocks that are searched; none: all that the box reaches into.
+        box: (8,).
+        size: edge of a voxel (m).
+        free_passes: rays through a voxel from which on it was seen free.
+        most: gaps that are returned.
+    """
+    found, count, reach = np.empty((most, 3)), 0, np.empty(3)
+    reach[0] = box[3] * abs(box[6]) + box[4] * abs(box[7])
+    reach[1] = box[3] * abs(box[7]) + box[4] * abs(box[6])
+    reach[2] = box[5]
+    if among.shape[0]:
+        for block in among:
+            if count < most:
+                count = _gaps_of_block(blocks, cells, links, block, box, reach, size, free_passes, found, count)
+        return found[:count].copy()
+    for x in range(voxel(box[0] - reach[0], size) >> 3, (voxel(box[0] + reach[0], size) >> 3) + 1):
+        for y in range(voxel(box[1] - reach[1], size) >> 3, (voxel(box[1] + reach[1], size) >> 3) + 1):
+            for z in range(voxel(box[2] - reach[2], size) >> 3, (voxel(box[2] + reach[2], size) >> 3) + 1):
+                block = find_block(table, pages, x << 3, y << 3, z << 3)
+                if block >= 0 and count < most:
+                    count = _gaps_of_block(blocks, cells, links, block, box, reach, size, free_passes, found, count)
+    return found[:count].copy()
