@@ -1,4 +1,4 @@
-"""Scenes of solid bodies for range sensors: analytic ray casting, a fixed pattern of rays, noise of poses and ranges."""
+"""Scenes of solid bodies for range sensors: analytic ray casting, a pattern of rays, noise of poses and ranges."""
 
 import math
 from dataclasses import dataclass, field, replace

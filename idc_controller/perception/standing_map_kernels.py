@@ -37,6 +37,7 @@ from idc_controller.perception.voxel_kernels import (
     SPARE,
     SURFACE,
     USED,
+    WAY,
     WEIGHT,
     add_near,
     block_in_page,
@@ -52,6 +53,8 @@ from idc_controller.perception.voxel_kernels import (
     voxel,
 )
 
+_ALIKE = math.cos(math.radians(20.0))
+"""Mean cosine between a ray and those that hit a surface from which on it is like them."""
 _RARER, _NOISIER = 8.0, 1.3
 """Points may be noise of others that were hit by so many times as many scans, at so much smaller variance."""
 
@@ -121,6 +124,8 @@ def _halve_memory(element: Array, most: float) -> None:
         for i in range(SCATTER, WEIGHT + 1):
             element[i] /= 2.0
         element[POINTS] /= 2.0
+        for i in range(WAY, WAY + 3):
+            element[i] /= 2.0
 
 
 @inlined
@@ -229,6 +234,7 @@ def add_returns(
                 column += 1
         for i in range(3):
             element[MEAN + i] += share * (returns[p, i] - element[MEAN + i])
+            element[WAY + i] += (returns[p, i] - origin[i]) / math.sqrt(max(square, 1e-12))
             if returns[p, i] < element[LOW + i]:
                 element[LOW + i] = returns[p, i] - tolerance
                 blocks[block, CHANGE] |= SURFACE
@@ -242,8 +248,10 @@ def _is_passed(
     table: Indices, pages: Links, blocks: Indices, links: Links, elements: Array, element: Array, origin: Array,
     way: Array, length: float, range_variance: float, sigmas: Array, sigmas_beyond: float, incidence: float,
     normal: Array,
-) -> bool:  # fmt: skip
-    """Return whether a ray goes through the place of an element's points and ends beyond, not along their surface.
+) -> int:  # fmt: skip
+    """Return whether a ray goes through the place of an element's points and ends beyond.
+
+    1: it does; -1: it does, along their surface, but as the rays went that hit it; 0: neither.
 
     Args:
         way: unit vector along the ray (3,); ``length``: to its end (m).
@@ -258,7 +266,7 @@ def _is_passed(
         along += offset * way[i]
         square += offset * offset
     if along <= 0.0:
-        return False
+        return 0
     weight = element[WEIGHT]
     xx, xy, xz = element[SCATTER], element[SCATTER + 1], element[SCATTER + 2]
     yy, yz, zz = element[SCATTER + 3], element[SCATTER + 4], element[SCATTER + 5]
@@ -268,15 +276,18 @@ def _is_passed(
     ) / weight  # fmt: skip
     beyond = length - along
     if beyond <= 0.0 or beyond * beyond <= sigmas_beyond**2 * (range_variance + max(depth, element[POINTS] / weight)):
-        return False
+        return 0
     # Within the spread of the points, without what is noise of it, or within the noise of the ray.
-    spread = max((xx + yy + zz) / weight - depth, 0.0) / 2.0 - element[POINTS] / weight
+    spread = 1.5 * (max((xx + yy + zz) / weight - depth, 0.0) / 2.0 - element[POINTS] / weight)
     across = sigmas[1] ** 2 + (sigmas[2] * along) ** 2
     if square - along * along > max(spread, across):
-        return False
+        return 0
     surface_normal(table, pages, blocks, links, elements, element, normal)
     dot = normal[0] * way[0] + normal[1] * way[1] + normal[2] * way[2]
-    return bool(abs(dot) >= incidence or normal[0] ** 2 + normal[1] ** 2 + normal[2] ** 2 == 0.0)
+    if abs(dot) >= incidence or normal[0] ** 2 + normal[1] ** 2 + normal[2] ** 2 == 0.0:
+        return 1
+    alike = element[WAY] * way[0] + element[WAY + 1] * way[1] + element[WAY + 2] * way[2]
+    return -1 if alike >= _ALIKE * element[POINTS] else 0
 
 
 @inlined
@@ -391,17 +402,18 @@ def carve(
                 met = True
                 index = (links[block, cell] >> 8) - 1
                 element = elements[index]
-                if (
-                    element[LAST_HIT] != scan
-                    and element[LAST_PASS] != scan
-                    and _is_passed(
+                passed = 0
+                if element[LAST_HIT] != scan and element[LAST_PASS] != scan:
+                    passed = _is_passed(
                         table, pages, blocks, links, elements, element, origin, way, length, range_variance, sigmas,
                         sigmas_beyond, incidence, normal,
-                    )
-                ):  # fmt: skip
+                    )  # fmt: skip
+                if passed:
                     element[LAST_PASS] = scan
-                    hit, passed = prior[0] + element[HITS], prior[1] + element[PASSES]
-                    element[GONE] += math.log((hit + passed) / passed)
+                    # Along a surface, a ray that misses it is as likely as one that hits it elsewhere.
+                    hits = element[HITS] + (prior[0] if passed > 0 else prior[1])
+                    passes = element[PASSES] + (prior[1] if passed > 0 else prior[0])
+                    element[GONE] += math.log((hits + passes) / passes)
                     element[PASSES] += 1.0
                     if element[GONE] >= min(element[HITS] * evidence[0], evidence[1]):
                         _free_element(

@@ -104,7 +104,7 @@ def extended_box(box: Array, bounds: Array, rows: Indices) -> Array:
 
 @kernel("boolean[::1](float64[::1], float64[:, ::1], int64[::1], float64)")
 def reaches_out(box: Array, bounds: Array, rows: Indices, tolerance: float) -> Mask:
-    """Return which of ``bounds`` (E, 6), at ``rows`` (n,), reach out of a ``box`` (8,) by more than ``tolerance`` (m)."""
+    """Return which of ``bounds`` (E, 6), at ``rows`` (n,), reach beyond a ``box`` (8,) by over ``tolerance`` (m)."""
     found, one = np.empty(rows.shape[0], np.bool_), np.empty(1, np.int64)
     u, v = box[6] * box[0] + box[7] * box[1], box[6] * box[1] - box[7] * box[0]
     for i in range(rows.shape[0]):

@@ -44,12 +44,12 @@ was hit last; time of the first point (s); 1 if it counts as standing."""
 LAST_HIT, LAST_PASS, BLOCK, CELL, NUMBER, NEXT_SPARE = 22, 23, 24, 25, 26, 27
 """Columns: the scans in which it was hit and passed last; its block and voxel; its serial number (0: it is spare); the
 spare element after it."""
-COLUMNS = 28
+WAY = 28
+"""Columns: sum of the unit vectors along the rays that hit it (3)."""
+COLUMNS = 31
 
 _OFFSET = 1 << 20
 _FIELD = (1 << 21) - 1
-_MIXING = -7046029254386353131
-"""2^64 over the golden ratio (Knuth, "Sorting and Searching", 6.4), as a signed number: products wrap around."""
 
 
 @inlined
@@ -84,14 +84,16 @@ def cell_index(x: int, y: int, z: int) -> int:
 
 @inlined
 def _first_place(key: int, mask: int) -> int:
-    return (key * _MIXING >> 32) & mask
+    """Return where the search for a key begins: Teschner et al., "Optimized spatial hashing", 2003."""
+    x, y, z = key >> 42 & _FIELD, key >> 21 & _FIELD, key & _FIELD
+    return (x * 73856093 ^ y * 19349663 ^ z * 83492791) & mask
 
 
 @inlined
 def find_page(table: Indices, key: int) -> int:
     """Return the number of the page with that key, -1 if there is none."""
     mask = table.shape[0] - 1
-    i = (key * _MIXING >> 32) & mask
+    i = _first_place(key, mask)
     while table[i, 0] != key:
         if table[i, 0] == -1:
             return -1
@@ -103,7 +105,7 @@ def find_page(table: Indices, key: int) -> int:
 def insert_page(table: Indices, key: int, number: int) -> None:
     """Enter a page that is not in the table."""
     mask = table.shape[0] - 1
-    i = (key * _MIXING >> 32) & mask
+    i = _first_place(key, mask)
     while table[i, 0] != -1:
         i = (i + 1) & mask
     table[i, 0], table[i, 1] = key, number

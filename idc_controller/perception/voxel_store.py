@@ -49,10 +49,8 @@ class VoxelStore:
 
 def _grown(rows: NDArray[Any], count: int, value: int = 0) -> NDArray[Any]:
     """Return ``rows`` with ``count`` of them or more, at least twice as many as before."""
-    grown = (
-        np.full((max(count, 2 * len(rows)), *rows.shape[1:]), value, dtype=rows.dtype)
-        if value
-        else np.zeros((max(count, 2 * len(rows)), *rows.shape[1:]), dtype=rows.dtype)
-    )
+    shape = max(count, 2 * len(rows)), *rows.shape[1:]
+    # Zeros take no memory until they are written to.
+    grown = np.full(shape, value, dtype=rows.dtype) if value else np.zeros(shape, dtype=rows.dtype)
     grown[: len(rows)] = rows
     return grown
