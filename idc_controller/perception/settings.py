@@ -191,7 +191,7 @@ class StandingMapSettings(SettingsTable):
     false_share: float = setting(0.01, "", "share of returns where nothing is", gt=0.0, lt=1.0)
     false_free: float = setting(1e-3, "", "probability that what fills a voxel is seen free", gt=0.0, lt=1.0)
     false_removal: float = setting(
-        1e-6, "", "probability that what stands is freed by one run of scans that pass it", gt=0.0, lt=1.0
+        1e-5, "", "probability that what stands is freed by one run of scans that pass it", gt=0.0, lt=1.0
     )
     false_alarm: float = setting(1e-3, "", "probability that noise leaves a return unexplained", gt=0.0, lt=1.0)
     uncovered: float = setting(1e-3, "", "probability that a surface lies beyond what covers it", gt=0.0, lt=1.0)

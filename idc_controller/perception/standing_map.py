@@ -84,10 +84,11 @@ class StandingMap:
     def add(self, scan: PlacedScan, moving: Mask | None = None) -> None:
         """Add one scan; ``moving``: returns (n,) of what is known to move, which leave no points."""
         s, returns = self.settings, np.ascontiguousarray(scan.returns)
+        taken = np.ones(len(returns), dtype=bool) if moving is None else ~moving
+        finite = np.isfinite(returns).all(axis=1)
+        if not finite.all():
+            returns, taken = returns[finite], taken[finite]
         ends = np.concatenate([returns, scan.free_rays])
-        taken = np.asarray(np.isfinite(returns).all(axis=1))
-        if moving is not None:
-            taken &= ~moving
         self._scan += 1
         v, origin = self._store, np.ascontiguousarray(scan.origin)
         v.reserve(origin, ends, len(returns))

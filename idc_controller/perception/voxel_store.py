@@ -29,6 +29,8 @@ class VoxelStore:
 
     def reserve(self, origin: Array, ends: Array, returns: int) -> None:
         """Make room for all that a scan can add, whose rays lead from ``origin`` (3,) to ``ends`` (n, 3) (m)."""
+        if not len(ends):
+            return
         extent = (np.abs(ends - origin).max(axis=0) / self._block).tolist()
         # Rays enter a block by one of its sides; an element has voxels about it in up to eight blocks.
         by_rays = len(ends) * (sum(extent) + 4.0) + 8.0 * returns

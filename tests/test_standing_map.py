@@ -1,0 +1,194 @@
+"""The standing map over scans with noise: nothing that stands is lost, what is gone is freed, what moves is found."""
+
+import numpy as np
+import pytest
+from range_scene import Box, Pole, Sensor, Sphere
+
+from idc_controller.perception.placed_scan import PlacedScan
+from idc_controller.perception.settings import StandingMapSettings
+from idc_controller.perception.standing_map import StandingMap
+
+SETTINGS = StandingMapSettings()
+PERIOD = 0.1
+
+
+def team(place):
+    """Places of four vehicles about a place."""
+    return [np.array(place) + np.array([0.8 * i, 0.8 * j, 0.0]) for i in (-1, 1) for j in (-1, 1)]
+
+
+def scans(sensor, bodies, place, begin, end, drift=(0.0, 0.0, 0.0)):
+    """Scans of four vehicles with the true points that they hit; the pose of the first drifts (m/s)."""
+    for k in range(round(begin / PERIOD), round(end / PERIOD)):
+        now = [body.at(PERIOD * k) if isinstance(body, Sphere) else body for body in bodies]
+        where = place(PERIOD * k) if callable(place) else place
+        for vehicle, own in enumerate(team(where)):
+            offset = np.array(drift) * PERIOD * k * (vehicle == 0)
+            yield sensor.scan(now, own, PERIOD * k, offset)
+
+
+def fill(standing, *args, **kwargs):
+    hits = []
+    for scan, hit in scans(*args, **kwargs):
+        standing.add(scan)
+        hits.append(hit)
+    return np.concatenate(hits)
+
+
+STANDING = {
+    "pole of 0.1 m radius at 8 m": [Pole((8.0, 0.0, -4.0), 0.1, 8.0)],
+    "wall beside, at grazing angles": [Box((12.0, 3.0, -4.0), (24.0, 0.3, 8.0))],
+    "corner of a box": [Box((6.0, 4.0, -4.0), (4.0, 4.0, 8.0), 0.5)],
+    "slope": [Box((6.0, 0.0, 0.0), (8.0, 8.0, 0.3), 0.2, 0.5)],
+    "overhang": [Box((6.0, 0.0, -6.0), (4.0, 6.0, 1.0))],
+}
+
+
+@pytest.mark.parametrize("bodies", STANDING.values(), ids=STANDING)
+def test_no_point_that_was_hit_is_lost_while_it_stands(bodies):
+    standing, sensor = StandingMap(), Sensor(np.random.default_rng(1), ground=0.0)
+    hits = fill(standing, sensor, bodies, (0.0, 0.0, -4.0), 0.0, 5.0)
+    assert len(hits) > 200
+    elements, every = standing.occupied(), 1 + len(hits) // 2000
+    apart = np.maximum(np.maximum(elements.low[:, None] - hits[::every], hits[::every] - elements.high[:, None]), 0.0)
+    missed = np.linalg.norm(apart, axis=2).min(axis=0)
+    # Noise of a return is 0.1 m at most, of its axes together.
+    assert missed.max() < 0.3
+    assert (missed > 0.1).mean() < 0.01
+
+
+def test_pole_passed_by_grazing_rays_only_is_never_freed():
+    """Rays that pass beside it and rays missed at it, from another side than it was hit from."""
+    standing, sensor = StandingMap(), Sensor(np.random.default_rng(2), ground=0.0)
+    pole = Pole((8.0, 0.0, -4.0), 0.1, 8.0)
+    fill(standing, sensor, [pole], (0.0, 0.0, -4.0), 0.0, 10.0)
+    before = standing.occupied()
+    path = lambda t: (16.0 * (t - 10.0) / 10.0, -6.0, -4.0)  # noqa: E731
+    hits = fill(standing, sensor, [pole], path, 10.0, 20.0)
+    after = standing.occupied()
+    lost = ~np.isin(before.numbers, after.numbers)
+    assert (pole.distance(before.means[lost]) > 0.1).all() or lost.mean() < 0.3
+    heights = np.unique(np.floor(hits[:, 2] / 0.5))
+    held = np.unique(np.floor(after.means[:, 2] / 0.5))
+    assert set(heights) <= set(held)
+
+
+@pytest.mark.parametrize("body", [Box((5.0, 0.0, -4.0), (1.0, 2.0, 3.0)), Sphere((5.0, 0.0, -4.0), 0.5)], ids=type)
+def test_obstacle_taken_away_is_freed_when_it_is_looked_through(body):
+    standing, sensor = StandingMap(), Sensor(np.random.default_rng(3), rays=1000, ground=0.0)
+    wall = Box((9.0, 0.0, -4.0), (0.3, 20.0, 8.0))
+    around = lambda t: (0.0, 2.0 * np.sin(t), -4.0 + 0.5 * np.cos(t))  # noqa: E731
+    fill(standing, sensor, [body, wall], around, 0.0, 5.0)
+
+    def front():
+        means = standing.occupied().means
+        return np.sum((body.distance(means) < 0.4) & (means[:, 0] < 5.0))
+
+    before = front()
+    fill(standing, sensor, [wall], around, 5.0, 8.0)
+    assert front() > 0.2 * before  # not at once
+    fill(standing, sensor, [wall], around, 8.0, 30.0)
+    assert front() < 0.25 * before
+
+
+def rays_through(point, count=1):
+    origin = np.zeros(3)
+    return PlacedScan(0.0, origin, np.empty((0, 3)), 0.05, 0.03, 0.009, np.tile(2.0 * np.array(point), (count, 1)))
+
+
+@pytest.mark.parametrize(("hits", "passes"), [(1, 4), (3, 14), (10, 7), (20, 5), (60, 4)])
+def test_voxel_is_freed_by_as_many_scans_as_its_own_record_asks_for(hits, passes):
+    """The more often it was hit, the surer each pass says that it is gone; one hit is undone by four passes."""
+    needed = min(hits * SETTINGS.evidence_of_hit, SETTINGS.evidence_max)
+    record = SETTINGS.prior_hits + SETTINGS.prior_passes + hits
+    evidence = np.cumsum([np.log((record + k) / (SETTINGS.prior_passes + k)) for k in range(50)])
+    assert np.argmax(evidence >= needed) + 1 == passes
+    standing = StandingMap()
+    point = np.array([[3.1, 0.1, 0.1]])
+    for k in range(hits):
+        standing.add(PlacedScan(PERIOD * k, np.zeros(3), point, 0.05, 0.03, 0.009))
+    scans = 0
+    while standing.is_occupied(point)[0]:
+        standing.add(rays_through(point[0], count=5))
+        scans += 1
+    assert scans == passes
+    assert standing.is_seen_free(point)[0]
+
+
+def test_scan_that_hits_a_voxel_frees_nothing_of_it():
+    standing = StandingMap()
+    point = np.array([[3.1, 0.1, 0.1]])
+    for k in range(100):
+        both = PlacedScan(PERIOD * k, np.zeros(3), point, 0.05, 0.03, 0.009, np.tile(2.0 * point, (5, 1)))
+        standing.add(both)
+    assert standing.is_occupied(point)[0]
+
+
+def test_nothing_is_forgotten_by_time_or_out_of_sight():
+    standing, sensor = StandingMap(), Sensor(np.random.default_rng(4), ground=0.0)
+    fill(standing, sensor, [Box((6.0, 0.0, -4.0), (1.0, 4.0, 4.0))], (0.0, 0.0, -4.0), 0.0, 2.0)
+    before = standing.occupied().numbers
+    fill(standing, sensor, [], (60.0, 0.0, -4.0), 1000.0, 1002.0)
+    assert np.isin(before, standing.occupied().numbers).all()
+
+
+@pytest.mark.parametrize("drift", [0.0, 0.05])
+@pytest.mark.parametrize("speed", [0.5, 1.0, 3.0])
+def test_returns_of_moving_sphere_are_unexplained_and_of_standing_ones_are_not(speed, drift):
+    """A sphere beside one that stands, with poses of one vehicle that drift."""
+    begin = 12.0
+    still, wall = Sphere((5.0, -2.5, -4.0), 0.5), Box((9.0, 0.0, -4.0), (0.3, 30.0, 8.0))
+    start = np.array([5.5, -0.8, -4.0]) - np.array([0.0, speed, 0.0]) * begin
+    moving = Sphere(tuple(start), 0.5, (0.0, speed, 0.0))
+    standing, sensor = StandingMap(), Sensor(np.random.default_rng(5), ground=0.0)
+    first, false, count = None, 0, 0
+    for t0, t1, bodies in ((0.0, begin, [still, wall]), (begin, begin + 3.0, [still, wall, moving])):
+        for scan, hit in scans(sensor, bodies, (0.0, 0.0, -4.0), t0, t1, drift=(0.0, drift, 0.0)):
+            unexplained = standing.unexplained(scan)
+            of_moving = np.abs(moving.at(scan.time).distance(hit)) < 1e-6
+            of_moving &= t0 == begin
+            false += np.sum(unexplained & ~of_moving)
+            count += np.sum(~of_moving)
+            if (unexplained & of_moving).any() and first is None:
+                first = scan.time - begin
+            standing.add(scan)
+    assert first is not None and first <= 0.5
+    assert count > 10_000
+    assert false <= SETTINGS.false_alarm * count
+
+
+def test_returns_of_what_moves_leave_no_points_but_free_what_they_pass():
+    standing = StandingMap()
+    scan = PlacedScan(0.0, np.zeros(3), np.array([[4.1, 0.1, 0.1], [0.1, 4.1, 0.1]]), 0.05, 0.03, 0.009)
+    for _ in range(SETTINGS.free_passes):
+        standing.add(scan, moving=np.array([True, False]))
+    np.testing.assert_array_equal(standing.is_occupied(scan.returns), [False, True])
+    assert standing.is_seen_free(scan.returns / 2.0).all()
+
+
+def test_memory_follows_the_space_that_was_seen():
+    standing, sensor = StandingMap(), Sensor(np.random.default_rng(6), rays=200)
+    fill(standing, sensor, [], (0.0, 0.0, -4.0), 0.0, 20.0)
+    blocks = standing._store.counts[0]
+    # A ball of 11 m radius in blocks of 2 m, all that it cuts included.
+    assert blocks < 4.19 * 13.0**3 / 8.0
+    fill(standing, sensor, [], (0.0, 0.0, -4.0), 20.0, 30.0)
+    assert standing._store.counts[0] < 1.2 * blocks
+
+
+def test_map_keeps_what_it_holds_when_its_arrays_grow():
+    standing, rng = StandingMap(), np.random.default_rng(7)
+    points = rng.uniform(-300.0, 300.0, (40, 3))
+    for point in points:
+        for _ in range(2):
+            standing.add(PlacedScan(0.0, point + np.array([8.0, 0.3, 0.2]), point[None], 0.05, 0.03, 0.009))
+    assert standing.is_occupied(points).all()
+    assert standing.is_seen_free(points + np.array([4.0, 0.15, 0.1])).all()
+    assert len(standing.occupied().indices) == len(points)
+
+
+def test_returns_that_are_no_numbers_are_left_out():
+    standing = StandingMap()
+    returns = np.array([[3.0, 0.0, 0.0], [np.nan, 0.0, 0.0], [np.inf, 0.0, 0.0]])
+    standing.add(PlacedScan(0.0, np.zeros(3), returns, 0.05, 0.03, 0.009))
+    assert len(standing.occupied().indices) == 1
