@@ -38,8 +38,7 @@ class RayPattern:
         """Return the unit vectors (rays, 3) of the scan with index ``scan``, forward-right-down, the lowest first."""
         angle = math.tau * ((scan * _TURN) % 1.0)
         cosine, sine = math.cos(angle), math.sin(angle)
-        x, y, z = self._lattice
-        return np.stack([cosine * x - sine * y, sine * x + cosine * y, z], axis=1)
+        return self._lattice @ np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
 
     @property
     def spacing(self) -> float:
@@ -48,12 +47,9 @@ class RayPattern:
 
     @cached_property
     def _lattice(self) -> Array:
-        """Columns forward, right and down (3, rays) of the first scan.
-
-        Equal steps of the elevation's sine are equal areas of the sphere.
-        """
+        """Directions (rays, 3) of the first scan: equal steps of the elevation's sine are equal areas of the sphere."""
         steps = np.arange(self.rays)
         low, high = math.sin(self.elevation_min), math.sin(self.elevation_max)
         up = low + (steps + 0.5) / self.rays * (high - low)
         azimuth, level = math.tau * ((steps * _GOLDEN) % 1.0), np.sqrt(1.0 - up * up)
-        return np.array([level * np.cos(azimuth), level * np.sin(azimuth), -up])
+        return np.column_stack([level * np.cos(azimuth), level * np.sin(azimuth), -up])

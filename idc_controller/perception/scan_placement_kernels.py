@@ -80,8 +80,10 @@ def free_ends(directions: Array, rays: Indices, position: Array, rotation: Array
     for i in range(m):
         if not is_free[i] or above <= 0.0:
             continue
-        ray = rotation[:, 0] * directions[i, 0] + rotation[:, 1] * directions[i, 1] + rotation[:, 2] * directions[i, 2]
-        length = min(reach, above / ray[2]) if ray[2] > 0.0 else reach
-        ends[count] = position + length * ray
+        x, y, z = directions[i, 0], directions[i, 1], directions[i, 2]
+        down = rotation[2, 0] * x + rotation[2, 1] * y + rotation[2, 2] * z
+        length = min(reach, above / down) if down > 0.0 else reach
+        for k in range(3):
+            ends[count, k] = position[k] + length * (rotation[k, 0] * x + rotation[k, 1] * y + rotation[k, 2] * z)
         count += 1
     return ends[:count].copy()
