@@ -4,11 +4,10 @@ import math
 
 import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
+from segmenting_sensor import SegmentingSensor
 
 from gcs.config import RangeSensorConfig
-from gcs.mavlink.layout import LAYOUTS
-from gcs.mavlink.messages import Received
-from gcs.mavlink.telemetry import detections
+from gcs.flight.stack import sensor_rays
 from gcs.mission.known_obstacles import known_obstacles
 from idc_controller.estimation.measurements import Attitude, Position, VehicleStates
 from idc_controller.geometry.box import Wall
@@ -16,15 +15,16 @@ from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
 from idc_controller.perception.obstacle_map import ObstacleMap
 from idc_controller.perception.range_sensors import SensorModel
+from idc_controller.perception.scan_assembly import Detections
 from idc_controller.perception.surfaces.points import SurfacePoints, joined
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
-from vehicle_sim.world.obstacle_bodies import Obstacle, ScanTargets
-from vehicle_sim.world.range_sensor import RangeSensor
+from vehicle_sim.world.obstacle_bodies import Obstacle
 
 REACH, NOISE = 10.0, 0.05
 POSITION_NOISE, ATTITUDE_NOISE = 0.02, math.radians(0.2)
 #: Of four UAVs about the formation's centre, at the height at which they fly above the payload.
 FORMATION = np.array([[0.5, 0.5, 0.0], [0.5, -0.5, 0.0], [-0.5, -0.5, 0.0], [-0.5, 0.5, 0.0]])
+RAYS = sensor_rays(RangeSensorConfig())
 SENSORS = SensorModel(NOISE, POSITION_NOISE, ATTITUDE_NOISE)
 HERE = np.array([0.0, 0.0, -6.0])
 
@@ -53,9 +53,13 @@ def messages_of(scan):
 
 
 def detections_of(message):
-    """As the ground reads it."""
-    layout, payload = LAYOUTS[message.id].pack_message(message)
-    return detections(Received(layout, payload, 1, 1, 0))
+    """What the ground takes of it."""
+    has_place = message.frame == mavlink.MAV_FRAME_BODY_FRD
+    point = (message.x, message.y, message.z) if has_place else (math.nan,) * 3
+    return Detections(
+        message.time_boot_ms, np.array([message.obstacle_id]), np.array([point], dtype=float),
+        np.array([message.max_distance], dtype=float),
+    )  # fmt: skip
 
 
 class Scene:
@@ -64,15 +68,15 @@ class Scene:
     def __init__(self, seed=0, uavs=4, noise=NOISE, reach=REACH, loss=0.0):
         self.rng = np.random.default_rng([seed, 7])
         self.reach, self.noise, self.loss = reach, noise, loss
-        self.sensors = [RangeSensor(RangeSensorConfig(range=reach, noise=noise), seed, i) for i in range(1, uavs + 1)]
+        self.sensors = [SegmentingSensor(reach, noise, seed, i) for i in range(1, uavs + 1)]
 
     def look(self, time, centre, obstacles):
         """Return [(uav, position, attitude, RangeSample)] at ``time``, the formation at ``centre`` (3,)."""
-        found, targets = [], ScanTargets.of(obstacles)
+        found = []
         for i, sensor in enumerate(self.sensors):
             position = np.asarray(centre) + FORMATION[i]
             angles = self.rng.normal(0.0, 0.05, 3)
-            scan = sensor.scan(time, position, tuple(quaternion_from_euler(*angles)), targets)
+            scan = sensor.scan(time, position, tuple(quaternion_from_euler(*angles)), obstacles)
             measured = position + self.rng.normal(0.0, POSITION_NOISE, 3)
             errors = self.rng.normal(0.0, ATTITUDE_NOISE, 3)
             if self.rng.uniform() >= self.loss:
@@ -153,7 +157,7 @@ def stop_and_go(t):
 
 
 def map_of(*known):
-    return ObstacleMap(known_obstacles(known), SENSORS, REACH)
+    return ObstacleMap(known_obstacles(known), SENSORS, REACH, RAYS)
 
 
 def run(obstacle_map, obstacles, until, begin=0.0, scene=None, centre=lambda t: HERE, each=lambda t: None):

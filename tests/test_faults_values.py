@@ -102,7 +102,7 @@ def test_payload_fault_is_in_all_relays_or_in_one():
 def test_points_of_obstacles_are_a_channel():
     def scan(time, distance):
         points = np.array([[distance, float(k), 0.0] for k in range(3)])
-        return RangeSample(TAKE_OFF + time, 9.0, np.zeros(3, int), points)
+        return RangeSample(TAKE_OFF + time, 9.0, points)
 
     far = injected(fault("scale", channel="obstacles", factor=2.0)).range_sample(1, scan(1.0, 4.0))
     assert far.points.tolist() == [[8.0, 0.0, 0.0], [8.0, 2.0, 0.0], [8.0, 4.0, 0.0]]
@@ -135,7 +135,7 @@ def test_every_value_fault_acts_on_every_channel_and_repeats(kind, channel):
                 position=(0.3 + i, 2.0, -5.0), velocity=(0.1 + i, 0.2, 0.3), rates=(0.01 * i, 0.02, 0.03),
                 attitude=(math.cos(0.01 * i), math.sin(0.01 * i), 0.0, 0.0),
             )  # fmt: skip
-            scan = RangeSample(sample.time, 9.0, np.zeros(1, int), np.array([[1.3 + 0.01 * i, 2.0, 3.0]]))
+            scan = RangeSample(sample.time, 9.0, np.array([[1.3 + 0.01 * i, 2.0, 3.0]]))
             reported_values += [
                 disturbed.reported_sample(1, sample),
                 disturbed.payload_sample(1, sample),

@@ -14,7 +14,7 @@ from gcs.mavlink.frame_kernels import RUN_LIMIT, framed_run, frames_in_run, stam
 from gcs.mavlink.frames import spans
 from gcs.mavlink.layout import LAYOUTS, PackedRun
 from gcs.mavlink.link_statistics import LinkStatistics
-from gcs.mavlink.telemetry import detections
+from gcs.mavlink.telemetry import scan_returns
 
 POINT = LAYOUTS[mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D]
 LENGTH = POINT.dtype.itemsize
@@ -64,7 +64,7 @@ def messages(received):
 
 def arrays(received):
     """What the ground reads of runs and single messages together."""
-    found = [detections(r) for r in received]
+    found = [scan_returns(r) for r in received]
     return [np.concatenate(parts).tolist() for parts in zip(*(d[1:] for d in found), strict=True)]
 
 
@@ -86,7 +86,7 @@ def test_a_run_is_read_at_once_and_equals_its_messages(count):
     assert [r.run for r in whole] == [RUN_LIMIT] * (count // RUN_LIMIT) + [count % RUN_LIMIT] * (count % RUN_LIMIT > 0)
     assert messages(single) == plain_messages(datagram)
     assert arrays(whole) == arrays(single)
-    np.testing.assert_array_equal(np.array(arrays(whole)[1])[:, 0], run.values["x"])
+    np.testing.assert_array_equal(np.array(arrays(whole)[0])[:, 0], run.values["x"])
 
 
 def test_a_run_ends_where_sender_scan_or_number_changes():
@@ -151,7 +151,7 @@ def test_truncated_payload_is_a_single_message():
     whole = Codec(255, 190).read(b"".join(frames))
     assert [r.run for r in whole] == [1, 1, 1]
     assert messages(whole) == plain_messages(b"".join(frames))
-    assert np.isnan(arrays(whole)[1][1]).all() and np.isfinite(arrays(whole)[1][2]).all()
+    assert np.isnan(arrays(whole)[0][1]).all() and np.isfinite(arrays(whole)[0][2]).all()
 
 
 @settings(deadline=None, derandomize=True)

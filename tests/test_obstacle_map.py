@@ -11,6 +11,7 @@ from obstacle_scene import (
     HERE,
     MOTIONS,
     NOISE,
+    RAYS,
     REACH,
     SENSORS,
     Scene,
@@ -255,7 +256,7 @@ def test_new_track_begins_with_scatter_of_earlier_ones():
 )  # fmt: skip
 def test_prediction_covers_unknown_shape_that_no_surface_fits(shape):
     scene, obstacle = Scene(1), WorldObstacle("x", shape, (0.0, 0.0, -6.0))
-    obstacle_map = ObstacleMap([], SENSORS, REACH)
+    obstacle_map = ObstacleMap([], SENSORS, REACH, RAYS)
     for step in range(60):
         time = 0.1 * step
         scene.feed(obstacle_map, time, np.array([time - 9.0, 0.5, -6.0]), [obstacle])

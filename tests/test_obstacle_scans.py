@@ -16,11 +16,11 @@ from obstacle_scene import (
     run,
     sphere,
 )
+from segmenting_sensor import SegmentedSample
 
 from idc_controller.estimation.measurements import Attitude, Position, VehicleStates
 from idc_controller.perception.scan_assembly import ScanAssembly
 from idc_controller.perception.scan_kernels import grouped, possible_points
-from vehicle_sim.world.range_sensor import RangeSample
 
 
 def test_detections_are_placed_by_estimate_when_position_is_unusable():
@@ -40,7 +40,7 @@ def test_pose_is_extrapolated_by_estimated_motion_when_none_is_measured():
     scans.poses.add_measured(Attitude(0.0, 0, level, unknown))
     scans.poses.add_measured(Position(0.0, 0, HERE, unknown))
     scans.poses.add_estimated(VehicleStates(0.0, np.hstack([HERE + 1.0, moving, level, turning])[None]))
-    for message in messages_of(RangeSample(t, REACH, np.array([1]), np.array([[5.0, 0.0, 0.0]]))):
+    for message in messages_of(SegmentedSample(t, REACH, np.array([1]), np.array([[5.0, 0.0, 0.0]]))):
         scans.add(detections_of(message), 0, t)
     [[cluster]] = scans.frames(t)
     assert cluster.surface_points.points[0] == pytest.approx(HERE + np.array([5.0, 2.0 * t, -5.0 * t]), abs=2e-3)
@@ -55,7 +55,7 @@ def test_scan_is_placed_by_the_pose_nearest_in_time(time, nearest):
         quaternion = np.array([np.cos(k * half), 0.0, 0.0, np.sin(k * half)])
         scans.poses.add_measured(Attitude(0.1 * k, 0, quaternion, np.zeros(3)))
         scans.poses.add_measured(Position(0.1 * k, 0, HERE + k, np.zeros(3)))
-    for message in messages_of(RangeSample(time, REACH, np.array([1]), np.array([[5.0, 0.0, 0.0]]))):
+    for message in messages_of(SegmentedSample(time, REACH, np.array([1]), np.array([[5.0, 0.0, 0.0]]))):
         scans.add(detections_of(message), 0, time)
     [[cluster]] = scans.frames(0.4)
     heading = nearest * np.radians(10.0)

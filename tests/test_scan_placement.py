@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from test_ray_sensor import random_scene
+from test_range_sensor import random_scene
 
 from gcs.config import RangeSensorConfig
 from idc_controller.estimation.measurements import Attitude, Position
@@ -16,9 +16,9 @@ from idc_controller.perception.ray_pattern import RayPattern
 from idc_controller.perception.scan_placement import Returns, ScanEnd, ScanPlacement, SensorRays
 from idc_controller.perception.scan_placement_kernels import free_ends, rays_of_returns, repeated_returns
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
+from vehicle_sim.world.range_sensor import RangeSensor
 from vehicle_sim.world.ray_bodies import RayBodies
 from vehicle_sim.world.ray_cast_kernels import first_hits
-from vehicle_sim.world.ray_sensor import RaySensor
 from vehicle_sim.world.sensors import Measurement
 
 CONFIG = RangeSensorConfig()
@@ -35,7 +35,7 @@ NOT_MISSED = RangeSensorConfig(noise=0.0, missed_share=0.0)
 def measure(config=NOT_MISSED, stamp=1300, bodies=SCENE, place=HERE, attitude=TILTED, seed=1):
     """The points of a scan (n, 3) as the wire holds them."""
     own = Measurement(0.0, tuple(attitude), (0.0,) * 3, tuple(place), (0.0,) * 3)
-    scan = RaySensor(config, seed, 1).scan(0.0, stamp // 100, place, tuple(attitude), own, RayBodies.of(bodies))
+    scan = RangeSensor(config, seed, 1).scan(0.0, stamp, place, tuple(attitude), own, RayBodies.of(bodies))
     return scan.points.astype(np.float32).astype(float)
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from gcs.mavlink import px4
 from gcs.mavlink.codec import Codec
-from gcs.mavlink.telemetry import detections, measurement, setpoint_flown
+from gcs.mavlink.telemetry import measurement, scan_returns, setpoint_flown
 from idc_controller.estimation.measurements import PAYLOAD, Attitude
 
 SPECIAL = (0.0, 1.0, math.nan, math.inf, -math.inf, 3e38)
@@ -92,13 +92,13 @@ def test_set_point_flown_is_tilt_and_thrust():
     assert setpoint_flown(target().fields, math.nan) is None
 
 
-def test_detection_has_point_and_range_of_the_message():
+def test_return_has_point_and_range_of_the_message():
     def read(frame):
-        message = mavlink.MAVLink_obstacle_distance_3d_message(1234, 0, frame, 7, 1.5, -2.0, 0.25, 0.0625, 10.0)
-        return detections(received(message))
+        message = mavlink.MAVLink_obstacle_distance_3d_message(1234, 0, frame, 65535, 1.5, -2.0, 0.25, 0.0625, 10.0)
+        return scan_returns(received(message))
 
     found = read(mavlink.MAV_FRAME_BODY_FRD)
-    assert (found.scan, found.obstacles.tolist(), found.max_range.tolist()) == (1234, [7], [10.0])
+    assert (found.stamp, found.max_range.tolist()) == (1234, [10.0])
     assert found.points.tolist() == [[1.5, -2.0, 0.25]]
     assert np.isnan(read(mavlink.MAV_FRAME_GLOBAL).points).all()
 

@@ -9,11 +9,10 @@ from test_settings_followed import system
 from vehicle_bench import ACCEPTED, ARM, GROUND, OFFBOARD, Bench, attitude_target
 from world_runs import run, uav_array
 
-from gcs.config import RangeSensorConfig, read_system
+from gcs.config import read_system
 from gcs.config.tables import AirSettings, BodySettings, CradleSettings, PadSettings, RestSettings, WorldConfig
 from gcs.config.vehicle_settings import SetpointSettings, StreamIntervals
 from gcs.mission.model import Fault
-from idc_controller.geometry.sphere import Sphere
 from vehicle_sim.autopilot.airframe import Airframe
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.parameter_table import vehicle_parameters
@@ -21,8 +20,6 @@ from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
 from vehicle_sim.faults import FaultInjector
 from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.multibody import urdf_text
-from vehicle_sim.world.obstacle_bodies import Obstacle, ScanTargets
-from vehicle_sim.world.range_sensor import RangeSensor
 from vehicle_sim.world.sensors import Measurement
 from vehicle_sim.world.truth_log import TruthLog
 from vehicle_sim.world.world import World
@@ -190,12 +187,3 @@ def test_wind_pushes_in_proportion_to_density_of_air():
             forces.append(np.array(injector.disturb(world, 1.0)[0]))
     np.testing.assert_allclose(forces[1], 2.0 * forces[0])
     assert forces[0][0] > 0.0
-
-
-def test_range_sensor_measures_nothing_below_its_least_distance():
-    targets = ScanTargets.of([Obstacle("near", Sphere(0.5), (1.0, 0.0, -5.0))])
-    counts = [
-        len(RangeSensor(RangeSensorConfig(range_min=least), 1, 1).scan(0.0, (0.0, 0.0, -5.0), LEVEL, targets)[2])
-        for least in (0.05, 0.8)
-    ]
-    assert counts[0] > counts[1] == 0

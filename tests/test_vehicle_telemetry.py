@@ -18,7 +18,7 @@ from gcs.mavlink.codec import DATAGRAM_LIMIT
 from vehicle_sim.world.range_sensor import RangeSample
 from vehicle_sim.world.sensors import Measurement
 
-NO_POINTS = np.empty(0, int), np.empty((0, 3))
+NO_POINTS = np.empty((0, 3))
 
 
 def test_vehicle_without_peer_sends_only_heartbeats_to_ground_address() -> None:
@@ -141,12 +141,12 @@ def test_failed_range_sensor_is_reported_at_once(bench: Bench) -> None:
     assert not bench.got("SYS_STATUS")[-1].onboard_control_sensors_present & mavlink.MAV_SYS_STATUS_SENSOR_PROXIMITY
     bench.run(1.0)
     bench.inbox.clear()
-    bench.vehicle.take_scan(RangeSample(bench.now, 10.0, *NO_POINTS))
+    bench.vehicle.take_scan(RangeSample(bench.now, 10.0, NO_POINTS))
     bench.run(0.2)
     assert len(found := works()) > 1 and all(found)
-    bench.vehicle.take_scan(RangeSample(bench.now, 10.0, *NO_POINTS, works=False))
+    bench.vehicle.take_scan(RangeSample(bench.now, 10.0, NO_POINTS, works=False))
     bench.run(0.2)
     assert len(found := works()) > 1 and not any(found)
-    bench.vehicle.take_scan(RangeSample(bench.now, 10.0, *NO_POINTS, works=False))
+    bench.vehicle.take_scan(RangeSample(bench.now, 10.0, NO_POINTS, works=False))
     bench.run(0.2)
     assert len(works()) <= 1

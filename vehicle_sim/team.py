@@ -95,9 +95,11 @@ class Team:
 
     def scan(self, state: WorldState, obstacles: ObstacleBodies) -> None:
         """Let every vehicle scan for the obstacles."""
-        targets = obstacles.scan_targets()
+        bodies = obstacles.ray_bodies
         for vehicle, sensor, uav in zip(self.vehicles, self._range_sensors, state.uavs, strict=True):
-            scan = sensor.scan(state.time, uav.position_in_world, uav.quaternion, targets)
+            stamp = vehicle.telemetry.time_boot_ms(state.time)
+            own = vehicle.autopilot.state.navigation.estimate
+            scan = sensor.scan(state.time, stamp, uav.position_in_world, uav.quaternion, own, bodies)
             vehicle.take_scan(self._faults.range_sample(vehicle.system_id, scan))
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from gcs.config import SystemConfig
+from gcs.config import RangeSensorConfig, SystemConfig
 from gcs.mission.known_obstacles import map_of
 from gcs.mission.model import Mission
 from idc_controller.control.controller import IntegratedDecisionController
@@ -20,6 +20,8 @@ from idc_controller.guidance.resting_place import RestingPlace
 from idc_controller.model.linear import LinearModel
 from idc_controller.perception.obstacle_map import ObstacleMap
 from idc_controller.perception.range_sensors import SensorModel
+from idc_controller.perception.ray_pattern import RayPattern
+from idc_controller.perception.scan_placement import SensorRays
 from idc_controller.perception.settings import PerceptionSettings
 from idc_controller.safety.filter_protocol import SafetyFilter
 from idc_controller.safety.safety_filter import AvoidanceFilter
@@ -55,7 +57,15 @@ def obstacle_map(mission: Mission) -> ObstacleMap:
     """Return the obstacle map of a mission, for the sensors of its system file."""
     config = mission.system
     sensors = SensorModel(config.range_sensor.noise, config.sensors.position, math.radians(config.sensors.attitude_deg))
-    return ObstacleMap(map_of(mission), sensors, config.range_sensor.range, perception(config))
+    return ObstacleMap(
+        map_of(mission), sensors, config.range_sensor.range, sensor_rays(config.range_sensor), perception(config)
+    )
+
+
+def sensor_rays(sensor: RangeSensorConfig) -> SensorRays:
+    """Return what is known of the rays of every range sensor."""
+    lowest, highest = math.radians(sensor.elevation_min_deg), math.radians(sensor.elevation_max_deg)
+    return SensorRays(RayPattern(sensor.rays, lowest, highest), sensor.rate, sensor.ground_height)
 
 
 def avoidance(config: SystemConfig, model: LinearModel, obstacles: ObstacleSource) -> AvoidanceFilter:

@@ -13,12 +13,13 @@ from gcs.mavlink.address import Address
 from gcs.mavlink.codec import Codec
 from gcs.mavlink.id_check import SystemIdCheck
 from gcs.mavlink.messages import Received
-from gcs.mavlink.telemetry import detections, measurement, setpoint_flown
+from gcs.mavlink.scan_sequence import RETURNS, SCAN_END, ScanSequence, scan_stamp
+from gcs.mavlink.telemetry import measurement, scan_end, scan_returns, setpoint_flown
 from gcs.mavlink.vehicle_link import VehicleLink
 
-_SETPOINT, _DETECTION = mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET, mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D
+_SETPOINT, _SCAN = mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET, (RETURNS, SCAN_END)
 _STAMPED = frozenset(
-    (mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED, _SETPOINT, _DETECTION)
+    (mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED, _SETPOINT, *_SCAN)
 )
 """Messages of one moment, which their stamp names."""
 
@@ -37,6 +38,7 @@ class TelemetryRouter:
         self._codec, self._flight, self._clock, self._id_check = codec, flight, clock, id_check
         self._clock_settled = settings.clock_settled
         self._links = flight.system.team.links
+        self._sequences = [ScanSequence() for _ in self._links]
         self._by_address: dict[tuple[Address, int], int] = {
             (link.address, link.system_id): i for i, link in enumerate(self._links) if link.address is not None
         }
@@ -60,8 +62,14 @@ class TelemetryRouter:
             known = True
             if received.target_system and not received.is_for(self._codec.system_id):
                 continue  # an answer to another system behind this address
-            self._links[index].handle(received, now)
-            if received.layout.message_id in _STAMPED:
+            link, message_id = self._links[index], received.layout.message_id
+            breaks = link.statistics.breaks
+            link.handle(received, now)
+            if message_id in _SCAN:
+                if received.component != px4.AUTOPILOT_COMPONENT:
+                    continue  # of its sequence nothing is known
+                self._sequences[index].add(received, breaks, link.statistics.breaks)
+            if message_id in _STAMPED:
                 stamped.setdefault(index, []).append(received)
         for index, group in stamped.items():
             if self._links[index].clock.known:
@@ -98,15 +106,19 @@ class TelemetryRouter:
         stamp, time = -1, math.nan
         for received in group:
             message_id = received.layout.message_id
-            if received.time_boot_ms != stamp:
-                stamp = received.time_boot_ms
+            now_stamp = scan_stamp(received) if message_id == SCAN_END else received.time_boot_ms
+            if now_stamp != stamp:
+                stamp = now_stamp
                 time = whole_ms(stamp * 1e-3 - offset + team_offset)
             if message_id == _SETPOINT:
                 self._confirm_setpoint(received, index, time, latest, now)
-            elif message_id == _DETECTION:
-                # Detections from before a clock jump have the stamp of another pose.
+            elif message_id in _SCAN:
+                # Scans from before a clock jump have the stamp of another pose.
                 if obstacle_map is not None and now - link.clock.jumped_at > self._clock_settled:
-                    obstacle_map.scans.add(detections(received), index, time)
+                    if message_id == RETURNS:
+                        obstacle_map.placement.add(scan_returns(received), index, time, now)
+                    else:
+                        obstacle_map.placement.end(scan_end(received, self._sequences[index]), index, time, now)
             else:
                 self._add_measurement(received, index, time)
             latest = max(latest, time)

@@ -15,7 +15,6 @@ from gcs.mavlink.messages import Received
 from gcs.mavlink.scan_sequence import ScanSequence, scan_stamp
 from idc_controller.arrays import Array
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, Position
-from idc_controller.perception.scan_assembly import Detections
 from idc_controller.perception.scan_placement import Returns, ScanEnd
 
 _ATTITUDE = LAYOUTS[mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION]
@@ -62,27 +61,17 @@ def measurement(received: Received, uav: int, time: float) -> Measurement | None
     return (Attitude if layout is _ATTITUDE else Position)(time, source, *values)
 
 
-def detections(received: Received) -> Detections:
-    """Return the detections in an OBSTACLE_DISTANCE_3D or a run of them.
+def scan_returns(received: Received) -> Returns:
+    """Return the returns of a range sensor in an OBSTACLE_DISTANCE_3D or a run of them.
 
-    One in a frame other than the body's has no point (nan).
+    One in a frame other than the body's has no place (nan).
     """
     data = received.payload if received.run > 1 else received.payload.ljust(_POINT.dtype.itemsize, b"\0")
     values = np.frombuffer(data, _POINT.dtype, received.run)
     points = np.empty((len(values), 3))
     points[:, 0], points[:, 1], points[:, 2] = values["x"], values["y"], values["z"]
     points[values["frame"] != mavlink.MAV_FRAME_BODY_FRD] = _NAN
-    numbers, max_range = values["obstacle_id"].astype(np.intp), values["max_distance"].astype(float)
-    return Detections(received.time_boot_ms, numbers, points, max_range)
-
-
-def scan_returns(received: Received) -> Returns:
-    """Return the returns of a range sensor in an OBSTACLE_DISTANCE_3D or a run of them.
-
-    One in a frame other than the body's has no place (nan).
-    """
-    stamp, _, points, max_range = detections(received)
-    return Returns(stamp, points, max_range)
+    return Returns(received.time_boot_ms, points, values["max_distance"].astype(float))
 
 
 def scan_end(received: Received, scans: ScanSequence) -> ScanEnd:

@@ -85,9 +85,3 @@ class Mesh(OrientedShape):
                 self._geometry, here, probe, coal.Transform3s(np.eye(3), points[i]), request, result
             )
         return np.asarray(distance)
-
-    @cached_property
-    def planes(self) -> tuple[Array, Array]:
-        """Outward normals of the faces (f, 3), and their distances from the centre (f,) (m)."""
-        normals = np.array(self._hull.face_normals)
-        return normals, np.einsum("ij,ij->i", normals, self._hull.triangles[:, 0])

@@ -151,6 +151,15 @@ class OrientedShape(Shape):
         return hull
 
     @cached_property
+    def planes(self) -> tuple[Array, Array]:
+        """Outward normals of the faces of the hull of the corners (f, 3), and their distances from the centre (f,) (m).
+
+        What range sensors measure of a body that is no rounded box.
+        """
+        normals = np.array(self._hull.face_normals)
+        return normals, np.einsum("ij,ij->i", normals, self._hull.triangles[:, 0])
+
+    @cached_property
     def _in_world(self) -> Array:
         """The corners about the centre in the axes of the world (n, 3)."""
         return self.corners @ self.rotation.T

@@ -13,7 +13,6 @@ from idc_controller.geometry.shape import (
     CollisionGeometry,
     PlanView,
     RoundedBox,
-    ScanForm,
     Shape,
     UprightBounds,
     Vector,
@@ -80,11 +79,6 @@ class Pole(Shape):
         import shapely
 
         return PlanView(shapely.Point(0.0, 0.0), self.radius)
-
-    @property
-    def scan_form(self) -> ScanForm:
-        """The body itself."""
-        return ScanForm(self.radius, self.height / 2.0)
 
     def visible_points(self, sensor: Vector, reach: float, turn: float) -> Array:
         """Points (n, 3) of the surface that a range sensor hits: the side up and down, and an end that faces it."""

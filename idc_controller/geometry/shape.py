@@ -36,13 +36,6 @@ ANGLE: Mapping[str, str] = {"unit": "rad"}
 """Metadata of a field that is an angle (rad); in the mission file its key ends in ``_deg``."""
 
 
-class ScanForm(NamedTuple):
-    """A body whose visible points a kernel finds: a pole of half the height ``half_height`` (m), at 0 a sphere."""
-
-    radius: float
-    half_height: float
-
-
 class Columns(NamedTuple):
     """A shape in the tables of a run: radius (m), edges of its upright bounding box (m), yaw (rad); 0 where none."""
 
@@ -205,11 +198,6 @@ class Shape(ABC):
         Of a body that is no rounded box.
         """
         raise NotImplementedError
-
-    @property
-    def scan_form(self) -> ScanForm | None:
-        """The body for scans of many bodies together; None: a sensor's points are those of :meth:`visible_points`."""
-        return None
 
     @cached_property
     def row(self) -> Array:

@@ -13,7 +13,6 @@ from idc_controller.geometry.shape import (
     CollisionGeometry,
     PlanView,
     RoundedBox,
-    ScanForm,
     Shape,
     UprightBounds,
     Vector,
@@ -70,11 +69,6 @@ class Sphere(Shape):
         import shapely
 
         return PlanView(shapely.Point(0.0, 0.0), self.radius)
-
-    @property
-    def scan_form(self) -> ScanForm:
-        """The body itself."""
-        return ScanForm(self.radius, 0.0)
 
     def visible_points(self, sensor: Vector, reach: float, turn: float) -> Array:
         """Points (n, 3) of the surface that a range sensor hits; the ring of rays is turned by ``turn`` (rad)."""

@@ -15,6 +15,8 @@ from idc_controller.perception.map_check import MapCheck
 from idc_controller.perception.motion_imm import MotionModels
 from idc_controller.perception.range_sensors import SensorModel
 from idc_controller.perception.scan_assembly import Cluster, ScanAssembly
+from idc_controller.perception.scan_placement import ScanPlacement, SensorRays
+from idc_controller.perception.segmentation import Segmentation
 from idc_controller.perception.settings import PerceptionSettings
 from idc_controller.perception.track import Track
 from idc_controller.perception.track_list import TrackList
@@ -52,9 +54,10 @@ class ObstacleMap:
         known: Sequence[MapObstacle],
         sensors: SensorModel,
         sensor_range: float,
+        rays: SensorRays,
         settings: PerceptionSettings = PerceptionSettings(),
     ) -> None:
-        """``known``: obstacles known before the flight; ``sensor_range`` of the range sensors (m)."""
+        """``known``: obstacles known before the flight; ``sensor_range`` of the range sensors (m), and their rays."""
         self._settings = s = settings
         models = MotionModels(s.tracking.motion)
         moving = [Track(o.name, models, s, o.shape, o.centre) for o in known if o.moves]
@@ -62,7 +65,10 @@ class ObstacleMap:
         self._tracks = TrackList(moving, [obstacle.name for obstacle in known], models, s)
         self._view_range = s.retention.in_view_share * sensor_range
         self.scans = ScanAssembly(sensors, s.scans)
-        """Takes poses, detections and failures of the range sensors from telemetry."""
+        """Takes poses and failures of the range sensors from telemetry."""
+        self.placement = ScanPlacement(sensors, rays, s.scans, self.scans.poses, self.scans.range_sensors)
+        """Takes scans from telemetry."""
+        self._segmentation = Segmentation(rays.pattern.spacing, sensor_range - s.scans.cut_sigmas * sensors.range_noise)
         self._check = MapCheck(self._standing.obstacles, self._view_range, s)
         self._time = -math.inf
         self._deleted: list[str] = []
@@ -76,7 +82,9 @@ class ObstacleMap:
     ) -> None:
         """Update the tracks by all detections since the last call, see :meth:`ScanAssembly.frames`."""
         self._time = now
-        for clusters in self.scans.frames(now, pose_noise_scale, unusable_positions, unusable_attitudes):
+        poses = pose_noise_scale, unusable_positions, unusable_attitudes
+        frames = self._segmentation.frames(self.placement.scans(now, *poses), self._settings.scans.simultaneous)
+        for clusters in [*self.scans.frames(now, *poses), *frames]:
             self._update(clusters)
         self._deleted += self._tracks.retain(now, self.sensing_lost, self._in_field_of_view)
 

@@ -38,7 +38,8 @@ class RayPattern:
         """Return the unit vectors (rays, 3) of the scan with index ``scan``, forward-right-down, the lowest first."""
         angle = math.tau * ((scan * _TURN) % 1.0)
         cosine, sine = math.cos(angle), math.sin(angle)
-        return self._lattice @ np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+        turn = np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+        return np.asarray(self._lattice @ turn)
 
     @property
     def spacing(self) -> float:

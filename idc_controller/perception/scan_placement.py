@@ -73,10 +73,17 @@ class _Waiting:
 class ScanPlacement:
     """Collects returns until all of a scan and its vehicle's pose are known. Times are the team's (s)."""
 
-    def __init__(self, sensors: SensorModel, rays: SensorRays, settings: ScanSettings = ScanSettings()) -> None:
+    def __init__(
+        self,
+        sensors: SensorModel,
+        rays: SensorRays,
+        settings: ScanSettings = ScanSettings(),
+        poses: PoseHistory | None = None,
+        range_sensors: RangeSensors | None = None,
+    ) -> None:
         self._sensors, self._rays, self._settings = sensors, rays, settings
-        self.poses = PoseHistory(self._settings)
-        self.range_sensors = RangeSensors(sensors.range_noise > 0.0, self._settings)
+        self.poses = poses or PoseHistory(self._settings)
+        self.range_sensors = range_sensors or RangeSensors(sensors.range_noise > 0.0, self._settings)
         self._waiting: dict[tuple[int, int], _Waiting] = {}
         self._waiting_points: dict[int, int] = defaultdict(int)
         self._placed = defaultdict[int, deque[int]](lambda: deque(maxlen=_REMEMBERED))

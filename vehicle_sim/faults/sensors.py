@@ -125,8 +125,8 @@ class ObstacleSensingLost(SampleImpairment):
     acts_on = frozenset({SCAN})
 
     def scan(self, vehicle: int, sample: RangeSample, moment: Moment) -> RangeSample:
-        """Return an empty scan of a failed sensor: without any, the last one would stay in force."""
-        return sample._replace(obstacle_ids=sample.obstacle_ids[:0], points=sample.points[:0], works=False)
+        """Return a scan of a failed sensor, of which nothing is sent: without any, the last one would stay in force."""
+        return sample._replace(points=sample.points[:0], works=False)
 
 
 SAMPLE_IMPAIRMENTS: dict[type, type[SampleImpairment]] = {

@@ -24,6 +24,7 @@ _OF_ONE_SAMPLE = (
     mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION,
     mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED,
     mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D,
+    mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE,
 )
 _STAMP_LENGTH = 4
 
@@ -33,7 +34,7 @@ def default_intervals(intervals: StreamIntervals, telemetry_interval: float) -> 
 
     ``telemetry_interval`` of position and attitude, the vehicle's and the payload's. With every sample goes the
     set-point that was being flown, because set-points may be lost. A scan is sent as soon as there is one, behind the
-    attitude and position at which it was made.
+    attitude and position at which it was made: its returns, then the message that ends it.
     """
     return {
         (_AUTOPILOT, _HEARTBEAT): intervals.heartbeat,
@@ -52,6 +53,7 @@ def default_intervals(intervals: StreamIntervals, telemetry_interval: float) -> 
         (_PAYLOAD, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED): telemetry_interval,
         (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET): telemetry_interval,
         (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D): telemetry_interval,
+        (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE): telemetry_interval,
     }
 
 

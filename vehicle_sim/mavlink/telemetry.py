@@ -13,6 +13,7 @@ from idc_controller.rotations_float import euler_of, into_body
 from vehicle_sim.autopilot.actuation import LEVEL
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.mavlink.geodesy import LocalFrame, clamp, is_finite
+from vehicle_sim.mavlink.scan_kernels import nearest_by_sector
 from vehicle_sim.world.range_sensor import RangeSample
 from vehicle_sim.world.sensors import Measurement, ReportedState
 
@@ -49,6 +50,9 @@ _VFR_HUD = LAYOUTS[mavlink.MAVLINK_MSG_ID_VFR_HUD]
 _LOCAL_POSITION_NED = LAYOUTS[mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED]
 _ATTITUDE_TARGET = LAYOUTS[mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET]
 _OBSTACLE_DISTANCE_3D = LAYOUTS[mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D]
+_OBSTACLE_DISTANCE = LAYOUTS[mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE]
+_UNKNOWN_OBSTACLE = 0xFFFF
+_SECTORS, _NO_RETURN = 72, 0xFFFF
 _NO_OFFSET = (0.0, 0.0, 0.0, 0.0)
 
 _OWN = px4.AUTOPILOT_COMPONENT
@@ -71,8 +75,8 @@ class Telemetry:
         """Sample that is sent of the vehicle's own state instead of its estimate; None: the estimate."""
         self.payload: Measurement | None = None
         self.scan: RangeSample | None = None
-        self._scan_messages: tuple[RangeSample | None, Built] = (None, ())
-        """The scan that was built last, and its messages."""
+        self._scan_messages: tuple[RangeSample | None, Built, Built] = (None, (), ())
+        """The scan that was built last, its returns, and its end."""
         unit = px4.PAYLOAD_UNIT_COMPONENT
         #: By component and message id.
         self.builders: dict[tuple[int, int], Callable[[float], Built]] = {
@@ -91,7 +95,8 @@ class Telemetry:
             (_OWN, mavlink.MAVLINK_MSG_ID_VFR_HUD): self._vfr_hud,
             (_OWN, mavlink.MAVLINK_MSG_ID_ODOMETRY): self._odometry,
             (_OWN, mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION): self._autopilot_version,
-            (_OWN, mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D): self._obstacles,
+            (_OWN, mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D): self._scan_returns,
+            (_OWN, mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE): self._scan_end,
             (unit, mavlink.MAVLINK_MSG_ID_HEARTBEAT): self._payload_heartbeat,
             (unit, mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION): lambda now: self._attitude_of(self.payload),
             (unit, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED): lambda now: self._position_of(self.payload),
@@ -241,21 +246,43 @@ class Telemetry:
             )
         )
 
-    def _obstacles(self, now: float) -> Built:
-        """The points of the last scan, built once for all peers."""
+    def _scan_returns(self, now: float) -> Built:
+        """The returns of the last scan."""
+        return self._built_scan()[1]
+
+    def _scan_end(self, now: float) -> Built:
+        """The message behind the returns of the last scan, which says that there was one even if nothing returned."""
+        return self._built_scan()[2]
+
+    def _built_scan(self) -> tuple[RangeSample | None, Built, Built]:
+        """Return the last scan with its messages, built once for all peers; a failed sensor makes none."""
         scan = self.scan
         if scan is not self._scan_messages[0]:
-            self._scan_messages = scan, () if scan is None or not len(scan.points) else self._points(scan)
-        return self._scan_messages[1]
+            made = scan is not None and scan.works
+            returns = self._points(scan) if scan is not None and made and len(scan.points) else ()
+            self._scan_messages = scan, returns, (self._sectors(scan),) if scan is not None and made else ()
+        return self._scan_messages
 
     def _points(self, scan: RangeSample) -> PackedRun:
         points = np.empty(len(scan.points), _OBSTACLE_DISTANCE_3D.dtype)
         points["time_boot_ms"] = self.time_boot_ms(scan.time)
         points["x"], points["y"], points["z"] = scan.points.T
         points["min_distance"], points["max_distance"] = scan.range_min, scan.reach
-        points["obstacle_id"] = scan.obstacle_ids
+        points["obstacle_id"] = _UNKNOWN_OBSTACLE
         points["sensor_type"], points["frame"] = mavlink.MAV_DISTANCE_SENSOR_LASER, mavlink.MAV_FRAME_BODY_FRD
         return PackedRun(_OBSTACLE_DISTANCE_3D, points)
+
+    def _sectors(self, scan: RangeSample) -> Packed:
+        """The nearest return of each sector (cm), the first ahead, clockwise."""
+        end = np.zeros(1, _OBSTACLE_DISTANCE.dtype)
+        end["time_usec"] = self.time_boot_ms(scan.time) * 1000
+        end["distances"] = nearest_by_sector(scan.points, _SECTORS, _NO_RETURN)
+        end["min_distance"], end["max_distance"] = (
+            min(round(100.0 * distance), _NO_RETURN - 1) for distance in (scan.range_min, scan.reach)
+        )
+        end["sensor_type"], end["frame"] = mavlink.MAV_DISTANCE_SENSOR_LASER, mavlink.MAV_FRAME_BODY_FRD
+        end["increment"] = 360 // _SECTORS
+        return Packed(_OBSTACLE_DISTANCE, end.tobytes())
 
     @property
     def _own_attitude(self) -> Measurement | None:

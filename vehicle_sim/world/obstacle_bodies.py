@@ -2,13 +2,11 @@
 
 import math
 from collections.abc import Callable, Sequence
-from typing import NamedTuple, Self
+from typing import NamedTuple
 
-import numpy as np
 import pybullet
 
 from gcs.mission.model import Obstacle as MissionObstacle
-from idc_controller.arrays import Array
 from idc_controller.errors import ShapeError
 from idc_controller.geometry.shape import Shape
 from idc_controller.rotations_float import Quaternion, Vector
@@ -23,39 +21,6 @@ class Obstacle(NamedTuple):
     name: str
     shape: Shape
     position_in_world: Vector
-
-    @property
-    def bounding_radius(self) -> float:
-        """Radius (m) of a ball about the centre that surely holds it."""
-        radius, (a, b, c), _ = self.shape.columns
-        return radius + 0.5 * math.sqrt(a * a + b * b + c * c)
-
-    @property
-    def scan_row(self) -> tuple[float, float, float]:
-        """Bounding radius and form for scans (m); nan: it has none."""
-        return self.bounding_radius, *(self.shape.scan_form or (math.nan, math.nan))
-
-
-class ScanTargets(NamedTuple):
-    """Obstacles as range sensors take them: all in arrays."""
-
-    obstacles: Sequence[Obstacle]
-    centres: Array
-    """NED (B, 3) (m)."""
-    forms: Array
-    """:attr:`Obstacle.scan_row` of each (B, 3)."""
-
-    @classmethod
-    def of(cls, obstacles: Sequence[Obstacle]) -> Self:
-        """Return them with their arrays."""
-        centres = np.array([obstacle.position_in_world for obstacle in obstacles]).reshape(-1, 3)
-        return cls(obstacles, centres, np.array([obstacle.scan_row for obstacle in obstacles]).reshape(-1, 3))
-
-    @property
-    def without_form(self) -> list[int]:
-        """Rows of obstacles that have to be scanned one by one."""
-        rows: list[int] = np.flatnonzero(np.isnan(self.forms[:, 1])).tolist()
-        return rows
 
 
 class _Body(NamedTuple):
@@ -73,17 +38,11 @@ class ObstacleBodies:
         self._client = client
         self._obstacles: dict[str, Obstacle] = {}
         self._bodies: dict[str, _Body] = {}
-        self._centres = np.empty((0, 3))
-        self._forms = np.empty((0, 3))
         self._ray_bodies = RayBodies.of(())
 
     def all(self) -> tuple[Obstacle, ...]:
         """Return the obstacles at the current time, in the order in which they were added."""
         return tuple(self._obstacles.values())
-
-    def scan_targets(self) -> ScanTargets:
-        """Return them as the range sensors take them."""
-        return ScanTargets(self.all(), self._centres, self._forms)
 
     @property
     def ray_bodies(self) -> RayBodies:
@@ -116,9 +75,7 @@ class ObstacleBodies:
             physicsClientId=self._client,
         )  # fmt: skip
         self._bodies[name] = _Body(handle, attitude, len(self._bodies))
-        obstacle = self._obstacles[name] = Obstacle(name, shape, place)
-        self._centres = np.vstack([self._centres, place])
-        self._forms = np.vstack([self._forms, obstacle.scan_row])
+        self._obstacles[name] = Obstacle(name, shape, place)
         self._ray_bodies = self._ray_bodies.and_body(shape, place)
 
     def move(self, name: str, position_in_world: Sequence[float]) -> None:
@@ -127,7 +84,7 @@ class ObstacleBodies:
         if place == obstacle.position_in_world:
             return
         self._obstacles[name] = Obstacle(name, obstacle.shape, place)
-        self._centres[body.row] = self._ray_bodies.centres[body.row] = place
+        self._ray_bodies.centres[body.row] = place
         pybullet.resetBasePositionAndOrientation(body.handle, flipped(place), body.attitude, self._client)
 
     def _body(self, name: str) -> _Body:
