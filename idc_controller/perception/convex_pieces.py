@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -12,7 +12,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from idc_controller.arrays import Array, Indices
+from idc_controller.arrays import Array, Indices, Mask
 from idc_controller.geometry.box import Wall
 from idc_controller.perception.piece_cutting import Body, cut
 from idc_controller.perception.standing_map import StandingMap, SurfaceElements
@@ -21,7 +21,7 @@ from idc_controller.perception.voxel_kernels import EDGE
 
 _TRIES = 20
 """Pairs of pieces that one update tries to merge."""
-_LARGER = 1.5
+_LARGER = 1.3
 """Growth of a pair's number of voxels after which its merging is tried again."""
 _NOWHERE = np.empty(0, dtype=np.int64)
 
@@ -31,6 +31,8 @@ class Piece:
     """An upright box that covers the points in some voxels of the standing map."""
 
     number: int
+    row: int
+    """Its row in the table of bounds."""
     members: Indices
     """Indices of the voxels' elements in the map (n,)."""
     numbers: Indices
@@ -39,6 +41,8 @@ class Piece:
     """See :mod:`idc_controller.perception.upright_box_kernels` (8,)."""
     hits: float
     """Scans that had hit them when the box was computed from all of them."""
+    asked: int = 0
+    """Voxels when merging was tried last."""
     tried: dict[int, int] = field(default_factory=dict)
     """Voxels of both when it could not be merged with another piece."""
 
@@ -58,23 +62,75 @@ class Piece:
         x, y, z = (2.0 * self.box[3:6]).tolist()
         return Wall((x, y, z), math.atan2(self.box[7], self.box[6]))
 
-    @property
-    def bounds(self) -> Array:
-        """Lower and upper bounds (2, 3) (m)."""
-        x, y, z, c, s = self.box[3:].tolist()
-        reach = np.array([x * abs(c) + y * abs(s), x * abs(s) + y * abs(c), z])
-        return np.array([self.box[:3] - reach, self.box[:3] + reach])
+
+class _Pieces:
+    """The pieces by number, and a table of their bounds."""
+
+    def __init__(self) -> None:
+        self._by_row: list[Piece | None] = []
+        self._table = np.empty((0, 2, 3))
+        self._by_number: dict[int, Piece] = {}
+        self._last = 0
+
+    def __iter__(self) -> Iterator[Piece]:
+        return iter(self._by_number.values())
+
+    def __getitem__(self, number: int) -> Piece:
+        return self._by_number[number]
+
+    def get(self, number: int) -> Piece | None:
+        """Return the piece of that number, if it still exists."""
+        return self._by_number.get(number)
+
+    def begin(self, box: Array, hits: float) -> Piece:
+        """Return a new piece without members."""
+        row = self._by_row.index(None) if None in self._by_row else len(self._by_row)
+        if row == len(self._by_row):
+            self._by_row.append(None)
+        if row >= len(self._table):
+            self._table = np.concatenate([self._table, np.full((len(self._table) + 64, 2, 3), np.nan)])
+        self._last += 1
+        piece = Piece(self._last, row, _NOWHERE, _NOWHERE, box, hits)
+        self._by_row[row] = self._by_number[piece.number] = piece
+        self.place(piece, box)
+        return piece
+
+    def place(self, piece: Piece, box: Array) -> None:
+        """Set the box of a piece."""
+        piece.box = box
+        x, y, z, h, w, d, c, s = box.tolist()
+        u, v = h * abs(c) + w * abs(s), h * abs(s) + w * abs(c)
+        self._table[piece.row] = (x - u, y - v, z - d), (x + u, y + v, z + d)
+
+    def remove(self, piece: Piece) -> None:
+        """Remove a piece."""
+        del self._by_number[piece.number]
+        self._by_row[piece.row] = None
+        self._table[piece.row] = np.nan
+
+    def near(self, piece: Piece, gap: float) -> list[Piece]:
+        """Return the others within ``gap`` (m) of one, those first with which it makes the smallest box."""
+        low, high = self._table[piece.row]
+        rows = np.flatnonzero(((self._table[:, 0] <= high + gap) & (self._table[:, 1] >= low - gap)).all(axis=1))
+        size = np.maximum(self._table[rows, 1], high) - np.minimum(self._table[rows, 0], low)
+        found = [self._by_row[row] for row in rows[np.argsort(size.prod(axis=1))].tolist()]
+        return [other for other in found if other is not None and other is not piece]
+
+    def touching(self, low: Array, high: Array) -> list[tuple[Piece, Mask]]:
+        """Return the pieces that reach into boxes with bounds ``low`` and ``high`` (n, 3), and which of them (n,)."""
+        within = np.asarray(((low <= self._table[:, None, 1]) & (high >= self._table[:, None, 0])).all(axis=2))
+        pieces = [(self._by_row[row], within[row]) for row in np.flatnonzero(within.any(axis=1)).tolist()]
+        return [(piece, boxes) for piece, boxes in pieces if piece is not None]
 
 
 class ConvexPieces:
     """The pieces, kept up to date with what changes in the map."""
 
     def __init__(self) -> None:
-        self._pieces: dict[int, Piece] = {}
+        self._pieces = _Pieces()
         self._owners = np.full((0, 2), -1)
         self._bounds = np.empty((0, 6))
         self._waiting: deque[int] = deque()
-        self._next = 1
 
     def update(self, standing: StandingMap) -> list[Piece]:
         """Return the pieces after all that has changed in the map since the last call."""
@@ -90,26 +146,20 @@ class ConvexPieces:
             if len(elements.indices):
                 self._cover(standing, elements)
         self._merge(standing)
-        return list(self._pieces.values())
+        return list(self._pieces)
 
     def _recompute(self, standing: StandingMap, blocks: Indices, first: Indices) -> None:
         """Compute anew the pieces in changed ``blocks`` of whose points some are freed, or that hold a gap now.
 
         One of those that were hit twice as often as when they were computed is, too: its points are surer.
         """
-        if not self._pieces:
-            return
         ripe, voxel = None, standing.settings.voxel
-        pieces = list(self._pieces.values())
-        bounds = np.array([piece.bounds for piece in pieces])
-        within = (first * voxel <= bounds[:, None, 1]) & ((first + EDGE) * voxel >= bounds[:, None, 0])
-        touched = np.asarray(within.all(axis=2))
-        for i in np.flatnonzero(touched.any(axis=1)).tolist():
-            piece = pieces[i]
+        corners = first.astype(float) * voxel
+        for piece, touched in self._pieces.touching(corners, corners + EDGE * voxel):
             current = standing.are_current(piece.members, piece.numbers)
             if not current.all():
                 self._rebuild(standing, piece, piece.members[current])
-            elif len(standing.gaps(piece.box, 1, blocks[touched[i]])):
+            elif len(standing.gaps(piece.box, 1, blocks[touched])):
                 self._rebuild(standing, piece, piece.members)
             elif ripe is None and standing.hits(piece.members) >= 2.0 * piece.hits:
                 ripe = piece
@@ -132,7 +182,7 @@ class ConvexPieces:
                 piece.members, piece.numbers = piece.members[keep], piece.numbers[keep]
                 self._owners[indices[beyond]] = -1
                 if not len(piece.members):
-                    del self._pieces[owner]
+                    self._pieces.remove(piece)
                 left.append(beyond)
         new = np.flatnonzero(owners < 0)
         nearest = standing.nearest_owners(indices[new], self._owners)
@@ -157,7 +207,7 @@ class ConvexPieces:
             box = fitted_box(self._bounds, np.concatenate([piece.members, members]))
             if len(standing.gaps(box, 1)):
                 return False
-        piece.box = box
+        self._pieces.place(piece, box)
         if len(numbers):
             self._own(piece, members, numbers)
         self._changed(piece)
@@ -166,21 +216,20 @@ class ConvexPieces:
     def _rebuild(self, standing: StandingMap, piece: Piece, members: Indices) -> None:
         """Compute a piece anew from its ``members``, in several pieces where need be: most of it keeps its name."""
         if not len(members):
-            del self._pieces[piece.number]
+            self._pieces.remove(piece)
             return
         standing.cover(members, self._bounds)
         first, *others = cut(standing, self._bounds, members)
         piece.members, piece.numbers = _NOWHERE, _NOWHERE
-        piece.box, piece.hits = first.box, standing.hits(first.members)
+        self._pieces.place(piece, first.box)
+        piece.hits, piece.asked = standing.hits(first.members), 0
         self._own(piece, first.members, standing.numbers(first.members))
         self._changed(piece)
         for body in others:
             self._begin(standing, body)
 
     def _begin(self, standing: StandingMap, body: Body) -> None:
-        piece = Piece(self._next, _NOWHERE, _NOWHERE, body.box, standing.hits(body.members))
-        self._next += 1
-        self._pieces[piece.number] = piece
+        piece = self._pieces.begin(body.box, standing.hits(body.members))
         self._own(piece, body.members, standing.numbers(body.members))
         self._changed(piece)
 
@@ -190,7 +239,8 @@ class ConvexPieces:
         self._owners[members, 0], self._owners[members, 1] = piece.number, numbers
 
     def _changed(self, piece: Piece) -> None:
-        if piece.number not in self._waiting:
+        """Try to merge a piece if it has grown enough since that was tried last."""
+        if len(piece.members) >= _LARGER * piece.asked and piece.number not in self._waiting:
             self._waiting.append(piece.number)
 
     def _merge(self, standing: StandingMap) -> None:
@@ -200,7 +250,8 @@ class ConvexPieces:
             piece = self._pieces.get(self._waiting.popleft())
             if piece is None:
                 continue
-            for other in self._near(piece, standing.settings.bridged_gap):
+            piece.asked = len(piece.members)
+            for other in self._pieces.near(piece, standing.settings.bridged_gap):
                 voxels = len(piece.members) + len(other.members)
                 if voxels < _LARGER * piece.tried.get(other.number, 0):
                     continue
@@ -209,25 +260,16 @@ class ConvexPieces:
                     break
                 piece.tried[other.number] = other.tried[piece.number] = voxels
 
-    def _near(self, piece: Piece, gap: float) -> Sequence[Piece]:
-        """Return the pieces within ``gap`` (m) of one, those first with which it makes the smallest box."""
-        others = [other for other in self._pieces.values() if other is not piece]
-        if not others:
-            return []
-        low, high = piece.bounds
-        bounds = np.array([other.bounds for other in others])
-        near = np.flatnonzero(((bounds[:, 0] <= high + gap) & (bounds[:, 1] >= low - gap)).all(axis=1))
-        size = np.maximum(bounds[near, 1], high) - np.minimum(bounds[near, 0], low)
-        return [others[i] for i in near[np.argsort(size.prod(axis=1))].tolist()]
-
     def _merged(self, standing: StandingMap, older: Piece, younger: Piece) -> bool:
         """Merge two pieces into the older one; return False, with both as they are, where that closes a gap."""
         box = fitted_box(self._bounds, np.concatenate([older.members, younger.members]))
         if len(standing.gaps(box, 1)):
             return False
-        del self._pieces[younger.number]
+        self._pieces.remove(younger)
         self._own(older, younger.members, younger.numbers)
-        older.box, older.hits = box, older.hits + younger.hits
+        self._pieces.place(older, box)
+        older.hits += younger.hits
+        older.asked = 0
         older.tried.clear()
         self._changed(older)
         return True

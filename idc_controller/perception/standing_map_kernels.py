@@ -55,6 +55,8 @@ from idc_controller.perception.voxel_kernels import (
 
 _ALIKE = math.cos(math.radians(20.0))
 """Mean cosine between a ray and those that hit a surface from which on it is like them."""
+_NEAR = 2.0
+"""Standard deviations of a return within which it may be one of the points beside its voxel."""
 _RARER, _NOISIER = 8.0, 1.3
 """Points may be noise of others that were hit by so many times as many scans, at so much smaller variance."""
 
@@ -126,6 +128,27 @@ def _halve_memory(element: Array, most: float) -> None:
         element[POINTS] /= 2.0
         for i in range(WAY, WAY + 3):
             element[i] /= 2.0
+
+
+@inlined
+def _explaining_element(
+    table: Indices, pages: Links, links: Links, elements: Array, x: int, y: int, z: int, point: Array, variance: float
+) -> int:
+    """Return the index of an often-hit element about voxel (x, y, z) whose bounds are near a point, -1 if none is."""
+    nearest, found = _NEAR * _NEAR * variance, -1
+    for i in range(x - 1, x + 2):
+        for j in range(y - 1, y + 2):
+            for k in range(z - 1, z + 2):
+                index = element_at(table, pages, links, i, j, k)
+                if index < 0 or elements[index, HITS] < _RARER or elements[index, PROVEN] == 0.0:
+                    continue
+                square = 0.0
+                for axis in range(3):
+                    low, high = elements[index, LOW + axis], elements[index, HIGH + axis]
+                    square += max(low - point[axis], point[axis] - high, 0.0) ** 2
+                if square <= nearest:
+                    nearest, found = square, index
+    return found
 
 
 @inlined
@@ -207,6 +230,11 @@ def add_returns(
         variance = sigmas[1] ** 2 + (sigmas[0] ** 2 + 2.0 * sigmas[2] ** 2 * square) / 3.0
         index = (links[block, cell] >> 8) - 1
         if index < 0:
+            index = _explaining_element(table, pages, links, elements, x, y, z, returns[p], variance)
+            if index >= 0:
+                # It shows that those are still there, but not where.
+                elements[index, LAST_HIT], elements[index, GONE] = scan, 0.0
+                continue
             was_free = cells[block, cell] & PASSED >= free_passes
             index = _new_element(table, pages, blocks, cells, links, elements, counts, block, cell)
             elements[index, BORN], elements[index, PROVEN] = time, 0.0 if was_free else 1.0
