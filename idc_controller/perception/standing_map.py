@@ -83,15 +83,12 @@ class StandingMap:
 
     def add(self, scan: PlacedScan, moving: Mask | None = None) -> None:
         """Add one scan; ``moving``: returns (n,) of what is known to move, which leave no points."""
-        s, returns = self.settings, np.ascontiguousarray(scan.returns)
+        s, v = self.settings, self._store
+        origin, returns = np.ascontiguousarray(scan.origin), np.ascontiguousarray(scan.returns)
+        free = np.ascontiguousarray(scan.free_rays)
         taken = np.ones(len(returns), dtype=bool) if moving is None else ~moving
-        finite = np.isfinite(returns).all(axis=1)
-        if not finite.all():
-            returns, taken = returns[finite], taken[finite]
-        ends = np.concatenate([returns, scan.free_rays])
         self._scan += 1
-        v, origin = self._store, np.ascontiguousarray(scan.origin)
-        v.reserve(origin, ends, len(returns))
+        v.reserve(origin, returns, free)
         arrays = v.table, v.pages, v.blocks, v.cells, v.links, v.elements, v.counts
         sigmas, number = _sigmas(scan), float(self._scan)
         kernels.add_returns(
@@ -99,7 +96,7 @@ class StandingMap:
             s.tolerance, s.memory, self._chi_squared,
         )  # fmt: skip
         kernels.carve(
-            *arrays, origin, ends, len(returns), sigmas, number, s.voxel, s.free_passes, s.sigmas_beyond,
+            *arrays, origin, returns, free, sigmas, number, s.voxel, s.free_passes, s.sigmas_beyond,
             s.incidence_min, self._prior, self._evidence, s.memory,
         )  # fmt: skip
 

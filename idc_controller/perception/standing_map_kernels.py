@@ -28,6 +28,7 @@ from idc_controller.perception.voxel_kernels import (
     MEAN,
     NEXT_SPARE,
     NUMBER,
+    PAGE_EDGE,
     PASSED,
     PASSES,
     POINTS,
@@ -59,6 +60,27 @@ _NEAR = 2.0
 """Standard deviations of a return within which it may be one of the points beside its voxel."""
 _RARER, _NOISIER = 8.0, 1.3
 """Points may be noise of others that were hit by so many times as many scans, at so much smaller variance."""
+
+
+@kernel("UniTuple(int64, 2)(float64[::1], float64[:, ::1], float64[:, ::1], float64)")
+def room_for(origin: Array, returns: Array, free: Array, size: float) -> tuple[int, int]:
+    """Return upper bounds of the blocks and pages that a scan can add, of blocks with edge ``size`` (m).
+
+    ``origin`` (3,), ``returns`` (n, 3) and ends of ``free`` rays (m, 3): see :func:`carve`.
+    """
+    by_rays, by_box, by_pages = 0.0, 1.0, 1.0
+    for axis in range(3):
+        reach = 0.0
+        for ends in (returns, free):
+            for r in range(ends.shape[0]):
+                if abs(ends[r, axis] - origin[axis]) < math.inf:
+                    reach = max(reach, abs(ends[r, axis] - origin[axis]) / size)
+        by_rays += reach * (returns.shape[0] + free.shape[0])
+        by_box *= 2.0 * reach + 4.0
+        by_pages *= 2.0 * reach / PAGE_EDGE + 3.0
+    # Rays enter a block by one of its sides; an element has voxels about it in up to eight blocks.
+    by_rays += 4.0 * free.shape[0] + 12.0 * returns.shape[0]
+    return math.ceil(min(by_rays, by_box)), math.ceil(min(by_rays, by_pages))
 
 
 @kernel("void(int64[:, ::1], int32[:, ::1], int64[:, ::1], int64)")
@@ -220,13 +242,13 @@ def add_returns(
         chi_squared: square of the distance, in standard deviations, up to which noise explains it.
     """
     for p in range(returns.shape[0]):
-        if not taken[p]:
-            continue
-        x, y, z = voxel(returns[p, 0], size), voxel(returns[p, 1], size), voxel(returns[p, 2], size)
-        block, cell = block_of(table, pages, blocks, counts, x, y, z), cell_index(x, y, z)
         square = 0.0
         for i in range(3):
             square += (returns[p, i] - origin[i]) ** 2
+        if not (taken[p] and square < math.inf):
+            continue
+        x, y, z = voxel(returns[p, 0], size), voxel(returns[p, 1], size), voxel(returns[p, 2], size)
+        block, cell = block_of(table, pages, blocks, counts, x, y, z), cell_index(x, y, z)
         variance = sigmas[1] ** 2 + (sigmas[0] ** 2 + 2.0 * sigmas[2] ** 2 * square) / 3.0
         index = (links[block, cell] >> 8) - 1
         if index < 0:
@@ -336,8 +358,8 @@ def _sides_before(at: int, step: int) -> int:
 
 
 @kernel(
-    f"void({ARRAYS}, float64[::1], float64[:, ::1], int64, float64[::1], float64, float64, int64, float64, float64,"
-    " float64[::1], float64[::1], float64)"
+    f"void({ARRAYS}, float64[::1], float64[:, ::1], float64[:, ::1], float64[::1], float64, float64, int64, float64,"
+    " float64, float64[::1], float64[::1], float64)"
 )
 def carve(
     table: Indices,
@@ -348,8 +370,8 @@ def carve(
     elements: Array,
     counts: Indices,
     origin: Array,
-    ends: Array,
-    returned: int,
+    returns: Array,
+    free: Array,
     sigmas: Array,
     scan: float,
     size: float,
@@ -370,7 +392,8 @@ def carve(
     Args:
         table, pages, blocks, cells, links, elements, counts: see ``voxel_kernels``; with room enough.
         origin: place of the sensor (3,).
-        ends: of the rays (n, 3), NED (m); the first ``returned`` of them are returns.
+        returns: (n, 3), NED (m).
+        free: ends of the rays that returned nothing up to there (m, 3), NED (m).
         sigmas: standard deviations of range (m), position (m) and attitude (rad).
         scan: number of the scan.
         size: edge of a voxel (m).
@@ -382,10 +405,11 @@ def carve(
         memory: scans that an element remembers.
     """
     way, normal = np.empty(3), np.empty(3)
-    for r in range(ends.shape[0]):
+    returned = returns.shape[0]
+    for r in range(returned + free.shape[0]):
         length = 0.0
         for i in range(3):
-            way[i] = ends[r, i] - origin[i]
+            way[i] = (returns[r, i] if r < returned else free[r - returned, i]) - origin[i]
             length += way[i] * way[i]
         length = math.sqrt(length)
         if not 0.0 < length < math.inf:

@@ -1,14 +1,13 @@
 """Arrays of the standing map's voxels, which grow with the space that was seen."""
 
-import math
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from idc_controller.arrays import Array, Cells, Indices, Links
-from idc_controller.perception.standing_map_kernels import enter_pages
-from idc_controller.perception.voxel_kernels import BLOCKS, CELLS, COLUMNS, EDGE, PAGE_BLOCKS, PAGE_EDGE, PAGES, USED
+from idc_controller.perception.standing_map_kernels import enter_pages, room_for
+from idc_controller.perception.voxel_kernels import BLOCKS, CELLS, COLUMNS, EDGE, PAGE_BLOCKS, PAGES, USED
 
 _FIRST_PAGES, _FIRST_BLOCKS, _FIRST_ELEMENTS = 16, 4096, 4096
 
@@ -27,15 +26,12 @@ class VoxelStore:
         self.elements: Array = np.zeros((_FIRST_ELEMENTS, COLUMNS))
         self.counts: Indices = np.zeros(5, dtype=np.int64)
 
-    def reserve(self, origin: Array, ends: Array, returns: int) -> None:
-        """Make room for all that a scan can add, whose rays lead from ``origin`` (3,) to ``ends`` (n, 3) (m)."""
-        if not len(ends):
-            return
-        extent = (np.abs(ends - origin).max(axis=0) / self._block).tolist()
-        # Rays enter a block by one of its sides; an element has voxels about it in up to eight blocks.
-        by_rays = len(ends) * (sum(extent) + 4.0) + 8.0 * returns
-        blocks = math.ceil(min(by_rays, math.prod(2.0 * x + 4.0 for x in extent)))
-        pages = math.ceil(min(by_rays, math.prod(2.0 * x / PAGE_EDGE + 3.0 for x in extent)))
+    def reserve(self, origin: Array, returns: Array, free: Array) -> None:
+        """Make room for all that a scan from ``origin`` (3,) can add.
+
+        ``returns`` (n, 3) and ends of ``free`` rays (m, 3), NED (m).
+        """
+        blocks, pages = room_for(origin, returns, free, self._block)
         count = int(self.counts[PAGES])
         if count + pages > len(self.pages):
             self.pages = _grown(self.pages, count + pages, -1)
@@ -45,8 +41,8 @@ class VoxelStore:
             rows = int(self.counts[BLOCKS]) + blocks
             self.blocks, self.cells = _grown(self.blocks, rows), _grown(self.cells, rows)
             self.links = _grown(self.links, rows)
-        if self.counts[USED] + returns > len(self.elements):
-            self.elements = _grown(self.elements, int(self.counts[USED]) + returns)
+        if self.counts[USED] + len(returns) > len(self.elements):
+            self.elements = _grown(self.elements, int(self.counts[USED]) + len(returns))
 
 
 def _grown(rows: NDArray[Any], count: int, value: int = 0) -> NDArray[Any]:
