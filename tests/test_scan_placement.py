@@ -231,6 +231,28 @@ def test_returns_off_the_rays_have_the_variance_that_they_show_and_no_free_rays(
     assert np.sqrt(smallest[1]).min() > 0.12
 
 
+def test_scatter_of_last_scans_counts_for_a_scan_with_few_returns():
+    placing, points = placement(SENSORS), measure()
+
+    def sigma(stamp, returned):
+        time = stamp * 1e-3
+        placing.poses.add_measured(Position(time, 0, HERE, np.zeros(3)))
+        placing.poses.add_measured(Attitude(time, 0, np.array(TILTED), np.zeros(3)))
+        placing.add(returns_of(returned, stamp), 0, time, time)
+        placing.end(ScanEnd(stamp, 10.0, True), 0, time, time)
+        [scan] = placing.scans(time)
+        return scan.position_sigma
+
+    assert sigma(1300, points) == pytest.approx(SENSORS.position, rel=1e-3)
+    right = measure(stamp=1400)
+    wrong = sigma(1400, right + np.random.default_rng(1).normal(0.0, 0.3, right.shape))
+    assert wrong > 0.15
+    assert sigma(1500, measure(stamp=1500)[:1]) > 0.8 * wrong
+    for k in range(16, 60):  # and is forgotten
+        last = sigma(100 * k, measure(stamp=100 * k))
+    assert last == pytest.approx(SENSORS.position, rel=0.02)
+
+
 def test_scan_of_another_index_is_off_the_rays():
     """Old points under a new stamp, as of a sensor that is stuck."""
     [scan] = placed(measure(stamp=1200))

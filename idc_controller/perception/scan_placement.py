@@ -18,6 +18,8 @@ from idc_controller.rotations import rotation_from_quaternion
 
 _OFF_RAY = 0.25
 """Share of the mean angle between rays by which a return may lie off the next one, to be that ray's surely."""
+_SCATTER_MEMORY = 0.8
+"""Share of the last scans' returns in the mean distance from the rays that remains with each scan that has returns."""
 _GROUND_SIGMAS = 3.0
 """Standard deviations of a place at the end of the range by which free rays end above the ground."""
 _REMEMBERED = 16
@@ -70,6 +72,25 @@ class _Waiting:
         """Whether there was an impossible one."""
 
 
+class _Scatter:
+    """How far the returns of a vehicle lie off the rays."""
+
+    def __init__(self) -> None:
+        self._squares = self._count = 0.0
+
+    def add(self, sideways: Array) -> float:
+        """Return the standard deviation (m) on every axis across the ray; ``sideways`` of a scan's returns (n,) (m).
+
+        That of this scan, or of the last ones, whichever is larger: a scan may have few returns.
+        """
+        if not len(sideways):
+            return 0.0
+        squares = float(sideways @ sideways)
+        self._squares = _SCATTER_MEMORY * self._squares + squares
+        self._count = _SCATTER_MEMORY * self._count + len(sideways)
+        return math.sqrt(0.5 * max(squares / len(sideways), self._squares / self._count))
+
+
 class ScanPlacement:
     """Collects returns until all of a scan and its vehicle's pose are known. Times are the team's (s)."""
 
@@ -88,6 +109,7 @@ class ScanPlacement:
         self._waiting_points: dict[int, int] = defaultdict(int)
         self._placed = defaultdict[int, deque[int]](lambda: deque(maxlen=_REMEMBERED))
         """Stamps of the last scans of each vehicle that have been placed or discarded."""
+        self._scatter = defaultdict[int, _Scatter](_Scatter)
         self.discarded = 0
         """Returns that were impossible, stuck, too late or too many, or had no pose."""
 
@@ -178,8 +200,7 @@ class ScanPlacement:
             points, rays, angles = points[~repeated], rays[~repeated], angles[~repeated]
         along, (anywhere, turning) = self._sensors.range_noise, sigmas
         # Returns lie on the sensor's rays: how far they are off tells of an error that its noise is not.
-        sideways = angles * np.linalg.norm(points, axis=1)
-        off = math.sqrt(0.5 * float(np.mean(sideways * sideways))) if len(points) else 0.0
+        off = self._scatter[uav].add(angles * np.linalg.norm(points, axis=1))
         free = np.empty((0, 3))
         is_sure = scan.is_complete and not scan.is_spoilt
         if is_sure and scan.max_range is not None and not (angles > _OFF_RAY * pattern.spacing).any():
