@@ -247,7 +247,7 @@ def test_scatter_of_last_scans_counts_for_a_scan_with_few_returns():
     right = measure(stamp=1400)
     wrong = sigma(1400, right + np.random.default_rng(1).normal(0.0, 0.3, right.shape))
     assert wrong > 0.15
-    assert sigma(1500, measure(stamp=1500)[:1]) > 0.8 * wrong
+    assert sigma(1500, measure(stamp=1500)[:1]) > 0.6 * wrong  # of the two scans before
     for k in range(16, 60):  # and is forgotten
         last = sigma(100 * k, measure(stamp=100 * k))
     assert last == pytest.approx(SENSORS.position, rel=0.02)
