@@ -15,6 +15,10 @@ ROOM, CORRIDOR = (9.6, 13.0), (5.0, 6.2)
 """Width (m) of rooms and of corridors, between the middles of their walls."""
 DOOR, NARROW = (4.8, 6.5), (0.9, 2.3)
 """Width (m) of doors that can be passed, and of those that cannot."""
+LINTEL, LOW = (5.3, 7.0), (2.4, 3.8)
+"""Height (m) of the lintels of some doors: of those that can be passed, and of those that cannot."""
+LINTELS = 0.2
+"""Share of the doors with a lintel."""
 CLOSED = 0.25
 """Share of the layouts with no way."""
 MORE_DOORS = 0.15
@@ -54,23 +58,29 @@ def rooms(random: Random, passages: Passages) -> Layout:
     way = _way(doors, start, goal)
     narrow = way[random.integers(len(way))] if closed else None
     thickness = random.uniform(0.15, 0.4)
-    for wall, length in _walls(edges):
-        i, j, axis = wall
+    for (i, j, axis), length in _walls(edges):
         neighbours = frozenset({(i, j), (i - 1, j) if axis == 0 else (i, j - 1)})
-        has_door = neighbours in doors or (not closed and neighbours <= set(cells) and random.random() < MORE_DOORS)
-        width = random.uniform(*(NARROW if neighbours == narrow else DOOR)) if has_door else 0.0
-        width = min(width, length - 2.0 * JAMB)
-        begin = random.uniform(JAMB, length - width - JAMB) if has_door else length
-        for low, high in ((0.0, begin), (begin + width, length)):
-            if high - low > 0.05:
-                middle = (low + high) / 2.0
-                x = edges[0][i] + (0.0 if axis == 0 else middle)
-                y = edges[1][j] + (middle if axis == 0 else 0.0)
-                # Walls meet at the corners.
-                along = high - low + (thickness if low == 0.0 or high == length else 0.0)
-                size = (thickness, along, HEIGHT) if axis == 0 else (along, thickness, HEIGHT)
-                layout.add_wall("wall", placed(x, y), size, heading)
+        more = not closed and neighbours <= set(cells) and random.random() < MORE_DOORS
+        has_door = more or neighbours in doors
+        for low, high, bottom in _pieces(random, length, has_door, neighbours == narrow):
+            x = edges[0][i] + (0.0 if axis == 0 else (low + high) / 2.0)
+            y = edges[1][j] + ((low + high) / 2.0 if axis == 0 else 0.0)
+            # Walls meet at the corners.
+            along = high - low + (thickness if bottom == 0.0 and (low == 0.0 or high == length) else 0.0)
+            size = (thickness, along) if axis == 0 else (along, thickness)
+            layout.add_wall("lintel" if bottom else "wall", placed(x, y), (*size, HEIGHT - bottom), heading, bottom)
     return layout
+
+
+def _pieces(random: Random, length: float, has_door: bool, is_closed: bool) -> list[tuple[float, float, float]]:
+    """Return the pieces of a wall of ``length`` (m): begin, end, and height of the underside (m)."""
+    if not has_door:
+        return [(0.0, length, 0.0)]
+    is_low = random.random() < LINTELS
+    width = min(random.uniform(*(NARROW if is_closed and not is_low else DOOR)), length - 2.0 * JAMB)
+    begin = random.uniform(JAMB, length - width - JAMB)
+    pieces = [(0.0, begin, 0.0), (begin + width, length, 0.0)]
+    return [*pieces, (begin, begin + width, random.uniform(*(LOW if is_closed else LINTEL)))] if is_low else pieces
 
 
 def _sizes(random: Random, count: int) -> Array:
