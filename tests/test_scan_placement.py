@@ -278,7 +278,23 @@ def test_flood_of_returns_is_bounded():
     placing = placement()
     for k in range(5000):
         placing.add(returns_of(np.ones((1, 3)), 5000 + k), 0, 5.0, 5.0)
-    assert placing.discarded > 2500
+        placing.end(ScanEnd(5000 + k, 10.0, True), 0, 5.0, 5.0)
+    assert placing.discarded > 4900
+    whole = placement()
+    for _ in range(100):
+        whole.add(returns_of(np.random.default_rng(1).normal(size=(500, 3))), 0, 1.3, 1.3)
+    assert whole.discarded > 40_000
+
+
+def test_scan_of_many_rays_is_placed_whole():
+    pattern = RayPattern(5000, PATTERN.elevation_min, PATTERN.elevation_max)
+    placing = ScanPlacement(EXACT, SensorRays(pattern, CONFIG.rate, CONFIG.ground_height))
+    placing.poses.add_measured(Position(1.3, 0, HERE, np.zeros(3)))
+    placing.poses.add_measured(Attitude(1.3, 0, np.array(TILTED), np.zeros(3)))
+    placing.add(returns_of(3.0 * pattern.directions(13)), 0, 1.3, 1.3)
+    placing.end(ScanEnd(1300, 10.0, True), 0, 1.3, 1.3)
+    [scan] = placing.scans(1.3)
+    assert (len(scan.returns), len(scan.free_rays), placing.discarded) == (5000, 0, 0)
 
 
 def test_stuck_sensor_is_invalid():

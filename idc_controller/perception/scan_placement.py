@@ -23,7 +23,7 @@ _SCATTER_MEMORY = 0.8
 _GROUND_SIGMAS = 3.0
 """Standard deviations of a place at the end of the range by which free rays end above the ground."""
 _REMEMBERED = 16
-"""Scans of a vehicle of which late messages are recognised."""
+"""Scans of a vehicle that wait at most, and that have been placed and of which late messages are recognised."""
 
 
 class SensorRays(NamedTuple):
@@ -105,8 +105,9 @@ class ScanPlacement:
         self._sensors, self._rays, self._settings = sensors, rays, settings
         self.poses = poses or PoseHistory(self._settings)
         self.range_sensors = range_sensors or RangeSensors(sensors.range_noise > 0.0, self._settings)
-        self._waiting: dict[tuple[int, int], _Waiting] = {}
-        self._waiting_points: dict[int, int] = defaultdict(int)
+        self._waiting = defaultdict[int, dict[int, _Waiting]](dict)
+        """Scans of each vehicle by stamp."""
+        self._points_max = max(settings.points_max, _REMEMBERED * rays.pattern.rays)
         self._placed = defaultdict[int, deque[int]](lambda: deque(maxlen=_REMEMBERED))
         """Stamps of the last scans of each vehicle that have been placed or discarded."""
         self._scatter = defaultdict[int, _Scatter](_Scatter)
@@ -121,7 +122,8 @@ class ScanPlacement:
             self.discarded += len(points)
             return
         possible = possible_points(points, returns.max_range, self._settings.range_factor)
-        usable = possible[: max(self._settings.points_max - self._waiting_points[uav], 0)]
+        waiting = sum(other.count for other in self._waiting[uav].values())
+        usable = possible[: max(self._points_max - waiting, 0)]
         if len(usable) < len(points):
             self.discarded += len(points) - len(usable)
             self.range_sensors.add_invalid(uav, time)
@@ -129,7 +131,6 @@ class ScanPlacement:
             points = points[usable]
         scan.parts.append(points)
         scan.count += len(points)
-        self._waiting_points[uav] += len(points)
 
     def end(self, end: ScanEnd, uav: int, time: float, now: float) -> None:
         """Add the end of a scan of UAV ``uav`` made at ``time``, that came at ``now`` (s)."""
@@ -156,8 +157,7 @@ class ScanPlacement:
         """
         s = self._settings
         placed: list[PlacedScan] = []
-        for key, scan in tuple(self._waiting.items()):
-            uav = key[0]
+        for uav, scan in [(uav, scan) for uav, scans in self._waiting.items() for scan in scans.values()]:
             if not scan.is_complete and now - scan.since < s.assembly:
                 continue
             estimated_attitude = uav in unusable_attitudes
@@ -167,8 +167,7 @@ class ScanPlacement:
             if pose is None:
                 estimated_attitude = True
                 pose = self.poses.pose(uav, scan.time, estimated_position=True, estimated_attitude=True)
-            del self._waiting[key]
-            self._waiting_points[uav] -= scan.count
+            del self._waiting[uav][scan.stamp]
             self._placed[uav].append(scan.stamp)
             points = np.concatenate([np.empty((0, 3)), *scan.parts])
             stuck = bool(scan.count) and self.range_sensors.check(uav, scan.time, points)
@@ -181,10 +180,11 @@ class ScanPlacement:
         return placed
 
     def _scan(self, uav: int, stamp: int, time: float, now: float) -> _Waiting | None:
-        """Return the scan with a ``stamp`` that waits; None: it has been placed, and this is late or a duplicate."""
-        scan = self._waiting.get((uav, stamp))
-        if scan is None and stamp not in self._placed[uav]:
-            scan = self._waiting[uav, stamp] = _Waiting(stamp, time, now)
+        """Return the scan with a ``stamp`` that waits; None: it has been placed, or too many wait."""
+        waiting = self._waiting[uav]
+        scan = waiting.get(stamp)
+        if scan is None and stamp not in self._placed[uav] and len(waiting) < _REMEMBERED:
+            scan = waiting[stamp] = _Waiting(stamp, time, now)
         return scan
 
     def _place(
