@@ -197,6 +197,10 @@ class StandingMapSettings(SettingsTable):
     uncovered: float = setting(1e-3, "", "probability that a surface lies beyond what covers it", gt=0.0, lt=1.0)
     prior_hits: float = setting(4.0, "", "scans that hit what stands at a ray's place, before any was counted", gt=0.0)
     prior_passes: float = setting(1.0, "", "scans that pass it by the poses' noise, before any was counted", gt=0.0)
+    hit_share_min: float = setting(
+        0.25, "", "least share of the scans through its place that hit what stands", gt=0.0, lt=1.0
+    )
+    hit_share_along: float = setting(0.1, "", "the same of scans along its surface", gt=0.0, lt=1.0)
     memory: float = setting(64.0, "", "scans whose hits and passes are remembered", ge=2.0)
     sigmas_beyond: float = setting(3.0, "", "standard deviations by which a ray must end beyond what it passes", gt=0.0)
     incidence_min: float = setting(
@@ -215,6 +219,11 @@ class StandingMapSettings(SettingsTable):
     def evidence_of_hit(self) -> float:
         """Evidence of a scan's hit that something stands (nats)."""
         return math.log(self.prior_hits / (self.prior_hits + self.prior_passes) / self.false_share)
+
+    @property
+    def evidence_of_pass(self) -> tuple[float, float]:
+        """Least evidence of a scan through something, and along its surface, that it is gone (nats)."""
+        return -math.log1p(-self.hit_share_min), -math.log1p(-self.hit_share_along)
 
     @property
     def evidence_max(self) -> float:

@@ -78,7 +78,7 @@ class StandingMap:
         self._sigmas = np.maximum(-ndtri(s.uncovered ** (1.0 / scans)), -1.0)
         self._scan = 0
         self._prior = np.array([s.prior_hits, s.prior_passes])
-        self._evidence = np.array([s.evidence_of_hit, s.evidence_max])
+        self._evidence = np.array([s.evidence_of_hit, s.evidence_max, *s.evidence_of_pass])
         self._chi_squared = float(upper_quantile(s.false_alarm, 3))
 
     def add(self, scan: PlacedScan, moving: Mask | None = None) -> None:

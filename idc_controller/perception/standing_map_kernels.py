@@ -401,7 +401,7 @@ def carve(
         sigmas_beyond: standard deviations by which a ray must end beyond what it passes.
         incidence: least cosine between a ray that passes through points, and their surface's normal.
         prior: scans that hit and that pass what stands, before any has told otherwise (2,).
-        evidence: nats of one scan's hit, and most of them (2,).
+        evidence: nats of one scan's hit, and most of them; least of one that passes through, and along a surface (4,).
         memory: scans that an element remembers.
     """
     way, normal = np.empty(3), np.empty(3)
@@ -465,9 +465,11 @@ def carve(
                     # Along a surface, a ray that misses it is as likely as one that hits it elsewhere.
                     hits = element[HITS] + (prior[0] if passed > 0 else prior[1])
                     passes = element[PASSES] + (prior[1] if passed > 0 else prior[0])
-                    element[GONE] += math.log((hits + passes) / passes)
+                    element[GONE] += max(math.log((hits + passes) / passes), evidence[2] if passed > 0 else evidence[3])
                     element[PASSES] += 1.0
-                    if element[GONE] >= min(element[HITS] * evidence[0], evidence[1]):
+                    # What has appeared where nothing was, and has not lasted, goes as easily as one hit.
+                    most = evidence[1] if element[PROVEN] == 1.0 else evidence[0]
+                    if element[GONE] >= min(element[HITS] * evidence[0], most):
                         _free_element(
                             table, pages, blocks, cells, links, elements, counts, index, free_passes, free_passes
                         )
