@@ -14,7 +14,12 @@ from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.range_sensors import SensorModel
 from idc_controller.perception.ray_pattern import RayPattern
 from idc_controller.perception.scan_placement import Returns, ScanEnd, ScanPlacement, SensorRays
-from idc_controller.perception.scan_placement_kernels import free_ends, rays_of_returns, repeated_returns
+from idc_controller.perception.scan_placement_kernels import (
+    free_ends,
+    placed_returns,
+    rays_of_returns,
+    repeated_returns,
+)
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
 from vehicle_sim.world.range_sensor import RangeSensor
 from vehicle_sim.world.ray_bodies import RayBodies
@@ -91,6 +96,19 @@ def test_repeated_returns_are_those_that_came_before():
     assert repeated_returns(points, rays, 5).tolist() == [False, False, True, False, True, False, True]
 
 
+def test_returns_are_placed_once_with_their_distances_from_the_rays():
+    rng, directions = np.random.default_rng(1), PATTERN.directions(3)
+    points = rng.normal(size=(40, 3)) * 4.0
+    points[7], points[30] = points[2], points[2]
+    places, rays, (square, angle) = placed_returns(points, directions, np.array([*HERE, *TILTED]))
+    kept = np.delete(points, [7, 30], axis=0)
+    expected_rays, angles = brute_rays(kept, directions)
+    np.testing.assert_allclose(places, HERE + kept @ rotation_from_quaternion(TILTED).T, atol=1e-12)
+    np.testing.assert_array_equal(rays, expected_rays)
+    assert square == pytest.approx(np.mean((angles * np.linalg.norm(kept, axis=1)) ** 2))
+    assert angle == pytest.approx(angles.max())
+
+
 def test_covariances_are_those_of_noise_along_the_ray_and_of_the_pose():
     points = np.random.default_rng(1).normal(size=(30, 3)) * 4.0
     scan = PlacedScan(0.0, HERE, HERE + points, 0.05, 0.02, 0.03)
@@ -104,13 +122,13 @@ def test_covariances_are_those_of_noise_along_the_ray_and_of_the_pose():
 def test_free_rays_end_at_the_range_and_above_the_ground():
     directions, rotation = PATTERN.directions(5), rotation_from_quaternion(TILTED)
     hit = np.arange(0, 500, 7)
-    ends = free_ends(directions, hit, HERE, rotation, 10.0, 0.4)
+    ends = free_ends(directions, hit, np.array([*HERE, *TILTED]), 10.0, 0.4)
     world = np.delete(directions, hit, axis=0) @ rotation.T
     with np.errstate(divide="ignore"):
         lengths = np.where(world[:, 2] > 0.0, np.minimum((6.0 - 0.4) / world[:, 2], 10.0), 10.0)
     np.testing.assert_allclose(ends, HERE + lengths[:, None] * world, atol=1e-9)
     assert ends[:, 2].max() <= -0.4 + 1e-9
-    assert len(free_ends(directions, hit, np.array([0.0, 0.0, -0.3]), rotation, 10.0, 0.4)) == 0
+    assert len(free_ends(directions, hit, np.array([0.0, 0.0, -0.3, *TILTED]), 10.0, 0.4)) == 0
 
 
 # Scans

@@ -12,9 +12,8 @@ from idc_controller.perception.pose_history import PoseHistory
 from idc_controller.perception.range_sensors import RangeSensors, SensorModel
 from idc_controller.perception.ray_pattern import RayPattern, scan_index
 from idc_controller.perception.scan_kernels import possible_points
-from idc_controller.perception.scan_placement_kernels import free_ends, rays_of_returns, repeated_returns
+from idc_controller.perception.scan_placement_kernels import free_ends, placed_returns
 from idc_controller.perception.settings import ScanSettings
-from idc_controller.rotations import rotation_from_quaternion
 
 _OFF_RAY = 0.25
 """Share of the mean angle between rays by which a return may lie off the next one, to be that ray's surely."""
@@ -78,17 +77,20 @@ class _Scatter:
     def __init__(self) -> None:
         self._squares = self._count = 0.0
 
-    def add(self, sideways: Array) -> float:
-        """Return the standard deviation (m) on every axis across the ray; ``sideways`` of a scan's returns (n,) (m).
+    def add(self, square: float, count: int) -> float:
+        """Return the standard deviation (m) on every axis across the ray.
 
         That of this scan, or of the last ones, whichever is larger: a scan may have few returns.
+
+        Args:
+            square: mean square of the distances of a scan's returns from their rays (m2).
+            count: number of its returns.
         """
-        if not len(sideways):
+        if not count:
             return 0.0
-        squares = float(sideways @ sideways)
-        self._squares = _SCATTER_MEMORY * self._squares + squares
-        self._count = _SCATTER_MEMORY * self._count + len(sideways)
-        return math.sqrt(0.5 * max(squares / len(sideways), self._squares / self._count))
+        self._squares = _SCATTER_MEMORY * self._squares + square * count
+        self._count = _SCATTER_MEMORY * self._count + count
+        return math.sqrt(0.5 * max(square, self._squares / self._count))
 
 
 class ScanPlacement:
@@ -192,20 +194,16 @@ class ScanPlacement:
     ) -> PlacedScan:
         """Return the scan with its returns ``points`` (n, 3) in the body frame, ``sigmas`` of the pose (m, rad)."""
         pattern, rate, ground_height = self._rays
-        position, rotation = np.ascontiguousarray(pose[0]), rotation_from_quaternion(pose[1])
-        directions = pattern.directions(scan_index(scan.stamp, rate))
-        rays, angles = rays_of_returns(points, directions)
-        repeated = repeated_returns(points, rays, len(directions))
-        if repeated.any():
-            points, rays, angles = points[~repeated], rays[~repeated], angles[~repeated]
         along, (anywhere, turning) = self._sensors.range_noise, sigmas
+        place = np.concatenate(pose)
+        directions = pattern.directions(scan_index(scan.stamp, rate))
+        returns, rays, (square, angle) = placed_returns(points, directions, place)
         # Returns lie on the sensor's rays: how far they are off tells of an error that its noise is not.
-        off = self._scatter[uav].add(angles * np.linalg.norm(points, axis=1))
+        off = self._scatter[uav].add(float(square), len(returns))
         free = np.empty((0, 3))
-        is_sure = scan.is_complete and not scan.is_spoilt
-        if is_sure and scan.max_range is not None and not (angles > _OFF_RAY * pattern.spacing).any():
+        is_sure = scan.is_complete and not scan.is_spoilt and angle <= _OFF_RAY * pattern.spacing
+        if is_sure and scan.max_range is not None:
             reach = scan.max_range
             height = ground_height + _GROUND_SIGMAS * math.hypot(along, anywhere, turning * reach)
-            free = free_ends(directions, rays, position, rotation, reach, height)
-        returns = position + points @ rotation.T
-        return PlacedScan(scan.time, position, returns, along, math.hypot(anywhere, off), turning, free, uav)
+            free = free_ends(directions, rays, place, reach, height)
+        return PlacedScan(scan.time, place[:3], returns, along, math.hypot(anywhere, off), turning, free, uav)
