@@ -6,6 +6,7 @@ from itertools import count
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
 
 from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.scan_assembly import Cluster
@@ -41,9 +42,10 @@ class Segmentation:
         points = scan.returns
         distance = np.linalg.norm(points - scan.origin, axis=1)
         gap = np.maximum(_GAP_SPACINGS * self._spacing * distance, _GAP_MIN)
-        apart = points[:, None] - points[None]
-        near = np.einsum("ijk,ijk->ij", apart, apart) <= np.minimum(gap[:, None], gap[None]) ** 2
-        found, labels = connected_components(coo_array(near), directed=False)
+        i, j = cKDTree(points).query_pairs(float(gap.max()), output_type="ndarray").T
+        near = np.linalg.norm(points[i] - points[j], axis=1) <= np.minimum(gap[i], gap[j])
+        pairs = coo_array((near[near], (i[near], j[near])), shape=(len(points), len(points)))
+        found, labels = connected_components(pairs, directed=False)
         order = np.argsort(labels, kind="stable")
         points, distance = points[order], distance[order]
         surface = SurfacePoints(
