@@ -252,7 +252,8 @@ def add_returns(
         variance = sigmas[1] ** 2 + (sigmas[0] ** 2 + 2.0 * sigmas[2] ** 2 * square) / 3.0
         index = (links[block, cell] >> 8) - 1
         if index < 0:
-            index = _explaining_element(table, pages, links, elements, x, y, z, returns[p], variance)
+            if links[block, cell] & 255:
+                index = _explaining_element(table, pages, links, elements, x, y, z, returns[p], variance)
             if index >= 0:
                 # It shows that those are still there, but not where.
                 elements[index, LAST_HIT], elements[index, GONE] = scan, 0.0
@@ -270,7 +271,7 @@ def add_returns(
             _halve_memory(element, memory)
             if time - element[BORN] >= settling:
                 element[PROVEN] = 1.0
-            if element[HITS] >= _RARER:
+            if element[HITS] >= _RARER and int(element[HITS]) % 8 == 0:
                 _absorb_noise(table, pages, blocks, cells, links, elements, counts, element, free_passes, chi_squared)
         weight = 1.0 / max(variance, 1e-6)
         element[WEIGHT] += weight
