@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from scipy.stats import chi2
+from scipy.stats import chi2, norm
 
 from idc_controller.perception.normal_kernels import least_direction
 from idc_controller.perception.placed_scan import PlacedScan
@@ -202,3 +202,55 @@ def test_gaps_are_voxels_in_the_box_that_were_seen_free_two_voxels_off_all_point
     assert len(found) > 100
     assert {tuple(row) for row in found.tolist()} == {tuple(row) for row in expected.tolist()}
     assert len(standing.gaps(box, 5)) == 5
+
+
+def test_nearest_owners_agree_with_plain_reference():
+    rng = np.random.default_rng(8)
+    standing = StandingMap()
+    for _ in range(5):
+        standing.add(scan_of(returns=rng.uniform(-2.0, 2.0, (30, 3)), origin=(0.0, 0.0, 9.0)))
+    elements = standing.occupied()
+    owners = np.full((standing.element_count, 2), -1)
+    owned = elements.indices[::3]
+    owners[owned, 0], owners[owned, 1] = np.arange(len(owned)), elements.numbers[::3]
+    owners[owned[::5], 1] += 1  # of an element that is no more
+    valid = np.isin(elements.indices, np.setdiff1d(owned, owned[::5]))
+    found = standing.nearest_owners(elements.indices, owners)
+    reach = math.ceil(SETTINGS.bridged_gap / SIZE)
+    apart = elements.voxels[:, None] - elements.voxels[valid]
+    square = np.where((np.abs(apart) <= reach).all(axis=2), (apart**2).sum(axis=2), 10**6)
+    least = np.where(square.min(axis=1) <= reach**2, square.min(axis=1), -1)
+    by_owner = dict(zip(owners[elements.indices[valid], 0].tolist(), elements.voxels[valid].tolist(), strict=True))
+    assert (least < 0).any() and (least > 0).any()
+    for voxel, owner, expected in zip(elements.voxels, found.tolist(), least.tolist(), strict=True):
+        assert (-1 if owner < 0 else ((voxel - by_owner[owner]) ** 2).sum()) == expected
+
+
+def test_covered_bounds_are_moved_by_as_many_sigmas_as_the_scans_about_ask_for():
+    rng = np.random.default_rng(9)
+    standing = StandingMap()
+    for _ in range(40):
+        standing.add(scan_of(returns=rng.normal(size=(3, 3)) * (0.6, 0.6, 0.05), origin=(0.0, 0.0, -8.0)))
+    standing.add(scan_of(returns=[(6.1, 0.1, 0.1)], origin=(6.0, 0.0, -8.0)))
+    elements = standing.occupied()
+    bounds = np.zeros((standing.element_count, 6))
+    standing.cover(elements.indices, bounds)
+    for i, voxel in enumerate(elements.voxels):
+        near = (np.abs(elements.voxels - voxel) <= 1).all(axis=1)
+        hits = elements.hits[near]
+        sigmas = max(-norm.ppf(SETTINGS.uncovered ** (1.0 / min(hits.sum(), SETTINGS.memory))), -1.0)
+        out, middle = sigmas * elements.sigma[i], np.average(elements.means[near], axis=0, weights=hits)
+        low, high = elements.low[i].copy(), elements.high[i].copy()
+        if out >= 0.0:
+            low, high = low - out, high + out
+        else:
+            high = np.where(high > middle, np.maximum(high + out, middle), high)
+            low = np.where(low < middle, np.minimum(low - out, middle), low)
+            crossed = low > high
+            side = np.where(high > middle, high, low)
+            low, high = np.where(crossed, side, low), np.where(crossed, side, high)
+        expected = np.append(low - SETTINGS.tolerance, high + SETTINGS.tolerance)
+        np.testing.assert_allclose(bounds[elements.indices[i]], expected, atol=1e-9)
+    # A single return is covered with more than three standard deviations.
+    lone = elements.indices[elements.voxels[:, 0] == 24]
+    assert np.diff(bounds[lone].reshape(2, 3), axis=0).min() > 6.0 * 0.05

@@ -16,10 +16,11 @@ from scipy.special import ndtri
 from idc_controller.arrays import Array, Cells, Indices, Mask
 from idc_controller.estimation.health.chi_squared import upper_quantile
 from idc_controller.perception import map_query_kernels as queries
-from idc_controller.perception import standing_map_kernels as kernels
 from idc_controller.perception import upright_box_kernels as boxes
+from idc_controller.perception.carving_kernels import carve
 from idc_controller.perception.convex_pieces_kernels import nearest_owners
 from idc_controller.perception.placed_scan import PlacedScan
+from idc_controller.perception.return_kernels import add_returns
 from idc_controller.perception.settings import StandingMapSettings
 from idc_controller.perception.voxel_kernels import (
     BLOCKS,
@@ -91,11 +92,11 @@ class StandingMap:
         v.reserve(origin, returns, free)
         arrays = v.table, v.pages, v.blocks, v.cells, v.links, v.elements, v.counts
         sigmas, number = _sigmas(scan), float(self._scan)
-        kernels.add_returns(
+        add_returns(
             *arrays, origin, returns, taken, sigmas, scan.time, number, s.voxel, s.free_passes, s.settling_time,
             s.tolerance, s.memory, self._chi_squared,
         )  # fmt: skip
-        kernels.carve(
+        carve(
             *arrays, origin, returns, free, sigmas, number, s.voxel, s.free_passes, s.sigmas_beyond,
             s.incidence_min, self._prior, self._evidence, s.memory,
         )  # fmt: skip

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from idc_controller.arrays import Array, Cells, Indices, Links
-from idc_controller.perception.standing_map_kernels import enter_pages, room_for
+from idc_controller.perception.return_kernels import enter_pages, room_for
 from idc_controller.perception.voxel_kernels import BLOCKS, CELLS, COLUMNS, EDGE, PAGE_BLOCKS, PAGES, USED
 
 _FIRST_PAGES, _FIRST_BLOCKS, _FIRST_ELEMENTS = 16, 4096, 4096

@@ -1,0 +1,238 @@
+"""Rays of a scan through the sparse voxels of the standing map, compiled; arrays: see ``voxel_kernels``."""
+
+import math
+
+import numpy as np
+
+from idc_controller.arrays import Array, Cells, Indices, Links
+from idc_controller.compiled import inlined, kernel
+from idc_controller.perception.element_kernels import free_element, halve_memory
+from idc_controller.perception.normal_kernels import surface_normal
+from idc_controller.perception.voxel_kernels import (
+    ARRAYS,
+    CELLS,
+    CHANGE,
+    FREE,
+    FREE_CELLS,
+    GONE,
+    HELD,
+    HELD_CELLS,
+    HITS,
+    LAST_HIT,
+    LAST_PASS,
+    MEAN,
+    PASSES,
+    POINTS,
+    PROVEN,
+    SCATTER,
+    WAY,
+    WEIGHT,
+    block_in_page,
+    block_key,
+    block_of,
+    cell_index,
+    page_key,
+    page_of,
+    voxel,
+)
+
+_ALIKE = math.cos(math.radians(20.0))
+"""Mean cosine between a ray and those that hit a surface from which on it is like them."""
+
+
+@inlined
+def _is_passed(
+    table: Indices, pages: Links, blocks: Indices, links: Links, elements: Array, element: Array, origin: Array,
+    way: Array, length: float, range_variance: float, sigmas: Array, sigmas_beyond: float, incidence: float,
+    normal: Array,
+) -> int:  # fmt: skip
+    """Return whether a ray goes through the place of an element's points and ends beyond.
+
+    1: it does; -1: it does, along their surface, but as the rays went that hit it; 0: neither.
+
+    Args:
+        way: unit vector along the ray (3,); ``length``: to its end (m).
+        range_variance: of the end along the ray (m2).
+        sigmas_beyond: standard deviations by which the end must lie beyond the points.
+        incidence: least cosine between ray and normal of the surface about the points.
+        normal: (3,), to be written to.
+    """
+    along, square = 0.0, 0.0
+    for i in range(3):
+        offset = element[MEAN + i] - origin[i]
+        along += offset * way[i]
+        square += offset * offset
+    if along <= 0.0:
+        return 0
+    weight = element[WEIGHT]
+    xx, xy, xz = element[SCATTER], element[SCATTER + 1], element[SCATTER + 2]
+    yy, yz, zz = element[SCATTER + 3], element[SCATTER + 4], element[SCATTER + 5]
+    depth = (
+        xx * way[0] ** 2 + yy * way[1] ** 2 + zz * way[2] ** 2
+        + 2.0 * (xy * way[0] * way[1] + xz * way[0] * way[2] + yz * way[1] * way[2])
+    ) / weight  # fmt: skip
+    beyond = length - along
+    if beyond <= 0.0 or beyond * beyond <= sigmas_beyond**2 * (range_variance + max(depth, element[POINTS] / weight)):
+        return 0
+    # Within the spread of the points, without what is noise of it, or within the noise of the ray.
+    spread = 1.5 * (max((xx + yy + zz) / weight - depth, 0.0) / 2.0 - element[POINTS] / weight)
+    across = sigmas[1] ** 2 + (sigmas[2] * along) ** 2
+    if square - along * along > max(spread, across):
+        return 0
+    surface_normal(table, pages, blocks, links, elements, element, normal)
+    dot = normal[0] * way[0] + normal[1] * way[1] + normal[2] * way[2]
+    if abs(dot) >= incidence or normal[0] ** 2 + normal[1] ** 2 + normal[2] ** 2 == 0.0:
+        return 1
+    alike = element[WAY] * way[0] + element[WAY + 1] * way[1] + element[WAY + 2] * way[2]
+    return -1 if alike >= _ALIKE * element[POINTS] else 0
+
+
+@inlined
+def _first_side(start: float, way: float, size: float) -> tuple[int, int, float, float]:
+    """Return for one axis: voxel, step, length to the voxel's side along the ray and between sides (m)."""
+    first = voxel(start, size)
+    if abs(way) < 1e-9:
+        return first, 0, math.inf, math.inf
+    if way > 0.0:
+        return first, 1, ((first + 1) * size - start) / way, size / way
+    return first, -1, (first * size - start) / way, -size / way
+
+
+@inlined
+def _sides_before(at: int, step: int) -> int:
+    """Return how many sides of voxels come before the side of the block along one axis."""
+    return 7 - (at & 7) if step > 0 else at & 7
+
+
+@kernel(
+    f"void({ARRAYS}, float64[::1], float64[:, ::1], float64[:, ::1], float64[::1], float64, float64, int64, float64,"
+    " float64, float64[::1], float64[::1], float64)"
+)
+def carve(
+    table: Indices,
+    pages: Links,
+    blocks: Indices,
+    cells: Cells,
+    links: Links,
+    elements: Array,
+    counts: Indices,
+    origin: Array,
+    returns: Array,
+    free: Array,
+    sigmas: Array,
+    scan: float,
+    size: float,
+    free_passes: int,
+    sigmas_beyond: float,
+    incidence: float,
+    prior: Array,
+    evidence: Array,
+    memory: float,
+) -> None:
+    """Count the rays of a scan through the voxels they pass, and free elements that enough scans have passed.
+
+    A ray that has met the voxel of an element is no evidence for free voxels beyond: it may go along its surface.
+    An element is passed at most once a scan, as the error of the pose is common to its rays, and not in a scan that
+    hit it. The run of scans that pass it is compared with what its own record of hits and passes predicts
+    (beta-binomial).
+
+    Args:
+        table, pages, blocks, cells, links, elements, counts: see ``voxel_kernels``; with room enough.
+        origin: place of the sensor (3,).
+        returns: (n, 3), NED (m).
+        free: ends of the rays that returned nothing up to there (m, 3), NED (m).
+        sigmas: standard deviations of range (m), position (m) and attitude (rad).
+        scan: number of the scan.
+        size: edge of a voxel (m).
+        free_passes: rays through a voxel from which on it was seen free.
+        sigmas_beyond: standard deviations by which a ray must end beyond what it passes.
+        incidence: least cosine between a ray that passes through points, and their surface's normal.
+        prior: scans that hit and that pass what stands, before any has told otherwise (2,).
+        evidence: nats of one scan's hit, and most of them; least of one that passes through, and along a surface (4,).
+        memory: scans that an element remembers.
+    """
+    way, normal = np.empty(3), np.empty(3)
+    returned = returns.shape[0]
+    for r in range(returned + free.shape[0]):
+        length = 0.0
+        for i in range(3):
+            way[i] = (returns[r, i] if r < returned else free[r - returned, i]) - origin[i]
+            length += way[i] * way[i]
+        length = math.sqrt(length)
+        if not 0.0 < length < math.inf:
+            continue
+        range_variance = sigmas[1] ** 2 + (sigmas[0] ** 2 if r < returned else 0.0)
+        last = length - sigmas_beyond * math.sqrt(range_variance) if r < returned else length
+        way /= length
+        # Voxels in the order in which the ray leaves them (Amanatides and Woo, 1987): place along it of the next side.
+        x, x_step, x_next, x_apart = _first_side(origin[0], way[0], size)
+        y, y_step, y_next, y_apart = _first_side(origin[1], way[1], size)
+        z, z_step, z_next, z_apart = _first_side(origin[2], way[2], size)
+        key, in_page, page, block, met = -1, -1, -1, -1, False
+        while min(x_next, y_next, z_next) <= last:
+            now = block_key(x, y, z)
+            if now != key:
+                key = now
+                if page_key(x, y, z) != in_page:
+                    in_page, page = page_key(x, y, z), page_of(table, counts, x, y, z)
+                block = pages[page, block_in_page(x, y, z)]
+                if block < 0 and not met:
+                    block = block_of(table, pages, blocks, counts, x, y, z)
+                if block < 0 or (blocks[block, HELD_CELLS] == 0 and (met or blocks[block, FREE_CELLS] == CELLS)):
+                    # Nothing to do in the whole block.
+                    out = min(
+                        x_next + _sides_before(x, x_step) * x_apart if x_step else math.inf,
+                        y_next + _sides_before(y, y_step) * y_apart if y_step else math.inf,
+                        z_next + _sides_before(z, z_step) * z_apart if z_step else math.inf,
+                    )
+                    while x_next <= out:
+                        x += x_step
+                        x_next += x_apart
+                    while y_next <= out:
+                        y += y_step
+                        y_next += y_apart
+                    while z_next <= out:
+                        z += z_step
+                        z_next += z_apart
+                    continue
+            cell = cell_index(x, y, z)
+            value = cells[block, cell]
+            if value & HELD:
+                met = True
+                index = (links[block, cell] >> 8) - 1
+                element = elements[index]
+                passed = 0
+                if element[LAST_HIT] != scan and element[LAST_PASS] != scan:
+                    passed = _is_passed(
+                        table, pages, blocks, links, elements, element, origin, way, length, range_variance, sigmas,
+                        sigmas_beyond, incidence, normal,
+                    )  # fmt: skip
+                if passed:
+                    element[LAST_PASS] = scan
+                    # Along a surface, a ray that misses it is as likely as one that hits it elsewhere.
+                    hits = element[HITS] + (prior[0] if passed > 0 else prior[1])
+                    passes = element[PASSES] + (prior[1] if passed > 0 else prior[0])
+                    element[GONE] += max(math.log((hits + passes) / passes), evidence[2] if passed > 0 else evidence[3])
+                    element[PASSES] += 1.0
+                    # What has appeared where nothing was, and has not lasted, goes as easily as one hit.
+                    most = evidence[1] if element[PROVEN] == 1.0 else evidence[0]
+                    if element[GONE] >= min(element[HITS] * evidence[0], most):
+                        free_element(
+                            table, pages, blocks, cells, links, elements, counts, index, free_passes, free_passes
+                        )
+                    else:
+                        halve_memory(element, memory)
+            elif not met and value < free_passes:
+                cells[block, cell] = value + 1
+                if value + 1 == free_passes:
+                    blocks[block, CHANGE] |= FREE
+                    blocks[block, FREE_CELLS] += 1
+            if x_next <= y_next and x_next <= z_next:
+                x += x_step
+                x_next += x_apart
+            elif y_next <= z_next:
+                y += y_step
+                y_next += y_apart
+            else:
+                z += z_step
+                z_next += z_apart

@@ -1,0 +1,215 @@
+"""Returns of a scan in the sparse voxels of the standing map, compiled; arrays: see ``voxel_kernels``."""
+
+import math
+
+from idc_controller.arrays import Array, Cells, Indices, Links, Mask
+from idc_controller.compiled import inlined, kernel
+from idc_controller.perception.element_kernels import free_element, halve_memory, new_element
+from idc_controller.perception.voxel_kernels import (
+    ARRAYS,
+    BORN,
+    CHANGE,
+    GONE,
+    HIGH,
+    HITS,
+    KEY,
+    LAST_HIT,
+    LOW,
+    MEAN,
+    PAGE_EDGE,
+    PASSED,
+    POINTS,
+    PROVEN,
+    SCATTER,
+    SURFACE,
+    WAY,
+    WEIGHT,
+    block_of,
+    cell_index,
+    element_at,
+    element_voxel,
+    insert_page,
+    key_corner,
+    page_key,
+    voxel,
+)
+
+_NEAR = 2.0
+"""Standard deviations of a return within which it may be one of the points beside its voxel."""
+_RARER, _NOISIER = 8.0, 1.3
+"""Points may be noise of others that were hit by so many times as many scans, at so much smaller variance."""
+
+
+@kernel("UniTuple(int64, 2)(float64[::1], float64[:, ::1], float64[:, ::1], float64)")
+def room_for(origin: Array, returns: Array, free: Array, size: float) -> tuple[int, int]:
+    """Return upper bounds of the blocks and pages that a scan can add, of blocks with edge ``size`` (m).
+
+    ``origin`` (3,), ``returns`` (n, 3) and ends of ``free`` rays (m, 3): see :func:`carve`.
+    """
+    by_rays, by_box, by_pages = 0.0, 1.0, 1.0
+    for axis in range(3):
+        reach = 0.0
+        for ends in (returns, free):
+            for r in range(ends.shape[0]):
+                if abs(ends[r, axis] - origin[axis]) < math.inf:
+                    reach = max(reach, abs(ends[r, axis] - origin[axis]) / size)
+        by_rays += reach * (returns.shape[0] + free.shape[0])
+        by_box *= 2.0 * reach + 4.0
+        by_pages *= 2.0 * reach / PAGE_EDGE + 3.0
+    # Rays enter a block by one of its sides; an element has voxels about it in up to eight blocks.
+    by_rays += 4.0 * free.shape[0] + 12.0 * returns.shape[0]
+    return math.ceil(min(by_rays, by_box)), math.ceil(min(by_rays, by_pages))
+
+
+@kernel("void(int64[:, ::1], int32[:, ::1], int64[:, ::1], int64)")
+def enter_pages(table: Indices, pages: Links, blocks: Indices, count: int) -> None:
+    """Enter the first ``count`` pages into an empty ``table``."""
+    for page in range(count):
+        for block in pages[page]:
+            if block >= 0:
+                key = blocks[block, KEY]
+                x, y, z = key_corner(key, 0), key_corner(key, 1), key_corner(key, 2)
+                insert_page(table, page_key(x, y, z), page)
+                break
+
+
+@inlined
+def _explaining_element(
+    table: Indices, pages: Links, links: Links, elements: Array, x: int, y: int, z: int, point: Array, variance: float
+) -> int:
+    """Return the index of an often-hit element about voxel (x, y, z) whose bounds are near a point, -1 if none is."""
+    nearest, found = _NEAR * _NEAR * variance, -1
+    for i in range(x - 1, x + 2):
+        for j in range(y - 1, y + 2):
+            for k in range(z - 1, z + 2):
+                index = element_at(table, pages, links, i, j, k)
+                if index < 0 or elements[index, HITS] < _RARER or elements[index, PROVEN] == 0.0:
+                    continue
+                square = 0.0
+                for axis in range(3):
+                    low, high = elements[index, LOW + axis], elements[index, HIGH + axis]
+                    square += max(low - point[axis], point[axis] - high, 0.0) ** 2
+                if square <= nearest:
+                    nearest, found = square, index
+    return found
+
+
+@inlined
+def _absorb_noise(
+    table: Indices, pages: Links, blocks: Indices, cells: Cells, links: Links, elements: Array, counts: Indices,
+    element: Array, free_passes: int, chi_squared: float,
+) -> None:  # fmt: skip
+    """Remove elements in the voxels about an element that its surface explains, with the noise of their points.
+
+    Such are less accurate and were hit by much fewer scans: what is there, better scans would have hit as often.
+    """
+    x, y, z = element_voxel(blocks, element)
+    variance = element[POINTS] / element[WEIGHT]
+    for i in range(x - 1, x + 2):
+        for j in range(y - 1, y + 2):
+            for k in range(z - 1, z + 2):
+                index = element_at(table, pages, links, i, j, k)
+                if index < 0 or elements[index, HITS] * _RARER > element[HITS]:
+                    continue
+                other = elements[index, POINTS] / elements[index, WEIGHT]
+                if other < _NOISIER * variance:
+                    continue
+                square = 0.0
+                for axis in range(3):
+                    square += (elements[index, MEAN + axis] - element[MEAN + axis]) ** 2
+                if square <= chi_squared * other:
+                    free_element(table, pages, blocks, cells, links, elements, counts, index, free_passes, 0)
+
+
+@kernel(
+    f"void({ARRAYS}, float64[::1], float64[:, ::1], boolean[::1], float64[::1], float64, float64, float64, int64,"
+    " float64, float64, float64, float64)"
+)
+def add_returns(
+    table: Indices,
+    pages: Links,
+    blocks: Indices,
+    cells: Cells,
+    links: Links,
+    elements: Array,
+    counts: Indices,
+    origin: Array,
+    returns: Array,
+    taken: Mask,
+    sigmas: Array,
+    time: float,
+    scan: float,
+    size: float,
+    free_passes: int,
+    settling: float,
+    tolerance: float,
+    memory: float,
+    chi_squared: float,
+) -> None:
+    """Add the returns of a scan to the elements of their voxels.
+
+    Args:
+        table, pages, blocks, cells, links, elements, counts: see ``voxel_kernels``; with room enough.
+        origin: place of the sensor (3,).
+        returns: (n, 3), NED (m).
+        taken: which of them are added (n,).
+        sigmas: standard deviations of range (m), position (m) and attitude (rad).
+        time, scan: time (s) and number of the scan.
+        size: edge of a voxel (m).
+        free_passes: rays through a voxel from which on it was seen free.
+        settling: time (s) for which points in what was seen free must last to count as standing.
+        tolerance: by which bounds that grow are set beyond the point (m).
+        memory: scans that an element remembers.
+        chi_squared: square of the distance, in standard deviations, up to which noise explains it.
+    """
+    for p in range(returns.shape[0]):
+        square = 0.0
+        for i in range(3):
+            square += (returns[p, i] - origin[i]) ** 2
+        if not (taken[p] and square < math.inf):
+            continue
+        x, y, z = voxel(returns[p, 0], size), voxel(returns[p, 1], size), voxel(returns[p, 2], size)
+        block, cell = block_of(table, pages, blocks, counts, x, y, z), cell_index(x, y, z)
+        variance = sigmas[1] ** 2 + (sigmas[0] ** 2 + 2.0 * sigmas[2] ** 2 * square) / 3.0
+        index = (links[block, cell] >> 8) - 1
+        if index < 0:
+            if links[block, cell] & 255:
+                index = _explaining_element(table, pages, links, elements, x, y, z, returns[p], variance)
+            if index >= 0:
+                # It shows that those are still there, but not where.
+                elements[index, LAST_HIT], elements[index, GONE] = scan, 0.0
+                continue
+            was_free = cells[block, cell] & PASSED >= free_passes
+            index = new_element(table, pages, blocks, cells, links, elements, counts, block, cell)
+            elements[index, BORN], elements[index, PROVEN] = time, 0.0 if was_free else 1.0
+            for i in range(3):
+                elements[index, MEAN + i] = elements[index, LOW + i] = elements[index, HIGH + i] = returns[p, i]
+        element = elements[index]
+        if element[LAST_HIT] != scan:
+            element[LAST_HIT] = scan
+            element[HITS] += 1.0
+            element[GONE] = 0.0
+            halve_memory(element, memory)
+            if time - element[BORN] >= settling:
+                element[PROVEN] = 1.0
+            if element[HITS] >= _RARER and int(element[HITS]) % 8 == 0:
+                _absorb_noise(table, pages, blocks, cells, links, elements, counts, element, free_passes, chi_squared)
+        weight = 1.0 / max(variance, 1e-6)
+        element[WEIGHT] += weight
+        element[POINTS] += 1.0
+        share = weight / element[WEIGHT]
+        column = SCATTER
+        for i in range(3):
+            offset = returns[p, i] - element[MEAN + i]
+            for j in range(i, 3):
+                element[column] += weight * (1.0 - share) * offset * (returns[p, j] - element[MEAN + j])
+                column += 1
+        for i in range(3):
+            element[MEAN + i] += share * (returns[p, i] - element[MEAN + i])
+            element[WAY + i] += (returns[p, i] - origin[i]) / math.sqrt(max(square, 1e-12))
+            if returns[p, i] < element[LOW + i]:
+                element[LOW + i] = returns[p, i] - tolerance
+                blocks[block, CHANGE] |= SURFACE
+            if returns[p, i] > element[HIGH + i]:
+                element[HIGH + i] = returns[p, i] + tolerance
+                blocks[block, CHANGE] |= SURFACE
