@@ -99,7 +99,7 @@ def rays_through(point, count=1):
 
 
 @pytest.mark.parametrize(("hits", "passes"), [(1, 4), (3, 14), (10, 7), (20, 5), (60, 4)])
-def test_voxel_is_freed_by_as_many_scans_as_its_own_record_asks_for(hits, passes):
+def test_voxel_is_freed_by_as_many_scans_as_its_own_record_requires(hits, passes):
     """The more often it was hit, the surer each pass says that it is gone; one hit is undone by four passes."""
     needed = min(hits * SETTINGS.evidence_of_hit, SETTINGS.evidence_max)
     record = SETTINGS.prior_hits + SETTINGS.prior_passes + hits
@@ -205,7 +205,7 @@ def test_map_keeps_what_it_holds_when_its_arrays_grow():
     assert len(standing.occupied().indices) == len(points)
 
 
-def test_returns_that_are_no_numbers_are_left_out():
+def test_returns_that_are_no_numbers_are_rejected():
     standing = StandingMap()
     returns = np.array([[3.0, 0.0, 0.0], [np.nan, 0.0, 0.0], [np.inf, 0.0, 0.0]])
     standing.add(PlacedScan(0.0, np.zeros(3), returns, 0.05, 0.03, 0.009))

@@ -226,7 +226,7 @@ def test_nearest_owners_agree_with_plain_reference():
         assert (-1 if owner < 0 else ((voxel - by_owner[owner]) ** 2).sum()) == expected
 
 
-def test_covered_bounds_are_moved_by_as_many_sigmas_as_the_scans_about_ask_for():
+def test_covered_bounds_are_moved_by_as_many_sigmas_as_the_scans_about_require():
     rng = np.random.default_rng(9)
     standing = StandingMap()
     for _ in range(40):

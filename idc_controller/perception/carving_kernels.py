@@ -137,7 +137,7 @@ def carve(
     (beta-binomial).
 
     Args:
-        table, pages, blocks, cells, links, elements, counts: see ``voxel_kernels``; with room enough.
+        table, pages, blocks, cells, links, elements, counts: see ``voxel_kernels``; of enough capacity.
         origin: place of the sensor (3,).
         returns: (n, 3), NED (m).
         free: ends of the rays that returned nothing up to there (m, 3), NED (m).

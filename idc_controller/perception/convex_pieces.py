@@ -41,7 +41,7 @@ class Piece:
     """See :mod:`idc_controller.perception.upright_box_kernels` (8,)."""
     hits: float
     """Scans that had hit them when the box was computed from all of them."""
-    asked: int = 0
+    voxels_tried: int = 0
     """Voxels when merging was tried last."""
     tried: dict[int, int] = field(default_factory=dict)
     """Voxels of both when it could not be merged with another piece."""
@@ -222,7 +222,7 @@ class ConvexPieces:
         first, *others = cut(standing, self._bounds, members)
         piece.members, piece.numbers = _NOWHERE, _NOWHERE
         self._pieces.place(piece, first.box)
-        piece.hits, piece.asked = standing.hits(first.members), 0
+        piece.hits, piece.voxels_tried = standing.hits(first.members), 0
         self._own(piece, first.members, standing.numbers(first.members))
         self._changed(piece)
         for body in others:
@@ -240,7 +240,7 @@ class ConvexPieces:
 
     def _changed(self, piece: Piece) -> None:
         """Try to merge a piece if it has grown enough since that was tried last."""
-        if len(piece.members) >= _LARGER * piece.asked and piece.number not in self._waiting:
+        if len(piece.members) >= _LARGER * piece.voxels_tried and piece.number not in self._waiting:
             self._waiting.append(piece.number)
 
     def _merge(self, standing: StandingMap) -> None:
@@ -250,7 +250,7 @@ class ConvexPieces:
             piece = self._pieces.get(self._waiting.popleft())
             if piece is None:
                 continue
-            piece.asked = len(piece.members)
+            piece.voxels_tried = len(piece.members)
             for other in self._pieces.near(piece, standing.settings.bridged_gap):
                 voxels = len(piece.members) + len(other.members)
                 if voxels < _LARGER * piece.tried.get(other.number, 0):
@@ -269,7 +269,7 @@ class ConvexPieces:
         self._own(older, younger.members, younger.numbers)
         self._pieces.place(older, box)
         older.hits += younger.hits
-        older.asked = 0
+        older.voxels_tried = 0
         older.tried.clear()
         self._changed(older)
         return True

@@ -34,15 +34,15 @@ def cut(standing: StandingMap, bounds: Array, members: Indices) -> list[Body]:
         part = waiting.pop()
         box = fitted_box(bounds, part)
         gaps = standing.gaps(box, _MOST_GAPS)
-        halves = _halves(bounds[part], box, gaps, standing.settings.voxel) if len(gaps) else ()
-        if halves:
-            waiting += [part[half] for half in halves]
+        parts = _split(bounds[part], box, gaps, standing.settings.voxel) if len(gaps) else ()
+        if parts:
+            waiting += [part[half] for half in parts]
         else:
             found.append(Body(part, box))
     return sorted(found, key=lambda body: len(body.members), reverse=True)
 
 
-def _halves(bounds: Array, box: Array, gaps: Array, voxel: float) -> tuple[Indices, ...]:
+def _split(bounds: Array, box: Array, gaps: Array, voxel: float) -> tuple[Indices, ...]:
     """Return two parts of points with ``bounds`` (n, 6), on the two sides of a plane beside or amid ``gaps`` (m, 3).
 
     Of the planes across the box's axes, it is the one that leaves the smallest boxes; none if all points are in one
@@ -52,7 +52,7 @@ def _halves(bounds: Array, box: Array, gaps: Array, voxel: float) -> tuple[Indic
     places = ((bounds[:, :3] + bounds[:, 3:]) / 2.0 - box[:3]) @ axes.T
     empty = (gaps - box[:3]) @ axes.T
     best = np.inf
-    halves: tuple[Indices, ...] = ()
+    parts: tuple[Indices, ...] = ()
     for axis in range(3):
         own, gap = places[:, axis], empty[:, axis]
         for level in (gap.min() - voxel / 2.0, np.median(gap), gap.max() + voxel / 2.0, own.mean()):
@@ -61,5 +61,5 @@ def _halves(bounds: Array, box: Array, gaps: Array, voxel: float) -> tuple[Indic
                 continue
             volume = sum(float(np.prod(np.ptp(places[side], axis=0) + voxel)) for side in (below, ~below))
             if volume < best:
-                best, halves = volume, (np.flatnonzero(below), np.flatnonzero(~below))
-    return halves
+                best, parts = volume, (np.flatnonzero(below), np.flatnonzero(~below))
+    return parts

@@ -41,7 +41,7 @@ _RARER, _NOISIER = 8.0, 1.3
 
 
 @kernel("UniTuple(int64, 2)(float64[::1], float64[:, ::1], float64[:, ::1], float64)")
-def room_for(origin: Array, returns: Array, free: Array, size: float) -> tuple[int, int]:
+def capacity_for(origin: Array, returns: Array, free: Array, size: float) -> tuple[int, int]:
     """Return upper bounds of the blocks and pages that a scan can add, of blocks with edge ``size`` (m).
 
     ``origin`` (3,), ``returns`` (n, 3) and ends of ``free`` rays (m, 3): see :func:`carve`.
@@ -149,7 +149,7 @@ def add_returns(
     """Add the returns of a scan to the elements of their voxels.
 
     Args:
-        table, pages, blocks, cells, links, elements, counts: see ``voxel_kernels``; with room enough.
+        table, pages, blocks, cells, links, elements, counts: see ``voxel_kernels``; of enough capacity.
         origin: place of the sensor (3,).
         returns: (n, 3), NED (m).
         taken: which of them are added (n,).

@@ -135,7 +135,7 @@ def cover_points(
     """Write the bounds within which the true surface in the voxels of some elements lies into ``bounds`` (E, 6).
 
     Bounds of the measured points, moved outwards by as many standard deviations as the number of scans that hit the
-    surface there asks for: inwards, towards the mean, where many scans make it certain that noise has spread them.
+    surface there requires: inwards, towards the mean, where many scans make it certain that noise has spread them.
 
     Args:
         table, pages, blocks, links, elements: see ``voxel_kernels``.

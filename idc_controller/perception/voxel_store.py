@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from idc_controller.arrays import Array, Cells, Indices, Links
-from idc_controller.perception.return_kernels import enter_pages, room_for
+from idc_controller.perception.return_kernels import capacity_for, enter_pages
 from idc_controller.perception.voxel_kernels import BLOCKS, CELLS, COLUMNS, EDGE, PAGE_BLOCKS, PAGES, USED
 
 _FIRST_PAGES, _FIRST_BLOCKS, _FIRST_ELEMENTS = 16, 4096, 4096
@@ -27,11 +27,11 @@ class VoxelStore:
         self.counts: Indices = np.zeros(5, dtype=np.int64)
 
     def reserve(self, origin: Array, returns: Array, free: Array) -> None:
-        """Make room for all that a scan from ``origin`` (3,) can add.
+        """Reserve capacity for all that a scan from ``origin`` (3,) can add.
 
         ``returns`` (n, 3) and ends of ``free`` rays (m, 3), NED (m).
         """
-        blocks, pages = room_for(origin, returns, free, self._block)
+        blocks, pages = capacity_for(origin, returns, free, self._block)
         count = int(self.counts[PAGES])
         if count + pages > len(self.pages):
             self.pages = _grown(self.pages, count + pages, -1)
