@@ -122,7 +122,7 @@ def test_payload_tilt_limit_binds_before_it_is_reached():
     loose = ModelPredictiveController(MODEL, MpcSettings(tuning=MpcTuning(payload_tilt_limit_deg=80.0)))
     peaks = {}
     for name, mpc in (("limited", DEFAULT), ("loose", loose)):
-        error = error_of(Theta=(np.radians(3.0), 0.0, 0.0), omega=(0.9, 0.0, 0.0))
+        error = error_of(Theta=(np.radians(3.0), 0.0, 0.0), omega=(1.5, 0.0, 0.0))
         peak = 0.0
         for _ in range(40):
             error = next_error(mpc, error)

@@ -65,7 +65,7 @@ def test_obstacle_is_avoided_and_mission_completed(name):
     check_arrived(flown)
     check_smooth(flown)
     # Plans are made at the same times, so none is constrained by the one before it.
-    assert max(r.slack for r in flown.reports) < 1e-6
+    assert max(r.slack for r in flown.reports) < 1e-4  # m: the plan begins with the crackle in force
     assert not any(r.infeasible for r in flown.reports)
     assert any(r.active for r in flown.reports)
     assert {r.nearest for r in flown.reports} == {"", CROSSING[name][0][0]}

@@ -274,9 +274,9 @@ def test_holding_for_ever_and_stopping_then_flying_home():
 
 def test_stop_is_prompt():
     trajectory = planned([Leg([40, 0, -5], 1.5)])
-    assert trajectory.stop(15.0).end - 15.0 < 3.0
+    assert trajectory.stop(15.0).end - 15.0 < 3.3  # of which 0.3 s are for the limit of the crackle
     slow = planned([Leg([10, 0, -5], 0.3)])
-    assert slow.stop(15.0).end - 15.0 < 2.2
+    assert slow.stop(15.0).end - 15.0 < 2.6
 
 
 @pytest.mark.parametrize(

@@ -153,6 +153,9 @@ class MotionConfig(SettingsTable):
     )
     corner: float = setting(CORNER, "m", "distance within which a waypoint without hold is passed", gt=0.0)
     climb_speed: float = setting(1.0, "m/s", "vertical speed of take-off and descent", gt=0.0)
+    climb_crackle: float = setting(
+        60.0, "m/s5", "crackle of climb and landing: they tilt no UAV, and a slow touch-down bounces", gt=0.0
+    )
     landing_speed: float = setting(0.3, "m/s", "vertical speed at touch-down", gt=0.0)
     curve_speed: float = setting(5.0, "m/s", "speed on figure eights, which turn all the time", gt=0.0)
     curve_acceleration: float = setting(3.5, "m/s2", "acceleration on figure eights", gt=0.0)

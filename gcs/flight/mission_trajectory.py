@@ -30,7 +30,7 @@ class MissionTrajectory:
         self.landing_from = math.inf
         """Time at which the final descent begins (s); inf while that is not known."""
         climb, legs = self._split(mission, position)
-        up = WaypointTrajectory(position, climb, self._limits(self._motion.climb_speed), start=start)
+        up = WaypointTrajectory(position, climb, self._vertical_limits(), start=start)
         self._climb: Trajectory | None = up
         along = up.then(lambda time, here: self._flown(mission, legs, time, here))
         self.trajectory: Trajectory = along.then(self._land)
@@ -126,12 +126,16 @@ class MissionTrajectory:
         self.landing_from = time
         slow = np.array([here[0], here[1], self._ground - self._settings.slow_height])
         touch = np.array([here[0], here[1], self._ground + self._settings.landing_overshoot])
-        limits = self._limits(self._motion.climb_speed)
+        limits = self._vertical_limits()
         last = paths.Leg(touch, self._motion.landing_speed)
         if here[2] >= slow[2] - self._settings.slow_margin:
             return WaypointTrajectory(here, [last], limits, start=time)
         down = WaypointTrajectory(here, [paths.Leg(slow, self._motion.climb_speed)], limits, start=time)
         return down.then(lambda t, low: WaypointTrajectory(low, [last], limits, start=t))
+
+    def _vertical_limits(self) -> Limits:
+        m = self._motion
+        return Limits(m.climb_speed, m.acceleration, m.jerk, m.snap, m.climb_crackle)
 
     def _limits(self, speed: float) -> Limits:
         m = self._motion

@@ -60,7 +60,7 @@ class ShapedFigure:
 def shaped_figure(duration: float) -> ShapedFigure:
     """Return a climb, then ``duration`` (s) at full rate, within the limits of the system file."""
     motion = configuration().motion
-    climb = Limits(motion.climb_speed, motion.acceleration, motion.jerk, motion.snap, motion.crackle)
+    climb = Limits(motion.climb_speed, motion.acceleration, motion.jerk, motion.snap, motion.climb_crackle)
     curve = Limits(motion.curve_speed, motion.curve_acceleration, motion.curve_jerk, motion.curve_snap)
     up = WaypointTrajectory([0.0, 0.0, 0.0], [Leg(np.array([0.0, 0.0, -ALTITUDE]), motion.climb_speed)], climb)
     up.position(ALTITUDE / motion.climb_speed + 20.0)  # its end is known only after a sample beyond it
