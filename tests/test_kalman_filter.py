@@ -1,4 +1,4 @@
-"""Kalman filter: blocks, Cholesky factor, sparse rows and compiled kernels against filterpy and plain numpy."""
+"""Kalman filter: blocks, one row after the other, sparse rows and compiled kernels against filterpy and plain numpy."""
 
 from dataclasses import replace
 
@@ -48,14 +48,14 @@ def corrected(seed, P, variance):
     rng, m = np.random.default_rng(seed), len(variance)
     compiled, plain = both(rng, P)
     rows, y = sparse_rows(rng, m, len(P)), rng.standard_normal(m)
-    squared = compiled.correct(compiled.innovation(y, rows), variance)
+    squared = compiled.correct(compiled.innovation(y, rows, np.zeros(1, dtype=int), np.array([m])), variance)
     plain.update(y, R=np.diag(variance), H=rows.dense(len(P)))
     assert squared == pytest.approx(plain.y @ plain.SI @ plain.y, rel=1e-10)
     return compiled, plain
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_correction_by_cholesky_factor_equals_filterpys_update(seed):
+def test_correction_by_one_row_after_the_other_equals_filterpys_update(seed):
     rng = np.random.default_rng(seed)
     variance = 10.0 ** rng.uniform(-2.0, 1.0, rng.integers(1, 25))
     compiled, plain = corrected(seed, positive_definite(rng, N_STATES), variance)
@@ -78,15 +78,17 @@ def test_correction_without_positive_definite_covariance_is_filterpys():
 
 @pytest.mark.parametrize("seed", range(5))
 def test_innovation_and_its_subset_equal_dense_products(seed):
-    rng, m = np.random.default_rng(seed), 12
+    rng, sizes = np.random.default_rng(seed), np.array([6, 4, 2])
+    m, starts = sizes.sum(), np.cumsum(sizes) - sizes
     filter, _ = both(rng, positive_definite(rng, N_STATES))
     rows, y, which = sparse_rows(rng, m, N_STATES), rng.standard_normal(m), rng.random(m) < 0.5
-    innovation, H = filter.innovation(y, rows), rows.dense(N_STATES)
+    innovation, H = filter.innovation(y, rows, starts, sizes), rows.dense(N_STATES)
+    of_one = np.kron(np.eye(3), np.ones((6, 6)))[np.ix_(*2 * [np.r_[:6, 6:10, 12:14]])]
     assert innovation.subset(np.ones(m, dtype=bool)) is innovation
-    for part, kept in ((innovation, H), (innovation.subset(which), H[which])):
-        assert part.cross == pytest.approx(kept @ filter.P, rel=1e-12, abs=1e-12)
-        assert part.covariance == pytest.approx(kept @ filter.P @ kept.T, rel=1e-12, abs=1e-12)
-    assert innovation.residual == pytest.approx(y - H @ filter.x, rel=1e-12, abs=1e-12)
+    for part, kept in ((innovation, np.full(m, True)), (innovation.subset(which), which)):
+        expected = (of_one * (H @ filter.P @ H.T))[np.ix_(kept, kept)]
+        assert part.covariance == pytest.approx(expected, rel=1e-12, abs=1e-12)
+        assert part.residual == pytest.approx((y - H @ filter.x)[kept], rel=1e-12, abs=1e-12)
 
 
 def van_loan(process, densities, interval_us, force_scale):

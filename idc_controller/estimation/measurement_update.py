@@ -48,7 +48,7 @@ class MeasurementUpdate:
         if health.isolated_groups:
             samples = observation.samples([health.usable(measurement) for measurement in measurements])
         y, rows = model.observe(observation, samples, flat, k)
-        innovation = filter.innovation(y, rows)
+        innovation = filter.innovation(y, rows, whole.starts, whole.sizes)
         present = health.usable_rows(whole, innovation)
         if not np.count_nonzero(present):
             return None
@@ -58,7 +58,7 @@ class MeasurementUpdate:
         reaction = adaptation.react(moment.time, keys, test) if adapt else Reaction.NONE
         if reaction is Reaction.COVARIANCE_RESET:
             filter.inflate(filter.process.covariance_reset(filter.P, self._settings.reset))
-            innovation = filter.innovation(y, rows).subset(present)
+            innovation = filter.innovation(y, rows, whole.starts, whole.sizes).subset(present)
         if reaction is not Reaction.NONE:
             test = self._gate.test(innovation, stack, adaptation.measurement_scale)
         accepted = test.accepted_rows

@@ -101,9 +101,12 @@ class ErrorStateFilter:
         """Add ``added`` (n, n) to the covariance."""
         self._kf.P = self._kf.P + added
 
-    def innovation(self, y: Array, rows: SparseRows) -> Innovation:
-        """Return the innovation of the measurements ``y`` (m,), less reference, that ``rows`` observe."""
-        return self._kf.innovation(y, rows)
+    def innovation(self, y: Array, rows: SparseRows, starts: Indices, sizes: Indices) -> Innovation:
+        """Return the innovation of the measurements ``y`` (m,), less reference, that ``rows`` observe.
+
+        ``starts``, ``sizes``: first row and number of rows of each (K,).
+        """
+        return self._kf.innovation(y, rows, starts, sizes)
 
     def update(self, innovation: Innovation, variance: Array, measured: Indices) -> float:
         """Correct by measurements and return their normalised innovation squared.
