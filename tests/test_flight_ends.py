@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from flight_in_process import InProcessFlight, short_figure, truth_of
+from flight_in_process import InProcessFlight, address_of, short_figure, truth_of
 from programs import PATIENCE, GcsProcess, addresses_of, base_port, swarm_process
 from pymavlink import mavutil
 
@@ -181,12 +181,8 @@ def test_vehicle_that_never_answers_is_refused(tmp_path):
 
 
 def test_vehicle_at_the_address_of_another_is_refused(tmp_path):
-    with InProcessFlight(short_figure(tmp_path), tmp_path / "run") as flight:
-        first, second, *_ = flight.station.links
-        first.address, second.address = second.address, first.address
-        flight.station.router._by_address = {
-            (link.address, link.system_id): i for i, link in enumerate(flight.station.links)
-        }
+    addresses = [address_of(system_id) for system_id in (2, 1, 3, 4)]
+    with InProcessFlight(short_figure(tmp_path), tmp_path / "run", addresses=addresses) as flight:
         flight.fly()
         assert flight.flight.reason == "vehicle 1 does not answer at 127.0.0.1:14541: vehicle 2 does"
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 import enum
 import json
 import math
 import multiprocessing
 import os
+import resource
 import struct
+from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -228,29 +231,22 @@ def test_absent_folder_is_refused(tmp_path) -> None:
         TableWriter(tmp_path / "absent" / "a.csv", ("a",))
 
 
-class FullDisk:
-    """Takes so many bytes, then fails as a full disk does: some of the record is written, the rest is not."""
-
-    def __init__(self, file, capacity: int) -> None:
-        self._file, self._capacity, self.closed = file, capacity, False
-
-    def write(self, data) -> int:
-        if self._capacity == 0:
-            raise OSError(28, "No space left on device")
-        taken = bytes(data[: self._capacity])
-        self._capacity -= len(taken)
-        return self._file.write(taken)
-
-    def close(self) -> None:
-        self._file.close()
-        self.closed = True
+@contextlib.contextmanager
+def file_size_limit(size: int) -> Iterator[None]:
+    """Let files grow to ``size`` bytes: as on a full disk, some of a record is written, the rest is not."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
 
 def test_full_disk_leaves_whole_records_and_no_exception(tmp_path) -> None:
     file = AppendOnlyFile(tmp_path / "a")
-    file._file = FullDisk(file._file, capacity=8)
-    for _ in range(3):
-        file.append(b"12345\n")
+    with file_size_limit(8):
+        for _ in range(3):
+            file.append(b"12345\n")
     assert isinstance(file.error, OSError)
     file.close()
     assert (tmp_path / "a").read_bytes() == b"12345\n"
