@@ -56,18 +56,18 @@ class ErrorStateFilter:
 
     def __init__(self, process: ProcessModel) -> None:
         self.process = process
-        self._kf = StructuredKalmanFilter(dim_x=process.size, dim_z=1)
+        self._kf = StructuredKalmanFilter(process.size)
         self._nominal = np.zeros((1, process.size))
 
     @property
     def x(self) -> Array:
         """Error state (n,)."""
-        return np.asarray(self._kf.x)
+        return self._kf.x
 
     @property
     def P(self) -> Array:
         """Covariance (n, n)."""
-        return np.asarray(self._kf.P)
+        return self._kf.P
 
     def start(self, x: Array, P: Array, interval: PropagationInterval) -> None:
         """Begin an ``interval`` from the absolute state ``x`` (n,) with covariance ``P`` (n, n)."""
