@@ -63,7 +63,8 @@ def estimated(**errors):
     for part, error in errors.items():
         x[getattr(LAYOUT, part)] += error
     fields = {"force": np.zeros(3), "uav_force": np.zeros((N, 3)), "mass_excess": 0.0} | own
-    return Estimate(5.0, x, covariance=np.zeros((LAYOUT.size + 2 * N + 4,) * 2), **fields)
+    nothing = {"force_covariance": np.zeros((3, 3)), "predict_covariance": lambda: np.zeros((LAYOUT.size + 12,) * 2)}
+    return Estimate(5.0, x, **nothing, **fields)
 
 
 # Telemetry -> measurement

@@ -136,7 +136,9 @@ def test_propagation_by_blocks_equals_filterpys_prediction(vehicles, is_changed)
     assert (F[n:, n:] == np.eye(process.size - n)).all()
     assert (B[:n] == B_k).all()
     u, change, probability = rng.standard_normal(3 * vehicles), rng.standard_normal(3 * vehicles), rng.random(vehicles)
+    alone = transition.state(compiled.x, direction, u)
     compiled.propagate(transition, direction, u, Q, change if is_changed else np.zeros(0), probability)
+    assert (alone == compiled.x).all()
     # The tilts of one vehicle are lost together, its thrust by itself.
     error = is_changed * B * (change * np.sqrt(np.concatenate([np.repeat(probability, 2), probability])))
     tilts, thrusts = error[:, : 2 * vehicles], error[:, 2 * vehicles :]

@@ -239,10 +239,8 @@ class _ModelMismatch:
             step.raise_alarm("team", MonitorAlarm.SENSOR_NOISE, text)
         if step.steady and adaptation.is_at_limit:
             step.raise_alarm("payload", MonitorAlarm.PROCESS_NOISE)
-        n, force = len(estimate.x), estimate.force
-        covariance = estimate.covariance[n : n + 3, n : n + 3]
-        if normalised_square(force, covariance) > self._force_limit:
-            text = " ".join(f"{f:.1f}" for f in force) + " N north east down"
+        if normalised_square(estimate.force, estimate.force_covariance) > self._force_limit:
+            text = " ".join(f"{f:.1f}" for f in estimate.force) + " N north east down"
             step.raise_alarm("payload", MonitorAlarm.DISTURBANCE_FORCE, text)
 
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from idc_controller.arrays import Array, Indices, Mask
-from idc_controller.estimation.propagation_kernels import propagated
+from idc_controller.estimation.propagation_kernels import propagated, propagated_state
 from idc_controller.estimation.update_kernels import corrected, predicted
 
 _CANCELLED = 1e-6
@@ -66,6 +66,10 @@ class Transition(NamedTuple):
     sparse: SparseRows
     """The others, whose elements are in the last n - d columns."""
     B: Array
+
+    def state(self, x: Array, direction: Array, u: Array) -> Array:
+        """Return the state (n,) after ``x`` (n,) under the input ``u`` (3 N,); ``direction``: see :meth:`F`."""
+        return propagated_state(x, self.dense, self.push, direction, *self.sparse, self.B, u)
 
     def F(self, direction: Array) -> Array:
         """Return the transition matrix (n, n), where ``direction`` (3,) is the force for one unit of the last state."""

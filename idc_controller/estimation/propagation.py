@@ -1,6 +1,7 @@
 """Propagation of the filter's state from its last update to the time of the next set-points."""
 
 import math
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -50,6 +51,11 @@ class PropagationInterval:
         """Return the duration from time ``k`` to the next (us)."""
         return max(round((self.times[k + 1] - self.times[k]) * 1e6), 1)
 
+    def input(self, k: int) -> Array:
+        """Return the set-points in force less the reference's (3 N,) from time ``k`` to the next."""
+        u = self.setpoints[k].u
+        return np.zeros(self.u.shape[1]) if u is None else u - self.u[k]
+
 
 class ErrorStateFilter:
     """Kalman filter on the error about the exact reference of one propagation interval after the other."""
@@ -80,13 +86,20 @@ class ErrorStateFilter:
 
     def predict(self, interval: PropagationInterval, k: int, force_scale: float) -> None:
         """Propagate from time ``k`` to the next under the set-points in force; ``force_scale``: of process noise."""
-        u, change, probability = interval.setpoints[k]
-        delta_u = np.zeros(self.process.layout.inputs) if u is None else u - interval.u[k]
+        _, change, probability = interval.setpoints[k]
         duration = interval.duration_us(k)
         self._kf.propagate(
-            self.process.transition(duration), interval.force_of_mass[k], delta_u,
+            self.process.transition(duration), interval.force_of_mass[k], interval.input(k),
             self.process.noise(duration, force_scale), _NONE if change is None else change, probability,
         )  # fmt: skip
+
+    def state_ahead(self, interval: PropagationInterval, k: int) -> Array:
+        """Return the absolute state (n,) at the end of the interval from that at time ``k``, which remains."""
+        x = self._kf.x
+        for later in range(k, len(interval.times) - 1):
+            transition = self.process.transition(interval.duration_us(later))
+            x = transition.state(x, interval.force_of_mass[later], interval.input(later))
+        return np.asarray(x + self._nominal[-1])
 
     @property
     def is_finite(self) -> bool:
@@ -119,3 +132,33 @@ class ErrorStateFilter:
         squared = self._kf.correct(innovation, variance)
         self.process.add_per_vehicle_noise(self._kf.P, measured)
         return squared
+
+
+@dataclass(frozen=True, eq=False)
+class Outlook:
+    """Covariance at the end of an ``interval``, predicted only as far as it is asked for."""
+
+    process: ProcessModel
+    interval: PropagationInterval
+    k: int
+    """Index of the last time that was filtered."""
+    P: Array
+    """Covariance there (n, n)."""
+    force_scale: float
+    """Of process noise."""
+
+    def force_covariance(self) -> Array:
+        """Return the covariance (3, 3) of the force on the payload, which nothing but its own noise changes."""
+        force = self.process.force
+        covariance = self.P[force, force]
+        for k in range(self.k, len(self.interval.times) - 1):
+            covariance = covariance + self.process.noise(self.interval.duration_us(k), self.force_scale)[force, force]
+        return covariance
+
+    def covariance(self) -> Array:
+        """Return the covariance (n, n) of the whole state."""
+        filter = ErrorStateFilter(self.process)
+        filter.start(self.interval.nominal[0], self.P, self.interval)
+        for k in range(self.k, len(self.interval.times) - 1):
+            filter.predict(self.interval, k, self.force_scale)
+        return filter.P

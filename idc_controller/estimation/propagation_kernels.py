@@ -1,14 +1,44 @@
-"""Compiled kernel of the filter's propagation."""
+"""Compiled kernels of the filter's propagation."""
 
 import numpy as np
 
 from idc_controller.arrays import Array, Indices
-from idc_controller.compiled import kernel
+from idc_controller.compiled import inlined, kernel
 
 _VECTOR, _MATRIX, _COLUMNS = (
     f"Array({of}, {axes}, 'C', readonly=True)" for of, axes in (("float64", 1), ("float64", 2), ("int64", 2))
 )
 """Types of arrays that are only read."""
+
+
+@inlined
+def _dense_rows(dense: Array, push: Array, direction: Array) -> Array:
+    """Return the first rows of F (d, n), see :func:`propagated`."""
+    first = dense.copy()
+    for r in range(len(dense)):
+        first[r, -1] = push[r, 0] * direction[0] + push[r, 1] * direction[1] + push[r, 2] * direction[2]
+    return first
+
+
+@inlined
+def _state(x: Array, first: Array, columns: Indices, coefficients: Array, B: Array, u: Array) -> Array:
+    """Return F x + B u (n,), see :func:`propagated`; ``first``: rows of F (d, n)."""
+    d = len(first)
+    result: Array = np.dot(B, u)
+    result[:d] += np.dot(first, x)
+    for r in range(len(columns)):
+        for a in range(columns.shape[1]):
+            if coefficients[r, a] != 0.0:
+                result[d + r] += coefficients[r, a] * x[columns[r, a]]
+    return result
+
+
+@kernel(f"float64[::1]({_VECTOR}, {_MATRIX}, {_MATRIX}, {_VECTOR}, {_COLUMNS}, {_MATRIX}, {_MATRIX}, {_VECTOR})")
+def propagated_state(
+    x: Array, dense: Array, push: Array, direction: Array, columns: Indices, coefficients: Array, B: Array, u: Array
+) -> Array:
+    """Return the state of :func:`propagated` alone (n,)."""
+    return _state(x, _dense_rows(dense, push, direction), columns, coefficients, B, u)
 
 
 @kernel(
@@ -37,11 +67,8 @@ def propagated(
         probability: with which each vehicle does (N,).
     """
     n, d, W = len(x), len(dense), columns.shape[1]
-    first = dense.copy()
-    for r in range(d):
-        first[r, n - 1] = push[r, 0] * direction[0] + push[r, 1] * direction[1] + push[r, 2] * direction[2]
-    result = np.dot(B, u)
-    result[:d] += np.dot(first, x)
+    first = _dense_rows(dense, push, direction)
+    result = _state(x, first, columns, coefficients, B, u)
     covariance = np.empty((n, n))
     top = np.dot(first, P)
     covariance[:d, :d] = np.dot(top, first.T)
@@ -51,7 +78,6 @@ def propagated(
         for a in range(W):
             weight, column = coefficients[r, a], columns[r, a]
             if weight != 0.0:
-                result[d + r] += weight * x[column]
                 for c in range(d, n):
                     row[c] += weight * P[column, c]
         for o in range(d):
