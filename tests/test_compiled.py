@@ -29,6 +29,15 @@ def moved(x, by=1.0):
 def length(x):
     return moved(_longer(x)) + OFFSET + constants.WIDTHS[1]
 """
+CALLING_KERNELS = """
+from idc_controller.compiled import kernel
+from lengths.length_kernels import length
+
+
+@kernel("float64(float64, float64)")
+def area(x, y):
+    return length(x) * length(y) + FACTOR
+"""
 CONSTANTS = "OFFSET = 10.0\nWIDTHS = (0.0, 100.0)\n"
 FUNCTIONS = "def longer(x):\n    return 2.0 * x\n"
 
@@ -57,6 +66,20 @@ def imported(tmp_path, monkeypatch):
     yield load
     for name in [name for name in sys.modules if name.partition(".")[0] == "lengths"]:
         del sys.modules[name]
+
+
+@pytest.fixture
+def imported_caller(imported, tmp_path):
+    """Import a kernel that calls another one, with another constant in it each time."""
+
+    def load(factor):
+        text = CALLING_KERNELS.replace("FACTOR", repr(factor))
+        (tmp_path / "lengths" / "calling_kernels.py").write_text(text)
+        imported()
+        importlib.invalidate_caches()
+        return importlib.import_module("lengths.calling_kernels")
+
+    return load
 
 
 def is_compiled_anew(kernel):
@@ -91,6 +114,14 @@ def test_a_change_of_what_a_kernel_calls_or_names_is_followed_and_taken_back(
     path.write_text(source)
     assert not is_compiled_anew(length := imported())
     assert length(1.0) == 113.0
+
+
+def test_a_kernel_from_disk_is_compiled_into_one_that_calls_it(imported_caller):
+    assert imported_caller(1.0).area(1.0, 2.0) == 113.0 * 115.0 + 1.0
+    module = imported_caller(2.0)
+    assert is_compiled_anew(module.area)
+    assert not is_compiled_anew(module.length)
+    assert module.area(1.0, 2.0) == 113.0 * 115.0 + 2.0
 
 
 def test_a_change_of_something_else_compiles_nothing(imported, tmp_path):
