@@ -15,6 +15,8 @@ from gcs.mavlink.id_check import SystemIdCheck
 from gcs.mavlink.messages import Received
 from gcs.mavlink.telemetry import detections, measurement, setpoint_flown
 from gcs.mavlink.vehicle_link import VehicleLink
+from idc_controller.estimation.measurements import Measurement
+from idc_controller.perception.obstacle_map import ObstacleMap
 
 _SETPOINT, _DETECTION = mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET, mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D
 _STAMPED = frozenset(
@@ -36,6 +38,7 @@ class TelemetryRouter:
     ) -> None:
         self._codec, self._flight, self._clock, self._id_check = codec, flight, clock, id_check
         self._clock_settled = settings.clock_settled
+        self._unread = codec.unread
         self._links = flight.system.team.links
         self._by_address: dict[tuple[Address, int], int] = {
             (link.address, link.system_id): i for i, link in enumerate(self._links) if link.address is not None
@@ -45,27 +48,31 @@ class TelemetryRouter:
 
     def receive(self, datagram: bytes, sender: Address, now: float) -> bool:
         """Take a datagram; return whether it is from a vehicle of this flight."""
-        unread = self._codec.unread
         messages = self._codec.read(datagram)
-        if self._codec.unread > unread and (link := self._link_at(sender)) is not None:
-            link.statistics.damaged += 1
-        known = False
+        if (unread := self._codec.unread) > self._unread:
+            self._unread = unread
+            if (at_address := self._link_at(sender)) is not None:
+                at_address.statistics.damaged += 1
         stamped: dict[int, list[Received]] = {}
+        system = index = None
         for received in messages:
-            index = self._by_address.get((sender, received.system))
-            if index is None:
-                index = self._new_vehicle(received, sender)
-            if index is None:
-                continue
-            known = True
+            if index is None or received.system != system:
+                system = received.system
+                index = self._by_address.get((sender, system))
+                if index is None:
+                    index = self._new_vehicle(received, sender)
+                if index is None:
+                    continue
+                link, group = self._links[index], stamped.setdefault(index, [])
             if received.target_system and not received.is_for(self._codec.system_id):
                 continue  # an answer to another system behind this address
-            self._links[index].handle(received, now)
+            link.handle(received, now)
             if received.layout.message_id in _STAMPED:
-                stamped.setdefault(index, []).append(received)
+                group.append(received)
         for index, group in stamped.items():
-            if self._links[index].clock.known:
+            if group and self._links[index].clock.known:
                 self._route(group, index, now)
+        known = bool(stamped)
         self.refused += not known
         return known
 
@@ -93,7 +100,7 @@ class TelemetryRouter:
         offset = link.clock.offset
         if index == 0:
             self._clock.follow(offset + link.clock.set_back, now, connecting=self._flight.phase is Phase.CONNECT)
-        team_offset = self._clock.offset
+        team_offset, uav = self._clock.offset, self._id_check.vehicle_of(index)
         latest = -math.inf
         stamp, time = -1, math.nan
         for received in group:
@@ -108,8 +115,13 @@ class TelemetryRouter:
                 if obstacle_map is not None and now - link.clock.jumped_at > self._clock_settled:
                     obstacle_map.scans.add(detections(received), index, time)
             else:
-                self._add_measurement(received, index, time)
-            latest = max(latest, time)
+                sample = measurement(received, uav, time)
+                if sample is None or not sample.is_whole:
+                    link.statistics.add_not_finite(received.component)
+                if sample is not None:
+                    self._add_measurement(sample, obstacle_map)
+            if time > latest:
+                latest = time
 
     def _confirm_setpoint(self, received: Received, index: int, time: float, latest: float, now: float) -> None:
         link, flight = self._links[index], self._flight
@@ -124,13 +136,7 @@ class TelemetryRouter:
         if confirmation is not None:
             link.setpoints.confirm(confirmation)
 
-    def _add_measurement(self, received: Received, index: int, time: float) -> None:
-        obstacle_map = self._flight.system.obstacle_map
-        sample = measurement(received, self._id_check.vehicle_of(index), time)
-        if sample is None or not (sample.has_pose and sample.has_motion):
-            self._links[index].statistics.add_not_finite(received.component)
-        if sample is None:
-            return
+    def _add_measurement(self, sample: Measurement, obstacle_map: ObstacleMap | None) -> None:
         self._id_check.add(sample)
         used = self._flight.add_measurement(sample)
         if obstacle_map is not None and used is not None:
