@@ -1,6 +1,5 @@
 """Propagation of the filter's state from its last update to the time of the next set-points."""
 
-import math
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -9,6 +8,7 @@ import numpy as np
 from idc_controller.arrays import Array, Indices
 from idc_controller.estimation.kalman_filter import Innovation, SparseRows, StructuredKalmanFilter
 from idc_controller.estimation.process_model import ProcessModel
+from idc_controller.estimation.propagation_kernels import about_reference, are_finite
 from idc_controller.estimation.setpoint_history import SetpointHistory
 from idc_controller.trajectory.reference import Reference
 
@@ -33,19 +33,20 @@ class PropagationInterval:
         times += [t for t in switches if min(abs(t - other) for other in times) > 1e-6]
         self.times = sorted(set(times))
         self.flat = reference.at(np.array(self.times))
-        self.u = (self.flat.u[:-1] + self.flat.u[1:]) / 2
-        """The reference's set-points from each time to the next (K - 1, 3 N)."""
-        self.force_of_mass = process.force_of_mass((self.flat.payload[2, :-1] + self.flat.payload[2, 1:]) / 2)
-        """Force of one kilogram of excess of mass from each time to the next (K - 1, 3) (N/kg)."""
+        links, p = self.flat.links, process.model.parameters
+        self.u, self.force_of_mass, self.nominal = about_reference(
+            self.flat.x,
+            self.flat.u,
+            self.flat.payload,
+            links.on_payload,
+            links.on_uavs,
+            p.g,
+            reference.load.mass - p.m_0,
+        )
+        """The reference's set-points (K - 1, 3 N), and the force of one kilogram of excess of mass (K - 1, 3) (N/kg),
+        from each time to the next; state of the exact reference at each time (K, n)."""
         self.setpoints = [setpoints.in_force(a, b) for a, b in pairwise(self.times)]
         """Set-points in force from each time to the next."""
-        # The drag that is predicted changes with the velocity, so what is estimated of it is the rest.
-        self.nominal = np.empty((len(self.times), process.size))
-        """State of the exact reference at each time (K, n)."""
-        self.nominal[:, : process.layout.size] = self.flat.x
-        self.nominal[:, process.force] = self.flat.links.on_payload
-        self.nominal[:, process.uav_force] = self.flat.links.on_uavs[..., :2].reshape(len(self.times), -1)
-        self.nominal[:, process.mass] = reference.load.mass - process.model.parameters.m_0
 
     def duration_us(self, k: int) -> int:
         """Return the duration from time ``k`` to the next (us)."""
@@ -104,7 +105,7 @@ class ErrorStateFilter:
     @property
     def is_finite(self) -> bool:
         """Return whether state and covariance are numbers."""
-        return math.isfinite(self._kf.x @ self._kf.P @ self._kf.x)  # zero times inf or nan is nan
+        return are_finite(self._kf.x, self._kf.P)
 
     def restart(self, P: Array) -> None:
         """Begin anew from the reference with covariance ``P`` (n, n)."""
