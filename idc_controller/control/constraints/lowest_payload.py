@@ -1,10 +1,8 @@
 """Lowest position of the payload's centre: it is on the ground there."""
 
-from collections.abc import Sequence
-
 import numpy as np
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Indices
 from idc_controller.control.settings import MpcSettings
 from idc_controller.model.linear import LinearModel
 from idc_controller.trajectory.flatness import FlatReference
@@ -19,6 +17,6 @@ class LowestPayload:
         self.G = np.zeros((1, model.layout.size))
         self.G[0, model.layout.r_0.start + 2] = 1.0
 
-    def h(self, reference: FlatReference, stages: Sequence[int]) -> Array:
+    def h(self, reference: FlatReference, stages: Indices) -> Array:
         """Return how far the reference is above it (S, 1) (m)."""
         return np.asarray(self._lowest - reference.payload[0, stages, 2])[:, None]

@@ -1,10 +1,8 @@
 """Least distance between neighbouring UAVs, along the line between their places in hover; one slack for all."""
 
-from collections.abc import Sequence
-
 import numpy as np
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Indices
 from idc_controller.control.settings import MpcSettings
 from idc_controller.model.linear import LinearModel
 from idc_controller.trajectory.flatness import FlatReference
@@ -29,6 +27,6 @@ class UavSeparation:
         self.G, self._h = np.array(rows), np.array(bounds)
         self.slack = np.zeros(len(rows), dtype=int)
 
-    def h(self, reference: FlatReference, stages: Sequence[int]) -> Array:
+    def h(self, reference: FlatReference, stages: Indices) -> Array:
         """Return by how much the UAVs may come closer (S, pairs) (m): on the reference the links are parallel."""
         return self._h[None].repeat(len(stages), axis=0)
