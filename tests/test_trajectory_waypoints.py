@@ -179,6 +179,17 @@ def test_corner_is_flown_through_not_stopped_at():
     assert np.linalg.norm(derivatives[0] - [10, 0, -5], axis=1).min() <= 0.2
 
 
+def test_pause_at_a_corner_ends_at_the_first_sample_from_which_limits_hold():
+    def duration(turn):
+        corner, direction = HIGH + [2.0, 0.0, 0.0], np.array([math.cos(turn), math.sin(turn), 0.0])
+        before, after = planned([Leg(corner, 1.5), Leg(corner + 2.0 * direction, 1.5)]).passages
+        return after - before
+
+    # A turn by 30 deg needs no pause; one by 60 deg may begin at the next sample.
+    pause = duration(math.radians(60.0)) - duration(math.radians(30.0))
+    assert 0.0 < pause < smoothing_for(LIMITS).interval
+
+
 def test_trajectory_stays_on_the_legs():
     points = [[4, 0, -0.2], [4, 4, -0.2], [0, 0, 0]]
     _, derivatives = sampled(planned([Leg(p, 1.5) for p in points], [0, 0, -0.2]))
