@@ -181,7 +181,7 @@ def test_corner_is_flown_through_not_stopped_at():
 
 def test_pause_at_a_corner_ends_at_the_first_sample_from_which_limits_hold():
     def duration(turn):
-        corner, direction = HIGH + [2.0, 0.0, 0.0], np.array([math.cos(turn), math.sin(turn), 0.0])
+        corner, direction = np.array([2.0, 0.0, -5.0]), np.array([math.cos(turn), math.sin(turn), 0.0])
         before, after = planned([Leg(corner, 1.5), Leg(corner + 2.0 * direction, 1.5)]).passages
         return after - before
 
