@@ -133,6 +133,8 @@ class _Places(ast.NodeVisitor):
         self.visit(node.value)
 
     def visit_test(self, node: ast.If | ast.While | ast.IfExp) -> None:
+        if isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING":
+            return  # imports for types alone
         if not isinstance(node.test, ast.Compare | ast.UnaryOp):  # these have mutants of their own
             self.add(node.test, "condition negated", f"(not ({self.source(node.test)}))")
         self.generic_visit(node)
