@@ -1,0 +1,94 @@
+"""Detectors of the flight monitor: alarms raised of the innovations, of the estimator's health and of the links."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from gcs.config import SystemConfig
+from gcs.config.flight_settings import DEFAULTS
+from gcs.flight import stack
+from gcs.flight.alarms import AlarmLog
+from gcs.flight.detectors import MonitorAlarm, detectors
+from gcs.flight.monitor_step import MonitorStep
+from gcs.mavlink.id_check import SystemIdCheck
+from gcs.mavlink.vehicle_link import VehicleLink
+from idc_controller.estimation.estimate import Estimate, InnovationRecord
+from idc_controller.estimation.measurements import PAYLOAD, Position
+from idc_controller.model.linear import LinearModel
+
+SYSTEM = SystemConfig()
+MODEL = LinearModel(SYSTEM.parameters())
+N = SYSTEM.parameters().number_of_uavs
+NAMES = (*(f"vehicle {i}" for i in range(1, N + 1)), "payload")
+KEYS = (*((uav, Position) for uav in range(N)), (PAYLOAD, Position))
+
+
+class Monitored:
+    """Steps at 20 Hz of a flight whose telemetry is complete, with normal innovations of the positions."""
+
+    def __init__(self):
+        self.links = tuple(VehicleLink(i, None) for i in range(1, N + 1))
+        self.flight = SimpleNamespace(
+            mission=SimpleNamespace(system=SYSTEM),
+            system=SimpleNamespace(team=SimpleNamespace(links=self.links), obstacle_map=None),
+            control=SimpleNamespace(estimator=stack.estimator(SYSTEM, MODEL)),
+        )
+        self.log, self.id_check = AlarmLog(), SystemIdCheck(N)
+        self.detectors = detectors(self.flight, DEFAULTS.monitor)
+        self.random, self.steps = np.random.default_rng(7), 0
+
+    def step(self, rejected=(), reset=False, force=(0.0, 0.0, 0.0), in_air=True, clear=True, steady=True):
+        now = 0.05 * self.steps
+        for link in self.links:
+            link.attitude_received_at = link.position_received_at = link.payload_received_at = now
+        normal = self.random.standard_normal(6 * len(KEYS))
+        sizes = np.full(len(KEYS), 6)
+        innovations = InnovationRecord(now, float(normal @ normal), len(normal), rejected, reset, KEYS, sizes, normal)
+        size = MODEL.layout.size
+        estimate = Estimate(
+            now, np.zeros(size), np.array(force), np.zeros((N, 3)), 0.0, np.eye(3), lambda: np.eye(size + 2 * N + 4),
+            (innovations,),
+        )  # fmt: skip
+        record = SimpleNamespace(estimate=estimate)
+        step = MonitorStep(
+            now, now, self.flight, self.id_check, self.log, record, in_air, NAMES, clear=clear, steady=steady
+        )
+        for detector in self.detectors:
+            detector(step)
+        self.steps += 1
+
+    def raised(self, steps=40, **options):
+        for _ in range(steps):
+            self.step(**options)
+        return [(alarm.source, alarm.code) for alarm in self.log.alarms]
+
+
+def test_no_alarm_of_normal_innovations():
+    assert Monitored().raised() == []
+
+
+def test_rejected_measurements_raise_an_alarm_of_their_source_clear_of_the_ground_only():
+    rejected = ((1, Position),)
+    assert Monitored().raised(rejected=rejected) == [("vehicle 2", MonitorAlarm.MEASUREMENTS_REJECTED)]
+    assert Monitored().raised(rejected=rejected, clear=False) == []
+
+
+def test_repeated_covariance_resets_raise_an_alarm_but_not_in_a_hard_manoeuvre():
+    count = DEFAULTS.monitor.event_count
+    alarm = [("team", MonitorAlarm.COVARIANCE_RESET)]
+    assert Monitored().raised(steps=count - 1, reset=True) == []
+    assert Monitored().raised(steps=count, reset=True) == alarm
+    assert Monitored().raised(steps=count, reset=True, steady=False) == []
+
+
+@pytest.mark.parametrize(("size", "expected"), [(5.0, []), (9.0, [("payload", MonitorAlarm.DISTURBANCE_FORCE)])])
+def test_disturbance_force_beyond_its_covariance_raises_an_alarm(size, expected):
+    assert Monitored().raised(steps=1, force=(0.0, size, 0.0)) == expected
+
+
+def test_failed_range_sensor_raises_an_alarm_in_the_air_only():
+    for in_air, expected in ((True, [("vehicle 3", MonitorAlarm.RANGE_SENSOR_FAILED)]), (False, [])):
+        monitored = Monitored()
+        monitored.links[2].status.obstacle_sensing_valid = False
+        assert monitored.raised(steps=2, in_air=in_air, clear=in_air) == expected
