@@ -126,18 +126,19 @@ class SequenceTrajectory(Trajectory):
     @property
     def end(self) -> float:
         """End of the second trajectory, s; ``inf`` while the first one's end is not known."""
-        if math.isinf(self._end) and math.isfinite(self._first.end):
+        if self._end == math.inf and self._first.end < math.inf:
             self._end = self._next().end
         return self._end
 
     def evaluate(self, times: Times, order: int) -> Array:
         """See ``Trajectory.evaluate``."""
-        if times.earliest > self._first.end:
+        first = self._first
+        if times.earliest > first.end:
             return self._next().evaluate(times, order)
         # Evaluated first: a lazy trajectory learns of its end while it looks ahead, and rests beyond it.
-        result = self._first.evaluate(times, order)
-        if times.latest > self._first.end:
-            later = times.values > self._first.end
+        result = first.evaluate(times, order)
+        if times.latest > first.end:
+            later = times.values > first.end
             result[:, later] = self._next().derivatives(times.values[later], order)
         return result
 
