@@ -29,7 +29,7 @@ class Contacts(NamedTuple):
     standing: bool
 
 
-_NO_CONTACTS = Contacts(0, False)
+NO_CONTACTS = Contacts(0, False)
 
 
 class Ground:
@@ -63,7 +63,7 @@ class Ground:
         """Return the contacts of the last step; ``payload`` is the pose of its principal axes."""
         points = pybullet.getContactPoints(physicsClientId=self._client)
         if not points:
-            return _NO_CONTACTS
+            return NO_CONTACTS
         payload = payload[0], product(payload[1], system.payload_in_axes)
         pairs: set[tuple[int, int, int, int]] = set()
         standing = False

@@ -15,6 +15,8 @@ from idc_controller.rotations_float import Quaternion, Vector
 from vehicle_sim.world.errors import SimulationError
 from vehicle_sim.world.world_state import flipped, quaternion_to_engine
 
+_FAR_AWAY = 1e6  # m
+
 
 class Obstacle(NamedTuple):
     """An obstacle at one time: its shape, and its centre in the world (NED, m)."""
@@ -66,7 +68,10 @@ class _Body(NamedTuple):
 
 
 class ObstacleBodies:
-    """The obstacles of one physics client, by name."""
+    """The obstacles of one physics client, by name.
+
+    ``travelled``: length of the paths of all of them (m); one that is added counts as come from far away.
+    """
 
     def __init__(self, client: int) -> None:
         self._client = client
@@ -74,6 +79,7 @@ class ObstacleBodies:
         self._bodies: dict[str, _Body] = {}
         self._centres = np.empty((0, 3))
         self._forms = np.empty((0, 3))
+        self.travelled = 0.0
 
     def all(self) -> tuple[Obstacle, ...]:
         """Return the obstacles at the current time, in the order in which they were added."""
@@ -112,6 +118,7 @@ class ObstacleBodies:
         obstacle = self._obstacles[name] = Obstacle(name, shape, place)
         self._centres = np.vstack([self._centres, place])
         self._forms = np.vstack([self._forms, obstacle.scan_row])
+        self.travelled += _FAR_AWAY
 
     def move(self, name: str, position_in_world: Sequence[float]) -> None:
         """Put an obstacle elsewhere, its centre (3,) in NED (m); it counts from the next step on."""
@@ -120,6 +127,7 @@ class ObstacleBodies:
             return
         self._obstacles[name] = Obstacle(name, obstacle.shape, place)
         self._centres[body.row] = place
+        self.travelled += math.dist(place, obstacle.position_in_world)
         pybullet.resetBasePositionAndOrientation(body.handle, flipped(place), body.attitude, self._client)
 
     def _body(self, name: str) -> _Body:

@@ -13,6 +13,7 @@ from gcs.config.tables import WorldConfig
 from idc_controller.arrays import Array
 from idc_controller.parameters import SystemParameters
 from idc_controller.rotations_float import Quaternion, Vector
+from vehicle_sim.world.contact_detection import ContactDetector
 from vehicle_sim.world.cradles import Cradles
 from vehicle_sim.world.errors import SimulationError
 from vehicle_sim.world.ground import Contacts, Ground
@@ -76,7 +77,7 @@ class World:
         self._readings = Readings(client, self._system)
         self.steps = 0
         self._thrusts = (0.0,) * parameters.number_of_uavs
-        self._contacts: Contacts | None = None
+        self._contacts = ContactDetector(parameters, settings, self._system, self._ground, self.obstacles)
         for i, uav in enumerate(self._readings.uavs):
             self._cradles.latch(i, uav[0], uav[1])
 
@@ -124,7 +125,6 @@ class World:
         pybullet.stepSimulation(client)
         self.steps += 1
         self._thrusts = tuple(thrusts)
-        self._contacts = None
         self._readings.update()
 
     def _push(self, payload_force: Sequence[float] | None, uav_forces: Sequence[Sequence[float]] | None) -> None:
@@ -170,9 +170,7 @@ class World:
 
     def contacts(self) -> Contacts:
         """Return what touches after the last step, computed once a step."""
-        if self._contacts is None:
-            self._contacts = self._ground.contacts(self._system, self._readings.payload)
-        return self._contacts
+        return self._contacts.after(self.steps, self._readings, self.physics_hz)
 
     def touching_ground(self) -> bool:
         """Return True if the payload stands on pad or ground."""
