@@ -17,6 +17,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 from pymavlink import mavutil
 from pymavlink.dialects.v20 import common as mavlink
 
@@ -265,6 +267,12 @@ def test_truncated_last_line_is_skipped(tmp_path) -> None:
         ("time_s,x\n0.0,1.0\n0.1,oops\n", "line 3, x: 'oops' is not a number"),
         ("time_s,x\n0.0,1.0\n0.1\n", "line 3: 1 values for 2 columns"),
         ("time_s,x\n0.0\n", "line 2: 1 values for 2 columns"),
+        ("time_s,x\n0.0,1.0\n\n", "line 3: 0 values for 2 columns"),
+        ("time_s,x\n0.0,1.0,2.0\n0.1,1.0,2.0\n", "line 2: 3 values for 2 columns"),
+        ("time_s,x\n0.0,\n", "line 2, x: '' is not a number"),
+        ("time_s,x\n0.0,1-2\n", "line 2, x: '1-2' is not a number"),
+        ("time_s,x\n0.0,null\n", "line 2, x: 'null' is not a number"),
+        ("time_s,x\n[0.0,1.0]\n", r"line 2, time_s: '\[0.0' is not a number"),
         ("", "line 1: the header is missing"),
     ],
 )
@@ -272,6 +280,25 @@ def test_damaged_tables_are_refused_with_their_line(tmp_path, text, reason) -> N
     (tmp_path / "a.csv").write_text(text)
     with pytest.raises(UnusableInput, match=f"a.csv, {reason}"):
         read_table(tmp_path / "a.csv")
+
+
+@settings(deadline=None, derandomize=True, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.lists(st.tuples(st.floats(), st.floats(allow_nan=False), st.integers(-(2**60), 2**60)), max_size=20))
+def test_numbers_are_read_as_they_were_written(tmp_path, rows) -> None:
+    (tmp_path / "a.csv").unlink(missing_ok=True)
+    with TableWriter(tmp_path / "a.csv", ("a", "b", "c")) as table:
+        for row in rows:
+            table.write(row)
+    columns = read_table(tmp_path / "a.csv")
+    for column, values in zip(columns.values(), zip(*rows, strict=True), strict=False):
+        assert column.tobytes() == np.array(values, dtype=float).tobytes()
+    assert {name: column.shape for name, column in columns.items()} == dict.fromkeys("abc", (len(rows),))
+
+
+@pytest.mark.parametrize("text", ["+1.0", "1.", ".5", "007", "1e400", "-inf", "nan", " 2.0", "1_000", '"3.5"'])
+def test_a_number_may_have_every_form_of_pythons(tmp_path, text) -> None:
+    (tmp_path / "a.csv").write_text(f"time_s,x\n0.0,{text}\n")
+    assert read_table(tmp_path / "a.csv")["x"] == pytest.approx([float(text.strip('"'))], nan_ok=True)
 
 
 def test_columns_follow_the_contract() -> None:
