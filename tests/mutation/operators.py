@@ -17,7 +17,7 @@ OTHER_FUNCTION = {
     "min": "max", "max": "min", "any": "all", "all": "any", "sin": "cos", "cos": "sin", "minimum": "maximum",
     "maximum": "minimum", "argmin": "argmax", "argmax": "argmin", "floor": "ceil", "ceil": "floor",
 }  # fmt: skip
-SYMMETRIC = {"min", "max", "minimum", "maximum", "hypot"}
+SYMMETRIC = {"min", "max", "minimum", "maximum", "hypot", "dist", "array_equal"}
 NOT_BEHAVIOUR = {"info", "warning", "debug", "getLogger", "TypeVar", "NewType"}  # text for people, and types
 
 
@@ -188,6 +188,10 @@ class _Places(ast.NodeVisitor):
             parts = (self.raw[begin:a], self.raw[c:d], self.raw[b:c], self.raw[a:b], self.raw[d:end])
             self.add(node, "arguments swapped", b"".join(parts).decode())
         self.generic_visit(node)
+
+    def visit_keyword(self, node: ast.keyword) -> None:
+        if node.arg != "strict":  # zip's own assertion
+            self.generic_visit(node)
 
     def visit_Slice(self, node: ast.Slice) -> None:
         if node.lower is None and node.upper is not None:
