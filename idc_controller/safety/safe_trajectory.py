@@ -8,7 +8,7 @@ import numpy as np
 from idc_controller.arrays import Array
 from idc_controller.trajectory.integrator_chain import Chain
 from idc_controller.trajectory.scaled import ScaledReference
-from idc_controller.trajectory.trajectory import Trajectory
+from idc_controller.trajectory.trajectory import Times, Trajectory
 from idc_controller.trajectory.trajectory_kernels import deflect, progress
 
 
@@ -50,9 +50,9 @@ class SafeTrajectory:
     def derivatives(self, times: Array, order: int = 4) -> Array:
         """Return position to the derivative ``order`` (order + 1, K, 3), NED, SI, at ``times`` (K,) (s)."""
         times = np.ascontiguousarray(times, dtype=float)
-        which, along = progress(self._scalings, times)
-        if len(self._trajectories) == 1:
-            result = self._trajectories[0].derivatives(along, order)
+        which, along, *span = progress(self._scalings, times)
+        if len(self._trajectories) == 1 and len(times):
+            result = self._trajectories[0].evaluate(Times(along, *span).checked(), order)
         else:
             result = np.empty((order + 1, len(times), 3))
             followed = self._followed[which]

@@ -23,6 +23,12 @@ class Times(NamedTuple):
     earliest: float
     latest: float
 
+    def checked(self) -> Times:
+        """Return it; raises TrajectoryError unless all times are finite."""
+        if not math.isfinite(self.latest):
+            raise TrajectoryError("times must be a list of finite numbers")
+        return self
+
 
 class Trajectory(ABC):
     """A path of the payload in time: four times continuously differentiable, NED, SI.
@@ -59,10 +65,7 @@ class Trajectory(ABC):
             raise TrajectoryError(f"derivatives exist for order 0 to 4, not {order}")
         if not len(array):
             return np.zeros((order + 1, 0, 3))
-        earliest, latest = span(array)
-        if not math.isfinite(latest):
-            raise TrajectoryError("times must be a list of finite numbers")
-        return self.evaluate(Times(array, earliest, latest), order)
+        return self.evaluate(Times(array, *span(array)).checked(), order)
 
     @abstractmethod
     def evaluate(self, times: Times, order: int) -> Array:

@@ -19,4 +19,4 @@ class LowestPayload:
 
     def h(self, reference: FlatReference, stages: Indices) -> Array:
         """Return how far the reference is above it (S, 1) (m)."""
-        return np.asarray(self._lowest - reference.payload[0, stages, 2])[:, None]
+        return np.asarray(self._lowest - reference.payload[0, :, 2].take(stages))[:, None]
