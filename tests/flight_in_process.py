@@ -137,9 +137,8 @@ class InProcessFlight:
             swarm.advance_to(self.now)
             telemetry = list(swarm.datagrams_to_send(self.now))
             station.resume()
-            for i, datagram, address in telemetry:
-                if address == GROUND:
-                    station.receive(datagram, address_of(i), self.now)
+            received = [(datagram, address_of(i)) for i, datagram, address in telemetry if address == GROUND]
+            station.receive_all(received, self.now)
             for datagram, address in station.datagrams_to_send(self.now):
                 swarm.receive(address[1] - 14539, datagram, GROUND, self.now)
             on_exchange(self)

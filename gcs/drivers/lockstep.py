@@ -54,8 +54,7 @@ def run_in_lockstep(
         if interrupt.requested and not landing:
             landing = True
             station.raise_failsafe(now, Failsafe.INTERRUPTED, "interrupted")
-        for datagram, sender in inbox:
-            station.receive(datagram, sender, now)
+        station.receive_all(inbox, now)
         inbox.clear()
         for datagram, address in station.datagrams_to_send(now):
             connection.send(datagram, address)

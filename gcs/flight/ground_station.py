@@ -108,7 +108,11 @@ class GroundStation:
 
     def receive(self, datagram: bytes, sender: Address, now: float) -> None:
         """Take a datagram from any address. Never raises for anything that a datagram can hold."""
-        if self.router.receive(datagram, sender, now):
+        self.receive_all([(datagram, sender)], now)
+
+    def receive_all(self, datagrams: Sequence[tuple[bytes, Address]], now: float) -> None:
+        """Take datagrams, each with its sender, as :meth:`receive` does one by one."""
+        for datagram in self.router.receive(datagrams, now):
             self._recorder.datagram(now, datagram)
 
     def datagrams_to_send(self, now: float) -> list[tuple[bytes, Address]]:
