@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from functools import partial
 from typing import NamedTuple, Self
 
 from gcs.config import SystemConfig
@@ -75,7 +74,7 @@ class Swarm:
         self.vehicles = tuple(
             Vehicle(
                 i, airframe, onboard_rate=rates.onboard, telemetry_rate=rates.telemetry, home=home or DEFAULT_HOME,
-                ground_address=ground_address, clock=partial(self._faults.clock, i), autopilot=onboard,
+                ground_address=ground_address, clock=self._faults.clock_of(i), autopilot=onboard,
                 link=config.vehicle_link, arrays=arrays.of_vehicle(i - 1),
             )
             for i, airframe in enumerate(airframes, start=1)
