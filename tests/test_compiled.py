@@ -140,6 +140,22 @@ def test_a_package_that_cannot_be_written_is_cached_for_the_user(imported, tmp_p
     assert not is_compiled_anew(imported())
 
 
+def test_modules_that_cannot_be_compiled_are_named_with_their_reasons(tmp_path, monkeypatch):
+    (tmp_path / "first_broken_kernels.py").write_text("raise TypeError('no such array')")
+    (tmp_path / "second_broken_kernels.py").write_text("import absent_module")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    monkeypatch.setattr(
+        "vehicle_sim.app.compile_kernels._modules_of_kernels",
+        lambda: ["first_broken_kernels", "json", "second_broken_kernels"],
+    )
+    with pytest.raises(RuntimeError) as failure:
+        compile_kernels()
+    first, second = str(failure.value).split("second_broken_kernels cannot be compiled:\n")
+    assert first.startswith("first_broken_kernels cannot be compiled:\nTraceback")
+    assert "TypeError: no such array" in first
+    assert "No module named 'absent_module'" in second
+
+
 @pytest.mark.slow
 def test_programs_compile_nothing_after_installation():
     assert compile_kernels()
