@@ -55,7 +55,7 @@ def messages_of(scan):
 def detections_of(message):
     """As the ground reads it."""
     layout, payload = LAYOUTS[message.id].pack_message(message)
-    return detections(Received(layout, payload, 1, 1, 0))
+    return detections(Received(layout, payload, 1, 1, 1, 0, 0, 0, message.time_boot_ms))
 
 
 class Scene:
