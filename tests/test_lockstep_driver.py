@@ -50,8 +50,8 @@ class Station:
     def ended(self):
         return len(self.times) >= self.ticks
 
-    def receive(self, datagram, sender, now):
-        self.received.append((datagram, sender, now))
+    def receive_all(self, datagrams, now):
+        self.received += [(datagram, sender, now) for datagram, sender in datagrams]
 
     def datagrams_to_send(self, now):
         self.times.append(now)
