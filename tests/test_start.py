@@ -18,8 +18,8 @@ FOR_FLIGHTS = {
     "pymavlink", "scipy", "shapely", "trimesh",
 }  # fmt: skip
 NOT_FOR_FLIGHTS = {
-    "PIL", "filterpy", "hypothesis", "matplotlib", "pandas", "pyarrow", "pymap3d", "scipy.signal", "scipy.stats",
-    "shapely", "trimesh",
+    "PIL", "filterpy", "hypothesis", "matplotlib", "pandas", "pyarrow", "pymap3d", "scipy.ndimage", "scipy.signal",
+    "scipy.stats", "shapely", "trimesh",
     "numba.np.polynomial.polynomial_core", "numba.typed.dictimpl",  # of the registries by which numba compiles
 }  # fmt: skip
 PROGRAM = """\
