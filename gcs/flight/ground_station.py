@@ -141,7 +141,8 @@ class GroundStation:
             messages[i].extend(due)
             carries_setpoints[i] = True
         for link, queue in zip(self.links, messages, strict=True):
-            queue += packed(*link.requests.due(now))
+            if requests := link.requests.due(now):
+                queue += packed(*requests)
         out = self._encoded(now, messages, carries_setpoints)
         self._recorder.end_exchange()
         times.lap(Part.RECORDING)
