@@ -34,8 +34,10 @@ class SwarmSockets:
 
     def send(self, vehicle: int, datagram: bytes, address: Address) -> None:
         """Send from the endpoint of a vehicle (its system id). What cannot be sent is lost, as may be over UDP."""
-        with contextlib.suppress(OSError):
+        try:
             self.vehicles[vehicle - 1].sendto(datagram, address)
+        except OSError:
+            return
 
     def received(self) -> Iterator[tuple[int, bytes, Address]]:
         """Yield all that has arrived: the vehicle's system id, bytes, sender; vehicle by vehicle, each in order."""
