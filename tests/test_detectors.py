@@ -11,6 +11,7 @@ from gcs.flight import stack
 from gcs.flight.alarms import AlarmLog
 from gcs.flight.detectors import MonitorAlarm, detectors
 from gcs.flight.monitor_step import MonitorStep
+from gcs.mavlink import px4
 from gcs.mavlink.id_check import SystemIdCheck
 from gcs.mavlink.vehicle_link import VehicleLink
 from idc_controller.estimation.estimate import Estimate, InnovationRecord
@@ -92,3 +93,31 @@ def test_failed_range_sensor_raises_an_alarm_in_the_air_only():
         monitored = Monitored()
         monitored.links[2].status.obstacle_sensing_valid = False
         assert monitored.raised(steps=2, in_air=in_air, clear=in_air) == expected
+
+
+EVENTS = {
+    MonitorAlarm.MESSAGES_LOST: lambda link: vars(link.statistics).update(lost=link.statistics.lost + 1),
+    MonitorAlarm.MESSAGES_CORRUPTED: lambda link: vars(link.statistics).update(damaged=link.statistics.damaged + 1),
+    MonitorAlarm.VALUES_NOT_FINITE: lambda link: link.statistics.add_not_finite(px4.AUTOPILOT_COMPONENT),
+    MonitorAlarm.SETPOINTS_LOST: lambda link: vars(link.setpoints).update(lost=link.setpoints.lost + 1),
+}
+
+
+@pytest.mark.parametrize("code", EVENTS, ids=lambda code: code.code)
+def test_events_on_a_link_raise_an_alarm_when_frequent_within_their_window(code):
+    settings = DEFAULTS.monitor
+    window = settings.setpoint_window if code is MonitorAlarm.SETPOINTS_LOST else settings.event_window
+    for spacing, expected in ((0.8, [("vehicle 1", code)]), (1.2, [])):
+        monitored = Monitored()
+        between = round(spacing * window / (settings.event_count - 1) / 0.05)
+        for _ in range(settings.event_count):
+            EVENTS[code](monitored.links[0])
+            raised = monitored.raised(steps=between)
+        assert raised == expected
+
+
+def test_payload_measurements_that_are_no_numbers_raise_an_alarm_of_the_payload():
+    monitored = Monitored()
+    for _ in range(DEFAULTS.monitor.event_count):
+        monitored.links[1].statistics.add_not_finite(px4.PAYLOAD_UNIT_COMPONENT)
+    assert monitored.raised(steps=1) == [("payload", MonitorAlarm.VALUES_NOT_FINITE)]
