@@ -108,7 +108,7 @@ def test_separation_limit_follows_spacing_of_the_team(spacing, limit):
     tracker = stack.controller(config, model, None, lambda: 0.0).tracker
     separation = tracker.state_constraints[-1]
     assert separation.distance == pytest.approx(limit)
-    assert separation.h(None, np.array([1])) == pytest.approx(np.full((1, 4), spacing - limit))
+    assert separation.limits == pytest.approx(np.full(4, spacing - limit))
 
 
 @pytest.mark.parametrize(("spacing", "limit"), [(1.0, 0.75), (1.4, 0.9)])

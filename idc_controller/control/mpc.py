@@ -47,6 +47,8 @@ class ModelPredictiveController:
         rows = np.vstack([constraint.G for constraint in self.state_constraints])
         self._stages = stages = np.array(settings.constraint_stages)
         G = np.vstack([np.kron(np.eye(len(blocks)), self._input_limits.G), *(rows @ H[k] for k in stages)])
+        limits = np.concatenate([constraint.limits for constraint in self.state_constraints])
+        self._limits = np.tile(limits, (len(stages), 1))
         slack_of_constraint = _numbered([constraint.slack for constraint in self.state_constraints])
         slack_of_row = np.concatenate([np.full(2 * H.shape[2], -1), np.tile(slack_of_constraint, len(stages))])
         response = np.vstack([np.zeros((2 * H.shape[2], len(A))), *(rows @ F[k] for k in stages)])
@@ -74,9 +76,12 @@ class ModelPredictiveController:
     def bounds(self, reference: FlatReference) -> Array:
         """Return h of the QP: of the inputs of every move, then of the states at every constrained stage."""
         inputs = self._input_limits.h(reference.u, self.prediction.first_stages)
-        states = np.concatenate(
-            [constraint.h(reference, self._stages) for constraint in self.state_constraints], axis=1
-        )
+        states, first = self._limits.copy(), 0
+        for constraint in self.state_constraints:
+            used, last = constraint.used(reference, self._stages), first + len(constraint.limits)
+            if used is not None:
+                states[:, first:last] -= used
+            first = last
         return np.concatenate([inputs, states.ravel()])
 
 

@@ -17,6 +17,9 @@ class StateConstraint(Protocol):
     slack: NDArray[np.int_]
     """Index of the constraint's own slack, from 0, by which each row may be exceeded (c,)."""
 
-    def h(self, reference: FlatReference, stages: Indices) -> Array:
-        """Return the bounds at ``stages`` of the reference (S, c)."""
+    limits: Array
+    """Bounds of the rows (c,) where the reference uses nothing of them."""
+
+    def used(self, reference: FlatReference, stages: Indices) -> Array | None:
+        """Return what the reference uses of the limits at ``stages`` (S, c); None: nothing, wherever it leads."""
         ...
