@@ -38,7 +38,7 @@ def sparse_rows(rng, m, n):
 
 
 def both(rng, P):
-    compiled, plain = StructuredKalmanFilter(len(P)), KalmanFilter(dim_x=len(P), dim_z=1)
+    compiled, plain = (of(dim_x=len(P), dim_z=1) for of in (StructuredKalmanFilter, KalmanFilter))
     compiled.x = plain.x = rng.standard_normal(len(P))
     compiled.P, plain.P = P.copy(), P.copy()
     return compiled, plain

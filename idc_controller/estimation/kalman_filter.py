@@ -1,4 +1,4 @@
-"""Kalman filter of the estimator: corrected by one row of the measurements after the other."""
+"""Kalman filter of the estimator: filterpy's, corrected by one row of the measurements after the other."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from filterpy.kalman import KalmanFilter
 
 from idc_controller.arrays import Array, Indices, Mask
 from idc_controller.estimation.propagation_kernels import propagated, propagated_state
@@ -77,18 +78,16 @@ class Transition(NamedTuple):
         return np.vstack([dense, self.sparse.dense(self.dense.shape[1])])
 
 
-class StructuredKalmanFilter:
-    """Kalman filter for sparse models: prediction by blocks, correction without inverse and dense rows."""
+class StructuredKalmanFilter(KalmanFilter):  # type: ignore[misc]  # filterpy has no types
+    """filterpy's filter for sparse models: prediction by blocks, correction without inverse and dense rows."""
 
-    def __init__(self, size: int) -> None:
-        """Start with ``size`` states at zero, each with variance 1."""
-        self.x: Array = np.zeros(size)
-        self.P: Array = np.eye(size)
+    x: Array
+    P: Array
 
     def propagate(
         self, transition: Transition, direction: Array, u: Array, Q: Array, change: Array, probability: Array
     ) -> None:
-        """Predict over an interval.
+        """Predict over an interval; filterpy's ``predict`` with these matrices gives the same.
 
         Args:
             transition: over the interval.
@@ -113,22 +112,14 @@ class StructuredKalmanFilter:
     def correct(self, innovation: Innovation, variance: Array) -> float:
         """Correct by measurements with ``variance`` (m,) and return their normalised innovation squared.
 
-        Where that leaves next to nothing of a variance, or their covariance is not positive definite, Joseph's form
-        takes its place.
+        Where that leaves next to nothing of a variance, or their covariance is not positive definite, filterpy's own
+        update in Joseph's form takes its place.
         """
         x, P, squared = corrected(self.P, innovation.residual, *innovation.rows, variance, _CANCELLED)
         if not math.isnan(squared):
             self.x, self.P = self.x + x, P
             return squared
-        return self._correct_in_josephs_form(innovation, variance)
-
-    def _correct_in_josephs_form(self, innovation: Innovation, variance: Array) -> float:
-        """Correct by the gain K = P H' S^-1, with P as (I - K H) P (I - K H)' + K R K'."""
-        y, H = innovation.residual, innovation.rows.dense(len(self.x))
-        P_H = self.P @ H.T
-        inverse = np.linalg.inv(H @ P_H + np.diag(variance))
-        K = P_H @ inverse
-        kept = np.eye(len(self.x)) - K @ H
-        P = kept @ self.P @ kept.T + (K * variance) @ K.T
-        self.x, self.P = self.x + K @ y, (P + P.T) / 2
-        return float(y @ inverse @ y)
+        H = innovation.rows.dense(self.dim_x)
+        self.update(innovation.residual + H @ self.x, R=np.diag(variance), H=H)
+        self.P = (self.P + self.P.T) / 2
+        return float(self.y @ self.SI @ self.y)

@@ -63,18 +63,18 @@ class ErrorStateFilter:
 
     def __init__(self, process: ProcessModel) -> None:
         self.process = process
-        self._kf = StructuredKalmanFilter(process.size)
+        self._kf = StructuredKalmanFilter(dim_x=process.size, dim_z=1)
         self._nominal = np.zeros((1, process.size))
 
     @property
     def x(self) -> Array:
         """Error state (n,)."""
-        return self._kf.x
+        return np.asarray(self._kf.x)
 
     @property
     def P(self) -> Array:
         """Covariance (n, n)."""
-        return self._kf.P
+        return np.asarray(self._kf.P)
 
     def start(self, x: Array, P: Array, interval: PropagationInterval) -> None:
         """Begin an ``interval`` from the absolute state ``x`` (n,) with covariance ``P`` (n, n)."""
