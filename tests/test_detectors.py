@@ -15,7 +15,7 @@ from gcs.mavlink import px4
 from gcs.mavlink.id_check import SystemIdCheck
 from gcs.mavlink.vehicle_link import VehicleLink
 from idc_controller.estimation.estimate import Estimate, InnovationRecord
-from idc_controller.estimation.measurements import PAYLOAD, Position
+from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
 from idc_controller.model.linear import LinearModel
 
 SYSTEM = SystemConfig()
@@ -39,13 +39,13 @@ class Monitored:
         self.detectors = detectors(self.flight, DEFAULTS.monitor)
         self.random, self.steps = np.random.default_rng(7), 0
 
-    def step(self, rejected=(), reset=False, force=(0.0, 0.0, 0.0), in_air=True, clear=True, steady=True):
+    def step(self, rejected=(), reset=False, force=(0.0, 0.0, 0.0), in_air=True, clear=True, steady=True, keys=KEYS):
         now = 0.05 * self.steps
         for link in self.links:
             link.attitude_received_at = link.position_received_at = link.payload_received_at = now
-        normal = self.random.standard_normal(6 * len(KEYS))
-        sizes = np.full(len(KEYS), 6)
-        innovations = InnovationRecord(now, float(normal @ normal), len(normal), rejected, reset, KEYS, sizes, normal)
+        normal = self.random.standard_normal(6 * len(keys))
+        sizes = np.full(len(keys), 6)
+        innovations = InnovationRecord(now, float(normal @ normal), len(normal), rejected, reset, keys, sizes, normal)
         size = MODEL.layout.size
         estimate = Estimate(
             now, np.zeros(size), np.array(force), np.zeros((N, 3)), 0.0, np.eye(3), lambda: np.eye(size + 2 * N + 4),
@@ -73,6 +73,13 @@ def test_rejected_measurements_raise_an_alarm_of_their_source_clear_of_the_groun
     rejected = ((1, Position),)
     assert Monitored().raised(rejected=rejected) == [("vehicle 2", MonitorAlarm.MEASUREMENTS_REJECTED)]
     assert Monitored().raised(rejected=rejected, clear=False) == []
+
+
+def test_rejected_attitudes_raise_an_alarm_but_not_in_a_hard_manoeuvre():
+    attitudes = tuple((uav, Attitude) for uav in range(N))
+    options = {"steps": 80, "rejected": attitudes[1:2], "keys": attitudes}
+    assert Monitored().raised(**options) == [("vehicle 2", MonitorAlarm.MEASUREMENTS_REJECTED)]
+    assert Monitored().raised(**options, steady=False) == []
 
 
 def test_repeated_covariance_resets_raise_an_alarm_but_not_in_a_hard_manoeuvre():

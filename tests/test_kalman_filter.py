@@ -299,3 +299,14 @@ def test_state_or_covariance_that_is_no_number_is_found(value):
         wrong[at] = value
         assert not are_finite(x, wrong)
     assert not are_finite(np.where(np.arange(5) == 3, value, x), P)
+
+
+def test_noise_between_vehicles_goes_to_both_axes_of_the_force_on_each_that_is_measured():
+    model = LinearModel(read_system(MISSIONS / "system.toml").parameters())
+    process = ProcessModel(model, ProcessNoiseSettings(per_vehicle_force=0.3))
+    P = np.zeros((process.size, process.size))
+    process.add_per_vehicle_noise(P, np.array([0, 2]))
+    expected = np.zeros(process.size)
+    forces = expected[process.uav_force].reshape(-1, 2)
+    forces[[0, 2]] = 0.3**2
+    np.testing.assert_array_equal(P, np.diag(expected))
