@@ -39,10 +39,21 @@ class Monitored:
         self.detectors = detectors(self.flight, DEFAULTS.monitor)
         self.random, self.steps = np.random.default_rng(7), 0
 
-    def step(self, rejected=(), reset=False, force=(0.0, 0.0, 0.0), in_air=True, clear=True, steady=True, keys=KEYS):
+    def step(
+        self,
+        rejected=(),
+        reset=False,
+        force=(0.0, 0.0, 0.0),
+        in_air=True,
+        clear=True,
+        steady=True,
+        keys=KEYS,
+        payload=True,
+    ):
         now = 0.05 * self.steps
         for link in self.links:
-            link.attitude_received_at = link.position_received_at = link.payload_received_at = now
+            link.attitude_received_at = link.position_received_at = now
+            link.payload_received_at = now if payload else 0.0
         normal = self.random.standard_normal(6 * len(keys))
         sizes = np.full(len(keys), 6)
         innovations = InnovationRecord(now, float(normal @ normal), len(normal), rejected, reset, keys, sizes, normal)
@@ -73,6 +84,10 @@ def test_rejected_measurements_raise_an_alarm_of_their_source_clear_of_the_groun
     rejected = ((1, Position),)
     assert Monitored().raised(rejected=rejected) == [("vehicle 2", MonitorAlarm.MEASUREMENTS_REJECTED)]
     assert Monitored().raised(rejected=rejected, clear=False) == []
+
+
+def test_payload_that_no_vehicle_relays_any_more_raises_an_alarm():
+    assert ("payload", MonitorAlarm.TELEMETRY_TIMEOUT) in Monitored().raised(payload=False)
 
 
 def test_rejected_attitudes_raise_an_alarm_but_not_in_a_hard_manoeuvre():
