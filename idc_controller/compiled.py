@@ -8,7 +8,9 @@ from typing import Any, TypeVar, cast
 
 import numba
 import numpy as np
-from numba.core.caching import FunctionCache, IndexDataCacheFile
+from numba.core.caching import IndexDataCacheFile
+
+from idc_controller.kernel_loading import LeanFunctionCache
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -38,7 +40,7 @@ def inlined(function: Function) -> Function:
     return cast(Function, numba.njit(error_model="numpy")(function))
 
 
-class _KernelCache(FunctionCache):
+class _KernelCache(LeanFunctionCache):
     """Numba's cache on disk, with files of their own for each state of all that a kernel's machine code follows from.
 
     Numba by itself looks at the kernel's own module alone, but kernels call functions and name constants of others.

@@ -97,7 +97,7 @@ class Scene:
 def estimate_at(time, position, size=56):
     x = np.zeros(size)
     x[:3] = position
-    return Estimate(time, x, np.zeros(3), np.zeros((4, 3)), 0.0, np.zeros((size + 12, size + 12)))
+    return Estimate(time, x, np.zeros(3), np.zeros((4, 3)), 0.0, np.zeros((3, 3)), lambda: np.zeros((size + 12,) * 2))
 
 
 def straight(length, speed=1.5, altitude=5.0, start=0.0):

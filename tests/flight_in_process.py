@@ -106,10 +106,13 @@ def copied_mission(folder, name, **changes):
 class InProcessFlight:
     """One flight. ``on_exchange(flight)`` is called after every exchange and may do what it likes."""
 
-    def __init__(self, mission, folder, *, seed=None, world=None, faults=None, controller="idc", obstacles=()):
+    def __init__(
+        self, mission, folder, *, seed=None, world=None, faults=None, controller="idc", obstacles=(), addresses=None
+    ):
         """``mission``: a path or a Mission; ``world``: the system file's config of the world when it differs.
 
-        ``obstacles``: those of the world; the mission's own are on the map only.
+        ``obstacles``: those of the world; the mission's own are on the map only. ``addresses``: of the vehicles, as
+        the ground is given them; None: the true ones.
         """
         if isinstance(mission, Path):
             mission = read_mission(mission)
@@ -122,8 +125,8 @@ class InProcessFlight:
         self.swarm = Swarm(config, seed=self.mission.seed, home=self.mission.home, faults=faults, obstacles=obstacles)
         self.swarm.record(TruthLog(folder, config.team.vehicles))
         self.recorder = FlightRecorder(folder, 0.0)
-        addresses = [address_of(vehicle.system_id) for vehicle in self.swarm.vehicles]
-        self.station = ground_station(self.mission, addresses, self.recorder, controller)
+        true = [address_of(vehicle.system_id) for vehicle in self.swarm.vehicles]
+        self.station = ground_station(self.mission, addresses or true, self.recorder, controller)
         self.flight = self.station.flight
         self.now = 0.0
 
@@ -134,9 +137,8 @@ class InProcessFlight:
             swarm.advance_to(self.now)
             telemetry = list(swarm.datagrams_to_send(self.now))
             station.resume()
-            for i, datagram, address in telemetry:
-                if address == GROUND:
-                    station.receive(datagram, address_of(i), self.now)
+            received = [(datagram, address_of(i)) for i, datagram, address in telemetry if address == GROUND]
+            station.receive_all(received, self.now)
             for datagram, address in station.datagrams_to_send(self.now):
                 swarm.receive(address[1] - 14539, datagram, GROUND, self.now)
             on_exchange(self)

@@ -17,8 +17,6 @@ from gcs.mission.read import read_mission
 from gcs.record.tables import ALARM_COLUMNS, read_text_table
 from vehicle_sim.faults import FaultInjector
 
-pytestmark = pytest.mark.slow
-
 
 def test_alarm_log_records_a_lasting_condition_once():
     sink = []
@@ -91,6 +89,7 @@ def hop(folder, *faults):
     return replace(read_mission(path), faults=faults)
 
 
+@pytest.mark.slow
 def test_flight_without_a_fault_raises_no_alarm(tmp_path):
     with InProcessFlight(hop(tmp_path), tmp_path / "run", seed=51) as flight:
         flight.fly()
@@ -99,6 +98,7 @@ def test_flight_without_a_fault_raises_no_alarm(tmp_path):
     assert read_text_table(tmp_path / "run" / "alarms.csv") == {name: [] for name in ALARM_COLUMNS}
 
 
+@pytest.mark.slow
 def test_biased_position_raises_an_alarm_of_its_vehicle_at_once(tmp_path):
     fault = Fault("bias", 3.0, vehicles=(3,), settings={"channel": "position", "amount": 0.3, "axes": ["x"]})
     mission = hop(tmp_path, fault)
@@ -114,6 +114,7 @@ def test_biased_position_raises_an_alarm_of_its_vehicle_at_once(tmp_path):
     assert len(rows["code"]) == len(set(rows["code"])) and rows["code"][-1] == "channel_isolated"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("start", [3.0, 3.04, 3.044])
 def test_flapping_link_raises_telemetry_timeout_at_any_phase(tmp_path, start):
     """Down for 0.2 s in every 1.2 s, of which steps and samples are whole shares: always at the same moment between."""

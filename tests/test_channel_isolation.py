@@ -46,7 +46,7 @@ def rejecting(*channels, times=REJECTIONS, isolation=None, inconsistent=True):
 def accept(isolation, size, times):
     m = len(ALL)
     rows = SparseRows(np.zeros((m, 1), dtype=int), np.zeros((m, 1)))
-    innovation = Innovation(rows, size * rows_of(VELOCITY_OF_1), np.zeros((m, 1)), np.zeros((m, m)))
+    innovation = Innovation(rows, size * rows_of(VELOCITY_OF_1), np.zeros((m, m)))
     for _ in range(times):
         isolation.restore(STACK, innovation, 1.0)
 

@@ -29,6 +29,15 @@ def moved(x, by=1.0):
 def length(x):
     return moved(_longer(x)) + OFFSET + constants.WIDTHS[1]
 """
+CALLING_KERNELS = """
+from idc_controller.compiled import kernel
+from lengths.length_kernels import length
+
+
+@kernel("float64(float64, float64)")
+def area(x, y):
+    return length(x) * length(y) + FACTOR
+"""
 CONSTANTS = "OFFSET = 10.0\nWIDTHS = (0.0, 100.0)\n"
 FUNCTIONS = "def longer(x):\n    return 2.0 * x\n"
 
@@ -57,6 +66,20 @@ def imported(tmp_path, monkeypatch):
     yield load
     for name in [name for name in sys.modules if name.partition(".")[0] == "lengths"]:
         del sys.modules[name]
+
+
+@pytest.fixture
+def imported_caller(imported, tmp_path):
+    """Import a kernel that calls another one, with another constant in it each time."""
+
+    def load(factor):
+        text = CALLING_KERNELS.replace("FACTOR", repr(factor))
+        (tmp_path / "lengths" / "calling_kernels.py").write_text(text)
+        imported()
+        importlib.invalidate_caches()
+        return importlib.import_module("lengths.calling_kernels")
+
+    return load
 
 
 def is_compiled_anew(kernel):
@@ -93,6 +116,14 @@ def test_a_change_of_what_a_kernel_calls_or_names_is_followed_and_taken_back(
     assert length(1.0) == 113.0
 
 
+def test_a_kernel_from_disk_is_compiled_into_one_that_calls_it(imported_caller):
+    assert imported_caller(1.0).area(1.0, 2.0) == 113.0 * 115.0 + 1.0
+    module = imported_caller(2.0)
+    assert is_compiled_anew(module.area)
+    assert not is_compiled_anew(module.length)
+    assert module.area(1.0, 2.0) == 113.0 * 115.0 + 2.0
+
+
 def test_a_change_of_something_else_compiles_nothing(imported, tmp_path):
     imported()
     for module in ("constants", "functions", "length_kernels"):
@@ -107,6 +138,22 @@ def test_a_package_that_cannot_be_written_is_cached_for_the_user(imported, tmp_p
     assert is_compiled_anew(imported())
     assert list((tmp_path / "user").rglob("*.nbc"))
     assert not is_compiled_anew(imported())
+
+
+def test_modules_that_cannot_be_compiled_are_named_with_their_reasons(tmp_path, monkeypatch):
+    (tmp_path / "first_broken_kernels.py").write_text("raise TypeError('no such array')")
+    (tmp_path / "second_broken_kernels.py").write_text("import absent_module")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    monkeypatch.setattr(
+        "vehicle_sim.app.compile_kernels._modules_of_kernels",
+        lambda: ["first_broken_kernels", "json", "second_broken_kernels"],
+    )
+    with pytest.raises(RuntimeError) as failure:
+        compile_kernels()
+    first, second = str(failure.value).split("second_broken_kernels cannot be compiled:\n")
+    assert first.startswith("first_broken_kernels cannot be compiled:\nTraceback")
+    assert "TypeError: no such array" in first
+    assert "No module named 'absent_module'" in second
 
 
 @pytest.mark.slow

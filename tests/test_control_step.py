@@ -27,6 +27,7 @@ from idc_controller.control.settings import ControllerSettings
 from idc_controller.estimation.estimate import Estimate
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
 from idc_controller.estimation.setpoint_history import Confirmation
+from idc_controller.model.drag import Air, drag_coefficients
 from idc_controller.model.linear import LinearModel
 from idc_controller.rotations import rotation_from_quaternion
 from idc_controller.safety.filter_protocol import NoObstacles
@@ -63,7 +64,8 @@ def estimated(**errors):
     for part, error in errors.items():
         x[getattr(LAYOUT, part)] += error
     fields = {"force": np.zeros(3), "uav_force": np.zeros((N, 3)), "mass_excess": 0.0} | own
-    return Estimate(5.0, x, covariance=np.zeros((LAYOUT.size + 2 * N + 4,) * 2), **fields)
+    nothing = {"force_covariance": np.zeros((3, 3)), "predict_covariance": lambda: np.zeros((LAYOUT.size + 12,) * 2)}
+    return Estimate(5.0, x, **nothing, **fields)
 
 
 # Telemetry -> measurement
@@ -243,6 +245,23 @@ def test_load_follows_disturbance_force_of_each_vehicle_with_its_time_constant()
     )
     after_one = learnt(settings.load_time_constant, settings, uav_force=on_uavs).uav_force
     assert after_one == pytest.approx((1.0 - np.exp(-1.0)) * on_uavs, abs=0.02)
+
+
+@pytest.mark.parametrize(("vehicle", "force"), [(0, 0.5), (3, -0.5)])
+def test_force_on_one_vehicle_alone_leaves_the_drag_estimated_of_all_unchanged(vehicle, force):
+    true = Air(np.array([3.0, 0.0, 0.0]), drag_coefficients(P.payload.areas), 0.02)
+
+    def estimated_drag(own):
+        settings = ControllerSettings()
+        adaptation = LoadAdaptation(MODEL, settings)
+        for time in settings.period * np.arange(150):
+            velocity = np.array([2.0 * np.sin(time), 2.0 * np.cos(time), 0.0])
+            uav_force = np.tile(true.on_uav(velocity), (N, 1))
+            uav_force[vehicle, 0] += own
+            adaptation.learn(estimated(v_0=velocity, force=true.on_payload(velocity), uav_force=uav_force))
+        return adaptation.estimate.air.uav
+
+    assert estimated_drag(force) == pytest.approx(estimated_drag(0.0)) and estimated_drag(0.0) > 0.01
 
 
 def test_load_follows_disturbance_force_and_mass_of_the_payload_within_limits():

@@ -14,6 +14,7 @@ from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
 from idc_controller.guidance.detour import BoundingCylinder, FreeSpace, find_detour, first_conflict
 from idc_controller.guidance.settings import DetourSettings
+from idc_controller.guidance.straighten import straightened
 
 FORMATION = BoundingCylinder(radius=1.1, above=3.75, below=0.25)
 MARGIN = 0.5
@@ -190,6 +191,25 @@ def test_detours_of_random_scenarios_keep_margin_and_repeat(seed):
     assert detour.length < 32.0
     again = detour_of(obstacles, highest=14.0)
     assert np.array_equal(detour.waypoints, again.waypoints)
+
+
+def test_path_in_free_space_is_straightened_among_a_limited_number_of_points():
+    class Open:
+        """Space without obstacles; counts the segments of which it is asked at once."""
+
+        centres, most = (), 0
+
+        def is_free(self, places):
+            return np.ones(len(places), dtype=bool)
+
+        def are_free_segments(self, begins, ends):
+            self.most = max(self.most, len(begins))
+            return np.ones(len(begins), dtype=bool)
+
+    space, number = Open(), DetourSettings().straightened
+    path = np.array([[0.0, 0.0, -3.0], [6.0, 5.0, -3.0], [12.0, 0.0, -4.0], [18.0, 5.0, -5.0], [24.0, 0.0, -3.0]])
+    assert straightened(space, path, DetourSettings()) == pytest.approx(path[[0, -1]])
+    assert 0.7 * number**2 / 2.0 < space.most <= number * (number - 1) / 2.0
 
 
 def test_clearance_equals_that_of_collision_library():

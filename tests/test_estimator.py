@@ -34,6 +34,16 @@ def test_estimator_discards_measurement_older_than_history():
     assert estimator.add(sample(0, Position, 1.5)) is not None
 
 
+def test_covariance_of_force_is_that_of_whole_state():
+    estimator, _, _ = run(samples_of(0.5))
+    estimator.setpoints.add(0.55, REFERENCE.at(np.array([0.55])).u[0])
+    force = slice(LAYOUT.size, LAYOUT.size + 3)
+    for time in (0.5, 0.7):
+        estimate = estimator.estimate(time, REFERENCE)
+        assert (estimate.force_covariance == estimate.covariance[force, force]).all()
+        assert estimate.force_covariance[0, 0] > 0.0
+
+
 def test_covariance_grows_with_missing_measurements():
     moments = samples_of(2.0)
     rng = np.random.default_rng(3)

@@ -25,7 +25,7 @@ PAGE, SETTINGS = DOCS / "failsafes.md", DOCS / "settings.md"
 
 def link(number, *, age=0.0, attitude_age=0.0, latency=0.0, armed=True, offboard=True):
     """Link of a vehicle at ground time 100 s."""
-    clock = SimpleNamespace(delay=latency, least_delay=lambda window, now: 0.0)
+    clock = SimpleNamespace(delay=latency, round_trip_max=math.inf, least_delay=lambda window, now: 0.0)
     status = SimpleNamespace(
         armed=armed, offboard=offboard, custom_mode=0, last_text="", parameters={"COM_OF_LOSS_T": 0.46}
     )

@@ -97,3 +97,30 @@ def test_stall_delays_all_and_releases_all_in_order():
 def test_flapping_link_loses_while_down():
     up = {n for n, *_ in sent(injected(fault("flapping", down=0.2, up=0.3)), 100, gap=0.05)}
     assert up == {i for i in range(100) if i % 10 >= 4}
+
+
+@pytest.mark.parametrize(
+    ("kind", "settings"),
+    [
+        ("packet_loss", {"probability": 0.3}),
+        ("burst_loss", {"burst": 0.1, "gap": 0.3}),
+        ("latency", {"delay": 0.06}),
+        ("reordering", {"probability": 0.2, "delay": 0.05}),
+        ("duplication", {"probability": 0.25, "delay": 0.03}),
+        ("corruption", {"probability": 0.3}),
+        ("truncation", {"probability": 0.3}),
+        ("partition", {}),
+        ("stall", {"duration": 3.0}),
+        ("flapping", {"down": 0.2, "up": 0.3}),
+    ],
+)
+def test_disturbed_datagrams_are_counted(kind, settings):
+    injector = injected(fault(kind, **settings))
+    arrived = sent(injector, 150)
+    intact = {
+        n for n, begin, arrival, data in arrived if arrival - begin < 1e-9 and data == n.to_bytes(4, "little") * 10
+    }
+    twice = {n for n in intact if sum(serial == n for serial, *_ in arrived) > 1}
+    [only] = injector.faults
+    assert only.seen == 150
+    assert only.disturbed == 150 - len(intact - twice) > 0

@@ -7,7 +7,7 @@ import pytest
 from rich.console import Console
 
 from gcs.app.cli import main
-from gcs.app.fly import FlyOptions, prepare
+from gcs.app.fly_options import FlyOptions, prepare
 from gcs.errors import UnusableInput
 from gcs.faults import KINDS, read_settings
 from gcs.faults.listing import parameters, renewed

@@ -19,8 +19,6 @@ from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.truth_log import TruthLog
 from vehicle_sim.world.world import World
 
-pytestmark = pytest.mark.slow
-
 
 def lifted(*faults, seed=1, until=4.0, folder=None):
     """A swarm that a scripted ground lifts: (ground, injector, swarm)."""
@@ -57,6 +55,7 @@ MIXED = (
 )
 
 
+@pytest.mark.slow
 def test_truth_repeats_to_the_byte_with_same_seed_and_faults(tmp_path):
     runs = {"a": (MIXED, 1), "b": (MIXED, 1), "c": (MIXED, 2), "d": ((*MIXED[:8], *MIXED[9:]), 1)}
     truth, faults = {}, {}
@@ -188,6 +187,7 @@ def test_changed_payload_mass_acts_on_motion_and_is_restored():
     assert flown(true, (fault("payload_mass", 0.5, 0.1, change=-0.5),), 100) == flown(true, (), 100)
 
 
+@pytest.mark.slow
 def test_vehicle_sim_records_effects_of_faults(tmp_path):
     mission = tmp_path / "mission.toml"
     mission.write_text(

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from flight_in_process import InProcessFlight, short_figure, truth_of
+from flight_in_process import InProcessFlight, address_of, short_figure, truth_of
 from programs import PATIENCE, GcsProcess, addresses_of, base_port, swarm_process
 from pymavlink import mavutil
 
@@ -20,8 +20,6 @@ from gcs.record.landing import is_set_down
 from gcs.record.modes import stops_after
 from idc_controller.trajectory.trajectory import RestTrajectory
 from vehicle_sim.faults import FaultInjector
-
-pytestmark = pytest.mark.slow
 
 
 def check_records_closed(folder):
@@ -55,6 +53,7 @@ def check_on_the_ground(folder, height=0.25):
 # Two programs
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=["ctrl-c", "sigterm"])
 def test_ctrl_c_in_flight_lands_and_closes_the_records(tmp_path, number):
     gcs = GcsProcess(short_figure(tmp_path, duration=30.0, altitude=1.5), tmp_path / "run")
@@ -70,6 +69,7 @@ def test_ctrl_c_in_flight_lands_and_closes_the_records(tmp_path, number):
     check_on_the_ground(gcs.folder)
 
 
+@pytest.mark.slow
 def test_second_ctrl_c_ends_control_and_vehicles_land(tmp_path):
     gcs = GcsProcess(short_figure(tmp_path, duration=30.0, altitude=1.5), tmp_path / "run")
     gcs.until_phase("fly")
@@ -82,6 +82,7 @@ def test_second_ctrl_c_ends_control_and_vehicles_land(tmp_path):
     check_on_the_ground(gcs.folder, height=0.275)
 
 
+@pytest.mark.slow
 def test_killed_simulation_ends_the_flight_with_its_reason(tmp_path):
     gcs = GcsProcess(short_figure(tmp_path, duration=30.0, altitude=1.5), tmp_path / "run")
     gcs.until_phase("fly")
@@ -94,6 +95,7 @@ def test_killed_simulation_ends_the_flight_with_its_reason(tmp_path):
     assert {"HEARTBEAT", "SET_ATTITUDE_TARGET", "LOCAL_POSITION_NED"} <= kinds_in_log(gcs.folder)
 
 
+@pytest.mark.slow
 def test_vehicles_hold_then_land_when_the_ground_is_killed(tmp_path):
     mission = short_figure(tmp_path, duration=30.0, altitude=1.5)
     options = ("--lockstep", "--mission", mission, "--run-dir", tmp_path / "world", "--base-port", base_port())
@@ -120,6 +122,7 @@ def test_vehicles_hold_then_land_when_the_ground_is_killed(tmp_path):
     assert truth["contacts"].max() == 0
 
 
+@pytest.mark.slow
 def test_unreachable_vehicles_are_refused_with_their_address(tmp_path):
     with contextlib.ExitStack() as opened:
         silent = [opened.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) for _ in range(4)]
@@ -181,12 +184,8 @@ def test_vehicle_that_never_answers_is_refused(tmp_path):
 
 
 def test_vehicle_at_the_address_of_another_is_refused(tmp_path):
-    with InProcessFlight(short_figure(tmp_path), tmp_path / "run") as flight:
-        first, second, *_ = flight.station.links
-        first.address, second.address = second.address, first.address
-        flight.station.router._by_address = {
-            (link.address, link.system_id): i for i, link in enumerate(flight.station.links)
-        }
+    addresses = [address_of(system_id) for system_id in (2, 1, 3, 4)]
+    with InProcessFlight(short_figure(tmp_path), tmp_path / "run", addresses=addresses) as flight:
         flight.fly()
         assert flight.flight.reason == "vehicle 1 does not answer at 127.0.0.1:14541: vehicle 2 does"
 
@@ -217,6 +216,7 @@ def test_vehicle_with_another_parameter_is_refused(tmp_path):
         assert flight.flight.reason == "vehicle 1 has CLFT_THRUST_MAX = 20, the system file says 30"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("telemetry", "commands", "reason"),
     [
@@ -262,6 +262,7 @@ class TelemetryLoss(FaultInjector):
         return () if now >= self.at else leaving
 
 
+@pytest.mark.slow
 def test_descent_is_commanded_when_only_telemetry_is_lost(tmp_path):
     modes = []
 
@@ -278,6 +279,7 @@ def test_descent_is_commanded_when_only_telemetry_is_lost(tmp_path):
     check_set_down(tmp_path / "run", summary)
 
 
+@pytest.mark.slow
 def test_touchdown_is_not_detected_high_above_the_ground(tmp_path):
     """Above its reference and still, as wind may hold it: no touch-down, and the vehicles are left to land at last."""
     with InProcessFlight(short_figure(tmp_path, duration=2.0, altitude=1.5), tmp_path / "run") as in_process:
@@ -309,6 +311,7 @@ def test_touchdown_is_not_detected_high_above_the_ground(tmp_path):
     assert is_set_down(summary["landing"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("moment", [13.3, 17.8])
 def test_vehicles_without_ground_stop_simultaneously_and_set_the_payload_down(tmp_path, moment):
     with InProcessFlight(short_figure(tmp_path, duration=20.0), tmp_path / "run", seed=1201) as flight:
@@ -318,6 +321,7 @@ def test_vehicles_without_ground_stop_simultaneously_and_set_the_payload_down(tm
     check_set_down(tmp_path / "run", summary)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("start", "velocity", "seed"), [(9.0, (0.0, -4.0), 9103), (17.0, (2.83, 2.83), 7)])
 def test_vehicles_without_ground_set_the_payload_down_in_wind(tmp_path, start, velocity, seed):
     """They have braced the payload against the wind; once it stands they must not be driven over by that."""
@@ -348,6 +352,7 @@ gust = 0.5
     assert max(stops.values()) - flight.swarm.take_off_time - start <= 0.5
 
 
+@pytest.mark.slow
 def test_partition_is_to_the_vehicles_as_a_killed_ground(tmp_path):
     start, truths = 8.0007, []
     mission = short_figure(tmp_path, duration=4.0, altitude=1.5)

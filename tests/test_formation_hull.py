@@ -54,6 +54,17 @@ def least_distance(first, second):
 
 
 @pytest.mark.parametrize("n", TEAMS)
+def test_rims_span_the_outward_half_of_each_disc(n):
+    parameters, formation = system(n), Formation(system(n))
+    outward = parameters.p[:, :2] / np.linalg.norm(parameters.p[:, :2], axis=1, keepdims=True)
+    aside = np.column_stack([-outward[:, 1], outward[:, 0]])
+    along, across = (np.einsum("nrk,nk->nr", formation.rims[:, :, :2], axis) for axis in (outward, aside))
+    assert np.all(along > -1e-12) and np.hypot(along, across) == pytest.approx(parameters.disc_radius)
+    assert across.max(axis=1) == pytest.approx(parameters.disc_radius)
+    assert across.min(axis=1) == pytest.approx(-parameters.disc_radius)
+
+
+@pytest.mark.parametrize("n", TEAMS)
 def test_uav_offsets_agree_with_flatness(n):
     parameters, formation = system(n), Formation(system(n))
     a = accelerations(np.random.default_rng(n))

@@ -1,23 +1,27 @@
 """Runs of OBSTACLE_DISTANCE_3D, packed and read at once, against pymavlink's frames and messages one by one."""
 
 import random
-from unittest.mock import patch
 
 import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 import pytest
+from frames_read_plainly import messages_read
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gcs.mavlink.codec import Codec, gather
-from gcs.mavlink.frame_kernels import RUN_LIMIT, framed_run, frames_in_run, stamped_frames
-from gcs.mavlink.frames import spans
+from gcs.mavlink.frame_kernels import RUN_LIMIT, framed_run, stamped_frames
+from gcs.mavlink.frames import SIGNED, spans
 from gcs.mavlink.layout import LAYOUTS, PackedRun
 from gcs.mavlink.link_statistics import LinkStatistics
 from gcs.mavlink.telemetry import scan_returns
 
 POINT = LAYOUTS[mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D]
 LENGTH = POINT.dtype.itemsize
+
+
+def crc(data):
+    return mavlink.x25crc(data).crc
 
 
 def points(count, seed=1, stamp=5000):
@@ -129,17 +133,54 @@ def test_damaged_runs_are_read_as_pymavlink_reads_their_frames(seed):
     assert not ours or arrays(ours) == arrays([r for r in decoded if r.layout is POINT])
 
 
+def assert_read_plainly(datagram):
+    codec = Codec(255, 190)
+    read = codec.decode(datagram)
+    assert (read, codec.bad_frames, codec.skipped_bytes) == messages_read(crc, datagram)
+
+
 @settings(deadline=None, derandomize=True)
 @given(st.binary(max_size=300), st.integers(0, 4), st.integers(1, 6))
 def test_whatever_surrounds_a_run_it_is_read_as_frame_by_frame(noise, at, count):
     frames = plain_frames(points(count))
     frames.insert(min(at, count), noise)
-    datagram = b"".join(frames)
-    reader, decoder = Codec(255, 190), Codec(255, 190)
-    read = reader.decode(datagram)
-    with patch("gcs.mavlink.codec.frames_in_run", return_value=0):  # frame by frame
-        assert read == decoder.decode(datagram)
-    assert (reader.bad_frames, reader.skipped_bytes) == (decoder.bad_frames, decoder.skipped_bytes)
+    assert_read_plainly(b"".join(frames))
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_frames_of_all_kinds_and_damages_are_read_as_one_by_one(seed):
+    """Every kind of message, MAVLink 1 and 2, signed, cut short or longer, of unknown kind, with wrong bytes."""
+    rng = random.Random(seed)
+    for _ in range(40):
+        parts = []
+        for _ in range(rng.randint(1, 8)):
+            frame = bytearray(any_frame(rng))
+            while rng.random() < 0.2:
+                frame[rng.randrange(len(frame))] = rng.choice((0xFD, 0xFE, 0, 1, rng.randrange(256)))
+            parts.append(bytes(frame[: rng.randrange(len(frame))] if rng.random() < 0.05 else frame))
+            if rng.random() < 0.1:
+                parts.append(b"".join(plain_frames(points(rng.randint(1, 4)), rng.randrange(256))))
+        assert_read_plainly(b"".join(parts))
+
+
+def any_frame(rng):
+    number = rng.choice([*LAYOUTS, *range(1, 30), 9999])
+    extra = LAYOUTS[number].crc_extra if number in LAYOUTS else b"x"
+    length = rng.choice([0, 1, rng.randrange(256), LAYOUTS[number].kind.unpacker.size if number in LAYOUTS else 9])
+    rest = bytes([rng.randrange(256), rng.randrange(256), rng.choice((1, 190))])
+    flags = bytes([rng.choice((0, 0, 0, SIGNED, 2)), 0])
+    first = rng.random() < 0.3 and number < 256
+    head = rest + number.to_bytes(1, "little") if first else flags + rest + number.to_bytes(3, "little")
+    body = bytes([length]) + head + rng.randbytes(length)
+    frame = (b"\xfe" if first else b"\xfd") + body + crc(body + extra).to_bytes(2, "little")
+    return frame + rng.randbytes(13) if not first and flags[0] & SIGNED else frame
+
+
+def test_a_datagram_of_nothing_but_bad_frames_is_given_up():
+    bad = bytearray(plain_frames(points(1))[0])
+    bad[-1] ^= 1
+    for count in (31, 32, 33):
+        assert_read_plainly(bytes(bad) * count + plain_frames(points(1))[0])
 
 
 def test_truncated_payload_is_a_single_message():
@@ -181,17 +222,15 @@ def test_records_are_those_of_the_splitter(parts, cuts):
     assert found.tobytes() == b"".join(expected)
 
 
-def test_kernels_agree_with_plain_functions():
+def test_frames_of_a_run_are_read_as_far_as_they_are_whole():
     run, layout = points(20), POINT
     header = np.array(bytearray(plain_frames(run, 250)[0][:10]))
     payloads = run.values.view(np.uint8).reshape(-1, LENGTH)
     frames = framed_run(header, payloads, layout.crc_extra[0])
     assert frames.tobytes() == b"".join(plain_frames(run, 250))
-    for cut in (0, 1, 400, 799, 800):
-        data = np.frombuffer(bytearray(frames.tobytes()[: 800 - cut]), np.uint8)
-        if len(data) >= 10:
-            assert frames_in_run(data, 0, layout.crc_extra[0]) == len(data) // 40
-    assert frames_in_run(frames.ravel(), 0, layout.crc_extra[0] ^ 1) == 0
+    for cut in (0, 1, 400, 759):
+        read = Codec(255, 190).read(frames.tobytes()[: 800 - cut])
+        assert [r.run for r in read] == [(800 - cut) // 40]
 
 
 @settings(deadline=None, derandomize=True)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.ndimage import label
 
 from idc_controller.geometry.box import Box, Wall
 from idc_controller.geometry.capsule import Capsule
@@ -9,7 +10,7 @@ from idc_controller.geometry.formation import BoundingCylinder
 from idc_controller.geometry.free_space import TOUCHING, FreeSpace
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
-from idc_controller.guidance.detour_kernels import lattice_graph
+from idc_controller.guidance.detour_kernels import connected, lattice_graph
 
 FORMATION = BoundingCylinder(1.1, 1.3, 0.2)
 GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
@@ -95,3 +96,24 @@ def test_graph_of_lattice_has_its_edges_start_and_goal():
     assert len(costs) == len(expected)
     found = {(int(a), int(b)): cost for a, b, cost in zip(rows, heads, costs, strict=True)}
     assert found == pytest.approx(expected, abs=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_connected_nodes_are_those_of_the_parts_that_starts_are_in(seed):
+    rng = np.random.default_rng(seed)
+    shape = (11, 10, 9)
+    free = rng.random(shape) < 0.12
+    places = np.pad(np.zeros(tuple(2 * n - 1 for n in shape), dtype=bool), 2)
+    places[2:-2:2, 2:-2:2, 2:-2:2] = free
+    strides = np.array([places.shape[1] * places.shape[2], places.shape[2], 1])
+    nodes = np.argwhere(free)
+    flat, number = (2 * nodes + 2) @ strides, np.full(places.size, -1, dtype=np.int32)
+    number[flat] = np.arange(len(nodes))
+    directions = np.array([d for d in np.ndindex(3, 3, 3) if d != (1, 1, 1)]) - 1
+    starts = rng.integers(0, len(nodes), 4)
+    parts, count = label(free, np.ones((3, 3, 3)))
+    part = parts[tuple(nodes.T)]
+    assert count > 5
+    found = connected(flat, number, directions @ strides, starts)
+    np.testing.assert_array_equal(found, np.isin(part, part[starts]))
+    assert connected.py_func(flat, number, directions @ strides, starts).tolist() == found.tolist()

@@ -50,6 +50,18 @@ def test_acknowledgement_from_another_sender_is_ignored(station):
     assert station.router.refused == 3
 
 
+def test_heartbeat_is_that_of_a_ground_station_once_a_second(station):
+    beats = []
+    for k in range(30):
+        for datagram, address in station.datagrams_to_send(0.1 * k):
+            found = [received.message for received in Codec(2, 1).decode(datagram)]
+            beats += [m for m in found if m.get_type() == "HEARTBEAT" and address == address_of(3)]
+    assert len(beats) == 3
+    assert {(m.type, m.autopilot, m.base_mode, m.custom_mode, m.system_status) for m in beats} == {
+        (mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, mavlink.MAV_STATE_ACTIVE)
+    }
+
+
 def test_timesync_answer_counts_once_and_only_to_an_own_request(station):
     clock = station.links[0].clock
     sent = [m for m, address in station.datagrams_to_send(1.0) if address == address_of(1)]

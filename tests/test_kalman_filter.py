@@ -1,4 +1,4 @@
-"""Kalman filter: blocks, Cholesky factor, sparse rows and compiled kernels against filterpy and plain numpy."""
+"""Kalman filter: blocks, one row after the other, sparse rows and compiled kernels against filterpy and plain numpy."""
 
 from dataclasses import replace
 
@@ -17,6 +17,7 @@ from idc_controller.estimation.health.chi_squared import lower_quantile, upper_q
 from idc_controller.estimation.kalman_filter import SparseRows, StructuredKalmanFilter
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
 from idc_controller.estimation.process_model import ProcessModel
+from idc_controller.estimation.propagation_kernels import about_reference, are_finite
 from idc_controller.estimation.settings import ProcessNoiseSettings
 from idc_controller.estimation.update_kernels import gated, mean_products
 from idc_controller.model.linear import LinearModel
@@ -48,14 +49,14 @@ def corrected(seed, P, variance):
     rng, m = np.random.default_rng(seed), len(variance)
     compiled, plain = both(rng, P)
     rows, y = sparse_rows(rng, m, len(P)), rng.standard_normal(m)
-    squared = compiled.correct(compiled.innovation(y, rows), variance)
+    squared = compiled.correct(compiled.innovation(y, rows, np.zeros(1, dtype=int), np.array([m])), variance)
     plain.update(y, R=np.diag(variance), H=rows.dense(len(P)))
     assert squared == pytest.approx(plain.y @ plain.SI @ plain.y, rel=1e-10)
     return compiled, plain
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_correction_by_cholesky_factor_equals_filterpys_update(seed):
+def test_correction_by_one_row_after_the_other_equals_filterpys_update(seed):
     rng = np.random.default_rng(seed)
     variance = 10.0 ** rng.uniform(-2.0, 1.0, rng.integers(1, 25))
     compiled, plain = corrected(seed, positive_definite(rng, N_STATES), variance)
@@ -78,15 +79,17 @@ def test_correction_without_positive_definite_covariance_is_filterpys():
 
 @pytest.mark.parametrize("seed", range(5))
 def test_innovation_and_its_subset_equal_dense_products(seed):
-    rng, m = np.random.default_rng(seed), 12
+    rng, sizes = np.random.default_rng(seed), np.array([6, 4, 2])
+    m, starts = sizes.sum(), np.cumsum(sizes) - sizes
     filter, _ = both(rng, positive_definite(rng, N_STATES))
     rows, y, which = sparse_rows(rng, m, N_STATES), rng.standard_normal(m), rng.random(m) < 0.5
-    innovation, H = filter.innovation(y, rows), rows.dense(N_STATES)
+    innovation, H = filter.innovation(y, rows, starts, sizes), rows.dense(N_STATES)
+    of_one = np.kron(np.eye(3), np.ones((6, 6)))[np.ix_(*2 * [np.r_[:6, 6:10, 12:14]])]
     assert innovation.subset(np.ones(m, dtype=bool)) is innovation
-    for part, kept in ((innovation, H), (innovation.subset(which), H[which])):
-        assert part.cross == pytest.approx(kept @ filter.P, rel=1e-12, abs=1e-12)
-        assert part.covariance == pytest.approx(kept @ filter.P @ kept.T, rel=1e-12, abs=1e-12)
-    assert innovation.residual == pytest.approx(y - H @ filter.x, rel=1e-12, abs=1e-12)
+    for part, kept in ((innovation, np.full(m, True)), (innovation.subset(which), which)):
+        expected = (of_one * (H @ filter.P @ H.T))[np.ix_(kept, kept)]
+        assert part.covariance == pytest.approx(expected, rel=1e-12, abs=1e-12)
+        assert part.residual == pytest.approx((y - H @ filter.x)[kept], rel=1e-12, abs=1e-12)
 
 
 def van_loan(process, densities, interval_us, force_scale):
@@ -134,7 +137,9 @@ def test_propagation_by_blocks_equals_filterpys_prediction(vehicles, is_changed)
     assert (F[n:, n:] == np.eye(process.size - n)).all()
     assert (B[:n] == B_k).all()
     u, change, probability = rng.standard_normal(3 * vehicles), rng.standard_normal(3 * vehicles), rng.random(vehicles)
+    alone = transition.state(compiled.x, direction, u)
     compiled.propagate(transition, direction, u, Q, change if is_changed else np.zeros(0), probability)
+    assert (alone == compiled.x).all()
     # The tilts of one vehicle are lost together, its thrust by itself.
     error = is_changed * B * (change * np.sqrt(np.concatenate([np.repeat(probability, 2), probability])))
     tilts, thrusts = error[:, : 2 * vehicles], error[:, 2 * vehicles :]
@@ -267,3 +272,41 @@ def test_compiled_mean_products_equal_plain_ones():
     plain = [(normalised * last)[accepted & part].mean() for part in (of_payload, ~of_payload)]
     assert mean_products(normalised, last, accepted, of_payload) == pytest.approx(plain, rel=1e-12)
     assert np.isnan(mean_products(normalised, last, of_payload, of_payload)[1])
+
+
+@pytest.mark.parametrize("vehicles", [3, 4])
+def test_state_and_setpoints_of_reference_between_times_equal_plain_numpy(vehicles):
+    model = LinearModel(read_system(MISSIONS / "system.toml").with_vehicles(vehicles).parameters())
+    process, layout, g = ProcessModel(model, ProcessNoiseSettings()), model.layout, model.parameters.g
+    load = Load(5.5, np.array([1.0, -2.0, 0.5]), np.array([0.3, -0.1, 0.0]))
+    flat = flat_reference(model.parameters, Wave(), np.array([1.0, 1.04, 1.052]), load)
+    links = flat.links
+    u, direction, x = about_reference(flat.x, flat.u, flat.payload, links.on_payload, links.on_uavs, g, 0.25)
+    assert (u == (flat.u[:-1] + flat.u[1:]) / 2).all()
+    assert (direction == process.force_of_mass((flat.payload[2, :-1] + flat.payload[2, 1:]) / 2)).all()
+    assert (x[:, : layout.size] == flat.x).all()
+    assert (x[:, process.force] == links.on_payload).all()
+    assert (x[:, process.uav_force] == links.on_uavs[..., :2].reshape(3, -1)).all()
+    assert (x[:, process.mass] == 0.25).all()
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_state_or_covariance_that_is_no_number_is_found(value):
+    x, P = np.ones(5), np.eye(5)
+    assert are_finite(x, P)
+    for at in np.ndindex(5, 5):
+        wrong = P.copy()
+        wrong[at] = value
+        assert not are_finite(x, wrong)
+    assert not are_finite(np.where(np.arange(5) == 3, value, x), P)
+
+
+def test_noise_between_vehicles_goes_to_both_axes_of_the_force_on_each_that_is_measured():
+    model = LinearModel(read_system(MISSIONS / "system.toml").parameters())
+    process = ProcessModel(model, ProcessNoiseSettings(per_vehicle_force=0.3))
+    P = np.zeros((process.size, process.size))
+    process.add_per_vehicle_noise(P, np.array([0, 2]))
+    expected = np.zeros(process.size)
+    forces = expected[process.uav_force].reshape(-1, 2)
+    forces[[0, 2]] = 0.3**2
+    np.testing.assert_array_equal(P, np.diag(expected))

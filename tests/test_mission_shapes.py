@@ -11,7 +11,6 @@ import pybullet
 import pytest
 import trimesh
 from mission_files import MISSIONS, TOML, description_of, read, refusal
-from paper_system import system
 from programs import ENVIRONMENT
 
 from gcs.campaign.toml_text import mission_text
@@ -23,7 +22,7 @@ from idc_controller.geometry.box import Box
 from idc_controller.geometry.capsule import Capsule
 from idc_controller.geometry.mesh import Mesh, MeshHull
 from idc_controller.geometry.sphere import Sphere
-from vehicle_sim.world.world import World
+from vehicle_sim.world.obstacle_bodies import ObstacleBodies
 
 OBSTACLES = """
 [[obstacle]]
@@ -170,22 +169,23 @@ SHAPES = [
 
 @pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: shape.kind)
 def test_physics_engine_has_the_same_geometry(shape):
-    probe = Sphere(0.2)
-    with World(system(4)) as world:
-        world.obstacles.add("probe", probe, (0.0, 0.0, -30.0))
-        world.obstacles.add("body", shape, (9.0, 9.0, -9.0))
+    client = pybullet.connect(pybullet.DIRECT)
+    try:
+        bodies = ObstacleBodies(client)
+        bodies.add("probe", Sphere(0.2), (0.0, 0.0, -30.0))
+        bodies.add("body", shape, (9.0, 9.0, -9.0))
         for direction in np.random.default_rng(8).normal(size=(12, 3)):
             away = direction / np.linalg.norm(direction) * (shape.reach + 0.5)
-            world.obstacles.move("body", (1.0, -2.0, -30.0))
-            world.obstacles.move("probe", np.array([1.0, -2.0, -30.0]) + away)
+            bodies.move("body", (1.0, -2.0, -30.0))
+            bodies.move("probe", np.array([1.0, -2.0, -30.0]) + away)
             expected = coal.distance(
                 shape.geometry(), coal.Transform3s(shape.rotation, np.zeros(3)), coal.Sphere(0.2),
                 coal.Transform3s(np.eye(3), away), coal.DistanceRequest(), coal.DistanceResult(),
             )  # fmt: skip
-            points = pybullet.getClosestPoints(
-                world.obstacles.body("body"), world.obstacles.body("probe"), 9.0, physicsClientId=world._client
-            )
+            points = pybullet.getClosestPoints(bodies.body("body"), bodies.body("probe"), 9.0, physicsClientId=client)
             assert min(point[8] for point in points) == pytest.approx(expected, abs=3e-3)
+    finally:
+        pybullet.disconnect(client)
 
 
 @pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: shape.kind)

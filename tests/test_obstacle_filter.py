@@ -13,6 +13,7 @@ from idc_controller.geometry.sphere import Sphere
 from idc_controller.perception.motion_imm import MotionModels
 from idc_controller.perception.obstacle_filter import ObstacleFilter
 from idc_controller.perception.settings import SurfaceSettings
+from idc_controller.perception.surfaces.points import joined
 from idc_controller.perception.surfaces.round import RoundSurface
 
 MODELS = MotionModels()
@@ -257,6 +258,23 @@ def test_velocity_is_estimated_after_three_frames():
     position, velocity, _ = track.state
     assert np.linalg.norm(position - [7.6, 0.0, -6.0]) < 0.12
     assert velocity[0] < -1.0
+
+
+@pytest.mark.parametrize("length", [0.0, 1.5])
+def test_prediction_grows_over_what_sticks_out_of_the_fitted_shape(length):
+    scene, track, place = Scene(6), None, np.array([6.0, 0.0, -6.0])
+    tip = place + np.array([0.0, length, 0.0])
+    for k in range(40):
+        parts = [scene.frame(0.1 * k, [0.0, 0.0, -6.0], sphere(place))]
+        if length:  # a thin rod across the line of sight, of which one point is detected
+            parts.append(replace(parts[0][:1], points=tip[None]))
+        if track is None:
+            track = ObstacleFilter(MODELS, joined(parts))
+        else:
+            track.update(joined(parts))
+    mean, growth = track.predict(np.array([3.9]))
+    end = np.linalg.norm(tip - mean[0]) - track.shape.reach
+    assert growth[0] > end - 0.2 if length else growth[0] < 0.15
 
 
 def test_late_frame_does_not_degrade_estimate():

@@ -35,9 +35,12 @@ from idc_controller.geometry.obstacles import Bodies
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
 from idc_controller.perception import track_list
+from idc_controller.perception.motion_imm import MotionModels
 from idc_controller.perception.obstacle_map import ObstacleMap
 from idc_controller.perception.scan_assembly import Cluster
+from idc_controller.perception.settings import PerceptionSettings
 from idc_controller.perception.track import Track
+from idc_controller.perception.track_list import TrackList
 from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.obstacle_bodies import Obstacle as WorldObstacle
 
@@ -162,13 +165,12 @@ def test_duplicate_tracks_are_merged(error):
 
 
 def test_overlaps_are_counted_in_a_row_and_stay_while_the_other_track_is_not_compared():
-    m = map_of()
-    run(m, lambda t: [sphere((6.0, 0.0, -6.0))], 1.0)
-    parts = [part for i, _, part in Scene(8).scans(1.0, HERE, [sphere((6.0, 0.0, -6.0))]) if i == 0]
-    clusters = [Cluster(0, 0, part) for part in parts]
-    m._tracks.begin(clusters, 1.0)
-    first, second = m.tracks
-    merge = partial(m._tracks.merge, clusters, [1] * len(clusters), standing=[])
+    tracks, ball = TrackList([], [], MotionModels(), PerceptionSettings()), [sphere((6.0, 0.0, -6.0))]
+    for time in (1.0, 1.1):
+        clusters = [Cluster(0, 0, part) for i, _, part in Scene(8).scans(time, HERE, ball) if i == 0]
+        tracks.begin(clusters, time)
+    first, second = tracks.tracks
+    merge = partial(tracks.merge, clusters, [1] * len(clusters), standing=[])
     near, far = np.zeros((len(clusters), 2)), np.full((len(clusters), 2), 9.0)
     merge(near)
     assert second.overlaps == {first.name: 1}

@@ -21,6 +21,7 @@ from segmenting_sensor import SegmentedSample
 from idc_controller.estimation.measurements import Attitude, Position, VehicleStates
 from idc_controller.perception.scan_assembly import ScanAssembly
 from idc_controller.perception.scan_kernels import grouped, possible_points
+from idc_controller.perception.settings import ScanSettings
 
 
 def test_detections_are_placed_by_estimate_when_position_is_unusable():
@@ -61,6 +62,17 @@ def test_scan_is_placed_by_the_pose_nearest_in_time(time, nearest):
     heading = nearest * np.radians(10.0)
     expected = HERE + nearest + 5.0 * np.array([np.cos(heading), np.sin(heading), 0.0])
     assert cluster.surface_points.points[0] == pytest.approx(expected, abs=2e-3)
+
+
+def test_scan_of_a_vehicle_that_sends_no_pose_is_placed_by_its_estimate():
+    scans, settings = ScanAssembly(SENSORS), ScanSettings()
+    level = np.array([1.0, 0.0, 0.0, 0.0])
+    scans.poses.add_estimated(VehicleStates(0.0, np.hstack([HERE, np.zeros(3), level, np.zeros(3)])[None]))
+    for message in messages_of(SegmentedSample(0.0, REACH, np.array([1]), np.array([[5.0, 0.0, 0.0]]))):
+        scans.add(detections_of(message), 0, 0.0)
+    assert scans.frames(settings.pose_wait) == []
+    [[cluster]] = scans.frames(settings.pose_wait + 0.01)
+    assert cluster.surface_points.points[0] == pytest.approx([5.0, 0.0, -6.0])
 
 
 def test_scan_is_discarded_without_pose_and_estimate():

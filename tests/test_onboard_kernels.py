@@ -13,7 +13,16 @@ from gcs.mavlink import px4
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.land_detector import LandDetector
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
-from vehicle_sim.autopilot.onboard_kernels import THRUST, detect_landings, take_fresh_samples
+from vehicle_sim.autopilot.onboard_kernels import (
+    COMMANDED,
+    DETECTED,
+    SAMPLED,
+    THRUST,
+    control_attitudes,
+    detect_landings,
+    step_while_idle,
+    take_fresh_samples,
+)
 from vehicle_sim.autopilot.onboard_loop import step_together
 from vehicle_sim.autopilot.parameter_table import vehicle_parameters
 from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
@@ -242,3 +251,32 @@ def test_idle_vehicles_would_decide_what_they_did(seed):
             seen.add(shown[:4])
         idle += np.count_nonzero(all_arrays[0].idle_until > now)
     assert idle > 4000 and len(seen) > 8
+
+
+@pytest.mark.parametrize("expected", [SAMPLED, DETECTED, COMMANDED])
+def test_step_of_idle_vehicles_is_its_three_parts_up_to_the_first_decision(expected):
+    random = np.random.default_rng(3)
+    teams = [OnboardArrays.of([AIRFRAME] * 3, SETTINGS) for _ in range(2)]
+    rows = random.normal(size=(3, 13))
+    rows[:, 3:7] /= np.linalg.norm(rows[:, 3:7], axis=1, keepdims=True)
+    targets = random.uniform(0.1, 1.0, teams[0].targets.shape)
+    times, now = np.full(3, 1.0), 1.002
+    for team in teams:
+        team.targets[:] = targets
+        team.idle_until[:] = [now, 5.0, 5.0] if expected == DETECTED else 5.0
+        if expected == SAMPLED:
+            team.last_samples[1] = rows[1]
+    one, other = teams
+    sampling = rows, times, now, one.last_samples, one.estimates, one.stamps, one.fresh
+    detection = one.detectors, one.targets, one.learns, one.landings, one.idle_until
+    assert step_while_idle(*sampling, *detection, one.airframes, one.accelerations, one.speeds) == expected
+    take_fresh_samples(rows, times, now, other.last_samples, other.estimates, other.stamps, other.fresh)
+    if expected != SAMPLED:
+        detect_landings(
+            other.detectors, other.estimates, other.targets, other.learns, now, other.landings, other.idle_until
+        )
+    if expected == COMMANDED:
+        control_attitudes(other.airframes, other.estimates, other.targets, other.accelerations, other.speeds)
+        assert one.speeds.any()
+    for name in ("last_samples", "estimates", "stamps", "fresh", "landings", "idle_until", "accelerations", "speeds"):
+        assert np.array_equal(getattr(one, name), getattr(other, name), equal_nan=True), name

@@ -5,7 +5,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-import pybullet
 import pytest
 import trimesh
 from avoidance_scene import hull_of
@@ -117,22 +116,23 @@ def test_hover_of_asymmetric_payload_is_an_equilibrium(tmp_path: Path) -> None:
 def test_payload_in_the_engine_has_the_full_tensor_of_inertia(tmp_path: Path) -> None:
     parameters = wedge_system(tmp_path).parameters()
     assert np.abs(parameters.J_0[np.triu_indices(3, 1)]).min() > 1e-3
+    # Pulls (N) along tilted links turn the payload about its three axes.
+    tilts = np.array([[0.2, 0.0], [0.0, -0.2], [-0.2, 0.0], [0.0, 0.2]])
+    links = np.column_stack([tilts, np.sqrt(1.0 - np.sum(tilts**2, axis=1))])
     for mass in (parameters.m_0, 1.2 * parameters.m_0):
         now = parameters.with_payload_mass(mass)
-        lift = np.outer(now.hover_thrust, [0.0, 0.0, -1.0])
-        for torque in np.eye(3):
+        for pulls in 5.0 * np.array([[1, -1, 1, -1], [1, 1, -1, -1], [1, -1, -1, 1]]):
+            state = replace(hover_state(parameters, (0.0, 0.0, -20.0)), q=links)
+            inputs = replace(hover_inputs(now), F=hover_inputs(now).F - pulls[:, None] * links)
+            rates = []
             with World(parameters, physics_hz=1000) as world:
                 world.set_payload_mass(mass)
-                place(world, hover_state(parameters, (0.0, 0.0, -20.0)))
-                x, y, z = torque.tolist()
-                pybullet.applyExternalTorque(
-                    world._system.body, -1, (x, -y, -z), pybullet.WORLD_FRAME, physicsClientId=world._client
-                )
-                world.step([0.0] * 4, [(0.0, 0.0, 0.0)] * 4, uav_forces=lift.tolist())
-                rates = pybullet.getBaseVelocity(world._system.body, world._client)[1]
-            inputs = replace(hover_inputs(now), tau_0=torque)
-            expected = accelerations(now, hover_state(now), inputs).omega_0_dot
-            np.testing.assert_allclose(np.multiply(rates, (1.0, -1.0, -1.0)) * 1000.0, expected, atol=1e-4)
+                place(world, state)
+                for _ in range(2):
+                    world.step([0.0] * 4, [(0.0, 0.0, 0.0)] * 4, uav_forces=inputs.F.tolist())
+                    rates.append(world.state().payload_rates_in_payload)
+            expected = accelerations(now, state, inputs).omega_0_dot
+            np.testing.assert_allclose(np.diff(rates, axis=0)[0] * 1000.0, expected, atol=3e-4)
 
 
 def test_principal_axes_of_a_diagonal_tensor_are_the_axes_of_its_frame() -> None:

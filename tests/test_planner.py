@@ -14,6 +14,8 @@ from idc_controller.geometry.obstacles import PredictedObstacle
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
 from idc_controller.qp.daqp_solver import DaqpSolver
+from idc_controller.safety.constraints.acceleration_bounds import AccelerationBounds
+from idc_controller.safety.constraints.constraint import Penalty, PlanningStep
 from idc_controller.safety.constraints.exponential_barrier import barrier_operator
 from idc_controller.safety.planner import Planner, terminal_weight
 from idc_controller.safety.separation import PredictedObstacles, separations
@@ -302,6 +304,21 @@ def test_pop_of_the_mission_is_always_allowed(planner):
     assert planner.is_within_limits(planner.free(np.zeros((5, 3))), mission)
     plan = planner.solve(np.zeros((5, 3)), mission, [], mission[2])
     np.testing.assert_allclose(plan.knots, 0.0, atol=1e-6)
+
+
+def test_acceleration_is_bounded_along_the_axes_and_between_north_and_east():
+    chain, z = SETTINGS.chain, np.random.default_rng(3).standard_normal(3 * SETTINGS.chain.knots)
+    bounds = AccelerationBounds(SETTINGS, Penalty(1.0, 1.0))
+    step = PlanningStep(
+        np.zeros((5, K + 1, 3)), np.zeros((K + 1, 5, 3)), np.zeros((K + 1, 3)), (), np.zeros(3), np.zeros(3)
+    )
+    north, east, down = chain.roll_out(np.zeros((5, 3)), z.reshape(3, -1).T)[SETTINGS.limited_stages, 2].T
+    rows, limits = bounds.rows(step)
+    along = np.array([north, east, down, (north + east) / np.sqrt(2.0), (north - east) / np.sqrt(2.0)])
+    expected = np.stack([along, -along], axis=1).ravel()
+    np.testing.assert_allclose(rows @ z, expected, atol=1e-12)
+    x, y, z = SETTINGS.acceleration_limit
+    np.testing.assert_allclose(limits, np.repeat([x, y, z, min(x, y), min(x, y)], 2 * len(north)))
 
 
 def test_limits_never_forbid_the_mission_itself(planner):

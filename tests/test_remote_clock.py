@@ -1,5 +1,6 @@
 """Estimate of a vehicle's clock on the ground, and stamps of what is sent to the vehicle."""
 
+import math
 from itertools import pairwise
 
 import pytest
@@ -65,6 +66,12 @@ def test_stalled_answers_released_together_are_no_link_latency():
         RemoteClock(), lambda sent: max(1.45 - sent, 0.0) if sent > 1.0 else 0.0, until=1.47
     )
     assert clock.least_delay(0.3, 1.47) == 0.0
+
+
+def test_clock_before_its_first_answer_has_neither_latency_nor_spread_nor_a_bound():
+    clock = RemoteClock()
+    assert (clock.delay, clock.spread, clock.round_trip_max) == (0.0, 0.0, math.inf)
+    assert not clock.known and clock.offset == 0.0
 
 
 def test_equal_round_trips_are_latency_without_spread():

@@ -1,11 +1,13 @@
 """Numbers that follow from a key of the system file: the key is changed and the behaviour follows."""
 
+import math
 from contextlib import closing
 from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from obstacle_scene import detections_of, messages_of
 from standing_obstacles import StandingObstacles
 
 from gcs.campaign.scenarios.judgement import least_separation
@@ -21,11 +23,12 @@ from gcs.mission.read import read_mission
 from idc_controller.control.constraints.uav_separation import UavSeparation
 from idc_controller.estimation.health.channel_isolation import ChannelIsolation
 from idc_controller.estimation.measurement_model import MeasurementModel
-from idc_controller.estimation.measurements import Attitude, MeasurementNoise
+from idc_controller.estimation.measurements import Attitude, MeasurementNoise, Position
 from idc_controller.estimation.settings import MeasurementModelSettings
 from idc_controller.geometry.sphere import Sphere
 from idc_controller.model.linear import LinearModel
 from idc_controller.safety.settings import PlannerSettings
+from segmenting_sensor import SegmentedSample
 
 NOTHING = StandingObstacles([])
 STATE = np.array([[0.0, 0.0, -5.0], [2.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
@@ -105,7 +108,7 @@ def test_separation_limit_follows_spacing_of_the_team(spacing, limit):
     tracker = stack.controller(config, model, None, lambda: 0.0).tracker
     separation = tracker.state_constraints[-1]
     assert separation.distance == pytest.approx(limit)
-    assert separation.h(None, [1]) == pytest.approx(np.full((1, 4), spacing - limit))
+    assert separation.limits == pytest.approx(np.full(4, spacing - limit))
 
 
 @pytest.mark.parametrize(("spacing", "limit"), [(1.0, 0.75), (1.4, 0.9)])
@@ -195,6 +198,18 @@ def test_world_without_ticks_is_lost_after_the_time_of_the_file(tmp_path):
     with closing(Connection()) as ground, closing(Connection()) as world:
         run_in_lockstep(station, ground, world.socket.getsockname(), Interrupt(), read_system(path).drivers)
     assert reasons == ["the simulated world does not answer for 0.05 s"]
+
+
+def test_detections_have_the_noise_of_the_range_sensor_and_of_the_poses():
+    config = system(range_sensor={"noise": 0.07}, sensors={"position": 0.03, "attitude_deg": 1.0})
+    scans = stack.obstacle_map(SimpleNamespace(system=config, obstacles=(), boundary=None)).scans
+    scans.poses.add_measured(Attitude(0.0, 0, np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3)))
+    scans.poses.add_measured(Position(0.0, 0, np.array([0.0, 0.0, -5.0]), np.zeros(3)))
+    for message in messages_of(SegmentedSample(0.0, 10.0, np.array([1]), np.array([[5.0, 0.0, 0.0]]))):
+        scans.add(detections_of(message), 0, 0.0)
+    [[cluster]] = scans.frames(0.0)
+    assert cluster.scan.noise == 0.07
+    assert cluster.pose_variance[0] == pytest.approx(0.03**2 + (5.0 * math.radians(1.0)) ** 2, rel=0.4)
 
 
 def test_waypoints_are_passed_within_the_corner_of_the_motion(tmp_path):

@@ -168,6 +168,7 @@ def test_range_sensor_hits_the_surface_that_faces_it(shape):
         points = shape.visible_points(tuple(sensor), 20.0, 0.3)
         distance = Bodies([shape]).from_offsets(points[None])[0]
         np.testing.assert_allclose(distance, 0.0, atol=1e-6)
+        assert len(points) >= 4
         ranges = np.linalg.norm(points - sensor, axis=1)
         assert ranges[0] == pytest.approx(Bodies([shape]).from_offsets(sensor[None, None])[0, 0], abs=1e-4)
         # Nothing of the body lies between the sensor and the points.

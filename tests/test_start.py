@@ -1,5 +1,6 @@
 """The start of the commands: which modules they import. What takes long to import, only a flight may need."""
 
+import gc
 import os
 import subprocess
 import sys
@@ -7,11 +8,18 @@ from pathlib import Path
 
 import pytest
 
+from gcs.app.exit_status import ExitStatus
+from gcs.app.imports import importing
+
 REPOSITORY = Path(__file__).parents[1]
 FOR_NUMBERS = {"numpy", "pydantic"}
 FOR_FLIGHTS = {
     "coal", "daqp", "filterpy", "matplotlib", "numba", "pandas", "proxsuite", "pyarrow", "pybullet", "pymap3d",
     "pymavlink", "scipy", "shapely", "trimesh",
+}  # fmt: skip
+NOT_FOR_FLIGHTS = {
+    "PIL", "hypothesis", "matplotlib", "pandas", "pyarrow", "pymap3d", "shapely", "trimesh",
+    "numba.np.polynomial.polynomial_core", "numba.typed.dictimpl",  # of the registries by which numba compiles
 }  # fmt: skip
 PROGRAM = """\
 import sys
@@ -26,10 +34,11 @@ sys.exit(status)
 """
 
 
-def modules_of(program: str, *arguments: str) -> set[str]:
-    """Top-level modules that a command has imported when it ends."""
+def modules_of(program: str, *arguments: str, status: int = 0) -> set[str]:
+    """Top-level modules that a command has imported when it ends with this exit ``status``."""
     command = [sys.executable, "-c", PROGRAM, program, *arguments]
-    done = subprocess.run(command, cwd=REPOSITORY, capture_output=True, text=True, check=True, timeout=60)
+    done = subprocess.run(command, cwd=REPOSITORY, capture_output=True, text=True, timeout=60)
+    assert done.returncode == status, done.stderr
     return set(done.stdout.splitlines()[-1].split())
 
 
@@ -60,6 +69,45 @@ def test_help_imports_neither_numbers_nor_flight(command: tuple[str, ...]) -> No
 )
 def test_check_imports_only_what_the_mission_needs(mission: str, needed: set[str]) -> None:
     assert modules_of("gcs.app.cli", "check", f"missions/{mission}") & FOR_FLIGHTS == needed
+
+
+@pytest.mark.parametrize(
+    ("mission", "options"),
+    [
+        ("missions/absent.toml", ()),
+        ("missions/system.toml", ()),
+        ("missions/figure_eight.toml", ("--config", "missions/figure_eight.toml")),
+        ("missions/figure_eight.toml", ("--connect", "udp://127.0.0.1")),
+        ("missions/figure_eight.toml", ("--connect", "udp://127.0.0.1:14540", "--vehicles", "4")),
+    ],
+)
+def test_a_flight_with_unusable_input_imports_no_more_than_check_and_leaves_nothing(
+    mission: str, options: tuple[str, ...], tmp_path: Path
+) -> None:
+    run_dir = tmp_path / "run"
+    command = ("gcs.app.cli", "fly", mission, *options, "--run-dir", str(run_dir))
+    assert not modules_of(*command, status=ExitStatus.UNUSABLE_INPUT) & FOR_FLIGHTS
+    assert not run_dir.exists()
+
+
+def test_a_flight_imports_neither_what_draws_nor_the_compiler_of_kernels() -> None:
+    script = "import sys, gcs.app.fly, vehicle_sim.app.launch; print(*sys.modules)"
+    command = [sys.executable, "-c", script]
+    done = subprocess.run(command, cwd=REPOSITORY, capture_output=True, text=True, check=True, timeout=120)
+    imported = set(done.stdout.split())
+    assert {"pybullet", "numba", "scipy.linalg"} <= imported
+    assert not imported & NOT_FOR_FLIGHTS
+
+
+def test_imports_are_passed_over_by_collections_of_garbage() -> None:
+    kept = gc.get_freeze_count()
+    try:
+        with importing():
+            assert not gc.isenabled()
+        assert gc.isenabled()
+        assert gc.get_freeze_count() > kept
+    finally:
+        gc.unfreeze()
 
 
 def test_check_imports_no_kinds_of_fault_without_faults() -> None:

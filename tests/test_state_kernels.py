@@ -49,8 +49,9 @@ def test_rotors_of_a_team_advance_as_each_alone():
     motors = RNG.uniform(0.1, 1.0, (3, 7))
     motors[:, 6] = 800.0
     commands, speeds = RNG.uniform(0.0, 1000.0, (3, 4)), RNG.uniform(0.0, 1000.0, (3, 4))
-    begun, thrusts, torques = speeds.copy(), np.empty(3), np.empty((3, 3))
+    begun, thrusts, torques = speeds.copy(), np.empty((1, 3)), np.empty((1, 3, 3))
     advance_rotors(motors, commands, speeds, thrusts, torques)
+    (thrusts,), (torques,) = thrusts, torques
     for i, (decay, mean_1, mean_2, k_f, lever, per_thrust, top) in enumerate(motors.tolist()):
         c = np.minimum(commands[i], top)
         d = begun[i] - c
@@ -59,3 +60,16 @@ def test_rotors_of_a_team_advance_as_each_alone():
         assert thrusts[i] == pytest.approx(math.fsum(f))
         roll, pitch, yaw = lever * (f @ [-1, 1, 1, -1]), lever * (f @ [1, -1, 1, -1]), per_thrust * (f @ [1, 1, -1, -1])
         assert torques[i] == pytest.approx([roll, pitch, yaw])
+
+
+def test_rotors_advance_by_several_steps_as_by_each_alone():
+    motors, commands = RNG.uniform(0.1, 1.0, (3, 7)), RNG.uniform(0.0, 1000.0, (3, 4))
+    begun = RNG.uniform(0.0, 1000.0, (3, 4))
+    speeds, thrusts, torques = begun.copy(), np.empty((5, 3)), np.empty((5, 3, 3))
+    advance_rotors(motors, commands, speeds, thrusts, torques)
+    for thrust, torque in zip(thrusts, torques, strict=True):
+        alone = np.empty((1, 3)), np.empty((1, 3, 3))
+        advance_rotors(motors, commands, begun, *alone)
+        assert np.array_equal(alone[0][0], thrust)
+        assert np.array_equal(alone[1][0], torque)
+    assert np.array_equal(speeds, begun)

@@ -22,19 +22,23 @@ def test_only_the_stuck_channel_is_detected(source, part, kind):
             parts[part] = np.ones(len(parts[part]))
         return kind(0.04 * k, source, *parts)
 
-    found = [sensors.check(sample(k)) for k in range(12)]
+    found = [check(sensors, sample(k)) for k in range(12)]
     assert [stuck[part] for stuck in found] == [False] * 7 + [True] * 5
     assert not any(stuck[1 - part] for stuck in found)
-    assert not any(sensors.check(kind(1.0, source, random.standard_normal(4 if kind is Attitude else 3), np.zeros(3))))
+    assert not any(check(sensors, kind(1.0, source, random.standard_normal(4 if kind is Attitude else 3), np.zeros(3))))
+
+
+def check(sensors, sample):
+    return sensors.check(sample, sample.pose.tolist(), sample.motion.tolist())
 
 
 def test_relayed_and_late_copies_do_not_count_as_repeats():
     sensors = StuckSensors(NOISE)
     for k in range(5):
         for time in (0.04 * k, 0.04 * k, 0.04 * k, 0.04 * max(k - 1, 0)):
-            assert not any(sensors.check(Position(time, PAYLOAD, np.full(3, time), np.full(3, 2.0 + time))))
+            assert not any(check(sensors, Position(time, PAYLOAD, np.full(3, time), np.full(3, 2.0 + time))))
 
 
 def test_repeated_value_is_not_stuck_without_noise():
     sensors = StuckSensors(MeasurementNoise(position=0.0, uav_velocity=0.0))
-    assert not any(any(sensors.check(Position(0.04 * k, 1, np.zeros(3), np.zeros(3)))) for k in range(9))
+    assert not any(any(check(sensors, Position(0.04 * k, 1, np.zeros(3), np.zeros(3)))) for k in range(9))

@@ -181,6 +181,26 @@ def test_corner_is_flown_through_not_stopped_at():
     assert np.linalg.norm(derivatives[0] - [10, 0, -5], axis=1).min() <= 0.2
 
 
+def test_pause_at_a_corner_ends_at_the_first_sample_from_which_limits_hold():
+    def duration(turn):
+        corner, direction = np.array([2.0, 0.0, -5.0]), np.array([math.cos(turn), math.sin(turn), 0.0])
+        before, after = planned([Leg(corner, 1.5), Leg(corner + 2.0 * direction, 1.5)]).passages
+        return after - before
+
+    # A turn by 40 deg needs no pause; one by 50 deg may begin at the next sample.
+    pause = duration(math.radians(50.0)) - duration(math.radians(40.0))
+    assert 0.0 < pause < smoothing_for(LIMITS).interval
+
+
+def test_waypoints_are_those_passed_between_two_times():
+    corners = np.array([[3.0, 0.0, -5.0], [3.0, 4.0, -6.0], [0.0, 0.0, -5.0]])
+    trajectory = planned([Leg(corner, 1.5) for corner in corners])
+    first, second, _ = trajectory.passages
+    assert trajectory.waypoints(0.0, trajectory.end) == pytest.approx(corners, abs=0.2)
+    assert trajectory.waypoints(first, second) == pytest.approx(corners[:2], abs=0.2)
+    assert trajectory.waypoints(first + 0.1, second - 0.1).shape == (0, 3)
+
+
 def test_trajectory_stays_on_the_legs():
     points = [[4, 0, -0.2], [4, 4, -0.2], [0, 0, 0]]
     _, derivatives = sampled(planned([Leg(p, 1.5) for p in points], [0, 0, -0.2]))

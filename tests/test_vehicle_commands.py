@@ -85,6 +85,12 @@ def test_commands_are_acknowledged(bench: Bench, message: Any, result: int) -> N
     assert bench.result(message) == result
 
 
+@pytest.mark.parametrize("mode", [256.0, 2.5, -1.0])
+def test_mode_that_is_no_byte_is_denied_with_the_reason(bench: Bench, mode: float) -> None:
+    assert bench.result(command(176, 1, mode)) == DENIED
+    assert "parameters are not whole numbers" in bench.got("STATUSTEXT")[-1].text
+
+
 def test_commands_as_command_int_and_mode_as_set_mode(bench: Bench) -> None:
     as_int = mavlink.MAVLink_command_int_message(1, 1, 0, 400, 0, 0, 1, 0, 0, 0, 0, 0, 0)
     assert bench.result(as_int) == ACCEPTED and bench.vehicle.autopilot.armed

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pymavlink.dialects.v20.common as mavlink
 import pytest
 from onboard import step_alone
 from vehicle_bench import (
+    ACCEPTED,
     ARM,
     GROUND,
     REJECTED,
     STRANGER,
     Bench,
+    command,
 )
 
 from gcs.mavlink.codec import DATAGRAM_LIMIT
@@ -88,6 +92,32 @@ def test_positions_on_the_globe_are_those_of_the_local_frame(bench: Bench) -> No
     assert (message.lat - home.latitude) * 1e-7 * 111_200 == pytest.approx(100.0, abs=0.3)
     assert message.lon == home.longitude
     assert message.alt - home.altitude == pytest.approx(message.relative_alt, abs=2)
+
+
+@pytest.mark.parametrize(("yaw", "course"), [(120.0, 126.87), (-60.0, -53.13)])
+def test_course_heading_and_speed_are_those_of_the_sample(bench: Bench, yaw: float, course: float) -> None:
+    half, track = math.radians(yaw) / 2.0, math.radians(course)
+    velocity = np.array([5.0 * math.cos(track), 5.0 * math.sin(track), -1.0])
+    measure = bench.body.measure
+    bench.body.measure = lambda: measure()._replace(
+        attitude=(math.cos(half), 0.0, 0.0, math.sin(half)), velocity=tuple(velocity), rates=(0.1, 0.2, 0.3),
+        position=(1.0, 2.0, -7.0),
+    )  # fmt: skip
+    bench.run(0.01)
+    for kind in ("GPS_RAW_INT", "VFR_HUD", "GLOBAL_POSITION_INT", "ODOMETRY"):
+        assert bench.result(command(512, getattr(mavlink, f"MAVLINK_MSG_ID_{kind}"))) == ACCEPTED
+    gps, hud = bench.got("GPS_RAW_INT")[-1], bench.got("VFR_HUD")[-1]
+    place, odometry = bench.got("GLOBAL_POSITION_INT")[-1], bench.got("ODOMETRY")[-1]
+    assert (gps.vel, gps.cog) == (500, round(100.0 * (course % 360.0)))
+    assert (hud.groundspeed, hud.climb, hud.heading) == (pytest.approx(5.0), pytest.approx(1.0), yaw % 360.0)
+    assert (place.vx, place.vy, place.vz) == tuple(np.round(100.0 * velocity))
+    assert (place.hdg, place.relative_alt) == (100.0 * (yaw % 360.0), 7000)
+    assert hud.alt == pytest.approx(1e-3 * place.alt, abs=0.01)
+    assert (odometry.x, odometry.y, odometry.z) == (1.0, 2.0, -7.0)
+    turned = math.radians(course - yaw)
+    in_body = [5.0 * math.cos(turned), 5.0 * math.sin(turned), -1.0]
+    assert [odometry.vx, odometry.vy, odometry.vz] == pytest.approx(in_body, abs=1e-5)
+    assert [odometry.rollspeed, odometry.yawspeed] == pytest.approx([0.1, 0.3])
 
 
 def test_next_timer_is_time_of_next_message(bench: Bench) -> None:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from plain_flatness import payload_drag_along
 
+from idc_controller.estimation.settings import WindSettings
 from idc_controller.estimation.wind import WindEstimator
 from idc_controller.model.drag import Air, drag_coefficients
 
@@ -53,6 +54,13 @@ def test_steady_wind_and_drag_factor_are_estimated(wind, factor):
         expected = true.on_payload(np.array(velocity))
         assert air.on_payload(np.array(velocity)) == pytest.approx(expected, abs=0.12 * np.linalg.norm(expected) + 0.3)
     assert air.uav == pytest.approx(true.uav, rel=0.2)
+
+
+def test_wind_between_the_outermost_nodes_of_the_grid_is_estimated():
+    outermost = WindSettings().speed_max
+    true = Air(np.array([0.7 - outermost, 0.0, 0.0]), drag_coefficients(AREAS), 0.018)
+    air = estimated_wind(lambda velocity: (true.on_payload(velocity), true.on_uav(velocity)), noise=0.0)
+    assert air.wind == pytest.approx(true.wind, abs=0.1)
 
 
 def test_wind_is_zero_without_force():

@@ -92,10 +92,23 @@ def test_payload_landed_beside_the_pad_rests_on_the_ground():
 
 def test_payload_hanging_on_some_cradles_is_on_ground_for_the_others():
     with World(system()) as world:
-        world._cradles.release(3)
+        state = run(world, 0.01, [0.0, 0.0, 0.0, 1.2 * float(world.parameters.m[3]) * world.parameters.g])
+        assert uav_array(state, "cradled").tolist() == [True, True, True, False]
         world.touching_ground = lambda: False
         run(world, 0.01, [0.0] * 4)
         assert uav_array(world.state(), "cradled").all()
+
+
+def test_last_cradle_releases_though_the_others_have_lifted_the_payload():
+    with World(system()) as world:
+        p = world.parameters
+        lifting = [1.3 * float(p.m_T) * p.g / 3.0] * 3
+        while world.state().payload_position_in_world[2] > -0.9:
+            assert world.time < 2.0
+            state = run(world, 0.05, [*lifting, 0.0])
+        assert uav_array(state, "cradled").tolist() == [False, False, False, True]
+        state = run(world, 0.01, [*lifting, 1.2 * float(p.m[3]) * p.g])
+        assert not uav_array(state, "cradled").any()
 
 
 def test_wind_does_not_move_uavs_in_cradles():

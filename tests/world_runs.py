@@ -7,8 +7,10 @@ import numpy as np
 import pybullet
 from paper_system import system
 
+from gcs.config.tables import WorldConfig
 from idc_controller.rotations import quaternion_product, rotation_from_quaternion
 from idc_controller.rotations_float import into_body
+from vehicle_sim.world.contact_detection import ContactDetector
 from vehicle_sim.world.readings import Readings
 from vehicle_sim.world.world_state import flipped, quaternion_to_engine
 
@@ -92,7 +94,7 @@ def place(world, state):
             _rotate_back(uav_quaternion, flipped(uav_rates.tolist())), physicsClientId=client,
         )  # fmt: skip
     world._readings = Readings(client, system)
-    world._contacts = None
+    world._contacts = ContactDetector(world.parameters, WorldConfig(), system, world._ground, world.obstacles)
 
 
 def _product(a, b):

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from functools import partial
 from typing import NamedTuple, Self
 
 from gcs.config import SystemConfig
@@ -16,7 +15,7 @@ from vehicle_sim.faults.fault_injector import FaultInjector
 from vehicle_sim.mavlink.vehicle import Vehicle
 from vehicle_sim.team import Team
 from vehicle_sim.world.obstacle_bodies import MovingObstacles
-from vehicle_sim.world.rotors import Rotors
+from vehicle_sim.world.rotors import Rotors, Wrenches
 from vehicle_sim.world.truth_log import TruthLog
 from vehicle_sim.world.world import World
 
@@ -75,17 +74,19 @@ class Swarm:
         self.vehicles = tuple(
             Vehicle(
                 i, airframe, onboard_rate=rates.onboard, telemetry_rate=rates.telemetry, home=home or DEFAULT_HOME,
-                ground_address=ground_address, clock=partial(self._faults.clock, i), autopilot=onboard,
+                ground_address=ground_address, clock=self._faults.clock_of(i), autopilot=onboard,
                 link=config.vehicle_link, arrays=arrays.of_vehicle(i - 1),
             )
             for i, airframe in enumerate(airframes, start=1)
         )  # fmt: skip
         rotors = Rotors(
             [airframe.rotors for airframe in airframes], [airframe.motor_time_constant for airframe in airframes],
-            1.0 / rates.physics,
+            1.0 / rates.physics, self._periods.onboard,
         )  # fmt: skip
         self._team = Team(self.vehicles, arrays, rotors, config, seed, self._faults)
         self._modes_recorded = False
+        self._wrenches: list[Wrenches] = []
+        """Of the physics steps between the last and the next onboard step."""
         self._onboard(self.world.states())
         self._team.relay()
         if self.world.obstacles.all():
@@ -155,19 +156,21 @@ class Swarm:
 
     def _step(self) -> None:
         """Take one physics step."""
-        world = self.world
+        world, periods = self.world, self._periods
         if self.take_off_time is not None:
             self._obstacles.move((world.steps + 1) / world.physics_hz - self.take_off_time)
+        thrusts, torques = self._wrenches[world.steps % periods.onboard]
         forces = self._faults.disturb(world, world.time)
-        world.step(*self._team.wrenches(), *(forces or ()))
-        if self._truth is not None:
-            self._contacts = max(self._contacts, world.contacts().pairs)
+        world.step(thrusts, torques, *(forces or ()))
+        if self._truth is not None and (pairs := world.contacts().pairs) > self._contacts:
+            self._contacts = pairs
         if self.take_off_time is None and not world.all_cradled:
             self.take_off_time = world.time
             self._faults.took_off(world.time)
-        measures = world.steps % self._periods.onboard == 0
-        scans = world.steps % self._periods.scan == 0 and bool(world.obstacles.all())
-        records = world.steps % self._periods.row == 0 and self._truth is not None
+        steps = world.steps
+        measures = steps % periods.onboard == 0
+        scans = steps % periods.scan == 0 and bool(world.obstacles.all())
+        records = steps % periods.row == 0 and self._truth is not None
         if not (measures or scans or records):
             return
         states = world.states()
@@ -186,6 +189,7 @@ class Swarm:
         """Let all vehicles take an onboard step, and record what they fly where it changes."""
         now = self.world.time
         changed = self._team.step(states, now)
+        self._wrenches = self._team.wrenches()
         if self._truth is None or (self._modes_recorded and not changed):
             return
         self._modes_recorded = True

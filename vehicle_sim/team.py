@@ -14,7 +14,7 @@ from vehicle_sim.faults.fault_injector import FaultInjector
 from vehicle_sim.mavlink.vehicle import Vehicle
 from vehicle_sim.world.obstacle_bodies import ObstacleBodies
 from vehicle_sim.world.range_sensor import RangeSensor
-from vehicle_sim.world.rotors import Rotors
+from vehicle_sim.world.rotors import Rotors, Wrenches
 from vehicle_sim.world.sensors import PAYLOAD_UNIT, Measurement, NavigationSensors, SensorNoise
 from vehicle_sim.world.world_state import WorldState
 
@@ -44,8 +44,8 @@ class Team:
         self._times = np.empty(len(ids))
         self._payload_sample: tuple[float, Array] | None = None
 
-    def wrenches(self) -> tuple[list[float], list[list[float]]]:
-        """Return thrusts (N) and torques (N m) of the rotors over the next physics step."""
+    def wrenches(self) -> list[Wrenches]:
+        """Return the wrenches of the rotors for the physics steps up to the next step of the onboard loops."""
         return self._rotors.advance(self._arrays.speeds)
 
     def step(self, states: Array, now: float) -> bool:

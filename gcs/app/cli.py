@@ -9,6 +9,7 @@ from importlib import import_module
 from rich_argparse import RawDescriptionRichHelpFormatter
 
 from gcs.app.exit_status import ExitStatus
+from gcs.app.imports import importing
 from gcs.app.logs import LOG, add_log_arguments, logging_to
 from gcs.errors import GcsError, UnusableInput
 from idc_controller.errors import IdcError
@@ -67,7 +68,8 @@ def _parser(command: str) -> argparse.ArgumentParser:
         if name != command:
             commands.add_parser(name, help=summary)
             continue
-        module = import_module(f"gcs.app.commands.{name}")
+        with importing():
+            module = import_module(f"gcs.app.commands.{name}")
         chosen = commands.add_parser(name, help=summary, description=module.DESCRIPTION, formatter_class=style)
         module.add_arguments(chosen)
         add_log_arguments(chosen)

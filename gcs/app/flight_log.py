@@ -4,6 +4,7 @@ import logging
 import math
 
 from gcs.flight.ground_station import GroundStation
+from gcs.flight.phase import Phase
 from gcs.mavlink import px4
 from gcs.mavlink.vehicle_link import VehicleLink
 
@@ -15,16 +16,16 @@ class FlightLog:
 
     def __init__(self, station: GroundStation) -> None:
         self._station = station
-        self._phase = ""
+        self._phase: Phase | None = None
         self._links = [_LinkLog(link) for link in station.links]
         self._alarms = 0
 
     def update(self) -> None:
         """Write what has changed."""
         flight = self._station.flight
-        if flight.phase.value != self._phase:
-            self._phase = flight.phase.value
-            LOG.info("%.2f s: phase %s", flight.time, self._phase)
+        if flight.phase is not self._phase:
+            self._phase = flight.phase
+            LOG.info("%.2f s: phase %s", flight.time, self._phase.value)
         for alarm in flight.failsafes.alarms.alarms[self._alarms :]:
             self._alarms += 1
             text = alarm.text and f" ({alarm.text})"
@@ -41,28 +42,30 @@ class _LinkLog:
         self._mode = (-1, False)
         self._address = link.address
         self._jumped = link.clock.jumped_at
-        self._counts = _counts(link)
+        self._counted, self._counts = LOG.isEnabledFor(logging.DEBUG), _counts(link)
 
     def update(self, time: float) -> None:
         link, clock = self._link, self._link.clock
         if not math.isfinite(link.received_at):
             return
-        who = f"{time:.2f} s: vehicle {link.system_id}"
-        if (link.status.custom_mode, link.status.armed) != self._mode:
-            self._mode = (link.status.custom_mode, link.status.armed)
+        if (mode := (link.status.custom_mode, link.status.armed)) != self._mode:
+            self._mode = mode
             armed = "armed" if link.status.armed else "disarmed"
-            LOG.info("%s: mode %s, %s", who, px4.mode_name(link.status.custom_mode), armed)
+            self._write(logging.INFO, time, f"mode {px4.mode_name(link.status.custom_mode)}, {armed}")
         if link.address != self._address:
             self._address = link.address
-            LOG.info("%s: connected from %s", who, link.address)
+            self._write(logging.INFO, time, f"connected from {link.address}")
         if clock.jumped_at != self._jumped:
             self._jumped = clock.jumped_at
-            LOG.debug("%s: clock jumped, offset %.3f s", who, clock.offset)
-        if LOG.isEnabledFor(logging.DEBUG) and (counts := _counts(link)) != self._counts:
+            self._write(logging.DEBUG, time, f"clock jumped, offset {clock.offset:.3f} s")
+        if self._counted and (counts := _counts(link)) != self._counts:
             for name, count in counts.items():
                 if count != self._counts[name]:
-                    LOG.debug("%s: link: %s %d", who, name, count)
+                    self._write(logging.DEBUG, time, f"link: {name} {count}")
             self._counts = counts
+
+    def _write(self, level: int, time: float, text: str) -> None:
+        LOG.log(level, "%.2f s: vehicle %s: %s", time, self._link.system_id, text)
 
 
 def _counts(link: VehicleLink) -> dict[str, int]:

@@ -1,7 +1,6 @@
 """``gcs fly``: a mission file, a swarm, a driver and a run folder become one flight with a summary."""
 
 import dataclasses
-import gc
 import math
 import sys
 import time
@@ -14,13 +13,14 @@ from typing import Any
 
 from gcs.app.exit_status import ExitStatus
 from gcs.app.flight_log import FlightLog
+from gcs.app.fly_options import FlyOptions
 from gcs.drivers.connection import Connection
 from gcs.drivers.forked_program import ForkedProgram
 from gcs.drivers.interrupt import Interrupt
 from gcs.drivers.lockstep import run_in_lockstep
 from gcs.drivers.realtime import run_in_real_time
 from gcs.drivers.simulator import PROGRAM, Simulator
-from gcs.errors import GcsError, UnusableInput
+from gcs.errors import GcsError
 from gcs.flight import stack
 from gcs.flight.alarms import AlarmLog
 from gcs.flight.compute_times import ComputeTimes
@@ -32,9 +32,7 @@ from gcs.flight.ground_station import GroundStation, Recorder
 from gcs.flight.team import Team
 from gcs.mavlink.address import Address, ConnectionUrl
 from gcs.mavlink.vehicle_link import VehicleLink
-from gcs.mission.faults import check_faults_of
 from gcs.mission.model import Mission
-from gcs.mission.read import read_mission
 from gcs.record.landing import is_set_down
 from gcs.record.recorder import FlightRecorder
 from gcs.record.run_data import RunData, read_run
@@ -43,21 +41,6 @@ from gcs.record.summary import summarise, within_limits, write_summary
 from idc_controller.guidance.progress import Guidance
 from idc_controller.paper.printed_filter import PrintedFilter
 from idc_controller.safety.filter_protocol import NoObstacles, SafetyFilter
-
-
-@dataclass(frozen=True)
-class FlyOptions:
-    """Options of the command line of ``gcs fly``."""
-
-    mission: Path
-    config: Path | None = None
-    vehicles: int | None = None
-    seed: int | None = None
-    run_dir: Path | None = None
-    realtime: bool = False
-    speed: float = 1.0
-    controller: str = "idc"
-    connect: tuple[ConnectionUrl, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -88,40 +71,6 @@ class FlightResult:
             return ExitStatus.INTERRUPTED
         held = self.summary["completed"] and within_limits(self.summary)
         return ExitStatus.DONE if held else ExitStatus.OUTSIDE_LIMITS
-
-
-def prepare(options: FlyOptions) -> Mission:
-    """Read the mission as it will be flown. Raises :class:`UnusableInput`."""
-    _check_urls(options)
-    mission = read_mission(options.mission, options.config)
-    vehicles = options.vehicles
-    if options.connect and not _listens(options):
-        if vehicles is not None and vehicles != len(options.connect):
-            raise UnusableInput(f"--vehicles {vehicles} does not agree with {len(options.connect)} URLs")
-        vehicles = len(options.connect)
-    if vehicles is not None:
-        mission = dataclasses.replace(mission, system=mission.system.with_vehicles(vehicles))
-    if options.seed is not None:
-        mission = dataclasses.replace(mission, seed=options.seed)
-    check_faults_of(mission)  # the number of vehicles may be another than the file's
-    return mission
-
-
-def _check_urls(options: FlyOptions) -> None:
-    urls = options.connect
-    if _listens(options):
-        if len(urls) > 1:
-            raise UnusableInput(f"--connect {urls[0]}: all vehicles offer themselves at one URL; name no other")
-        if not options.realtime:
-            raise UnusableInput(f"--connect {urls[0]}: vehicles offer themselves in real time only; add --realtime")
-    for i, url in enumerate(urls):
-        if url in urls[:i]:
-            raise UnusableInput(f"--connect {url}: named twice; every vehicle has an address of its own")
-
-
-def _listens(options: FlyOptions) -> bool:
-    """Return True if the vehicles call in at an address of the ground, which does not know theirs."""
-    return any(url.listens for url in options.connect)
 
 
 def fly(
@@ -156,9 +105,6 @@ def fly(
         ended = simulator.end_reason if simulator is not None else lambda: None
 
         settings, wall = mission.system.drivers, time.monotonic()
-        # What is there now stays: collections of garbage in flight, 0.1 s each, pass it over.
-        gc.freeze()
-        resources.callback(gc.unfreeze)
 
         def update() -> None:
             nonlocal wall
@@ -246,7 +192,7 @@ def ground_station(
 
 def _addresses(options: FlyOptions, mission: Mission) -> Sequence[Address | None]:
     """Return the addresses of a running swarm; an address is None until the vehicle calls in."""
-    if _listens(options):
+    if options.listens:
         return [None] * mission.system.team.vehicles
     return [url.address for url in options.connect]
 

@@ -32,12 +32,10 @@ def run_in_lockstep(
     joined = landing = False
     inbox: list[tuple[bytes, Address]] = []
     while not station.ended:
-        tick = _next_tick(connection, clock_address, inbox)
-        if tick is None:
-            arrived = connection.wait(settings.join_interval)
-            station.resume()
-            if arrived:
-                continue
+        # The world has yet to compute: a look at the socket before would be in vain.
+        arrived = connection.wait(settings.join_interval)
+        station.resume()
+        if not arrived:
             waited += settings.join_interval
             reason = end_reason()
             if reason is None and waited >= settings.tick_timeout:
@@ -48,13 +46,15 @@ def run_in_lockstep(
             if not joined:
                 connection.send(join, clock_address)
             continue
+        tick = _next_tick(connection, clock_address, inbox)
+        if tick is None:
+            continue
         joined, waited = True, 0.0
         now = tick.time_us * 1e-6
         if interrupt.requested and not landing:
             landing = True
             station.raise_failsafe(now, Failsafe.INTERRUPTED, "interrupted")
-        for datagram, sender in inbox:
-            station.receive(datagram, sender, now)
+        station.receive_all(inbox, now)
         inbox.clear()
         for datagram, address in station.datagrams_to_send(now):
             connection.send(datagram, address)

@@ -34,8 +34,7 @@ def run_in_real_time(
             station.raise_failsafe(now, Failsafe.INTERRUPTED, "interrupted")
         if (reason := end_reason()) is not None:
             station.raise_failsafe(now, Failsafe.SIMULATION_LOST, reason)
-        for datagram, sender in connection.receive():
-            station.receive(datagram, sender, now)
+        station.receive_all([*connection.receive()], now)
         for datagram, address in station.datagrams_to_send(now):
             connection.send(datagram, address)
         station.sent()

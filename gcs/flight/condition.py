@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum, IntEnum
+from typing import NamedTuple
 
 from gcs.config.flight_settings import DEFAULTS, FailsafeSettings
 from gcs.flight.alarms import Severity
@@ -64,6 +65,8 @@ class Check(Enum):
     IN_AIR = "at every control step in the air"
     ESTIMATE = "at every control step in the air, on the new estimate"
 
+    __hash__ = object.__hash__  # looked up at every exchange; Enum's own hashes the name, in Python
+
 
 @dataclass(frozen=True, eq=False)
 class System:
@@ -78,8 +81,7 @@ class System:
     settings: FailsafeSettings = DEFAULTS.failsafe
 
 
-@dataclass(frozen=True, eq=False)
-class Moment:
+class Moment(NamedTuple):
     """The moment of the evaluation; times in s, ``time`` the team's, ``now`` the ground's."""
 
     phase: Phase

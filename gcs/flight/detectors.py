@@ -98,7 +98,7 @@ class _TelemetryTimeout:
         self._last = received_at
 
 
-class _LinkTiming:
+class LinkTiming:
     """Latency, jitter and clock of each vehicle's link."""
 
     def __init__(self, settings: MonitorSettings, control_period: float, number_of_uavs: int) -> None:
@@ -108,6 +108,7 @@ class _LinkTiming:
         self._offsets = [SlidingRange(settings.clock_window) for _ in range(number_of_uavs)]
 
     def __call__(self, step: MonitorStep) -> None:
+        """Raise the alarms of one control step."""
         s = self._settings
         for i, link in enumerate(step.links):
             name, clock = step.name(i), link.clock
@@ -238,10 +239,8 @@ class _ModelMismatch:
             step.raise_alarm("team", MonitorAlarm.SENSOR_NOISE, text)
         if step.steady and adaptation.is_at_limit:
             step.raise_alarm("payload", MonitorAlarm.PROCESS_NOISE)
-        n, force = len(estimate.x), estimate.force
-        covariance = estimate.covariance[n : n + 3, n : n + 3]
-        if normalised_square(force, covariance) > self._force_limit:
-            text = " ".join(f"{f:.1f}" for f in force) + " N north east down"
+        if normalised_square(estimate.force, estimate.force_covariance) > self._force_limit:
+            text = " ".join(f"{f:.1f}" for f in estimate.force) + " N north east down"
             step.raise_alarm("payload", MonitorAlarm.DISTURBANCE_FORCE, text)
 
 
@@ -263,7 +262,7 @@ def detectors(flight: Flight, settings: MonitorSettings) -> tuple[Detector, ...]
     return (
         _TelemetryTimeout(settings.missed_samples / rates.telemetry),
         _range_sensors,
-        _LinkTiming(settings, 1.0 / rates.control, number_of_uavs),
+        LinkTiming(settings, 1.0 / rates.control, number_of_uavs),
         _estimator_health,
         _Innovations(flight.control.estimator.settings.gate_probability, settings, innovations),
         _ModelMismatch(settings, innovations),

@@ -117,7 +117,10 @@ def _telemetry_lost(system: System, moment: Moment) -> Trigger | None:
 def _link_latency_exceeded(system: System, moment: Moment) -> Trigger | None:
     limit, window = system.settings.latency_limit, system.settings.latency_window
     for i, link in enumerate(system.team.links):
-        if (latency := max(link.clock.delay, link.clock.least_delay(window, moment.now))) > limit:
+        latency, clock = link.clock.delay, link.clock
+        if clock.round_trip_max > 2.0 * limit:  # or the least delay is not beyond the limit
+            latency = max(latency, clock.least_delay(window, moment.now))
+        if latency > limit:
             text = f"link latency to vehicle {link.system_id} is {latency * 1e3:.0f} ms (limit {limit * 1e3:.0f} ms)"
             return Trigger(text, (i,), latency)
     return None
@@ -212,10 +215,6 @@ class Failsafe(AlarmCode):
     ) -> None:
         super().__init__(severity or reaction.severity, action, meaning)
         self.check, self.condition, self.reaction = check, condition, reaction
-
-    def evaluate(self, system: System, moment: Moment) -> Trigger | None:
-        """Return the trigger if the condition holds."""
-        return None if self.condition is None else self.condition(system, moment)
 
     # fmt: off
     INTERRUPTED = (Check.EVENT, None, Reaction.BRAKE_AND_LAND, "none",

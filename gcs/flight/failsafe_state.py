@@ -8,11 +8,15 @@ from gcs.flight.failsafe import Failsafe
 from gcs.flight.phase import Phase
 
 _ADMITTED = {
-    (check, phase): tuple((row, row.reaction.in_phase(phase)) for row in Failsafe if row.check is check)
+    (check, phase): tuple(
+        (row, row.condition, row.reaction.in_phase(phase))
+        for row in Failsafe
+        if row.check is check and row.condition is not None
+    )
     for check in Check
     for phase in Phase
 }
-"""Failsafes of each check, with the reactions that a phase allows."""
+"""Failsafes of each check, with their conditions and the reactions that a phase allows."""
 
 
 class FailsafeState:
@@ -34,10 +38,12 @@ class FailsafeState:
 
     def evaluate(self, check: Check, moment: Moment) -> tuple[Failsafe, Trigger] | None:
         """Return what counts among the conditions of ``check`` that call for more than is under way; None: none."""
-        held = []
-        for failsafe, reaction in _ADMITTED[check, moment.phase]:
-            if reaction > self.reaction and (trigger := failsafe.evaluate(self.system, moment)) is not None:
-                held.append((failsafe, trigger))
+        system, present = self.system, self.reaction
+        held = [
+            (failsafe, trigger)
+            for failsafe, condition, reaction in _ADMITTED[check, moment.phase]
+            if reaction > present and (trigger := condition(system, moment)) is not None
+        ]
         return min(held, key=lambda each: (-each[0].reaction, len(each[1].vehicles), each[1].vehicles), default=None)
 
     def raise_failsafe(self, time: float, phase: Phase, failsafe: Failsafe, trigger: Trigger) -> Reaction:

@@ -88,7 +88,7 @@ class Flight:
         """Return the mission's position and velocity (K, 3) of the payload at ``times`` since take-off began."""
         if self.mission_trajectory is not None:
             progress = self.system.guidance.progress
-            return self.mission_trajectory.reference(np.array([progress(t) for t in times]))
+            return self.mission_trajectory.reference(np.array([progress(t) for t in times.tolist()]))
         assert self._pad is not None
         position, velocity = self._pad.derivatives(times, 1)
         return position, velocity

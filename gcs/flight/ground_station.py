@@ -108,7 +108,11 @@ class GroundStation:
 
     def receive(self, datagram: bytes, sender: Address, now: float) -> None:
         """Take a datagram from any address. Never raises for anything that a datagram can hold."""
-        if self.router.receive(datagram, sender, now):
+        self.receive_all([(datagram, sender)], now)
+
+    def receive_all(self, datagrams: Sequence[tuple[bytes, Address]], now: float) -> None:
+        """Take datagrams, each with its sender, as :meth:`receive` does one by one."""
+        for datagram in self.router.receive(datagrams, now):
             self._recorder.datagram(now, datagram)
 
     def datagrams_to_send(self, now: float) -> list[tuple[bytes, Address]]:
@@ -127,8 +131,8 @@ class GroundStation:
         if self.flight.check_links(self._clock.time(now), now):
             # The stop plan goes out before the command to stop, or vehicles stop by another one.
             self._schedule.clear()
-            for i, queue in enumerate(messages):
-                queue.extend(self._setpoint_messages(i, now, None))
+            for queue, stop in zip(messages, self._setpoint_messages(now, None), strict=True):
+                queue += stop
         if self._stepped and self._control.begin(now, self._clock, connecting=self.flight.phase is Phase.CONNECT):
             record = self._step(now, messages)
         times.lap(Part.MONITORING)
@@ -137,7 +141,8 @@ class GroundStation:
             messages[i].extend(due)
             carries_setpoints[i] = True
         for link, queue in zip(self.links, messages, strict=True):
-            queue += packed(*link.requests.due(now))
+            if requests := link.requests.due(now):
+                queue += packed(*requests)
         out = self._encoded(now, messages, carries_setpoints)
         self._recorder.end_exchange()
         times.lap(Part.RECORDING)
@@ -171,14 +176,14 @@ class GroundStation:
         """Make one control step and add its messages to those of each vehicle; return what was decided, if anything."""
         times = self._times
         time = self._clock.time(now)
-        delays = np.array([link.setpoints.delay for link in self.links])
+        delays = [link.setpoints.delay for link in self.links]
         waits = self._schedule.waits(delays)
         times.lap(Part.SETPOINTS)
         self._update_obstacle_map(time)
         times.lap(Part.PERCEPTION)
-        leaves = time + self._schedule.latency + waits
-        effective = whole_ms(time + self._schedule.latency + delays.max())
-        setpoints, record = self.flight.step(time, effective, leaves, now)
+        soonest = time + self._schedule.latency
+        leaves = np.array([soonest + wait for wait in waits])
+        setpoints, record = self.flight.step(time, whole_ms(soonest + max(delays)), leaves, now)
         if record is not None:
             self._compare(record)
         self._monitor.step(time, now, record)
@@ -187,8 +192,8 @@ class GroundStation:
         times.lap(Part.RECORDING)
         if setpoints is None:
             self._schedule.clear()
-        for i, (queue, wait) in enumerate(zip(messages, waits.tolist(), strict=True)):
-            outgoing = self._setpoint_messages(i, now, setpoints)
+        due = zip(messages, waits, self._setpoint_messages(now, setpoints), strict=True)
+        for i, (queue, wait, outgoing) in enumerate(due):
             if wait and setpoints is not None:
                 self._schedule.add(now + wait, i, outgoing)
             else:
@@ -234,16 +239,17 @@ class GroundStation:
             self._recorder.datagram(now, datagram)
         return out
 
-    def _setpoint_messages(self, i: int, now: float, setpoints: Setpoints | None) -> list[Packed]:
-        """Return stop plan and set-point of vehicle ``i`` (0 .. N-1), as far as there are any."""
-        link = self.links[i]
-        messages: list[Packed] = []
+    def _setpoint_messages(self, now: float, setpoints: Setpoints | None) -> list[list[Packed]]:
+        """Return stop plan and set-point of each vehicle, as far as there are any."""
+        messages: list[list[Packed]] = [[] for _ in self.links]
         # The plan before the set-point: a vehicle that gets one of the two can still stop with the others.
         if (plan := self.flight.control.stop_plan) is not None:
-            start = plan.start - self._clock.offset + link.clock.offset
-            messages.append(stop_plan_message(start, plan.duration, plan.control_points[i].tolist()))
+            start = plan.start - self._clock.offset
+            for link, queue, points in zip(self.links, messages, plan.control_points.tolist(), strict=True):
+                queue.append(stop_plan_message(start + link.clock.offset, plan.duration, points))
         if setpoints is not None:
-            direction, thrust = setpoints.directions[i].tolist(), float(setpoints.thrusts[i])
-            thrust_max = link.status.parameters[px4.PARAM_THRUST_MAX]
-            messages.append(attitude_target(link.system_id, link.setpoints.stamp(now), direction, thrust, thrust_max))
+            rows = zip(setpoints.directions.tolist(), setpoints.thrusts.tolist(), strict=True)
+            for link, queue, (direction, thrust) in zip(self.links, messages, rows, strict=True):
+                stamp, thrust_max = link.setpoints.stamp(now), link.status.parameters[px4.PARAM_THRUST_MAX]
+                queue.append(attitude_target(link.system_id, stamp, direction, thrust, thrust_max))
         return messages

@@ -2,12 +2,12 @@
 
 import math
 from collections import deque
+from collections.abc import Sequence
 from statistics import median
 
 from gcs.config.flight_settings import DEFAULTS, TimingSettings
 from gcs.flight.team_clock import TOLERANCE
 from gcs.mavlink.layout import Packed
-from idc_controller.arrays import Array
 
 
 class SetpointSchedule:
@@ -26,11 +26,10 @@ class SetpointSchedule:
         self._latencies.append(duration)
         self.latency = median(self._latencies)
 
-    def waits(self, delays: Array) -> Array:
-        """Return how long the set-points of each vehicle wait, for the ``delays`` (N,) of the links."""
-        waits: Array = delays.max() - delays
-        waits[waits < self._simultaneous] = 0.0
-        return waits
+    def waits(self, delays: Sequence[float]) -> list[float]:
+        """Return how long the set-points of each vehicle wait, for the ``delays`` of the N links."""
+        longest = max(delays)
+        return [wait if (wait := longest - delay) >= self._simultaneous else 0.0 for delay in delays]
 
     def add(self, due: float, vehicle: int, messages: list[Packed]) -> None:
         """Let ``messages`` to a vehicle (0 .. N-1) wait until ``due``."""

@@ -1,6 +1,7 @@
 """Telemetry routing: datagram -> codec -> vehicle link -> system-id check -> estimator and obstacle map."""
 
 import math
+from collections.abc import Sequence
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
@@ -16,6 +17,8 @@ from gcs.mavlink.messages import Received
 from gcs.mavlink.scan_sequence import RETURNS, SCAN_END, ScanSequence, scan_stamp
 from gcs.mavlink.telemetry import measurement, scan_end, scan_returns, setpoint_flown
 from gcs.mavlink.vehicle_link import VehicleLink
+from idc_controller.estimation.measurements import Measurement
+from idc_controller.perception.obstacle_map import ObstacleMap
 
 _SETPOINT, _SCAN = mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET, (RETURNS, SCAN_END)
 _STAMPED = frozenset(
@@ -37,6 +40,7 @@ class TelemetryRouter:
     ) -> None:
         self._codec, self._flight, self._clock, self._id_check = codec, flight, clock, id_check
         self._clock_settled = settings.clock_settled
+        self._unread = codec.unread
         self._links = flight.system.team.links
         self._sequences = [ScanSequence() for _ in self._links]
         self._by_address: dict[tuple[Address, int], int] = {
@@ -45,24 +49,38 @@ class TelemetryRouter:
         self.refused = 0
         """Datagrams from addresses that belong to no vehicle of this flight."""
 
-    def receive(self, datagram: bytes, sender: Address, now: float) -> bool:
-        """Take a datagram; return whether it is from a vehicle of this flight."""
-        unread = self._codec.unread
-        messages = self._codec.read(datagram)
-        if self._codec.unread > unread and (link := self._link_at(sender)) is not None:
-            link.statistics.damaged += 1
-        known = False
+    def receive(self, datagrams: Sequence[tuple[bytes, Address]], now: float) -> list[bytes]:
+        """Take datagrams, each with its sender; return those from vehicles of this flight."""
+        codec = self._codec
+        # All are read before the first is routed: so many calls of one kind cost far less in a row.
+        read = [(codec.read(datagram), codec.unread) for datagram, _ in datagrams]
+        known = []
+        for (datagram, sender), (messages, unread) in zip(datagrams, read, strict=True):
+            if unread > self._unread:
+                self._unread = unread
+                if (link := self._link_at(sender)) is not None:
+                    link.statistics.damaged += 1
+            if self._take(messages, sender, now):
+                known.append(datagram)
+        self.refused += len(datagrams) - len(known)
+        return known
+
+    def _take(self, messages: Sequence[Received], sender: Address, now: float) -> bool:
+        """Take the messages of a datagram; return whether it is from a vehicle of this flight."""
         stamped: dict[int, list[Received]] = {}
+        system = index = None
         for received in messages:
-            index = self._by_address.get((sender, received.system))
-            if index is None:
-                index = self._new_vehicle(received, sender)
-            if index is None:
-                continue
-            known = True
+            if index is None or received.system != system:
+                system = received.system
+                index = self._by_address.get((sender, system))
+                if index is None:
+                    index = self._new_vehicle(received, sender)
+                if index is None:
+                    continue
+                link, group = self._links[index], stamped.setdefault(index, [])
             if received.target_system and not received.is_for(self._codec.system_id):
                 continue  # an answer to another system behind this address
-            link, message_id = self._links[index], received.layout.message_id
+            message_id = received.layout.message_id
             breaks = link.statistics.breaks
             link.handle(received, now)
             if message_id in _SCAN:
@@ -70,12 +88,11 @@ class TelemetryRouter:
                     continue  # of its sequence nothing is known
                 self._sequences[index].add(received, breaks, link.statistics.breaks)
             if message_id in _STAMPED:
-                stamped.setdefault(index, []).append(received)
+                group.append(received)
         for index, group in stamped.items():
-            if self._links[index].clock.known:
+            if group and self._links[index].clock.known:
                 self._route(group, index, now)
-        self.refused += not known
-        return known
+        return bool(stamped)
 
     def _link_at(self, address: Address) -> VehicleLink | None:
         return next((link for link in self._links if link.address == address), None)
@@ -101,7 +118,7 @@ class TelemetryRouter:
         offset = link.clock.offset
         if index == 0:
             self._clock.follow(offset + link.clock.set_back, now, connecting=self._flight.phase is Phase.CONNECT)
-        team_offset = self._clock.offset
+        team_offset, uav = self._clock.offset, self._id_check.vehicle_of(index)
         latest = -math.inf
         stamp, time = -1, math.nan
         for received in group:
@@ -120,8 +137,13 @@ class TelemetryRouter:
                     else:
                         obstacle_map.placement.end(scan_end(received, self._sequences[index]), index, time, now)
             else:
-                self._add_measurement(received, index, time)
-            latest = max(latest, time)
+                sample = measurement(received, uav, time)
+                if sample is None or not sample.is_whole:
+                    link.statistics.add_not_finite(received.component)
+                if sample is not None:
+                    self._add_measurement(sample, obstacle_map)
+            if time > latest:
+                latest = time
 
     def _confirm_setpoint(self, received: Received, index: int, time: float, latest: float, now: float) -> None:
         link, flight = self._links[index], self._flight
@@ -136,13 +158,7 @@ class TelemetryRouter:
         if confirmation is not None:
             link.setpoints.confirm(confirmation)
 
-    def _add_measurement(self, received: Received, index: int, time: float) -> None:
-        obstacle_map = self._flight.system.obstacle_map
-        sample = measurement(received, self._id_check.vehicle_of(index), time)
-        if sample is None or not (sample.has_pose and sample.has_motion):
-            self._links[index].statistics.add_not_finite(received.component)
-        if sample is None:
-            return
+    def _add_measurement(self, sample: Measurement, obstacle_map: ObstacleMap | None) -> None:
         self._id_check.add(sample)
         used = self._flight.add_measurement(sample)
         if obstacle_map is not None and used is not None:

@@ -1,7 +1,7 @@
-"""Frames of a datagram, compiled: runs of MAVLink 2 frames that are equal but for sequence number and values, records.
+"""Frames of a datagram, compiled: the messages in it, runs of messages, records.
 
-A run is of messages of one kind, sender, length and time stamp, unsigned, with consecutive sequence numbers and right
-checksums, one behind the other. That is how the points of a scan are sent.
+A run is of messages of one kind, sender, length and time stamp in MAVLink 2, unsigned, with consecutive sequence
+numbers and right checksums, one behind the other. That is how the points of a scan are sent.
 """
 
 import numpy as np
@@ -11,11 +11,14 @@ from gcs.mavlink.frames import SIGNATURE, SIGNED, V1, V2
 from idc_controller.compiled import inlined, kernel
 
 Bytes = NDArray[np.uint8]
+Rows = NDArray[np.int64]
 
 HEADER = 10
 """Bytes of a MAVLink 2 frame before the payload."""
-AROUND = HEADER + 2
-"""Bytes of a frame without signature beside the payload: the checksum is behind it."""
+CHECKSUM = 2
+"""Bytes of the checksum behind the payload."""
+AROUND = HEADER + CHECKSUM
+"""Bytes of a frame without signature beside the payload."""
 RUN_LIMIT = 256
 """Largest number of messages of a run: as many as there are sequence numbers."""
 _SEQUENCE, _STAMP = 4, 4
@@ -32,8 +35,22 @@ def _checksum(data: Bytes, start: int, end: int, extra: int) -> int:
     return crc
 
 
-@kernel("int64(uint8[::1], int64, int64)")
-def frames_in_run(datagram: Bytes, start: int, extra: int) -> int:
+@inlined
+def _end_of_frame(data: Bytes, start: int, size: int) -> int:
+    """Return the end of the frame that begins at ``start`` of ``data[:size]``; 0: no whole frame begins there.
+
+    As :func:`gcs.mavlink.frames.end_of_frame`.
+    """
+    end = 0
+    if data[start] == V2 and start + 2 < size:
+        end = start + data[start + 1] + (AROUND + SIGNATURE if data[start + 2] & SIGNED else AROUND)
+    elif data[start] == V1 and start + 1 < size:
+        end = start + data[start + 1] + 8
+    return end if end <= size else 0
+
+
+@inlined
+def _frames_in_run(datagram: Bytes, start: int, extra: int) -> int:
     """Return the number of frames of the run that begins at ``start``; 0: no valid unsigned frame begins there.
 
     Args:
@@ -57,6 +74,79 @@ def frames_in_run(datagram: Bytes, start: int, extra: int) -> int:
             break
         count += 1
     return count
+
+
+@kernel("Tuple((int64[:, ::1], int64, int64))(uint8[::1], int64[:, ::1], int64)")
+def messages_in(datagram: Bytes, kinds: Rows, bad_limit: int) -> tuple[Rows, int, int]:
+    """Return the messages of a datagram in order, with the numbers of bad frames and of bytes outside any frame.
+
+    A frame with a wrong checksum or unknown flags is bad, and the next is looked for from its second byte on. One of an
+    unknown kind, which cannot be verified, is skipped if that leads to a frame or to the end.
+
+    Args:
+        datagram: Bytes (n,), whatever they are.
+        kinds: Of each kind of message, by rising message id: that, the last byte that the checksum covers, where the
+            payload holds target system and component, -1: nowhere, and the length of payloads of which a run is taken
+            as one message, -1: none (k, 5).
+        bad_limit: Number of bad frames behind which the rest of the datagram is passed over.
+
+    Returns:
+        A row for each message or run: row in ``kinds``; where the payload begins and ends, of a run the first begins
+        and the last ends; number of messages; system, component and sequence number, of a run the first; target system
+        and component; the payload's first four bytes as a number (m, 10).
+    """
+    size = datagram.shape[0]
+    found = np.empty((size // 8 + 1, 10), np.int64)
+    count, bad, skipped, start = 0, 0, 0, 0
+    while start < size:
+        end = _end_of_frame(datagram, start, size)
+        if end == 0:
+            skipped += 1
+            start += 1
+            while start < size and datagram[start] != V1 and datagram[start] != V2:
+                skipped += 1
+                start += 1
+            continue
+        length, flags = 0 + datagram[start + 1], 0
+        if datagram[start] == V2:
+            flags, header, first = datagram[start + 2], start + _SEQUENCE, start + HEADER
+            number = datagram[header + 3] | datagram[header + 4] << 8 | datagram[header + 5] << 16
+        else:
+            header, first = start + 2, start + 6
+            number = 0 + datagram[header + 3]
+        kind = np.searchsorted(kinds[:, 0], number)
+        if kind == kinds.shape[0] or kinds[kind, 0] != number:
+            if end < size and datagram[end] != V1 and datagram[end] != V2:
+                skipped += 1
+                end = start + 1
+            start = end
+            continue
+        last, run = first + length, 1
+        if datagram[start] == V2 and length == kinds[kind, 4]:
+            frames = _frames_in_run(datagram, start, kinds[kind, 1])
+            if frames > 1:
+                run, end = frames, start + frames * (length + AROUND)
+                last = end - CHECKSUM
+        checksum = _checksum(datagram, start + 1, first + length, kinds[kind, 1])
+        if flags & ~SIGNED or checksum != datagram[first + length] | datagram[first + length + 1] << 8:
+            bad += 1
+            if bad >= bad_limit:
+                skipped += size - start
+                break
+            start += 1  # its length may be what is wrong
+            continue
+        row = found[count]
+        row[0], row[1], row[2], row[3] = kind, first, last, run
+        row[4], row[5], row[6] = datagram[header + 1], datagram[header + 2], datagram[header]
+        for k in range(2):
+            at = kinds[kind, 2 + k]
+            row[7 + k] = datagram[first + at] if 0 <= at < length else 0
+        row[9] = 0
+        for k in range(_STAMP):
+            row[9] |= (0 + datagram[first + k]) << 8 * k if k < length else 0
+        count += 1
+        start = end
+    return found[:count], bad, skipped
 
 
 @kernel("uint8[:, ::1](uint8[::1], uint8[:, ::1], int64)")
@@ -94,12 +184,8 @@ def stamped_frames(data: Bytes, ends: NDArray[np.int64], stamps: Bytes) -> Bytes
     for k in range(ends.shape[0]):
         size = ends[k]
         while at < size:
-            end = size + 1
-            if data[at] == V2 and at + 2 < size:
-                end = at + data[at + 1] + (AROUND + SIGNATURE if data[at + 2] & SIGNED else AROUND)
-            elif data[at] == V1 and at + 1 < size:
-                end = at + data[at + 1] + 8
-            if end > size:
+            end = _end_of_frame(data, at, size)
+            if end == 0:
                 at += 1
                 continue
             records[count : count + width] = stamps[k]

@@ -108,11 +108,6 @@ class Layout:
             fields = tuple([field.rstrip(b"\0") if isinstance(field, bytes) else field for field in fields])
         return self.kind(*fields)
 
-    def targets(self, payload: bytes) -> Iterable[int]:
-        """Return the system, or system and component, that a message is for, as far as it names them."""
-        size = len(payload)
-        return [payload[offset] if offset < size else 0 for offset in self.target_offsets]
-
 
 def packed(*messages: Message) -> tuple[Packed, ...]:
     """Return messages of ArduPilot's dialect, packed. Raises as :meth:`Layout.pack`."""

@@ -8,6 +8,8 @@ from gcs.mavlink.settings import LinkSettings
 NUMBERS = 256
 REMEMBERED = 96
 """Numbers known as received; less than half of all, so that behind and ahead are not confused."""
+AHEAD = NUMBERS - REMEMBERED
+"""Numbers that are as far ahead as this, or farther, are behind."""
 _CYCLE = bytes(range(NUMBERS)) * 2
 
 
@@ -47,7 +49,7 @@ class LinkStatistics:
         newest = self._newest
         ahead = 1 if newest is None else (number - newest) % NUMBERS
         self.breaks += newest is None or ahead != 1
-        if 0 < ahead < NUMBERS - REMEMBERED:
+        if 0 < ahead < AHEAD:
             if newest is not None and ahead > 1:
                 missing = {(newest + k) % NUMBERS for k in range(1, ahead)}
                 self._gaps.append((now, missing))

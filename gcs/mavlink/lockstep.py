@@ -11,7 +11,7 @@ The barrier carries only time and stands outside MAVLink, so that no fault on a 
 """
 
 import struct
-from dataclasses import dataclass
+from typing import NamedTuple
 
 _TICK = struct.Struct("<4sIQ")
 _DONE = struct.Struct("<4sIQB")
@@ -20,8 +20,7 @@ _DONE_MAGIC = b"CLDN"
 _NEVER = 2**64 - 1
 
 
-@dataclass(frozen=True)
-class Tick:
+class Tick(NamedTuple):
     """All datagrams of this time have been sent."""
 
     serial: int
@@ -32,8 +31,7 @@ class Tick:
         return _TICK.pack(_TICK_MAGIC, self.serial, self.time_us)
 
 
-@dataclass(frozen=True)
-class Done:
+class Done(NamedTuple):
     """The ground has answered a tick. Serial 0: a request to join."""
 
     serial: int

@@ -24,13 +24,15 @@ class Received(NamedTuple):
 
     layout: Layout
     payload: bytes
+    run: int
+    """Number of messages: more than one only for a run, see :meth:`gcs.mavlink.codec.Codec.read`."""
     system: int
     component: int
     sequence: int
-    target_system: int = BROADCAST
-    target_component: int = BROADCAST
-    run: int = 1
-    """Number of messages: more than one only for a run, see :meth:`gcs.mavlink.codec.Codec.read`."""
+    target_system: int
+    target_component: int
+    time_boot_ms: int
+    """The stamp of a streamed measurement, its first field; of another message nothing."""
 
     @property
     def message_id(self) -> int:
@@ -49,11 +51,6 @@ class Received(NamedTuple):
     def fields(self) -> tuple[Any, ...]:
         """The fields in the order of the wire, arrays number by number."""
         return self.layout.fields(self.payload)
-
-    @property
-    def time_boot_ms(self) -> int:
-        """The stamp of a streamed measurement, its first field."""
-        return int.from_bytes(self.payload[:4], "little")
 
     def split(self) -> list[Received]:
         """Return the messages of a run one by one, as they are received elsewhere."""

@@ -44,7 +44,7 @@ class Requests:
     def __init__(self, system_id: int, parameters: dict[str, float], settings: LinkSettings) -> None:
         """``parameters`` takes the values that the vehicle answers."""
         self._system_id, self._parameters, self._settings = system_id, parameters, settings
-        self._commands: dict[int, Command] = {}
+        self._pending: dict[int, Command] = {}
         self._wanted: dict[str, float] = {}
 
     def want_parameters(self, names: tuple[str, ...]) -> None:
@@ -56,7 +56,7 @@ class Requests:
     def command(self, number: int, *parameters: float) -> Command:
         """Send a command until it is answered; a new one takes the place of an older one of its number."""
         command = Command(number, (*parameters, *([0.0] * (7 - len(parameters)))))
-        self._commands[number] = command
+        self._pending[number] = command
         return command
 
     def due(self, now: float) -> list[Message]:
@@ -67,11 +67,12 @@ class Requests:
             if now >= due:
                 self._wanted[name] = now + self._settings.retry_interval
                 messages.append(mavlink.MAVLink_param_request_read_message(*target, name.encode(), -1))
-        for command in self._commands.values():
-            if command.state is not CommandState.PENDING or now < command.next_try:
+        for command in [*self._pending.values()]:
+            if now < command.next_try:
                 continue
             if command.tries >= self._settings.tries:
                 command.state = CommandState.UNANSWERED
+                del self._pending[command.number]
                 continue
             messages.append(
                 mavlink.MAVLink_command_long_message(*target, command.number, command.tries, *command.parameters)
@@ -83,9 +84,9 @@ class Requests:
     def handle(self, message: Message) -> None:
         """Take the answer to a request, if ``message`` is one."""
         if isinstance(message, mavlink.MAVLink_command_ack_message):
-            command = self._commands.get(message.command)
-            pending = command is not None and command.state is CommandState.PENDING
-            if command is not None and pending and message.result != mavlink.MAV_RESULT_IN_PROGRESS:
+            command = self._pending.get(message.command)
+            if command is not None and message.result != mavlink.MAV_RESULT_IN_PROGRESS:
+                del self._pending[command.number]
                 command.result = message.result
                 accepted = message.result == mavlink.MAV_RESULT_ACCEPTED
                 command.state = CommandState.ACCEPTED if accepted else CommandState.REFUSED

@@ -113,20 +113,17 @@ class VehicleLink:
             return
         in_order = of_autopilot and self.statistics.message(received.sequence, now)
         message_id = received.layout.message_id
-        if message_id in _NAVIGATION:
-            if of_autopilot:
-                self._handle_navigation(message_id, received.time_boot_ms, in_order, now)
-            elif received.component == px4.PAYLOAD_UNIT_COMPONENT:
-                self.payload_received_at = now
-        elif message_id not in _NOT_READ:
-            self._handle_message(received.message, of_autopilot, now)
-
-    def _handle_navigation(self, message_id: int, time_boot_ms: int, in_order: bool, now: float) -> None:
-        self.clock.add_stamp(time_boot_ms * 1e-3, now, in_order)
-        if message_id == _ATTITUDE:
-            self.attitude_received_at = now
-        else:
-            self.position_received_at = now
+        if message_id not in _NAVIGATION:
+            if message_id not in _NOT_READ:
+                self._handle_message(received.message, of_autopilot, now)
+        elif of_autopilot:
+            self.clock.add_stamp(received.time_boot_ms * 1e-3, now, in_order)
+            if message_id == _ATTITUDE:
+                self.attitude_received_at = now
+            else:
+                self.position_received_at = now
+        elif received.component == px4.PAYLOAD_UNIT_COMPONENT:
+            self.payload_received_at = now
 
     def _handle_message(self, message: Message, of_autopilot: bool, now: float) -> None:
         if of_autopilot and isinstance(message, mavlink.MAVLink_heartbeat_message):

@@ -119,10 +119,11 @@ class FlightRecorder:
         if self._next_row is None:
             self._next_row = math.ceil(flight.takeoff_time / REFERENCE_INTERVAL - _GRID_TOLERANCE)
         last = math.floor(time / REFERENCE_INTERVAL + _GRID_TOLERANCE)
-        times = np.arange(self._next_row, last + 1, dtype=np.float64) * REFERENCE_INTERVAL
-        if len(times):
-            rows = np.hstack([times.round(6)[:, None], *flight.reference(times)])
-            self._reference.write_numbers(*rows.tolist())
+        times = [row * REFERENCE_INTERVAL for row in range(self._next_row, last + 1)]
+        if times:
+            position, velocity = flight.reference(np.array(times))
+            rows = zip(times, position.tolist(), velocity.tolist(), strict=True)
+            self._reference.write_numbers(*[[round(t * 1e6) / 1e6, *p, *v] for t, p, v in rows])
             self._next_row = last + 1
 
     def close(self) -> None:

@@ -128,7 +128,11 @@ def _line(cells: Sequence[str]) -> bytes:
 
 def read_table(path: Path | str) -> dict[str, Array]:
     """Return the columns of a numeric table, each (rows,). Otherwise like :func:`read_text_table`."""
-    table = read_text_table(path)
+    columns, lines = _read_lines(path)
+    numbers = _plain_numbers(lines, len(columns))
+    if numbers is not None:
+        return dict(zip(columns, np.ascontiguousarray(numbers.T), strict=True))
+    table = _text_table(path, columns, lines)
     try:
         return {name: np.array(cells, dtype=float) for name, cells in table.items()}
     except ValueError:
@@ -141,6 +145,11 @@ def read_text_table(path: Path | str) -> dict[str, list[str]]:
     A last line without its line break, as a killed process may leave, is left out. Raises :class:`UnusableInput`, with
     file and line, for a file that cannot be read or is not such a table.
     """
+    return _text_table(path, *_read_lines(path))
+
+
+def _read_lines(path: Path | str) -> tuple[list[str], list[str]]:
+    """Return the names of the columns, and the complete lines below them."""
     try:
         text = Path(path).read_text(encoding="utf-8")
     except OSError as error:
@@ -150,8 +159,23 @@ def read_text_table(path: Path | str) -> dict[str, list[str]]:
     header, *lines = text.split("\n")
     if not lines:
         raise UnusableInput(f"{path}, line 1: the header is missing or cut off")
-    columns = header.split(",")
-    rows = list(csv.reader(lines[:-1]))
+    return header.split(","), lines[:-1]
+
+
+def _plain_numbers(lines: Sequence[str], columns: int) -> Array | None:
+    """Return the rows (rows, columns) of lines that are numbers as JSON has them, None for any others."""
+    text = "\n".join(lines).encode()
+    if text.translate(None, b"0123456789.eE+-,\n"):
+        return None
+    try:
+        rows = np.array(orjson.loads(b"[[" + text.replace(b"\n", b"],[") + b"]]"), dtype=float)
+    except ValueError:
+        return None
+    return rows if rows.shape == (len(lines), columns) else None
+
+
+def _text_table(path: Path | str, columns: Sequence[str], lines: Sequence[str]) -> dict[str, list[str]]:
+    rows = list(csv.reader(lines))
     for number, row in enumerate(rows, start=2):
         if len(row) != len(columns):
             raise UnusableInput(f"{path}, line {number}: {len(row)} values for {len(columns)} columns")

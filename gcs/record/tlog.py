@@ -4,7 +4,6 @@ A record is a time stamp (microseconds since 1970, 8 bytes, big-endian) and one 
 log several links keep the link's number in the two lowest bits of the time stamp; they are 0 here.
 """
 
-import struct
 from itertools import accumulate
 from pathlib import Path
 
@@ -13,7 +12,7 @@ import numpy as np
 from gcs.mavlink.frame_kernels import stamped_frames
 from gcs.record.append_file import AppendOnlyFile
 
-_STAMP = struct.Struct(">Q")
+_STAMP = np.dtype(">u8")
 
 
 class TelemetryLog(AppendOnlyFile):
@@ -25,7 +24,7 @@ class TelemetryLog(AppendOnlyFile):
     def __init__(self, path: Path | str, start_epoch: float) -> None:
         super().__init__(path)
         self._start_us = round(start_epoch * 1e6)
-        self._stamps: list[bytes] = []
+        self._stamps: list[int] = []
         self._datagrams: list[bytes] = []
 
     def write(self, now: float, datagram: bytes) -> None:
@@ -33,7 +32,7 @@ class TelemetryLog(AppendOnlyFile):
 
         Bytes that belong to no frame, as a damaged datagram may hold, are left out.
         """
-        self._stamps.append(_STAMP.pack((self._start_us + round(now * 1e6)) & ~0x3))
+        self._stamps.append((self._start_us + round(now * 1e6)) & ~0x3)
         self._datagrams.append(datagram)
 
     def flush(self) -> None:
@@ -41,8 +40,8 @@ class TelemetryLog(AppendOnlyFile):
         if not self._datagrams:
             return
         data = np.frombuffer(bytearray().join(self._datagrams), np.uint8)
-        ends = np.fromiter(accumulate(map(len, self._datagrams)), np.int64)
-        stamps = np.frombuffer(bytearray().join(self._stamps), np.uint8).reshape(-1, _STAMP.size)
+        ends = np.array([*accumulate(map(len, self._datagrams))])
+        stamps = np.array(self._stamps, _STAMP).view(np.uint8).reshape(-1, _STAMP.itemsize)
         self._stamps.clear()
         self._datagrams.clear()
         if records := stamped_frames(data, ends, stamps).tobytes():

@@ -179,7 +179,9 @@ class ProjectControl(Control):
         """Take a decision."""
         N = self._layout.number_of_uavs
         n = self._layout.size + 3 + 2 * N + 1
-        estimate = Estimate(time, self._state(measured), np.zeros(3), np.zeros((N, 3)), 0.0, np.zeros((n, n)))
+        estimate = Estimate(
+            time, self._state(measured), np.zeros(3), np.zeros((N, 3)), 0.0, np.zeros((3, 3)), lambda: np.zeros((n, n))
+        )
         decision = self._controller.decide(estimate, self._trajectory)
         self._directions, self._thrusts = decision.directions, decision.thrusts
         # The plan deviates slightly long before and after an obstacle: only larger deviations count.

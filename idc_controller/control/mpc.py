@@ -24,7 +24,7 @@ from idc_controller.trajectory.flatness import FlatReference
 
 
 class ModelPredictiveController:
-    """Tracks a flat reference. Time-invariant matrices are built once; a step is a gradient and a QP."""
+    """Tracks a flat reference. Time-invariant matrices are built once; a step is a QP for the error."""
 
     def __init__(self, model: LinearModel, settings: MpcSettings, blocks: Sequence[int] | None = None) -> None:
         """Args: ``blocks`` of stages over which each move is held, in sum the horizon; None: those usual for it."""
@@ -38,21 +38,24 @@ class ModelPredictiveController:
         Q, R = state_weight(settings.tuning.weights, self.layout), input_weight(settings.tuning.weights, self.layout)
         Q_f = solve_discrete_are(A, B, Q, R)
         F, H = prediction.F, prediction.H
-        self._gradient = sum(
+        gradient = sum(
             (gradient @ F_k for gradient, F_k in zip(prediction.gradients(Q, Q_f), F[1:], strict=True)),
             np.zeros((H.shape[2], len(A))),
         )
         # Input bounds of every move are hard; the states' bounds are soft.
         self._input_limits, self.state_constraints = InputLimits(model, settings), state_constraints(model, settings)
         rows = np.vstack([constraint.G for constraint in self.state_constraints])
-        self._stages = stages = settings.constraint_stages
+        self._stages = stages = np.array(settings.constraint_stages)
         G = np.vstack([np.kron(np.eye(len(blocks)), self._input_limits.G), *(rows @ H[k] for k in stages)])
+        limits = np.concatenate([constraint.limits for constraint in self.state_constraints])
+        self._limits = np.tile(limits, (len(stages), 1))
         slack_of_constraint = _numbered([constraint.slack for constraint in self.state_constraints])
         slack_of_row = np.concatenate([np.full(2 * H.shape[2], -1), np.tile(slack_of_constraint, len(stages))])
-        self._free_response = np.vstack([rows @ F[k] for k in stages])
+        response = np.vstack([np.zeros((2 * H.shape[2], len(A))), *(rows @ F[k] for k in stages)])
         self.qp = ParametricQp(
             prediction.hessian(Q, R, Q_f), G, slack_of_row,
             slack_linear=settings.slack_linear, slack_quadratic=settings.slack_quadratic,
+            gradient=gradient, response=response,
         )  # fmt: skip
 
     def track(self, error: Array, reference: FlatReference) -> TrackingOutput:
@@ -61,23 +64,25 @@ class ModelPredictiveController:
         ``reference`` holds the stages 0 .. N_p. When the QP cannot be solved the unconstrained move, cut to the
         input limits, is taken and the step is marked infeasible.
         """
-        g = self._gradient @ error
-        h = self.bounds(error, reference)
+        h = self.bounds(reference)
         m = self.layout.inputs
         try:
-            solution = self.qp.solve(g, h)
+            solution = self.qp.solve(error, h)
         except SolverError:
-            first_move = self.qp.unconstrained(g)[:m]
+            first_move = self.qp.unconstrained(error)[:m]
             return TrackingOutput(np.clip(first_move, -h[m : 2 * m], h[:m]), infeasible=True)
         return TrackingOutput(solution.x[:m], solution.iterations)
 
-    def bounds(self, error: Array, reference: FlatReference) -> Array:
+    def bounds(self, reference: FlatReference) -> Array:
         """Return h of the QP: of the inputs of every move, then of the states at every constrained stage."""
         inputs = self._input_limits.h(reference.u, self.prediction.first_stages)
-        states = np.concatenate(
-            [constraint.h(reference, self._stages) for constraint in self.state_constraints], axis=1
-        )
-        return np.concatenate([inputs, states.ravel() - self._free_response @ error])
+        states, first = self._limits.copy(), 0
+        for constraint in self.state_constraints:
+            used, last = constraint.used(reference, self._stages), first + len(constraint.limits)
+            if used is not None:
+                states[:, first:last] -= used
+            first = last
+        return np.concatenate([inputs, states.ravel()])
 
 
 def _numbered(slacks: list[NDArray[np.int_]]) -> NDArray[np.int_]:

@@ -1,6 +1,8 @@
 """Results of the estimator: the state at one moment, and the innovations of the measurements applied for it."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 from idc_controller.arrays import Array, Indices
 from idc_controller.estimation.measurements import SensorKey
@@ -40,7 +42,14 @@ class Estimate:
     """Level disturbance force on each UAV (N, 3) (N, NED)."""
     mass_excess: float
     """Payload mass less nominal (kg)."""
-    covariance: Array
-    """Covariance of x, forces (3 + 2 N) and mass excess (12 + 13 N + 4,) squared."""
+    force_covariance: Array
+    """Of the force on the payload (3, 3) (N2)."""
+    predict_covariance: Callable[[], Array]
+    """Predicts :attr:`covariance`."""
     innovations: tuple[InnovationRecord, ...] = ()
     """Innovations applied since the last estimate, in order of time; those replayed come again."""
+
+    @cached_property
+    def covariance(self) -> Array:
+        """Covariance of x, forces (3 + 2 N) and mass excess (12 + 13 N + 4,) squared; predicted only if asked for."""
+        return self.predict_covariance()

@@ -22,7 +22,7 @@ from idc_controller.estimation.measurements import (
     SensorGroup,
 )
 from idc_controller.estimation.process_model import ProcessModel
-from idc_controller.estimation.propagation import ErrorStateFilter, PropagationInterval
+from idc_controller.estimation.propagation import ErrorStateFilter, Outlook, PropagationInterval
 from idc_controller.estimation.replay import ReplayBuffer, Snapshot
 from idc_controller.estimation.setpoint_history import Confirmation, SetpointHistory
 from idc_controller.estimation.settings import EstimatorSettings
@@ -141,17 +141,22 @@ class Estimator:
         health.restore(last.health)
         innovations = []
         moments = iter(pending)
-        moment = next(moments, None)
-        for k, edge in enumerate(interval.times):
-            if k:
-                kf.predict(interval, k - 1, health.adaptation.process_scale)
-            while moment is not None and moment.time == edge:
-                record = self._update.apply(kf, moment, interval.flat, k, adapt)
-                if record is not None:
-                    innovations.append(record)
-                self._replay.snapshots.append(Snapshot(edge, kf.state(k), kf.P, health.snapshot()))
-                moment = next(moments, None)
-        x, n = kf.state(len(interval.times) - 1), process.layout.size
+        moment, k = next(moments, None), 0
+        while moment is not None:
+            if moment.time > interval.times[k]:
+                kf.predict(interval, k, health.adaptation.process_scale)
+                k += 1
+                continue
+            record = self._update.apply(kf, moment, interval.flat, k, adapt)
+            if record is not None:
+                innovations.append(record)
+            self._replay.snapshots.append(Snapshot(moment.time, kf.state(k), kf.P, health.snapshot()))
+            moment = next(moments, None)
+        ahead = Outlook(process, interval, k, kf.P, health.adaptation.process_scale)
+        x, n = kf.state_ahead(interval, k), process.layout.size
         on_uavs = np.zeros((process.layout.number_of_uavs, 3))
         on_uavs[:, :2] = x[process.uav_force].reshape(-1, 2)
-        return Estimate(time, x[:n], x[process.force], on_uavs, float(x[process.mass]), kf.P, tuple(innovations))
+        return Estimate(
+            time, x[:n], x[process.force], on_uavs, float(x[process.mass]),
+            ahead.force_covariance(), ahead.covariance, tuple(innovations),
+        )  # fmt: skip

@@ -1,17 +1,16 @@
-"""Kalman filter of the estimator: filterpy's, corrected by a Cholesky factor of the innovation covariance."""
+"""Kalman filter of the estimator: filterpy's, corrected by one row of the measurements after the other."""
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 from filterpy.kalman import KalmanFilter
-from scipy.linalg.blas import dtrsm, dtrsv
-from scipy.linalg.lapack import dpotrf
 
 from idc_controller.arrays import Array, Indices, Mask
-from idc_controller.estimation.propagation_kernels import propagated
-from idc_controller.estimation.update_kernels import predicted
+from idc_controller.estimation.propagation_kernels import propagated, propagated_state
+from idc_controller.estimation.update_kernels import corrected, predicted
 
 _CANCELLED = 1e-6
 """Share of a variance that a correction may leave before its rounding needs Joseph's form."""
@@ -46,10 +45,8 @@ class Innovation(NamedTuple):
     """H (m, n)"""
     residual: Array
     """(m,)"""
-    cross: Array
-    """H P (m, n)."""
     covariance: Array
-    """H P H' (m, m): of the prediction alone."""
+    """H P H' (m, m), of the prediction alone; zero between different measurements."""
 
     def subset(self, which: Mask) -> Innovation:
         """Return that of some rows (m,); all of them: this one."""
@@ -57,7 +54,7 @@ class Innovation(NamedTuple):
             return self
         columns, coefficients = self.rows
         rows = SparseRows(columns[which], coefficients[which])
-        return Innovation(rows, self.residual[which], self.cross[which], self.covariance[np.ix_(which, which)])
+        return Innovation(rows, self.residual[which], self.covariance[np.ix_(which, which)])
 
 
 class Transition(NamedTuple):
@@ -70,6 +67,10 @@ class Transition(NamedTuple):
     sparse: SparseRows
     """The others, whose elements are in the last n - d columns."""
     B: Array
+
+    def state(self, x: Array, direction: Array, u: Array) -> Array:
+        """Return the state (n,) after ``x`` (n,) under the input ``u`` (3 N,); ``direction``: see :meth:`F`."""
+        return propagated_state(x, self.dense, self.push, direction, *self.sparse, self.B, u)
 
     def F(self, direction: Array) -> Array:
         """Return the transition matrix (n, n), where ``direction`` (3,) is the force for one unit of the last state."""
@@ -101,26 +102,23 @@ class StructuredKalmanFilter(KalmanFilter):  # type: ignore[misc]  # filterpy ha
             self.x, self.P, dense, push, direction, columns, coefficients, B, u, Q, change, probability
         )
 
-    def innovation(self, y: Array, rows: SparseRows) -> Innovation:
-        """Return the innovation of the measurements ``y`` (m,) that ``rows`` observe."""
-        return Innovation(rows, *predicted(self.x, self.P, y, rows.columns, rows.coefficients))
+    def innovation(self, y: Array, rows: SparseRows, starts: Indices, sizes: Indices) -> Innovation:
+        """Return the innovation of measurements ``y`` (m,) that ``rows`` observe.
+
+        ``starts``, ``sizes``: first row and number of rows of each measurement (K,).
+        """
+        return Innovation(rows, *predicted(self.x, self.P, y, *rows, starts, sizes))
 
     def correct(self, innovation: Innovation, variance: Array) -> float:
         """Correct by measurements with ``variance`` (m,) and return their normalised innovation squared.
 
-        With S = L L' and W = L^-1 H P the correction is x + W' L^-1 y and P - W' W. Where that leaves next to nothing
-        of a variance, or S is not positive definite, filterpy's own update in Joseph's form takes its place.
+        Where that leaves next to nothing of a variance, or their covariance is not positive definite, filterpy's own
+        update in Joseph's form takes its place.
         """
-        covariance = innovation.covariance.copy()
-        covariance.flat[:: len(variance) + 1] += variance
-        L, info = dpotrf(covariance, lower=1)
-        if info == 0:
-            W = dtrsm(1.0, L, innovation.cross.T, side=1, lower=1, trans_a=1)  # transposed (n, m)
-            normalised = dtrsv(L, innovation.residual, lower=1)
-            P = self.P - W @ W.T  # symmetric to the digit, as both terms are
-            if (P.diagonal() >= _CANCELLED * self.P.diagonal()).all():
-                self.x, self.P = self.x + W @ normalised, P
-                return float(normalised @ normalised)
+        x, P, squared = corrected(self.P, innovation.residual, *innovation.rows, variance, _CANCELLED)
+        if not math.isnan(squared):
+            self.x, self.P = self.x + x, P
+            return squared
         H = innovation.rows.dense(self.dim_x)
         self.update(innovation.residual + H @ self.x, R=np.diag(variance), H=H)
         self.P = (self.P + self.P.T) / 2

@@ -48,7 +48,7 @@ class MeasurementUpdate:
         if health.isolated_groups:
             samples = observation.samples([health.usable(measurement) for measurement in measurements])
         y, rows = model.observe(observation, samples, flat, k)
-        innovation = filter.innovation(y, rows)
+        innovation = filter.innovation(y, rows, whole.starts, whole.sizes)
         present = health.usable_rows(whole, innovation)
         if not np.count_nonzero(present):
             return None
@@ -58,23 +58,27 @@ class MeasurementUpdate:
         reaction = adaptation.react(moment.time, keys, test) if adapt else Reaction.NONE
         if reaction is Reaction.COVARIANCE_RESET:
             filter.inflate(filter.process.covariance_reset(filter.P, self._settings.reset))
-            innovation = filter.innovation(y, rows).subset(present)
+            innovation = filter.innovation(y, rows, whole.starts, whole.sizes).subset(present)
         if reaction is not Reaction.NONE:
             test = self._gate.test(innovation, stack, adaptation.measurement_scale)
         accepted = test.accepted_rows
         rejected = [c for c, good in enumerate(test.accepted.tolist()) if not good]
         poses = [keys[c] for c in rejected if keys[c][1] is Position or not accepted[stack.starts[c]]]
         health.rejected(moment.time, poses)
-        accepted_of_all = present.copy()
-        accepted_of_all[present] = accepted
+        accepted_of_all = accepted
+        if stack is not whole:
+            accepted_of_all = present.copy()
+            accepted_of_all[present] = accepted
         if adapt:
             health.isolation.learn(whole, present, accepted_of_all, health.dead_reckoning.is_inconsistent)
             adaptation.learn(moment.time, keys, test.normalised, test.mean_squares, accepted, stack.of_payload)
         squared, degrees_of_freedom = 0.0, int(np.count_nonzero(accepted))
         if degrees_of_freedom:
-            heights = observation.heights
-            measured = observation.uavs[accepted_of_all[heights] & accepted_of_all[heights + 3]]
-            squared = filter.update(innovation.subset(accepted), test.variance[accepted], measured)
+            variance, measured = test.variance, observation.uavs
+            if degrees_of_freedom < len(present):
+                heights, variance = observation.heights, variance[accepted]
+                measured = measured[accepted_of_all[heights] & accepted_of_all[heights + 3]]
+            squared = filter.update(innovation.subset(accepted), variance, measured)
         return InnovationRecord(
             moment.time, squared, degrees_of_freedom, tuple(keys[c] for c in rejected),
             is_lost or reaction is Reaction.COVARIANCE_RESET, keys, stack.sizes, test.normalised,

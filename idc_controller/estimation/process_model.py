@@ -38,9 +38,10 @@ class ProcessModel:
 
         A UAV with a wrong attitude estimate pulls aside. The force of one that is not measured is not adapted.
         """
-        north = self.uav_force.start + 2 * measured
-        force = np.concatenate([north, north + 1])
-        P[force, force] += self._densities.per_vehicle_force**2
+        for uav in measured.tolist():
+            north = self.uav_force.start + 2 * uav
+            for state in (north, north + 1):
+                P[state, state] += self._densities.per_vehicle_force**2
 
     def initial_covariance(self, settings: InitialCovarianceSettings) -> Array:
         """Return the covariance (n, n) of the whole state of a team on the ground."""

@@ -1,6 +1,6 @@
 """Propagation of the filter's state from its last update to the time of the next set-points."""
 
-import math
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -8,6 +8,7 @@ import numpy as np
 from idc_controller.arrays import Array, Indices
 from idc_controller.estimation.kalman_filter import Innovation, SparseRows, StructuredKalmanFilter
 from idc_controller.estimation.process_model import ProcessModel
+from idc_controller.estimation.propagation_kernels import about_reference, are_finite
 from idc_controller.estimation.setpoint_history import SetpointHistory
 from idc_controller.trajectory.reference import Reference
 
@@ -32,23 +33,29 @@ class PropagationInterval:
         times += [t for t in switches if min(abs(t - other) for other in times) > 1e-6]
         self.times = sorted(set(times))
         self.flat = reference.at(np.array(self.times))
-        self.u = (self.flat.u[:-1] + self.flat.u[1:]) / 2
-        """The reference's set-points from each time to the next (K - 1, 3 N)."""
-        self.force_of_mass = process.force_of_mass((self.flat.payload[2, :-1] + self.flat.payload[2, 1:]) / 2)
-        """Force of one kilogram of excess of mass from each time to the next (K - 1, 3) (N/kg)."""
+        links, p = self.flat.links, process.model.parameters
+        self.u, self.force_of_mass, self.nominal = about_reference(
+            self.flat.x,
+            self.flat.u,
+            self.flat.payload,
+            links.on_payload,
+            links.on_uavs,
+            p.g,
+            reference.load.mass - p.m_0,
+        )
+        """The reference's set-points (K - 1, 3 N), and the force of one kilogram of excess of mass (K - 1, 3) (N/kg),
+        from each time to the next; state of the exact reference at each time (K, n)."""
         self.setpoints = [setpoints.in_force(a, b) for a, b in pairwise(self.times)]
         """Set-points in force from each time to the next."""
-        # The drag that is predicted changes with the velocity, so what is estimated of it is the rest.
-        self.nominal = np.empty((len(self.times), process.size))
-        """State of the exact reference at each time (K, n)."""
-        self.nominal[:, : process.layout.size] = self.flat.x
-        self.nominal[:, process.force] = self.flat.links.on_payload
-        self.nominal[:, process.uav_force] = self.flat.links.on_uavs[..., :2].reshape(len(self.times), -1)
-        self.nominal[:, process.mass] = reference.load.mass - process.model.parameters.m_0
 
     def duration_us(self, k: int) -> int:
         """Return the duration from time ``k`` to the next (us)."""
         return max(round((self.times[k + 1] - self.times[k]) * 1e6), 1)
+
+    def input(self, k: int) -> Array:
+        """Return the set-points in force less the reference's (3 N,) from time ``k`` to the next."""
+        u = self.setpoints[k].u
+        return np.zeros(self.u.shape[1]) if u is None else u - self.u[k]
 
 
 class ErrorStateFilter:
@@ -80,18 +87,25 @@ class ErrorStateFilter:
 
     def predict(self, interval: PropagationInterval, k: int, force_scale: float) -> None:
         """Propagate from time ``k`` to the next under the set-points in force; ``force_scale``: of process noise."""
-        u, change, probability = interval.setpoints[k]
-        delta_u = np.zeros(self.process.layout.inputs) if u is None else u - interval.u[k]
+        _, change, probability = interval.setpoints[k]
         duration = interval.duration_us(k)
         self._kf.propagate(
-            self.process.transition(duration), interval.force_of_mass[k], delta_u,
+            self.process.transition(duration), interval.force_of_mass[k], interval.input(k),
             self.process.noise(duration, force_scale), _NONE if change is None else change, probability,
         )  # fmt: skip
+
+    def state_ahead(self, interval: PropagationInterval, k: int) -> Array:
+        """Return the absolute state (n,) at the end of the interval from that at time ``k``, which remains."""
+        x = self._kf.x
+        for later in range(k, len(interval.times) - 1):
+            transition = self.process.transition(interval.duration_us(later))
+            x = transition.state(x, interval.force_of_mass[later], interval.input(later))
+        return np.asarray(x + self._nominal[-1])
 
     @property
     def is_finite(self) -> bool:
         """Return whether state and covariance are numbers."""
-        return math.isfinite(self._kf.x @ self._kf.P @ self._kf.x)  # zero times inf or nan is nan
+        return are_finite(self._kf.x, self._kf.P)
 
     def restart(self, P: Array) -> None:
         """Begin anew from the reference with covariance ``P`` (n, n)."""
@@ -101,9 +115,12 @@ class ErrorStateFilter:
         """Add ``added`` (n, n) to the covariance."""
         self._kf.P = self._kf.P + added
 
-    def innovation(self, y: Array, rows: SparseRows) -> Innovation:
-        """Return the innovation of the measurements ``y`` (m,), less reference, that ``rows`` observe."""
-        return self._kf.innovation(y, rows)
+    def innovation(self, y: Array, rows: SparseRows, starts: Indices, sizes: Indices) -> Innovation:
+        """Return the innovation of the measurements ``y`` (m,), less reference, that ``rows`` observe.
+
+        ``starts``, ``sizes``: first row and number of rows of each (K,).
+        """
+        return self._kf.innovation(y, rows, starts, sizes)
 
     def update(self, innovation: Innovation, variance: Array, measured: Indices) -> float:
         """Correct by measurements and return their normalised innovation squared.
@@ -116,3 +133,33 @@ class ErrorStateFilter:
         squared = self._kf.correct(innovation, variance)
         self.process.add_per_vehicle_noise(self._kf.P, measured)
         return squared
+
+
+@dataclass(frozen=True, eq=False)
+class Outlook:
+    """Covariance at the end of an ``interval``, predicted only as far as it is asked for."""
+
+    process: ProcessModel
+    interval: PropagationInterval
+    k: int
+    """Index of the last time that was filtered."""
+    P: Array
+    """Covariance there (n, n)."""
+    force_scale: float
+    """Of process noise."""
+
+    def force_covariance(self) -> Array:
+        """Return the covariance (3, 3) of the force on the payload, which nothing but its own noise changes."""
+        force = self.process.force
+        covariance = self.P[force, force]
+        for k in range(self.k, len(self.interval.times) - 1):
+            covariance = covariance + self.process.noise(self.interval.duration_us(k), self.force_scale)[force, force]
+        return covariance
+
+    def covariance(self) -> Array:
+        """Return the covariance (n, n) of the whole state."""
+        filter = ErrorStateFilter(self.process)
+        filter.start(self.interval.nominal[0], self.P, self.interval)
+        for k in range(self.k, len(self.interval.times) - 1):
+            filter.predict(self.interval, k, self.force_scale)
+        return filter.P

@@ -1,14 +1,45 @@
-"""Compiled kernel of the filter's propagation."""
+"""Compiled kernels of the filter's propagation."""
 
 import numpy as np
 
 from idc_controller.arrays import Array, Indices
-from idc_controller.compiled import kernel
+from idc_controller.compiled import inlined, kernel
 
-_VECTOR, _MATRIX, _COLUMNS = (
-    f"Array({of}, {axes}, 'C', readonly=True)" for of, axes in (("float64", 1), ("float64", 2), ("int64", 2))
+_VECTOR, _MATRIX, _CUBE, _COLUMNS = (
+    f"Array({of}, {axes}, 'C', readonly=True)"
+    for of, axes in (("float64", 1), ("float64", 2), ("float64", 3), ("int64", 2))
 )
 """Types of arrays that are only read."""
+
+
+@inlined
+def _dense_rows(dense: Array, push: Array, direction: Array) -> Array:
+    """Return the first rows of F (d, n), see :func:`propagated`."""
+    first = dense.copy()
+    for r in range(len(dense)):
+        first[r, -1] = push[r, 0] * direction[0] + push[r, 1] * direction[1] + push[r, 2] * direction[2]
+    return first
+
+
+@inlined
+def _state(x: Array, first: Array, columns: Indices, coefficients: Array, B: Array, u: Array) -> Array:
+    """Return F x + B u (n,), see :func:`propagated`; ``first``: rows of F (d, n)."""
+    d = len(first)
+    result: Array = np.dot(B, u)
+    result[:d] += np.dot(first, x)
+    for r in range(len(columns)):
+        for a in range(columns.shape[1]):
+            if coefficients[r, a] != 0.0:
+                result[d + r] += coefficients[r, a] * x[columns[r, a]]
+    return result
+
+
+@kernel(f"float64[::1]({_VECTOR}, {_MATRIX}, {_MATRIX}, {_VECTOR}, {_COLUMNS}, {_MATRIX}, {_MATRIX}, {_VECTOR})")
+def propagated_state(
+    x: Array, dense: Array, push: Array, direction: Array, columns: Indices, coefficients: Array, B: Array, u: Array
+) -> Array:
+    """Return the state of :func:`propagated` alone (n,)."""
+    return _state(x, _dense_rows(dense, push, direction), columns, coefficients, B, u)
 
 
 @kernel(
@@ -37,11 +68,8 @@ def propagated(
         probability: with which each vehicle does (N,).
     """
     n, d, W = len(x), len(dense), columns.shape[1]
-    first = dense.copy()
-    for r in range(d):
-        first[r, n - 1] = push[r, 0] * direction[0] + push[r, 1] * direction[1] + push[r, 2] * direction[2]
-    result = np.dot(B, u)
-    result[:d] += np.dot(first, x)
+    first = _dense_rows(dense, push, direction)
+    result = _state(x, first, columns, coefficients, B, u)
     covariance = np.empty((n, n))
     top = np.dot(first, P)
     covariance[:d, :d] = np.dot(top, first.T)
@@ -51,7 +79,6 @@ def propagated(
         for a in range(W):
             weight, column = coefficients[r, a], columns[r, a]
             if weight != 0.0:
-                result[d + r] += weight * x[column]
                 for c in range(d, n):
                     row[c] += weight * P[column, c]
         for o in range(d):
@@ -83,3 +110,52 @@ def propagated(
             covariance[r, o] += Q[r, o]
             covariance[o, r] = covariance[r, o]
     return result, covariance
+
+
+@kernel(f"boolean({_VECTOR}, {_MATRIX})")
+def are_finite(x: Array, P: Array) -> bool:
+    """Return whether state (n,) and covariance (n, n) are numbers."""
+    total = 0.0 * x  # zero times inf or nan is nan
+    for row in range(len(P)):
+        for c in range(len(x)):
+            total[c] += 0.0 * P[row, c]
+    return not np.isnan(total).any()
+
+
+@kernel(
+    "Tuple((float64[:, ::1], float64[:, ::1], float64[:, ::1]))"
+    f"({_MATRIX}, {_MATRIX}, {_CUBE}, {_MATRIX}, {_CUBE}, float64, float64)"
+)
+def about_reference(
+    x: Array, u: Array, payload: Array, on_payload: Array, on_uavs: Array, g: float, mass_excess: float
+) -> tuple[Array, Array, Array]:
+    """Return what the error state is about: set-points, direction of the force of mass, and state of the reference.
+
+    The drag that is predicted changes with the velocity, so what is estimated of it is the rest.
+
+    Args:
+        x: states of the reference in the linear model's coordinates (K, 12 + 11 N).
+        u: its set-points (K, 3 N).
+        payload: derivatives of the payload's position (5, K, 3).
+        on_payload, on_uavs: forces of its load on the payload (K, 3) and on the UAVs (K, N, 3) (N).
+        g: m/s2.
+        mass_excess: of its load (kg).
+
+    Returns:
+        Set-points (K - 1, 3 N) and force of one kilogram of excess of mass g e3 - a (K - 1, 3) (N/kg), both in the mean
+        from each time to the next, and states with the forces and the mass excess (K, 12 + 11 N + 3 + 2 N + 1).
+    """
+    K, n = x.shape
+    N = on_uavs.shape[1]
+    mean, direction = np.empty((K - 1, 3 * N)), np.empty((K - 1, 3))
+    nominal = np.empty((K, n + 4 + 2 * N))
+    for k in range(K - 1):
+        for c in range(3 * N):
+            mean[k, c] = (u[k, c] + u[k + 1, c]) / 2
+        for c in range(3):
+            direction[k, c] = (g if c == 2 else 0.0) - (payload[2, k, c] + payload[2, k + 1, c]) / 2
+    for k in range(K):
+        nominal[k, :n], nominal[k, n : n + 3], nominal[k, -1] = x[k], on_payload[k], mass_excess
+        for i in range(N):
+            nominal[k, n + 3 + 2 * i], nominal[k, n + 4 + 2 * i] = on_uavs[k, i, 0], on_uavs[k, i, 1]
+    return mean, direction, nominal

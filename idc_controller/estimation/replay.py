@@ -34,11 +34,14 @@ class MeasurementHistory:
         if at == len(times) or times[at] > time + self._simultaneous:
             times.insert(at, time)
             self._moments.insert(at, Moment(time, {}))
-        moment = self._moments[at]
-        copies = moment.measurements.setdefault((measurement.source, type(measurement)), [])
-        if copies and measurement.source == PAYLOAD and moment.time <= applied:
+        moment, key = self._moments[at], (measurement.source, type(measurement))
+        copies = moment.measurements.get(key)
+        if copies is None:
+            moment.measurements[key] = [measurement]
+        elif measurement.source == PAYLOAD and moment.time <= applied:
             return None  # another vehicle's relay of what was applied already
-        copies.append(measurement)
+        else:
+            copies.append(measurement)
         return moment.time
 
     def after(self, time: float) -> list[Moment]:
@@ -89,7 +92,7 @@ class ReplayBuffer:
     def add(self, measurement: Measurement) -> bool:
         """Add a measurement and return to before it; returns False for one that is too old."""
         applied = self.snapshots[-1].time
-        if measurement.time <= max(self.snapshots[0].time, applied - self._duration):
+        if measurement.time <= self.snapshots[0].time or measurement.time <= applied - self._duration:
             return False
         moment = self.measurements.add(measurement, applied)
         if moment is not None and moment <= applied:

@@ -3,12 +3,11 @@
 import bisect
 import math
 from dataclasses import dataclass, field
-from operator import attrgetter
 from typing import NamedTuple
 
 import numpy as np
 
-from idc_controller.arrays import Array, Mask
+from idc_controller.arrays import Array
 from idc_controller.estimation.settings import SetpointHistorySettings
 
 
@@ -17,15 +16,15 @@ class _Entry:
     """Set-points of all vehicles, as sent and as estimated to be flown; None: the vehicles are held."""
 
     effective: float
-    sent_at: Array
+    sent_at: list[float]
     """Times at which they are sent to each vehicle (N,) (s)."""
     sent: Array | None
     """(3 N,)"""
     flown: Array | None
     """(3 N,); the same object as ``sent`` where that is what all vehicles fly."""
-    starts: Array
+    starts: list[float]
     """Times at which they take effect on each vehicle (N,) (s)."""
-    confirmed: Mask
+    confirmed: list[bool]
     """Vehicles (N,) that have reported that, or that they never flew them."""
     exact: bool = True
     """True if all take effect at ``effective``."""
@@ -34,6 +33,18 @@ class _Entry:
 
     def __post_init__(self) -> None:
         self.numbers = [] if self.sent is None else self.sent.tolist()
+
+    def is_reported(self, which: list[int], reported: list[float], settings: SetpointHistorySettings) -> bool:
+        """Return whether a vehicle ``reported`` the elements ``which`` (tilts and thrust) of what was sent."""
+        u = self.numbers
+        if not u:
+            return False
+        (north, east, thrust), (tilt_north, tilt_east, lift) = which, reported
+        return (
+            abs(u[thrust] - lift) < settings.thrust_tolerance
+            and abs(u[north] - tilt_north) < settings.tilt_tolerance
+            and abs(u[east] - tilt_east) < settings.tilt_tolerance
+        )
 
 
 class InForce(NamedTuple):
@@ -67,13 +78,15 @@ class SetpointHistory:
         self._N = number_of_uavs
         self._settings = settings
         self._entries: list[_Entry] = []
-        self._jitter = np.zeros(number_of_uavs)
-        self.loss = np.full(number_of_uavs, settings.loss_min)
+        self._effective: list[float] = []
+        """Times at which the entries should take effect (s)."""
+        self._jitter = [0.0] * number_of_uavs
+        self.loss = [settings.loss_min] * number_of_uavs
         """Share of the set-points to each vehicle (N,) that is lost, ``loss_min`` or more."""
 
     def clear(self) -> None:
         """Discard the set-points, not the statistics of the links."""
-        self._entries = []
+        self._entries, self._effective = [], []
 
     def add(self, effective: float, u: Array | None, sent_at: Array | None = None) -> None:
         """Add set-points.
@@ -83,13 +96,15 @@ class SetpointHistory:
             u: tilts and thrusts (3 N,); None: the vehicles are held.
             sent_at: when they are sent to each vehicle (N,) (s); None: when they take effect.
         """
-        starts, confirmed = np.full(self._N, effective), np.zeros(self._N, dtype=bool)
-        entry = _Entry(effective, starts.copy() if sent_at is None else sent_at, u, u, starts, confirmed)
-        bisect.insort(self._entries, entry, key=attrgetter("effective"))
+        starts = [effective] * self._N
+        sent = starts.copy() if sent_at is None else sent_at.tolist()
+        at = self._at(effective) + 1
+        self._entries.insert(at, _Entry(effective, sent, u, u, starts, [False] * self._N))
+        self._effective.insert(at, effective)
 
     def switches(self, start: float, end: float) -> list[float]:
         """Return the times between ``start`` and ``end`` (s) at which other set-points should take effect."""
-        return [entry.effective for entry in self._entries if start < entry.effective < end]
+        return [effective for effective in self._effective if start < effective < end]
 
     def in_force(self, start: float, end: float) -> InForce:
         """Return the mean set-points in force between two such times (s)."""
@@ -97,18 +112,21 @@ class SetpointHistory:
         now = self._entries[at].flown if at >= 0 else None
         before = self._entries[at - 1].flown if at >= 1 else None
         if now is None or before is None:
-            return InForce(now, None, self.loss)
+            return InForce(now, None, np.array(self.loss))
         entry, s = self._entries[at], self._settings
         # Jitter of the time of effect leaves as much variance as a loss with that probability.
         period = max(entry.effective - self._entries[at - 1].effective, s.period_min)
-        unconfirmed = np.minimum(self.loss + (self._jitter / period) ** 2, 1.0)
-        previous = np.where(entry.confirmed, (s.punctuality / period) ** 2 / 3.0, unconfirmed)
-        return InForce(self._mean(at, start, end), now - before, previous)
+        punctual = (s.punctuality / period) ** 2 / 3.0
+        previous = [
+            punctual if confirmed else min(loss + (jitter / period) ** 2, 1.0)
+            for confirmed, loss, jitter in zip(entry.confirmed, self.loss, self._jitter, strict=True)
+        ]
+        return InForce(self._mean(at, start, end), now - before, np.array(previous))
 
     def _mean(self, at: int, start: float, end: float) -> Array | None:
         n = self._settings.neighbours
         near = self._entries[max(at - n, 0) : at + n + 1]
-        if all(entry.exact for entry in near) or any(entry.flown is None for entry in near):
+        if False not in [entry.exact for entry in near] or any(entry.flown is None for entry in near):
             return self._entries[at].flown
         flown = np.array([entry.flown for entry in near])
         # An unconfirmed one takes effect after the confirmed ones before it, and before the confirmed ones after it.
@@ -140,33 +158,23 @@ class SetpointHistory:
         """
         self._jitter[uav] = jitter
         s, entries, tolerance = self._settings, self._entries, self._settings.time_tolerance + jitter
-        north, east, thrust = which = [2 * uav, 2 * uav + 1, 2 * self._N + uav]
-        tilt_north, tilt_east, lift = reported.tolist()
-
-        def is_reported(entry: _Entry) -> bool:
-            u = entry.numbers
-            return (
-                len(u) > 0
-                and abs(u[thrust] - lift) < s.thrust_tolerance
-                and abs(u[north] - tilt_north) < s.tilt_tolerance
-                and abs(u[east] - tilt_east) < s.tilt_tolerance
-            )
-
+        which, values = [2 * uav, 2 * uav + 1, 2 * self._N + uav], reported.tolist()
         newest = self._at(until + tolerance)
         # Those that should be in force already; then those that would come earlier than they should.
-        candidates = (*range(newest, max(newest - s.losses_max, -1), -1), *range(newest + 1, len(entries)))
-        flown = next((k for k in candidates if is_reported(entries[k])), None)
-        if flown is None:
+        for flown in (*range(newest, max(newest - s.losses_max, -1), -1), *range(newest + 1, len(entries))):
+            if entries[flown].is_reported(which, values, s):
+                break
+        else:
             return None
         changed = math.inf
         overdue = [k for k in range(flown + 1, newest + 1) if entries[k].effective + tolerance < until]
         for k in overdue:
             changed = min(changed, self._set_lost(entries[k], uav, which, reported))
         first = flown
-        while first > 0 and is_reported(entries[first - 1]):
+        while first > 0 and entries[first - 1].is_reported(which, values, s):
             first -= 1
         delay = None
-        latency = since - float(entries[first].sent_at[uav])
+        latency = since - entries[first].sent_at[uav]
         if first and flown - first < s.losses_max and -s.punctuality <= latency <= latency_max:
             if first == flown and not entries[first].confirmed[uav]:
                 delay = max(latency, 0.0)
@@ -199,7 +207,7 @@ class SetpointHistory:
             entry.flown[which] = entry.sent[which]
             changed = entry.effective
         if abs(since - entry.starts[uav]) > self._settings.punctuality:
-            changed = min(changed, since, float(entry.starts[uav]))
+            changed = min(changed, since, entry.starts[uav])
             entry.starts[uav], entry.exact = since, False
         return changed
 
@@ -207,19 +215,20 @@ class SetpointHistory:
         """Expect the same delay of those that were sent later, where it is clearly longer than expected."""
         changed = math.inf
         for entry in later:
-            start = float(entry.sent_at[uav]) + delay
+            start = entry.sent_at[uav] + delay
             if not entry.confirmed[uav] and start > entry.starts[uav] + self._settings.time_tolerance:
-                changed = min(changed, float(entry.starts[uav]))
+                changed = min(changed, entry.starts[uav])
                 entry.starts[uav], entry.exact = start, False
         return changed
 
     def forget(self, before: float) -> None:
         """Discard what is no longer in force at ``before`` (s)."""
-        del self._entries[: max(self._at(before) - self._settings.neighbours, 0)]
+        old = max(self._at(before) - self._settings.neighbours, 0)
+        del self._entries[:old], self._effective[:old]
 
     def _at(self, time: float) -> int:
         """Return the index of the last entry that should be in force at ``time``; -1: none."""
-        return bisect.bisect_right(self._entries, time, key=attrgetter("effective")) - 1
+        return bisect.bisect_right(self._effective, time) - 1
 
     def _learn(self, uav: int, lost: float) -> None:
         share = self.loss[uav] + self._settings.loss_share * (lost - self.loss[uav])

@@ -100,34 +100,92 @@ def observed(
 
 
 @kernel(
-    "Tuple((float64[::1], float64[:, ::1], float64[:, ::1]))"
-    f"({_VECTOR}, {_MATRIX}, float64[::1], int64[:, ::1], float64[:, ::1])"
+    f"Tuple((float64[::1], float64[:, ::1]))({_VECTOR}, {_MATRIX}, float64[::1], int64[:, ::1], float64[:, ::1], "
+    "int64[::1], int64[::1])"
 )
-def predicted(x: Array, P: Array, y: Array, columns: Indices, coefficients: Array) -> tuple[Array, Array, Array]:
-    """Return the residual y - H x (m,), H P (m, n) and H P H' (m, m) for the sparse rows H.
+def predicted(
+    x: Array, P: Array, y: Array, columns: Indices, coefficients: Array, starts: Indices, sizes: Indices
+) -> tuple[Array, Array]:
+    """Return the residual y - H x (m,) of the sparse rows H, and H P H' (m, m) of each measurement by itself.
 
     Args:
         x: predicted error state (n,).
         P: its covariance (n, n).
         y: measured less reference (m,).
         columns, coefficients: elements of the rows that are not zero (m, W).
+        starts, sizes: first row and number of rows of each measurement (K,); between two of them, zeros are returned.
     """
-    m, n, W = len(y), len(x), columns.shape[1]
-    residual, cross, covariance = y.copy(), np.zeros((m, n)), np.empty((m, m))
+    m, W = columns.shape
+    residual, covariance = y.copy(), np.zeros((m, m))
+    for j in range(len(starts)):
+        for r in range(starts[j], starts[j] + sizes[j]):
+            for a in range(W):
+                weight, column = coefficients[r, a], columns[r, a]
+                if weight == 0.0:
+                    continue
+                residual[r] -= weight * x[column]
+                for o in range(starts[j], r + 1):
+                    for b in range(W):
+                        if coefficients[o, b] != 0.0:
+                            covariance[r, o] += weight * coefficients[o, b] * P[column, columns[o, b]]
+            for o in range(starts[j], r):
+                covariance[o, r] = covariance[r, o]
+    return residual, covariance
+
+
+@kernel(
+    f"Tuple((float64[::1], float64[:, ::1], float64))({_MATRIX}, float64[::1], int64[:, ::1], float64[:, ::1], "
+    "float64[::1], float64)"
+)
+def corrected(
+    P: Array, residual: Array, columns: Indices, coefficients: Array, variance: Array, cancelled: float
+) -> tuple[Array, Array, float]:
+    """Correct by the rows of independent noise one after the other, which equals the correction by all at once.
+
+    Each takes p p' / s from the covariance, with p = P h and s = h' P h + its variance: the squares of the diagonal of
+    the Cholesky factor of the innovation covariance are these s.
+
+    Args:
+        P: covariance before, symmetric (n, n).
+        residual: innovations (m,).
+        columns, coefficients: elements of the rows that are not zero (m, W).
+        variance: of the measurements (m,).
+        cancelled: share of a variance below which what is left of it is rounding.
+
+    Returns:
+        Correction of the state (n,), covariance after (n, n), symmetric to the digit, and the normalised innovation
+        squared: nan where a variance is cancelled or their covariance is not positive definite.
+    """
+    n, (m, W) = len(P), columns.shape
+    x, after, p = np.zeros(n), P.copy(), np.empty(n)
+    squared = 0.0
     for r in range(m):
+        left = residual[r]
+        p[:] = 0.0
         for a in range(W):
             weight, column = coefficients[r, a], columns[r, a]
             if weight != 0.0:
-                residual[r] -= weight * x[column]
+                left -= weight * x[column]
                 for c in range(n):
-                    cross[r, c] += weight * P[column, c]
-    for r in range(m):
-        for o in range(r + 1):
-            total = 0.0
-            for a in range(W):
-                total += coefficients[r, a] * cross[o, columns[r, a]]
-            covariance[r, o] = covariance[o, r] = total
-    return residual, cross, covariance
+                    p[c] += weight * after[column, c]
+        s = variance[r]
+        for a in range(W):
+            s += coefficients[r, a] * p[columns[r, a]]
+        if not s > 0.0:
+            return x, after, np.nan
+        normalised, scale = left / np.sqrt(s), 1.0 / np.sqrt(s)
+        squared += normalised * normalised
+        for c in range(n):
+            p[c] *= scale
+            x[c] += p[c] * normalised
+        for row in range(n):
+            share = p[row]
+            for c in range(n):
+                after[row, c] -= share * p[c]
+    for c in range(n):
+        if not after[c, c] >= cancelled * P[c, c]:
+            return x, after, np.nan
+    return x, after, squared
 
 
 @inlined

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.ndimage import label
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
@@ -20,7 +19,7 @@ from idc_controller.errors import TrajectoryError
 from idc_controller.geometry.formation import BoundingCylinder
 from idc_controller.geometry.free_space import FreeSpace, first_conflict
 from idc_controller.geometry.shape import Shape
-from idc_controller.guidance.detour_kernels import lattice_graph
+from idc_controller.guidance.detour_kernels import connected, lattice_graph
 from idc_controller.guidance.settings import DetourSettings
 from idc_controller.guidance.straighten import free_segments_from, straightened
 from idc_controller.trajectory.trajectory import point
@@ -171,6 +170,7 @@ class _Grid:
         needed = math.hypot(space.margin, edge / 2.0) - space.margin
         # A frame of nodes that are not free: no neighbour is ever outside.
         self._free = np.pad(space.free_lattice(axes[0], axes[1], axes[2], needed), 2)
+        self._strides = np.array([self._free.shape[1] * self._free.shape[2], self._free.shape[2], 1])
         self._axes = axes
 
     def path(self, leave_within: float) -> tuple[Array | None, str]:
@@ -182,11 +182,10 @@ class _Grid:
             return None, "there is no free space about the start"
         if len(goals) == 0:
             return None, "there is no free space about the goal"
-        parts, _ = label(self._free[2:-2:2, 2:-2:2, 2:-2:2], np.ones((3, 3, 3)))
-        part = parts[tuple(nodes.T)]
-        if not np.isin(part[goals], part[starts]).any():
+        flat, number = self._numbered(nodes)
+        reachable = connected(flat, number, _DIRECTIONS @ self._strides, starts)
+        if not reachable[goals].any():
             return None, "every path from start to goal is closed or too narrow for the formation"
-        reachable = np.isin(part, part[starts])
         to_goal = np.linalg.norm(places - self._goal, axis=1)
         from_start = np.linalg.norm(places - self._start, axis=1)
         straight = float(np.linalg.norm(self._goal - self._start))
@@ -210,6 +209,13 @@ class _Grid:
                 break
         return near
 
+    def _numbered(self, nodes: NDArray[np.intp]) -> tuple[NDArray[np.intp], NDArray[np.int32]]:
+        """Return the places of ``nodes`` (n, 3) in the flat array of the lattice (n,), and the node at each place."""
+        flat = (2 * nodes + 2) @ self._strides
+        number = np.full(self._free.size, -1, dtype=np.int32)
+        number[flat] = np.arange(len(nodes))
+        return flat, number
+
     def _search(
         self,
         nodes: NDArray[np.intp],
@@ -221,10 +227,7 @@ class _Grid:
     ) -> NDArray[np.intp] | None:
         """Indices of the nodes on the shortest path among the ``chosen`` ones; None: there is none."""
         count = len(chosen)
-        strides = np.array([self._free.shape[1] * self._free.shape[2], self._free.shape[2], 1])
-        flat, free = (2 * nodes[chosen] + 2) @ strides, self._free.ravel()
-        number = np.full(free.size, -1, dtype=np.int32)
-        number[flat] = np.arange(count)
+        flat, number = self._numbered(nodes[chosen])
         # Each edge costs its length less what it gains on the goal: Dijkstra then searches as A* does, and what
         # it counts is how much longer than straight the path is.
         to_goal = np.linalg.norm(places[chosen] - self._goal, axis=1)
@@ -237,7 +240,9 @@ class _Grid:
         is_last = np.zeros(count, dtype=bool)
         is_last[last] = True
         graph = csr_array(
-            lattice_graph(flat, number, free, _DIRECTIONS @ strides, lengths, to_goal, first, out, is_last),
+            lattice_graph(
+                flat, number, self._free.ravel(), _DIRECTIONS @ self._strides, lengths, to_goal, first, out, is_last
+            ),
             shape=(count + 2, count + 2),
         )
         limit = longer + 1e-3

@@ -9,6 +9,30 @@ from idc_controller.compiled import kernel
 _TIE = 1e-9  # m, so that no edge is without cost
 
 
+@kernel("boolean[::1](int64[::1], int32[::1], int64[::1], int64[::1])")
+def connected(flat: Indices, number: NDArray[np.int32], steps: Indices, starts: Indices) -> Mask:
+    """Return which nodes some of ``starts`` lead to by way of neighbours, whether or not there are edges (n,).
+
+    ``flat``, ``number``, ``steps``: as of :func:`lattice_graph`.
+    """
+    found = np.zeros(len(flat), dtype=np.bool_)
+    waiting = np.empty(len(flat), dtype=np.int64)
+    count = 0
+    for start in starts:
+        if not found[start]:
+            found[start], waiting[count] = True, start
+            count += 1
+    while count:
+        count -= 1
+        place = flat[waiting[count]]
+        for step in steps:
+            node = number[place + 2 * step]
+            if node >= 0 and not found[node]:
+                found[node], waiting[count] = True, node
+                count += 1
+    return found
+
+
 @kernel(
     "Tuple((float64[::1], int32[::1], int32[::1]))(int64[::1], int32[::1], boolean[::1], int64[::1], float64[::1],"
     " float64[::1], int64[::1], float64[::1], boolean[::1])"

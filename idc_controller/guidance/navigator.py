@@ -16,7 +16,6 @@ from idc_controller.geometry.free_space import TOUCHING, FreeSpace
 from idc_controller.geometry.obstacles import ObstacleSource, PredictedObstacle
 from idc_controller.geometry.shape import Shape
 from idc_controller.guidance.detour import find_detour
-from idc_controller.guidance.narrowest_gap import narrowest_gap
 from idc_controller.guidance.settings import NavigatorSettings
 from idc_controller.parameters import SystemParameters
 from idc_controller.trajectory.flatness import PayloadTrajectory
@@ -208,6 +207,9 @@ class Navigator:
         highest: float,
     ) -> str:
         """Return the narrowest gap from ``position`` to ``goal`` in words, by estimates, else as the search sees it."""
+        # Imports shapely, which takes long and is spent only where there is no path.
+        from idc_controller.guidance.narrowest_gap import narrowest_gap
+
         keep = self.settings.margin + self.settings.spare
         for more in (None, growth):
             gap = narrowest_gap(

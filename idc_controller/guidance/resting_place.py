@@ -79,10 +79,10 @@ class RestingPlace:
         """Return how far (m) from where it is now an obstacle can be that matters, for the slowest stop."""
         s = self.settings
         duration = self._choices.largest_share * usual_duration
-        _, speed, acceleration = np.linalg.norm(state, axis=1).tolist()
+        speed, acceleration = math.sqrt(state[1] @ state[1]), math.sqrt(state[2] @ state[2])
         # The control points of a path hold it.
         length = duration / 2.0 * speed + duration**2 / 12.0 * acceleration + max(s.aside, default=0.0)
-        return float(length + self._radius + s.clearance + s.growth_max + _ROUNDING)
+        return length + self._radius + s.clearance + s.growth_max + _ROUNDING
 
     def _clearances(self, near: _Near, state: Array, usual_duration: float, which: Indices) -> Array:
         """Return the least distance (m) of the formation's upright hull on its path to rest, and down from there.

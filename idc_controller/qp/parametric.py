@@ -1,4 +1,4 @@
-"""A family of quadratic programs with one H and G and many g and h, some rows softly."""
+"""A family of quadratic programs with one H and G, whose g and h follow from few parameters; some rows softly."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,13 +10,13 @@ from idc_controller.qp.proxqp_solver import ProxqpSolver
 
 
 class ParametricQp:
-    """min 1/2 x' P x + g' x  subject to  G x <= h, some rows softly.
+    """min 1/2 x' P x + (K p)' x  subject to  G x + E p <= h, some rows softly, for many parameters p (q,) and h (m,).
 
     Rows of ``G`` (m, n) with ``slack_of_row`` (m,) >= 0 may be exceeded by the slack of that number, at a linear
     and a quadratic cost; -1 marks a hard row. The linear cost is exact: a slack is zero whenever the rows can be kept.
 
-    The unconstrained optimum is one matrix-vector product and is the answer whenever it keeps all rows, so it is
-    checked first; the solver is called only when it does not.
+    The unconstrained optimum and what it makes of the rows are one product each with p. It is the answer whenever it
+    keeps all rows, so it is checked first; the solver is called only when it does not.
     """
 
     def __init__(
@@ -27,12 +27,18 @@ class ParametricQp:
         *,
         slack_linear: float,
         slack_quadratic: float,
+        gradient: Array | None = None,
+        response: Array | None = None,
         solver: QpSolver | None = None,
     ) -> None:
+        """``gradient``: K (n, q), and ``response``: E (m, q); None: p is the gradient itself."""
         self.P, self.G, self.slack_of_row = P, G, slack_of_row
         self.solver = solver or ProxqpSolver()
-        self._optimum = -np.linalg.inv(P)
         n, m = len(P), len(G)
+        self._gradient = np.eye(n) if gradient is None else gradient
+        self._response = np.zeros((m, n)) if response is None else response
+        self._optimum = -np.linalg.inv(P) @ self._gradient
+        self._rows_at_optimum = G @ self._optimum + self._response
         slacks = int(slack_of_row.max()) + 1 if m else 0
         columns = np.zeros((m, slacks))
         soft = slack_of_row >= 0
@@ -42,27 +48,26 @@ class ParametricQp:
         self._slack_gradient = np.full(slacks, slack_linear)
         self._slack_bound = np.zeros(slacks)
 
-    def unconstrained(self, g: Array) -> Array:
-        """Return the optimum (n,) without constraints for gradient ``g`` (n,)."""
-        return self._optimum @ g
+    def unconstrained(self, p: Array) -> Array:
+        """Return the optimum (n,) without constraints for parameters ``p`` (q,)."""
+        return self._optimum @ p
 
-    def problem(self, g: Array, h: Array) -> QuadraticProgram:
-        """Return the program with its slacks as variables, for gradient ``g`` (n,) and bounds ``h`` (m,)."""
+    def problem(self, p: Array, h: Array) -> QuadraticProgram:
+        """Return the program with its slacks as variables, for parameters ``p`` (q,) and bounds ``h`` (m,)."""
         return QuadraticProgram(
             self._hessian,
-            np.concatenate([g, self._slack_gradient]),
+            np.concatenate([self._gradient @ p, self._slack_gradient]),
             self._rows,
-            np.concatenate([h, self._slack_bound]),
+            np.concatenate([h - self._response @ p, self._slack_bound]),
         )
 
-    def solve(self, g: Array, h: Array) -> QpSolution:
-        """Return the minimiser, without slacks, for gradient ``g`` (n,) and bounds ``h`` (m,).
+    def solve(self, p: Array, h: Array) -> QpSolution:
+        """Return the minimiser, without slacks, for parameters ``p`` (q,) and bounds ``h`` (m,).
 
         Raises:
             SolverError: the hard rows cannot be kept, or the solver does not converge.
         """
-        free = self.unconstrained(g)
-        if np.all(self.G @ free <= h):
-            return QpSolution(free, 0)
-        solution = self.solver.solve(self.problem(g, h))
-        return QpSolution(solution.x[: len(g)].copy(), solution.iterations)
+        if (self._rows_at_optimum @ p <= h).all():
+            return QpSolution(self.unconstrained(p), 0)
+        solution = self.solver.solve(self.problem(p, h))
+        return QpSolution(solution.x[: len(self.P)].copy(), solution.iterations)

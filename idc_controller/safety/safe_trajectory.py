@@ -8,6 +8,7 @@ import numpy as np
 from idc_controller.arrays import Array
 from idc_controller.trajectory.integrator_chain import Chain
 from idc_controller.trajectory.scaled import ScaledReference
+from idc_controller.trajectory.trajectory import Times, Trajectory
 from idc_controller.trajectory.trajectory_kernels import deflect, progress
 
 
@@ -30,24 +31,28 @@ class SafeTrajectory:
 
     def __init__(self, pieces: Sequence[Piece], chain: Chain) -> None:
         self._chain = chain
-        references = [piece.reference for piece in pieces]
-        self._scalings = np.array([(r.start, r.progress, r.rate) for r in references], dtype=float)
         # Pieces that follow the same trajectory are evaluated together.
-        self._trajectories = list({id(r.trajectory): r.trajectory for r in references}.values())
-        numbers = {id(trajectory): number for number, trajectory in enumerate(self._trajectories)}
-        self._followed = np.array([numbers[id(r.trajectory)] for r in references])
-        deviations = [piece.deviation for piece in pieces if piece.deviation is not None]
-        deflected = np.array([piece.deviation is not None for piece in pieces])
-        self._rows = np.where(deflected, (chain.stages + 1) * (np.cumsum(deflected) - 1), -1)
+        numbers: dict[Trajectory, int] = {}
+        scalings, followed, rows = [], [], []
+        deviations: list[Array] = []
+        for piece in pieces:
+            reference = piece.reference
+            scalings.append((reference.start, reference.progress, reference.rate))
+            followed.append(numbers.setdefault(reference.trajectory, len(numbers)))
+            rows.append(-1 if piece.deviation is None else (chain.stages + 1) * len(deviations))
+            if piece.deviation is not None:
+                deviations.append(piece.deviation)
+        self._scalings, self._rows, self._followed = np.array(scalings, dtype=float), np.array(rows), np.array(followed)
+        self._trajectories = list(numbers)
         self._states = np.concatenate(deviations) if deviations else np.zeros((0, 5, 3))
-        self._is_changed = bool(deviations) or any(r.rate != 1.0 for r in references)
+        self._is_changed = bool(deviations) or any(rate != 1.0 for _, _, rate in scalings)
 
     def derivatives(self, times: Array, order: int = 4) -> Array:
         """Return position to the derivative ``order`` (order + 1, K, 3), NED, SI, at ``times`` (K,) (s)."""
         times = np.ascontiguousarray(times, dtype=float)
-        which, along = progress(self._scalings, times)
-        if len(self._trajectories) == 1:
-            result = self._trajectories[0].derivatives(along, order)
+        which, along, *span = progress(self._scalings, times)
+        if len(self._trajectories) == 1 and len(times):
+            result = self._trajectories[0].evaluate(Times(along, *span).checked(), order)
         else:
             result = np.empty((order + 1, len(times), 3))
             followed = self._followed[which]

@@ -62,4 +62,4 @@ class BrakingSettings(SettingsTable):
 
     def usual_duration(self, velocity: Array) -> float:
         """Return the time from a ``velocity`` (3,) (m/s) to rest (s)."""
-        return max(self.time, 1.5 * float(np.linalg.norm(velocity)) / self.deceleration)
+        return max(self.time, 1.5 * math.sqrt(velocity @ velocity) / self.deceleration)

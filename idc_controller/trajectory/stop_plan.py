@@ -10,6 +10,7 @@ that no UAV is biased towards a place that the payload was meant to have.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -21,6 +22,8 @@ from idc_controller.parameters import SystemParameters
 from idc_controller.trajectory.flatness import FlatReference
 from idc_controller.trajectory.settings import BrakingSettings
 from idc_controller.trajectory.stop_plan_kernels import control_points, motion
+
+_layout = cache(StateLayout)
 
 
 class Braking(NamedTuple):
@@ -68,7 +71,7 @@ def stop_plan(
     ``x`` (12 + 11 N,) is the state then; None: that of the reference. ``choose`` says how to brake, by the time and
     position, velocity and acceleration (3, 3) of a payload that hangs at rest below the UAVs.
     """
-    layout, links = StateLayout(parameters.number_of_uavs), flat.links
+    layout, links = _layout(parameters.number_of_uavs), flat.links
     error = np.zeros(layout.size) if x is None or not np.isfinite(x).all() else x - flat.x[0]
     motions = motion(
         flat.payload[:3, 0], error,

@@ -23,6 +23,12 @@ class Times(NamedTuple):
     earliest: float
     latest: float
 
+    def checked(self) -> Times:
+        """Return it; raises TrajectoryError unless all times are finite."""
+        if not math.isfinite(self.latest):
+            raise TrajectoryError("times must be a list of finite numbers")
+        return self
+
 
 class Trajectory(ABC):
     """A path of the payload in time: four times continuously differentiable, NED, SI.
@@ -59,10 +65,7 @@ class Trajectory(ABC):
             raise TrajectoryError(f"derivatives exist for order 0 to 4, not {order}")
         if not len(array):
             return np.zeros((order + 1, 0, 3))
-        earliest, latest = span(array)
-        if not math.isfinite(latest):
-            raise TrajectoryError("times must be a list of finite numbers")
-        return self.evaluate(Times(array, earliest, latest), order)
+        return self.evaluate(Times(array, *span(array)).checked(), order)
 
     @abstractmethod
     def evaluate(self, times: Times, order: int) -> Array:
@@ -126,18 +129,19 @@ class SequenceTrajectory(Trajectory):
     @property
     def end(self) -> float:
         """End of the second trajectory, s; ``inf`` while the first one's end is not known."""
-        if math.isinf(self._end) and math.isfinite(self._first.end):
+        if self._end == math.inf and self._first.end < math.inf:
             self._end = self._next().end
         return self._end
 
     def evaluate(self, times: Times, order: int) -> Array:
         """See ``Trajectory.evaluate``."""
-        if times.earliest > self._first.end:
+        first = self._first
+        if times.earliest > first.end:
             return self._next().evaluate(times, order)
         # Evaluated first: a lazy trajectory learns of its end while it looks ahead, and rests beyond it.
-        result = self._first.evaluate(times, order)
-        if times.latest > self._first.end:
-            later = times.values > self._first.end
+        result = first.evaluate(times, order)
+        if times.latest > first.end:
+            later = times.values > first.end
             result[:, later] = self._next().derivatives(times.values[later], order)
         return result
 

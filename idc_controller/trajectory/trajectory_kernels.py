@@ -12,15 +12,20 @@ _SUPPORT = 6
 """Control points that act at one time: :data:`idc_controller.trajectory.spline.SUPPORT`."""
 
 
-@kernel("UniTuple(float64, 2)(float64[::1])")
-def span(times: Array) -> tuple[float, float]:
-    """Return the earliest and the latest of ``times`` (K,) (s); NaN twice if one of them is not finite."""
+@inlined
+def _span(times: Array) -> tuple[float, float]:
     earliest, latest = math.inf, -math.inf
     for time in times:
         if not math.isfinite(time):
             return math.nan, math.nan
         earliest, latest = min(earliest, time), max(latest, time)
     return earliest, latest
+
+
+@kernel("UniTuple(float64, 2)(float64[::1])")
+def span(times: Array) -> tuple[float, float]:
+    """Return the earliest and the latest of ``times`` (K,) (s); NaN twice if one of them is not finite."""
+    return _span(times)
 
 
 @kernel("float64[:, :, ::1](float64[:, ::1], float64[:, :, ::1], float64[::1], int64)")
@@ -201,9 +206,9 @@ def chain(states: Array, period: float, elapsed: Array) -> Array:
     return result
 
 
-@kernel("Tuple((int64[::1], float64[::1]))(float64[:, ::1], float64[::1])")
-def progress(scalings: Array, times: Array) -> tuple[NDArray[np.int64], Array]:
-    """Return the piece in force (M,) and the progress of its reference (M,) (s).
+@kernel("Tuple((int64[::1], float64[::1], float64, float64))(float64[:, ::1], float64[::1])")
+def progress(scalings: Array, times: Array) -> tuple[NDArray[np.int64], Array, float, float]:
+    """Return the piece in force (M,), the progress of its reference (M,) (s), and the span of that; see ``span``.
 
     Args:
         scalings: start (s), progress at the start (s) and rate of the pieces, each in force until the next (P, 3).
@@ -218,7 +223,8 @@ def progress(scalings: Array, times: Array) -> tuple[NDArray[np.int64], Array]:
                 break
         which[i] = piece
         result[i] = scalings[piece, 1] + scalings[piece, 2] * (time - scalings[piece, 0])
-    return which, result
+    earliest, latest = _span(result)
+    return which, result, earliest, latest
 
 
 @kernel(

@@ -5,7 +5,7 @@
 CPU time from take-off to the end of the flight, per simulated second; apart from it that of starting up both programs,
 imports included, and of the summary (`start_and_end_s`). The compute times
 of the control steps are CPU times here, so that other work on the machine does not count. The tree that is measured is
-that of PYTHONPATH; of it, only `prepare` and `fly` of `gcs.app.fly` are used.
+that of PYTHONPATH; of it, only what `gcs fly` prepares and flies a mission with is used.
 """
 
 import argparse
@@ -82,12 +82,21 @@ def main():
     parser.add_argument("--memory", action="store_true", help="sample the memory of both processes")
     options = parser.parse_args()
     time.perf_counter = time.thread_time
-    from gcs.app.fly import FlyOptions, fly, prepare
+    try:  # as the command does
+        from gcs.app.fly_options import FlyOptions, prepare
+        from gcs.app.imports import importing
+    except ImportError:  # in trees before these modules
+        from gcs.app.fly import FlyOptions, prepare
+
+        importing = contextlib.nullcontext
 
     meter = Meter(options.memory)
     with tempfile.TemporaryDirectory() as folder:
         flown = FlyOptions(options.mission, vehicles=options.vehicles, seed=1, run_dir=Path(folder) / "run")
-        result = fly(flown, prepare(flown), meter)
+        mission = prepare(flown)
+        with importing():
+            from gcs.app.fly import fly
+        result = fly(flown, mission, meter)
     if not result.summary["completed"]:
         sys.exit(f"{options.mission}: {result.summary['outcome']}: {result.reason}")
     print(

@@ -66,10 +66,11 @@ class Recorded:
             self.planner.append(problem)
             return solve(problem)
 
-        def kept_mpc(g, h):
-            if not np.all(mpc.qp.G @ mpc.qp.unconstrained(g) <= h):
-                self.mpc.append((g.copy(), h.copy()))
-            return track(g, h)
+        def kept_mpc(p, h):
+            solution = track(p, h)
+            if solution.iterations:
+                self.mpc.append((p.copy(), h.copy()))
+            return solution
 
         def timed(*arguments):
             begin = time.process_time()

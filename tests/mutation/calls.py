@@ -8,7 +8,7 @@ import json
 import os
 import sys
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Set
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -96,21 +96,24 @@ class CallMap:
         """Return the test files that may notice the mutant, those first of which most tests call the function.
 
         What is no function (a constant, a default), what is compiled (a kernel) and what is newer than the map may be
-        noticed by whoever calls the module or one that imports it.
+        noticed by whoever calls the module or one that imports it, and by tests that import one of these: calls of
+        kernels are not seen.
         """
         if mutant.function and not mutant.path.endswith("kernels.py"):
             found = self._calling(lambda path, name: path == mutant.path and _encloses(name, mutant.function))
             if found:
                 return found
         modules = users(mutant.path, importers)
-        return self._calling(lambda path, name: path in modules)
+        return self._calling(lambda path, name: path in modules, importing=modules)
 
-    def _calling(self, is_called: Callable[[str, str], bool]) -> list[TestFile]:
+    def _calling(self, is_called: Callable[[str, str], bool], importing: Set[str] = frozenset()) -> list[TestFile]:
+        """Return the files with tests that call what ``is_called`` says, and those ``importing``."""
         found = []
         for name, entry in self.tests.items():
             callers, others = [], []
             for test, (cost, calls) in entry["tests"].items():
-                (callers if any(is_called(*call) for call in calls) else others).append((cost, test))
+                is_caller = name in importing or any(is_called(*call) for call in calls)
+                (callers if is_caller else others).append((cost, test))
             if callers:
                 # The others run last: a fixture that they share with the callers may have been recorded as a caller's.
                 tests = [*sorted(callers), *sorted(others)]
@@ -127,7 +130,7 @@ def _encloses(function: str, scope: str) -> bool:
 def import_graph(root: Path) -> dict[str, set[str]]:
     """Return, per module's path, the paths of the modules that import it."""
     importers: dict[str, set[str]] = defaultdict(set)
-    for package in PACKAGES:
+    for package in (*PACKAGES, "tests"):
         for path in root.glob(f"{package}/**/*.py"):
             for node in ast.walk(ast.parse(path.read_text())):
                 if isinstance(node, ast.ImportFrom) and (node.module or "").startswith(PACKAGES):

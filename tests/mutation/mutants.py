@@ -48,7 +48,7 @@ NOT_FLOWN = (
     "vehicle_sim/world/display.py",
 )  # fmt: skip
 CALL_MAP = ROOT / ".pytest_cache" / "mutants" / "calls.json"
-COPIED = (*PACKAGES, "tests", "missions", "docs", "README.md", "CONTRIBUTING.md", "CHANGELOG.md", "Makefile",
+COPIED = (*PACKAGES, "tests", "missions", "docs", "README.md", "CONTRIBUTING.md", "CHANGELOG.md", "NOTICE", "Makefile",
           "pyproject.toml", "constraints.txt")  # fmt: skip
 WANTED = 0.85
 FIRST_FILES = 3  # run before the others are collected

@@ -17,7 +17,7 @@ OTHER_FUNCTION = {
     "min": "max", "max": "min", "any": "all", "all": "any", "sin": "cos", "cos": "sin", "minimum": "maximum",
     "maximum": "minimum", "argmin": "argmax", "argmax": "argmin", "floor": "ceil", "ceil": "floor",
 }  # fmt: skip
-SYMMETRIC = {"min", "max", "minimum", "maximum", "hypot"}
+SYMMETRIC = {"min", "max", "minimum", "maximum", "hypot", "dist", "array_equal"}
 NOT_BEHAVIOUR = {"info", "warning", "debug", "getLogger", "TypeVar", "NewType"}  # text for people, and types
 
 
@@ -133,6 +133,8 @@ class _Places(ast.NodeVisitor):
         self.visit(node.value)
 
     def visit_test(self, node: ast.If | ast.While | ast.IfExp) -> None:
+        if isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING":
+            return  # imports for types alone
         if not isinstance(node.test, ast.Compare | ast.UnaryOp):  # these have mutants of their own
             self.add(node.test, "condition negated", f"(not ({self.source(node.test)}))")
         self.generic_visit(node)
@@ -186,6 +188,10 @@ class _Places(ast.NodeVisitor):
             parts = (self.raw[begin:a], self.raw[c:d], self.raw[b:c], self.raw[a:b], self.raw[d:end])
             self.add(node, "arguments swapped", b"".join(parts).decode())
         self.generic_visit(node)
+
+    def visit_keyword(self, node: ast.keyword) -> None:
+        if node.arg != "strict":  # zip's own assertion
+            self.generic_visit(node)
 
     def visit_Slice(self, node: ast.Slice) -> None:
         if node.lower is None and node.upper is not None:

@@ -2,6 +2,7 @@
 
 import sys
 
+from gcs.app.imports import importing
 from gcs.app.logs import logging_to
 from gcs.errors import GcsError
 from idc_controller.errors import IdcError
@@ -18,7 +19,7 @@ def main(argv: list[str] | None = None) -> int:
     arguments = sys.argv[1:] if argv is None else argv
     try:
         options = parse(arguments)
-        with greeting_of_engine_dropped():
+        with importing(), greeting_of_engine_dropped():
             from vehicle_sim.app.launch import launch
         with logging_to(options):
             return launch(options, arguments)

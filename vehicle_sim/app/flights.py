@@ -5,28 +5,27 @@ fork, in that folder, and then prints ``exit status N``. Ends with its standard 
 """
 
 import contextlib
-import gc
 import json
 import os
 import sys
 
-import gcs.app.cli
-import gcs.app.fly
-import gcs.app.progress
-import gcs.record.summary_table  # noqa: F401
-from gcs.drivers.forked_program import FORK, run_program
-from gcs.record.run_folder import versions
+from gcs.app.imports import importing
 from vehicle_sim.world.engine_messages import greeting_of_engine_dropped
 
-with greeting_of_engine_dropped():
+with importing(), greeting_of_engine_dropped():
+    import gcs.app.cli
+    import gcs.app.fly
+    import gcs.app.progress
+    import gcs.record.summary_table  # noqa: F401
     import vehicle_sim.app.cli
     import vehicle_sim.app.launch  # noqa: F401
+    from gcs.drivers.forked_program import FORK, run_program
+    from gcs.record.run_folder import versions
 
 
 def main() -> None:
     """Fly until the end of standard input."""
     versions()  # kept for the manifests
-    gc.freeze()  # collections in the flights leave alone what they share
     stream = os.dup(sys.stdin.fileno())
     for line in sys.stdin:
         folder, *arguments = json.loads(line)

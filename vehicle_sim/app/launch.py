@@ -2,7 +2,6 @@
 
 import contextlib
 import dataclasses
-import gc
 import os
 import sys
 from argparse import Namespace
@@ -83,9 +82,6 @@ def _run(options: Namespace, arguments: list[str], started: contextlib.ExitStack
     except BrokenPipeError:  # the process that started this has ended already
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
-    # What is there now stays: collections of garbage pass it over.
-    gc.freeze()
-    started.callback(gc.unfreeze)
     driver.run()
     return ending.status
 

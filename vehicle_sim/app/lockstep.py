@@ -1,6 +1,5 @@
 """Lockstep: the swarm and one ground station share a virtual clock; see :mod:`gcs.mavlink.lockstep`."""
 
-import contextlib
 import time
 from collections.abc import Iterator
 
@@ -88,8 +87,7 @@ class LockstepDriver:
             self._send()
             # Serial 0 is the ground's join request.
             self._serial = self._serial % 0xFFFFFFFF + 1
-            with contextlib.suppress(OSError):
-                self._clock.sendto(Tick(self._serial, self._time_us).encode(), ground)
+            self._tick(ground)
             done = self._answer(ground)
             self._receive()
             if done is None or done.leaving:
@@ -103,18 +101,24 @@ class LockstepDriver:
                 ticks_at_this_time = 0
                 self._time_us = next_us
 
+    def _tick(self, ground: Address) -> None:
+        """Send the time to ``ground``. A tick that cannot be sent has no answer."""
+        try:
+            self._clock.sendto(Tick(self._serial, self._time_us).encode(), ground)
+        except OSError:
+            return
+
     def _answer(self, ground: Address) -> Done | None:
         """Return the ground's answer to the last tick; None when there is none in time, or the end comes."""
         ending = self._ending
         deadline = time.monotonic() + self._answer_time
-        while not ending.requested and not ending.parent_gone:
+        left = self._answer_time
+        while left > 0.0 and not ending.requested and not ending.parent_gone:
+            ending.wait([self._clock], left)
             for done in self._from_ground(ground):
                 if done.serial == self._serial or done.leaving:
                     return done
             left = deadline - time.monotonic()
-            if left <= 0.0:
-                return None
-            ending.wait([self._clock], left)
         return None
 
     def _let_land(self) -> None:

@@ -1,6 +1,7 @@
 """The UDP sockets of a swarm: one for each vehicle, and in lockstep one for the clock."""
 
 import contextlib
+import select
 import socket
 from collections.abc import Iterator
 from typing import Self
@@ -26,16 +27,24 @@ class SwarmSockets:
             self.clock = opened.enter_context(_bound(host, base_port and base_port - 1)) if with_clock else None
             self.vehicles = [opened.enter_context(_bound(host, base_port and base_port + i)) for i in range(vehicles)]
             self._opened = opened.pop_all()
+        self._poll = select.poll()
+        self._vehicle_at = {endpoint.fileno(): i for i, endpoint in enumerate(self.vehicles, start=1)}
+        for number in self._vehicle_at:
+            self._poll.register(number, select.POLLIN)
 
     def send(self, vehicle: int, datagram: bytes, address: Address) -> None:
         """Send from the endpoint of a vehicle (its system id). What cannot be sent is lost, as may be over UDP."""
-        with contextlib.suppress(OSError):
+        try:
             self.vehicles[vehicle - 1].sendto(datagram, address)
+        except OSError:
+            return
 
     def received(self) -> Iterator[tuple[int, bytes, Address]]:
         """Yield all that has arrived: the vehicle's system id, bytes, sender; vehicle by vehicle, each in order."""
-        for vehicle, endpoint in enumerate(self.vehicles, start=1):
-            for datagram, sender in arrived(endpoint):
+        # In the order in which they were registered, which is the vehicles'.
+        for number, _ in self._poll.poll(0):
+            vehicle = self._vehicle_at[number]
+            for datagram, sender in arrived(self.vehicles[vehicle - 1]):
                 yield vehicle, datagram, sender
 
     def close(self) -> None:

@@ -27,6 +27,8 @@ class Navigation:
         self._row, self._stamps = arrays.estimates[0], arrays.stamps[0]
         self._usable_at = self._updated_at = -math.inf
         self._known: Measurement | None = None
+        self._fresh: tuple[float, Measurement | None] = -math.inf, None
+        """The last fresh sample that was read from the row, and when it came."""
         self._raw: Measurement | None = None
         self._repeated = {"attitude": 0, "rates": 0}
         self._observed: tuple[Quaternion, Vector, Vector] | None = None  # attitude, rates, their derivative
@@ -35,9 +37,12 @@ class Navigation:
     @property
     def estimate(self) -> Measurement | None:
         """The state to fly by; None before the first usable sample."""
-        if self._is_fresh:
-            return Measurement.of_row(self._stamps.item(SAMPLE_TIME), self._row.tolist())
-        return self._known
+        if not self._is_fresh:
+            return self._known
+        fresh_at = self._stamps.item(FRESH_AT)
+        if fresh_at != self._fresh[0]:
+            self._fresh = fresh_at, Measurement.of_row(self._stamps.item(SAMPLE_TIME), self._row.tolist())
+        return self._fresh[1]
 
     @property
     def has_estimate(self) -> bool:

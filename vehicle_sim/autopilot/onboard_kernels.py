@@ -35,6 +35,9 @@ LANDING_COLUMNS = 8
 SAMPLE_TIME, FRESH_AT = 0, 1
 STAMP_COLUMNS = 2
 
+# How far a step has come: samples taken and not all fresh, landings detected and not all idle, rotor speeds commanded.
+SAMPLED, DETECTED, COMMANDED = 0, 1, 2
+
 _FAR = 1e6
 
 _half_rotation = inlined(rotations_float.half_rotation)
@@ -211,3 +214,41 @@ def detect_landings(
         if now - found[LIGHT_SINCE] >= d[TIME]:
             landed(found)
             idle_until[i] = -math.inf
+
+
+@kernel(
+    "int64(float64[:, ::1], float64[::1], float64, float64[:, ::1], float64[:, ::1], float64[:, ::1], boolean[::1],"
+    " float64[:, ::1], float64[:, ::1], boolean[::1], float64[:, ::1], float64[::1],"
+    " float64[:, ::1], float64[:, ::1], float64[:, ::1])"
+)
+def step_while_idle(
+    samples: Array,
+    times: Array,
+    now: float,
+    last: Array,
+    estimates: Array,
+    stamps: Array,
+    fresh: Mask,
+    detectors: Array,
+    targets: Array,
+    learns: Mask,
+    landings: Array,
+    idle_until: Array,
+    airframes: Array,
+    accelerations: Array,
+    speeds: Array,
+) -> int:
+    """Take a step as far as no vehicle has to decide, and return how far that is: a stage above.
+
+    It is :func:`take_fresh_samples`, :func:`detect_landings` and :func:`control_attitudes`, whose arguments these are.
+    """
+    take_fresh_samples(samples, times, now, last, estimates, stamps, fresh)
+    for i in range(fresh.shape[0]):
+        if not fresh[i]:
+            return SAMPLED
+    detect_landings(detectors, estimates, targets, learns, now, landings, idle_until)
+    for i in range(idle_until.shape[0]):
+        if idle_until[i] <= now:
+            return DETECTED
+    control_attitudes(airframes, estimates, targets, accelerations, speeds)
+    return COMMANDED

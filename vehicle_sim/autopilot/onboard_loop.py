@@ -5,7 +5,13 @@ from typing import Protocol
 
 from idc_controller.arrays import Array
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
-from vehicle_sim.autopilot.onboard_kernels import control_attitudes, detect_landings, take_fresh_samples
+from vehicle_sim.autopilot.onboard_kernels import (
+    COMMANDED,
+    SAMPLED,
+    control_attitudes,
+    detect_landings,
+    step_while_idle,
+)
 from vehicle_sim.world.sensors import Measurement
 
 
@@ -38,13 +44,20 @@ def step_together(
     """
     for i in missing:
         samples[i] = arrays.last_samples[i]
-    take_fresh_samples(samples, times, now, arrays.last_samples, arrays.estimates, arrays.stamps, arrays.fresh)
-    for i, fresh in enumerate(arrays.fresh.tolist()):
-        if not fresh and i not in missing:
-            autopilots[i].sense(Measurement.of_row(float(times[i]), samples[i].tolist()), now)
-    detect_landings(
-        arrays.detectors, arrays.estimates, arrays.targets, arrays.learns, now, arrays.landings, arrays.idle_until
-    )
+    stage = step_while_idle(
+        samples, times, now, arrays.last_samples, arrays.estimates, arrays.stamps, arrays.fresh,
+        arrays.detectors, arrays.targets, arrays.learns, arrays.landings, arrays.idle_until,
+        arrays.airframes, arrays.accelerations, arrays.speeds,
+    )  # fmt: skip
+    if stage == COMMANDED:
+        return []
+    if stage == SAMPLED:
+        for i, fresh in enumerate(arrays.fresh.tolist()):
+            if not fresh and i not in missing:
+                autopilots[i].sense(Measurement.of_row(float(times[i]), samples[i].tolist()), now)
+        detect_landings(
+            arrays.detectors, arrays.estimates, arrays.targets, arrays.learns, now, arrays.landings, arrays.idle_until
+        )
     changed = [
         i for i, idle_until in enumerate(arrays.idle_until.tolist()) if idle_until <= now and autopilots[i].decide(now)
     ]

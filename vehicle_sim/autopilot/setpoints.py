@@ -22,6 +22,9 @@ _KNOWN_BITS = sum(_IGNORE_RATE) | _IGNORE_THRUST | _IGNORE_ATTITUDE
 THRUST_TOLERANCE = 1e-4
 
 STOP_POINTS = 5  # control points of a quartic
+# Where the fields of a plan are, five numbers each behind the stamp; of duration and yaw the first counts.
+_X, _Y, _Z = (slice(1 + k * STOP_POINTS, 1 + (k + 1) * STOP_POINTS) for k in range(3))
+_DURATION, _YAW = 1 + 3 * STOP_POINTS, 1 + 4 * STOP_POINTS
 
 
 class SetpointError(SimulationError):
@@ -98,11 +101,11 @@ def read_stop_plan(fields: tuple[Any, ...], limits: SetpointSettings) -> StopPla
     time_usec, valid_points = fields[0], fields[-1]
     if valid_points != STOP_POINTS:
         raise SetpointError(f"a stop plan has {STOP_POINTS} control points, not {valid_points}")
-    x, y, z, durations, yaws = (fields[1 + k * STOP_POINTS : 1 + (k + 1) * STOP_POINTS] for k in range(5))
+    x, y, z = fields[_X], fields[_Y], fields[_Z]
     if not math.isfinite(sum(x) + sum(y) + sum(z)):
         raise SetpointError("a control point is not finite")
     points = tuple(zip(x, y, z, strict=True))
-    duration, yaw = durations[0], yaws[0]
+    duration, yaw = fields[_DURATION], fields[_YAW]
     if not 0.0 < duration <= limits.stop_duration_max:
         raise SetpointError(f"delta {duration} is outside 0 .. {limits.stop_duration_max} s")
     if not math.isfinite(yaw):

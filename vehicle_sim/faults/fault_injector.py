@@ -1,6 +1,7 @@
 """The faults of a flight: every sample and datagram goes through them in the mission's order."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from typing import TypeVar
 
 from gcs.config import SystemConfig
@@ -74,6 +75,10 @@ class FaultInjector:
         return None if self._world is None else self._world.act(world, now)
 
     # Clocks and samples
+
+    def clock_of(self, vehicle: int) -> Callable[[float], float]:
+        """Return what the vehicle's clock shows at a time (s): without a fault of clocks the time itself."""
+        return partial(self.clock, vehicle) if vehicle in self._clocks else float
 
     def clock(self, vehicle: int, now: float) -> float:
         """Return the time of the vehicle's clock, the base of its stamps."""

@@ -1,6 +1,7 @@
 """TIMESYNC and PING: answers by which others measure a vehicle's clock and the link to it."""
 
 from collections.abc import Callable
+from typing import Any
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
@@ -16,12 +17,13 @@ class LinkServices:
 
     def register(self, dispatcher: Dispatcher) -> None:
         """Take the messages of these services."""
-        dispatcher.register(mavlink.MAVLink_timesync_message, self._on_timesync)
+        dispatcher.register_fields(mavlink.MAVLink_timesync_message, self._on_timesync)
         dispatcher.register(mavlink.MAVLink_ping_message, self._on_ping)
 
-    def _on_timesync(self, message: mavlink.MAVLink_timesync_message, request: Request) -> None:
-        if message.tc1 == 0:  # a request
-            request.peer.reply(mavlink.MAVLink_timesync_message(round(self._clock(request.now) * 1e9), message.ts1))
+    def _on_timesync(self, fields: tuple[Any, ...], request: Request) -> None:
+        tc1, ts1, *_ = fields
+        if tc1 == 0:  # a request
+            request.peer.reply(mavlink.MAVLink_timesync_message(round(self._clock(request.now) * 1e9), ts1))
 
     def _on_ping(self, message: mavlink.MAVLink_ping_message, request: Request) -> None:
         if message.target_system == 0:  # a request

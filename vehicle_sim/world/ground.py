@@ -29,11 +29,14 @@ class Contacts(NamedTuple):
     standing: bool
 
 
-_NO_CONTACTS = Contacts(0, False)
+NO_CONTACTS = Contacts(0, False)
 
 
 class Ground:
-    """Ground and pad in one physics client."""
+    """Ground and pad in one physics client.
+
+    Above ``standing_height`` (m) of its centre the payload cannot stand on anything, whatever its attitude.
+    """
 
     def __init__(self, client: int, payload: PayloadHull, pad: PadSettings) -> None:
         # Rigid bodies: the engine spends more at each step on bases without links.
@@ -50,18 +53,17 @@ class Ground:
         self._client = client
         self._bodies = ground, stand
         self._lower_face = payload.below - _STANDING_DEPTH
-        # Above this height of its centre the payload cannot stand on anything, whatever its attitude.
-        self._standing_height = pad.thickness + payload.reach + 0.05
+        self.standing_height = pad.thickness + payload.reach + 0.05
 
     def is_near(self, payload: Pose) -> bool:
         """Return True for a payload low enough to stand on pad or ground."""
-        return payload[0][2] <= self._standing_height
+        return payload[0][2] <= self.standing_height
 
     def contacts(self, system: Multibody, payload: Pose) -> Contacts:
         """Return the contacts of the last step; ``payload`` is the pose of its principal axes."""
         points = pybullet.getContactPoints(physicsClientId=self._client)
         if not points:
-            return _NO_CONTACTS
+            return NO_CONTACTS
         payload = payload[0], product(payload[1], system.payload_in_axes)
         pairs: set[tuple[int, int, int, int]] = set()
         standing = False

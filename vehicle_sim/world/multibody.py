@@ -36,6 +36,7 @@ _HULL_MARGIN = 0.001  # m, that the engine adds about a hull; unlike a box's it 
 # either missing it flies apart. The engine's reader rejects such a pair as no rigid body's: set after loading.
 _LINK_INERTIA = 1e-6
 _LINK_AXIAL_INERTIA = 1e-3
+_JOINT_ERROR = 0.01  # m, far more than the engine's joints give way
 # The engine clips joint rates at 100 rad/s by default.
 _MAX_JOINT_VELOCITY = 1e3
 
@@ -48,6 +49,8 @@ class Multibody(NamedTuple):
     uavs: tuple[int, ...]
     payload_moments: tuple[float, ...]
     """The payload's principal moments of inertia (3,) (kg m2)."""
+    arm: float
+    """No UAV is farther from the payload's centre of mass (m)."""
     payload_in_axes: tuple[float, float, float, float]
     """Payload frame to principal axes, x-first: the engine's attitude of the payload is that of its principal axes."""
 
@@ -160,7 +163,8 @@ def load_multibody(
             )  # fmt: skip
     moments, axes = _payload_axes(parameters)
     uavs = tuple(index[f"uav{i}"] for i in numbers)
-    return Multibody(body, links, uavs, tuple(moments.tolist()), tuple(axes.inv().as_quat().tolist()))
+    arm = float(np.max(np.linalg.norm(parameters.p, axis=1) + parameters.l)) + _JOINT_ERROR
+    return Multibody(body, links, uavs, tuple(moments.tolist()), arm, tuple(axes.inv().as_quat().tolist()))
 
 
 def _payload_text(payload: PayloadHull) -> str:

@@ -14,6 +14,8 @@ from vehicle_sim.world.errors import SimulationError
 from vehicle_sim.world.ray_bodies import RayBodies
 from vehicle_sim.world.world_state import flipped, quaternion_to_engine
 
+_FAR_AWAY = 1e6  # m
+
 
 class Obstacle(NamedTuple):
     """An obstacle at one time: its shape, and its centre in the world (NED, m)."""
@@ -32,13 +34,17 @@ class _Body(NamedTuple):
 
 
 class ObstacleBodies:
-    """The obstacles of one physics client, by name."""
+    """The obstacles of one physics client, by name.
+
+    ``travelled``: length of the paths of all of them (m); one that is added counts as come from far away.
+    """
 
     def __init__(self, client: int) -> None:
         self._client = client
         self._obstacles: dict[str, Obstacle] = {}
         self._bodies: dict[str, _Body] = {}
         self._ray_bodies = RayBodies.of(())
+        self.travelled = 0.0
 
     def all(self) -> tuple[Obstacle, ...]:
         """Return the obstacles at the current time, in the order in which they were added."""
@@ -77,6 +83,7 @@ class ObstacleBodies:
         self._bodies[name] = _Body(handle, attitude, len(self._bodies))
         self._obstacles[name] = Obstacle(name, shape, place)
         self._ray_bodies = self._ray_bodies.and_body(shape, place)
+        self.travelled += _FAR_AWAY
 
     def move(self, name: str, position_in_world: Sequence[float]) -> None:
         """Put an obstacle elsewhere, its centre (3,) in NED (m); it counts from the next step on."""
@@ -85,6 +92,7 @@ class ObstacleBodies:
             return
         self._obstacles[name] = Obstacle(name, obstacle.shape, place)
         self._ray_bodies.centres[body.row] = place
+        self.travelled += math.dist(place, obstacle.position_in_world)
         pybullet.resetBasePositionAndOrientation(body.handle, flipped(place), body.attitude, self._client)
 
     def _body(self, name: str) -> _Body:

@@ -16,6 +16,9 @@ from vehicle_sim.world.rotor_kernels import advance_rotors
 
 Four = tuple[float, float, float, float]
 
+Wrenches = tuple[list[float], list[list[float]]]
+"""Thrusts (N) of N vehicles over a physics step, and their body torques (N m, FRD)."""
+
 
 @dataclass(frozen=True)
 class RotorGeometry:
@@ -53,14 +56,21 @@ class RotorGeometry:
 class Rotors:
     """Rotor speeds of N vehicles that follow their commands with a first-order lag, advanced by the physics step.
 
-    ``advance`` is exact for a command that stays constant over the step, and gives the mean force and torques over
-    the step, so that neither the lag nor the force depends on the step's length. ``speeds`` (N, 4) in rad/s.
+    ``advance`` is exact for a command that stays constant over the steps, and gives the mean force and torques over
+    each step, so that neither the lag nor the force depends on the step's length. ``speeds`` (N, 4) in rad/s.
     """
 
     def __init__(
-        self, geometries: Sequence[RotorGeometry], motor_time_constants: Sequence[float], physics_step: float
+        self,
+        geometries: Sequence[RotorGeometry],
+        motor_time_constants: Sequence[float],
+        physics_step: float,
+        steps: int = 1,
     ) -> None:
-        """Rotors at rest; time constants and physics step in s, both positive (else :class:`SimulationError`)."""
+        """Rotors at rest; time constants and physics step in s, both positive (else :class:`SimulationError`).
+
+        ``steps``: physics steps for which commands are held.
+        """
         if not (min(motor_time_constants) > 0.0 and physics_step > 0.0):
             raise SimulationError("motor_time_constant and physics_step must be positive")
         self._motors = np.array(
@@ -70,12 +80,13 @@ class Rotors:
             ]
         )
         n = len(self._motors)
-        self.speeds, self._thrusts, self._torques = np.zeros((n, 4)), np.zeros(n), np.zeros((n, 3))
+        self.speeds = np.zeros((n, 4))
+        self._thrusts, self._torques = np.zeros((steps, n)), np.zeros((steps, n, 3))
 
-    def advance(self, commands: Array) -> tuple[list[float], list[list[float]]]:
-        """One physics step under the commanded speeds (N, 4) (rad/s): mean thrusts (N), body torques (N m, FRD)."""
+    def advance(self, commands: Array) -> list[Wrenches]:
+        """Take the physics steps under the commanded speeds (N, 4) (rad/s), and return each one's mean wrenches."""
         advance_rotors(self._motors, commands, self.speeds, self._thrusts, self._torques)
-        return self._thrusts.tolist(), self._torques.tolist()
+        return list(zip(self._thrusts.tolist(), self._torques.tolist(), strict=True))
 
 
 def _motor(geometry: RotorGeometry, ratio: float) -> tuple[float, ...]:

@@ -13,6 +13,7 @@ from gcs.config.tables import WorldConfig
 from idc_controller.arrays import Array
 from idc_controller.parameters import SystemParameters
 from idc_controller.rotations_float import Quaternion, Vector
+from vehicle_sim.world.contact_detection import ContactDetector
 from vehicle_sim.world.cradles import Cradles
 from vehicle_sim.world.errors import SimulationError
 from vehicle_sim.world.ground import Contacts, Ground
@@ -76,8 +77,8 @@ class World:
         self._readings = Readings(client, self._system)
         self.steps = 0
         self._thrusts = (0.0,) * parameters.number_of_uavs
-        self._contacts: Contacts | None = None
-        for i, uav in enumerate(self._readings.now.uavs):
+        self._contacts = ContactDetector(parameters, settings, self._system, self._ground, self.obstacles)
+        for i, uav in enumerate(self._readings.uavs):
             self._cradles.latch(i, uav[0], uav[1])
 
     @property
@@ -112,23 +113,29 @@ class World:
         """
         client, body, uavs = self._client, self._system.body, self._system.uavs
         apply_force, apply_torque = pybullet.applyExternalForce, pybullet.applyExternalTorque
-        self._update_cradles(thrusts)
+        low = self._is_low
+        if low or self._cradles.number_held:
+            self._update_cradles(thrusts, low)
         for uav, thrust, (x, y, z) in zip(uavs, thrusts, torques, strict=True):
             apply_force(body, uav, (0.0, 0.0, thrust), _ORIGIN, _LINK_FRAME, client)
             apply_torque(body, uav, (x, -y, -z), _LINK_FRAME, client)
-        if self.all_cradled:
+        if (payload_force is not None or uav_forces is not None) and not self.all_cradled:
             # A payload between held links hangs as much as it stands: wind would swing what the ground should hold.
-            payload_force = uav_forces = None
-        if uav_forces is not None:
-            for uav, force, state in zip(uavs, uav_forces, self._readings.now.uavs, strict=True):
-                apply_force(body, uav, flipped(force), state[0], _WORLD_FRAME, client)
-        if payload_force is not None:
-            apply_force(body, -1, flipped(payload_force), self._readings.now.payload[0], _WORLD_FRAME, client)
+            self._push(payload_force, uav_forces)
         pybullet.stepSimulation(client)
         self.steps += 1
         self._thrusts = tuple(thrusts)
-        self._contacts = None
         self._readings.update()
+
+    def _push(self, payload_force: Sequence[float] | None, uav_forces: Sequence[Sequence[float]] | None) -> None:
+        """Let external forces act over the next step."""
+        client, body, readings = self._client, self._system.body, self._readings
+        if uav_forces is not None:
+            for uav, force, state in zip(self._system.uavs, uav_forces, readings.uavs, strict=True):
+                pybullet.applyExternalForce(body, uav, flipped(force), state[0], _WORLD_FRAME, client)
+        if payload_force is not None:
+            place = readings.payload[0]
+            pybullet.applyExternalForce(body, -1, flipped(payload_force), place, _WORLD_FRAME, client)
 
     def set_payload_mass(self, mass: float) -> None:
         """Make the payload weigh ``mass`` (kg) from the next step on; its inertia changes in proportion."""
@@ -163,13 +170,11 @@ class World:
 
     def contacts(self) -> Contacts:
         """Return what touches after the last step, computed once a step."""
-        if self._contacts is None:
-            self._contacts = self._ground.contacts(self._system, self._readings.now.payload)
-        return self._contacts
+        return self._contacts.after(self.steps, self._readings, self.physics_hz)
 
     def touching_ground(self) -> bool:
         """Return True if the payload stands on pad or ground."""
-        return self._ground.is_near(self._readings.now.payload) and self.contacts().standing
+        return self._is_low and self.contacts().standing
 
     def close(self) -> None:
         """End the world; harmless when it has ended."""
@@ -183,12 +188,18 @@ class World:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def _update_cradles(self, thrusts: Sequence[float]) -> None:
+    @property
+    def _is_low(self) -> bool:
+        """Return True if the payload is low enough to stand on pad or ground."""
+        ground, readings = self._ground, self._readings
+        # The height of a UAV, which is at hand, says mostly that it is not.
+        is_near = readings.uavs[0][0][2] <= ground.standing_height + self._system.arm
+        return is_near and ground.is_near(readings.payload)
+
+    def _update_cradles(self, thrusts: Sequence[float], low: bool) -> None:
+        """Release and latch; ``low``: the payload may stand on pad or ground."""
         cradles = self._cradles
-        low = self._ground.is_near(self._readings.now.payload)
-        if not low and cradles.number_held == 0:
-            return
-        for i, uav in enumerate(self._readings.now.uavs):
+        for i, uav in enumerate(self._readings.uavs):
             x, y, _, _ = uav[1]
             upward = thrusts[i] * (1.0 - 2.0 * (x * x + y * y))
             if cradles.wants_release(i, upward):

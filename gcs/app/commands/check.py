@@ -4,6 +4,7 @@ import argparse
 from pathlib import Path
 
 from gcs.app.exit_status import ExitStatus
+from gcs.app.imports import importing
 
 DESCRIPTION = "Reads a mission and says what will be flown, or every reason why not, with file and line."
 
@@ -16,10 +17,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command, and return its exit status."""
-    from rich.console import Console
+    with importing():
+        from rich.console import Console
 
-    from gcs.mission.describe import describe
-    from gcs.mission.read import read_mission
+        from gcs.mission.describe import describe
+        from gcs.mission.read import read_mission
 
     Console(highlight=False).print(describe(read_mission(arguments.mission, arguments.config)))
     return ExitStatus.DONE

@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 
 from gcs.app.arguments import CONTROLLERS, number
+from gcs.app.imports import importing
 from gcs.app.logs import LOG
 
 DESCRIPTION = """\
@@ -51,15 +52,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command, and return its exit status."""
-    from rich.console import Console
-
-    from gcs.app.fly import FlyOptions, fly, prepare
-    from gcs.app.progress import FlightProgress
-    from gcs.campaign.process_pool import BROKEN_OFF, end_with_parent
-    from gcs.drivers.forked_program import ForkedProgram
-    from gcs.drivers.simulator import PROGRAM
+    from gcs.app.fly_options import FlyOptions, prepare
     from gcs.mavlink.address import parse_url
-    from gcs.record.summary_table import summary_table
 
     options = FlyOptions(
         mission=arguments.mission,
@@ -73,6 +67,16 @@ def run(arguments: argparse.Namespace) -> int:
         connect=tuple(parse_url(url) for url in arguments.connect),
     )
     mission = prepare(options)
+    # Only now: what cannot be flown is said at once.
+    with importing():
+        from rich.console import Console
+
+        from gcs.app.fly import fly
+        from gcs.app.progress import FlightProgress
+        from gcs.campaign.process_pool import BROKEN_OFF, end_with_parent
+        from gcs.drivers.forked_program import ForkedProgram
+        from gcs.drivers.simulator import PROGRAM
+        from gcs.record.summary_table import summary_table
     # With --json standard output is the summary and nothing else.
     console = Console(stderr=arguments.json, highlight=False)
     with ExitStack() as started:
@@ -84,7 +88,8 @@ def run(arguments: argparse.Namespace) -> int:
         result = fly(options, mission, progress.update, vehicle_sim)
     pictures: list[Path] = []
     if result.flown and not arguments.no_pictures:
-        from gcs.record.figures import report
+        with importing():
+            from gcs.record.figures import report
 
         pictures = report(result.records)
     if arguments.json:

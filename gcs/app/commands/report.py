@@ -4,6 +4,7 @@ import argparse
 from pathlib import Path
 
 from gcs.app.exit_status import ExitStatus
+from gcs.app.imports import importing
 
 DESCRIPTION = "Draws what happened in a run, and prints the names of the pictures."
 
@@ -15,8 +16,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command, and return its exit status."""
-    from gcs.record.figures import report
-    from gcs.record.run_data import read_run
+    with importing():
+        from gcs.record.figures import report
+        from gcs.record.run_data import read_run
 
     for picture in report(read_run(arguments.run_dir)):
         print(picture)

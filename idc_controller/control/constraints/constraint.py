@@ -1,12 +1,11 @@
 """The interface of a constraint on the state: rows G e <= h on the error about the reference (eq:stateCon)."""
 
-from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Indices
 from idc_controller.trajectory.flatness import FlatReference
 
 
@@ -18,6 +17,9 @@ class StateConstraint(Protocol):
     slack: NDArray[np.int_]
     """Index of the constraint's own slack, from 0, by which each row may be exceeded (c,)."""
 
-    def h(self, reference: FlatReference, stages: Sequence[int]) -> Array:
-        """Return the bounds at ``stages`` of the reference (S, c)."""
+    limits: Array
+    """Bounds of the rows (c,) where the reference uses nothing of them."""
+
+    def used(self, reference: FlatReference, stages: Indices) -> Array | None:
+        """Return what the reference uses of the limits at ``stages`` (S, c); None: nothing, wherever it leads."""
         ...

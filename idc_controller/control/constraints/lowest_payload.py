@@ -1,10 +1,8 @@
 """Lowest position of the payload's centre: it is on the ground there."""
 
-from collections.abc import Sequence
-
 import numpy as np
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Indices
 from idc_controller.control.settings import MpcSettings
 from idc_controller.model.linear import LinearModel
 from idc_controller.trajectory.flatness import FlatReference
@@ -14,11 +12,11 @@ class LowestPayload:
     """See :class:`~idc_controller.control.constraints.constraint.StateConstraint`."""
 
     def __init__(self, model: LinearModel, settings: MpcSettings) -> None:
-        self._lowest = -model.parameters.payload.below
+        self.limits = np.array([-model.parameters.payload.below])
         self.slack = np.zeros(1, dtype=int)
         self.G = np.zeros((1, model.layout.size))
         self.G[0, model.layout.r_0.start + 2] = 1.0
 
-    def h(self, reference: FlatReference, stages: Sequence[int]) -> Array:
-        """Return how far the reference is above it (S, 1) (m)."""
-        return np.asarray(self._lowest - reference.payload[0, stages, 2])[:, None]
+    def used(self, reference: FlatReference, stages: Indices) -> Array:
+        """Return how low the reference is (S, 1) (m)."""
+        return reference.payload[0, :, 2].take(stages)[:, None]

@@ -1,10 +1,8 @@
 """Limit of the payload's roll, pitch and yaw about the level reference (eq:consOsc), a slack each."""
 
-from collections.abc import Sequence
-
 import numpy as np
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Indices
 from idc_controller.control.settings import MpcSettings
 from idc_controller.model.linear import LinearModel
 from idc_controller.trajectory.flatness import FlatReference
@@ -14,11 +12,10 @@ class PayloadTilt:
     """See :class:`~idc_controller.control.constraints.constraint.StateConstraint`."""
 
     def __init__(self, model: LinearModel, settings: MpcSettings) -> None:
-        self._limit = settings.tuning.payload_tilt_limit
+        self.limits = np.full(6, settings.tuning.payload_tilt_limit)
         self.slack = np.repeat(np.arange(3), 2)
         self.G = np.zeros((6, model.layout.size))
         self.G[np.arange(6), model.layout.Theta.start + self.slack] = np.tile([1.0, -1.0], 3)
 
-    def h(self, reference: FlatReference, stages: Sequence[int]) -> Array:
-        """Return the limit (S, 6) (rad): the reference is level."""
-        return np.full((len(stages), 6), self._limit)
+    def used(self, reference: FlatReference, stages: Indices) -> None:
+        """Return nothing: the reference is level."""

@@ -1,10 +1,8 @@
 """Least distance between neighbouring UAVs, along the line between their places in hover; one slack for all."""
 
-from collections.abc import Sequence
-
 import numpy as np
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Indices
 from idc_controller.control.settings import MpcSettings
 from idc_controller.model.linear import LinearModel
 from idc_controller.trajectory.flatness import FlatReference
@@ -26,9 +24,8 @@ class UavSeparation:
             if distance < settings.neighbour_share * p.spacing + 1e-9:
                 rows.append(-(d / distance) @ (C[3 * i : 3 * i + 3] - C[3 * j : 3 * j + 3]))
                 bounds.append(max(distance - self.distance, 0.0))
-        self.G, self._h = np.array(rows), np.array(bounds)
+        self.G, self.limits = np.array(rows), np.array(bounds)
         self.slack = np.zeros(len(rows), dtype=int)
 
-    def h(self, reference: FlatReference, stages: Sequence[int]) -> Array:
-        """Return by how much the UAVs may come closer (S, pairs) (m): on the reference the links are parallel."""
-        return self._h[None].repeat(len(stages), axis=0)
+    def used(self, reference: FlatReference, stages: Indices) -> None:
+        """Return nothing: on the reference the links are parallel, and the UAVs as far apart as in hover."""

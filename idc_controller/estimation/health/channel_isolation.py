@@ -67,7 +67,7 @@ class ChannelIsolation:
             is_inconsistent: whether position and velocity of a UAV contradict each other. Where they do not, and yet
                 are rejected, it is the vehicle that does not fly as it should: its own attitude estimate may be wrong.
         """
-        if not self._rejections and bool(accepted[tested].all()):
+        if not self._rejections and np.count_nonzero(accepted) == np.count_nonzero(tested):
             return
         limit = self._settings.rejections
         for channel, part in _channels(stack):

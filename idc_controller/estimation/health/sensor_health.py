@@ -1,5 +1,6 @@
 """Sensor health: which parts of a measurement the estimator may use."""
 
+import math
 from copy import copy
 from typing import NamedTuple
 
@@ -78,8 +79,12 @@ class SensorHealth:
 
     def received(self, measurement: Measurement) -> Measurement | None:
         """Return what has arrived without channels that are stuck or not finite; None if nothing is left."""
-        usable = measurement.finite
-        stuck = self._stuck.check(usable)
+        pose, motion = measurement.pose.tolist(), measurement.motion.tolist()
+        if math.isfinite(sum(pose) + sum(motion)):
+            usable, stuck = measurement, self._stuck.check(measurement, pose, motion)
+        else:
+            usable = measurement.finite
+            stuck = self._stuck.check(usable, usable.pose.tolist(), usable.motion.tolist())
         if True in stuck:
             usable = usable.without(*stuck)
         if usable is measurement:  # with pose and motion

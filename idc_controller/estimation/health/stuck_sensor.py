@@ -24,20 +24,20 @@ class StuckSensors:
         self._noise, self._settings = noise, settings
         self._last: dict[SensorKey, _Last] = {}
 
-    def check(self, measurement: Measurement) -> tuple[bool, bool]:
-        """Take a measurement and return whether its pose, and whether its motion, is stuck."""
-        key = measurement.source, type(measurement)
+    def check(self, measurement: Measurement, pose: list[float], motion: list[float]) -> tuple[bool, bool]:
+        """Take a measurement, by its numbers, and return whether its pose, and whether its motion, is stuck."""
+        time, key = measurement.time, (measurement.source, type(measurement))
         last = self._last.get(key)
-        if last is not None:
-            relayed = self._settings.relay_interval if measurement.source == PAYLOAD else 0.0
-            if measurement.time <= last.time + relayed:
-                return last.stuck
-        now = self._last[key] = _Last(measurement.time, measurement.pose.tolist(), measurement.motion.tolist())
-        if last is not None and (now.pose == last.pose or now.motion == last.motion):
-            of_pose, of_motion = last.repeats
-            now.repeats = of_pose + 1 if now.pose == last.pose else 0, of_motion + 1 if now.motion == last.motion else 0
-            now.stuck = self._stuck_parts(key, now.repeats)
-        return now.stuck
+        if last is None:
+            self._last[key] = _Last(time, pose, motion)
+            return False, False
+        if time <= last.time + (self._settings.relay_interval if measurement.source == PAYLOAD else 0.0):
+            return last.stuck
+        of_pose, of_motion = last.repeats
+        last.repeats = of_pose + 1 if pose == last.pose else 0, of_motion + 1 if motion == last.motion else 0
+        last.stuck = self._stuck_parts(key, last.repeats) if any(last.repeats) else (False, False)
+        last.time, last.pose, last.motion = time, pose, motion
+        return last.stuck
 
     def channels(self) -> list[Channel]:
         """Return the channels that are stuck now."""

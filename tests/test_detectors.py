@@ -1,0 +1,145 @@
+"""Detectors of the flight monitor: alarms raised of the innovations, of the estimator's health and of the links."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from gcs.config import SystemConfig
+from gcs.config.flight_settings import DEFAULTS
+from gcs.flight import stack
+from gcs.flight.alarms import AlarmLog
+from gcs.flight.detectors import MonitorAlarm, detectors
+from gcs.flight.monitor_step import MonitorStep
+from gcs.mavlink import px4
+from gcs.mavlink.id_check import SystemIdCheck
+from gcs.mavlink.vehicle_link import VehicleLink
+from idc_controller.estimation.estimate import Estimate, InnovationRecord
+from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
+from idc_controller.model.linear import LinearModel
+
+SYSTEM = SystemConfig()
+MODEL = LinearModel(SYSTEM.parameters())
+N = SYSTEM.parameters().number_of_uavs
+NAMES = (*(f"vehicle {i}" for i in range(1, N + 1)), "payload")
+KEYS = (*((uav, Position) for uav in range(N)), (PAYLOAD, Position))
+
+
+class Monitored:
+    """Steps at 20 Hz of a flight whose telemetry is complete, with normal innovations of the positions."""
+
+    def __init__(self):
+        self.links = tuple(VehicleLink(i, None) for i in range(1, N + 1))
+        self.flight = SimpleNamespace(
+            mission=SimpleNamespace(system=SYSTEM),
+            system=SimpleNamespace(team=SimpleNamespace(links=self.links), obstacle_map=None),
+            control=SimpleNamespace(estimator=stack.estimator(SYSTEM, MODEL)),
+        )
+        self.log, self.id_check = AlarmLog(), SystemIdCheck(N)
+        self.detectors = detectors(self.flight, DEFAULTS.monitor)
+        self.random, self.steps = np.random.default_rng(7), 0
+
+    def step(
+        self,
+        rejected=(),
+        reset=False,
+        force=(0.0, 0.0, 0.0),
+        in_air=True,
+        clear=True,
+        steady=True,
+        keys=KEYS,
+        payload=True,
+    ):
+        now = 0.05 * self.steps
+        for link in self.links:
+            link.attitude_received_at = link.position_received_at = now
+            link.payload_received_at = now if payload else 0.0
+        normal = self.random.standard_normal(6 * len(keys))
+        sizes = np.full(len(keys), 6)
+        innovations = InnovationRecord(now, float(normal @ normal), len(normal), rejected, reset, keys, sizes, normal)
+        size = MODEL.layout.size
+        estimate = Estimate(
+            now, np.zeros(size), np.array(force), np.zeros((N, 3)), 0.0, np.eye(3), lambda: np.eye(size + 2 * N + 4),
+            (innovations,),
+        )  # fmt: skip
+        record = SimpleNamespace(estimate=estimate)
+        step = MonitorStep(
+            now, now, self.flight, self.id_check, self.log, record, in_air, NAMES, clear=clear, steady=steady
+        )
+        for detector in self.detectors:
+            detector(step)
+        self.steps += 1
+
+    def raised(self, steps=40, **options):
+        for _ in range(steps):
+            self.step(**options)
+        return [(alarm.source, alarm.code) for alarm in self.log.alarms]
+
+
+def test_no_alarm_of_normal_innovations():
+    assert Monitored().raised() == []
+
+
+def test_rejected_measurements_raise_an_alarm_of_their_source_clear_of_the_ground_only():
+    rejected = ((1, Position),)
+    assert Monitored().raised(rejected=rejected) == [("vehicle 2", MonitorAlarm.MEASUREMENTS_REJECTED)]
+    assert Monitored().raised(rejected=rejected, clear=False) == []
+
+
+def test_payload_that_no_vehicle_relays_any_more_raises_an_alarm():
+    assert ("payload", MonitorAlarm.TELEMETRY_TIMEOUT) in Monitored().raised(payload=False)
+
+
+def test_rejected_attitudes_raise_an_alarm_but_not_in_a_hard_manoeuvre():
+    attitudes = tuple((uav, Attitude) for uav in range(N))
+    options = {"steps": 80, "rejected": attitudes[1:2], "keys": attitudes}
+    assert Monitored().raised(**options) == [("vehicle 2", MonitorAlarm.MEASUREMENTS_REJECTED)]
+    assert Monitored().raised(**options, steady=False) == []
+
+
+def test_repeated_covariance_resets_raise_an_alarm_but_not_in_a_hard_manoeuvre():
+    count = DEFAULTS.monitor.event_count
+    alarm = [("team", MonitorAlarm.COVARIANCE_RESET)]
+    assert Monitored().raised(steps=count - 1, reset=True) == []
+    assert Monitored().raised(steps=count, reset=True) == alarm
+    assert Monitored().raised(steps=count, reset=True, steady=False) == []
+
+
+@pytest.mark.parametrize(("size", "expected"), [(5.0, []), (9.0, [("payload", MonitorAlarm.DISTURBANCE_FORCE)])])
+def test_disturbance_force_beyond_its_covariance_raises_an_alarm(size, expected):
+    assert Monitored().raised(steps=1, force=(0.0, size, 0.0)) == expected
+
+
+def test_failed_range_sensor_raises_an_alarm_in_the_air_only():
+    for in_air, expected in ((True, [("vehicle 3", MonitorAlarm.RANGE_SENSOR_FAILED)]), (False, [])):
+        monitored = Monitored()
+        monitored.links[2].status.obstacle_sensing_valid = False
+        assert monitored.raised(steps=2, in_air=in_air, clear=in_air) == expected
+
+
+EVENTS = {
+    MonitorAlarm.MESSAGES_LOST: lambda link: vars(link.statistics).update(lost=link.statistics.lost + 1),
+    MonitorAlarm.MESSAGES_CORRUPTED: lambda link: vars(link.statistics).update(damaged=link.statistics.damaged + 1),
+    MonitorAlarm.VALUES_NOT_FINITE: lambda link: link.statistics.add_not_finite(px4.AUTOPILOT_COMPONENT),
+    MonitorAlarm.SETPOINTS_LOST: lambda link: vars(link.setpoints).update(lost=link.setpoints.lost + 1),
+}
+
+
+@pytest.mark.parametrize("code", EVENTS, ids=lambda code: code.code)
+def test_events_on_a_link_raise_an_alarm_when_frequent_within_their_window(code):
+    settings = DEFAULTS.monitor
+    window = settings.setpoint_window if code is MonitorAlarm.SETPOINTS_LOST else settings.event_window
+    for spacing, expected in ((0.8, [("vehicle 1", code)]), (1.2, [])):
+        monitored = Monitored()
+        between = round(spacing * window / (settings.event_count - 1) / 0.05)
+        for _ in range(settings.event_count):
+            EVENTS[code](monitored.links[0])
+            raised = monitored.raised(steps=between)
+        assert raised == expected
+
+
+def test_payload_measurements_that_are_no_numbers_raise_an_alarm_of_the_payload():
+    monitored = Monitored()
+    for _ in range(DEFAULTS.monitor.event_count):
+        monitored.links[1].statistics.add_not_finite(px4.PAYLOAD_UNIT_COMPONENT)
+    assert monitored.raised(steps=1) == [("payload", MonitorAlarm.VALUES_NOT_FINITE)]

@@ -1,0 +1,129 @@
+"""Lockstep driver of the ground: it answers the world's ticks, and notices when none come. The world is scripted."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from gcs.drivers.lockstep import run_in_lockstep
+from gcs.drivers.settings import DriverSettings
+from gcs.flight.failsafe import Failsafe
+from gcs.mavlink.lockstep import Done, Tick, decode_done
+
+CLOCK, VEHICLE = ("127.0.0.1", 14500), ("127.0.0.1", 14541)
+JOIN, LEAVE = Done(0, None), Done(0, None, leaving=True)
+SETTINGS = DriverSettings(join_interval=1.0, tick_timeout=3.0)
+
+
+def tick(serial, time_us, sender=CLOCK):
+    return Tick(serial, time_us).encode(), sender
+
+
+class World:
+    """A connection to a world that sends these batches of datagrams, one whenever the ground waits, then none."""
+
+    def __init__(self, *batches):
+        self.batches, self.pending, self.answers, self.commands = list(batches), [], [], []
+
+    def wait(self, timeout):
+        if not self.pending and self.batches:
+            self.pending = list(self.batches.pop(0))
+        return bool(self.pending)
+
+    def receive(self):
+        while self.pending:
+            yield self.pending.pop(0)
+
+    def send(self, datagram, address):
+        if address == CLOCK:
+            self.answers.append(decode_done(datagram))
+        else:
+            self.commands.append((datagram, address))
+
+
+class Station:
+    """A ground station that ends its flight after so many ticks; each is answered by a datagram to the vehicle."""
+
+    def __init__(self, ticks, due=None):
+        self.ticks, self.due, self.times, self.received, self.failsafes = ticks, due, [], [], []
+
+    @property
+    def ended(self):
+        return len(self.times) >= self.ticks
+
+    def receive_all(self, datagrams, now):
+        self.received += [(datagram, sender, now) for datagram, sender in datagrams]
+
+    def datagrams_to_send(self, now):
+        self.times.append(now)
+        return [(b"command", VEHICLE)]
+
+    def next_timer(self):
+        return self.due
+
+    def raise_failsafe(self, now, failsafe, reason):
+        self.failsafes.append((now, failsafe, reason))
+
+    def resume(self):
+        pass
+
+    sent = resume
+
+
+def run(world, station, requested=False, end_reason=lambda: None):
+    interrupt = SimpleNamespace(requested=requested)
+    run_in_lockstep(station, world, CLOCK, interrupt, SETTINGS, end_reason=end_reason)
+
+
+@pytest.mark.parametrize(
+    ("due", "next_us"), [(None, None), (0.05, 50_000), (0.0500004, 50_001), (0.0, 1001)],
+    ids=["never", "whole", "rounded up", "past"],
+)  # fmt: skip
+def test_each_tick_is_answered_with_the_time_of_the_next_timer(due, next_us):
+    world, station = World([tick(7, 1000)]), Station(1, due)
+    run(world, station)
+    assert station.times == [0.001] and world.commands == [(b"command", VEHICLE)]
+    assert world.answers == [JOIN, Done(7, next_us, leaving=True), LEAVE]
+
+
+def test_datagrams_before_a_tick_are_received_at_its_time():
+    world = World([(b"a", VEHICLE), tick(1, 1000), (b"b", VEHICLE)], [tick(2, 4000)])
+    station = Station(2)
+    run(world, station)
+    assert station.received == [(b"a", VEHICLE, 0.001), (b"b", VEHICLE, 0.004)]
+    assert [answer.serial for answer in world.answers] == [0, 1, 2, 0]
+    assert [answer.leaving for answer in world.answers] == [False, False, True, True]
+
+
+def test_tick_of_another_sender_is_no_tick():
+    world, station = World([tick(5, 9000, sender=VEHICLE), (b"noise", CLOCK), tick(1, 1000)]), Station(1)
+    run(world, station)
+    assert station.times == [0.001] and station.received == [(*tick(5, 9000, VEHICLE), 0.001)]
+
+
+def test_ground_asks_to_join_until_the_world_answers():
+    world, station = World([], [], [tick(1, 1000)], [], [tick(2, 2000)]), Station(2)
+    run(world, station)
+    assert world.answers == [JOIN, JOIN, JOIN, Done(1, None), Done(2, None, leaving=True), LEAVE]
+    assert station.failsafes == []
+
+
+def test_world_that_stops_answering_is_lost_after_the_timeout():
+    world, station = World([], [], [tick(1, 5000)]), Station(9)
+    run(world, station)
+    [(now, failsafe, reason)] = station.failsafes
+    assert (now, failsafe) == (0.005, Failsafe.SIMULATION_LOST)
+    assert reason == "the simulated world does not answer for 3 s"
+    assert world.answers == [JOIN, JOIN, JOIN, Done(1, None), LEAVE]
+
+
+def test_end_of_the_world_is_reported_at_once():
+    world, station = World(), Station(9)
+    run(world, station, end_reason=lambda: "it crashed")
+    assert station.failsafes == [(0.0, Failsafe.SIMULATION_LOST, "it crashed")]
+    assert world.answers == [JOIN]  # it never joined
+
+
+def test_interrupt_is_raised_once_at_the_next_tick():
+    world, station = World([tick(1, 1000)], [tick(2, 2000)]), Station(2)
+    run(world, station, requested=True)
+    assert station.failsafes == [(0.001, Failsafe.INTERRUPTED, "interrupted")]
