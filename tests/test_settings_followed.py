@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from obstacle_scene import detections_of, messages_of
+from segmenting_sensor import SegmentedSample
 from standing_obstacles import StandingObstacles
 
 from gcs.campaign.scenarios.judgement import least_separation
@@ -28,7 +29,6 @@ from idc_controller.estimation.settings import MeasurementModelSettings
 from idc_controller.geometry.sphere import Sphere
 from idc_controller.model.linear import LinearModel
 from idc_controller.safety.settings import PlannerSettings
-from segmenting_sensor import SegmentedSample
 
 NOTHING = StandingObstacles([])
 STATE = np.array([[0.0, 0.0, -5.0], [2.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
