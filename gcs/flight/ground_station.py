@@ -205,7 +205,7 @@ class GroundStation:
         obstacle_map, estimator = self.flight.system.obstacle_map, self.flight.control.estimator
         if obstacle_map is None:
             return
-        obstacle_map.scans.range_sensors.set_failed(
+        obstacle_map.placement.range_sensors.set_failed(
             {i for i, link in enumerate(self.links) if not link.status.obstacle_sensing_valid}, time
         )
         noise = math.sqrt(estimator.health.adaptation.measurement_scale)
@@ -218,7 +218,7 @@ class GroundStation:
         estimated = self.flight.control.estimator.measurement_model.vehicles(record.estimate.time, record.estimate.x)
         self._id_check.compare(estimated.values[:, :3])
         if (obstacle_map := self.flight.system.obstacle_map) is not None:
-            obstacle_map.scans.poses.add_estimated(estimated)
+            obstacle_map.placement.poses.add_estimated(estimated)
 
     def _encoded(
         self, now: float, messages: Sequence[Sequence[Packed]], carries_setpoints: Sequence[bool]

@@ -162,7 +162,7 @@ class TelemetryRouter:
         self._id_check.add(sample)
         used = self._flight.add_measurement(sample)
         if obstacle_map is not None and used is not None:
-            obstacle_map.scans.poses.add_measured(used)
+            obstacle_map.placement.poses.add_measured(used)
 
 
 def whole_ms(time: float) -> float:

@@ -6,7 +6,7 @@ import numpy as np
 
 from gcs.mission.fence import boundary_walls
 from gcs.mission.model import Mission, Obstacle
-from idc_controller.perception.obstacle_map import MapObstacle
+from idc_controller.perception.standing_obstacles import MapObstacle
 
 
 def map_of(mission: Mission) -> list[MapObstacle]:

@@ -9,8 +9,8 @@ import numpy as np
 from idc_controller.arrays import Array
 from idc_controller.geometry.obstacles import Bodies, PointGroups
 from idc_controller.geometry.shape import Shape
+from idc_controller.perception.clusters import Cluster
 from idc_controller.perception.obstacle_filter import surface_of
-from idc_controller.perception.scan_assembly import Cluster
 from idc_controller.perception.settings import MapCheckSettings, PerceptionSettings, SurfaceSettings
 from idc_controller.perception.surfaces.points import SurfacePoints
 

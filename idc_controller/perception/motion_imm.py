@@ -115,8 +115,16 @@ class MotionImm:
     @property
     def position_variance(self) -> Array:
         """Variance of the mixture's position (3,) (m2)."""
-        mean = self.weight @ self.x[:, :, 0]
-        return np.asarray(self.weight @ (self.P[:, :, 0, 0] + (self.x[:, :, 0] - mean) ** 2))
+        return self._variance(0)
+
+    @property
+    def velocity_variance(self) -> Array:
+        """Variance of the mixture's velocity (3,) (m2/s2)."""
+        return self._variance(1)
+
+    def _variance(self, row: int) -> Array:
+        mean = self.weight @ self.x[:, :, row]
+        return np.asarray(self.weight @ (self.P[:, :, row, row] + (self.x[:, :, row] - mean) ** 2))
 
     def advance(self, time: float) -> None:
         """Predict to ``time`` (s); earlier times are passed over.

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from idc_controller.arrays import Array
+from idc_controller.estimation.health.chi_squared import upper_quantile
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.obstacles import Bodies
 from idc_controller.geometry.shape import Shape
@@ -94,6 +95,12 @@ class ObstacleFilter:
         """Return whether it is static."""
         s, (_, velocity, _) = self.settings, self._imm.state
         return bool(self._imm.weight[0] > s.static_weight and np.linalg.norm(velocity) < s.static_speed)
+
+    def is_moving(self, false_alarm: float) -> bool:
+        """Return whether noise explains its velocity with less than the stated probability."""
+        _, velocity, _ = self._imm.state
+        squared = float(np.sum(velocity**2 / self._imm.velocity_variance))
+        return not self.is_static and squared > float(upper_quantile(false_alarm, 3))
 
     def advance(self, time: float) -> None:
         """Predict the motion to ``time`` (s); earlier times are passed over."""

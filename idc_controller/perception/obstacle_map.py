@@ -7,17 +7,21 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Mask
+from idc_controller.estimation.health.chi_squared import upper_quantile
 from idc_controller.geometry.obstacles import Bodies, PointGroups, PredictedObstacle, Region
 from idc_controller.geometry.shape import Shape
 from idc_controller.perception.association import associate, gating_shape
+from idc_controller.perception.clusters import Cluster, Segmentation, frames, return_sigma, shifted
+from idc_controller.perception.convex_pieces import ConvexPieces
 from idc_controller.perception.map_check import MapCheck
 from idc_controller.perception.motion_imm import MotionModels
+from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.range_sensors import SensorModel
-from idc_controller.perception.scan_assembly import Cluster, ScanAssembly
 from idc_controller.perception.scan_placement import ScanPlacement, SensorRays
-from idc_controller.perception.segmentation import Segmentation
 from idc_controller.perception.settings import PerceptionSettings
+from idc_controller.perception.standing_map import StandingMap
+from idc_controller.perception.standing_obstacles import MapObstacle, PieceObstacles, StandingObstacles
 from idc_controller.perception.track import Track
 from idc_controller.perception.track_list import TrackList
 
@@ -33,20 +37,10 @@ class TrackEstimate(NamedTuple):
     growth: float
 
 
-class MapObstacle(NamedTuple):
-    """An obstacle that is known before the flight."""
-
-    name: str
-    shape: Shape
-    centre: Array
-    """Centre in the world (3,) (NED, m); of a moving obstacle, the mean of its motion."""
-    moves: bool = False
-
-
 class ObstacleMap:
     """An :class:`~idc_controller.geometry.obstacles.ObstacleSource`. Times are the team's (s).
 
-    Add telemetry to :attr:`scans`, call :meth:`update` once a control step, then :meth:`predict`.
+    Add telemetry to :attr:`placement`, call :meth:`update` once a control step, then :meth:`predict`.
     """
 
     def __init__(
@@ -61,15 +55,15 @@ class ObstacleMap:
         self._settings = s = settings
         models = MotionModels(s.tracking.motion)
         moving = [Track(o.name, models, s, o.shape, o.centre) for o in known if o.moves]
-        self._standing = _Standing([o for o in known if not o.moves])
+        self._standing = StandingObstacles([o for o in known if not o.moves])
         self._tracks = TrackList(moving, [obstacle.name for obstacle in known], models, s)
         self._view_range = s.retention.in_view_share * sensor_range
-        self.scans = ScanAssembly(sensors, s.scans)
-        """Takes poses and failures of the range sensors from telemetry."""
-        self.placement = ScanPlacement(sensors, rays, s.scans, self.scans.poses, self.scans.range_sensors)
-        """Takes scans from telemetry."""
+        self.placement = ScanPlacement(sensors, rays, s.scans)
+        """Takes scans, poses and failures of the range sensors from telemetry."""
         self._segmentation = Segmentation(rays.pattern.spacing, sensor_range - s.scans.cut_sigmas * sensors.range_noise)
         self._check = MapCheck(self._standing.obstacles, self._view_range, s)
+        self._seen, self._cover, self.pieces = StandingMap(s.standing_map), ConvexPieces(), PieceObstacles()
+        self._sigmas = math.sqrt(float(upper_quantile(s.standing_map.false_alarm, 3)))
         self._time = -math.inf
         self._deleted: list[str] = []
 
@@ -80,18 +74,20 @@ class ObstacleMap:
         unusable_positions: frozenset[int] = frozenset(),
         unusable_attitudes: frozenset[int] = frozenset(),
     ) -> None:
-        """Update the tracks by all detections since the last call, see :meth:`ScanAssembly.frames`."""
+        """Update map and tracks by all scans since the last call, see :meth:`ScanPlacement.scans`."""
         self._time = now
-        poses = pose_noise_scale, unusable_positions, unusable_attitudes
-        frames = self._segmentation.frames(self.placement.scans(now, *poses), self._settings.scans.simultaneous)
-        for clusters in [*self.scans.frames(now, *poses), *frames]:
-            self._update(clusters)
+        scans = self.placement.scans(now, pose_noise_scale, unusable_positions, unusable_attitudes)
+        for frame in frames(scans, self._settings.scans.simultaneous):
+            self._update(frame)
+        if scans:
+            self.pieces.update(self._cover.update(self._seen))
+            self._tracks.absorb(self._seen.is_standing)
         self._deleted += self._tracks.retain(now, self.sensing_lost, self._in_field_of_view)
 
     @property
     def sensing_lost(self) -> bool:
         """Return whether no vehicle has had a valid range sensor for some time."""
-        return self.scans.range_sensors.lost(self.scans.poses.uavs, self._time)
+        return self.placement.range_sensors.lost(self.placement.poses.uavs, self._time)
 
     @property
     def map_offsets(self) -> dict[int, Array]:
@@ -118,33 +114,68 @@ class ObstacleMap:
     def predict(self, times: Array, region: Region | None = None) -> list[PredictedObstacle]:
         """Return all obstacles at ``times`` (K,) (s); standing ones that are out of ``region`` are left out."""
         times = np.asarray(times, dtype=float)
-        found = self._standing.predict(len(times), region)
-        return found + [track.predict(times, self._time) for track in self.tracks if track.is_confirmed]
+        found = self._standing.predict(len(times), region) + self.pieces.predict(len(times), region)
+        return found + [track.predict(times, self._time) for track in self.tracks if track.is_obstacle]
 
     def confirmed_tracks(self, time: float) -> list[TrackEstimate]:
         """Return the confirmed tracks that were detected, at ``time`` (s)."""
         found = []
         for track in self.tracks:
-            if track.is_confirmed and track.filter is not None:
+            if track.is_obstacle and track.filter is not None:
                 position, growth = track.centre(time)
                 found.append(TrackEstimate(time, track.name, track.shape, position, track.velocity, growth))
         return found
 
     # Inside
 
-    def _update(self, placed: list[Cluster]) -> None:
-        """Take one frame: clusters of all vehicles at one time."""
-        time = max(cluster.scan.time for cluster in placed)
+    def _update(self, frame: list[PlacedScan]) -> None:
+        """Take one frame: scans of all vehicles at one time."""
         offsets = self._check.offsets
-        clusters = [c.shifted(-offsets[c.uav]) if c.uav in offsets else c for c in placed]
         # With their offset removed, they are used only if there are no others.
         excluded = frozenset() if self.map_offset_detected else frozenset(offsets)
-        memory, standing = self._tracks.memory, self._standing.names
-        names = [track.name for track in self.tracks] + standing
+        placed: list[Cluster] = []
+        candidates: list[int] = []
+        for scan in frame:
+            corrected = shifted(scan, -offsets[scan.uav]) if scan.uav in offsets else scan
+            known, of_tracks, unexplained = self._classified(corrected)
+            rest = (known[1] & ~known[0]) | of_tracks | unexplained
+            placed += self._segmentation.clusters(scan, known[0])
+            for cluster, share in self._segmentation.shares(scan, rest, unexplained):
+                if share > 0.5:
+                    candidates.append(cluster.number)
+                placed.append(cluster)
+            if scan.uav not in excluded:
+                self._seen.add(corrected, known[0] | of_tracks)
+        if placed:
+            self._associate(placed, offsets, excluded, frozenset(candidates))
+
+    def _classified(self, scan: PlacedScan) -> tuple[tuple[Mask, Mask], Mask, Mask]:
+        """Return which returns of a scan (n,) belong to what.
+
+        Those on standing obstacles of the map, and those near them; those on tracks that move; those that nothing
+        standing explains.
+        """
+        s, sigma = self._settings.association, self._sigmas * return_sigma(scan)
+        distance = self._standing.distance(scan.returns, scan.origin)
+        known = distance <= np.maximum(s.map_gate, sigma)
+        of_tracks = np.zeros(len(known), dtype=bool)
+        moving = [track for track in self.tracks if track.is_obstacle and not track.is_static]
+        if moving and len(known):
+            centres = np.array([track.expected(scan.time)[0] for track in moving])
+            to_tracks = Bodies([track.shape for track in moving]).distance(scan.returns, centres)
+            of_tracks = (to_tracks <= np.maximum(s.track_gate, sigma)).any(axis=0) & ~known
+        unexplained = self._seen.unexplained(scan) & ~known
+        return (known, distance <= s.remembered_gate), of_tracks, unexplained
+
+    def _associate(
+        self, placed: list[Cluster], offsets: dict[int, Array], excluded: frozenset[int], candidates: frozenset[int]
+    ) -> None:
+        """Update map check and tracks by the clusters of a frame; ``candidates``: numbers of those that may be new."""
+        time = max(cluster.scan.time for cluster in placed)
+        clusters = [c.shifted(-offsets[c.uav]) if c.uav in offsets else c for c in placed]
+        standing = self._standing.names
         distances, gates = self._distances(clusters, time)
-        index = {name: i for i, name in enumerate(names)}
-        remembered = [index.get(memory.name(cluster, time)) for cluster in clusters]
-        bodies = associate(clusters, distances, gates, remembered, self._settings.association)
+        bodies = associate(clusters, distances, gates)
         n = len(self.tracks)
         on_map = [None if body is None or body < n else body - n for body in bodies]
         self._check.compare(placed, on_map, distances[:, n:])
@@ -153,15 +184,14 @@ class ObstacleMap:
         assigned: dict[int, list[Cluster]] = defaultdict(list)
         unassigned: list[Cluster] = []
         for cluster, body in zip(clusters, bodies, strict=True):
-            if body is not None:
-                memory.set(cluster, names[body], time)
-                if body < n:
-                    assigned[body].append(cluster)
-            elif cluster.uav not in excluded:
-                unassigned.append(cluster)
+            if body is None:
+                if cluster.uav not in excluded and cluster.number in candidates:
+                    unassigned.append(cluster)
+            elif body < n:
+                assigned[body].append(cluster)
         self._tracks.update(assigned)
         self._tracks.merge(clusters, bodies, distances, standing)
-        self._tracks.begin(unassigned, time)
+        self._tracks.begin(unassigned)
 
     def _distances(self, clusters: list[Cluster], time: float) -> tuple[Array, Array]:
         """Return mean distances of the clusters from tracks and standing obstacles (m), and the gates of those (m)."""
@@ -181,42 +211,15 @@ class ObstacleMap:
         return np.hstack([of_tracks, of_standing]), np.array(gates)
 
     def _valid_uavs(self) -> tuple[int, ...]:
-        return self.scans.range_sensors.valid(self.scans.poses.uavs, self._time)
+        return self.placement.range_sensors.valid(self.placement.poses.uavs, self._time)
 
     def _in_field_of_view(self, track: Track) -> bool:
         """Return whether the range sensor of a vehicle whose telemetry comes in would certainly detect a track now."""
         timeout = self._settings.retention.link_timeout
-        places = [self.scans.poses.position(uav, self._time, timeout) for uav in self._valid_uavs()]
+        places = [self.placement.poses.position(uav, self._time, timeout) for uav in self._valid_uavs()]
         near = np.array([place for place in places if place is not None])
         if not len(near):
             return False
         centre, _ = track.centre(self._time)
         distance = Bodies([track.shape]).distance(near, centre[None])
         return bool(distance.min() < self._view_range)
-
-
-class _Standing:
-    """The standing obstacles of the map, gathered."""
-
-    def __init__(self, known: Sequence[MapObstacle]) -> None:
-        self.obstacles = [(o.name, o.shape, o.centre) for o in known]
-        self.names = [o.name for o in known]
-        self.bodies = Bodies([o.shape for o in known])
-        self.centres = np.array([o.centre for o in known]).reshape(-1, 3)
-        self._reach = np.array([o.shape.horizontal_reach for o in known])
-        self._predicted: dict[int, list[PredictedObstacle]] = {}
-
-    def predict(self, count: int, region: Region | None) -> list[PredictedObstacle]:
-        """Return them at ``count`` moments, all or those that reach into a ``region``."""
-        if count not in self._predicted:
-            none = np.zeros(count)
-            self._predicted[count] = [
-                PredictedObstacle(name, shape, np.tile(centre, (count, 1)), none)
-                for name, shape, centre in self.obstacles
-            ]
-        predicted = self._predicted[count]
-        if region is None:
-            return predicted[:]
-        apart = self.centres[:, :2] - region.place[:2]
-        near = np.hypot(apart[:, 0], apart[:, 1]) <= region.radius + self._reach
-        return [predicted[i] for i in np.flatnonzero(near).tolist()]

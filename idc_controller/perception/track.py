@@ -29,6 +29,10 @@ class Track:
     """Variance of its points beyond their sensors' (m2), until it is detected."""
     filter: ObstacleFilter | None = None
     last_detected: float = -math.inf
+    last_points: Array = field(default_factory=lambda: np.empty((0, 3)))
+    """Points of the last frame (n, 3)."""
+    has_moved: bool = False
+    """It has been seen to move; at rest, the standing map holds it."""
     clusters: int = 0
     is_deleted: bool = False
     """Not detected in the field of view; a track of the map is kept for another detection."""
@@ -40,12 +44,14 @@ class Track:
     def update(self, parts: list[SurfacePoints]) -> None:
         """Take the points of one frame, by all vehicles that detect it."""
         points = joined(parts)
+        self.last_points = points.points
         if self.filter is None:
             self.filter = ObstacleFilter(
                 self.models, points, self.map_shape, self.settings.tracking, scatter=self.scatter
             )
         else:
             self.filter.update(points)
+        self.has_moved = self.has_moved or self.filter.is_moving(self.settings.standing_map.false_alarm)
         self.last_detected = max(self.last_detected, points.time)
         self.clusters += len(parts)
         self.is_deleted = False
@@ -55,6 +61,11 @@ class Track:
         """Return whether it counts as an obstacle."""
         confirmed = self.map_shape is not None or self.clusters >= self.settings.retention.confirmations
         return not self.is_deleted and confirmed
+
+    @property
+    def is_obstacle(self) -> bool:
+        """Return whether it counts as an obstacle beside those that stand."""
+        return self.is_confirmed and (self.map_shape is not None or self.has_moved)
 
     @property
     def is_static(self) -> bool:

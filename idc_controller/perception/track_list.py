@@ -5,11 +5,11 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Mask
 from idc_controller.geometry.obstacles import Bodies, PointGroups
-from idc_controller.perception.association import ClusterMemory, gating_shape
+from idc_controller.perception.association import gating_shape
+from idc_controller.perception.clusters import Cluster
 from idc_controller.perception.motion_imm import MotionModels
-from idc_controller.perception.scan_assembly import Cluster
 from idc_controller.perception.settings import PerceptionSettings
 from idc_controller.perception.track import Track
 
@@ -23,7 +23,6 @@ class TrackList:
         """``known``: tracks of the map's moving obstacles; ``names``: of all its obstacles."""
         self._settings = settings
         self.tracks = list(known)
-        self.memory = ClusterMemory(settings.association.memory)
         self._models = models
         self._names = set(names)
         self._deleted: list[tuple[float, Track]] = []
@@ -38,8 +37,8 @@ class TrackList:
         scatter = [t.filter.scatter for t in self.tracks if t.map_shape is None and t.filter is not None]
         self._scatter = max(scatter, default=self._scatter)
 
-    def begin(self, clusters: list[Cluster], time: float) -> None:
-        """Begin tracks from clusters that belong to no obstacle, at ``time`` (s)."""
+    def begin(self, clusters: list[Cluster]) -> None:
+        """Begin tracks from clusters that belong to no obstacle."""
         for members in self._grouped(clusters):
             while f"track {self._next_number}" in self._names:
                 self._next_number += 1
@@ -47,8 +46,6 @@ class TrackList:
             self._next_number += 1
             track.update([member.surface_points for member in members])
             self.tracks.append(track)
-            for member in members:
-                self.memory.set(member, track.name, time)
 
     def merge(self, clusters: list[Cluster], bodies: list[int | None], distances: Array, standing: list[str]) -> None:
         """Remove the younger of two tracks of one obstacle, whose points belong to the older one for some frames.
@@ -85,9 +82,19 @@ class TrackList:
                 if overlaps[name] >= s.merge_frames:
                     if track in self.tracks:
                         self.tracks.remove(track)
-                    self.memory.rename(track.name, name)
                     break
             track.overlaps = overlaps
+
+    def absorb(self, stands: Callable[[Array], Mask]) -> None:
+        """Remove tracks that have come to rest, once the standing map holds the points that were seen of them last.
+
+        ``stands``: returns whether the map holds what stands at points (n, 3) (n,).
+        """
+        self.tracks = [
+            track
+            for track in self.tracks
+            if track.map_shape is not None or not track.is_static or not stands(track.last_points).mean() > 0.5
+        ]
 
     def retain(self, now: float, sensing_lost: bool, in_field_of_view: Callable[[Track], bool]) -> list[str]:
         """Delete tracks that are not detected; return the names of confirmed ones that are deleted.
@@ -98,7 +105,6 @@ class TrackList:
             in_field_of_view: whether a vehicle would certainly detect a track.
         """
         s = self._settings.retention
-        self.memory.forget(now)
         self._deleted = [(since, track) for since, track in self._deleted if now - since <= s.restorable]
         if sensing_lost:
             self._restore()

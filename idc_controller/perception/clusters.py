@@ -1,0 +1,114 @@
+"""Clusters: returns of one vehicle's scan that are near to each other, in frames of all vehicles."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import count
+from typing import NamedTuple
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from idc_controller.arrays import Array, Indices, Mask
+from idc_controller.perception.placed_scan import PlacedScan
+from idc_controller.perception.surfaces.points import SurfacePoints
+
+_GAP_MIN = 0.6
+"""Gap between returns up to which they are one cluster (m), and in mean distances between rays:"""
+_GAP_SPACINGS = 1.5
+
+
+class Cluster(NamedTuple):
+    """Returns of one vehicle that are near to each other: a part of a scan."""
+
+    uav: int
+    number: int
+    scan: SurfacePoints
+    part: slice = slice(None)
+
+    @property
+    def surface_points(self) -> SurfacePoints:
+        """The points with all that is known of them."""
+        return self.scan[self.part]
+
+    @property
+    def points(self) -> Array:
+        """The points (n, 3) (NED, m)."""
+        return self.scan.points[self.part]
+
+    @property
+    def pose_variance(self) -> Array:
+        """Variance of each point from the sensor's pose, on every axis (n,) (m2)."""
+        return self.scan.pose_variance[self.part]
+
+    def shifted(self, by: Array) -> Cluster:
+        """Return the cluster with its points shifted ``by`` (3,) (NED, m), detected from the same place."""
+        own = self.surface_points
+        return Cluster(self.uav, self.number, replace(own, points=own.points + by))
+
+
+class Segmentation:
+    """Numbers clusters: no two of them have the same number."""
+
+    def __init__(self, spacing: float, cut_range: float) -> None:
+        """``spacing``: angle between rays (rad); returns beyond ``cut_range`` (m) are at the end of the range."""
+        self._spacing, self._cut_range = spacing, cut_range
+        self._numbers = count()
+
+    def shares(self, scan: PlacedScan, rows: Mask, wanted: Mask) -> list[tuple[Cluster, float]]:
+        """Return the clusters of the returns ``rows`` (n,), each with its share of ``wanted`` ones (n,)."""
+        order, clusters = self._segmented(scan, rows)
+        among = wanted[rows][order]
+        return [(cluster, float(among[cluster.part].mean())) for cluster in clusters]
+
+    def clusters(self, scan: PlacedScan, rows: Mask) -> list[Cluster]:
+        """Return the clusters of those returns of a scan that ``rows`` (n,) names."""
+        return self._segmented(scan, rows)[1]
+
+    def _segmented(self, scan: PlacedScan, rows: Mask) -> tuple[Indices, list[Cluster]]:
+        points = scan.returns[rows]
+        if not len(points):
+            return np.empty(0, dtype=np.int64), []
+        distance = np.linalg.norm(points - scan.origin, axis=1)
+        gap = np.maximum(_GAP_SPACINGS * self._spacing * distance, _GAP_MIN)
+        i, j = cKDTree(points).query_pairs(float(gap.max()), output_type="ndarray").T
+        near = np.linalg.norm(points[i] - points[j], axis=1) <= np.minimum(gap[i], gap[j])
+        pairs = coo_array((near[near], (i[near], j[near])), shape=(len(points), len(points)))
+        found, labels = connected_components(pairs, directed=False)
+        order = np.argsort(labels, kind="stable")
+        points, distance = points[order], distance[order]
+        surface = SurfacePoints(
+            scan.time, points, np.tile(scan.origin, (len(points), 1)), distance > self._cut_range, scan.range_sigma,
+            scan.position_sigma**2 + (scan.attitude_sigma * distance) ** 2,
+        )  # fmt: skip
+        ends = np.cumsum(np.bincount(labels, minlength=found)).tolist()
+        return order, [
+            Cluster(scan.uav, next(self._numbers), surface, slice(first, last))
+            for first, last in zip([0, *ends], ends, strict=False)
+        ]
+
+
+def frames(scans: list[PlacedScan], simultaneous: float) -> Iterator[list[PlacedScan]]:
+    """Yield scans, oldest first, that are within ``simultaneous`` (s), frame by frame."""
+    frame: list[PlacedScan] = []
+    for scan in scans:
+        if frame and scan.time - frame[0].time > simultaneous:
+            yield frame
+            frame = []
+        frame.append(scan)
+    if frame:
+        yield frame
+
+
+def return_sigma(scan: PlacedScan) -> Array:
+    """Return the largest standard deviation of each return of a scan (n,) (m)."""
+    distance = np.linalg.norm(scan.returns - scan.origin, axis=1)
+    return np.asarray(np.sqrt(scan.range_sigma**2 + scan.position_sigma**2 + (scan.attitude_sigma * distance) ** 2))
+
+
+def shifted(scan: PlacedScan, by: Array) -> PlacedScan:
+    """Return a scan made ``by`` (3,) (NED, m) from where it was."""
+    return replace(scan, origin=scan.origin + by, returns=scan.returns + by, free_rays=scan.free_rays + by)

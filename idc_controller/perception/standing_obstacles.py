@@ -1,0 +1,104 @@
+"""Standing obstacles: those of the map, and the convex pieces that cover what range sensors have hit."""
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from idc_controller.arrays import Array
+from idc_controller.geometry.obstacles import Bodies, PredictedObstacle, Region
+from idc_controller.geometry.shape import Shape
+from idc_controller.perception.convex_pieces import Piece
+
+
+class MapObstacle(NamedTuple):
+    """An obstacle that is known before the flight."""
+
+    name: str
+    shape: Shape
+    centre: Array
+    """Centre in the world (3,) (NED, m); of a moving obstacle, the mean of its motion."""
+    moves: bool = False
+
+
+class StandingObstacles:
+    """The standing obstacles of the map, gathered."""
+
+    def __init__(self, known: Sequence[MapObstacle]) -> None:
+        self.obstacles = [(o.name, o.shape, o.centre) for o in known]
+        self.names = [o.name for o in known]
+        self.bodies = Bodies([o.shape for o in known])
+        self.centres = np.array([o.centre for o in known]).reshape(-1, 3)
+        self._reach = np.array([o.shape.horizontal_reach for o in known])
+        self._predicted: dict[int, list[PredictedObstacle]] = {}
+
+    def predict(self, count: int, region: Region | None) -> list[PredictedObstacle]:
+        """Return them at ``count`` moments, all or those that reach into a ``region``."""
+        if count not in self._predicted:
+            self._predicted[count] = [at_rest(count, *obstacle) for obstacle in self.obstacles]
+        predicted = self._predicted[count]
+        if region is None:
+            return predicted[:]
+        apart = self.centres[:, :2] - region.place[:2]
+        near = np.hypot(apart[:, 0], apart[:, 1]) <= region.radius + self._reach
+        return [predicted[i] for i in np.flatnonzero(near).tolist()]
+
+    def distance(self, points: Array, origin: Array) -> Array:
+        """Return the distance (n,) (m) of points (n, 3), seen from ``origin`` (3,), from the next surface."""
+        none = np.full(len(points), math.inf)
+        if not len(points) or not self.names:
+            return none
+        farthest = float(np.hypot(*(points[:, :2] - origin[:2]).T).max())
+        apart = self.centres[:, :2] - origin[:2]
+        near = np.flatnonzero(np.hypot(apart[:, 0], apart[:, 1]) <= farthest + self._reach + 2.0)
+        if not len(near):
+            return none
+        shapes = [self.bodies.shapes[i] for i in near.tolist()]
+        return np.asarray(np.abs(Bodies(shapes).distance(points, self.centres[near])).min(axis=0))
+
+
+class PieceObstacles:
+    """The pieces of the standing map as obstacles, kept while they do not change."""
+
+    def __init__(self) -> None:
+        self._known: dict[int, tuple[Array, Shape]] = {}
+        self._pieces: list[tuple[str, Shape, Array]] = []
+        self._places = np.empty((0, 2))
+        self._reach = np.empty(0)
+        self._predicted: dict[int, list[PredictedObstacle]] = {}
+
+    def update(self, pieces: Iterable[Piece]) -> None:
+        """Take the pieces as they are now."""
+        known: dict[int, tuple[Array, Shape]] = {}
+        for piece in pieces:
+            box, shape = self._known.get(piece.number, (None, None))
+            if shape is None or box is not piece.box:
+                shape = piece.shape
+            known[piece.number] = piece.box, shape
+        self._known = known
+        self._pieces = [(f"piece {number}", shape, box[:3]) for number, (box, shape) in known.items()]
+        self._places = np.array([centre[:2] for *_, centre in self._pieces]).reshape(-1, 2)
+        self._reach = np.array([shape.horizontal_reach for _, shape, _ in self._pieces])
+        self._predicted = {}
+
+    @property
+    def all(self) -> list[tuple[str, Shape, Array]]:
+        """Name, shape and centre (3,) (NED, m) of each."""
+        return self._pieces
+
+    def predict(self, count: int, region: Region | None) -> list[PredictedObstacle]:
+        """Return them at ``count`` moments, all or those that reach into a ``region``."""
+        if count not in self._predicted:
+            self._predicted[count] = [at_rest(count, *piece) for piece in self._pieces]
+        predicted = self._predicted[count]
+        if region is None:
+            return predicted[:]
+        apart = self._places - region.place[:2]
+        near = np.hypot(apart[:, 0], apart[:, 1]) <= region.radius + self._reach
+        return [predicted[i] for i in np.flatnonzero(near).tolist()]
+
+
+def at_rest(count: int, name: str, shape: Shape, centre: Array) -> PredictedObstacle:
+    """Return an obstacle that stands, at ``count`` moments."""
+    return PredictedObstacle(name, shape, np.tile(centre, (count, 1)), np.zeros(count))
