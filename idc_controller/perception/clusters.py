@@ -13,6 +13,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from idc_controller.arrays import Array, Indices, Mask
+from idc_controller.perception.cluster_kernels import bounded_clusters
 from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.surfaces.points import SurfacePoints
 
@@ -53,16 +54,40 @@ class Cluster(NamedTuple):
 class Segmentation:
     """Numbers clusters: no two of them have the same number."""
 
-    def __init__(self, spacing: float, cut_range: float) -> None:
-        """``spacing``: angle between rays (rad); returns beyond ``cut_range`` (m) are at the end of the range."""
-        self._spacing, self._cut_range = spacing, cut_range
+    def __init__(self, spacing: float, cut_range: float, size: float) -> None:
+        """Set what counts.
+
+        Args:
+            spacing: angle between rays (rad).
+            cut_range: returns beyond are at the end of the range (m).
+            size: horizontal extent up to which a cluster is small (m).
+        """
+        self._spacing, self._cut_range, self._size = spacing, cut_range, size
         self._numbers = count()
 
-    def shares(self, scan: PlacedScan, rows: Mask, wanted: Mask) -> list[tuple[Cluster, float]]:
-        """Return the clusters of the returns ``rows`` (n,), each with its share of ``wanted`` ones (n,)."""
+    def candidates(self, scan: PlacedScan, rows: Mask, unexplained: Mask) -> tuple[list[Cluster], set[int]]:
+        """Return the clusters of the returns ``rows`` (n,), and the numbers of those whose motion can be seen.
+
+        They are mostly ``unexplained`` (n,) by what stands, or small with both sides in sight.
+        """
         order, clusters = self._segmented(scan, rows)
-        among = wanted[rows][order]
-        return [(cluster, float(among[cluster.part].mean())) for cluster in clusters]
+        if not clusters:
+            return clusters, set()
+        indices = np.flatnonzero(rows)[order]
+        labels = np.full(len(scan.returns), -1)
+        for label, cluster in enumerate(clusters):
+            labels[indices[cluster.part]] = label
+        bounded = bounded_clusters(
+            np.ascontiguousarray(scan.origin), scan.returns, labels, scan.free_rays, len(clusters), self._spacing,
+            _GAP_MIN,
+        )  # fmt: skip
+        seen = set()
+        for is_bounded, cluster in zip(bounded.tolist(), clusters, strict=True):
+            points = cluster.points[:, :2]
+            is_small = float(np.ptp(points, axis=0).max()) <= self._size
+            if (is_bounded and is_small) or unexplained[indices[cluster.part]].mean() > 0.5:
+                seen.add(cluster.number)
+        return clusters, seen
 
     def clusters(self, scan: PlacedScan, rows: Mask) -> list[Cluster]:
         """Return the clusters of those returns of a scan that ``rows`` (n,) names."""

@@ -7,6 +7,7 @@ import numpy as np
 from idc_controller.arrays import Array, Cells, Indices, Links, Mask
 from idc_controller.compiled import inlined, kernel
 from idc_controller.perception.voxel_kernels import (
+    BORN,
     CELLS,
     HELD,
     MEAN,
@@ -36,14 +37,16 @@ def cells_at(table: Indices, pages: Links, cells: Cells, points: Array, size: fl
     return found
 
 
-@kernel("boolean[::1](int64[:, ::1], int32[:, ::1], int32[:, ::1], float64[:, ::1], float64[:, ::1], float64)")
-def stands_at(table: Indices, pages: Links, links: Links, elements: Array, points: Array, size: float) -> Mask:
-    """Return whether the voxels with ``points`` (n, 3) hold standing points (n,)."""
+@kernel("boolean[::1](int64[:, ::1], int32[:, ::1], int32[:, ::1], float64[:, ::1], float64[:, ::1], float64, float64)")
+def stands_at(
+    table: Indices, pages: Links, links: Links, elements: Array, points: Array, size: float, since: float
+) -> Mask:
+    """Return whether the voxels with ``points`` (n, 3) hold standing points, and have ``since`` that time (s) (n,)."""
     found = np.zeros(points.shape[0], np.bool_)
     for p in range(points.shape[0]):
         x, y, z = voxel(points[p, 0], size), voxel(points[p, 1], size), voxel(points[p, 2], size)
         index = element_at(table, pages, links, x, y, z)
-        found[p] = index >= 0 and elements[index, PROVEN] == 1.0
+        found[p] = index >= 0 and elements[index, PROVEN] == 1.0 and elements[index, BORN] <= since
     return found
 
 

@@ -60,7 +60,11 @@ class ObstacleMap:
         self._view_range = s.retention.in_view_share * sensor_range
         self.placement = ScanPlacement(sensors, rays, s.scans)
         """Takes scans, poses and failures of the range sensors from telemetry."""
-        self._segmentation = Segmentation(rays.pattern.spacing, sensor_range - s.scans.cut_sigmas * sensors.range_noise)
+        self._segmentation = Segmentation(
+            rays.pattern.spacing,
+            sensor_range - s.scans.cut_sigmas * sensors.range_noise,
+            2.0 * s.tracking.surfaces.radius_max,
+        )
         self._check = MapCheck(self._standing.obstacles, self._view_range, s)
         self._seen, self._cover, self.pieces = StandingMap(s.standing_map), ConvexPieces(), PieceObstacles()
         self._sigmas = math.sqrt(float(upper_quantile(s.standing_map.false_alarm, 3)))
@@ -134,26 +138,28 @@ class ObstacleMap:
         # With their offset removed, they are used only if there are no others.
         excluded = frozenset() if self.map_offset_detected else frozenset(offsets)
         placed: list[Cluster] = []
-        candidates: list[int] = []
+        candidates: set[int] = set()
         for scan in frame:
             corrected = shifted(scan, -offsets[scan.uav]) if scan.uav in offsets else scan
-            known, of_tracks, unexplained = self._classified(corrected)
-            rest = (known[1] & ~known[0]) | of_tracks | unexplained
-            placed += self._segmentation.clusters(scan, known[0])
-            for cluster, share in self._segmentation.shares(scan, rest, unexplained):
-                if share > 0.5:
-                    candidates.append(cluster.number)
-                placed.append(cluster)
+            known, of_tracks, unexplained, is_new = self._classified(corrected)
+            clusters, seen = self._segmentation.candidates(scan, of_tracks | unexplained | is_new, unexplained)
+            candidates |= seen
+            near = known[1] & ~known[0] & ~(of_tracks | unexplained | is_new)
+            placed += [
+                *clusters,
+                *self._segmentation.clusters(scan, known[0]),
+                *self._segmentation.clusters(scan, near),
+            ]
             if scan.uav not in excluded:
                 self._seen.add(corrected, known[0] | of_tracks)
         if placed:
-            self._associate(placed, offsets, excluded, frozenset(candidates))
+            self._associate(placed, offsets, excluded, candidates)
 
-    def _classified(self, scan: PlacedScan) -> tuple[tuple[Mask, Mask], Mask, Mask]:
+    def _classified(self, scan: PlacedScan) -> tuple[tuple[Mask, Mask], Mask, Mask, Mask]:
         """Return which returns of a scan (n,) belong to what.
 
         Those on standing obstacles of the map, and those near them; those on tracks that move; those that nothing
-        standing explains.
+        standing explains; those of what has not been seen to stand for long.
         """
         s, sigma = self._settings.association, self._sigmas * return_sigma(scan)
         distance = self._standing.distance(scan.returns, scan.origin)
@@ -165,10 +171,12 @@ class ObstacleMap:
             to_tracks = Bodies([track.shape for track in moving]).distance(scan.returns, centres)
             of_tracks = (to_tracks <= np.maximum(s.track_gate, sigma)).any(axis=0) & ~known
         unexplained = self._seen.unexplained(scan) & ~known
-        return (known, distance <= s.remembered_gate), of_tracks, unexplained
+        observed = scan.time - self._settings.standing_map.settling_time
+        is_new = ~known & ~self._seen.is_standing(scan.returns, observed)
+        return (known, distance <= s.remembered_gate), of_tracks, unexplained, is_new
 
     def _associate(
-        self, placed: list[Cluster], offsets: dict[int, Array], excluded: frozenset[int], candidates: frozenset[int]
+        self, placed: list[Cluster], offsets: dict[int, Array], excluded: frozenset[int], candidates: set[int]
     ) -> None:
         """Update map check and tracks by the clusters of a frame; ``candidates``: numbers of those that may be new."""
         time = max(cluster.scan.time for cluster in placed)

@@ -110,10 +110,10 @@ class StandingMap:
         cells = self._cells_at(points)
         return np.asarray(cells == self.settings.free_passes)
 
-    def is_standing(self, points: Array) -> Mask:
-        """Return whether the voxels with ``points`` (n, 3) hold points that count as standing (n,)."""
+    def is_standing(self, points: Array, since: float = math.inf) -> Mask:
+        """Return whether the voxels with ``points`` (n, 3) hold what stands, and was first hit before ``since`` (s)."""
         v, points = self._store, np.ascontiguousarray(points, dtype=float).reshape(-1, 3)
-        return queries.stands_at(v.table, v.pages, v.links, v.elements, points, self.settings.voxel)
+        return queries.stands_at(v.table, v.pages, v.links, v.elements, points, self.settings.voxel, since)
 
     def unexplained(self, scan: PlacedScan) -> Mask:
         """Return the returns (n,) of a scan, before it is added, that standing points and noise do not explain.

@@ -1,0 +1,68 @@
+"""Whether the sides of clusters are in sight, compiled."""
+
+import math
+
+import numpy as np
+
+from idc_controller.arrays import Array, Indices, Mask
+from idc_controller.compiled import inlined, kernel
+
+#: Angle to a neighbouring ray (mean angles between rays): beyond the nearest ones, before those behind them.
+_NEIGHBOURS = 1.8
+
+
+@inlined
+def _length(x: float, y: float, z: float) -> float:
+    return math.sqrt(x * x + y * y + z * z)
+
+
+@kernel("boolean[::1](float64[::1], float64[:, ::1], int64[::1], float64[:, ::1], int64, float64, float64)")
+def bounded_clusters(
+    origin: Array, returns: Array, labels: Indices, free_rays: Array, count: int, spacing: float, gap: float
+) -> Mask:
+    """Return of which clusters (count,) both sides are in sight: the rays beside them end well behind, or nowhere.
+
+    Only to the left and right: what is higher than the field of view has sides as well.
+
+    Args:
+        origin: place of the sensor (3,), NED (m).
+        returns: (n, 3), NED (m).
+        labels: cluster of each (n,), -1: none.
+        free_rays: ends of the rays without return (m, 3), NED (m).
+        count: number of clusters.
+        spacing: mean angle between rays (rad).
+        gap: depth from which on one return is behind another (m).
+    """
+    n, m = returns.shape[0], free_rays.shape[0]
+    directions, ranges = np.empty((n + m, 3)), np.empty(n + m)
+    for j in range(n + m):
+        for k in range(3):
+            directions[j, k] = (returns[j, k] if j < n else free_rays[j - n, k]) - origin[k]
+        ranges[j] = _length(directions[j, 0], directions[j, 1], directions[j, 2])
+        for k in range(3):
+            directions[j, k] /= max(ranges[j], 1e-9)
+    is_open, sides = np.zeros(count, np.bool_), np.zeros((count, 2), np.bool_)
+    limit = (_NEIGHBOURS * spacing) ** 2
+    for i in range(n):
+        label = labels[i]
+        if label < 0 or is_open[label]:
+            continue
+        x, y, z = directions[i]
+        level = math.sqrt(x * x + y * y)
+        if level < 1e-3:
+            is_open[label] = True
+            continue
+        u, v = -y / level, x / level
+        for j in range(n + m):
+            a, b, c = directions[j, 0] - x, directions[j, 1] - y, directions[j, 2] - z
+            square = a * a + b * b + c * c
+            if square > limit or (j < n and labels[j] == label):
+                continue
+            lateral = a * u + b * v
+            if 2.0 * lateral * lateral < square:
+                continue
+            if j < n and ranges[j] < ranges[i] + gap:
+                is_open[label] = True
+                break
+            sides[label, 1 if lateral > 0.0 else 0] = True
+    return ~is_open & sides[:, 0] & sides[:, 1]
