@@ -236,3 +236,20 @@ def carve(
             else:
                 z += z_step
                 z_next += z_apart
+
+
+@kernel(f"void({ARRAYS}, int64[::1], int64)")
+def release(
+    table: Indices,
+    pages: Links,
+    blocks: Indices,
+    cells: Cells,
+    links: Links,
+    elements: Array,
+    counts: Indices,
+    indices: Indices,
+    free_passes: int,
+) -> None:
+    """Remove elements with ``indices`` (n,) whose points belong to what has moved; no ray has passed there yet."""
+    for index in indices:
+        free_element(table, pages, blocks, cells, links, elements, counts, index, free_passes, 0)

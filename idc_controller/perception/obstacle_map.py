@@ -84,6 +84,8 @@ class ObstacleMap:
         for frame in frames(scans, self._settings.scans.simultaneous):
             self._update(frame)
         if scans:
+            moved = [body for track in self.tracks for body in track.take_places()]
+            self._seen.release(moved, self._settings.association.map_gate)
             self.pieces.update(self._cover.update(self._seen))
             self._tracks.absorb(self._seen.is_standing)
         self._deleted += self._tracks.retain(now, self.sensing_lost, self._in_field_of_view)

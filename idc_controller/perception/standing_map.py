@@ -8,6 +8,7 @@ own record of hits and passes makes improbable while they stand.
 """
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -15,9 +16,11 @@ from scipy.special import ndtri
 
 from idc_controller.arrays import Array, Cells, Indices, Mask
 from idc_controller.estimation.health.chi_squared import upper_quantile
+from idc_controller.geometry.obstacles import Bodies
+from idc_controller.geometry.shape import Shape
 from idc_controller.perception import map_query_kernels as queries
 from idc_controller.perception import upright_box_kernels as boxes
-from idc_controller.perception.carving_kernels import carve
+from idc_controller.perception.carving_kernels import carve, release
 from idc_controller.perception.convex_pieces_kernels import nearest_owners
 from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.return_kernels import add_returns
@@ -100,6 +103,20 @@ class StandingMap:
             *arrays, origin, returns, free, sigmas, number, s.voxel, s.free_passes, s.sigmas_beyond,
             s.incidence_min, self._prior, self._evidence, s.memory,
         )  # fmt: skip
+
+    def release(self, bodies: Sequence[tuple[Shape, Array]], gap: float) -> None:
+        """Remove the points within ``gap`` (m) of bodies that move, each a shape and its centre (3,) (NED, m).
+
+        Where a body is, or was when it was seen, nothing else stands.
+        """
+        v = self._store
+        indices = queries.used_elements(v.elements, v.counts)
+        if not len(indices) or not bodies:
+            return
+        means = v.elements[indices, MEAN : MEAN + 3]
+        distance = Bodies([shape for shape, _ in bodies]).distance(means, np.array([centre for _, centre in bodies]))
+        found = indices[(distance <= gap).any(axis=0)]
+        release(v.table, v.pages, v.blocks, v.cells, v.links, v.elements, v.counts, found, self.settings.free_passes)
 
     def is_occupied(self, points: Array) -> Mask:
         """Return whether the voxels with ``points`` (n, 3) hold points that were hit (n,)."""

@@ -33,6 +33,8 @@ class Track:
     """Points of the last frame (n, 3)."""
     has_moved: bool = False
     """It has been seen to move; at rest, the standing map holds it."""
+    places: list[Array] = field(default_factory=list)
+    """Where it was seen (3,) (NED, m), until they are taken."""
     clusters: int = 0
     is_deleted: bool = False
     """Not detected in the field of view; a track of the map is kept for another detection."""
@@ -51,6 +53,7 @@ class Track:
             )
         else:
             self.filter.update(points)
+        self.places.append(self.filter.state[0])
         self.has_moved = self.has_moved or self.filter.is_moving(self.settings.standing_map.false_alarm)
         self.last_detected = max(self.last_detected, points.time)
         self.clusters += len(parts)
@@ -61,6 +64,13 @@ class Track:
         """Return whether it counts as an obstacle."""
         confirmed = self.map_shape is not None or self.clusters >= self.settings.retention.confirmations
         return not self.is_deleted and confirmed
+
+    def take_places(self) -> list[tuple[Shape, Array]]:
+        """Return its body at all places where it was seen since the last call, none before it is known to move."""
+        if not (self.has_moved and not self.is_static and self.is_confirmed):
+            return []
+        places, self.places = self.places, []
+        return [(self.shape, place) for place in places]
 
     @property
     def is_obstacle(self) -> bool:
