@@ -17,6 +17,7 @@ from gcs.flight.failsafe import Failsafe
 from gcs.flight.failsafe_state import FailsafeState
 from gcs.flight.listing import listing
 from gcs.flight.phase import Phase
+from gcs.flight.plan_monitor import PlanMonitor
 from vehicle_sim.swarm import Swarm
 
 DOCS = Path(__file__).parents[1] / "docs"
@@ -38,7 +39,9 @@ def link(number, *, age=0.0, attitude_age=0.0, latency=0.0, armed=True, offboard
 
 def state(*links, lost=()):
     estimator = SimpleNamespace(health=SimpleNamespace(isolation=SimpleNamespace(uavs_without_position=lost)))
-    system = System(SimpleNamespace(links=links), estimator, SimpleNamespace(blocked=lambda time: ""), None, None)
+    system = System(
+        SimpleNamespace(links=links), estimator, SimpleNamespace(blocked=lambda time: ""), None, None, PlanMonitor(4)
+    )
     return FailsafeState(system, AlarmLog())
 
 

@@ -21,7 +21,16 @@ class FailsafeSettings(SettingsTable):
     placement_tolerance: float = setting(
         0.3, "m", "from a vehicle to its place over the payload, before take-off", gt=0.0
     )
-    tilt_limit: float = setting(math.radians(45.0), "rad", "payload tilt at which control is lost", gt=0.0)
+    tilt_limit: float = setting(
+        math.radians(45.0), "rad", "payload tilt at which control is lost, or it is overturned by its own unit", gt=0.0
+    )
+    deviation_limit: float = setting(
+        1.5, "m", "of half of the vehicles from their places in the plan, by their own positions", gt=0.0
+    )
+    deviation_time: float = setting(0.2, "s", "for which they must be that far off", ge=0.0)
+    confirming_deviation: float = setting(
+        0.4, "m", "of one vehicle, which confirms that the payload's unit reports it overturned", gt=0.0
+    )
     tilt_time: float = setting(0.5, "s", "for which the tilt must exceed its limit", ge=0.0)
     descent_timeout: float = setting(15.0, "s", "after the descent's planned end, with the payload still high", gt=0.0)
     arm_timeout: float = setting(12.0, "s", "until all vehicles are in OFFBOARD and armed", gt=0.0)

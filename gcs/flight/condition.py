@@ -12,6 +12,7 @@ from gcs.flight.alarms import Severity
 from gcs.flight.command_sequences import CommandSequence
 from gcs.flight.payload_monitor import PayloadMonitor
 from gcs.flight.phase import Phase
+from gcs.flight.plan_monitor import PlanMonitor
 from gcs.flight.preflight import Preflight
 from gcs.flight.team import Team
 from idc_controller.estimation.estimate import Estimate
@@ -77,6 +78,7 @@ class System:
     guidance: Guidance
     payload: PayloadMonitor
     preflight: Preflight
+    plan: PlanMonitor
     obstacle_map: ObstacleMap | None = None
     settings: FailsafeSettings = DEFAULTS.failsafe
 

@@ -181,6 +181,17 @@ def _payload_control_lost(system: System, moment: Moment) -> Trigger | None:
     return Trigger("control of the payload is lost", source="payload") if lost else None
 
 
+def _off_plan(system: System, moment: Moment) -> Trigger | None:
+    if not system.plan.is_off(moment.time):
+        return None
+    far = float(np.nanmedian(system.plan.deviations))
+    return Trigger(f"the vehicles report positions {far:.1f} m off the plan (median): a collision, or out of control")
+
+
+def _overturned(system: System, moment: Moment) -> Trigger | None:
+    return Trigger("its own unit reports it overturned", source="payload") if system.plan.is_overturned else None
+
+
 def _descent_stalled(system: System, moment: Moment) -> Trigger | None:
     if moment.estimate is None or moment.descent is None:
         return None
@@ -272,6 +283,10 @@ class Failsafe(AlarmCode):
     PAYLOAD_CONTROL_LOST = (Check.ESTIMATE, _payload_control_lost, Reaction.AUTONOMOUS_LANDING,
         "check the rigid links and the load",
         "the payload is tilted by more than {tilt_limit:.2f} rad, or its state is unknown, for {tilt_time} s")
+    OFF_PLAN = (Check.IN_AIR, _off_plan, Reaction.AUTONOMOUS_LANDING, "locate the vehicles; stay clear",
+        "half of the vehicles have been more than {deviation_limit} m off the plan for {deviation_time} s")
+    OVERTURNED = (Check.IN_AIR, _overturned, Reaction.AUTONOMOUS_LANDING, "locate the vehicles; stay clear",
+        "the payload's own unit reports a tilt beyond {tilt_limit:.2f} rad, and a vehicle is off its place")
     DESCENT_STALLED = (Check.ESTIMATE, _descent_stalled, Reaction.AUTONOMOUS_LANDING, "check wind, load and positions",
         "the payload is still high {descent_timeout:g} s after the planned end of its descent")
     # fmt: on

@@ -13,6 +13,7 @@ from gcs.flight.failsafe_state import FailsafeState
 from gcs.flight.mission_trajectory import MissionTrajectory
 from gcs.flight.payload_monitor import PayloadMonitor
 from gcs.flight.phase import CONTROLLED, IN_AIR, Phase
+from gcs.flight.plan_monitor import PlanMonitor
 from gcs.flight.preflight import Preflight
 from gcs.flight.spool import SpoolDown, Touchdown, spool_up_share
 from gcs.flight.team import Team
@@ -39,9 +40,11 @@ class Flight:
         self.mission, self.control, self._settings = mission, control, mission.system.flight
         settings = self._settings
         payload, preflight = PayloadMonitor(control.controller.parameters, settings), Preflight(team, settings)
+        plan = PlanMonitor(control.controller.parameters.number_of_uavs, settings.failsafe)
         system = System(
-            team, control.estimator, control.controller.guidance, payload, preflight, obstacle_map, settings.failsafe
-        )
+            team, control.estimator, control.controller.guidance, payload, preflight, plan, obstacle_map,
+            settings.failsafe,
+        )  # fmt: skip
         self.failsafes = FailsafeState(system, alarms)
         self.phase = Phase.CONNECT
         self.time = 0.0
@@ -98,6 +101,7 @@ class Flight:
     def add_measurement(self, measurement: Measurement) -> Measurement | None:
         """Take telemetry of a vehicle or of the payload unit; return what is used of it."""
         if self.phase in CONTROLLED:
+            self.system.plan.add(measurement)
             return self.control.estimator.add(measurement)
         if self.phase in (Phase.CHECK, Phase.ARM):
             self.system.preflight.add(measurement)
@@ -242,6 +246,8 @@ class Flight:
         share = self._thrust_share(time, estimate)
         if in_air:
             self.control.send(record, effective, leaves)
+            places = self.control.estimator.measurement_model.vehicles(time, record.decision.flat.x[0])
+            self.system.plan.compare(estimate.time, places.values[:, :3])
         self._advance(time, estimate, share)
         return Setpoints(record.decision.directions, record.decision.thrusts * share), record
 

@@ -13,15 +13,13 @@ from idc_controller.geometry.obstacles import Bodies, PointGroups, PredictedObst
 from idc_controller.geometry.shape import Shape
 from idc_controller.perception.association import associate, gating_shape
 from idc_controller.perception.clusters import Cluster, Segmentation, frames, return_sigma, shifted
-from idc_controller.perception.convex_pieces import ConvexPieces
 from idc_controller.perception.map_check import MapCheck
 from idc_controller.perception.motion_imm import MotionModels
 from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.range_sensors import SensorModel
 from idc_controller.perception.scan_placement import ScanPlacement, SensorRays
 from idc_controller.perception.settings import PerceptionSettings
-from idc_controller.perception.standing_map import StandingMap
-from idc_controller.perception.standing_obstacles import MapObstacle, PieceObstacles, StandingObstacles
+from idc_controller.perception.standing_obstacles import MapObstacle, SeenObstacles, StandingObstacles
 from idc_controller.perception.track import Track
 from idc_controller.perception.track_list import TrackList
 
@@ -66,7 +64,8 @@ class ObstacleMap:
             2.0 * s.tracking.surfaces.radius_max,
         )
         self._check = MapCheck(self._standing.obstacles, self._view_range, s)
-        self._seen, self._cover, self.pieces = StandingMap(s.standing_map), ConvexPieces(), PieceObstacles()
+        self.seen = SeenObstacles(s.standing_map)
+        """What the range sensors have seen to stand."""
         self._sigmas = math.sqrt(float(upper_quantile(s.standing_map.false_alarm, 3)))
         self._time = -math.inf
         self._deleted: list[str] = []
@@ -85,9 +84,9 @@ class ObstacleMap:
             self._update(frame)
         if scans:
             moved = [body for track in self.tracks for body in track.take_places()]
-            self._seen.release(moved, self._settings.association.map_gate)
-            self.pieces.update(self._cover.update(self._seen))
-            self._tracks.absorb(self._seen.is_standing)
+            self.seen.map.release(moved, self._settings.association.map_gate)
+            self.seen.update()
+            self._tracks.absorb(self.seen.map.is_standing)
         self._deleted += self._tracks.retain(now, self.sensing_lost, self._in_field_of_view)
 
     @property
@@ -120,7 +119,7 @@ class ObstacleMap:
     def predict(self, times: Array, region: Region | None = None) -> list[PredictedObstacle]:
         """Return all obstacles at ``times`` (K,) (s); standing ones that are out of ``region`` are left out."""
         times = np.asarray(times, dtype=float)
-        found = self._standing.predict(len(times), region) + self.pieces.predict(len(times), region)
+        found = self._standing.predict(len(times), region) + self.seen.predict(len(times), region)
         return found + [track.predict(times, self._time) for track in self.tracks if track.is_obstacle]
 
     def confirmed_tracks(self, time: float) -> list[TrackEstimate]:
@@ -153,7 +152,7 @@ class ObstacleMap:
                 *self._segmentation.clusters(scan, near),
             ]
             if scan.uav not in excluded:
-                self._seen.add(corrected, known[0] | of_tracks)
+                self.seen.map.add(corrected, known[0] | of_tracks)
         if placed:
             self._associate(placed, offsets, excluded, candidates)
 
@@ -172,9 +171,9 @@ class ObstacleMap:
             centres = np.array([track.expected(scan.time)[0] for track in moving])
             to_tracks = Bodies([track.shape for track in moving]).distance(scan.returns, centres)
             of_tracks = (to_tracks <= np.maximum(s.track_gate, sigma)).any(axis=0) & ~known
-        unexplained = self._seen.unexplained(scan) & ~known
+        unexplained = self.seen.map.unexplained(scan) & ~known
         observed = scan.time - self._settings.standing_map.settling_time
-        is_new = ~known & ~self._seen.is_standing(scan.returns, observed)
+        is_new = ~known & ~self.seen.map.is_standing(scan.returns, observed)
         return (known, distance <= s.remembered_gate), of_tracks, unexplained, is_new
 
     def _associate(

@@ -1,7 +1,7 @@
 """Standing obstacles: those of the map, and the convex pieces that cover what range sensors have hit."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -9,7 +9,9 @@ import numpy as np
 from idc_controller.arrays import Array
 from idc_controller.geometry.obstacles import Bodies, PredictedObstacle, Region
 from idc_controller.geometry.shape import Shape
-from idc_controller.perception.convex_pieces import Piece
+from idc_controller.perception.convex_pieces import ConvexPieces
+from idc_controller.perception.settings import StandingMapSettings
+from idc_controller.perception.standing_map import StandingMap
 
 
 class MapObstacle(NamedTuple):
@@ -58,20 +60,22 @@ class StandingObstacles:
         return np.asarray(np.abs(Bodies(shapes).distance(points, self.centres[near])).min(axis=0))
 
 
-class PieceObstacles:
-    """The pieces of the standing map as obstacles, kept while they do not change."""
+class SeenObstacles:
+    """The standing map, and the pieces that cover it as obstacles, kept while they do not change."""
 
-    def __init__(self) -> None:
+    def __init__(self, settings: StandingMapSettings) -> None:
+        self.map = StandingMap(settings)
+        self._cover = ConvexPieces()
         self._known: dict[int, tuple[Array, Shape]] = {}
         self._pieces: list[tuple[str, Shape, Array]] = []
         self._places = np.empty((0, 2))
         self._reach = np.empty(0)
         self._predicted: dict[int, list[PredictedObstacle]] = {}
 
-    def update(self, pieces: Iterable[Piece]) -> None:
-        """Take the pieces as they are now."""
+    def update(self) -> None:
+        """Cover what has changed in the map."""
         known: dict[int, tuple[Array, Shape]] = {}
-        for piece in pieces:
+        for piece in self._cover.update(self.map):
             box, shape = self._known.get(piece.number, (None, None))
             if shape is None or box is not piece.box:
                 shape = piece.shape
@@ -83,7 +87,7 @@ class PieceObstacles:
         self._predicted = {}
 
     @property
-    def all(self) -> list[tuple[str, Shape, Array]]:
+    def pieces(self) -> list[tuple[str, Shape, Array]]:
         """Name, shape and centre (3,) (NED, m) of each."""
         return self._pieces
 

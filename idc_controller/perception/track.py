@@ -15,6 +15,29 @@ from idc_controller.perception.surfaces.points import SurfacePoints, joined
 
 
 @dataclass(eq=False)
+class Detections:
+    """When and where a track was detected. Times in s, NED, m."""
+
+    last: float = -math.inf
+    clusters: int = 0
+    points: Array = field(default_factory=lambda: np.empty((0, 3)))
+    """Points of the last frame (n, 3)."""
+    places: list[Array] = field(default_factory=list)
+    """Its centres (3,), until they are taken."""
+
+    def add(self, points: SurfacePoints, clusters: int, centre: Array) -> None:
+        """Add one frame."""
+        self.last, self.points = max(self.last, points.time), points.points
+        self.clusters += clusters
+        self.places.append(centre)
+
+    def take_places(self) -> list[Array]:
+        """Return the centres since the last call."""
+        places, self.places = self.places, []
+        return places
+
+
+@dataclass(eq=False)
 class Track:
     """An obstacle with its filter; a moving obstacle of the map has none until it is detected. Times in s."""
 
@@ -28,14 +51,9 @@ class Track:
     scatter: float = 0.0
     """Variance of its points beyond their sensors' (m2), until it is detected."""
     filter: ObstacleFilter | None = None
-    last_detected: float = -math.inf
-    last_points: Array = field(default_factory=lambda: np.empty((0, 3)))
-    """Points of the last frame (n, 3)."""
+    detections: Detections = field(default_factory=lambda: Detections())
     has_moved: bool = False
     """It has been seen to move; at rest, the standing map holds it."""
-    places: list[Array] = field(default_factory=list)
-    """Where it was seen (3,) (NED, m), until they are taken."""
-    clusters: int = 0
     is_deleted: bool = False
     """Not detected in the field of view; a track of the map is kept for another detection."""
     is_retained: bool = False
@@ -46,31 +64,27 @@ class Track:
     def update(self, parts: list[SurfacePoints]) -> None:
         """Take the points of one frame, by all vehicles that detect it."""
         points = joined(parts)
-        self.last_points = points.points
         if self.filter is None:
             self.filter = ObstacleFilter(
                 self.models, points, self.map_shape, self.settings.tracking, scatter=self.scatter
             )
         else:
             self.filter.update(points)
-        self.places.append(self.filter.state[0])
         self.has_moved = self.has_moved or self.filter.is_moving(self.settings.standing_map.false_alarm)
-        self.last_detected = max(self.last_detected, points.time)
-        self.clusters += len(parts)
+        self.detections.add(points, len(parts), self.filter.state[0])
         self.is_deleted = False
 
     @property
     def is_confirmed(self) -> bool:
         """Return whether it counts as an obstacle."""
-        confirmed = self.map_shape is not None or self.clusters >= self.settings.retention.confirmations
+        confirmed = self.map_shape is not None or self.detections.clusters >= self.settings.retention.confirmations
         return not self.is_deleted and confirmed
 
     def take_places(self) -> list[tuple[Shape, Array]]:
         """Return its body at all places where it was seen since the last call, none before it is known to move."""
         if not (self.has_moved and not self.is_static and self.is_confirmed):
             return []
-        places, self.places = self.places, []
-        return [(self.shape, place) for place in places]
+        return [(self.shape, place) for place in self.detections.take_places()]
 
     @property
     def is_obstacle(self) -> bool:
@@ -102,7 +116,7 @@ class Track:
             growth = np.full(len(times), self.settings.retention.undetected_growth)
             return PredictedObstacle(self.name, self.shape, positions, growth)
         if self._coasts_at_rest(now):
-            times = times - (now - self.last_detected)
+            times = times - (now - self.detections.last)
         return PredictedObstacle(self.name, self.shape, *self.filter.predict(times))
 
     def centre(self, time: float) -> tuple[Array, float]:
@@ -123,4 +137,4 @@ class Track:
         return self.filter.state[0], min(self.filter.position_sigma, largest)
 
     def _coasts_at_rest(self, now: float) -> bool:
-        return self.is_static and now - self.last_detected > self.settings.retention.coasting_after
+        return self.is_static and now - self.detections.last > self.settings.retention.coasting_after

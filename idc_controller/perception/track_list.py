@@ -93,7 +93,7 @@ class TrackList:
         self.tracks = [
             track
             for track in self.tracks
-            if track.map_shape is not None or not track.is_static or not stands(track.last_points).mean() > 0.5
+            if track.map_shape is not None or not track.is_static or not stands(track.detections.points).mean() > 0.5
         ]
 
     def retain(self, now: float, sensing_lost: bool, in_field_of_view: Callable[[Track], bool]) -> list[str]:
@@ -111,7 +111,7 @@ class TrackList:
             return []
         kept, deleted = [], []
         for track in self.tracks:
-            undetected = now - track.last_detected
+            undetected = now - track.detections.last
             on_map = track.map_shape is not None
             if undetected <= s.tentative_time or track.is_retained or (on_map and track.is_deleted):
                 kept.append(track)
