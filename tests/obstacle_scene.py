@@ -1,30 +1,37 @@
-"""Obstacles detected by range sensors, for tests of the obstacle map: points with noise, no MAVLink."""
+"""Obstacles seen by range sensors, for tests of perception: the sensors' rays, first hits and noise, no MAVLink."""
 
 import math
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
-import pymavlink.dialects.v20.ardupilotmega as mavlink
-from segmenting_sensor import SegmentingSensor
 
 from gcs.config import RangeSensorConfig
 from gcs.flight.stack import sensor_rays
 from gcs.mission.known_obstacles import known_obstacles
 from idc_controller.estimation.measurements import Attitude, Position, VehicleStates
-from idc_controller.geometry.box import Wall
+from idc_controller.geometry.box import Box, Wall
+from idc_controller.geometry.obstacles import Bodies
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
 from idc_controller.perception.obstacle_map import ObstacleMap
 from idc_controller.perception.range_sensors import SensorModel
-from idc_controller.perception.scan_assembly import Detections
+from idc_controller.perception.scan_placement import Returns, ScanEnd
 from idc_controller.perception.surfaces.points import SurfacePoints, joined
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
 from vehicle_sim.world.obstacle_bodies import Obstacle
+from vehicle_sim.world.range_sensor import RangeSample, RangeSensor
+from vehicle_sim.world.ray_bodies import RayBodies
+from vehicle_sim.world.sensors import Measurement
 
 REACH, NOISE = 10.0, 0.05
 POSITION_NOISE, ATTITUDE_NOISE = 0.02, math.radians(0.2)
 #: Of four UAVs about the formation's centre, at the height at which they fly above the payload.
 FORMATION = np.array([[0.5, 0.5, 0.0], [0.5, -0.5, 0.0], [-0.5, -0.5, 0.0], [-0.5, 0.5, 0.0]])
-RAYS = sensor_rays(RangeSensorConfig())
+CONFIG = RangeSensorConfig(range=REACH, noise=NOISE)
+RAYS = sensor_rays(CONFIG)
+#: A lidar that looks everywhere and that no telemetry link limits, for fits to points of one obstacle.
+DENSE = replace(CONFIG, rays=6000, elevation_min_deg=-89.0, elevation_max_deg=89.0)
 SENSORS = SensorModel(NOISE, POSITION_NOISE, ATTITUDE_NOISE)
 HERE = np.array([0.0, 0.0, -6.0])
 
@@ -41,84 +48,97 @@ def wall(position, size=(0.3, 5.0, 6.0), yaw=0.3, name="wall"):
     return Obstacle(name, Wall(tuple(size), yaw), tuple(position))
 
 
-def messages_of(scan):
-    """As a vehicle sends it."""
-    return [
-        mavlink.MAVLink_obstacle_distance_3d_message(
-            round(scan.time * 1e3), mavlink.MAV_DISTANCE_SENSOR_LASER, mavlink.MAV_FRAME_BODY_FRD,
-            number, *point, 0.05, scan.reach,
-        )
-        for number, point in zip(scan.obstacle_ids.tolist(), scan.points.tolist(), strict=True)
-    ]  # fmt: skip
+def box(position, size=(1.0, 1.0, 1.0), yaw=0.0, name="box"):
+    return Obstacle(name, Box(tuple(size), yaw=yaw), tuple(position))
 
 
-def detections_of(message):
-    """What the ground takes of it."""
-    has_place = message.frame == mavlink.MAV_FRAME_BODY_FRD
-    point = (message.x, message.y, message.z) if has_place else (math.nan,) * 3
-    return Detections(
-        message.time_boot_ms, np.array([message.obstacle_id]), np.array([point], dtype=float),
-        np.array([message.max_distance], dtype=float),
-    )  # fmt: skip
+class Look(NamedTuple):
+    """One scan of UAV ``uav`` (0 .. N-1), its measured pose, and the true points that its returns hit (n, 3)."""
+
+    uav: int
+    position: np.ndarray
+    quaternion: np.ndarray
+    sample: RangeSample
+    hits: np.ndarray
+
+    @property
+    def sigmas(self):
+        """Standard deviation of each return by all errors together (n,) (m)."""
+        away = np.linalg.norm(self.sample.points, axis=1)
+        return np.sqrt(NOISE**2 + POSITION_NOISE**2 + (ATTITUDE_NOISE * away) ** 2)
 
 
 class Scene:
     """Four UAVs that look around. Poses on the ground's side have the noise of the default navigation."""
 
-    def __init__(self, seed=0, uavs=4, noise=NOISE, reach=REACH, loss=0.0):
+    def __init__(self, seed=0, uavs=4, noise=NOISE, reach=REACH, loss=0.0, sensor=CONFIG):
         self.rng = np.random.default_rng([seed, 7])
         self.reach, self.noise, self.loss = reach, noise, loss
-        self.sensors = [SegmentingSensor(reach, noise, seed, i) for i in range(1, uavs + 1)]
+        config = replace(sensor, noise=noise, range=reach)
+        self._sensors = [RangeSensor(config, seed, i) for i in range(1, uavs + 1)]
+        # The same draws of missed returns.
+        self._exact = [RangeSensor(replace(config, noise=0.0), seed, i) for i in range(1, uavs + 1)]
 
     def look(self, time, centre, obstacles):
-        """Return [(uav, position, attitude, RangeSample)] at ``time``, the formation at ``centre`` (3,)."""
-        found = []
-        for i, sensor in enumerate(self.sensors):
+        """Return the scans at ``time``, the formation at ``centre`` (3,)."""
+        found, bodies = [], RayBodies.of([(o.shape, o.position_in_world) for o in obstacles])
+        for i, sensor in enumerate(self._sensors):
             position = np.asarray(centre) + FORMATION[i]
             angles = self.rng.normal(0.0, 0.05, 3)
-            scan = sensor.scan(time, position, tuple(quaternion_from_euler(*angles)), obstacles)
+            attitude = tuple(quaternion_from_euler(*angles).tolist())
+            own = Measurement(time, attitude, (0.0,) * 3, tuple(position), (0.0,) * 3)
+            arguments = time, round(time * 1e3), tuple(position), attitude, own, bodies
+            sample, exact = sensor.scan(*arguments), self._exact[i].scan(*arguments)
             measured = position + self.rng.normal(0.0, POSITION_NOISE, 3)
             errors = self.rng.normal(0.0, ATTITUDE_NOISE, 3)
             if self.rng.uniform() >= self.loss:
-                found.append((i, measured, quaternion_from_euler(*(angles + errors)), scan))
+                hits = position + exact.points @ rotation_from_quaternion(np.array(attitude)).T
+                found.append(Look(i, measured, quaternion_from_euler(*(angles + errors)), sample, hits))
         return found
 
-    def scans(self, time, centre, obstacles):
-        """[(uav, id, SurfacePoints)] of the scans at ``time`` with the formation at ``centre`` (3,)."""
+    def parts(self, time, centre, obstacle):
+        """Return [(uav, SurfacePoints)] on one obstacle at ``time`` with the formation at ``centre`` (3,)."""
         found = []
-        for i, measured, quaternion, scan in self.look(time, centre, obstacles):
-            rotation = rotation_from_quaternion(quaternion)
-            for number in sorted(set(scan.obstacle_ids.tolist())):
-                body = scan.points[scan.obstacle_ids == number]
-                distance = np.linalg.norm(body, axis=1)
-                found.append((i, number, SurfacePoints(
-                    time, measured + body @ rotation.T, np.tile(measured, (len(body), 1)),
-                    distance > self.reach - 4.0 * self.noise, self.noise,
-                    POSITION_NOISE**2 + (ATTITUDE_NOISE * distance) ** 2,
-                )))  # fmt: skip
+        for i, measured, quaternion, sample, _ in self.look(time, centre, [obstacle]):
+            if not len(sample.points):
+                continue
+            distance = np.linalg.norm(sample.points, axis=1)
+            found.append((i, SurfacePoints(
+                time, measured + sample.points @ rotation_from_quaternion(quaternion).T,
+                np.tile(measured, (len(distance), 1)), distance > self.reach - 4.0 * self.noise, self.noise,
+                POSITION_NOISE**2 + (ATTITUDE_NOISE * distance) ** 2,
+            )))  # fmt: skip
         return found
-
-    def feed(self, obstacle_map, time, centre, obstacles, off=None):
-        """Hand a map what it would get from telemetry at ``time``.
-
-        ``off`` (3,): error of the reported positions (m), of which the ground has estimates.
-        """
-        seen, states = self.look(time, centre, obstacles), np.zeros((len(self.sensors), 13))
-        for i, position, quaternion, _ in seen:
-            states[i, 0:3], states[i, 6:10] = position, quaternion
-        if off is not None:
-            obstacle_map.scans.poses.add_estimated(VehicleStates(time, states))
-        for i, position, quaternion, scan in seen:
-            obstacle_map.scans.poses.add_measured(Attitude(time, i, quaternion, np.zeros(3)))
-            reported = position if off is None else position + off
-            obstacle_map.scans.poses.add_measured(Position(time, i, reported, np.zeros(3)))
-            for message in messages_of(scan):
-                obstacle_map.scans.add(detections_of(message), i, time)
 
     def frame(self, time, centre, obstacle):
         """All points on one obstacle; None if no vehicle detects it."""
-        parts = [points for _, _, points in self.scans(time, centre, [obstacle])]
+        parts = [points for _, points in self.parts(time, centre, obstacle)]
         return joined(parts) if parts else None
+
+    def feed(self, obstacle_map, time, centre, obstacles, off=None):
+        """Hand a map what it would get from telemetry at ``time``, and return the scans.
+
+        ``off`` (3,): error of the reported positions (m), of which the ground has estimates.
+        """
+        seen, states = self.look(time, centre, obstacles), np.zeros((len(self._sensors), 13))
+        for i, position, quaternion, *_ in seen:
+            states[i, 0:3], states[i, 6:10] = position, quaternion
+        if off is not None:
+            obstacle_map.placement.poses.add_estimated(VehicleStates(time, states))
+        for found in seen:
+            reported = found.position if off is None else found.position + off
+            hand_over(obstacle_map.placement, time, found.uav, (reported, found.quaternion), found.sample.points)
+        return seen
+
+
+def hand_over(placement, time, uav, pose, points, rate=0.0):
+    """Give a placement the pose (None: none) and the complete scan of one vehicle, its ``points`` in the body frame."""
+    if pose is not None:
+        placement.poses.add_measured(Attitude(time, uav, np.asarray(pose[1]), np.full(3, rate)))
+        placement.poses.add_measured(Position(time, uav, np.asarray(pose[0]), np.full(3, rate)))
+    stamp = round(time * 1e3)
+    placement.add(Returns(stamp, np.ascontiguousarray(points), np.full(len(points), REACH)), uav, time, time)
+    placement.end(ScanEnd(stamp, REACH, True), uav, time, time)
 
 
 MOTIONS = {
@@ -156,28 +176,38 @@ def stop_and_go(t):
     return np.array([2.0 * going, 0.0, 0.0])
 
 
-def map_of(*known):
-    return ObstacleMap(known_obstacles(known), SENSORS, REACH, RAYS)
+def map_of(*known, rays=RAYS):
+    return ObstacleMap(known_obstacles(known), SENSORS, REACH, rays)
 
 
 def run(obstacle_map, obstacles, until, begin=0.0, scene=None, centre=lambda t: HERE, each=lambda t: None):
-    """Scans at 10 Hz and control steps at 20 Hz; ``obstacles(t)`` are the true ones."""
-    scene = scene or Scene(0)
+    """Scans at 10 Hz and control steps at 20 Hz; ``obstacles(t)`` are the true ones. Return all scans."""
+    scene, seen = scene or Scene(0), []
     for k in range(round(begin * 20), round(until * 20)):
         t = k / 20
         if k % 2 == 0:
-            scene.feed(obstacle_map, t, centre(t), obstacles(t))
+            seen += scene.feed(obstacle_map, t, centre(t), obstacles(t))
         obstacle_map.update(t)
         each(t)
-    return obstacle_map
+    return seen
 
 
-def places(obstacle_map, time):
-    return {b.name: b.position for b in obstacle_map.confirmed_tracks(time)}
+def moving_tracks(obstacle_map):
+    """Names of the tracks that count as obstacles."""
+    return [track.name for track in obstacle_map.tracks if track.is_obstacle]
 
 
 def nearest(obstacle_map, time, place):
     """Name and error of the track next to a place."""
-    found = places(obstacle_map, time)
+    found = {track.name: track.position for track in obstacle_map.confirmed_tracks(time)}
     name = min(found, key=lambda n: np.linalg.norm(found[n] - place))
     return name, float(np.linalg.norm(found[name] - place))
+
+
+def outside(obstacle_map, time, points, names=""):
+    """Signed distance (n,) of points from all that is predicted now whose names begin with ``names``; inf if none."""
+    found = [o for o in obstacle_map.predict(np.array([time])) if o.name.startswith(names)]
+    if not found:
+        return np.full(len(points), math.inf)
+    distance = Bodies([o.shape for o in found]).distance(points, np.array([o.positions[0] for o in found]))
+    return (distance - np.array([o.growth[0] for o in found])[:, None]).min(axis=0)

@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 import pytest
 from flight_in_process import InProcessFlight, short_figure
+from idc_controller.perception.scan_assembly import Cluster
 from obstacle_scene import (
     HERE,
     MOTIONS,
@@ -37,7 +38,6 @@ from idc_controller.geometry.sphere import Sphere
 from idc_controller.perception import track_list
 from idc_controller.perception.motion_imm import MotionModels
 from idc_controller.perception.obstacle_map import ObstacleMap
-from idc_controller.perception.scan_assembly import Cluster
 from idc_controller.perception.settings import PerceptionSettings
 from idc_controller.perception.track import Track
 from idc_controller.perception.track_list import TrackList

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 import pytest
+from idc_controller.perception.scan_assembly import ScanAssembly
 from obstacle_scene import (
     HERE,
     REACH,
@@ -19,7 +20,6 @@ from obstacle_scene import (
 from segmenting_sensor import SegmentedSample
 
 from idc_controller.estimation.measurements import Attitude, Position, VehicleStates
-from idc_controller.perception.scan_assembly import ScanAssembly
 from idc_controller.perception.scan_kernels import grouped, possible_points
 from idc_controller.perception.settings import ScanSettings
 

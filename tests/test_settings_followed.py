@@ -7,8 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from obstacle_scene import detections_of, messages_of
-from segmenting_sensor import SegmentedSample
+from obstacle_scene import hand_over
 from standing_obstacles import StandingObstacles
 
 from gcs.campaign.scenarios.judgement import least_separation
@@ -24,7 +23,7 @@ from gcs.mission.read import read_mission
 from idc_controller.control.constraints.uav_separation import UavSeparation
 from idc_controller.estimation.health.channel_isolation import ChannelIsolation
 from idc_controller.estimation.measurement_model import MeasurementModel
-from idc_controller.estimation.measurements import Attitude, MeasurementNoise, Position
+from idc_controller.estimation.measurements import Attitude, MeasurementNoise
 from idc_controller.estimation.settings import MeasurementModelSettings
 from idc_controller.geometry.sphere import Sphere
 from idc_controller.model.linear import LinearModel
@@ -200,16 +199,14 @@ def test_world_without_ticks_is_lost_after_the_time_of_the_file(tmp_path):
     assert reasons == ["the simulated world does not answer for 0.05 s"]
 
 
-def test_detections_have_the_noise_of_the_range_sensor_and_of_the_poses():
+def test_returns_have_the_noise_of_the_range_sensor_and_of_the_poses():
     config = system(range_sensor={"noise": 0.07}, sensors={"position": 0.03, "attitude_deg": 1.0})
-    scans = stack.obstacle_map(SimpleNamespace(system=config, obstacles=(), boundary=None)).scans
-    scans.poses.add_measured(Attitude(0.0, 0, np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3)))
-    scans.poses.add_measured(Position(0.0, 0, np.array([0.0, 0.0, -5.0]), np.zeros(3)))
-    for message in messages_of(SegmentedSample(0.0, 10.0, np.array([1]), np.array([[5.0, 0.0, 0.0]]))):
-        scans.add(detections_of(message), 0, 0.0)
-    [[cluster]] = scans.frames(0.0)
-    assert cluster.scan.noise == 0.07
-    assert cluster.pose_variance[0] == pytest.approx(0.03**2 + (5.0 * math.radians(1.0)) ** 2, rel=0.4)
+    placement = stack.obstacle_map(SimpleNamespace(system=config, obstacles=(), boundary=None)).placement
+    on_ray = 5.0 * stack.sensor_rays(config.range_sensor).pattern.directions(0)[:1]
+    hand_over(placement, 0.0, 0, ([0.0, 0.0, -5.0], [1.0, 0.0, 0.0, 0.0]), on_ray)
+    [scan] = placement.scans(0.0)
+    assert (scan.range_sigma, scan.attitude_sigma) == pytest.approx((0.07, math.radians(1.0)))
+    assert scan.position_sigma == pytest.approx(0.03, rel=0.01)
 
 
 def test_waypoints_are_passed_within_the_corner_of_the_motion(tmp_path):

@@ -29,6 +29,8 @@ class Cluster(NamedTuple):
     number: int
     scan: SurfacePoints
     part: slice = slice(None)
+    unexplained: int = 0
+    """Returns of it that nothing standing explains."""
 
     @property
     def surface_points(self) -> SurfacePoints:
@@ -48,7 +50,7 @@ class Cluster(NamedTuple):
     def shifted(self, by: Array) -> Cluster:
         """Return the cluster with its points shifted ``by`` (3,) (NED, m), detected from the same place."""
         own = self.surface_points
-        return Cluster(self.uav, self.number, replace(own, points=own.points + by))
+        return Cluster(self.uav, self.number, replace(own, points=own.points + by), unexplained=self.unexplained)
 
 
 class Segmentation:
@@ -74,6 +76,7 @@ class Segmentation:
         if not clusters:
             return clusters, set()
         indices = np.flatnonzero(rows)[order]
+        clusters = [c._replace(unexplained=int(unexplained[indices[c.part]].sum())) for c in clusters]
         labels = np.full(len(scan.returns), -1)
         for label, cluster in enumerate(clusters):
             labels[indices[cluster.part]] = label
@@ -85,7 +88,7 @@ class Segmentation:
         for is_bounded, cluster in zip(bounded.tolist(), clusters, strict=True):
             points = cluster.points[:, :2]
             is_small = float(np.ptp(points, axis=0).max()) <= self._size
-            if (is_bounded and is_small) or unexplained[indices[cluster.part]].mean() > 0.5:
+            if (is_bounded and is_small) or 2 * cluster.unexplained > len(points):
                 seen.add(cluster.number)
         return clusters, seen
 

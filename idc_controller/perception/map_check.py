@@ -21,6 +21,8 @@ class _Offset:
     def __init__(self, time: float, settings: MapCheckSettings, surfaces: SurfaceSettings) -> None:
         self.time, self._settings, self._surfaces = time, settings, surfaces
         self.mean = np.zeros(3)
+        self.agreements = 0
+        """Scans in a row, up to the last one, that agree with the map."""
         self._variance = np.full(3, settings.initial_sigma**2)
         self._scatter = 0.0  # variance of the points beyond their sensor's (m2)
         self._detected_since = math.inf
@@ -119,15 +121,18 @@ class MapCheck:
         _, shape, centre = self._standing[number]
         if mean is None:
             mean = float(Bodies([shape]).mean_distances(PointGroups.of([cluster.points]), centre[None])[0, 0])
-        if mean < s.agreement_sigmas * sigma:
+        agrees, offset = mean < s.agreement_sigmas * sigma, self._offsets.get(pair)
+        points = cluster.surface_points
+        if agrees:
             self._agreements[pair] = self._agreements.get(pair, 0) + 1
-            self._offsets.pop(pair, None)
-        elif self._agreements.get(pair, 0) >= s.agreements:
-            points = cluster.surface_points
-            offset = self._offsets.get(pair)
-            if offset is None:
-                offset = self._offsets[pair] = _Offset(points.time, s, self._surfaces)
+        elif offset is None and self._agreements.get(pair, 0) >= s.agreements:
+            offset = self._offsets[pair] = _Offset(points.time, s, self._surfaces)
+        if offset is not None:
+            # A few points may agree by chance: they count, but do not end an offset by themselves.
+            offset.agreements = offset.agreements + 1 if agrees else 0
             offset.update(points, shape, centre)
+            if offset.agreements >= s.agreements:
+                del self._offsets[pair]
 
     @property
     def offsets(self) -> dict[int, Array]:

@@ -145,12 +145,8 @@ class ObstacleMap:
             known, of_tracks, unexplained, is_new = self._classified(corrected)
             clusters, seen = self._segmentation.candidates(scan, of_tracks | unexplained | is_new, unexplained)
             candidates |= seen
-            near = known[1] & ~known[0] & ~(of_tracks | unexplained | is_new)
-            placed += [
-                *clusters,
-                *self._segmentation.clusters(scan, known[0]),
-                *self._segmentation.clusters(scan, near),
-            ]
+            # Whole, also where only a part of what is offset lies within the gate.
+            placed += [*clusters, *self._segmentation.clusters(scan, known[1] & ~of_tracks)]
             if scan.uav not in excluded:
                 self.seen.map.add(corrected, known[0] | of_tracks)
         if placed:

@@ -13,6 +13,9 @@ from idc_controller.perception.obstacle_filter import ObstacleFilter
 from idc_controller.perception.settings import PerceptionSettings
 from idc_controller.perception.surfaces.points import SurfacePoints, joined
 
+_UNEXPLAINED = 0.5
+"""Least share of the frames of what moves that nothing standing explains."""
+
 
 @dataclass(eq=False)
 class Detections:
@@ -24,12 +27,24 @@ class Detections:
     """Points of the last frame (n, 3)."""
     places: list[Array] = field(default_factory=list)
     """Its centres (3,), until they are taken."""
+    evidence: float = 0.0
+    """Evidence of its frames that nothing standing explains them (nats), not below 0."""
 
     def add(self, points: SurfacePoints, clusters: int, centre: Array) -> None:
         """Add one frame."""
         self.last, self.points = max(self.last, points.time), points.points
         self.clusters += clusters
         self.places.append(centre)
+
+    def add_evidence(self, is_unexplained: bool, false_share: float) -> None:
+        """Take whether standing points leave most of a frame unexplained: a cumulative sum test (Page 1954).
+
+        A fit to few points moves as the view of a body changes: its velocity alone is no evidence of motion.
+        ``false_share``: of the frames of what stands that are unexplained.
+        """
+        likely = _UNEXPLAINED if is_unexplained else 1.0 - _UNEXPLAINED
+        by_chance = false_share if is_unexplained else 1.0 - false_share
+        self.evidence = max(self.evidence + math.log(likely / by_chance), 0.0)
 
     def take_places(self) -> list[Array]:
         """Return the centres since the last call."""
@@ -61,8 +76,8 @@ class Track:
     overlaps: dict[str, int] = field(default_factory=dict)
     """Frames in a row in which its points belonged to another track as well."""
 
-    def update(self, parts: list[SurfacePoints]) -> None:
-        """Take the points of one frame, by all vehicles that detect it."""
+    def update(self, parts: list[SurfacePoints], unexplained: int = 0) -> None:
+        """Take the points of one frame, by all vehicles that detect it; ``unexplained``: by what stands."""
         points = joined(parts)
         if self.filter is None:
             self.filter = ObstacleFilter(
@@ -70,8 +85,11 @@ class Track:
             )
         else:
             self.filter.update(points)
-        self.has_moved = self.has_moved or self.filter.is_moving(self.settings.standing_map.false_alarm)
+        s = self.settings.standing_map
         self.detections.add(points, len(parts), self.filter.state[0])
+        self.detections.add_evidence(2 * unexplained > len(points.points), s.false_share)
+        is_evident = self.detections.evidence > -math.log(s.false_alarm)
+        self.has_moved = self.has_moved or (is_evident and self.filter.is_moving(s.false_alarm))
         self.is_deleted = False
 
     @property

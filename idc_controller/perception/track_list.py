@@ -32,7 +32,9 @@ class TrackList:
     def update(self, assigned: dict[int, list[Cluster]]) -> None:
         """Update tracks by the clusters of one frame, by index of the track."""
         for index, members in assigned.items():
-            self.tracks[index].update([cluster.surface_points for cluster in members])
+            self.tracks[index].update(
+                [cluster.surface_points for cluster in members], sum(cluster.unexplained for cluster in members)
+            )
         # Scatter is of the sensors: new tracks begin with it.
         scatter = [t.filter.scatter for t in self.tracks if t.map_shape is None and t.filter is not None]
         self._scatter = max(scatter, default=self._scatter)
@@ -44,7 +46,7 @@ class TrackList:
                 self._next_number += 1
             track = self._track(f"track {self._next_number}")
             self._next_number += 1
-            track.update([member.surface_points for member in members])
+            track.update([member.surface_points for member in members], sum(member.unexplained for member in members))
             self.tracks.append(track)
 
     def merge(self, clusters: list[Cluster], bodies: list[int | None], distances: Array, standing: list[str]) -> None:
