@@ -65,7 +65,7 @@ class TelemetryRouter:
 
     def _take(self, messages: Sequence[Received], sender: Address, now: float) -> bool:
         """Take the messages of a datagram; return whether it is from a vehicle of this flight."""
-        stamped: dict[int, list[Received]] = {}
+        groups: dict[int, list[Received]] = {}
         system = index = None
         for received in messages:
             if index is None or received.system != system:
@@ -75,16 +75,18 @@ class TelemetryRouter:
                     index = self._new_vehicle(received, sender)
                 if index is None:
                     continue
-                link, group = self._links[index], stamped.setdefault(index, [])
+                group = groups.setdefault(index, [])
             if received.target_system and not received.is_for(self._codec.system_id):
                 continue  # an answer to another system behind this address
-            link.handle(received, now)
-            if received.layout.message_id in _STAMPED:
-                group.append(received)
-        for index, group in stamped.items():
-            if group and self._links[index].clock.known:
-                self._route(group, index, now)
-        return bool(stamped)
+            group.append(received)
+        for index, group in groups.items():
+            if group:
+                link = self._links[index]
+                link.handle(group, now)
+                stamped = [received for received in group if received.layout.message_id in _STAMPED]
+                if stamped and link.clock.known:
+                    self._route(stamped, index, now)
+        return bool(groups)
 
     def _link_at(self, address: Address) -> VehicleLink | None:
         return next((link for link in self._links if link.address == address), None)
