@@ -18,7 +18,7 @@ from obstacle_scene import (
 )
 
 from idc_controller.estimation.measurements import Attitude, Position, VehicleStates
-from idc_controller.perception.scan_assembly import ScanAssembly
+from idc_controller.perception.scan_assembly import Detections, ScanAssembly
 from idc_controller.perception.scan_kernels import grouped, possible_points
 from idc_controller.perception.settings import ScanSettings
 from vehicle_sim.world.range_sensor import RangeSample
@@ -45,6 +45,18 @@ def test_pose_is_extrapolated_by_estimated_motion_when_none_is_measured():
         scans.add(detections_of(message), 0, t)
     [[cluster]] = scans.frames(t)
     assert cluster.surface_points.points[0] == pytest.approx(HERE + np.array([5.0, 2.0 * t, -5.0 * t]), abs=2e-3)
+
+
+def test_points_of_a_scan_are_used_without_those_that_are_impossible():
+    scans, level = ScanAssembly(SENSORS), np.array([1.0, 0.0, 0.0, 0.0])
+    scans.poses.add_measured(Attitude(0.0, 0, level, np.zeros(3)))
+    scans.poses.add_measured(Position(0.0, 0, HERE, np.zeros(3)))
+    points = np.array([[5.0, 0.0, 0.0], [np.nan, 0.0, 0.0], [6.0, 1.0, 0.0], [1e6, 0.0, 0.0]])
+    scans.add(Detections(7, np.array([1, 1, 2, 2]), points, np.full(4, REACH)), 0, 0.0)
+    [clusters] = scans.frames(0.0)
+    placed = [cluster.surface_points.points for cluster in clusters]
+    assert [p.tolist() for p in placed] == [[[*(HERE + points[0])]], [[*(HERE + points[2])]]]
+    assert scans.discarded == 2
 
 
 @pytest.mark.parametrize(("time", "nearest"), [(0.29, 3), (0.21, 2), (0.16, 2), (0.14, 1), (0.0, 0), (0.36, 4)])

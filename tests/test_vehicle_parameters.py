@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
 import pymavlink.dialects.v20.common as mavlink
 import pytest
 from vehicle_bench import (
@@ -13,6 +14,7 @@ from vehicle_bench import (
 
 from gcs.config.vehicle_settings import VehicleFailsafeSettings
 from gcs.mavlink import px4
+from vehicle_sim.autopilot.parameter_table import Parameter
 
 
 def value_of(messages: list[Any]) -> dict[str, Any]:
@@ -56,3 +58,8 @@ def test_parameters_are_set_or_the_kept_value_is_answered(
     answer = value_of(bench.request(mavlink.MAVLink_param_set_message(1, 1, name.encode(), value, kind)))
     assert answer == {name: stored}
     assert bench.vehicle.parameters[name] == stored
+
+
+def test_real_parameters_have_the_precision_of_the_wire_and_integers_are_exact() -> None:
+    assert Parameter("A", 0.1).value == float(np.float32(0.1)) != 0.1
+    assert Parameter("B", 2**24 + 1, type=mavlink.MAV_PARAM_TYPE_INT32).value == 2**24 + 1
