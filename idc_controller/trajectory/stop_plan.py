@@ -9,7 +9,6 @@ that no UAV is biased towards a place that the payload was meant to have.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cache
 from typing import NamedTuple
 
@@ -49,8 +48,7 @@ class Braking(NamedTuple):
         return BPoly(self.control_points(state[None], duration)[0][:, None, :], [0.0, duration])
 
 
-@dataclass(frozen=True, eq=False)
-class StopPlan:
+class StopPlan(NamedTuple):
     """Bezier curves that bring all UAVs to rest, over the same ``duration`` (s) from the same ``start`` (s)."""
 
     start: float
