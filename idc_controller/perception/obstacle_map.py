@@ -199,6 +199,8 @@ class _Standing:
 
     def predict(self, count: int, region: Region | None) -> list[PredictedObstacle]:
         """Return them at ``count`` moments, all or those that reach into a ``region``."""
+        if not self.obstacles:
+            return []
         if count not in self._predicted:
             none = np.zeros(count)
             self._predicted[count] = [

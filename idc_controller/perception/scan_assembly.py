@@ -132,20 +132,18 @@ class RangeSensors:
 
     def valid(self, uavs: Iterable[int], now: float, patience: float = 0.0) -> tuple[int, ...]:
         """Return those of ``uavs`` whose sensors are valid; a failure counts after ``patience`` (s)."""
-        s = self._settings
-
-        def is_invalid(uav: int) -> bool:
-            if now - self._failed.get(uav, math.inf) >= patience:
-                return True
-            invalid = self._invalid.get(uav, -math.inf)
-            return now - invalid <= s.recovery and invalid - self._valid.get(uav, -math.inf) > s.invalid_after
-
-        return tuple(uav for uav in uavs if not is_invalid(uav))
+        return tuple(uav for uav in uavs if not self._is_invalid(uav, now, patience))
 
     def lost(self, uavs: Iterable[int], now: float) -> bool:
         """Return whether there are ``uavs``, and all their sensors have been invalid for some time."""
         known = tuple(uavs)
-        return bool(known) and not self.valid(known, now, self._settings.invalid_after)
+        return bool(known) and all(self._is_invalid(uav, now, self._settings.invalid_after) for uav in known)
+
+    def _is_invalid(self, uav: int, now: float, patience: float) -> bool:
+        if now - self._failed.get(uav, math.inf) >= patience:
+            return True
+        invalid, s = self._invalid.get(uav, -math.inf), self._settings
+        return now - invalid <= s.recovery and invalid - self._valid.get(uav, -math.inf) > s.invalid_after
 
 
 class ScanAssembly:

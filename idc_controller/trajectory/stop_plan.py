@@ -8,6 +8,7 @@ In wind the team is not where the reference has it. The plan starts where the te
 that no UAV is biased towards a place that the payload was meant to have.
 """
 
+import math
 from collections.abc import Callable
 from functools import cache
 from typing import NamedTuple
@@ -70,7 +71,7 @@ def stop_plan(
     position, velocity and acceleration (3, 3) of a payload that hangs at rest below the UAVs.
     """
     layout, links = _layout(parameters.number_of_uavs), flat.links
-    error = np.zeros(layout.size) if x is None or not np.isfinite(x).all() else x - flat.x[0]
+    error = np.zeros(layout.size) if x is None or not math.isfinite(x @ x) else x - flat.x[0]
     motions = motion(
         flat.payload[:3, 0], error,
         links.q[0], links.q_dot[0], links.q_ddot[0], parameters.p, parameters.l, layout.s.start, layout.s_dot.start,
