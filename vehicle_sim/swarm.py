@@ -148,20 +148,23 @@ class Swarm:
 
     def next_timer(self) -> float | None:
         """Return when :meth:`datagrams_to_send` has something to do (s; in the past: at once), None: never."""
-        timers = [vehicle.next_timer() for vehicle in self.vehicles]
-        timers.append(self._faults.next_timer())
-        return min((timer for timer in timers if timer is not None), default=None)
+        timers = [timer for vehicle in self.vehicles if (timer := vehicle.next_timer()) is not None]
+        if (timer := self._faults.next_timer()) is not None:
+            timers.append(timer)
+        return min(timers, default=None)
 
     # Inside
 
     def _step(self) -> None:
         """Take one physics step."""
         world, periods = self.world, self._periods
-        if self.take_off_time is not None:
+        if self._obstacles.any_moves and self.take_off_time is not None:
             self._obstacles.move((world.steps + 1) / world.physics_hz - self.take_off_time)
         thrusts, torques = self._wrenches[world.steps % periods.onboard]
-        forces = self._faults.disturb(world, world.time)
-        world.step(thrusts, torques, *(forces or ()))
+        if self._faults.any_of_world:
+            world.step(thrusts, torques, *(self._faults.disturb(world, world.time) or ()))
+        else:
+            world.step(thrusts, torques)
         if self._truth is not None and (pairs := world.contacts().pairs) > self._contacts:
             self._contacts = pairs
         if self.take_off_time is None and not world.all_cradled:
