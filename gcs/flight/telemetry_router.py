@@ -16,7 +16,7 @@ from gcs.mavlink.id_check import SystemIdCheck
 from gcs.mavlink.messages import Received
 from gcs.mavlink.telemetry import detections, measurement, setpoint_flown
 from gcs.mavlink.vehicle_link import VehicleLink
-from idc_controller.estimation.measurements import Measurement
+from idc_controller.estimation.measurements import PAYLOAD, Measurement
 from idc_controller.perception.obstacle_map import ObstacleMap
 
 _SETPOINT, _DETECTION = mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET, mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D
@@ -149,8 +149,10 @@ class TelemetryRouter:
             link.setpoints.confirm(confirmation)
 
     def _add_measurement(self, sample: Measurement, obstacle_map: ObstacleMap | None) -> None:
-        self._id_check.add(sample)
         used = self._flight.add_measurement(sample)
+        if sample.source == PAYLOAD:
+            return
+        self._id_check.add(sample)
         if obstacle_map is not None and used is not None:
             obstacle_map.scans.poses.add_measured(used)
 
