@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
@@ -17,13 +18,20 @@ from gcs.mavlink.messages import Received
 from gcs.mavlink.telemetry import detections, measurement, setpoint_flown
 from gcs.mavlink.vehicle_link import VehicleLink
 from idc_controller.estimation.measurements import PAYLOAD, Measurement
-from idc_controller.perception.obstacle_map import ObstacleMap
 
 _SETPOINT, _DETECTION = mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET, mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D
 _STAMPED = frozenset(
     (mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED, _SETPOINT, _DETECTION)
 )
 """Messages of one moment, which their stamp names."""
+
+
+class _Routed(NamedTuple):
+    """What has come in one exchange for the estimator, in order."""
+
+    samples: list[Measurement]
+    setpoints: list[tuple[Received, int, float, float]]
+    """Set-points that vehicles report to fly: the message, the vehicle (0 .. N-1), since and until when (s)."""
 
 
 class TelemetryRouter:
@@ -50,20 +58,26 @@ class TelemetryRouter:
     def receive(self, datagrams: Sequence[tuple[bytes, Address]], now: float) -> list[bytes]:
         """Take datagrams, each with its sender; return those from vehicles of this flight."""
         codec = self._codec
-        # All are read before the first is routed: so many calls of one kind cost far less in a row.
+        # All are read before the first is routed, and all measurements added before the first report of a set-point: so
+        # many calls of one kind cost far less in a row.
         read = [(codec.read(datagram), codec.unread) for datagram, _ in datagrams]
         known = []
+        routed = _Routed([], [])
         for (datagram, sender), (messages, unread) in zip(datagrams, read, strict=True):
             if unread > self._unread:
                 self._unread = unread
                 if (link := self._link_at(sender)) is not None:
                     link.statistics.damaged += 1
-            if self._take(messages, sender, now):
+            if self._take(messages, sender, now, routed):
                 known.append(datagram)
         self.refused += len(datagrams) - len(known)
+        for sample in routed.samples:
+            self._add_measurement(sample)
+        for report in routed.setpoints:
+            self._confirm_setpoint(*report)
         return known
 
-    def _take(self, messages: Sequence[Received], sender: Address, now: float) -> bool:
+    def _take(self, messages: Sequence[Received], sender: Address, now: float, routed: _Routed) -> bool:
         """Take the messages of a datagram; return whether it is from a vehicle of this flight."""
         groups: dict[int, list[Received]] = {}
         system = index = None
@@ -85,7 +99,7 @@ class TelemetryRouter:
                 link.handle(group, now)
                 stamped = [received for received in group if received.layout.message_id in _STAMPED]
                 if stamped and link.clock.known:
-                    self._route(stamped, index, now)
+                    self._route(stamped, index, now, routed)
         return bool(groups)
 
     def _link_at(self, address: Address) -> VehicleLink | None:
@@ -106,7 +120,7 @@ class TelemetryRouter:
                 link.other_system_id = system_id
         return None
 
-    def _route(self, group: list[Received], index: int, now: float) -> None:
+    def _route(self, group: list[Received], index: int, now: float, routed: _Routed) -> None:
         """Route the messages, and runs of them, with a time stamp of one vehicle in one datagram."""
         link, obstacle_map = self._links[index], self._flight.system.obstacle_map
         offset = link.clock.offset
@@ -121,7 +135,8 @@ class TelemetryRouter:
                 stamp = received.time_boot_ms
                 time = whole_ms(stamp * 1e-3 - offset + team_offset)
             if message_id == _SETPOINT:
-                self._confirm_setpoint(received, index, time, latest, now)
+                # Its stamp is that of the moment at which it began to act.
+                routed.setpoints.append((received, index, time, min(max(time, latest), self._clock.time(now))))
             elif message_id == _DETECTION:
                 # Detections from before a clock jump have the stamp of another pose.
                 if obstacle_map is not None and now - link.clock.jumped_at > self._clock_settled:
@@ -131,29 +146,27 @@ class TelemetryRouter:
                 if sample is None or not sample.is_whole:
                     link.statistics.add_not_finite(received.component)
                 if sample is not None:
-                    self._add_measurement(sample, obstacle_map)
+                    routed.samples.append(sample)
             if time > latest:
                 latest = time
 
-    def _confirm_setpoint(self, received: Received, index: int, time: float, latest: float, now: float) -> None:
+    def _confirm_setpoint(self, received: Received, index: int, since: float, until: float) -> None:
         link, flight = self._links[index], self._flight
         setpoint = setpoint_flown(received.fields, link.status.parameters.get(px4.PARAM_THRUST_MAX, math.nan))
         if setpoint is None or flight.phase not in IN_AIR:
             return
-        # Its stamp is that of the moment at which it began to act.
-        until = min(max(time, latest), self._clock.time(now))
         confirmation = flight.control.estimator.confirm_setpoint(
-            index, time, until, setpoint, link.clock.spread, link.setpoints.delay_max
+            index, since, until, setpoint, link.clock.spread, link.setpoints.delay_max
         )
         if confirmation is not None:
             link.setpoints.confirm(confirmation)
 
-    def _add_measurement(self, sample: Measurement, obstacle_map: ObstacleMap | None) -> None:
+    def _add_measurement(self, sample: Measurement) -> None:
         used = self._flight.add_measurement(sample)
         if sample.source == PAYLOAD:
             return
         self._id_check.add(sample)
-        if obstacle_map is not None and used is not None:
+        if used is not None and (obstacle_map := self._flight.system.obstacle_map) is not None:
             obstacle_map.scans.poses.add_measured(used)
 
 
