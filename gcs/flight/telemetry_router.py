@@ -29,7 +29,8 @@ _STAMPED = frozenset(
 class _Routed(NamedTuple):
     """What has come in one exchange for the estimator, in order."""
 
-    samples: list[Measurement]
+    samples: list[tuple[Received, int, int, float]]
+    """Measurements: the message, its sender (0 .. N-1), the vehicle that sends as that, time of validity (s)."""
     setpoints: list[tuple[Received, int, float, float]]
     """Set-points that vehicles report to fly: the message, the vehicle (0 .. N-1), since and until when (s)."""
 
@@ -71,7 +72,7 @@ class TelemetryRouter:
             if self._take(messages, sender, now, routed):
                 known.append(datagram)
         self.refused += len(datagrams) - len(known)
-        for sample in routed.samples:
+        for sample in self._measurements(routed):
             self._add_measurement(sample)
         for report in routed.setpoints:
             self._confirm_setpoint(*report)
@@ -142,13 +143,20 @@ class TelemetryRouter:
                 if obstacle_map is not None and now - link.clock.jumped_at > self._clock_settled:
                     obstacle_map.scans.add(detections(received), index, time)
             else:
-                sample = measurement(received, uav, time)
-                if sample is None or not sample.is_whole:
-                    link.statistics.add_not_finite(received.component)
-                if sample is not None:
-                    routed.samples.append(sample)
+                routed.samples.append((received, index, uav, time))
             if time > latest:
                 latest = time
+
+    def _measurements(self, routed: _Routed) -> list[Measurement]:
+        """Return the measurements, as far as there are numbers in the messages."""
+        found = []
+        for received, sender, uav, time in routed.samples:
+            sample = measurement(received, uav, time)
+            if sample is None or not sample.is_whole:
+                self._links[sender].statistics.add_not_finite(received.component)
+            if sample is not None:
+                found.append(sample)
+        return found
 
     def _confirm_setpoint(self, received: Received, index: int, since: float, until: float) -> None:
         link, flight = self._links[index], self._flight
