@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+from truth_rows import write_state
+
 from gcs.record.tables import MODE_COLUMNS
 from vehicle_sim.world.truth_log import TruthLog
 from vehicle_sim.world.world_state import UavState, WorldState
@@ -35,7 +37,7 @@ def test_mode_is_recorded_for_each_vehicle_as_it_changes(tmp_path: Path) -> None
 
 def test_closed_log_holds_no_file_and_takes_no_more_rows(tmp_path: Path) -> None:
     log = TruthLog(tmp_path, 1)
-    log.write(state(0.0), 0)
+    write_state(log, state(0.0), 0)
     log.write_mode(0.0, 1, "HOLD", True, False)
     assert opened(tmp_path) == {"truth.csv", "modes.csv"}
     log.close()

@@ -108,7 +108,8 @@ class Swarm:
         """Record the true state from here on, at ``rates.truth`` or more often. The log is closed with the swarm."""
         self._truth = truth
         self._modes_recorded = False
-        truth.write(self.world.state(), self.world.contacts().pairs, self.world.obstacles.all())
+        self._contacts = self.world.contacts().pairs
+        self._write_truth(truth, self.world.states())
 
     def close(self) -> None:
         """End the world and the record; harmless when they have ended."""
@@ -179,14 +180,16 @@ class Swarm:
         states = world.states()
         if measures:
             self._onboard(states)
-        if not (scans or records):
-            return
-        state = world.state(states)
         if scans:
-            self._team.scan(state, world.obstacles)
+            self._team.scan(world.state(states), world.obstacles)
         if records and self._truth is not None:
-            self._truth.write(state, self._contacts, world.obstacles.all())
-            self._contacts = 0
+            self._write_truth(self._truth, states)
+
+    def _write_truth(self, truth: TruthLog, states: Array) -> None:
+        """Record the true ``states`` with the most contacts at a time since the last row."""
+        world = self.world
+        truth.write(world.time, states, world.thrusts, self._contacts, world.obstacles.all())
+        self._contacts = 0
 
     def _onboard(self, states: Array) -> None:
         """Let all vehicles take an onboard step, and record what they fly where it changes."""

@@ -152,6 +152,11 @@ class World:
         """Return the true states of payload and UAVs after the last step, (N + 1, 13) as in :mod:`.state_kernels`."""
         return self._readings.states()
 
+    @property
+    def thrusts(self) -> tuple[float, ...]:
+        """The UAVs' thrusts of the last step (N)."""
+        return self._thrusts
+
     def state(self, states: Array | None = None) -> WorldState:
         """Return the true state after the last step: velocities, too, to second order.
 
