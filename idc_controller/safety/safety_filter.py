@@ -56,7 +56,7 @@ class AvoidanceFilter:
         now = None if self._trajectory is None else self._trajectory.derivatives(np.array([time]))[:, 0]
         ahead = reference.after(chain.times)
         start = np.zeros((5, 3)) if now is None else now - ahead[:, 0]
-        if np.abs(start).max() < NEGLIGIBLE:
+        if all(abs(value) < NEGLIGIBLE for value in start.ravel().tolist()):
             start[:] = 0.0
         off = 0.0 if now is None else math.dist(estimate.x[0:3], now[0])
         obstacles = PredictedObstacles(predicted, self._extra_growth(off))
