@@ -31,8 +31,9 @@ class _Routed(NamedTuple):
 
     samples: list[tuple[Received, int, int, float]]
     """Measurements: the message, its sender (0 .. N-1), the vehicle that sends as that, time of validity (s)."""
-    setpoints: list[tuple[Received, int, float, float]]
-    """Set-points that vehicles report to fly: the message, the vehicle (0 .. N-1), since and until when (s)."""
+    setpoints: list[tuple[Received, int, float, float, float, float]]
+    """Set-points that vehicles report to fly: the message, the vehicle (0 .. N-1), since and until when (s), jitter and
+    largest latency of its link then (s)."""
 
 
 class TelemetryRouter:
@@ -137,7 +138,8 @@ class TelemetryRouter:
                 time = whole_ms(stamp * 1e-3 - offset + team_offset)
             if message_id == _SETPOINT:
                 # Its stamp is that of the moment at which it began to act.
-                routed.setpoints.append((received, index, time, min(max(time, latest), self._clock.time(now))))
+                until = min(max(time, latest), self._clock.time(now))
+                routed.setpoints.append((received, index, time, until, link.clock.spread, link.setpoints.delay_max))
             elif message_id == _DETECTION:
                 # Detections from before a clock jump have the stamp of another pose.
                 if obstacle_map is not None and now - link.clock.jumped_at > self._clock_settled:
@@ -158,14 +160,14 @@ class TelemetryRouter:
                 found.append(sample)
         return found
 
-    def _confirm_setpoint(self, received: Received, index: int, since: float, until: float) -> None:
+    def _confirm_setpoint(
+        self, received: Received, index: int, since: float, until: float, jitter: float, latency_max: float
+    ) -> None:
         link, flight = self._links[index], self._flight
         setpoint = setpoint_flown(received.fields, link.status.parameters.get(px4.PARAM_THRUST_MAX, math.nan))
         if setpoint is None or flight.phase not in IN_AIR:
             return
-        confirmation = flight.control.estimator.confirm_setpoint(
-            index, since, until, setpoint, link.clock.spread, link.setpoints.delay_max
-        )
+        confirmation = flight.control.estimator.confirm_setpoint(index, since, until, setpoint, jitter, latency_max)
         if confirmation is not None:
             link.setpoints.confirm(confirmation)
 
