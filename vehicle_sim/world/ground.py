@@ -8,7 +8,7 @@ import pybullet
 from gcs.config.tables import PadSettings
 from idc_controller.payload_hull import PayloadHull
 from vehicle_sim.world.multibody import Multibody
-from vehicle_sim.world.world_state import flipped, product
+from vehicle_sim.world.world_state import flipped, product, upward_axis
 
 # Contact points closer than this (m) to the plane of the payload's lower face are the payload standing.
 _STANDING_DEPTH = 0.02
@@ -65,9 +65,7 @@ class Ground:
             return NO_CONTACTS
         body, grounds = system.body, self._bodies
         (x, y, z), attitude = payload
-        a, b, c, d = product(attitude, system.payload_in_axes)
-        # The payload's upward axis in the engine's frame.
-        up_x, up_y, up_z = 2.0 * (a * c + d * b), 2.0 * (b * c - d * a), 1.0 - 2.0 * (a * a + b * b)
+        up_x, up_y, up_z = upward_axis(product(attitude, system.payload_in_axes))
         lower_face = up_x * x + up_y * y + up_z * z - self._lower_face
         pairs: set[tuple[int, int, int, int]] = set()
         standing = False
