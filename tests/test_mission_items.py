@@ -21,6 +21,7 @@ from mission_files import (
     wpl,
 )
 
+from gcs.errors import UnusableInput
 from gcs.mission.route import Circle, FlyTo, HoldForever
 
 
@@ -190,3 +191,29 @@ def test_delay_of_zero_is_accepted(tmp_path: Path) -> None:
         shape(read(tmp_path, wpl(TAKE_OFF, row(93, 0), A, RETURN)))[0]
         == shape(read(tmp_path, wpl(TAKE_OFF, A, RETURN)))[0]
     )
+
+
+@pytest.mark.parametrize(
+    ("frame", "altitude", "noted"),
+    [
+        (3, 0.0, False),
+        (3, 0.5, False),
+        (3, 0.51, True),
+        (3, -0.5, False),
+        (0, HOME[2], False),
+        (0, HOME[2] + 0.51, True),
+        (0, 0.0, False),  # not given
+    ],
+)
+def test_payload_lands_on_the_ground_whatever_small_altitude_is_given(
+    tmp_path: Path, frame: int, altitude: float, noted: bool
+) -> None:
+    land = row(21, north=9.0, alt=altitude, frame=frame)
+    mission = read(tmp_path, wpl(TAKE_OFF, A, land))
+    assert shape(mission) == shape(read(tmp_path, wpl(TAKE_OFF, A, row(21, north=9.0, alt=0.0))))
+    assert any("the payload lands on it" in note for note in mission.notes) == noted
+
+
+def test_landing_below_the_ground_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(UnusableInput, match=r"below ground: 0\.51 m lower than home"):
+        read(tmp_path, wpl(TAKE_OFF, A, row(21, north=9.0, alt=-0.51)))
