@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 from pathlib import Path
 
 import pymavlink.dialects.v20.common as mavlink
@@ -14,6 +15,11 @@ from vehicle_bench import Bench
 # The same examples at every run, however busy the machine is.
 settings.register_profile("repeatable", deadline=None, derandomize=True)
 settings.load_profile("repeatable")
+
+
+def pytest_collection_finish() -> None:
+    """Pass over what the imports have made in collections of garbage."""
+    gc.freeze()
 
 
 @pytest.fixture

@@ -1,6 +1,7 @@
 """Imports run one way only: idc_controller <- gcs <- vehicle_sim, along the edges of a table, without a cycle."""
 
 import ast
+from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
@@ -99,9 +100,27 @@ COMMON = {
 """Modules beside the sub-packages that everything above them may import."""
 
 
-def imported(source):
-    """Top-level names of the modules that ``source`` imports, wherever in the file it does, with the line."""
-    for node in ast.walk(ast.parse(source)):
+def nodes_of(source):
+    """All nodes of a source's syntax tree."""
+    return [*ast.walk(ast.parse(source))]
+
+
+@cache
+def nodes_in(path):
+    """All nodes of the syntax tree of the module at ``path``, which every check reads."""
+    return nodes_of(path.read_text(encoding="utf-8"))
+
+
+@pytest.fixture(scope="module", autouse=True)
+def forget_syntax_trees():
+    """Leave no million of objects to the collections of garbage of later tests."""
+    yield
+    nodes_in.cache_clear()
+
+
+def imported(nodes):
+    """Top-level names of the modules that a source with these nodes imports, wherever it does, with the line."""
+    for node in nodes:
         if isinstance(node, ast.Import):
             yield from ((alias.name.split(".")[0], node.lineno) for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
@@ -114,17 +133,15 @@ def imported(source):
                     yield name.value.split(".")[0], node.lineno
 
 
-def violations(package, path, source):
-    return [f"{path}:{line} imports {name}" for name, line in imported(source) if name in FORBIDDEN[package]]
+def violations(package, path, nodes):
+    return [f"{path}:{line} imports {name}" for name, line in imported(nodes) if name in FORBIDDEN[package]]
 
 
 @pytest.mark.parametrize("package", sorted(FORBIDDEN))
 def test_packages_import_in_one_direction(package):
     files = sorted((ROOT / package).rglob("*.py"))
     assert files
-    found = [
-        line for path in files for line in violations(package, path.relative_to(ROOT), path.read_text(encoding="utf-8"))
-    ]
+    found = [line for path in files for line in violations(package, path.relative_to(ROOT), nodes_in(path))]
     assert not found, "\n".join(found)
 
 
@@ -133,7 +150,7 @@ def test_pybullet_is_imported_by_the_simulator_only():
         path.relative_to(ROOT).parts[0]
         for package in FORBIDDEN
         for path in (ROOT / package).rglob("*.py")
-        if "pybullet" in {name for name, _ in imported(path.read_text(encoding="utf-8"))}
+        if "pybullet" in {name for name, _ in imported(nodes_in(path))}
     }
     assert users == {"vehicle_sim"}
 
@@ -149,12 +166,12 @@ def test_pybullet_is_imported_by_the_simulator_only():
     ],
 )
 def test_check_detects_forbidden_import(source):
-    assert violations("gcs", "x.py", source)
+    assert violations("gcs", "x.py", nodes_of(source))
 
 
 def sub_packages_imported(path):
     """Sub-packages of the project that the module at ``path`` imports, each with the line."""
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in nodes_in(path):
         if isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
             names = [f"{node.module}.{alias.name}" for alias in node.names]
         elif isinstance(node, ast.Import):
@@ -199,7 +216,7 @@ PROTOCOL = {"address", "codec", "frames", "layout", "lockstep", "messages", "px4
 
 def mavlink_modules_imported(path):
     """Modules of gcs.mavlink that the module at ``path`` imports."""
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in nodes_in(path):
         if isinstance(node, ast.ImportFrom) and f"{node.module}.".startswith("gcs.mavlink."):
             yield from (
                 [alias.name for alias in node.names] if node.module == "gcs.mavlink" else [node.module.split(".")[2]]
@@ -234,7 +251,7 @@ def test_sub_packages_have_no_cycle():
 
 def modules_imported(path, modules):
     """Those of ``modules`` that the module at ``path`` imports, wherever in the file it does."""
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in nodes_in(path):
         if isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
             yield from {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)} & modules
         elif isinstance(node, ast.Import):
@@ -278,7 +295,7 @@ def test_classes_with_a_state_have_a_dozen_attributes():
         definition
         for package in FORBIDDEN
         for path in (ROOT / package).rglob("*.py")
-        for definition in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        for definition in nodes_in(path)
         if isinstance(definition, ast.ClassDef) and not is_record(definition)
     ]
     assert {definition.name for definition in definitions if len(attributes(definition)) > 12} == MANY_ATTRIBUTES

@@ -89,3 +89,14 @@ def test_contacts_are_those_of_the_engine_in_a_fall_among_moving_obstacles(seed)
             pairs = max(pairs, found.pairs)
         assert excluded > 50
         assert pairs >= 1
+
+
+@pytest.mark.parametrize("north", [0.0, 1.0, -2.0])
+def test_distance_of_parallel_links_is_that_across_them(north):
+    """All UAVs ahead of the payload or behind it, as when it accelerates: the links lean, side by side."""
+    states, attachments = formation()
+    states[1:, 0] += north
+    link = np.array([north, 0.0, -3.2])
+    across = 1.0 - (link[0] / np.linalg.norm(link)) ** 2  # of two links, one behind the other
+    room = math.sqrt(across) - 2 * 0.301 - 0.05
+    assert time_apart(states, attachments, *NO_OBSTACLES, SIZES) == pytest.approx(time_for(room), abs=2e-6)

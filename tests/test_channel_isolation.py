@@ -1,7 +1,5 @@
 """Channel isolation: channels rejected for long are isolated, and restored when they are consistent again."""
 
-from copy import copy
-
 import numpy as np
 import pytest
 
@@ -107,9 +105,9 @@ def test_restoration_starts_anew_after_one_inconsistent_sample():
 
 def test_copy_of_isolation_is_independent():
     isolation = rejecting(VELOCITY_OF_1, times=REJECTIONS - 1)
-    other = copy(isolation)
+    other = isolation.copy()
     rejecting(VELOCITY_OF_1, times=1, isolation=other)
     assert (len(isolation.isolated), len(other.isolated)) == (0, 1)
-    again = copy(other)
+    again = other.copy()
     accept(again, 0.1, ACCEPTANCES)
     assert (len(other.isolated), len(again.isolated)) == (1, 0)

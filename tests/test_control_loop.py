@@ -1,6 +1,5 @@
 """The control step as a whole: telemetry comes in, an estimate and a decision are made of it, set-points go out."""
 
-from dataclasses import replace
 from itertools import count
 
 import numpy as np
@@ -82,7 +81,7 @@ def test_sent_setpoints_act_on_the_estimate_from_their_time_on():
     record = pulled.decide(estimate, REST, on_ground=False, learn_load=False)
     north = record.decision.u.copy()
     north[0 : 2 * N : 2] = 0.2
-    leaning = StepRecord(record.estimate, replace(record.decision, u=north))
+    leaning = StepRecord(record.estimate, record.decision._replace(u=north))
     pulled.send(leaning, 5.0 + PERIOD, np.full(N, 5.0))
     before = pulled.estimate(5.0 + PERIOD, REST)
     after = pulled.estimate(5.0 + 8 * PERIOD, REST)

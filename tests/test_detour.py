@@ -212,6 +212,38 @@ def test_path_in_free_space_is_straightened_among_a_limited_number_of_points():
     assert 0.7 * number**2 / 2.0 < space.most <= number * (number - 1) / 2.0
 
 
+def test_path_of_which_no_shorter_part_is_free_keeps_its_corners():
+    class Closed:
+        """Space in which no segment is free but the path that was found."""
+
+        centres = ()
+
+        def is_free(self, places):
+            return np.ones(len(places), dtype=bool)
+
+        def are_free_segments(self, begins, ends):
+            return np.zeros(len(begins), dtype=bool)
+
+    path = np.array([[0.0, 0.0, -3.0], [6.0, 5.0, -3.0], [12.0, 0.0, -4.0], [18.0, 5.0, -5.0], [24.0, 0.0, -3.0]])
+    found = straightened(Closed(), path, DetourSettings())
+    for corner in path:
+        assert np.linalg.norm(found - corner, axis=1).min() < 1e-9
+    assert (np.diff(found[:, 0]) > 0.0).all()
+
+
+@pytest.mark.parametrize("mirror", [(1, -1, 1), (-1, 1, 1), (-1, -1, 1)], ids=["east", "north", "both"])
+def test_detour_of_the_mirrored_scenario_is_as_long(mirror):
+    places = [(6.0, 1.0), (9.0, -2.0), (9.0, 0.5), (14.0, 0.0)]
+    lengths = [
+        detour_of(
+            [pole(x * north, y * east, radius=0.6) for north, east in places],
+            start=(0.0, 0.0, -5.0), goal=(20.0 * x, 0.0, -5.0),
+        ).length
+        for x, y in ((1, 1), mirror[:2])
+    ]  # fmt: skip
+    assert lengths[1] == pytest.approx(lengths[0], rel=1e-3)
+
+
 def test_clearance_equals_that_of_collision_library():
     rng = np.random.default_rng(5)
     shapes = [Sphere(0.7), Pole(0.4, 5.0), Wall(size=(3.0, 0.5, 2.0), yaw=0.7)]

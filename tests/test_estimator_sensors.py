@@ -84,11 +84,10 @@ def test_estimator_uses_position_when_velocity_is_missing():
     assert np.all(sigma < 0.7 * without_sigma)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("position", "velocity", "isolated"), [(0.1, 0.0, (True, False)), (0.0, 0.5, (False, True))], ids=["p", "v"]
 )
-@pytest.mark.parametrize("of_payload", [False, True])
+@pytest.mark.parametrize("of_payload", [pytest.param(False, marks=pytest.mark.slow), True])
 def test_estimator_isolates_worse_fitting_part_of_inconsistent_group(of_payload, position, velocity, isolated):
     north, begin = np.array([1.0, 0.0, 0.0]), 2.0
     corrupted = [

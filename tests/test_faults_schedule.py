@@ -1,6 +1,7 @@
 """Schedule of faults: times, vehicles, and the order of several."""
 
 import itertools
+import math
 
 import pytest
 from fault_injection import SYSTEM, TAKE_OFF, codec_frames, fault, injected, position, reported, sent
@@ -8,6 +9,7 @@ from fault_injection import SYSTEM, TAKE_OFF, codec_frames, fault, injected, pos
 from gcs.faults import KINDS
 from vehicle_sim.faults import FaultInjector
 from vehicle_sim.faults.record import faults_record
+from vehicle_sim.faults.schedule import Schedule
 
 RANDOM = (
     "packet_loss", "burst_loss", "jitter", "reordering", "duplication", "corruption", "bad_checksum", "truncation",
@@ -65,3 +67,31 @@ def test_faults_act_in_sequence_in_order_of_mission():
 def test_combined_faults_stay_within_32_bit_floats():
     huge = [fault("scale", channel="position", factor=1e3) for _ in range(30)]
     assert max(map(abs, reported(injected(*huge), 1.0).position.position)) <= 1e30
+
+
+@pytest.mark.parametrize(
+    ("duration", "every", "times"), [(None, None, None), (0.7, None, None), (0.7, 2.0, None), (0.7, 2.0, 3)]
+)
+def test_active_time_and_occurrences_are_those_of_the_active_moments(duration, every, times):
+    schedule, step = Schedule(1.5, duration, every, times), 0.01
+    assert schedule.active_time(9.0) == 0.0 and schedule.at(9.0) is None and schedule.occurrences(9.0, 5) == (0, [])
+    schedule.take_off = 4.0
+    active, seen = 0, set()
+    for k in range(1200):
+        now = step * (k + 0.5)
+        assert schedule.active_time(now) == pytest.approx(active * step, abs=1.1 * step)
+        moment = schedule.at(now)
+        if moment is not None:
+            active += 1
+            seen.add(moment.occurrence)
+            assert moment.elapsed == pytest.approx(now - 5.5 - moment.occurrence * (every or 0.0))
+            end = 5.5 + moment.occurrence * (every or 0.0) + (duration or math.inf)
+            assert schedule.end_after(now) == pytest.approx(end)
+        else:
+            assert schedule.end_after(now) == math.inf
+        count, spans = schedule.occurrences(now, 2)
+        assert count == len(seen) and len(spans) == min(count, 2)
+        for j, (begin, end) in enumerate(spans):
+            assert begin == pytest.approx(1.5 + j * (every or 0.0))
+            over = duration is not None and begin + duration <= now - 4.0
+            assert end == (pytest.approx(begin + duration) if over else None)

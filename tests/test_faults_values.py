@@ -1,6 +1,7 @@
 """Effects of value faults on samples."""
 
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -142,7 +143,7 @@ def test_every_value_fault_acts_on_every_channel_and_repeats(kind, channel):
                 disturbed.range_sample(1, scan),
             ]
         assert disturbed.faults[0].disturbed > 0
-        return repr(reported_values)
+        return pickle.dumps(reported_values)
 
     assert run() == run()
     if kind in ("spikes", "noise", "intermittent"):

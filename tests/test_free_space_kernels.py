@@ -26,14 +26,16 @@ def space(seed, turned=True):
     return FreeSpace(obstacles, FORMATION, 0.4, 0.5, 11.0, growth=rng.uniform(0.0, 0.3, len(shapes)))
 
 
-def least_clearance(space, start, end):
-    """To each obstacle on a segment (M,), by golden section."""
+def least_clearances(space, starts, ends):
+    """To each obstacle on each segment (S, M), by golden section."""
+    each = np.arange(len(space.centres))
 
     def at(fraction):
-        return np.diagonal(space.clearance(start + fraction[:, None] * (end - start)))
+        places = starts[:, None] + fraction[..., None] * (ends - starts)[:, None]
+        return space.clearance(places.reshape(-1, 3)).reshape(*fraction.shape, -1)[:, each, each]
 
-    low, high = np.zeros(len(space.centres)), np.ones(len(space.centres))
-    left, right = np.full(len(low), 1.0 - GOLDEN), np.full(len(low), GOLDEN)
+    low, high = np.zeros((len(starts), len(each))), np.ones((len(starts), len(each)))
+    left, right = np.full(low.shape, 1.0 - GOLDEN), np.full(low.shape, GOLDEN)
     for _ in range(60):
         falls = at(left) > at(right)
         low, high = np.where(falls, left, low), np.where(falls, high, right)
@@ -48,7 +50,7 @@ def test_segments_that_keep_away_are_those_of_golden_section(seed, turned):
     starts = rng.uniform([-9.0, -9.0, -10.0], [9.0, 9.0, -1.0], (400, 3))
     ends = starts + rng.normal(size=starts.shape) * rng.choice([0.3, 3.0, 9.0], (400, 1))
     least = rng.uniform(0.0, 0.4, len(within.centres))
-    beyond = np.array([least_clearance(within, a, b) - least for a, b in zip(starts, ends, strict=True)]).min(axis=1)
+    beyond = (least_clearances(within, starts, ends) - least).min(axis=1)
     clear = np.abs(beyond) > 1e-3
     expected = beyond >= 0.0
     assert clear.sum() > 350

@@ -75,3 +75,21 @@ def test_timesync_answer_counts_once_and_only_to_an_own_request(station):
     for _ in range(50):
         send(station, mavlink.MAVLink_timesync_message(5, request.ts1), now=1.9)
     assert clock.delay == pytest.approx(0.02)
+
+
+def test_station_that_is_called_at_its_timers_misses_none(station):
+    beats, requests, times = [], [], [0.0]
+    assert station.next_timer() == 0.0
+    while times[-1] < 3.0:
+        for datagram, address in station.datagrams_to_send(times[-1]):
+            kinds = [received.message.get_type() for received in Codec(2, 1).decode(datagram)]
+            if address == address_of(1):
+                beats += [times[-1]] * kinds.count("HEARTBEAT")
+                requests += [times[-1]] * kinds.count("TIMESYNC")
+        times.append(station.next_timer())
+        assert times[-1] > times[-2]
+    assert beats == pytest.approx([0.0, 1.0, 2.0])
+    assert set(requests) <= set(times) and len(requests) >= 3
+    period = station.flight.control.period if hasattr(station.flight.control, "period") else 0.05
+    for k in range(60):
+        assert min(abs(time - k * period) for time in times) < 1e-9

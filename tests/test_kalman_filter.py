@@ -85,7 +85,6 @@ def test_innovation_and_its_subset_equal_dense_products(seed):
     rows, y, which = sparse_rows(rng, m, N_STATES), rng.standard_normal(m), rng.random(m) < 0.5
     innovation, H = filter.innovation(y, rows, starts, sizes), rows.dense(N_STATES)
     of_one = np.kron(np.eye(3), np.ones((6, 6)))[np.ix_(*2 * [np.r_[:6, 6:10, 12:14]])]
-    assert innovation.subset(np.ones(m, dtype=bool)) is innovation
     for part, kept in ((innovation, np.full(m, True)), (innovation.subset(which), which)):
         expected = (of_one * (H @ filter.P @ H.T))[np.ix_(kept, kept)]
         assert part.covariance == pytest.approx(expected, rel=1e-12, abs=1e-12)

@@ -87,3 +87,24 @@ def test_prediction_between_frames_is_compared_at_its_time():
     detector.advance(5.04)
     detector.compare(np.array([1.04, 0.0, 0.0]), np.array([1.0, 0.0, 0.0]))
     assert detector.prediction_error == 0.0
+
+
+def test_obstacle_just_detected_is_taken_for_one_that_has_moved_steadily():
+    new, steady = ManoeuvreDetector(0.0, SETTINGS), ManoeuvreDetector(0.0, SETTINGS)
+    for _ in range(200):
+        steady.add_innovation(0.5)  # of models that fit: mean over the axes, normalised
+    assert steady.model_mismatch == 0.0
+    for mean_square in (1.5, 3.0, 4.0):
+        new.add_innovation(mean_square)
+        steady.add_innovation(mean_square)
+    assert 0.0 < steady.model_mismatch < 1.0
+    assert new.model_mismatch == pytest.approx(steady.model_mismatch)
+
+
+@pytest.mark.parametrize("mean_square", [SETTINGS.mismatch_begin, SETTINGS.mismatch_full, 1e9])
+def test_lasting_innovations_are_no_mismatch_up_to_one_limit_and_a_whole_one_from_the_other(mean_square):
+    detector = ManoeuvreDetector(0.0, SETTINGS)
+    for _ in range(300):
+        detector.add_innovation(mean_square)
+    expected = 0.0 if mean_square == SETTINGS.mismatch_begin else 1.0
+    assert detector.model_mismatch == pytest.approx(expected, abs=1e-9)

@@ -21,6 +21,7 @@ from mission_files import (
     wpl,
 )
 
+from gcs.errors import UnusableInput
 from gcs.mission.route import Circle, FlyTo, HoldForever
 
 
@@ -167,3 +168,52 @@ def test_device_commands_are_listed_as_unsupported(tmp_path: Path, command: int)
 def test_heading_is_noted(tmp_path: Path, command: int) -> None:
     mission = read(tmp_path, wpl(TAKE_OFF, A, row(command, 0, 0, 0, 90, north=9, alt=0 if command == 21 else 5)))
     assert [note for note in mission.notes if "row 3" in note and "heading 90 deg left out" in note]
+
+
+@pytest.mark.parametrize(("kind", "direction"), [(2, "climb"), (3, "descent")])
+def test_speed_across_the_plane_is_left_out_with_its_direction(tmp_path: Path, kind: int, direction: str) -> None:
+    mission = read(tmp_path, wpl(TAKE_OFF, row(178, kind, 2.0), A, RETURN))
+    assert shape(mission) == shape(read(tmp_path, wpl(TAKE_OFF, A, RETURN)))
+    assert [note for note in mission.notes if f"{direction} speed left out" in note]
+
+
+@pytest.mark.parametrize(("speed", "flown"), [(3.0, 3.0), (3.01, 3.0), (0.01, 0.01), (-1.0, 1.5), (-2.0, 1.5)])
+def test_speed_is_flown_up_to_the_largest_and_special_values_are_none(
+    tmp_path: Path, speed: float, flown: float
+) -> None:
+    mission = read(tmp_path, wpl(TAKE_OFF, row(178, 1, speed), A, RETURN))
+    assert next(leg.speed for leg in legs(mission) if isinstance(leg, FlyTo)) == flown
+    assert any("capped" in note for note in mission.notes) == (speed > 3.0)
+
+
+def test_delay_of_zero_is_accepted(tmp_path: Path) -> None:
+    assert (
+        shape(read(tmp_path, wpl(TAKE_OFF, row(93, 0), A, RETURN)))[0]
+        == shape(read(tmp_path, wpl(TAKE_OFF, A, RETURN)))[0]
+    )
+
+
+@pytest.mark.parametrize(
+    ("frame", "altitude", "noted"),
+    [
+        (3, 0.0, False),
+        (3, 0.5, False),
+        (3, 0.51, True),
+        (3, -0.5, False),
+        (0, HOME[2], False),
+        (0, HOME[2] + 0.51, True),
+        (0, 0.0, False),  # not given
+    ],
+)
+def test_payload_lands_on_the_ground_whatever_small_altitude_is_given(
+    tmp_path: Path, frame: int, altitude: float, noted: bool
+) -> None:
+    land = row(21, north=9.0, alt=altitude, frame=frame)
+    mission = read(tmp_path, wpl(TAKE_OFF, A, land))
+    assert shape(mission) == shape(read(tmp_path, wpl(TAKE_OFF, A, row(21, north=9.0, alt=0.0))))
+    assert any("the payload lands on it" in note for note in mission.notes) == noted
+
+
+def test_landing_below_the_ground_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(UnusableInput, match=r"below ground: 0\.51 m lower than home"):
+        read(tmp_path, wpl(TAKE_OFF, A, row(21, north=9.0, alt=-0.51)))

@@ -159,3 +159,16 @@ def test_attitude_that_is_no_rotation_is_taken_for_lost(attitude):
     for estimated, *_ in flown(lambda s: s._replace(attitude=attitude)._replace(**lost[next(steps) % 3])):
         assert math.hypot(*estimated.attitude) == pytest.approx(1.0)
     assert navigation_alone().update(Turning().sample(attitude=attitude), (0.0,) * 3, 0.0) is None
+
+
+def test_rates_are_observed_anew_after_they_were_back():
+    """While they are back the body turns on: what was observed before says nothing of it."""
+    body, navigation, off = Turning(), navigation_alone(), []
+    for k in range(700):
+        body.step()
+        lost = 100 <= k < 200 or k >= 500
+        sample = body.sample(**({"rates": NAN} if lost else {}), **({"position": NAN} if k >= 100 else {}))
+        estimated = navigation.update(sample, tuple(body.commanded), body.time)
+        if lost:
+            off.append(np.linalg.norm(np.subtract(estimated.rates, body.rates)))
+    assert max(off[100:]) < 2.0 * max(off[:100]) < 0.6

@@ -190,3 +190,13 @@ def test_reset_discards_detour(navigator):
     assert navigator.followed(mission) is mission
     assert navigator.mission_progress(7.0) == 7.0
     assert navigator.hold_up.blocked(1000.0) == ""
+
+
+@pytest.mark.parametrize("north", [10.0, 40.0])
+@pytest.mark.parametrize(("share", "stands"), [(0.0, True), (0.9, True), (1.1, False)])
+def test_obstacle_that_drifts_less_than_the_limit_stands_at_its_waypoint(navigator, north, share, stands):
+    drift = share * navigator.settings.standing / (STAGES[-1] - STAGES[0])
+    name, shape, place, growth = wall("block", north, 0.0, (3.0, 3.0, 8.0))
+    drifting = name, shape, lambda t: place(t) + np.outer(t, [0.0, drift, 0.0]), growth
+    held_up(navigator, [drifting], 1.0, progress=north / 1.5 - 2.0, mission=straight(north))
+    assert ("block stands at the waypoint" in navigator.hold_up.reason) == stands

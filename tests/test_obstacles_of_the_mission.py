@@ -1,6 +1,7 @@
 """Obstacles of the mission on the obstacle map: predicted from the start, tracked where they move."""
 
 import numpy as np
+import pytest
 from obstacle_scene import (
     map_of,
     nearest,
@@ -13,6 +14,7 @@ from obstacle_scene import (
 from gcs.mission.model import Obstacle
 from gcs.mission.motion import HarmonicMotion
 from idc_controller.geometry.box import Wall
+from idc_controller.geometry.obstacles import Region
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
 
@@ -86,3 +88,15 @@ def test_moving_obstacle_of_the_map_is_deleted_until_detected_where_it_is_missin
     run(m, lambda t: [sphere((6.5, 0.5, -6.0), 0.45)], 3.0, begin=2.0)
     (o,) = m.predict(np.array([3.0]))
     assert o.name == "swing"
+
+
+@pytest.mark.parametrize(("shape", "reach"), [(Sphere(0.5), 0.5), (Pole(0.2, 9.0), 0.2), (Wall((6.0, 8.0, 3.0)), 5.0)])
+@pytest.mark.parametrize("bearing", [0.0, 2.0, 4.0])
+def test_known_obstacle_is_predicted_as_far_as_it_reaches_into_the_region(shape, reach, bearing):
+    for beyond in (-0.01, 0.01):
+        away = (3.0 + reach + beyond) * np.array([np.cos(bearing), np.sin(bearing), 0.0])
+        known = map_of(Obstacle("a", tuple(np.array([20.0, -10.0, -5.0]) + away), shape, True))
+        region = Region(np.array([20.0, -10.0, -9.0]), 3.0)
+        found = [o.name for o in known.predict(np.zeros(3), region)]
+        assert found == (["a"] if beyond < 0.0 else [])
+        assert [o.name for o in known.predict(np.zeros(3))] == ["a"]

@@ -221,7 +221,7 @@ def test_idle_vehicles_would_decide_what_they_did(seed):
         parameters = [vehicle_parameters(AIRFRAME, i + 1, 250) for i in range(3)]
         teams.append([Autopilot(AIRFRAME, parameters[i], arrays=arrays.of_vehicle(i)) for i in range(3)])
     grounds, heights = [Ground(10 * seed + i) for i in range(3)], np.zeros(3)
-    for k in range(1, 5000):
+    for k in range(1, 3000):
         now = 0.004 * k
         for ground, pilots in zip(grounds, zip(*teams, strict=True), strict=True):
             ground.act(list(pilots), now)
@@ -238,7 +238,7 @@ def test_idle_vehicles_would_decide_what_they_did(seed):
             step_together(team, arrays, samples.copy(), np.full(3, now), now, missing)
         for name in ("targets", "landings", "learns", "speeds"):
             one, other = (getattr(arrays, name) for arrays in all_arrays)
-            assert np.array_equal(one, other, equal_nan=True), (name, now)
+            assert one.tobytes() == other.tobytes(), (name, now)
         flying = [pilot.armed and pilot.wants_setpoints and not pilot.failsafe for pilot in teams[0]]
         assert all_arrays[0].learns.tolist() == flying
         for one, other in zip(*teams, strict=True):
@@ -250,7 +250,7 @@ def test_idle_vehicles_would_decide_what_they_did(seed):
             assert shown == others
             seen.add(shown[:4])
         idle += np.count_nonzero(all_arrays[0].idle_until > now)
-    assert idle > 4000 and len(seen) > 8
+    assert idle > 2400 and len(seen) > 8
 
 
 @pytest.mark.parametrize("expected", [SAMPLED, DETECTED, COMMANDED])

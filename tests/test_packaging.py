@@ -5,7 +5,7 @@ import sys
 import tomllib
 from pathlib import Path
 
-from test_architecture import imported
+from test_architecture import imported, nodes_in
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("gcs", "idc_controller", "vehicle_sim")
@@ -22,10 +22,7 @@ def names(requirements):
 
 def test_imported_packages_are_the_declared_dependencies():
     modules = {
-        name
-        for package in PACKAGES
-        for path in (ROOT / package).rglob("*.py")
-        for name, _ in imported(path.read_text(encoding="utf-8"))
+        name for package in PACKAGES for path in (ROOT / package).rglob("*.py") for name, _ in imported(nodes_in(path))
     }
     foreign = modules - set(sys.stdlib_module_names) - set(PACKAGES)
     # The plugin is loaded by pytest alone; the others are parts of pydantic and numba.

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from truth_rows import write_state
 
 from gcs.record.run_data import read_run
 from gcs.record.safety import return_times
@@ -23,7 +24,7 @@ def flown(folder, back_at, until=20.0):
             aside = 2.0 if 5.0 <= time < back_at else 0.05
             place = np.array([time, aside, -5.0])
             uavs = tuple(UavState(tuple(place + c), LEVEL, REST, REST, 9.0, False) for c in CORNERS)
-            log.write(WorldState(time, tuple(place), LEVEL, REST, REST, uavs), 0, [sphere])
+            write_state(log, WorldState(time, tuple(place), LEVEL, REST, REST, uavs), 0, [sphere])
             reference.write([time, time, 0.0, -5.0, 1.0, 0.0, 0.0])
     return read_run(folder)
 

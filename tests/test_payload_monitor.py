@@ -7,6 +7,7 @@ import pytest
 from flight_in_process import MISSIONS
 
 from gcs.config import read_system
+from gcs.config.flight_settings import DEFAULTS
 from gcs.flight.payload_monitor import PayloadMonitor
 from idc_controller.trajectory.trajectory import RestTrajectory
 
@@ -38,3 +39,47 @@ def test_touchdown_is_detected_of_a_payload_that_bounces_on_its_pad():
 def test_touchdown_is_not_detected_while_the_payload_follows_its_reference_or_is_high(height, velocity):
     below = 0.3 if height > 1.0 else -height + 0.02
     assert steps_to_touchdown([height] * 20, [velocity] * 20, below) is None
+
+
+def estimate(height=3.0, roll=0.0, pitch=0.0):
+    x = np.zeros(56)
+    x[2], x[6], x[7] = -HALF - height, roll, pitch
+    return SimpleNamespace(x=x)
+
+
+@pytest.mark.parametrize(("excess", "clear"), [(-0.001, False), (0.001, True)])
+def test_payload_is_clear_above_its_height_alone(excess, clear):
+    height = DEFAULTS.takeoff_landing.clear_height + excess
+    assert PayloadMonitor(PARAMETERS).is_clear(estimate(height)) is clear
+
+
+TILT, TIME = DEFAULTS.failsafe.tilt_limit, DEFAULTS.failsafe.tilt_time
+
+
+@pytest.mark.parametrize(
+    ("roll", "pitch", "is_lost"),
+    [(0.99, 0.0, False), (1.01, 0.0, True), (-1.01, 0.0, True), (0.0, 1.01, True), (0.0, -1.01, True),
+     (0.99, -0.99, False), (np.nan, 0.0, True)],
+)  # fmt: skip
+def test_payload_is_out_of_control_once_tilted_for_long(roll, pitch, is_lost):
+    monitor = PayloadMonitor(PARAMETERS)
+    assert not monitor.is_out_of_control(10.0, estimate())
+    wrong = estimate(roll=roll * TILT, pitch=pitch * TILT)
+    assert not monitor.is_out_of_control(10.0 + TIME, wrong)
+    assert monitor.is_out_of_control(10.01 + TIME, wrong) is is_lost
+    assert not monitor.is_out_of_control(10.02 + TIME, estimate())
+    assert not monitor.is_out_of_control(10.01 + 2.0 * TIME, wrong)
+
+
+def test_payload_that_was_never_in_control_has_not_lost_it():
+    assert not PayloadMonitor(PARAMETERS).is_out_of_control(1e6, estimate(roll=2.0 * TILT))
+
+
+@pytest.mark.parametrize(
+    ("late", "above", "stalled"), [(-0.1, 0.1, False), (0.1, 0.1, True), (0.1, -0.1, False), (-0.1, -0.1, False)]
+)
+def test_descent_is_stalled_long_after_its_end_and_high(late, above, stalled):
+    descent = RestTrajectory(np.zeros(3), 5.0, 20.0)
+    progress = 20.0 + DEFAULTS.failsafe.descent_timeout + late
+    height = DEFAULTS.takeoff_landing.touch_height + above
+    assert PayloadMonitor(PARAMETERS).is_descent_stalled(progress, descent, estimate(height)) is stalled

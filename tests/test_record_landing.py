@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from flight_in_process import HOP, system_file
+from truth_rows import write_state
 
 from gcs.app.fly import flight_result
 from gcs.flight.alarms import AlarmLog
@@ -31,7 +32,7 @@ def write_flight(folder, rows, contacts=()):
             attitude = tuple(quaternion_from_euler(np.deg2rad(roll), 0.0, 0.0))
             uav = UavState((north, 0.0, down - 3.4), LEVEL, REST, REST, thrust, False)
             position, velocity = (north, 0.0, down), (v_x, 0.0, v_z)
-            log.write(WorldState(k * 0.02, position, attitude, velocity, REST, (uav,)), int(k in contacts))
+            write_state(log, WorldState(k * 0.02, position, attitude, velocity, REST, (uav,)), int(k in contacts))
     return folder
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from rich.console import Console
+from truth_rows import write_state
 
 from gcs.errors import UnusableInput
 from gcs.record import figures
@@ -56,7 +57,7 @@ def write_truth(folder: Path, rows: int = 101, obstacles=lambda time: ()) -> Non
             if k == 60:
                 uavs[0, 0] += 0.25  # towards its neighbour ahead
             state = world_state(time, position, quaternion_from_euler(roll, pitch, yaw), uavs, [14.5] * 4)
-            log.write(state, {70: 1, 71: 2, 72: 2, 80: 1}.get(k, 0), obstacles(time))
+            write_state(log, state, {70: 1, 71: 2, 72: 2, 80: 1}.get(k, 0), obstacles(time))
 
 
 def write_reference(folder: Path, start: float = 0.0, end: float = 10.0) -> None:
@@ -136,7 +137,7 @@ def test_error_counts_from_settle_on_and_within_the_reference_only(tmp_path) -> 
             # 5 m off before the reference, 1 m in its first two seconds, then 0.1 m, and 9 m after its end.
             off = 5.0 if k < 20 else 1.0 if k < 40 else 0.1 if k <= 80 else 9.0
             position = np.array([k / 10.0 + off, 0.0, -5.0])
-            log.write(world_state(k / 10.0, position, LEVEL, position + CORNERS, [1.0] * 4), 0)
+            write_state(log, world_state(k / 10.0, position, LEVEL, position + CORNERS, [1.0] * 4), 0)
     write_reference(folder, 2.0, 8.0)
     assert summarise(folder, **FLOWN, limits={"settle": 2.0})["position_rmse_m"]["x"] == pytest.approx(0.1)
     # 20 rows 1 m off, 41 rows 0.1 m off.
@@ -213,7 +214,7 @@ def test_tilt_counts_between_take_off_and_landing(tmp_path) -> None:
     with TruthLog(folder, 4) as log:
         for k, (thrust, roll) in enumerate([(0.0, 9.0), (3.0, 1.0), (0.0, -2.0), (3.0, 1.5), (0.0, 8.0)]):
             quaternion = quaternion_from_euler(np.deg2rad(roll), 0.0, 0.0)
-            log.write(world_state(k, (0.0, 0.0, 0.0), quaternion, CORNERS, [thrust, 0.0, 0.0, 0.0]), 0)
+            write_state(log, world_state(k, (0.0, 0.0, 0.0), quaternion, CORNERS, [thrust, 0.0, 0.0, 0.0]), 0)
     assert summarise(folder, **FLOWN)["payload_tilt_max_deg"]["roll"] == pytest.approx(2.0)
 
 
@@ -284,7 +285,7 @@ def test_truth_columns_are_in_order_of_the_contract(tmp_path) -> None:
             UavState((10, 11, 12), (0, 1, 0, 0), (0, 0, 0), (0, 0, 0), 16, True),
             UavState((13, 14, 15), (0, 0, 1, 0), (0, 0, 0), (0, 0, 0), 17, False),
         )
-        log.write(WorldState(0.02, (1, 2, 3), (1, 0, 0, 0), (4, 5, 6), (7, 8, 9), uavs), 3)
+        write_state(log, WorldState(0.02, (1, 2, 3), (1, 0, 0, 0), (4, 5, 6), (7, 8, 9), uavs), 3)
         log.close()
     header, row = (tmp_path / "new" / "truth.csv").read_text().splitlines()
     assert dict(zip(header.split(","), map(float, row.split(",")), strict=True)) == {
@@ -309,7 +310,7 @@ def test_truth_of_another_flight_is_not_overwritten(tmp_path) -> None:
 
 def test_state_of_another_number_of_uavs_is_an_error(tmp_path) -> None:
     with TruthLog(tmp_path, 3) as log, pytest.raises(ValueError, match="47 values for 39 columns"):
-        log.write(world_state(0.0, (0.0, 0.0, 0.0), LEVEL, CORNERS, [0.0] * 4), 0)
+        write_state(log, world_state(0.0, (0.0, 0.0, 0.0), LEVEL, CORNERS, [0.0] * 4), 0)
 
 
 # --- pictures -----------------------------------------------------------------------------------------------------

@@ -84,3 +84,11 @@ def test_spread_of_latency_is_that_of_the_round_trips_apart_from_the_worst_quart
     trips = [0.02, 0.03, 0.04, 0.05, 0.3]
     clock = clock_after_round_trips(RemoteClock(), lambda sent: trips[round(sent / 0.1) % 5], until=1.0)
     assert clock.spread == pytest.approx((0.05 - 0.02) / 2.0)
+
+
+@pytest.mark.parametrize("latency", [0.0, 0.01, 0.04])
+def test_offset_is_that_of_the_clocks_where_latency_is_the_same_both_ways(latency):
+    clock = clock_after_round_trips(RemoteClock(), lambda sent: 2.0 * latency, until=2.0)
+    for k in range(50):
+        clock.add_stamp(10.0 + 0.04 * k, 0.04 * k + latency, in_order=True)
+    assert clock.offset == pytest.approx(10.0, abs=1e-6)

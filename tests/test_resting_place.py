@@ -150,3 +150,27 @@ def test_braking_with_most_clearance_is_chosen_when_none_is_clear():
 
     chosen = clearance_at_rest(RestingPlace(PARAMETERS, everywhere)(0.0, STATE))
     assert clearance_at_rest(USUAL) - 0.2 < chosen < RestingPlaceSettings().clearance
+
+
+@pytest.mark.parametrize("speed", [0.0, 0.5, 2.0])
+@pytest.mark.parametrize("acceleration", [0.0, 1.5])
+def test_obstacles_are_considered_as_far_as_any_stop_leads(speed, acceleration):
+    class Watched(StandingObstacles):
+        def predict(self, times, region=None):
+            regions.append(region)
+            return super().predict(times, region)
+
+    regions, settings = [], RestingPlaceSettings()
+    choose = RestingPlace(PARAMETERS, Watched([]))
+    for k in range(8):
+        heading = np.array([np.cos(k), np.sin(k), 0.0])
+        state = np.array([[3.0, 4.0, -5.0], speed * heading, acceleration * heading[[1, 0, 2]] * [1, -1, 1]])
+        choose(0.0, state)
+        region = regions.pop()
+        farthest = 0.0
+        for stop in choose._choices.stops:
+            path = stop.path(state)
+            places = path(np.linspace(0.0, path.x[-1], 50)) - region.place
+            farthest = max(farthest, np.linalg.norm(places, axis=1).max())
+        assert region.place == pytest.approx(state[0])
+        assert region.radius > farthest + WIDTH + settings.clearance

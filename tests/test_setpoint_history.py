@@ -129,3 +129,14 @@ def test_impossible_time_of_effect_is_ignored(since):
     found = history.confirm(1, since, 0.11, SENT[2][SECOND], jitter=0.0, latency_max=0.03)
     assert found is None or (found.delay is None and found.corrected_from is None)
     assert history.in_force(0.104, 0.154).u is SENT[2]
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_effect_of_equal_setpoints_is_that_of_the_first_of_them(count):
+    history, values = SetpointHistory(N), [SENT[0], *[SENT[1]] * count, SENT[2]]
+    for k, u in enumerate(values):
+        history.add(0.05 * k, u, np.full(N, 0.05 * k - LATENCY))
+    found = history.confirm(1, 0.06, 0.05 * count + 0.02, SENT[1][SECOND], jitter=0.01)
+    assert found.corrected_from == pytest.approx(0.05)
+    assert history.in_force(0.05, 0.10).u[SECOND] == pytest.approx(0.2 * SENT[0][SECOND] + 0.8 * SENT[1][SECOND])
+    assert found.delay == (pytest.approx(0.01 + LATENCY) if count == 1 else None)

@@ -108,11 +108,13 @@ def test_distances_of_several_shapes_equal_those_of_each_shape():
         np.testing.assert_array_equal(distance, Bodies([shape]).distance(points, centre[None])[0])
 
 
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("spread", [(0.3, 0.3, 0.3), (3.0, 0.1, 0.1), (0.1, 3.0, 0.1)], ids=["ball", "x", "y"])
 @pytest.mark.parametrize("far", [math.inf, 1.0])
-def test_mean_distances_of_groups_equal_those_of_their_points(far):
-    rng = np.random.default_rng(2)
+def test_mean_distances_of_groups_equal_those_of_their_points(far, spread, seed):
+    rng = np.random.default_rng(2 + seed)
     bodies, centres = Bodies(EXAMPLES), rng.uniform(-6.0, 6.0, (len(EXAMPLES), 3))
-    groups = [rng.normal(rng.uniform(-6.0, 6.0, 3), 0.3, (size, 3)) for size in (3, 0, 1, 9, 0)]
+    groups = [rng.normal(rng.uniform(-6.0, 6.0, 3), spread, (size, 3)) for size in (3, 0, 1, 9, 0)]
     found = bodies.mean_distances(PointGroups.of(groups), centres, far)
     expected = [
         np.abs(bodies.distance(group, centres)).mean(axis=1) if len(group) else np.full(len(centres), np.inf)

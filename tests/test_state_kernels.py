@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from idc_controller.rotations_float import into_body
 from vehicle_sim.world.rotor_kernels import advance_rotors
 from vehicle_sim.world.state_kernels import measure, states_from_engine
-from vehicle_sim.world.world_state import flipped, product, quaternion_from_engine
+from vehicle_sim.world.world_state import flipped, product, quaternion_from_engine, upward_axis
 
 RNG = np.random.default_rng(7)
 
@@ -73,3 +73,9 @@ def test_rotors_advance_by_several_steps_as_by_each_alone():
         assert np.array_equal(alone[0][0], thrust)
         assert np.array_equal(alone[1][0], torque)
     assert np.array_equal(speeds, begun)
+
+
+def test_upward_axis_is_opposite_to_third_axis_of_body():
+    for attitude, offset in zip(quaternions(100).tolist(), RNG.normal(size=(100, 3)).tolist(), strict=True):
+        down = into_body(quaternion_from_engine(attitude), flipped(offset))[2]
+        assert np.dot(upward_axis(attitude), offset) == pytest.approx(-down, abs=1e-12)

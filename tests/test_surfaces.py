@@ -1,10 +1,14 @@
 """Surfaces of obstacles: the ends of what is detected of one, and the orientation of a wall by its points alone."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from idc_controller.geometry.box import Box
 from idc_controller.perception.settings import SurfaceSettings
 from idc_controller.perception.surfaces.flat import FlatSurface
+from idc_controller.perception.surfaces.known import KnownSurface
 from idc_controller.perception.surfaces.points import EndOfSurface, SurfacePoints
 
 S = SurfaceSettings()
@@ -57,3 +61,47 @@ def test_wall_is_oriented_by_points_far_apart():
     assert middle == pytest.approx([4.0, 0.0, -3.0], abs=1e-3)
     with np.errstate(invalid="ignore"):  # its ends are not known yet
         assert abs(surface.shape.yaw) == pytest.approx(np.pi, abs=1e-4)  # its front looks at the sensor
+
+
+def points_on(box, centre, sensor, count, rng, noise=0.0):
+    """Points on the sides of a box that face a sensor."""
+    body = (sensor - centre) @ box.rotation
+    half, parts = np.array(box.size) / 2.0, []
+    for axis in range(3):
+        if abs(body[axis]) > half[axis]:
+            on_side = rng.uniform(-half, half, (count, 3))
+            on_side[:, axis] = np.copysign(half[axis], body[axis])
+            parts.append(on_side)
+    points = centre + np.concatenate(parts) @ box.rotation.T
+    points += noise * rng.normal(size=points.shape)
+    n = len(points)
+    return SurfacePoints(0.0, points, np.tile(sensor, (n, 1)), np.zeros(n, bool), max(noise, 0.01), np.full(n, 1e-6))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_place_of_known_tilted_box_is_found_by_the_sides_in_view(seed):
+    rng, centre = np.random.default_rng(seed), np.array([4.0, -2.0, -6.0])
+    box = Box((0.8, 1.2, 2.0), roll=0.4, pitch=-0.3, yaw=0.2 + seed)
+    surface = KnownSurface(box, S)
+    scan = points_on(box, centre, centre + rng.normal(size=3) * 5.0 + [6.0, 0.0, 0.0], 40, rng, 0.01)
+    guess = surface.guess(scan)
+    assert np.linalg.norm(guess - centre) < 1.5
+    fit = surface.fit(scan, centre + np.array([0.05, -0.05, 0.05]), 10)
+    assert fit.position == pytest.approx(centre, abs=0.06)
+    exact = surface.fit(points_on(box, centre, scan.origins[0], 40, rng), centre, 10)
+    assert exact.position == pytest.approx(centre, abs=1e-3)
+    assert surface.kind == "box" and surface.shape is box and (surface.offset == 0.0).all()
+
+
+def test_place_of_known_box_is_less_certain_across_what_is_in_view_and_with_less_precise_poses():
+    rng, centre = np.random.default_rng(1), np.array([5.0, 0.0, -6.0])
+    box = Box((1.0, 1.0, 1.0), roll=1e-9)
+    scan = points_on(box, centre, np.array([0.0, 0.0, -6.0]), 60, rng)
+    variance = KnownSurface(box, S).fit(scan, centre).variance
+    assert variance[0] < 0.05 * variance[1:].min()
+    assert variance[1:] == pytest.approx([S.sideways_sigma**2] * 2, rel=0.05)
+    worse = replace(scan, pose_variance=np.full(len(scan.points), 0.01))
+    two = replace(worse, sensors=2)
+    of_one, of_two = (KnownSurface(box, S).fit(s, centre).variance for s in (worse, two))
+    assert (of_one - of_two) == pytest.approx([0.005] * 3)
+    assert of_one[0] == pytest.approx(0.01 + 0.0101 / 60, rel=0.02)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
 import pymavlink.dialects.v20.common as mavlink
 import pytest
 from vehicle_bench import (
@@ -13,6 +14,7 @@ from vehicle_bench import (
 
 from gcs.config.vehicle_settings import VehicleFailsafeSettings
 from gcs.mavlink import px4
+from vehicle_sim.autopilot.parameter_table import Parameter, ParameterRefusalError, ParameterTable
 
 
 def value_of(messages: list[Any]) -> dict[str, Any]:
@@ -56,3 +58,26 @@ def test_parameters_are_set_or_the_kept_value_is_answered(
     answer = value_of(bench.request(mavlink.MAVLink_param_set_message(1, 1, name.encode(), value, kind)))
     assert answer == {name: stored}
     assert bench.vehicle.parameters[name] == stored
+
+
+def test_real_parameters_have_the_precision_of_the_wire_and_integers_are_exact() -> None:
+    assert Parameter("A", 0.1).value == float(np.float32(0.1)) != 0.1
+    assert Parameter("B", 2**24 + 1, type=mavlink.MAV_PARAM_TYPE_INT32).value == 2**24 + 1
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "kind", "problem"),
+    [
+        ("A", 1.0, 9, None), ("A", 3.0, 9, None), ("A", 0.99, 9, "A: 0.99 is outside 1 .. 3"),
+        ("A", 3.01, 9, "A: 3.01 is outside 1 .. 3"), ("A", math.nan, 9, "A: nan is outside 1 .. 3"),
+        ("A", 2.0, 6, "A: sent as type 6, is of type 9"), ("B", 2.0, 9, "B: read-only"), ("C", 2.0, 9, "C: no such"),
+    ],
+)  # fmt: skip
+def test_parameter_is_set_within_its_limits_or_kept(name: str, value: float, kind: int, problem: str | None) -> None:
+    table = ParameterTable([Parameter("B", 5.0), Parameter("A", 2.5, limits=(1.0, 3.0))])
+    if problem is None:
+        table.set_from_wire(name, value, kind)
+    else:
+        with pytest.raises(ParameterRefusalError, match=f"^{problem}"):
+            table.set_from_wire(name, value, kind)
+    assert (table["A"], table["B"]) == (value if problem is None else 2.5, 5.0)

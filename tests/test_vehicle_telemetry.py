@@ -53,6 +53,7 @@ def test_streams_have_their_rates_and_stamps_of_samples(bench: Bench) -> None:
     assert stamps == [m.time_boot_ms for m in bench.got("LOCAL_POSITION_NED")]
     assert np.all(np.diff(stamps) == 20) and stamps[0] % 20 == 0
     assert len(bench.got("ATTITUDE_QUATERNION", component=25)) == 200
+    assert {tuple(m.repr_offset_q) for m in bench.got("ATTITUDE_QUATERNION")} == {(0.0,) * 4}  # as it is mounted
     # Everything due at one instant shares a datagram.
     assert len(bench.datagrams) == 200
     assert max(len(datagram) for _, datagram, _ in bench.datagrams) <= DATAGRAM_LIMIT

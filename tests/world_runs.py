@@ -94,7 +94,9 @@ def place(world, state):
             _rotate_back(uav_quaternion, flipped(uav_rates.tolist())), physicsClientId=client,
         )  # fmt: skip
     world._readings = Readings(client, system)
-    world._contacts = ContactDetector(world.parameters, WorldConfig(), system, world._ground, world.obstacles)
+    world._contacts = ContactDetector(
+        world.parameters, WorldConfig(), system, world._ground, world.obstacles, world._readings
+    )
 
 
 def _product(a, b):

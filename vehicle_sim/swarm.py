@@ -108,7 +108,8 @@ class Swarm:
         """Record the true state from here on, at ``rates.truth`` or more often. The log is closed with the swarm."""
         self._truth = truth
         self._modes_recorded = False
-        truth.write(self.world.state(), self.world.contacts().pairs, self.world.obstacles.all())
+        self._contacts = self.world.contacts().pairs
+        self._write_truth(truth, self.world.states())
 
     def close(self) -> None:
         """End the world and the record; harmless when they have ended."""
@@ -148,20 +149,23 @@ class Swarm:
 
     def next_timer(self) -> float | None:
         """Return when :meth:`datagrams_to_send` has something to do (s; in the past: at once), None: never."""
-        timers = [vehicle.next_timer() for vehicle in self.vehicles]
-        timers.append(self._faults.next_timer())
-        return min((timer for timer in timers if timer is not None), default=None)
+        timers = [timer for vehicle in self.vehicles if (timer := vehicle.next_timer()) is not None]
+        if (timer := self._faults.next_timer()) is not None:
+            timers.append(timer)
+        return min(timers, default=None)
 
     # Inside
 
     def _step(self) -> None:
         """Take one physics step."""
         world, periods = self.world, self._periods
-        if self.take_off_time is not None:
+        if self._obstacles.any_moves and self.take_off_time is not None:
             self._obstacles.move((world.steps + 1) / world.physics_hz - self.take_off_time)
         thrusts, torques = self._wrenches[world.steps % periods.onboard]
-        forces = self._faults.disturb(world, world.time)
-        world.step(thrusts, torques, *(forces or ()))
+        if self._faults.any_of_world:
+            world.step(thrusts, torques, *(self._faults.disturb(world, world.time) or ()))
+        else:
+            world.step(thrusts, torques)
         if self._truth is not None and (pairs := world.contacts().pairs) > self._contacts:
             self._contacts = pairs
         if self.take_off_time is None and not world.all_cradled:
@@ -176,14 +180,16 @@ class Swarm:
         states = world.states()
         if measures:
             self._onboard(states)
-        if not (scans or records):
-            return
-        state = world.state(states)
         if scans:
-            self._team.scan(state, world.obstacles)
+            self._team.scan(world.state(states), world.obstacles)
         if records and self._truth is not None:
-            self._truth.write(state, self._contacts, world.obstacles.all())
-            self._contacts = 0
+            self._write_truth(self._truth, states)
+
+    def _write_truth(self, truth: TruthLog, states: Array) -> None:
+        """Record the true ``states`` with the most contacts at a time since the last row."""
+        world = self.world
+        truth.write(world.time, states, world.thrusts, self._contacts, world.obstacles.all())
+        self._contacts = 0
 
     def _onboard(self, states: Array) -> None:
         """Let all vehicles take an onboard step, and record what they fly where it changes."""

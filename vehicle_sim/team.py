@@ -41,6 +41,7 @@ class Team:
         self._range_sensors = [RangeSensor(config.range_sensor, seed, i) for i in ids]
         self._faults = faults
         self._disturbed = [vehicle for vehicle in vehicles if faults.disturbs_samples(vehicle.system_id)]
+        self._undisturbed = [vehicle for vehicle in vehicles if vehicle not in self._disturbed]
         self._times = np.empty(len(ids))
         self._payload_sample: tuple[float, Array] | None = None
 
@@ -69,9 +70,8 @@ class Team:
             return
         time, row = self._payload_sample
         sample = Measurement.of_row(time, row.tolist())
-        for vehicle in self.vehicles:
-            if vehicle not in self._disturbed:
-                vehicle.relay(sample)
+        for vehicle in self._undisturbed:
+            vehicle.relay(sample)
 
     def _disturb(self, samples: Array, times: Array) -> list[int]:
         """Let the faults act on the vehicles' ``samples`` (N, 13), their ``times`` (N,), and what they relay.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,8 +21,7 @@ STOP_PLANS = 100
 STAMP_TOLERANCE = 0.01  # s
 
 
-@dataclass(frozen=True, eq=False)
-class Setpoints:
+class Setpoints(NamedTuple):
     """Set-points of all vehicles: unit thrust directions (N, 3), NED, and thrusts (N,) (N)."""
 
     directions: Array
@@ -34,8 +33,7 @@ class Setpoints:
         return cls(np.tile([0.0, 0.0, -1.0], (number_of_uavs, 1)), np.zeros(number_of_uavs))
 
 
-@dataclass(frozen=True, eq=False)
-class StepRecord:
+class StepRecord(NamedTuple):
     """One control step, for the records."""
 
     estimate: Estimate

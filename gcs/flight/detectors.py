@@ -84,17 +84,19 @@ class _TelemetryTimeout:
 
     def __init__(self, timeout: float) -> None:
         self._timeout = timeout
-        self._last: dict[str, float] = {}
+        self._last: list[float] = []
+        """Of each vehicle and of the payload; empty: not in the air yet."""
 
     def __call__(self, step: MonitorStep) -> None:
         if not step.in_air:
             return
-        received_at = {step.name(i): link.complete_telemetry_received_at for i, link in enumerate(step.links)}
-        received_at["payload"] = max(link.payload_received_at for link in step.links)
-        for name, last in received_at.items():
-            gap = max(step.now - last, last - self._last.get(name, last))
-            if gap > self._timeout:
-                step.raise_alarm(name, MonitorAlarm.TELEMETRY_TIMEOUT, f"no telemetry for {gap:.2f} s")
+        links, now, timeout = step.links, step.now, self._timeout
+        received_at = [link.complete_telemetry_received_at for link in links]
+        received_at.append(max([link.payload_received_at for link in links]))
+        for i, (last, before) in enumerate(zip(received_at, self._last or received_at, strict=True)):
+            gap = max(now - last, last - before)
+            if gap > timeout:
+                step.raise_alarm(step.names[i], MonitorAlarm.TELEMETRY_TIMEOUT, f"no telemetry for {gap:.2f} s")
         self._last = received_at
 
 
@@ -110,14 +112,14 @@ class LinkTiming:
     def __call__(self, step: MonitorStep) -> None:
         """Raise the alarms of one control step."""
         s = self._settings
-        for i, link in enumerate(step.links):
-            name, clock = step.name(i), link.clock
-            moved = self._offsets[i].add(step.now, clock.offset)
-            if clock.delay > self._latency:
-                text = f"link latency is {clock.delay * 1e3:.0f} ms (limit {self._latency * 1e3:.0f} ms)"
+        for link, name, offsets in zip(step.links, step.names, self._offsets, strict=False):
+            clock = link.clock
+            moved, delay, spread = offsets.add(step.now, clock.offset), clock.delay, clock.spread
+            if delay > self._latency:
+                text = f"link latency is {delay * 1e3:.0f} ms (limit {self._latency * 1e3:.0f} ms)"
                 step.raise_alarm(name, MonitorAlarm.LINK_LATENCY, text)
-            elif clock.spread > self._jitter:
-                text = f"link latency varies by {clock.spread * 1e3:.0f} ms (limit {self._jitter * 1e3:.1f} ms)"
+            elif spread > self._jitter:
+                text = f"link latency varies by {spread * 1e3:.0f} ms (limit {self._jitter * 1e3:.1f} ms)"
                 step.raise_alarm(name, MonitorAlarm.LINK_JITTER, text)
             elif moved > s.clock_error:
                 text = f"clock moved by {moved * 1e3:.0f} ms in {s.clock_window:g} s"

@@ -44,7 +44,9 @@ class FailsafeState:
             for failsafe, condition, reaction in _ADMITTED[check, moment.phase]
             if reaction > present and (trigger := condition(system, moment)) is not None
         ]
-        return min(held, key=lambda each: (-each[0].reaction, len(each[1].vehicles), each[1].vehicles), default=None)
+        if not held:
+            return None
+        return min(held, key=lambda each: (-each[0].reaction, len(each[1].vehicles), each[1].vehicles))
 
     def raise_failsafe(self, time: float, phase: Phase, failsafe: Failsafe, trigger: Trigger) -> Reaction:
         """Record it at ``time`` (s); return its reaction, NONE if a more severe one is under way."""

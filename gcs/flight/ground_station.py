@@ -25,7 +25,7 @@ from gcs.mavlink import px4
 from gcs.mavlink.address import Address
 from gcs.mavlink.codec import Codec, gather
 from gcs.mavlink.id_check import SystemIdCheck
-from gcs.mavlink.layout import Packed, packed
+from gcs.mavlink.layout import LAYOUTS, Packed, packed
 from gcs.mavlink.setpoints import attitude_target, stop_plan_message
 from gcs.mavlink.vehicle_link import VehicleLink
 from idc_controller.control.controller import Decision
@@ -39,6 +39,7 @@ _HEARTBEAT = packed(
         mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, mavlink.MAV_STATE_ACTIVE, 3
     )
 )
+_TIMESYNC = LAYOUTS[mavlink.MAVLINK_MSG_ID_TIMESYNC]
 
 
 class Recorder(Protocol):
@@ -125,7 +126,7 @@ class GroundStation:
                 queue += _HEARTBEAT
         if self._timesync.is_due(now):
             for link, queue in zip(self.links, messages, strict=True):
-                queue += packed(mavlink.MAVLink_timesync_message(0, link.clock.request(now)))
+                queue.append(_TIMESYNC.pack(0, link.clock.request(now)))
         self._stepped = self._control.is_due(now)
         times.lap(Part.SETPOINTS)
         if self.flight.check_links(self._clock.time(now), now):

@@ -1,8 +1,8 @@
 """One control step as the detectors of alarms get it, and the scope in which an alarm is raised."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from enum import Enum
+from typing import NamedTuple
 
 from gcs.flight.alarms import AlarmCode, AlarmLog, Severity
 from gcs.flight.control_loop import StepRecord
@@ -29,8 +29,7 @@ class ScopedAlarm(AlarmCode):
         self.scope = scope
 
 
-@dataclass(frozen=True, eq=False)
-class MonitorStep:
+class MonitorStep(NamedTuple):
     """Inputs of a detector in one control step: team ``time`` and ground time ``now`` (s)."""
 
     time: float

@@ -2,8 +2,6 @@
 
 import math
 
-import numpy as np
-
 from gcs.config.flight_settings import DEFAULTS, FlightSettings
 from idc_controller.estimation.estimate import Estimate
 from idc_controller.model.linear import StateLayout
@@ -36,7 +34,7 @@ class PayloadMonitor:
         """
         s = self._settings.failsafe
         roll, pitch, _ = estimate.x[self._layout.Theta].tolist()
-        if max(abs(roll), abs(pitch)) < s.tilt_limit and np.isfinite(estimate.x).all():
+        if max(abs(roll), abs(pitch)) < s.tilt_limit and math.isfinite(estimate.x @ estimate.x):
             self._in_control = time
         return time - self._in_control > s.tilt_time
 

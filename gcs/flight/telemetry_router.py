@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
@@ -14,17 +15,26 @@ from gcs.mavlink.address import Address
 from gcs.mavlink.codec import Codec
 from gcs.mavlink.id_check import SystemIdCheck
 from gcs.mavlink.messages import Received
-from gcs.mavlink.scan_sequence import RETURNS, SCAN_END, ScanSequence, scan_stamp
+from gcs.mavlink.scan_sequence import RETURNS, SCAN_END, scan_stamp
 from gcs.mavlink.telemetry import measurement, scan_end, scan_returns, setpoint_flown
 from gcs.mavlink.vehicle_link import VehicleLink
-from idc_controller.estimation.measurements import Measurement
-from idc_controller.perception.obstacle_map import ObstacleMap
+from idc_controller.estimation.measurements import PAYLOAD, Measurement
 
 _SETPOINT, _SCAN = mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET, (RETURNS, SCAN_END)
 _STAMPED = frozenset(
     (mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED, _SETPOINT, *_SCAN)
 )
 """Messages of one moment, which their stamp names."""
+
+
+class _Routed(NamedTuple):
+    """What has come in one exchange for the estimator, in order."""
+
+    samples: list[tuple[Received, int, int, float]]
+    """Measurements: the message, its sender (0 .. N-1), the vehicle that sends as that, time of validity (s)."""
+    setpoints: list[tuple[Received, int, float, float, float, float]]
+    """Set-points that vehicles report to fly: the message, the vehicle (0 .. N-1), since and until when (s), jitter and
+    largest latency of its link then (s)."""
 
 
 class TelemetryRouter:
@@ -42,7 +52,6 @@ class TelemetryRouter:
         self._clock_settled = settings.clock_settled
         self._unread = codec.unread
         self._links = flight.system.team.links
-        self._sequences = [ScanSequence() for _ in self._links]
         self._by_address: dict[tuple[Address, int], int] = {
             (link.address, link.system_id): i for i, link in enumerate(self._links) if link.address is not None
         }
@@ -52,22 +61,28 @@ class TelemetryRouter:
     def receive(self, datagrams: Sequence[tuple[bytes, Address]], now: float) -> list[bytes]:
         """Take datagrams, each with its sender; return those from vehicles of this flight."""
         codec = self._codec
-        # All are read before the first is routed: so many calls of one kind cost far less in a row.
+        # All are read before the first is routed, and all measurements added before the first report of a set-point: so
+        # many calls of one kind cost far less in a row.
         read = [(codec.read(datagram), codec.unread) for datagram, _ in datagrams]
         known = []
+        routed = _Routed([], [])
         for (datagram, sender), (messages, unread) in zip(datagrams, read, strict=True):
             if unread > self._unread:
                 self._unread = unread
                 if (link := self._link_at(sender)) is not None:
                     link.statistics.damaged += 1
-            if self._take(messages, sender, now):
+            if self._take(messages, sender, now, routed):
                 known.append(datagram)
         self.refused += len(datagrams) - len(known)
+        for sample in self._measurements(routed):
+            self._add_measurement(sample)
+        for report in routed.setpoints:
+            self._confirm_setpoint(*report)
         return known
 
-    def _take(self, messages: Sequence[Received], sender: Address, now: float) -> bool:
+    def _take(self, messages: Sequence[Received], sender: Address, now: float, routed: _Routed) -> bool:
         """Take the messages of a datagram; return whether it is from a vehicle of this flight."""
-        stamped: dict[int, list[Received]] = {}
+        groups: dict[int, list[Received]] = {}
         system = index = None
         for received in messages:
             if index is None or received.system != system:
@@ -77,22 +92,20 @@ class TelemetryRouter:
                     index = self._new_vehicle(received, sender)
                 if index is None:
                     continue
-                link, group = self._links[index], stamped.setdefault(index, [])
+                group = groups.setdefault(index, [])
             if received.target_system and not received.is_for(self._codec.system_id):
                 continue  # an answer to another system behind this address
-            message_id = received.layout.message_id
-            breaks = link.statistics.breaks
-            link.handle(received, now)
-            if message_id in _SCAN:
-                if received.component != px4.AUTOPILOT_COMPONENT:
-                    continue  # of its sequence nothing is known
-                self._sequences[index].add(received, breaks, link.statistics.breaks)
-            if message_id in _STAMPED:
-                group.append(received)
-        for index, group in stamped.items():
-            if group and self._links[index].clock.known:
-                self._route(group, index, now)
-        return bool(stamped)
+            if received.layout.message_id in _SCAN and received.component != px4.AUTOPILOT_COMPONENT:
+                continue  # of its sequence nothing is known
+            group.append(received)
+        for index, group in groups.items():
+            if group:
+                link = self._links[index]
+                link.handle(group, now)
+                stamped = [received for received in group if received.layout.message_id in _STAMPED]
+                if stamped and link.clock.known:
+                    self._route(stamped, index, now, routed)
+        return bool(groups)
 
     def _link_at(self, address: Address) -> VehicleLink | None:
         return next((link for link in self._links if link.address == address), None)
@@ -112,7 +125,7 @@ class TelemetryRouter:
                 link.other_system_id = system_id
         return None
 
-    def _route(self, group: list[Received], index: int, now: float) -> None:
+    def _route(self, group: list[Received], index: int, now: float, routed: _Routed) -> None:
         """Route the messages, and runs of them, with a time stamp of one vehicle in one datagram."""
         link, obstacle_map = self._links[index], self._flight.system.obstacle_map
         offset = link.clock.offset
@@ -128,40 +141,49 @@ class TelemetryRouter:
                 stamp = now_stamp
                 time = whole_ms(stamp * 1e-3 - offset + team_offset)
             if message_id == _SETPOINT:
-                self._confirm_setpoint(received, index, time, latest, now)
+                # Its stamp is that of the moment at which it began to act.
+                until = min(max(time, latest), self._clock.time(now))
+                routed.setpoints.append((received, index, time, until, link.clock.spread, link.setpoints.delay_max))
             elif message_id in _SCAN:
                 # Scans from before a clock jump have the stamp of another pose.
                 if obstacle_map is not None and now - link.clock.jumped_at > self._clock_settled:
                     if message_id == RETURNS:
                         obstacle_map.placement.add(scan_returns(received), index, time, now)
                     else:
-                        obstacle_map.placement.end(scan_end(received, self._sequences[index]), index, time, now)
+                        obstacle_map.placement.end(scan_end(received, link.scans), index, time, now)
             else:
-                sample = measurement(received, uav, time)
-                if sample is None or not sample.is_whole:
-                    link.statistics.add_not_finite(received.component)
-                if sample is not None:
-                    self._add_measurement(sample, obstacle_map)
+                routed.samples.append((received, index, uav, time))
             if time > latest:
                 latest = time
 
-    def _confirm_setpoint(self, received: Received, index: int, time: float, latest: float, now: float) -> None:
+    def _measurements(self, routed: _Routed) -> list[Measurement]:
+        """Return the measurements, as far as there are numbers in the messages."""
+        found = []
+        for received, sender, uav, time in routed.samples:
+            sample = measurement(received, uav, time)
+            if sample is None or not sample.is_whole:
+                self._links[sender].statistics.add_not_finite(received.component)
+            if sample is not None:
+                found.append(sample)
+        return found
+
+    def _confirm_setpoint(
+        self, received: Received, index: int, since: float, until: float, jitter: float, latency_max: float
+    ) -> None:
         link, flight = self._links[index], self._flight
         setpoint = setpoint_flown(received.fields, link.status.parameters.get(px4.PARAM_THRUST_MAX, math.nan))
         if setpoint is None or flight.phase not in IN_AIR:
             return
-        # Its stamp is that of the moment at which it began to act.
-        until = min(max(time, latest), self._clock.time(now))
-        confirmation = flight.control.estimator.confirm_setpoint(
-            index, time, until, setpoint, link.clock.spread, link.setpoints.delay_max
-        )
+        confirmation = flight.control.estimator.confirm_setpoint(index, since, until, setpoint, jitter, latency_max)
         if confirmation is not None:
             link.setpoints.confirm(confirmation)
 
-    def _add_measurement(self, sample: Measurement, obstacle_map: ObstacleMap | None) -> None:
-        self._id_check.add(sample)
+    def _add_measurement(self, sample: Measurement) -> None:
         used = self._flight.add_measurement(sample)
-        if obstacle_map is not None and used is not None:
+        if sample.source == PAYLOAD:
+            return
+        self._id_check.add(sample)
+        if used is not None and (obstacle_map := self._flight.system.obstacle_map) is not None:
             obstacle_map.placement.poses.add_measured(used)
 
 

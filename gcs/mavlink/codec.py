@@ -18,8 +18,10 @@ DATAGRAM_LIMIT = 1200
 #: Frames of one datagram that may be broken; more make it no datagram of MAVLink, and the rest is not looked at.
 BAD_FRAMES_MAX = 32
 
-_HEADER = struct.Struct("<BBBBBBB3s")
-"""Of MAVLink 2: marker, length, incompatible and compatible flags, sequence number, system, component, message id."""
+_MARKER = bytes([V2])
+_HEADER = struct.Struct("<BBBBBB3s")
+"""Of MAVLink 2, behind the marker: length, incompatible and compatible flags, sequence number, system, component, id of
+the message."""
 
 _POINT = mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D
 """The kind of message of which many come at once."""
@@ -74,16 +76,18 @@ class Codec:
         """Return a MAVLink 2 frame of a message that is packed already, as :meth:`encode` does."""
         layout, payload = message
         body = _HEADER.pack(
-            V2, len(payload), 0, 0, self._sequence, self.system_id, self._component_id, layout.wire_id
+            len(payload), 0, 0, self._sequence, self.system_id, self._component_id, layout.wire_id
         ) + payload  # fmt: skip
         self._sequence = (self._sequence + 1) & 0xFF
-        return body + _checksum(body[1:] + layout.crc_extra).to_bytes(2, "little")
+        return _MARKER + body + _checksum(body + layout.crc_extra).to_bytes(2, "little")
 
     def frames(self, run: PackedRun) -> list[bytes]:
         """Return the MAVLink 2 frames of a run, as :meth:`frame` does one by one."""
         layout, values = run
         length = layout.dtype.itemsize
-        header = _HEADER.pack(V2, length, 0, 0, self._sequence, self.system_id, self._component_id, layout.wire_id)
+        header = _MARKER + _HEADER.pack(
+            length, 0, 0, self._sequence, self.system_id, self._component_id, layout.wire_id
+        )  # fmt: skip
         self._sequence = (self._sequence + len(values)) & 0xFF
         payloads = values.view(np.uint8).reshape(-1, length)
         data = framed_run(np.frombuffer(bytearray(header), np.uint8), payloads, layout.crc_extra[0]).tobytes()
@@ -109,10 +113,15 @@ class Codec:
         self.bad_frames += bad_frames
         self.skipped_bytes += skipped_bytes
         messages: list[Received] = []
-        for kind, first, last, run, *others in found.tolist():
+        new = tuple.__new__  # without the call of its own __new__, which takes half of the time
+        for kind, first, last, run, system, component, sequence, to_system, to_component, stamp in found.tolist():
             payload = datagram[first:last] if run == 1 else _payloads(data[first - HEADER : last + CHECKSUM], run)
-            # Without the call of its own __new__, which takes half of the time.
-            messages.append(tuple.__new__(Received, (_LAYOUTS[kind], payload, run, *others)))
+            messages.append(
+                new(
+                    Received,
+                    (_LAYOUTS[kind], payload, run, system, component, sequence, to_system, to_component, stamp),
+                )
+            )
         return messages
 
 

@@ -80,8 +80,8 @@ class Layout:
         Raises ``struct.error`` or ``OverflowError`` when a field does not fit its type.
         """
         payload = self._pack(*values)
-        # Trailing zeros are not sent, but at least one byte is.
-        return Packed(self, payload.rstrip(b"\0") or payload[:1])
+        # Trailing zeros are not sent, but at least one byte is. Without the call of its own __new__, as it is slow.
+        return tuple.__new__(Packed, (self, payload.rstrip(b"\0") or payload[:1]))
 
     def pack_message(self, message: Message) -> Packed:
         """Return a message of this kind, packed. Raises as :meth:`pack`."""

@@ -1,7 +1,7 @@
 """Telemetry: MAVLink messages of the vehicles become measurements for the estimator."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import lru_cache
 from struct import Struct
 from typing import Any
@@ -22,7 +22,8 @@ _POSITION = LAYOUTS[mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED]
 _POINT = LAYOUTS[mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D]
 _SCAN_END = LAYOUTS[mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE]
 _NAN = math.nan
-_PACK = {3: Struct("3d").pack, 4: Struct("4d").pack}
+_THREE, _FOUR = Struct("3d").pack, Struct("4d").pack
+_THREE_UNKNOWN, _FOUR_UNKNOWN = _THREE(*[_NAN] * 3), _FOUR(*[_NAN] * 4)
 
 _Values = tuple[Array, Array] | None
 """Pose and motion, one of them nan if it cannot be a measurement; None: neither can."""
@@ -84,29 +85,30 @@ def scan_end(received: Received, scans: ScanSequence) -> ScanEnd:
 def _attitude(payload: bytes) -> _Values:
     _, w, x, y, z, p, q, r, _, _, _, _ = _ATTITUDE.fields(payload)
     norm = math.sqrt(w * w + x * x + y * y + z * z)
-    scale = norm or 1.0
-    pose = (w / scale, x / scale, y / scale, z / scale)
-    return _usable(pose, (p, q, r), 0.9 < norm < 1.1, math.isfinite(p + q + r))
+    return _values(
+        _FOUR(w / norm, x / norm, y / norm, z / norm) if 0.9 < norm < 1.1 else None,
+        _THREE(p, q, r) if math.isfinite(p + q + r) else None,
+        unknown_pose=_FOUR_UNKNOWN,
+    )
 
 
 def _position(payload: bytes) -> _Values:
     _, x, y, z, v_x, v_y, v_z = _POSITION.fields(payload)
-    return _usable((x, y, z), (v_x, v_y, v_z), math.isfinite(x + y + z), math.isfinite(v_x + v_y + v_z))
-
-
-def _usable(pose: Sequence[float], motion: Sequence[float], has_pose: bool, has_motion: bool) -> _Values:
-    """Return pose and motion as arrays to read only, without the part that cannot be a measurement."""
-    if not (has_pose or has_motion):
-        return None
-    return (
-        _read_only(pose if has_pose else [_NAN] * len(pose)),
-        _read_only(motion if has_motion else [_NAN] * len(motion)),
+    return _values(
+        _THREE(x, y, z) if math.isfinite(x + y + z) else None,
+        _THREE(v_x, v_y, v_z) if math.isfinite(v_x + v_y + v_z) else None,
+        unknown_pose=_THREE_UNKNOWN,
     )
 
 
-def _read_only(numbers: Sequence[float]) -> Array:
-    """Return three or four numbers as an array that nobody can write to: all who relay them share it."""
-    return np.frombuffer(_PACK[len(numbers)](*numbers))
+def _values(pose: bytes | None, motion: bytes | None, unknown_pose: bytes) -> _Values:
+    """Return pose and motion as arrays that nobody can write to: all who relay them share them.
+
+    None: it cannot be a measurement.
+    """
+    if pose is None and motion is None:
+        return None
+    return np.frombuffer(pose or unknown_pose), np.frombuffer(motion or _THREE_UNKNOWN)
 
 
 _READ: dict[int, Callable[[bytes], _Values]] = {_ATTITUDE.message_id: _attitude, _POSITION.message_id: _position}

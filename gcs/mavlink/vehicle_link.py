@@ -2,6 +2,7 @@
 
 import math
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
@@ -12,17 +13,18 @@ from gcs.mavlink.clock import RemoteClock
 from gcs.mavlink.link_statistics import LinkStatistics
 from gcs.mavlink.messages import Message, Received
 from gcs.mavlink.requests import Requests
+from gcs.mavlink.scan_sequence import RETURNS, SCAN_END, ScanSequence
 from gcs.mavlink.setpoints import SetpointStream
 from gcs.mavlink.settings import LinkSettings
 
 _ATTITUDE, _POSITION = mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED
-_NAVIGATION = (_ATTITUDE, _POSITION)
+_NAVIGATION, _TIMESYNC = (_ATTITUDE, _POSITION), mavlink.MAVLINK_MSG_ID_TIMESYNC
+_AUTOPILOT = px4.AUTOPILOT_COMPONENT
+_SCAN = frozenset((RETURNS, SCAN_END))
 #: What comes often and holds nothing that is kept here: not read.
 _NOT_READ = frozenset(
     (
         mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET,
-        mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D,
-        mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE,
         mavlink.MAVLINK_MSG_ID_ATTITUDE,
         mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT,
         mavlink.MAVLINK_MSG_ID_VFR_HUD,
@@ -85,6 +87,7 @@ class VehicleLink:
         self.status = VehicleStatus()
         self.clock = RemoteClock(settings.clock)
         self.statistics = LinkStatistics(settings.reordering_time)
+        self.scans = ScanSequence()
         self.requests = Requests(system_id, self.status.parameters, settings)
         self.setpoints = SetpointStream(self.clock, self.status.parameters, settings)
         self.received_at = -math.inf
@@ -103,32 +106,46 @@ class VehicleLink:
         """Time of its last attitude or of its last position, the earlier of the two."""
         return min(self.attitude_received_at, self.position_received_at)
 
-    def handle(self, received: Received, now: float) -> None:
-        """Take one message of this vehicle, or a run of them."""
+    def handle(self, messages: Sequence[Received], now: float) -> None:
+        """Take messages of this vehicle, and runs of them, that came in one datagram."""
         self.received_at = now
-        of_autopilot = received.component == px4.AUTOPILOT_COMPONENT
-        if received.run > 1:
-            if of_autopilot:
-                self.statistics.run(received.sequence, received.run, now)
-            return
-        in_order = of_autopilot and self.statistics.message(received.sequence, now)
-        message_id = received.layout.message_id
-        if message_id not in _NAVIGATION:
-            if message_id not in _NOT_READ:
-                self._handle_message(received.message, of_autopilot, now)
-        elif of_autopilot:
-            self.clock.add_stamp(received.time_boot_ms * 1e-3, now, in_order)
-            if message_id == _ATTITUDE:
-                self.attitude_received_at = now
-            else:
-                self.position_received_at = now
-        elif received.component == px4.PAYLOAD_UNIT_COMPONENT:
-            self.payload_received_at = now
+        last_stamp = None
+        for received in messages:
+            layout, _, run, _, component, sequence, _, _, stamp = received
+            message_id = layout.message_id
+            if component == _AUTOPILOT:
+                breaks = self.statistics.breaks
+                if run > 1:
+                    self.statistics.run(sequence, run, now)
+                else:
+                    in_order = self.statistics.message(sequence, now)
+                if message_id in _SCAN:
+                    self.scans.add(received, breaks, self.statistics.breaks)
+                    continue
+                if message_id in _NAVIGATION:
+                    if (stamp, in_order) != last_stamp:  # attitude and position are of one sample
+                        last_stamp = stamp, in_order
+                        self.clock.add_stamp(stamp * 1e-3, now, in_order)
+                    if message_id == _ATTITUDE:
+                        self.attitude_received_at = now
+                    else:
+                        self.position_received_at = now
+                    continue
+            elif message_id in _SCAN:
+                continue
+            elif message_id in _NAVIGATION:
+                if component == px4.PAYLOAD_UNIT_COMPONENT:
+                    self.payload_received_at = now
+                continue
+            if message_id == _TIMESYNC:
+                tc1, ts1, *_ = received.fields
+                if tc1:
+                    self.clock.add_answer(ts1, now)
+            elif message_id not in _NOT_READ:
+                self._handle_message(received.message, component)
 
-    def _handle_message(self, message: Message, of_autopilot: bool, now: float) -> None:
-        if of_autopilot and isinstance(message, mavlink.MAVLink_heartbeat_message):
+    def _handle_message(self, message: Message, component: int) -> None:
+        if component == _AUTOPILOT and isinstance(message, mavlink.MAVLink_heartbeat_message):
             self.status.base_mode, self.status.custom_mode = message.base_mode, message.custom_mode
-        elif isinstance(message, mavlink.MAVLink_timesync_message) and message.tc1:
-            self.clock.add_answer(message.ts1, now)
         self.status.handle(message)
         self.requests.handle(message)

@@ -93,13 +93,14 @@ class TableWriter(AppendOnlyFile):
 
     def write_numbers(self, *rows: Sequence[float | int]) -> None:
         """Append rows of floats and integers in one record; see :meth:`write`."""
-        self.append(b"".join(map(self._numbers, rows)))
-
-    def _numbers(self, row: Sequence[float | int]) -> bytes:
-        if len(row) != len(self.columns):
-            raise ValueError(f"{self.path.name}: {len(row)} values for {len(self.columns)} columns")
-        line = orjson.dumps(row, option=orjson.OPT_SERIALIZE_NUMPY)[1:-1]
-        return self._row(row) if b"null" in line else line + b"\n"  # JSON has neither inf nor nan
+        for row in rows:
+            if len(row) != len(self.columns):
+                raise ValueError(f"{self.path.name}: {len(row)} values for {len(self.columns)} columns")
+        lines = orjson.dumps(rows, option=orjson.OPT_SERIALIZE_NUMPY)[2:-2]
+        if b"null" in lines:  # JSON has neither inf nor nan
+            self.append(b"".join(map(self._row, rows)))
+        else:
+            self.append(lines.replace(b"],[", b"\n") + b"\n")
 
 
 _FORMATS: dict[type, Callable[[Any], str]] = {float: repr, int: repr, str: str}

@@ -6,7 +6,6 @@ and deflects it to keep obstacles out of the hull.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -35,8 +34,7 @@ class ComputeTime(NamedTuple):
     tracker: float
 
 
-@dataclass(frozen=True, eq=False)
-class Decision:
+class Decision(NamedTuple):
     """Set-points for all UAVs, and how they came about."""
 
     time: float

@@ -57,5 +57,6 @@ def _drag(air: Air | None, velocity: Array) -> tuple[Array, Array]:
 
 def _median(vectors: Array) -> Array:
     """Return the median (3,) of finite ``vectors`` (N, 3), axis by axis."""
-    ordered, half = np.sort(vectors, axis=0), len(vectors) // 2
-    return np.asarray(ordered[half] if len(vectors) % 2 else (ordered[half - 1] + ordered[half]) / 2.0)
+    half = len(vectors) // 2
+    ordered = [sorted(values) for values in zip(*vectors.tolist(), strict=True)]
+    return np.array([(values[half] + values[~half]) / 2.0 for values in ordered])

@@ -6,6 +6,7 @@ constrained at stages 1 .. N_p (stage 0 cannot be changed) and softly, so that n
 """
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,7 +49,9 @@ class ModelPredictiveController:
         self._stages = stages = np.array(settings.constraint_stages)
         G = np.vstack([np.kron(np.eye(len(blocks)), self._input_limits.G), *(rows @ H[k] for k in stages)])
         limits = np.concatenate([constraint.limits for constraint in self.state_constraints])
-        self._limits = np.tile(limits, (len(stages), 1))
+        self._bounds = np.concatenate([np.zeros(2 * H.shape[2]), np.tile(limits, len(stages))])
+        ends = np.cumsum([len(constraint.limits) for constraint in self.state_constraints]).tolist()
+        self._columns = [slice(*of) for of in pairwise([0, *ends])]
         slack_of_constraint = _numbered([constraint.slack for constraint in self.state_constraints])
         slack_of_row = np.concatenate([np.full(2 * H.shape[2], -1), np.tile(slack_of_constraint, len(stages))])
         response = np.vstack([np.zeros((2 * H.shape[2], len(A))), *(rows @ F[k] for k in stages)])
@@ -75,14 +78,14 @@ class ModelPredictiveController:
 
     def bounds(self, reference: FlatReference) -> Array:
         """Return h of the QP: of the inputs of every move, then of the states at every constrained stage."""
-        inputs = self._input_limits.h(reference.u, self.prediction.first_stages)
-        states, first = self._limits.copy(), 0
-        for constraint in self.state_constraints:
-            used, last = constraint.used(reference, self._stages), first + len(constraint.limits)
+        h, inputs = self._bounds.copy(), self._input_limits.h(reference.u, self.prediction.first_stages)
+        h[: len(inputs)] = inputs
+        states = h[len(inputs) :].reshape(len(self._stages), -1)
+        for constraint, columns in zip(self.state_constraints, self._columns, strict=True):
+            used = constraint.used(reference, self._stages)
             if used is not None:
-                states[:, first:last] -= used
-            first = last
-        return np.concatenate([inputs, states.ravel()])
+                states[:, columns] -= used
+        return h
 
 
 def _numbered(slacks: list[NDArray[np.int_]]) -> NDArray[np.int_]:

@@ -1,14 +1,12 @@
 """The interface of a tracking controller: any tracker can take the MPC's place."""
 
-from dataclasses import dataclass
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 from idc_controller.arrays import Array
 from idc_controller.trajectory.flatness import FlatReference
 
 
-@dataclass(frozen=True)
-class TrackingOutput:
+class TrackingOutput(NamedTuple):
     """Set-points of a tracker, and how they came about."""
 
     delta_u: Array

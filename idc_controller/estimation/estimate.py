@@ -1,15 +1,13 @@
 """Results of the estimator: the state at one moment, and the innovations of the measurements applied for it."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from functools import cached_property
+from typing import NamedTuple
 
 from idc_controller.arrays import Array, Indices
 from idc_controller.estimation.measurements import SensorKey
 
 
-@dataclass(frozen=True, eq=False)
-class InnovationRecord:
+class InnovationRecord(NamedTuple):
     """Innovation test of the measurements of one moment."""
 
     time: float
@@ -29,8 +27,7 @@ class InnovationRecord:
     """Innovations, one measurement after the other, normalised to variance 1 (m,)."""
 
 
-@dataclass(frozen=True, eq=False)
-class Estimate:
+class Estimate(NamedTuple):
     """State at one moment. ``x`` (12 + 11 N,) in the linear model's coordinates, absolute."""
 
     time: float
@@ -49,7 +46,7 @@ class Estimate:
     innovations: tuple[InnovationRecord, ...] = ()
     """Innovations applied since the last estimate, in order of time; those replayed come again."""
 
-    @cached_property
+    @property
     def covariance(self) -> Array:
-        """Covariance of x, forces (3 + 2 N) and mass excess (12 + 13 N + 4,) squared; predicted only if asked for."""
+        """Covariance of x, forces (3 + 2 N) and mass excess (12 + 13 N + 4,) squared; predicted at each access."""
         return self.predict_covariance()

@@ -49,9 +49,7 @@ class Innovation(NamedTuple):
     """H P H' (m, m), of the prediction alone; zero between different measurements."""
 
     def subset(self, which: Mask) -> Innovation:
-        """Return that of some rows (m,); all of them: this one."""
-        if np.count_nonzero(which) == len(which):
-            return self
+        """Return that of some rows (m,)."""
         columns, coefficients = self.rows
         rows = SparseRows(columns[which], coefficients[which])
         return Innovation(rows, self.residual[which], self.covariance[np.ix_(which, which)])

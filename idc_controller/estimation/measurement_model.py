@@ -46,9 +46,7 @@ class ObservationStack:
     """Rows (m,) of the payload."""
 
     def subset(self, present: Mask) -> ObservationStack:
-        """Return the stack of the rows ``present`` (m,) alone; all of them: this one."""
-        if np.count_nonzero(present) == len(present):
-            return self
+        """Return the stack of the rows ``present`` (m,) alone."""
         sizes = np.add.reduceat(present, self.starts, dtype=int)
         left = sizes > 0
         keys = tuple(key for key, some in zip(self.keys, left.tolist(), strict=True) if some)

@@ -50,15 +50,19 @@ class MeasurementUpdate:
         y, rows = model.observe(observation, samples, flat, k)
         innovation = filter.innovation(y, rows, whole.starts, whole.sizes)
         present = health.usable_rows(whole, innovation)
-        if not np.count_nonzero(present):
+        usable = int(np.count_nonzero(present))
+        if not usable:
             return None
-        stack, innovation = whole.subset(present), innovation.subset(present)
+        stack = whole
+        if usable < len(present):
+            stack, innovation = whole.subset(present), innovation.subset(present)
         keys, adaptation = stack.keys, health.adaptation
         test = self._gate.test(innovation, stack, adaptation.measurement_scale)
         reaction = adaptation.react(moment.time, keys, test) if adapt else Reaction.NONE
         if reaction is Reaction.COVARIANCE_RESET:
             filter.inflate(filter.process.covariance_reset(filter.P, self._settings.reset))
-            innovation = filter.innovation(y, rows, whole.starts, whole.sizes).subset(present)
+            innovation = filter.innovation(y, rows, whole.starts, whole.sizes)
+            innovation = innovation if stack is whole else innovation.subset(present)
         if reaction is not Reaction.NONE:
             test = self._gate.test(innovation, stack, adaptation.measurement_scale)
         accepted = test.accepted_rows
@@ -76,9 +80,11 @@ class MeasurementUpdate:
         if degrees_of_freedom:
             variance, measured = test.variance, observation.uavs
             if degrees_of_freedom < len(present):
-                heights, variance = observation.heights, variance[accepted]
+                heights = observation.heights
                 measured = measured[accepted_of_all[heights] & accepted_of_all[heights + 3]]
-            squared = filter.update(innovation.subset(accepted), variance, measured)
+            if degrees_of_freedom < usable:
+                innovation, variance = innovation.subset(accepted), variance[accepted]
+            squared = filter.update(innovation, variance, measured)
         return InnovationRecord(
             moment.time, squared, degrees_of_freedom, tuple(keys[c] for c in rejected),
             is_lost or reaction is Reaction.COVARIANCE_RESET, keys, stack.sizes, test.normalised,

@@ -146,7 +146,13 @@ class VehicleStates(NamedTuple):
 def median_of(copies: Sequence[Measurement]) -> Measurement:
     """Return the median of relayed copies of one measurement: right where few of them are corrupted."""
     first = copies[0]
-    if len(copies) == 1 or all(copy.same_values(first) for copy in copies[1:]):
+    if len(copies) == 1:
+        return first
+    pose, motion = first.pose.tolist(), first.motion.tolist()
+    for copy in copies[1:]:
+        if (copy.pose.tolist() != pose or copy.motion.tolist() != motion) and not copy.same_values(first):
+            break
+    else:
         return first
     whole = [copy for copy in copies if copy.has_pose and copy.has_motion] or copies
     pose, motion = (np.median([getattr(copy, name) for copy in whole], axis=0) for name in ("pose", "motion"))

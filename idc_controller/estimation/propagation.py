@@ -1,7 +1,7 @@
 """Propagation of the filter's state from its last update to the time of the next set-points."""
 
-from dataclasses import dataclass
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -135,8 +135,7 @@ class ErrorStateFilter:
         return squared
 
 
-@dataclass(frozen=True, eq=False)
-class Outlook:
+class Outlook(NamedTuple):
     """Covariance at the end of an ``interval``, predicted only as far as it is asked for."""
 
     process: ProcessModel

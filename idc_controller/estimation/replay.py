@@ -4,6 +4,7 @@ import bisect
 import math
 from dataclasses import dataclass
 from operator import attrgetter
+from typing import NamedTuple
 
 from idc_controller.arrays import Array
 from idc_controller.estimation.health.sensor_health import HealthSnapshot
@@ -58,8 +59,7 @@ class MeasurementHistory:
         del self._times[:old], self._moments[:old]
 
 
-@dataclass(frozen=True, eq=False)
-class Snapshot:
+class Snapshot(NamedTuple):
     """The filter after the measurements of one time (s)."""
 
     time: float

@@ -22,6 +22,7 @@ class _Sums:
 
     def __init__(self, shape: tuple[int, ...], period: float, memory: float) -> None:
         self._period, self._keep = period, float(np.exp(-period / memory))
+        self._has_drag = False
         self.product = np.zeros(shape)
         """F . drag (N2 s), for each wind."""
         self.square = np.zeros(shape)
@@ -34,8 +35,9 @@ class _Sums:
     def fade(self) -> None:
         """Let the past of all integrals fade over one period."""
         keep = self._keep
-        self.product *= keep
-        self.square *= keep
+        if self._has_drag:
+            self.product *= keep
+            self.square *= keep
         self.mean *= keep
         self.force_square, self.time = keep * self.force_square, keep * self.time
         self.uav_product, self.uav_square = keep * self.uav_product, keep * self.uav_square
@@ -48,6 +50,7 @@ class _Sums:
 
     def add_drag(self, force: Array, drag: Array) -> None:
         """Add what the ``drag`` (..., 2) (N) of each wind explains of F (2,) (N) over one period."""
+        self._has_drag = True
         self.product += self._period * (drag @ force)
         self.square += self._period * np.einsum("ijk,ijk->ij", drag, drag)
 

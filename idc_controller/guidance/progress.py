@@ -152,8 +152,8 @@ class AdaptiveGuidance(Guidance):
     def _changed_rate(self, rate: float, lag: float, rate_in_wind: float | None) -> float:
         """Return the rate of the next reference, for ``lag`` (m) and the largest ``rate_in_wind``."""
         s = self.settings
-        wanted, step = float(np.clip((s.lag_at_rest - lag) / s.slowing_lag, 0.0, 1.0)), s.rate_step
+        wanted, step = min(max((s.lag_at_rest - lag) / s.slowing_lag, 0.0), 1.0), s.rate_step
         if rate_in_wind is not None and rate_in_wind <= wanted:
             wanted, step = rate_in_wind, s.rate_step_in_wind
-        changed = rate + float(np.clip(wanted - rate, -step, step))
+        changed = rate + min(max(wanted - rate, -step), step)
         return 1.0 if changed > 0.999 else changed

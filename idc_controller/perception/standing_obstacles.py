@@ -37,6 +37,8 @@ class StandingObstacles:
 
     def predict(self, count: int, region: Region | None) -> list[PredictedObstacle]:
         """Return them at ``count`` moments, all or those that reach into a ``region``."""
+        if not self.obstacles:
+            return []
         if count not in self._predicted:
             self._predicted[count] = [at_rest(count, *obstacle) for obstacle in self.obstacles]
         predicted = self._predicted[count]

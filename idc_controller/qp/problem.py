@@ -1,7 +1,7 @@
 """The quadratic program (QP) as every solver takes it, and what a solver returns."""
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,8 +38,7 @@ class QuadraticProgram:
         return self.lower is not None or self.upper is not None
 
 
-@dataclass(frozen=True, eq=False)
-class QpSolution:
+class QpSolution(NamedTuple):
     """A minimiser (n,) and the solver's iterations (0: no constraint is active)."""
 
     x: Array

@@ -1,7 +1,6 @@
 """The interface of a safety filter, what it reports, and the filter of a world without obstacles."""
 
-from dataclasses import dataclass
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 from idc_controller.arrays import Array
 from idc_controller.estimation.estimate import Estimate
@@ -9,8 +8,7 @@ from idc_controller.trajectory.flatness import PayloadTrajectory
 from idc_controller.trajectory.scaled import ScaledReference
 
 
-@dataclass(frozen=True, eq=False)
-class SafetyReport:
+class SafetyReport(NamedTuple):
     """Outcome of a safety filter's last plan."""
 
     deviation: Array | None = None

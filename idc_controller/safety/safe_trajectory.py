@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import count
 
 import numpy as np
 
@@ -33,19 +34,15 @@ class SafeTrajectory:
         self._chain = chain
         # Pieces that follow the same trajectory are evaluated together.
         numbers: dict[Trajectory, int] = {}
-        scalings, followed, rows = [], [], []
-        deviations: list[Array] = []
-        for piece in pieces:
-            reference = piece.reference
-            scalings.append((reference.start, reference.progress, reference.rate))
-            followed.append(numbers.setdefault(reference.trajectory, len(numbers)))
-            rows.append(-1 if piece.deviation is None else (chain.stages + 1) * len(deviations))
-            if piece.deviation is not None:
-                deviations.append(piece.deviation)
-        self._scalings, self._rows, self._followed = np.array(scalings, dtype=float), np.array(rows), np.array(followed)
+        references = [piece.reference for piece in pieces]
+        self._followed = np.array([numbers.setdefault(r.trajectory, len(numbers)) for r in references])
         self._trajectories = list(numbers)
+        self._scalings = np.array([(r.start, r.progress, r.rate) for r in references], dtype=float)
+        deviations = [piece.deviation for piece in pieces if piece.deviation is not None]
+        rows = count(0, chain.stages + 1)
+        self._rows = np.array([-1 if piece.deviation is None else next(rows) for piece in pieces])
         self._states = np.concatenate(deviations) if deviations else np.zeros((0, 5, 3))
-        self._is_changed = bool(deviations) or any(rate != 1.0 for _, _, rate in scalings)
+        self._is_changed = bool(deviations) or any(r.rate != 1.0 for r in references)
 
     def derivatives(self, times: Array, order: int = 4) -> Array:
         """Return position to the derivative ``order`` (order + 1, K, 3), NED, SI, at ``times`` (K,) (s)."""

@@ -1,5 +1,6 @@
 """The safety filter: from a reference trajectory to one that keeps the hull clear of obstacles, step by step."""
 
+import math
 from collections import deque
 
 import numpy as np
@@ -55,9 +56,9 @@ class AvoidanceFilter:
         now, crackle = self._in_force(time)
         ahead = reference.after(chain.times)
         start = np.zeros((5, 3)) if now is None else now - ahead[:, 0]
-        if np.abs(start).max() < NEGLIGIBLE:
+        if all(abs(value) < NEGLIGIBLE for value in start.ravel().tolist()):
             start[:] = 0.0
-        off = 0.0 if now is None else float(np.linalg.norm(estimate.x[0:3] - now[0]))
+        off = 0.0 if now is None else math.dist(estimate.x[0:3], now[0])
         obstacles = PredictedObstacles(predicted, self._extra_growth(off))
         plan, nearest, infeasible, qp_count = self._decide(time, start, crackle, ahead, obstacles)
         negligible = plan is None or bool(np.abs(plan.deviation).max() < NEGLIGIBLE)
@@ -176,6 +177,6 @@ def _absolute(ahead: Array, plan: Plan | None) -> tuple[Array, Array]:
 
 def _lag(start: Array, ahead: Array) -> float:
     """Return the lag (m) of the trajectory in force behind the reference along its path."""
-    velocity = ahead[1, 0]
-    speed = float(np.linalg.norm(velocity))
-    return max(0.0, float(-start[0] @ velocity) / speed) if speed > 0.05 else float(np.linalg.norm(start[0, :2]))
+    velocity, position = ahead[1, 0], start[0]
+    speed = math.hypot(*velocity)
+    return max(0.0, float(-position @ velocity) / speed) if speed > 0.05 else math.hypot(*position[:2])

@@ -1,6 +1,6 @@
 """The reference that estimator and controller share: a trajectory, and the estimated load on it."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -9,8 +9,7 @@ from idc_controller.parameters import SystemParameters
 from idc_controller.trajectory.flatness import FlatReference, Load, PayloadTrajectory, flat_reference
 
 
-@dataclass(frozen=True, eq=False)
-class Reference:
+class Reference(NamedTuple):
     """Exact states and set-points along ``trajectory`` under ``load``."""
 
     parameters: SystemParameters

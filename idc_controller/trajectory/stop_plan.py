@@ -8,8 +8,8 @@ In wind the team is not where the reference has it. The plan starts where the te
 that no UAV is biased towards a place that the payload was meant to have.
 """
 
+import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cache
 from typing import NamedTuple
 
@@ -49,8 +49,7 @@ class Braking(NamedTuple):
         return BPoly(self.control_points(state[None], duration)[0][:, None, :], [0.0, duration])
 
 
-@dataclass(frozen=True, eq=False)
-class StopPlan:
+class StopPlan(NamedTuple):
     """Bezier curves that bring all UAVs to rest, over the same ``duration`` (s) from the same ``start`` (s)."""
 
     start: float
@@ -72,7 +71,7 @@ def stop_plan(
     position, velocity and acceleration (3, 3) of a payload that hangs at rest below the UAVs.
     """
     layout, links = _layout(parameters.number_of_uavs), flat.links
-    error = np.zeros(layout.size) if x is None or not np.isfinite(x).all() else x - flat.x[0]
+    error = np.zeros(layout.size) if x is None or not math.isfinite(x @ x) else x - flat.x[0]
     motions = motion(
         flat.payload[:3, 0], error,
         links.q[0], links.q_dot[0], links.q_ddot[0], parameters.p, parameters.l, layout.s.start, layout.s_dot.start,

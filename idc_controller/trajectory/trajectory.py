@@ -125,6 +125,8 @@ class SequenceTrajectory(Trajectory):
         self._first, self._follow = first, follow
         self._second: Trajectory | None = None
         self._end = math.inf
+        self._in_force: tuple[float, float, Trajectory] = math.inf, -math.inf, first
+        """The part that was evaluated last, and the times (s) after which and until which it is the only one."""
 
     @property
     def end(self) -> float:
@@ -135,15 +137,29 @@ class SequenceTrajectory(Trajectory):
 
     def evaluate(self, times: Times, order: int) -> Array:
         """See ``Trajectory.evaluate``."""
+        after, until, part = self._in_force
+        if after < times.earliest and times.latest <= until:
+            return part.evaluate(times, order)
         first = self._first
         if times.earliest > first.end:
-            return self._next().evaluate(times, order)
+            result = self._next().evaluate(times, order)
+            self._set_in_force(self._next(), first.end, math.inf)
+            return result
         # Evaluated first: a lazy trajectory learns of its end while it looks ahead, and rests beyond it.
         result = first.evaluate(times, order)
         if times.latest > first.end:
             later = times.values > first.end
             result[:, later] = self._next().derivatives(times.values[later], order)
+        elif first.end < math.inf:
+            self._set_in_force(first, -math.inf, first.end)
         return result
+
+    def _set_in_force(self, part: Trajectory, after: float, until: float) -> None:
+        """Note the part in force, of sequences in sequences the innermost; an end that is known does not change."""
+        if isinstance(part, SequenceTrajectory):
+            begin, end, part = part._in_force
+            after, until = max(after, begin), min(until, end)
+        self._in_force = after, until, part
 
     def waypoints(self, begin: float, end: float) -> Array:
         """See ``Trajectory.waypoints``."""

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Self
 
 from gcs.mavlink.address import Address
-from gcs.mavlink.udp import RECEIVE_BUFFER, arrived
+from gcs.mavlink.udp import DATAGRAM_MAX, DATAGRAMS_AT_ONCE, RECEIVE_BUFFER
 from vehicle_sim.world.errors import SimulationError
 
 
@@ -28,8 +28,8 @@ class SwarmSockets:
             self.vehicles = [opened.enter_context(_bound(host, base_port and base_port + i)) for i in range(vehicles)]
             self._opened = opened.pop_all()
         self._poll = select.poll()
-        self._vehicle_at = {endpoint.fileno(): i for i, endpoint in enumerate(self.vehicles, start=1)}
-        for number in self._vehicle_at:
+        self._endpoint_at = {endpoint.fileno(): (i, endpoint) for i, endpoint in enumerate(self.vehicles, start=1)}
+        for number in self._endpoint_at:
             self._poll.register(number, select.POLLIN)
 
     def send(self, vehicle: int, datagram: bytes, address: Address) -> None:
@@ -40,11 +40,22 @@ class SwarmSockets:
             return
 
     def received(self) -> Iterator[tuple[int, bytes, Address]]:
-        """Yield all that has arrived: the vehicle's system id, bytes, sender; vehicle by vehicle, each in order."""
-        # In the order in which they were registered, which is the vehicles'.
-        for number, _ in self._poll.poll(0):
-            vehicle = self._vehicle_at[number]
-            for datagram, sender in arrived(self.vehicles[vehicle - 1]):
+        """Yield all that has arrived: the vehicle's system id, bytes, sender; each vehicle's in order.
+
+        In turns, one of every vehicle that has any: to look at all at once costs less than to find each one empty.
+        No more than DATAGRAMS_AT_ONCE turns: a sender that is faster must not keep the reader from all else.
+        """
+        for _ in range(DATAGRAMS_AT_ONCE):
+            ready = self._poll.poll(0)
+            if not ready:
+                return
+            # In the order in which they were registered, which is the vehicles'.
+            for number, _ in ready:
+                vehicle, endpoint = self._endpoint_at[number]
+                try:
+                    datagram, sender = endpoint.recvfrom(DATAGRAM_MAX)
+                except OSError:  # the echo of a datagram to a closed port: no datagram of anybody
+                    continue
                 yield vehicle, datagram, sender
 
     def close(self) -> None:

@@ -29,6 +29,8 @@ class FaultInjector:
 
     Equal seeds and faults disturb equal samples and datagrams equally; the random numbers of each fault, vehicle and
     direction are its own, so that one fault more or less does not change what the others do.
+
+    ``any_of_world``: one acts on the world.
     """
 
     def __init__(self, faults: Sequence[Fault] = (), seed: int = 1, system: SystemConfig = SystemConfig()) -> None:
@@ -51,7 +53,8 @@ class FaultInjector:
                     for hook in impairment.acts_on:
                         self._samples.setdefault((hook, vehicle), []).append(impairment)
         world = [fault for fault in self.faults if fault.kind.family == "world"]
-        self._world = WorldFaults(world, system.world.air) if world else None
+        self.any_of_world = bool(world)
+        self._world = WorldFaults(world, system.world.air)
         directions = (*self._arriving.values(), *self._leaving.values())
         self._link_impairments = [impairment for direction in directions for impairment in direction]
 
@@ -72,7 +75,7 @@ class FaultInjector:
 
     def disturb(self, world: World, now: float) -> Forces | None:
         """Set the load, and return the forces of the wind on payload and UAVs; None: no force."""
-        return None if self._world is None else self._world.act(world, now)
+        return self._world.act(world, now)
 
     # Clocks and samples
 

@@ -1,6 +1,7 @@
 """One fault on one direction of one vehicle's link: datagrams in, datagrams out, some delayed, some lost."""
 
 import heapq
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from typing import ClassVar
 
@@ -15,8 +16,8 @@ Datagram = tuple[bytes, Address]
 """Bytes, and the address on the other side."""
 
 
-class LinkImpairment:
-    """Datagrams pass unchanged; a kind of fault overrides :meth:`_disturb`."""
+class LinkImpairment(ABC):
+    """What one kind of fault does to datagrams while it is active; else they pass unchanged."""
 
     direction: ClassVar[Direction | None] = None
     """Direction of a kind that is bound to one; None: the mission's."""
@@ -49,10 +50,9 @@ class LinkImpairment:
         """Return when the next delayed datagram is due (s)."""
         return self._delayed[0][0] if self._delayed else None
 
+    @abstractmethod
     def _disturb(self, datagram: Datagram, moment: Moment, now: float, out: list[Datagram]) -> bool:
         """Append what goes on now to ``out``, :meth:`delay` the rest; return True for a disturbed datagram."""
-        out.append(datagram)
-        return False
 
     def undisturbed(self, datagram: Datagram, now: float, out: list[Datagram]) -> None:
         """Pass on a datagram while the fault is not active."""

@@ -5,7 +5,10 @@ from typing import Any
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
+from gcs.mavlink.layout import LAYOUTS
 from vehicle_sim.mavlink.dispatcher import Dispatcher, Request
+
+_TIMESYNC = LAYOUTS[mavlink.MAVLINK_MSG_ID_TIMESYNC]
 
 
 class LinkServices:
@@ -23,7 +26,7 @@ class LinkServices:
     def _on_timesync(self, fields: tuple[Any, ...], request: Request) -> None:
         tc1, ts1, *_ = fields
         if tc1 == 0:  # a request
-            request.peer.reply(mavlink.MAVLink_timesync_message(round(self._clock(request.now) * 1e9), ts1))
+            request.peer.reply_packed(_TIMESYNC.pack(round(self._clock(request.now) * 1e9), ts1))
 
     def _on_ping(self, message: mavlink.MAVLink_ping_message, request: Request) -> None:
         if message.target_system == 0:  # a request

@@ -71,20 +71,23 @@ class Stream:
         self._of_one_sample = message_id in _OF_ONE_SAMPLE
         self._last_stamp = b""
 
-    def advance(self, now: float, repeat_interval: float) -> None:
-        """Set the due time to the next multiple of the interval; sooner while repetitions are due (interval in s)."""
+    def take(self, sample: TelemetrySample, now: float, repeat_interval: float) -> Built:
+        """Return the messages of ``sample`` that are due, none where those of its stamp were sent already.
+
+        They are due next at the next multiple of the interval; sooner while repetitions are due (interval in s).
+        """
         self.due = (math.floor((now + TIME_TOLERANCE) / self.interval) + 1) * self.interval
         if self.repeats:
             self.repeats -= 1
             self.due = min(self.due, now + repeat_interval)
-
-    def is_new(self, messages: Built) -> bool:
-        """Return True if messages are not of the sample that was sent last."""
-        if not self._of_one_sample:
-            return True
-        first = messages.values[0].tobytes() if isinstance(messages, PackedRun) else messages[0].payload
-        last, self._last_stamp = self._last_stamp, first[:_STAMP_LENGTH]
-        return self._last_stamp != last
+        messages = sample.messages(self.key)
+        if messages and self._of_one_sample:
+            first = messages.values[0].tobytes() if isinstance(messages, PackedRun) else messages[0].payload
+            stamp = first[:_STAMP_LENGTH]
+            if stamp == self._last_stamp:
+                return ()
+            self._last_stamp = stamp
+        return messages
 
 
 class Peer:
@@ -158,18 +161,16 @@ class Peer:
             return []
         frames = self._replies
         self._replies = []
-        next_due = math.inf
+        next_due, repeat_interval = math.inf, self._settings.repeat_interval
         for stream in self._streams:
             if stream.due <= latest:
-                messages = sample.messages(stream.key)
-                if messages and stream.is_new(messages):
-                    codec = self._codecs[stream.key[0]]
-                    if isinstance(messages, PackedRun):
-                        frames += codec.frames(messages)
-                    else:
-                        for message in messages:
-                            frames.append(codec.frame(message))
-                stream.advance(now, self._settings.repeat_interval)
+                messages = stream.take(sample, now, repeat_interval)
+                codec = self._codecs[stream.key[0]]
+                if isinstance(messages, PackedRun):
+                    frames += codec.frames(messages)
+                else:
+                    for message in messages:
+                        frames.append(codec.frame(message))
             if stream.due < next_due:
                 next_due = stream.due
         self.next_due = next_due

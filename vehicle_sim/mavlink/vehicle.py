@@ -103,13 +103,15 @@ class Vehicle:
     def receive(self, datagram: bytes, sender: Address, now: float) -> None:
         """Take what came from an address. Never raises for anything that a datagram can hold."""
         self._latest = max(self._latest, now)
+        peer = None
         for received in self._decoder.decode(datagram):
             if received.system in (BROADCAST, self.system_id):
                 continue  # nobody, or its own messages coming back
-            peer = self._peers.receive_from(sender, now)
             if peer is None:
-                return
-            self.autopilot.ground_message_received(now)
+                peer = self._peers.receive_from(sender, now)
+                if peer is None:
+                    return
+                self.autopilot.ground_message_received(now)
             if received.is_for(self.system_id, px4.AUTOPILOT_COMPONENT):
                 request = Request((sender, received.system), received.component, peer, now)
                 self._dispatcher.dispatch(received, request)

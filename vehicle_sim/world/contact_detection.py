@@ -28,10 +28,12 @@ class ContactDetector:
         system: Multibody,
         ground: Ground,
         obstacles: ObstacleBodies,
+        readings: Readings,
     ) -> None:
         self._system = system
         self._ground = ground
         self._obstacles = obstacles
+        self._readings = readings
         self._attachments = np.array(parameters.p, dtype=float, order="C")
         radius = max(math.hypot(parameters.disc_radius, 0.5 * DISC_THICKNESS), settings.bodies.link_radius)
         self._sizes = np.array(
@@ -40,20 +42,20 @@ class ContactDetector:
         self._found: tuple[int, Contacts] = -1, NO_CONTACTS
         self._apart_until, self._travel_limit, self._next_look = -1, 0.0, 0
 
-    def after(self, steps: int, readings: Readings, physics_hz: int) -> Contacts:
-        """Return what touches after so many steps, whose ``readings`` these are; computed once a step."""
+    def after(self, steps: int, physics_hz: int) -> Contacts:
+        """Return what touches after so many steps, computed once a step."""
         if steps <= self._apart_until and self._obstacles.travelled <= self._travel_limit:
             return NO_CONTACTS
         if self._found[0] != steps:
-            found = self._ground.contacts(self._system, readings.payload)
+            found = self._ground.contacts(self._system, self._readings.payload)
             self._found = steps, found
             if found is NO_CONTACTS and steps >= self._next_look:
-                self._look(steps, readings, physics_hz)
+                self._look(steps, physics_hz)
         return self._found[1]
 
-    def _look(self, steps: int, readings: Readings, physics_hz: int) -> None:
+    def _look(self, steps: int, physics_hz: int) -> None:
         bodies = self._obstacles.ray_bodies
-        apart = time_apart(readings.states(), self._attachments, bodies.centres, bodies.bounds, self._sizes)
+        apart = time_apart(self._readings.states(), self._attachments, bodies.centres, bodies.bounds, self._sizes)
         self._apart_until = steps + int(apart * physics_hz)
         self._travel_limit = self._obstacles.travelled + _OBSTACLES_MAY_TRAVEL
         self._next_look = max(self._apart_until, steps + _STEPS_BETWEEN_LOOKS)

@@ -1,5 +1,6 @@
 """Cradles: what holds a UAV on top of its link while its own thrust does not."""
 
+import math
 from collections.abc import Sequence
 
 import pybullet
@@ -37,10 +38,12 @@ class Cradles:
         """Return True if UAV ``i`` is held and lifts (``upward_thrust`` in N) more than its own weight."""
         return self._constraints[i] is not None and upward_thrust > self._settings.release_factor * self._weights[i]
 
-    def wants_latch(self, i: int, upward_thrust: float, speed: float) -> bool:
+    def wants_latch(self, i: int, upward_thrust: float, velocity: Sequence[float]) -> bool:
         """Return True if UAV ``i`` is free, slow (m/s) and lifts less than its own weight."""
-        is_free = self._constraints[i] is None
-        return is_free and upward_thrust < self._weights[i] and speed < self._settings.latch_speed
+        if self._constraints[i] is not None or upward_thrust >= self._weights[i]:
+            return False
+        a, b, c = velocity
+        return math.sqrt(a * a + b * b + c * c) < self._settings.latch_speed
 
     def latch(self, i: int, position: Sequence[float], quaternion: Sequence[float]) -> None:
         """Hold UAV ``i`` at a pose, in the engine's frame and order."""

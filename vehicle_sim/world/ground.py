@@ -7,9 +7,8 @@ import pybullet
 
 from gcs.config.tables import PadSettings
 from idc_controller.payload_hull import PayloadHull
-from idc_controller.rotations_float import into_body
 from vehicle_sim.world.multibody import Multibody
-from vehicle_sim.world.world_state import flipped, product, quaternion_from_engine
+from vehicle_sim.world.world_state import flipped, product, upward_axis
 
 # Contact points closer than this (m) to the plane of the payload's lower face are the payload standing.
 _STANDING_DEPTH = 0.02
@@ -52,7 +51,7 @@ class Ground:
         )  # fmt: skip
         self._client = client
         self._bodies = ground, stand
-        self._lower_face = payload.below - _STANDING_DEPTH
+        self._lower_face = payload.below - _STANDING_DEPTH  # m below the centre
         self.standing_height = pad.thickness + payload.reach + 0.05
 
     def is_near(self, payload: Pose) -> bool:
@@ -64,23 +63,21 @@ class Ground:
         points = pybullet.getContactPoints(physicsClientId=self._client)
         if not points:
             return NO_CONTACTS
-        payload = payload[0], product(payload[1], system.payload_in_axes)
+        body, grounds = system.body, self._bodies
+        (x, y, z), attitude = payload
+        up_x, up_y, up_z = upward_axis(product(attitude, system.payload_in_axes))
+        lower_face = up_x * x + up_y * y + up_z * z - self._lower_face
         pairs: set[tuple[int, int, int, int]] = set()
         standing = False
-        for _, body_a, body_b, link_a, link_b, on_a, on_b, _, distance, force, *_ in points:
-            if distance > 0.0 and force <= 0.0:
+        for point in points:
+            if point[8] > 0.0 and point[9] <= 0.0:  # its distance and its force
                 continue
-            if body_b == system.body and body_a != body_b:
-                body_a, body_b, link_a, link_b, on_a, on_b = body_b, body_a, link_b, link_a, on_b, on_a
-            if link_a == -1 and body_b in self._bodies and self._is_in_lower_face(payload, on_a):
+            _, body_a, body_b, link_a, link_b, on_a, on_b = point[:7]
+            if body_b == body and body_a != body_b:
+                body_a, body_b, link_a, link_b, on_a = body_b, body_a, link_b, link_a, on_b
+            is_of_payload = link_a == -1 and body_b in grounds
+            if is_of_payload and up_x * on_a[0] + up_y * on_a[1] + up_z * on_a[2] < lower_face:
                 standing = True
             else:
                 pairs.add((body_a, link_a, body_b, link_b))
         return Contacts(len(pairs), standing)
-
-    def _is_in_lower_face(self, payload: Pose, point: tuple[float, float, float]) -> bool:
-        """Return True for a ``point`` (engine's frame) in the payload's lower face."""
-        position, quaternion = payload
-        offset = flipped((point[0] - position[0], point[1] - position[1], point[2] - position[2]))
-        down = into_body(quaternion_from_engine(quaternion), offset)[2]
-        return down > self._lower_face

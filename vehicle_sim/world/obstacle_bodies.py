@@ -102,7 +102,10 @@ class ObstacleBodies:
 
 
 class MovingObstacles:
-    """A mission's obstacles: added where their motions have them at time 0, and moved along them."""
+    """A mission's obstacles: added where their motions have them at time 0, and moved along them.
+
+    ``any_moves``: one has a motion.
+    """
 
     def __init__(self, bodies: ObstacleBodies, obstacles: Sequence[MissionObstacle]) -> None:
         """Raises :class:`~vehicle_sim.world.errors.SimulationError` for what the world cannot hold."""
@@ -114,6 +117,7 @@ class MovingObstacles:
                 self._moving.append((obstacle.name, place, obstacle.motion.mover()))
                 place = _moved(place, self._moving[-1][2](0.0))
             bodies.add(obstacle.name, obstacle.shape, place)
+        self.any_moves = bool(self._moving)
 
     def move(self, time: float) -> None:
         """Move them to where the motions have them ``time`` (s) after they began."""

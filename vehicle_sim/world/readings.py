@@ -60,7 +60,9 @@ class Readings:
         (velocity, rates), ((velocity_before, rates_before), uavs_before) = self._velocity, self._before
         numbers = [*position, *attitude, *velocity, *rates, *velocity_before, *rates_before]
         for uav, before in zip(self.uavs, uavs_before, strict=True):
-            numbers += (*uav[0], *uav[1], *uav[6], *uav[7], *before[6], *before[7])
+            place, turn, _, _, _, _, v, w = uav
+            _, _, _, _, _, _, v_before, w_before = before
+            numbers += (*place, *turn, *v, *w, *v_before, *w_before)
         self._pack(self._rows.data, 0, *numbers)
         states = np.empty((len(self._rows), STATE_COLUMNS))
         states_from_engine(self._rows, self._payload_in_axes, states)

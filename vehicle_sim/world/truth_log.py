@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING
 from gcs.record.obstacle_shapes import write_shapes
 from gcs.record.run_folder import make_folder
 from gcs.record.tables import MODE_COLUMNS, OBSTACLE_COLUMNS, TableWriter, truth_columns
+from idc_controller.arrays import Array
 
 if TYPE_CHECKING:  # the physics engine is not needed to write down what it found
     from vehicle_sim.world.obstacle_bodies import Obstacle
-    from vehicle_sim.world.world_state import WorldState
+
+_POSE_COLUMNS = 7  # of a row of a state: position and attitude
 
 
 class TruthLog:
@@ -42,30 +44,28 @@ class TruthLog:
     def _tables(self) -> list[TableWriter]:
         return [table for table in (self._truth, self._obstacles, self._modes) if table is not None]
 
-    def write(self, state: WorldState, contacts: int, obstacles: Sequence[Obstacle] = ()) -> None:
-        """Append a state, and the obstacles at that time.
+    def write(
+        self, time: float, states: Array, thrusts: Sequence[float], contacts: int, obstacles: Sequence[Obstacle] = ()
+    ) -> None:
+        """Append the state at a ``time`` (s), and the obstacles at that time.
 
-        ``contacts`` is the number of touching pairs, pad and cradles excluded. Raises ``ValueError`` for a state of
-        another number of UAVs.
+        ``states`` (N + 1, 13) as in :mod:`.state_kernels`, ``thrusts`` (N) of the UAVs; ``contacts`` is the number of
+        touching pairs, pad and cradles excluded. Raises ``ValueError`` for another number of UAVs.
         """
-        row = [
-            state.time,
-            *state.payload_position_in_world,
-            *state.payload_quaternion,
-            *state.payload_velocity_in_world,
-            *state.payload_rates_in_payload,
-        ]
-        for uav in state.uavs:
-            row += (*uav.position_in_world, *uav.quaternion, uav.thrust)
-        # Always as doubles, so that 0 and 0.0 are the same to the byte.
-        self._truth.write_numbers([*map(float, row), int(contacts)])
+        payload, *uavs = states.tolist()
+        row = [time, *payload]
+        for uav, thrust in zip(uavs, thrusts, strict=True):
+            row += uav[:_POSE_COLUMNS]
+            row.append(thrust)
+        row.append(contacts)
+        self._truth.write_numbers(row)
         if not obstacles or self._closed:
             return
         if self._obstacles is None:
             self._obstacles = TableWriter(self._run_dir / "obstacles.csv", OBSTACLE_COLUMNS)
             write_shapes(self._run_dir, {obstacle.name: obstacle.shape for obstacle in obstacles})
         table = self._obstacles
-        table.write_behind(float(state.time), [self._row(table, obstacle) for obstacle in obstacles])
+        table.write_behind(time, [self._row(table, obstacle) for obstacle in obstacles])
 
     def _row(self, table: TableWriter, obstacle: Obstacle) -> bytes:
         """Return the row of an obstacle without its time; of one that has not moved since, the same again."""

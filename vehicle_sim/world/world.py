@@ -77,7 +77,9 @@ class World:
         self._readings = Readings(client, self._system)
         self.steps = 0
         self._thrusts = (0.0,) * parameters.number_of_uavs
-        self._contacts = ContactDetector(parameters, settings, self._system, self._ground, self.obstacles)
+        self._contacts = ContactDetector(
+            parameters, settings, self._system, self._ground, self.obstacles, self._readings
+        )
         for i, uav in enumerate(self._readings.uavs):
             self._cradles.latch(i, uav[0], uav[1])
 
@@ -113,9 +115,9 @@ class World:
         """
         client, body, uavs = self._client, self._system.body, self._system.uavs
         apply_force, apply_torque = pybullet.applyExternalForce, pybullet.applyExternalTorque
-        low = self._is_low
-        if low or self._cradles.number_held:
-            self._update_cradles(thrusts, low)
+        # The height of a UAV, which is at hand, says mostly that no cradle has anything to do.
+        if self._cradles.number_held or self._readings.uavs[0][0][2] <= self._ground.standing_height + self._system.arm:
+            self._update_cradles(thrusts)
         for uav, thrust, (x, y, z) in zip(uavs, thrusts, torques, strict=True):
             apply_force(body, uav, (0.0, 0.0, thrust), _ORIGIN, _LINK_FRAME, client)
             apply_torque(body, uav, (x, -y, -z), _LINK_FRAME, client)
@@ -150,6 +152,11 @@ class World:
         """Return the true states of payload and UAVs after the last step, (N + 1, 13) as in :mod:`.state_kernels`."""
         return self._readings.states()
 
+    @property
+    def thrusts(self) -> tuple[float, ...]:
+        """The UAVs' thrusts of the last step (N)."""
+        return self._thrusts
+
     def state(self, states: Array | None = None) -> WorldState:
         """Return the true state after the last step: velocities, too, to second order.
 
@@ -170,7 +177,7 @@ class World:
 
     def contacts(self) -> Contacts:
         """Return what touches after the last step, computed once a step."""
-        return self._contacts.after(self.steps, self._readings, self.physics_hz)
+        return self._contacts.after(self.steps, self.physics_hz)
 
     def touching_ground(self) -> bool:
         """Return True if the payload stands on pad or ground."""
@@ -191,25 +198,23 @@ class World:
     @property
     def _is_low(self) -> bool:
         """Return True if the payload is low enough to stand on pad or ground."""
-        ground, readings = self._ground, self._readings
-        # The height of a UAV, which is at hand, says mostly that it is not.
-        is_near = readings.uavs[0][0][2] <= ground.standing_height + self._system.arm
-        return is_near and ground.is_near(readings.payload)
+        return self._ground.is_near(self._readings.payload)
 
-    def _update_cradles(self, thrusts: Sequence[float], low: bool) -> None:
-        """Release and latch; ``low``: the payload may stand on pad or ground."""
+    @property
+    def _is_supported(self) -> bool:
+        """Return True if the payload stands, or has been caught by some: then it hangs on their links as well."""
+        return self._cradles.number_held > 0 or self.touching_ground()
+
+    def _update_cradles(self, thrusts: Sequence[float]) -> None:
+        """Release and latch."""
         cradles = self._cradles
         for i, uav in enumerate(self._readings.uavs):
             x, y, _, _ = uav[1]
             upward = thrusts[i] * (1.0 - 2.0 * (x * x + y * y))
             if cradles.wants_release(i, upward):
                 cradles.release(i)
-            elif low:
-                a, b, c = uav[6]
-                # A payload that has been caught by some hangs on their links as well as it stands.
-                is_supported = cradles.number_held > 0 or self.touching_ground()
-                if is_supported and cradles.wants_latch(i, upward, (a * a + b * b + c * c) ** 0.5):
-                    cradles.latch(i, uav[0], uav[1])
+            elif cradles.wants_latch(i, upward, uav[6]) and self._is_low and self._is_supported:
+                cradles.latch(i, uav[0], uav[1])
 
 
 def _parts(row: list[float]) -> tuple[Vector, Quaternion, Vector, Vector]:

@@ -67,6 +67,12 @@ def product(a: Sequence[float], b: Sequence[float]) -> Quaternion:
     )
 
 
+def upward_axis(q: Sequence[float]) -> Vector:
+    """Return the upward axis of a body in the engine's world; ``q``: its attitude there, x-first."""
+    x, y, z, w = q
+    return 2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)
+
+
 def quaternion_to_engine(q: Sequence[float]) -> Quaternion:
     """The inverse of :func:`quaternion_from_engine`."""
     return q[1], -q[2], -q[3], q[0]

@@ -27,7 +27,8 @@ class ChannelIsolation:
         self._rejections: dict[Channel, int] = {}
         self._acceptances: dict[Channel, int] = {}
 
-    def __copy__(self) -> ChannelIsolation:
+    def copy(self) -> ChannelIsolation:
+        """Return one with the same counts, which counts on by itself."""
         other = ChannelIsolation.__new__(ChannelIsolation)
         other._number_of_uavs, other._settings, other._gate = self._number_of_uavs, self._settings, self._gate
         other._rejections, other._acceptances = self._rejections.copy(), self._acceptances.copy()
@@ -41,6 +42,8 @@ class ChannelIsolation:
     @property
     def uavs_without_position(self) -> tuple[int, ...]:
         """UAVs of which both position and velocity are isolated."""
+        if not self._acceptances:
+            return ()
         return tuple(sorted(c.source for c in self._acceptances if c.kind is Position and not c.part
                             and c._replace(part=1) in self._acceptances))  # fmt: skip
 

@@ -8,7 +8,6 @@ assumed (gusts, a load that is lost).
 from __future__ import annotations
 
 import math
-import statistics
 from collections.abc import Sequence
 from enum import Enum
 
@@ -47,7 +46,8 @@ class NoiseAdaptation:
         self._since_change = 0
         self._payload_rejections = 0
 
-    def __copy__(self) -> NoiseAdaptation:
+    def copy(self) -> NoiseAdaptation:
+        """Return one that has learnt the same, and learns on by itself."""
         other = NoiseAdaptation.__new__(NoiseAdaptation)
         other.__dict__.update(self.__dict__)
         return other
@@ -103,7 +103,9 @@ class NoiseAdaptation:
         """
         s = self._settings
         # A correlated part is no noise.
-        median = statistics.median(mean_squares.tolist()) - max(*self._correlation, 0.0)
+        ordered = sorted(mean_squares.tolist())
+        middle = len(ordered) // 2
+        median = (ordered[middle] + ordered[~middle]) / 2.0 - max(*self._correlation, 0.0)
         if median > s.median_limit and not self._persists(time, keys, normalised):
             self.measurement_scale = min(self.measurement_scale * s.growth, s.measurement_scale_max)
         elif median < 1.0:

@@ -1,0 +1,93 @@
+"""Guidance without obstacles: progress rate in wind, and what is stopped at."""
+
+import numpy as np
+import pytest
+from avoidance_scene import avoidance, straight
+from paper_system import system
+
+from idc_controller.model.drag import Air
+from idc_controller.trajectory.trajectory import RestTrajectory
+
+STEP = 0.05
+SPEED = 1.5
+WEIGHT = system().m_0 * system().g
+
+
+@pytest.fixture
+def guidance():
+    return avoidance([]).guidance
+
+
+def rate_after(guidance, seconds, air, deviation=None, begin=8.0):
+    """Progress rate after a while of a long straight mission at its cruise speed."""
+    mission = straight(400.0, SPEED)
+    guidance.restart(0.0, begin)
+    for k in range(round(seconds / STEP)):
+        guidance.reference(STEP * k, mission)
+        guidance.observe(RestTrajectory(np.zeros(3)), 0.0, deviation, air)
+    return guidance.rate
+
+
+def headwind(share):
+    """Air that makes a drag of that share of the limit on a payload that flies the mission at full rate."""
+    wind = 6.0
+    limit, relative = share * avoidance([]).guidance.settings.drag_limit * WEIGHT, wind + SPEED
+    one = np.linalg.norm(Air(np.array([-wind, 0.0, 0.0]), np.ones(3), 0.0).on_payload(np.array([SPEED, 0.0, 0.0])))
+    assert relative > 0.0
+    return Air(np.array([-wind, 0.0, 0.0]), np.ones(3) * limit / one, 0.0)
+
+
+@pytest.mark.parametrize(("share", "slowed"), [(0.99, False), (1.01, True)])
+def test_progress_is_slowed_where_drag_exceeds_its_limit(guidance, share, slowed):
+    rate = rate_after(guidance, 20.0, headwind(share))
+    assert (rate < 1.0) is slowed
+    if slowed:  # to the next of the rates that are tried
+        assert rate > 1.0 - 1.01 * (1.0 - guidance.settings.slowest_in_wind) / 7.0
+
+
+def test_progress_in_a_storm_is_the_slowest_and_recovers_without_wind(guidance):
+    slowest = guidance.settings.slowest_in_wind
+    assert rate_after(guidance, 30.0, headwind(4.0)) == pytest.approx(slowest)
+    assert rate_after(guidance, 30.0, None) == 1.0
+
+
+def test_wind_from_behind_does_not_slow(guidance):
+    air = headwind(1.01)
+    assert rate_after(guidance, 20.0, Air(-air.wind / 4.0, air.payload, air.uav)) == 1.0
+
+
+def test_deflection_against_the_wind_counts(guidance):
+    deviation = np.zeros((len(guidance._stages), 5, 3))
+    deviation[10, 1, 0] = 1.0
+    assert rate_after(guidance, 20.0, headwind(0.95)) == 1.0
+    assert rate_after(guidance, 20.0, headwind(0.95), deviation) < 1.0
+
+
+def test_mission_is_stopped_on_unless_the_payload_is_deflected(guidance):
+    mission, tracked = straight(40.0, SPEED), straight(40.0, SPEED)
+    assert guidance.stopping_trajectory(3.0, mission) == (mission, 3.0)
+    guidance.reference(5.0, mission)
+    guidance.observe(tracked, 0.0, None, None)
+    followed, progress = guidance.stopping_trajectory(6.0, mission)
+    assert followed is mission and progress == pytest.approx(6.0)
+
+
+def test_deflected_payload_is_stopped_ahead_of_where_it_is(guidance):
+    mission, tracked = straight(40.0, SPEED), straight(40.0, SPEED, altitude=7.0)
+    guidance.reference(5.0, mission)
+    guidance.observe(tracked, 0.0, np.zeros((len(guidance._stages), 5, 3)), None)
+    rest, progress = guidance.stopping_trajectory(8.0, mission)
+    position, velocity = tracked.derivatives(np.array([8.0]), 1)[:, 0]
+    assert velocity[0] == pytest.approx(SPEED) and progress == rest.start == 8.0
+    ahead = position + 0.5 * guidance.settings.stopping_time * velocity
+    assert rest.position(8.0) == pytest.approx(ahead) == rest.position(100.0)
+
+
+def test_held_up_payload_is_stopped_ahead_of_where_it_is(guidance):
+    mission = tracked = straight(40.0, SPEED)
+    for k in range(40):
+        guidance.reference(5.0 + STEP * k, mission)
+        guidance.observe(tracked, 10.0, None, None)
+    assert guidance.rate < 1.0
+    rest, _ = guidance.stopping_trajectory(7.0, mission)
+    assert isinstance(rest, RestTrajectory)
