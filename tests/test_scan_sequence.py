@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from gcs.mavlink.codec import Codec, gather
 from gcs.mavlink.layout import LAYOUTS, PackedRun
-from gcs.mavlink.scan_sequence import RETURNS, SCAN_END, ScanSequence, scan_stamp
+from gcs.mavlink.scan_sequence import RETURNS, SCAN_END, scan_stamp
 from gcs.mavlink.telemetry import scan_end, scan_returns
 from gcs.mavlink.vehicle_link import VehicleLink
 
@@ -43,22 +43,18 @@ class Ground:
     """Reads scans as the ground does: those that ended, with the number of their returns and whether complete."""
 
     def __init__(self):
-        self.codec, self.link, self.scans = Codec(255, 190), VehicleLink(3, None), ScanSequence()
+        self.codec, self.link = Codec(255, 190), VehicleLink(3, None)
         self.counts, self.ends = {}, []
 
     def receive(self, datagram, now=0.0):
         messages = self.codec.read(datagram)
-        for received in messages:
-            breaks = self.link.statistics.breaks
-            self.link.handle(received, now)
-            if received.message_id in (RETURNS, SCAN_END):
-                self.scans.add(received, breaks, self.link.statistics.breaks)
+        self.link.handle(messages, now)
         for received in messages:
             if received.message_id == RETURNS:
                 part = scan_returns(received)
                 self.counts[part.stamp] = self.counts.get(part.stamp, 0) + len(part.points)
             elif received.message_id == SCAN_END:
-                self.ends.append(scan_end(received, self.scans))
+                self.ends.append(scan_end(received, self.link.statistics.scans))
 
 
 @pytest.mark.parametrize("count", [0, 1, 29, 100, 256, 600])

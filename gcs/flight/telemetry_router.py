@@ -150,7 +150,7 @@ class TelemetryRouter:
                     if message_id == RETURNS:
                         obstacle_map.placement.add(scan_returns(received), index, time, now)
                     else:
-                        obstacle_map.placement.end(scan_end(received, link.scans), index, time, now)
+                        obstacle_map.placement.end(scan_end(received, link.statistics.scans), index, time, now)
             else:
                 routed.samples.append((received, index, uav, time))
             if time > latest:

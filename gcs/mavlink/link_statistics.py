@@ -3,6 +3,7 @@
 from collections import deque
 
 from gcs.mavlink import px4
+from gcs.mavlink.scan_sequence import ScanSequence
 from gcs.mavlink.settings import LinkSettings
 
 NUMBERS = 256
@@ -33,6 +34,8 @@ class LinkStatistics:
         """Measurements of the payload that it relays and that hold no number."""
         self.breaks = 0
         """Messages that do not follow the newest one: there was a gap, or they came late or again; or the first."""
+        self.scans = ScanSequence()
+        """Which scans are complete."""
         self._newest: int | None = None
         self._seen: deque[int] = deque(maxlen=REMEMBERED)
         self._gaps: deque[tuple[float, set[int]]] = deque()

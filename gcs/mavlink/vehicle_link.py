@@ -13,7 +13,7 @@ from gcs.mavlink.clock import RemoteClock
 from gcs.mavlink.link_statistics import LinkStatistics
 from gcs.mavlink.messages import Message, Received
 from gcs.mavlink.requests import Requests
-from gcs.mavlink.scan_sequence import RETURNS, SCAN_END, ScanSequence
+from gcs.mavlink.scan_sequence import RETURNS, SCAN_END
 from gcs.mavlink.setpoints import SetpointStream
 from gcs.mavlink.settings import LinkSettings
 
@@ -87,7 +87,6 @@ class VehicleLink:
         self.status = VehicleStatus()
         self.clock = RemoteClock(settings.clock)
         self.statistics = LinkStatistics(settings.reordering_time)
-        self.scans = ScanSequence()
         self.requests = Requests(system_id, self.status.parameters, settings)
         self.setpoints = SetpointStream(self.clock, self.status.parameters, settings)
         self.received_at = -math.inf
@@ -120,7 +119,7 @@ class VehicleLink:
                 else:
                     in_order = self.statistics.message(sequence, now)
                 if message_id in _SCAN:
-                    self.scans.add(received, breaks, self.statistics.breaks)
+                    self.statistics.scans.add(received, breaks, self.statistics.breaks)
                     continue
                 if message_id in _NAVIGATION:
                     if (stamp, in_order) != last_stamp:  # attitude and position are of one sample
