@@ -21,10 +21,12 @@ from idc_controller.perception.voxel_kernels import (
     LAST_HIT,
     LAST_PASS,
     MEAN,
+    NUMBER,
     PASSES,
     POINTS,
     PROVEN,
     SCATTER,
+    USED,
     WAY,
     WEIGHT,
     block_in_page,
@@ -185,15 +187,15 @@ def carve(
                         y_next + _sides_before(y, y_step) * y_apart if y_step else math.inf,
                         z_next + _sides_before(z, z_step) * z_apart if z_step else math.inf,
                     )
-                    while x_next <= out:
-                        x += x_step
-                        x_next += x_apart
-                    while y_next <= out:
-                        y += y_step
-                        y_next += y_apart
-                    while z_next <= out:
-                        z += z_step
-                        z_next += z_apart
+                    if x_next <= out:
+                        sides = int((out - x_next) / x_apart) + 1
+                        x, x_next = x + sides * x_step, x_next + sides * x_apart
+                    if y_next <= out:
+                        sides = int((out - y_next) / y_apart) + 1
+                        y, y_next = y + sides * y_step, y_next + sides * y_apart
+                    if z_next <= out:
+                        sides = int((out - z_next) / z_apart) + 1
+                        z, z_next = z + sides * z_step, z_next + sides * z_apart
                     continue
             cell = cell_index(x, y, z)
             value = cells[block, cell]
@@ -253,3 +255,57 @@ def release(
     """Remove elements with ``indices`` (n,) whose points belong to what has moved; no ray has passed there yet."""
     for index in indices:
         free_element(table, pages, blocks, cells, links, elements, counts, index, free_passes, 0)
+
+
+#: Cells of directions about a vehicle: of azimuth, and of the sine of elevation.
+_AZIMUTHS, _ELEVATIONS = 64, 24
+
+
+@inlined
+def _direction_cell(x: float, y: float, z: float, length: float) -> tuple[int, int]:
+    azimuth = int((math.atan2(y, x) + math.pi) / (2.0 * math.pi) * _AZIMUTHS)
+    elevation = int((1.0 - z / length) / 2.0 * _ELEVATIONS)
+    return min(max(azimuth, 0), _AZIMUTHS - 1), min(max(elevation, 0), _ELEVATIONS - 1)
+
+
+@kernel("float64[:, ::1](float64[:, ::1], int64[::1], float64[::1], float64[:, ::1], int64, int64)")
+def followed_rays(elements: Array, counts: Indices, origin: Array, free: Array, first: int, stride: int) -> Array:
+    """Return those rays without return (k, 3) that may pass an element, and of the others every ``stride``-th.
+
+    What stands is freed by the evidence of all rays; where nothing stands, space is seen free by few.
+
+    Args:
+        elements, counts: see ``voxel_kernels``.
+        origin: place of the sensor (3,).
+        free: ends of the rays (m, 3), NED (m).
+        first: number of the first ray of the others.
+        stride: of the others.
+    """
+    near = np.zeros((_AZIMUTHS, _ELEVATIONS), np.bool_)
+    reach = 0.0
+    for r in range(free.shape[0]):
+        square = 0.0
+        for i in range(3):
+            square += (free[r, i] - origin[i]) ** 2
+        reach = max(reach, square)
+    for e in range(counts[USED]):
+        if elements[e, NUMBER] == 0.0:
+            continue
+        x, y, z = (elements[e, MEAN] - origin[0], elements[e, MEAN + 1] - origin[1], elements[e, MEAN + 2] - origin[2])
+        square = x * x + y * y + z * z
+        if 0.0 < square <= reach:
+            a, b = _direction_cell(x, y, z, math.sqrt(square))
+            for i in range(-1, 2):
+                for j in range(max(b - 1, 0), min(b + 2, _ELEVATIONS)):
+                    near[(a + i) % _AZIMUTHS, j] = True
+    found, n = np.empty(free.shape), 0
+    for r in range(free.shape[0]):
+        x, y, z = free[r, 0] - origin[0], free[r, 1] - origin[1], free[r, 2] - origin[2]
+        length = math.sqrt(x * x + y * y + z * z)
+        if length == 0.0:
+            continue
+        a, b = _direction_cell(x, y, z, length)
+        if near[a, b] or r % stride == first % stride:
+            found[n] = free[r]
+            n += 1
+    return found[:n].copy()

@@ -66,3 +66,38 @@ def bounded_clusters(
                 break
             sides[label, 1 if lateral > 0.0 else 0] = True
     return ~is_open & sides[:, 0] & sides[:, 1]
+
+
+@inlined
+def _root(parents: Indices, i: int) -> int:
+    while parents[i] != i:
+        parents[i] = parents[parents[i]]
+        i = parents[i]
+    return i
+
+
+@kernel("int64[::1](float64[:, ::1], float64[::1])")
+def connected(points: Array, gaps: Array) -> Indices:
+    """Return the number of the cluster of each point (n,), counted from 0 in the order of their first points.
+
+    Two points are connected if they are as near as both of their ``gaps`` (n,) (m) allow (single linkage).
+    """
+    n = points.shape[0]
+    parents = np.arange(n)
+    for i in range(n):
+        for j in range(i):
+            gap = min(gaps[i], gaps[j])
+            square = 0.0
+            for k in range(3):
+                square += (points[i, k] - points[j, k]) ** 2
+            if square <= gap * gap:
+                a, b = _root(parents, i), _root(parents, j)
+                parents[max(a, b)] = min(a, b)
+    labels, count = np.empty(n, np.int64), 0
+    for i in range(n):
+        if parents[i] == i:
+            labels[i] = count
+            count += 1
+        else:
+            labels[i] = labels[_root(parents, i)]
+    return labels

@@ -8,12 +8,9 @@ from itertools import count
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 from idc_controller.arrays import Array, Indices, Mask
-from idc_controller.perception.cluster_kernels import bounded_clusters
+from idc_controller.perception.cluster_kernels import bounded_clusters, connected
 from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.surfaces.points import SurfacePoints
 
@@ -102,17 +99,14 @@ class Segmentation:
             return np.empty(0, dtype=np.int64), []
         distance = np.linalg.norm(points - scan.origin, axis=1)
         gap = np.maximum(_GAP_SPACINGS * self._spacing * distance, _GAP_MIN)
-        i, j = cKDTree(points).query_pairs(float(gap.max()), output_type="ndarray").T
-        near = np.linalg.norm(points[i] - points[j], axis=1) <= np.minimum(gap[i], gap[j])
-        pairs = coo_array((near[near], (i[near], j[near])), shape=(len(points), len(points)))
-        found, labels = connected_components(pairs, directed=False)
+        labels = connected(points, gap)
         order = np.argsort(labels, kind="stable")
         points, distance = points[order], distance[order]
         surface = SurfacePoints(
             scan.time, points, np.tile(scan.origin, (len(points), 1)), distance > self._cut_range, scan.range_sigma,
             scan.position_sigma**2 + (scan.attitude_sigma * distance) ** 2,
         )  # fmt: skip
-        ends = np.cumsum(np.bincount(labels, minlength=found)).tolist()
+        ends = np.cumsum(np.bincount(labels, minlength=1)).tolist()
         return order, [
             Cluster(scan.uav, next(self._numbers), surface, slice(first, last))
             for first, last in zip([0, *ends], ends, strict=False)

@@ -208,6 +208,9 @@ class StandingMapSettings(SettingsTable):
     )
     standing_speed: float = setting(0.15, "m/s", "speed of points below which they count as standing", gt=0.0)
     tolerance: float = setting(0.03, "m", "to which surfaces are covered without being computed anew", gt=0.0)
+    exploring_stride: int = setting(
+        4, "", "of the rays without return, one of so many is followed where nothing stands in its direction", ge=1
+    )
     bridged_gap: float = setting(1.0, "m", "between points that one body covers without what lies between", gt=0.0)
 
     @cached_property

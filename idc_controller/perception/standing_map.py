@@ -20,7 +20,7 @@ from idc_controller.geometry.obstacles import Bodies
 from idc_controller.geometry.shape import Shape
 from idc_controller.perception import map_query_kernels as queries
 from idc_controller.perception import upright_box_kernels as boxes
-from idc_controller.perception.carving_kernels import carve, release
+from idc_controller.perception.carving_kernels import carve, followed_rays, release
 from idc_controller.perception.convex_pieces_kernels import nearest_owners
 from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.return_kernels import add_returns
@@ -89,7 +89,9 @@ class StandingMap:
         """Add one scan; ``moving``: returns (n,) of what is known to move, which leave no points."""
         s, v = self.settings, self._store
         origin, returns = np.ascontiguousarray(scan.origin), np.ascontiguousarray(scan.returns)
-        free = np.ascontiguousarray(scan.free_rays)
+        free = followed_rays(
+            v.elements, v.counts, origin, np.ascontiguousarray(scan.free_rays), self._scan, s.exploring_stride
+        )
         taken = np.ones(len(returns), dtype=bool) if moving is None else ~moving
         self._scan += 1
         v.reserve(origin, returns, free)
