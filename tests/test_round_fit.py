@@ -1,13 +1,11 @@
-"""Kernels of perception against the formulas in numpy: fit of round shapes, points placed in the world."""
+"""Kernel that fits round shapes, against the formulas in numpy."""
 
 import numpy as np
 import pytest
 
-from idc_controller.perception.scan_kernels import placed_points
 from idc_controller.perception.settings import SurfaceSettings
 from idc_controller.perception.surfaces.points import score, unexplained
 from idc_controller.perception.surfaces.round_kernels import fitted_round
-from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
 
 S = SurfaceSettings()
 
@@ -77,14 +75,3 @@ def test_fit_of_kernel_agrees_with_fit_in_numpy(seed, axes, scatter):
     theirs = fitted_in_numpy(*shared, 4, axes + 1)
     for a, b in zip(ours, theirs, strict=True):
         np.testing.assert_allclose(a, b, rtol=1e-6, atol=1e-9)
-
-
-def test_points_are_placed_by_the_pose_of_their_vehicle():
-    rng = np.random.default_rng(1)
-    body, position = rng.normal(0.0, 5.0, (20, 3)), rng.normal(size=3)
-    rotation = rotation_from_quaternion(quaternion_from_euler(0.1, -0.2, 2.0))
-    world, cut, variance = placed_points(body, position, rotation, 8.0, 0.02, 0.003)
-    distance = np.linalg.norm(body, axis=1)
-    np.testing.assert_allclose(world, position + body @ rotation.T, atol=1e-12)
-    np.testing.assert_array_equal(cut, distance > 8.0)
-    np.testing.assert_allclose(variance, 0.02**2 + (0.003 * distance) ** 2)

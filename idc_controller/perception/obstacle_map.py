@@ -105,7 +105,7 @@ class ObstacleMap:
         return bool(self.map_offsets) and self._check.all_offset(self._valid_uavs())
 
     def take_deleted_tracks(self) -> list[str]:
-        """Return the names of confirmed tracks deleted in the field of view since the last call."""
+        """Return the names of tracks of obstacles deleted in the field of view since the last call."""
         deleted, self._deleted = self._deleted, []
         return deleted
 

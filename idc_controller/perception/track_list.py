@@ -99,7 +99,7 @@ class TrackList:
         ]
 
     def retain(self, now: float, sensing_lost: bool, in_field_of_view: Callable[[Track], bool]) -> list[str]:
-        """Delete tracks that are not detected; return the names of confirmed ones that are deleted.
+        """Delete tracks that are not detected; return the names of those that counted as obstacles.
 
         Args:
             now: s.
@@ -120,12 +120,13 @@ class TrackList:
             elif not track.is_confirmed:
                 pass
             elif undetected > s.delete_after and in_field_of_view(track):
-                deleted.append(track.name)
-                self._deleted.append((now, track))
+                if track.is_obstacle:
+                    deleted.append(track.name)
+                    self._deleted.append((now, track))
                 if on_map:
                     track.is_deleted = True
                     kept.append(track)
-            elif on_map or track.is_static or undetected <= s.forget_after:
+            elif on_map or (track.has_moved and track.is_static) or undetected <= s.forget_after:
                 kept.append(track)
         self.tracks = kept
         return deleted
