@@ -17,6 +17,8 @@ from idc_controller.perception.surfaces.points import SurfacePoints
 _GAP_MIN = 0.6
 """Gap between returns up to which they are one cluster (m), and in mean distances between rays:"""
 _GAP_SPACINGS = 1.5
+_COMPRESSION = np.array([1.0, 1.0, 1.0 / 3.0])
+"""Of distances along each axis: what is thin and upright is hit at few heights."""
 
 
 class Cluster(NamedTuple):
@@ -99,7 +101,7 @@ class Segmentation:
             return np.empty(0, dtype=np.int64), []
         distance = np.linalg.norm(points - scan.origin, axis=1)
         gap = np.maximum(_GAP_SPACINGS * self._spacing * distance, _GAP_MIN)
-        labels = connected(points, gap)
+        labels = connected(points * _COMPRESSION, gap)
         order = np.argsort(labels, kind="stable")
         points, distance = points[order], distance[order]
         surface = SurfacePoints(

@@ -99,7 +99,7 @@ class ObstacleFilter:
     def is_moving(self, false_alarm: float) -> bool:
         """Return whether noise explains its velocity with less than the stated probability."""
         _, velocity, _ = self._imm.state
-        squared = float(np.sum(velocity**2 / self._imm.velocity_variance))
+        squared = float(np.sum(velocity**2 / self.velocity_variance))
         return not self.is_static and squared > float(upper_quantile(false_alarm, 3))
 
     def advance(self, time: float) -> None:
@@ -111,6 +111,11 @@ class ObstacleFilter:
     def position_sigma(self) -> float:
         """Largest standard deviation of the position on any axis at :attr:`time` (m)."""
         return float(np.sqrt(self._imm.position_variance.max()))
+
+    @property
+    def velocity_variance(self) -> Array:
+        """Variance of the velocity (3,) at :attr:`time` (m2/s2)."""
+        return self._imm.velocity_variance
 
     def update(self, points: SurfacePoints) -> None:
         """Take one frame of points on this obstacle; a late one is moved to the present by the estimated motion."""
