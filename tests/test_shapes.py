@@ -62,23 +62,6 @@ def test_distance_outside_is_that_of_the_distance_library(shape):
     np.testing.assert_allclose(distance[outside], expected, atol=1e-5)
 
 
-@pytest.mark.parametrize(
-    "shape", [shape for shape in EXAMPLES if hasattr(shape, "surface_samples")], ids=lambda shape: shape.kind
-)
-def test_surface_samples_lie_on_the_surface_with_normals_outward(shape):
-    points, normals = shape.surface_samples()
-    assert np.linalg.norm(normals, axis=1) == pytest.approx(np.ones(len(points)))
-    outside, inside = (
-        Bodies([shape]).distance((points + side * normals) @ shape.rotation.T + HERE, HERE[None])[0]
-        for side in (0.02, -0.02)
-    )
-    assert outside == pytest.approx(0.02, abs=1e-4)
-    # Within an edge the nearest surface may be another one.
-    assert np.mean(inside < -0.01) > 0.3 and inside.min() > -0.0201
-    assert np.linalg.norm(points, axis=1).max() > 0.7 * shape.reach
-    assert np.abs(points.mean(axis=0)).max() < 0.3 * shape.reach
-
-
 def distance_to_rounded_box(shape, points):
     """The distance kernel in numpy: horizontal and vertical gap, joined by Pythagoras."""
     box, (x, y, z) = shape.rounded_box, (points @ shape.rotation).T
@@ -162,21 +145,6 @@ def test_bounds_hold_the_body(shape):
     outline = shapely.Polygon(shape.plan_view.outline()).buffer(1e-3 * shape.horizontal_reach)
     assert shapely.contains_xy(outline, inside[:, 0], inside[:, 1]).all()
     assert all(shape.plan_view.contains(tuple(point)) for point in inside[:50, :2])
-
-
-def test_range_sensor_hits_the_surface_that_faces_it(shape):
-    for direction in np.random.default_rng(5).normal(size=(30, 3)):
-        sensor = direction / np.linalg.norm(direction) * (shape.reach + 2.0)
-        points = shape.visible_points(tuple(sensor), 20.0, 0.3)
-        distance = Bodies([shape]).from_offsets(points[None])[0]
-        np.testing.assert_allclose(distance, 0.0, atol=1e-6)
-        assert len(points) >= 4
-        ranges = np.linalg.norm(points - sensor, axis=1)
-        assert ranges[0] == pytest.approx(Bodies([shape]).from_offsets(sensor[None, None])[0, 0], abs=1e-4)
-        # Nothing of the body lies between the sensor and the points.
-        between = sensor + np.linspace(0.0, 0.98, 25)[:, None, None] * (points - sensor)
-        assert (Bodies([shape]).from_offsets(between.reshape(1, -1, 3)) > -1e-6).all()
-    assert len(shape.visible_points((0.0, 0.0, 0.0), 20.0, 0.0)) == 0
 
 
 def test_quaternion_is_the_rotation(shape):

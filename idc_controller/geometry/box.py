@@ -87,14 +87,6 @@ class Wall(Shape):
         signs = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
         return PlanView(shapely.Polygon(signs * (np.array(self.size[:2]) / 2.0) @ self.rotation[:2, :2].T), 0.0)
 
-    def visible_points(self, sensor: Vector, reach: float, turn: float) -> Array:
-        """Points (n, 3) of the surface that a range sensor hits: corners and middle of the faces in view."""
-        cosine, sine = math.cos(self.yaw), math.sin(self.yaw)
-        a, b, c = sensor
-        local = (cosine * a + sine * b, cosine * b - sine * a, c)
-        points = _visible_points(self.size, local, reach)
-        return np.array([(cosine * u - sine * v, sine * u + cosine * v, w) for u, v, w in points]).reshape(-1, 3)
-
 
 @dataclass(frozen=True)
 class Box(OrientedShape):
@@ -130,63 +122,3 @@ class Box(OrientedShape):
     def collision(self) -> CollisionGeometry:
         """Return the shape for a physics engine, in its own frame."""
         return CollisionGeometry("box", {"halfExtents": [edge / 2 for edge in self.size]})
-
-
-def _visible_points(size: Vector, sensor: Vector, reach: float) -> list[Vector]:
-    """Points of a box about its centre, in its own frame, that a ``sensor`` there hits."""
-    s, half_size = sensor, (size[0] / 2.0, size[1] / 2.0, size[2] / 2.0)
-    visible = [k for k in range(3) if abs(s[k]) > half_size[k]]
-    if not visible:
-        return []
-    nearest = _clamped(s, half_size)
-    if math.dist(nearest, s) > reach:
-        return []
-    # The face that shows most of itself first.
-    visible.sort(key=lambda k: -_visible_area(half_size, s, k))
-    points = [nearest]
-    for rank, axis in enumerate(visible):
-        foot = list(nearest)
-        foot[axis] = math.copysign(half_size[axis], s[axis])
-        corners = [_shortened(s, foot, corner, reach) for corner in _corners(half_size, axis, foot[axis])]
-        if rank > 0:  # its near corners are the first face's
-            corners = sorted(corners, key=lambda p: -math.dist(p, s))[:2]
-        points += corners
-        if rank == 0:
-            middle = [0.5 * (corners[0][k] + corners[2][k]) for k in range(3)]
-            points.append((middle[0], middle[1], middle[2]))
-    return points
-
-
-def _corners(half_size: Vector, axis: int, level: float) -> list[Vector]:
-    """Return the corners of the face across ``axis`` at ``level``, in turn."""
-    j, k = (axis + 1) % 3, (axis + 2) % 3
-    corners = []
-    for a, b in ((1, 1), (1, -1), (-1, -1), (-1, 1)):
-        corner = [0.0, 0.0, 0.0]
-        corner[axis], corner[j], corner[k] = level, a * half_size[j], b * half_size[k]
-        corners.append((corner[0], corner[1], corner[2]))
-    return corners
-
-
-def _visible_area(half_size: Vector, s: Vector, axis: int) -> float:
-    """Area of a face times the cosine of the angle of incidence."""
-    j, k = (axis + 1) % 3, (axis + 2) % 3
-    return half_size[j] * half_size[k] * (abs(s[axis]) - half_size[axis]) / math.dist(s, (0.0, 0.0, 0.0))
-
-
-def _shortened(s: Vector, start: list[float], end: Vector, reach: float) -> Vector:
-    """Return the point from ``start``, which is in reach, towards ``end`` as far as the reach goes."""
-    d = [end[k] - start[k] for k in range(3)]
-    o = [start[k] - s[k] for k in range(3)]
-    a = sum(v * v for v in d)
-    b = sum(v * w for v, w in zip(d, o, strict=True))
-    c = sum(v * v for v in o) - reach * reach
-    share = 1.0
-    if a > 0.0:
-        share = min(1.0, max(0.0, (-b + math.sqrt(max(b * b - a * c, 0.0))) / a))
-    return start[0] + share * d[0], start[1] + share * d[1], start[2] + share * d[2]
-
-
-def _clamped(s: Vector, half_size: Vector) -> Vector:
-    x, y, z = (min(max(value, -half), half) for value, half in zip(s, half_size, strict=True))
-    return x, y, z

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from idc_controller.arrays import Array
-from idc_controller.geometry.shape import ANGLE, Columns, PlanView, Shape, UprightBounds, Vector
+from idc_controller.geometry.shape import ANGLE, Columns, PlanView, Shape, UprightBounds
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
 
 if TYPE_CHECKING:
@@ -19,10 +19,6 @@ if TYPE_CHECKING:
 
 _HEADINGS = np.radians(np.arange(0.0, 90.0, 5.0))
 """Headings tried for the upright box that is to hold a body: the smallest plan view is taken."""
-_MOST_POINTS = 9
-"""Largest number of points that a range sensor hits on one body."""
-_GRAZING = 0.05
-"""Least cosine of the angle of incidence at which a range sensor gets an answer."""
 
 
 @dataclass(frozen=True)
@@ -50,15 +46,6 @@ class OrientedShape(Shape):
         """Angles in words, empty if there are none."""
         angles = {name: math.degrees(getattr(self, name)) for name in ("roll", "pitch", "yaw")}
         return "".join(f", {name} {angle:.1f} deg" for name, angle in angles.items() if angle)
-
-    def surface_samples(self) -> tuple[Array, Array]:
-        """Return points all over the surface (n, 3) and its outward normals there (n, 3), in the shape's own frame."""
-        weights = np.array([[1, 1, 1], [4, 1, 1], [1, 4, 1], [1, 1, 4], [1, 1, 0], [0, 1, 1], [1, 0, 1],
-                            [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float)  # fmt: skip
-        weights /= weights.sum(axis=1, keepdims=True)
-        points = np.einsum("wk,fkx->fwx", weights, self._hull.triangles)
-        normals = np.repeat(np.array(self._hull.face_normals), len(weights), axis=0)
-        return points.reshape(-1, 3), normals
 
     @cached_property
     def rotation(self) -> Array:
@@ -111,38 +98,6 @@ class OrientedShape(Shape):
 
         return PlanView(shapely.MultiPoint(self._in_world[:, :2]).convex_hull, self.rounding)
 
-    def visible_points(self, sensor: Vector, reach: float, turn: float) -> Array:
-        """Points (n, 3) of the surface that a range sensor hits: the nearest, then those that lie farthest apart."""
-        place = np.array(sensor)
-        nearest = self._nearest(place)
-        if nearest is None or math.dist(nearest, sensor) > reach:
-            return np.empty((0, 3))
-        points, normals = self._samples
-        rays = place - points
-        ranges = np.linalg.norm(rays, axis=1)
-        is_hit = (np.einsum("ij,ij->i", rays, normals) > _GRAZING * ranges) & (ranges <= reach)
-        points = points[is_hit]
-        chosen = [np.array(nearest)]
-        apart = np.linalg.norm(points - chosen[0], axis=1)
-        while len(chosen) < _MOST_POINTS and len(points) and apart.max() > 0.05 * self.reach:
-            chosen.append(points[int(np.argmax(apart))])
-            apart = np.minimum(apart, np.linalg.norm(points - chosen[-1], axis=1))
-        return np.array(chosen)
-
-    def _nearest(self, place: Array) -> Vector | None:
-        """Point of the surface about the centre that is nearest to ``place`` (3,); None: it lies inside."""
-        import coal
-
-        result = coal.DistanceResult()
-        distance = coal.distance(
-            self.geometry(), coal.Transform3s(self.rotation, np.zeros(3)), coal.Sphere(1e-6),
-            coal.Transform3s(np.eye(3), place), coal.DistanceRequest(), result,
-        )  # fmt: skip
-        if distance <= 0.0:
-            return None
-        x, y, z = np.array(result.getNearestPoint1()).tolist()
-        return x, y, z
-
     @cached_property
     def _hull(self) -> trimesh.Trimesh:
         import trimesh  # half a second, spent only where there is such a body
@@ -163,8 +118,3 @@ class OrientedShape(Shape):
     def _in_world(self) -> Array:
         """The corners about the centre in the axes of the world (n, 3)."""
         return self.corners @ self.rotation.T
-
-    @cached_property
-    def _samples(self) -> tuple[Array, Array]:
-        points, normals = self.surface_samples()
-        return points @ self.rotation.T, normals @ self.rotation.T

@@ -21,15 +21,6 @@ from idc_controller.geometry.shape import (
 if TYPE_CHECKING:
     import coal
 
-SIDE = np.array(
-    [[0.0, 0.0], [0.8, 0.0], [-0.8, 0.0], [0.5, 1.0], [-0.5, -1.0], [-0.85, 0.6], [0.85, -0.6], [-0.3, 1.0],
-     [0.3, -1.0]]
-)  # fmt: skip
-"""A sensor's rays at the side, the nearest first: share of the radius to the right; share of the visible length up (1)
-or down (-1)."""
-RIM = 0.95
-"""Share of the radius at which a sensor's rays hit the end."""
-
 
 @dataclass(frozen=True)
 class Pole(Shape):
@@ -79,9 +70,3 @@ class Pole(Shape):
         import shapely
 
         return PlanView(shapely.Point(0.0, 0.0), self.radius)
-
-    def visible_points(self, sensor: Vector, reach: float, turn: float) -> Array:
-        """Points (n, 3) of the surface that a range sensor hits: the side up and down, and an end that faces it."""
-        from idc_controller.geometry.visibility_kernels import points_of_pole  # only where something is scanned
-
-        return points_of_pole(*sensor, self.radius, self.height / 2.0, reach, SIDE, RIM)

@@ -231,13 +231,3 @@ class Shape(ABC):
     @abstractmethod
     def plan_view(self) -> PlanView:
         """The body seen from above."""
-
-    @abstractmethod
-    def visible_points(self, sensor: Vector, reach: float, turn: float) -> Array:
-        """Points (n, 3) of the surface that a range sensor hits, about the centre: the nearest first, then the edges.
-
-        Args:
-            sensor: where the sensor is, relative to the centre (m); one inside hits nothing.
-            reach: range of the sensor (m); points slightly beyond may be among the result.
-            turn: rad, turns the pattern of rays where it has no other reason to lie one way or another.
-        """

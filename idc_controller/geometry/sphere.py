@@ -21,9 +21,6 @@ from idc_controller.geometry.shape import (
 if TYPE_CHECKING:
     import coal
 
-RING = np.array([0.9, 0.6, 0.9, 0.6, 0.9, 0.6])
-"""Off-axis positions of a sensor's rays: share of the radius; six of them, turned by a random angle."""
-
 
 @dataclass(frozen=True)
 class Sphere(Shape):
@@ -69,9 +66,3 @@ class Sphere(Shape):
         import shapely
 
         return PlanView(shapely.Point(0.0, 0.0), self.radius)
-
-    def visible_points(self, sensor: Vector, reach: float, turn: float) -> Array:
-        """Points (n, 3) of the surface that a range sensor hits; the ring of rays is turned by ``turn`` (rad)."""
-        from idc_controller.geometry.visibility_kernels import points_of_sphere  # only where something is scanned
-
-        return points_of_sphere(*sensor, self.radius, turn, RING)
