@@ -123,13 +123,13 @@ class Avoidance:
         return trajectory
 
 
-def avoidance(obstacles, n=4, margin=0.5, speed=1.5, **settings):
+def avoidance(obstacles, n=4, margin=0.5, speed=1.5, by_sight=None, **settings):
     parameters, scene = system(n), Scene(obstacles)
     safety = AvoidanceFilter(parameters, PlannerSettings(margin=margin, **settings), scene)
     stages = safety.settings.chain.times
     navigation = NavigatorSettings(limits=Limits(speed, 1.5, 2.0, 6.0), margin=margin)
     navigator = Navigator(parameters, navigation, scene, stages)
-    guidance = AdaptiveGuidance(navigator, ProgressSettings(), stages, parameters.m_0 * parameters.g)
+    guidance = AdaptiveGuidance(navigator, ProgressSettings(), stages, parameters.m_0 * parameters.g, by_sight)
     return Avoidance(safety, guidance)
 
 

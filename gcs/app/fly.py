@@ -178,7 +178,7 @@ def ground_station(
     guidance: Guidance | None = None
     if controller == "idc":
         safety = stack.avoidance(config, model, obstacle_map)
-        guidance = stack.guidance(config, model, obstacle_map)
+        guidance = stack.guidance(config, model, obstacle_map, obstacle_map)
     elif controller == "paper":
         safety = PrintedFilter(model, obstacle_map, config.avoidance.margin)
     control = ControlLoop(

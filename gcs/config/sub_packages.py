@@ -4,7 +4,13 @@ from dataclasses import dataclass, field
 
 from idc_controller.control.settings import ControllerSettings, GroundControlSettings, MpcSettings
 from idc_controller.estimation.settings import EstimatorSettings, InnovationMonitorSettings, WindSettings
-from idc_controller.guidance.settings import DetourSettings, NavigatorSettings, ProgressSettings, RestingPlaceSettings
+from idc_controller.guidance.settings import (
+    DetourSettings,
+    NavigatorSettings,
+    ProgressSettings,
+    RestingPlaceSettings,
+    SightSettings,
+)
 from idc_controller.safety.settings import FilterSettings, PlannerSettings
 from idc_controller.settings import SettingsTable
 from idc_controller.trajectory.settings import BrakingSettings
@@ -21,11 +27,12 @@ class EstimationConfig(SettingsTable):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class GuidanceConfig(SettingsTable):
-    """Progress along the mission, detours, and the stop of a team without set-points."""
+    """Progress along the mission, speed by sight, detours, and the stop of a team without set-points."""
 
     progress: ProgressSettings = field(default_factory=ProgressSettings)
     navigator: NavigatorSettings = field(default_factory=NavigatorSettings)
     detour: DetourSettings = field(default_factory=DetourSettings)
+    sight: SightSettings = field(default_factory=SightSettings)
     resting_place: RestingPlaceSettings = field(default_factory=RestingPlaceSettings)
     braking: BrakingSettings = field(default_factory=BrakingSettings)
 

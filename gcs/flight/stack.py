@@ -13,10 +13,12 @@ from idc_controller.control.controller import IntegratedDecisionController
 from idc_controller.control.mpc import ModelPredictiveController
 from idc_controller.estimation.estimator import Estimator
 from idc_controller.estimation.measurements import MeasurementNoise
+from idc_controller.geometry.formation import BoundingCylinder
 from idc_controller.geometry.obstacles import ObstacleSource
 from idc_controller.guidance.navigator import Navigator
 from idc_controller.guidance.progress import AdaptiveGuidance, Guidance
 from idc_controller.guidance.resting_place import RestingPlace
+from idc_controller.guidance.sight import SensorView, Sight, SpeedBySight
 from idc_controller.model.linear import LinearModel
 from idc_controller.perception.obstacle_map import ObstacleMap
 from idc_controller.perception.range_sensors import SensorModel
@@ -79,8 +81,13 @@ def avoidance(config: SystemConfig, model: LinearModel, obstacles: ObstacleSourc
     return AvoidanceFilter(model.parameters, planner, obstacles, config.safety.filter)
 
 
-def guidance(config: SystemConfig, model: LinearModel, obstacles: ObstacleSource) -> AdaptiveGuidance:
-    """Return the guidance that waits for the payload, and leads round ``obstacles``."""
+def guidance(
+    config: SystemConfig, model: LinearModel, obstacles: ObstacleSource, sight: Sight | None = None
+) -> AdaptiveGuidance:
+    """Return the guidance that waits for the payload, and leads round ``obstacles``.
+
+    ``sight``: what range sensors have seen, to limit the speed by; None: no range sensors.
+    """
     stages = config.safety.planner.chain.times
     settings = replace(
         config.guidance.navigator,
@@ -89,7 +96,21 @@ def guidance(config: SystemConfig, model: LinearModel, obstacles: ObstacleSource
         detour=config.guidance.detour,
     )
     navigator = Navigator(model.parameters, settings, obstacles, stages)
-    return AdaptiveGuidance(navigator, config.guidance.progress, stages, model.parameters.m_0 * model.parameters.g)
+    weight = model.parameters.m_0 * model.parameters.g
+    by_sight = None if sight is None else speed_by_sight(config, model, sight)
+    return AdaptiveGuidance(navigator, config.guidance.progress, stages, weight, by_sight)
+
+
+def speed_by_sight(config: SystemConfig, model: LinearModel, sight: Sight) -> SpeedBySight:
+    """Return the limit of the progress by what range sensors have seen."""
+    settings = replace(config.guidance.sight, limits=motion_limits(config), margin=config.avoidance.margin)
+    parameters, sensor = model.parameters, config.range_sensor
+    offsets = parameters.p - np.outer(parameters.l, [0.0, 0.0, 1.0])
+    view = SensorView(
+        offsets, sensor.range, math.radians(sensor.elevation_min_deg), math.radians(sensor.elevation_max_deg)
+    )
+    formation = BoundingCylinder.of(parameters, config.guidance.navigator.link_tilt)
+    return SpeedBySight(sight, settings, formation, view)
 
 
 def resting_place(config: SystemConfig, model: LinearModel, obstacles: ObstacleSource) -> RestingPlace:

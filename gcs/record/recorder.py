@@ -83,7 +83,9 @@ class FlightRecorder:
         safety = decision.safety
         bounds = (math.nan if b is None else b for b in (safety.payload_bound, safety.uav_bound))
         progress = (safety.slack, safety.lag, decision.progress_rate, decision.detours)
-        self._plan.write_numbers([time, *position, *acceleration, *progress, *bounds])
+        sight = decision.sight
+        limit = (min(sight.rate, 1.0), sight.distance, sight.code)
+        self._plan.write_numbers([time, *position, *acceleration, *progress, *bounds, *limit])
 
     def compute_times(self, time: float, decision: Decision, parts: Sequence[float]) -> None:
         """Record the compute times (s) of the control step at team ``time`` (s), as :class:`Part` orders them."""

@@ -19,6 +19,7 @@ from idc_controller.control.settings import ControllerSettings
 from idc_controller.control.tracker import Tracker
 from idc_controller.estimation.estimate import Estimate
 from idc_controller.guidance.progress import Guidance
+from idc_controller.guidance.sight import SightLimit
 from idc_controller.model.linear import LinearModel
 from idc_controller.parameters import SystemParameters
 from idc_controller.safety.filter_protocol import SafetyFilter, SafetyReport
@@ -56,6 +57,8 @@ class Decision(NamedTuple):
     """Outcome of the safety filter's last plan."""
     progress_rate: float
     """Rate of the mission's progress: 1 is its own speed, 0 rest."""
+    sight: SightLimit
+    """Limit of that rate by sight."""
     detours: int
     """Detours taken so far."""
 
@@ -140,5 +143,6 @@ class IntegratedDecisionController:
             compute_time=ComputeTime(planned - begin, tracked - ready),
             safety=self.safety.report,
             progress_rate=self.guidance.rate,
+            sight=self.guidance.sight,
             detours=self.guidance.detours,
         )

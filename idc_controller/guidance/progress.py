@@ -9,6 +9,7 @@ import numpy as np
 from idc_controller.arrays import Array
 from idc_controller.guidance.navigator import Navigator
 from idc_controller.guidance.settings import ProgressSettings
+from idc_controller.guidance.sight import SightLimit, SpeedBySight
 from idc_controller.model.drag import Air
 from idc_controller.trajectory.flatness import PayloadTrajectory
 from idc_controller.trajectory.scaled import ScaledReference
@@ -22,6 +23,11 @@ class Guidance:
     def rate(self) -> float:
         """Progress rate in force."""
         return 1.0
+
+    @property
+    def sight(self) -> SightLimit:
+        """Limit of the progress rate by sight."""
+        return SightLimit()
 
     @property
     def detours(self) -> int:
@@ -61,11 +67,17 @@ class Guidance:
 class AdaptiveGuidance(Guidance):
     """Slows the progress while the payload is held up, and leads round what holds it up for long."""
 
-    def __init__(self, navigator: Navigator, settings: ProgressSettings, stages: Array, weight: float) -> None:
-        """Args: the planner's ``stages`` (K + 1,) (s); ``weight`` of the payload (N)."""
-        self.navigator, self.settings = navigator, settings
+    def __init__(
+        self,
+        navigator: Navigator,
+        settings: ProgressSettings,
+        stages: Array,
+        weight: float,
+        by_sight: SpeedBySight | None = None,
+    ) -> None:
+        """Args: the planner's ``stages`` (K + 1,) (s); ``weight`` of the payload (N); ``by_sight``: None: no limit."""
+        self.navigator, self.settings, self._by_sight = navigator, settings, by_sight
         self._stages, self._weight = stages, weight
-        self._interval = settings.stage_share * float(stages[1])
         self._current: ScaledReference | None = None
         self._observed: ScaledReference | None = None
         self._next_rate = 1.0
@@ -80,6 +92,11 @@ class AdaptiveGuidance(Guidance):
         return 1.0 if self._current is None else self._current.rate
 
     @property
+    def sight(self) -> SightLimit:
+        """See :meth:`Guidance.sight`."""
+        return SightLimit() if self._by_sight is None else self._by_sight.last
+
+    @property
     def detours(self) -> int:
         """Detours taken so far."""
         return self.navigator.detours
@@ -91,7 +108,7 @@ class AdaptiveGuidance(Guidance):
             return current
         progress = self.navigator.advance(self._followed_progress(time))
         if self._tracked is not None:
-            progress = self.navigator.watch(time, progress, self._next_rate, mission, self._tracked)
+            progress = self.navigator.watch(time, progress, self._held_up_rate(), mission, self._tracked)
         self._restart = None
         self._current = ScaledReference(self.navigator.followed(mission), time, progress, self._next_rate)
         return self._current
@@ -103,7 +120,10 @@ class AdaptiveGuidance(Guidance):
             return
         self._observed, self._deflected = self._current, deviation is not None
         rate_in_wind = None if air is None else self._rate_in_wind(self._current, deviation, air)
-        self._next_rate = self._changed_rate(self._current.rate, lag, rate_in_wind)
+        current = self._current
+        if self._by_sight is not None:
+            self._by_sight.update(current.start, current, tracked)
+        self._next_rate = self._changed_rate(current, lag, rate_in_wind)
 
     def progress(self, time: float) -> float:
         """See :meth:`Guidance.progress`; on a detour, where that leads back to the mission."""
@@ -130,6 +150,9 @@ class AdaptiveGuidance(Guidance):
 
     def blocked(self, time: float) -> str:
         """See :meth:`Guidance.blocked`."""
+        by_sight = self._by_sight
+        if by_sight is not None and by_sight.resting(time) >= self.navigator.settings.give_up:
+            return f"the way was not seen free {by_sight.last.distance:.1f} m ahead"
         return self.navigator.hold_up.blocked(time)
 
     def _followed_progress(self, time: float) -> float:
@@ -149,11 +172,28 @@ class AdaptiveGuidance(Guidance):
         within = np.flatnonzero(drag <= s.drag_limit * self._weight)
         return float(rates[within[0]] if len(within) else s.slowest_in_wind)
 
-    def _changed_rate(self, rate: float, lag: float, rate_in_wind: float | None) -> float:
-        """Return the rate of the next reference, for ``lag`` (m) and the largest ``rate_in_wind``."""
-        s = self.settings
+    def _changed_rate(self, current: ScaledReference, lag: float, rate_in_wind: float | None) -> float:
+        """Return the rate of the reference after ``current``, for ``lag`` (m) and the largest ``rate_in_wind``."""
+        s, rate = self.settings, current.rate
         wanted, step = min(max((s.lag_at_rest - lag) / s.slowing_lag, 0.0), 1.0), s.rate_step
         if rate_in_wind is not None and rate_in_wind <= wanted:
             wanted, step = rate_in_wind, s.rate_step_in_wind
-        changed = rate + min(max(wanted - rate, -step), step)
+        fall = step
+        if self._by_sight is not None:
+            self._by_sight.compare(current.start, wanted, s.rate_step)
+            if self._by_sight.is_least:
+                wanted, fall = self.sight.rate, max(step, self.sight.fall * self._interval)
+                step = s.rate_step_in_wind
+        changed = rate + min(max(wanted - rate, -fall), step)
         return 1.0 if changed > 0.999 else changed
+
+    def _held_up_rate(self) -> float:
+        """Return the rate by which the mission counts as held up: slow for what is not seen yet, it is not."""
+        if self._by_sight is None or not self._by_sight.is_least:
+            return self._next_rate
+        return max(self._next_rate, self.navigator.settings.held_up_rate)
+
+    @property
+    def _interval(self) -> float:
+        """Time for which a reference stays (s)."""
+        return self.settings.stage_share * float(self._stages[1])

@@ -22,7 +22,11 @@ class ProgressSettings(SettingsTable):
     lag_at_rest: float = setting(2.4, "m", "lag from which the progress rests", gt=0.0)
     rate_step: float = setting(0.05, "", "largest change of the progress rate from reference to reference", gt=0.0)
     rate_step_in_wind: float = setting(
-        0.01, "", "the same where wind limits it: predicted for long, and a fast change would be a disturbance", gt=0.0
+        0.01,
+        "",
+        "the same where wind limits it: predicted for long, and a fast change would be a disturbance; and of its rise "
+        "where sight does",
+        gt=0.0,
     )
     drag_limit: float = setting(0.45, "", "drag on the payload, over its weight, above which the rate is lowered", gt=0)
     slowest_in_wind: float = setting(
@@ -78,6 +82,43 @@ class NavigatorSettings(SettingsTable):
     resumed_rate: float = setting(0.9, "", "progress rate above which the mission is no longer held up", gt=0.0, lt=1.0)
     detour: DetourSettings = derived(DetourSettings())
     """Table ``guidance.detour``."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SightSettings(SettingsTable):
+    """Speed by sight: the progress is such that the formation can stop before space that was not seen free."""
+
+    limits: Limits = derived(Limits())
+    """Limits of the motion by which it stops: table ``motion``."""
+    margin: float = derived(AvoidanceSettings.margin)
+    """Clearance to keep between hull and obstacles (m): ``avoidance.margin``."""
+    latency: float = setting(
+        0.4, "s", "from a ray until the reference slows down: scan, telemetry, map, progress and set-points", ge=0.0
+    )
+    horizon: float = setting(3.2, "s", "of the plan that is compared with what was seen", gt=0.0)
+    samples: int = setting(33, "", "places of the formation within that", ge=2)
+    slowest: float = setting(
+        0.2, "", "progress rate at which the way is looked at where the mission is slower or at rest", gt=0.0, le=1.0
+    )
+    blind_speed: float = setting(
+        1.0,
+        "m/s",
+        "speed of the mission's climb or descent into space above or below the field of view of all range sensors: "
+        "nothing there is seen in time",
+        gt=0.0,
+    )
+    closing_speed: float = setting(
+        0.4, "m/s", "of moving obstacles that may come into sight, for which the own speed leaves time", ge=0.0
+    )
+    give_way_time: float = setting(
+        2.0, "s", "that giving way to one takes: the latency, and 2 sqrt(2.2 m / 3.3 m/s2) for a metre's body", gt=0.0
+    )
+
+    @property
+    def stopping_delay(self) -> float:
+        """Time of a stop beyond speed over deceleration (s): jerk, snap and crackle are limited."""
+        m = self.limits
+        return m.acceleration / m.jerk + m.jerk / m.snap + m.snap / m.crackle
 
 
 @dataclass(frozen=True, eq=False, repr=False)

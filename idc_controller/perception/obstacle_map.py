@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idc_controller.arrays import Array, Mask
+from idc_controller.arrays import Array, Indices, Mask
 from idc_controller.estimation.health.chi_squared import upper_quantile
 from idc_controller.geometry.obstacles import Bodies, PointGroups, PredictedObstacle, Region
 from idc_controller.geometry.shape import Shape
@@ -22,6 +22,9 @@ from idc_controller.perception.settings import PerceptionSettings
 from idc_controller.perception.standing_obstacles import MapObstacle, SeenObstacles, StandingObstacles
 from idc_controller.perception.track import Track
 from idc_controller.perception.track_list import TrackList
+
+_UNSEEN = 256
+"""Unseen cells on the way of the formation that are looked at: the next ones."""
 
 
 class TrackEstimate(NamedTuple):
@@ -121,6 +124,37 @@ class ObstacleMap:
         times = np.asarray(times, dtype=float)
         found = self._standing.predict(len(times), region) + self.seen.predict(len(times), region)
         return found + [track.predict(times, self._time) for track in self.tracks if track.is_obstacle]
+
+    def unseen(self, time: float, path: Array, body: Array) -> tuple[Indices, Array]:
+        """See :class:`idc_controller.guidance.sight.Sight`."""
+        indices, middles = self.seen.map.unseen(path, body, _UNSEEN)
+        if not len(indices):
+            return indices, middles
+        # What an obstacle covers, and what its surface keeps rays from, is for the safety filter.
+        region = Region(path[0], float(np.hypot(*(middles - path[0])[:, :2].T).max()) + self.seen.map.cell)
+        near = self.predict(np.array([time]), region)
+        if not near:
+            return indices, middles
+        distance = Bodies([o.shape for o in near]).distance(middles, np.array([o.positions[0] for o in near]))
+        beyond = self._settings.standing_map.sigmas_beyond * self.placement.sigma_along
+        reach = 0.5 * math.sqrt(3.0) * self.seen.map.cell + beyond
+        is_open = (distance - np.array([o.growth[0] for o in near])[:, None] > reach).all(axis=0)
+        return indices[is_open], middles[is_open]
+
+    def first_hidden(self, path: Array, sensors: Array, heights: Array) -> int:
+        """See :class:`idc_controller.guidance.sight.Sight`."""
+        return self.seen.map.first_hidden(path, sensors, heights)
+
+    @property
+    def has_sight(self) -> bool:
+        """See :class:`idc_controller.guidance.sight.Sight`."""
+        return not self.seen.map.is_empty
+
+    @property
+    def lowest_seen(self) -> float:
+        """See :class:`idc_controller.guidance.sight.Sight`."""
+        sensor_range = self._view_range / self._settings.retention.in_view_share
+        return self.placement.free_height(sensor_range) + self._settings.standing_map.voxel
 
     def confirmed_tracks(self, time: float) -> list[TrackEstimate]:
         """Return the confirmed tracks that were detected, at ``time`` (s)."""

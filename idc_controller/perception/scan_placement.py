@@ -134,6 +134,22 @@ class ScanPlacement:
         scan.parts.append(points)
         scan.count += len(points)
 
+    @property
+    def sigma_along(self) -> float:
+        """Usual standard deviation of a return along its ray (m)."""
+        return math.hypot(self._sensors.range_noise, self._sensors.position)
+
+    def free_height(self, reach: float, position: float | None = None, attitude: float | None = None) -> float:
+        """Return the height above the ground (m) at which rays of a ``reach`` (m) end that return nothing.
+
+        By the standard deviations of a pose's ``position`` (m) and ``attitude`` (rad); None: the usual ones.
+        """
+        sensors = self._sensors
+        anywhere = sensors.position if position is None else position
+        turning = sensors.attitude if attitude is None else attitude
+        spread = math.hypot(sensors.range_noise, anywhere, turning * reach)
+        return self._rays.ground_height + _GROUND_SIGMAS * spread
+
     def end(self, end: ScanEnd, uav: int, time: float, now: float) -> None:
         """Add the end of a scan of UAV ``uav`` made at ``time``, that came at ``now`` (s)."""
         scan = self._scan(uav, end.stamp, time, now)
@@ -193,7 +209,7 @@ class ScanPlacement:
         self, uav: int, scan: _Waiting, points: Array, pose: tuple[Array, Array], sigmas: tuple[float, float]
     ) -> PlacedScan:
         """Return the scan with its returns ``points`` (n, 3) in the body frame, ``sigmas`` of the pose (m, rad)."""
-        pattern, rate, ground_height = self._rays
+        pattern, rate, _ = self._rays
         along, (anywhere, turning) = self._sensors.range_noise, sigmas
         place = np.concatenate(pose)
         directions = pattern.directions(scan_index(scan.stamp, rate))
@@ -204,6 +220,5 @@ class ScanPlacement:
         is_sure = scan.is_complete and not scan.is_spoilt and angle <= _OFF_RAY * pattern.spacing
         if is_sure and scan.max_range is not None:
             reach = scan.max_range
-            height = ground_height + _GROUND_SIGMAS * math.hypot(along, anywhere, turning * reach)
-            free = free_ends(directions, rays, place, reach, height)
+            free = free_ends(directions, rays, place, reach, self.free_height(reach, anywhere, turning))
         return PlacedScan(scan.time, place[:3], returns, along, math.hypot(anywhere, off), turning, free, uav)

@@ -210,11 +210,23 @@ class StandingMapSettings(SettingsTable):
         4, "", "of the rays without return, one of so many is followed where nothing stands in its direction", ge=1
     )
     bridged_gap: float = setting(1.0, "m", "between points that one body covers without what lies between", gt=0.0)
+    smallest_body: float = setting(
+        1.0,
+        "m",
+        "edge of a cube that every unknown obstacle holds: one that the formation must be able to stop before has been "
+        "missed with the probability false_free",
+        gt=0.0,
+    )
 
     @cached_property
     def free_passes(self) -> int:
         """Rays through a voxel from which on it counts as seen free: each of them may have been missed."""
         return max(math.ceil(math.log(self.false_free) / math.log(self.missed_share)), 1)
+
+    @cached_property
+    def sight_width(self) -> int:
+        """Voxels along the edge of the cells in which space is seen: a cube of the smallest body holds a whole one."""
+        return max(width for width in (1, 2, 4, 8) if width == 1 or 2.0 * width * self.voxel <= self.smallest_body)
 
     @cached_property
     def evidence_of_hit(self) -> float:

@@ -25,6 +25,7 @@ from idc_controller.perception.convex_pieces_kernels import nearest_owners
 from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.return_kernels import add_returns
 from idc_controller.perception.settings import StandingMapSettings
+from idc_controller.perception.sight_kernels import first_hidden, unseen_cells
 from idc_controller.perception.voxel_kernels import (
     BLOCKS,
     CHANGE,
@@ -128,6 +129,34 @@ class StandingMap:
         """Return whether the voxels with ``points`` (n, 3) were seen free and hold no point that was hit (n,)."""
         cells = self._cells_at(points)
         return np.asarray(cells == self.settings.free_passes)
+
+    def unseen(self, path: Array, body: Array, most: int) -> tuple[Indices, Array]:
+        """Return up to ``most`` cells on the way of a body along its ``path`` (P, 3) that were not seen free.
+
+        Of each the index of the last place before it (n,), and its middle (n, 3) (NED, m). ``body`` (4,): see
+        :func:`~idc_controller.perception.sight_kernels.unseen_cells`.
+        """
+        s, v, found = self.settings, self._store, np.empty((most, 4))
+        count = unseen_cells(
+            v.table, v.pages, v.cells, v.links, np.ascontiguousarray(path), body, s.voxel, s.sight_width,
+            s.free_passes, found,
+        )  # fmt: skip
+        return found[:count, 0].astype(np.int64), found[:count, 1:]
+
+    def first_hidden(self, path: Array, sensors: Array, heights: Array) -> int:
+        """See :func:`~idc_controller.perception.sight_kernels.first_hidden`."""
+        v, path = self._store, np.ascontiguousarray(path)
+        return int(first_hidden(v.table, v.pages, v.cells, path, sensors, heights, self.settings.voxel))
+
+    @property
+    def is_empty(self) -> bool:
+        """Return whether no scan has been added."""
+        return self._scan == 0
+
+    @property
+    def cell(self) -> float:
+        """Edge of the cells in which space is seen (m)."""
+        return self.settings.sight_width * self.settings.voxel
 
     def is_standing(self, points: Array, since: float = math.inf) -> Mask:
         """Return whether the voxels with ``points`` (n, 3) hold what stands, and was first hit before ``since`` (s)."""
