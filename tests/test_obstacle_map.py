@@ -78,7 +78,7 @@ def test_what_stands_is_covered_and_never_moves(bodies, path, seed):
         if sum(len(look.hits) for look in seen):
             beyond = uncovered(m, second + 1.0, seen)
             assert beyond.max() < SIGMAS
-            assert np.mean(beyond > 1.0) < 2e-3
+            assert np.sum(beyond > 1.0) <= max(2, 2e-3 * len(beyond))
     assert moved == set()
 
 

@@ -1,11 +1,13 @@
 """The kernels of the standing map agree with plain references."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.stats import chi2, norm
 
+from idc_controller.perception.carving_kernels import followed_rays
 from idc_controller.perception.normal_kernels import least_direction
 from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.settings import StandingMapSettings
@@ -36,7 +38,7 @@ def passed_voxels(origin, end):
 
 def test_voxels_are_seen_free_that_enough_rays_pass():
     rng = np.random.default_rng(1)
-    standing, counts = StandingMap(), {}
+    standing, counts = StandingMap(replace(SETTINGS, exploring_stride=1)), {}
     for _ in range(20):
         origin, ends = rng.uniform(-3.0, 3.0, 3), rng.uniform(-9.0, 9.0, (60, 3))
         standing.add(scan_of(free=ends, origin=origin))
@@ -47,6 +49,22 @@ def test_voxels_are_seen_free_that_enough_rays_pass():
     expected = [counts.get(tuple(v), 0) >= SETTINGS.free_passes for v in np.floor(middles / SIZE).astype(int).tolist()]
     assert sum(expected) > 1000
     np.testing.assert_array_equal(standing.is_seen_free(middles), expected)
+
+
+def test_rays_without_return_are_followed_where_something_stands_and_one_of_some_elsewhere():
+    standing, rng = StandingMap(), np.random.default_rng(1)
+    standing.add(scan_of(returns=[(5.0, 0.0, 0.0), (0.0, -5.0, -1.0)]))
+    ends = 9.0 * rng.normal(size=(400, 3))
+    arrays = standing._store
+    for first in range(4):
+        followed = followed_rays(arrays.elements, arrays.counts, np.zeros(3), ends, first, 4)
+        kept = (ends[:, None] == followed[None]).all(axis=2).any(axis=1)
+        assert kept[first::4].all()
+        unit = ends / np.linalg.norm(ends, axis=1)[:, None]
+        nearest = np.max(unit @ (np.array([[5.0, 0.0, 0.0], [0.0, -5.0, -1.0]]) / [[5.0], [26.0**0.5]]).T, axis=1)
+        # Closer than a cell of directions.
+        assert kept[nearest > np.cos(0.08)].all() and (nearest > np.cos(0.08)).any()
+        assert not kept[(nearest < np.cos(0.6)) & (np.arange(400) % 4 != first)].any()
 
 
 def test_return_carves_up_to_its_noise_and_occupies_its_voxel():
