@@ -149,6 +149,18 @@ def test_standing_obstacle_that_starts_is_found(shape, seed):
     assert next(t for t, count in moving if t > start and count) < start + 2.5
 
 
+@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("shape", SHAPES)
+def test_mover_along_the_line_of_sight_is_found_though_it_was_never_seen_elsewhere(shape, seed):
+    """All of its way was seen occupied before it was seen free: it is found by being seen behind where it was."""
+    place = lambda t: np.array([6.0 - 1.5 * np.cos(t + BEGIN), 0.0, -6.0])  # noqa: E731
+    moving = []
+    m = watch(place, SHAPES[shape], seed, 8.0, lambda t, m: moving.append(len(moving_tracks(m))), appears=False)
+    # Of a period of 6.3 s, half moves away.
+    assert max(moving) > 0 and min(moving[40:]) > 0
+    assert m.found < 3.0
+
+
 def test_what_stands_beside_the_way_of_a_mover_stays_covered():
     house = wall((7.4, 0.0, -6.0), (0.3, 8.0, 6.0), 0.0, "house")
     m = watch(KINDS["constant velocity, 1.5 m/s"], SHAPES["sphere"], 0, 7.0, beside=(house,)).obstacle_map
