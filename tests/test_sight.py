@@ -174,7 +174,7 @@ def test_unseen_cells_are_those_of_the_plain_formula(seed):
     found = np.empty((10_000, 4))
     plain = unseen_cells.py_func(
         arrays.table, arrays.pages, arrays.cells, arrays.links, path, body, settings.voxel, settings.sight_width,
-        settings.free_passes, found,
+        settings.sight_rays, found,
     )  # fmt: skip
     assert plain == len(before) > 0
     np.testing.assert_array_equal(found[:plain, 0], before)

@@ -213,8 +213,8 @@ class StandingMapSettings(SettingsTable):
     smallest_body: float = setting(
         1.0,
         "m",
-        "edge of a cube that every unknown obstacle holds: one that the formation must be able to stop before has been "
-        "missed with the probability false_free",
+        "edge of the smallest unknown obstacle before which the formation must be able to stop: space is seen free in "
+        "cells of that edge, by so many rays that all of them miss it with the probability false_free",
         gt=0.0,
     )
 
@@ -225,8 +225,18 @@ class StandingMapSettings(SettingsTable):
 
     @cached_property
     def sight_width(self) -> int:
-        """Voxels along the edge of the cells in which space is seen: a cube of the smallest body holds a whole one."""
-        return max(width for width in (1, 2, 4, 8) if width == 1 or 2.0 * width * self.voxel <= self.smallest_body)
+        """Voxels along the edge of the cells in which space is seen free: a body of the smallest size fills one."""
+        return max(width for width in (1, 2, 4, 8) if width == 1 or width * self.voxel <= self.smallest_body)
+
+    @cached_property
+    def sight_rays(self) -> int:
+        """Followed rays through a cell from which on it was seen free.
+
+        Each stands for the rays that are not followed; a body as large as the cell, anywhere about it, is met by about
+        as many as pass the cell (Poisson).
+        """
+        rays = -math.log(self.false_free) / (self.exploring_stride * (1.0 - self.missed_share))
+        return max(math.ceil(rays), 1)
 
     @cached_property
     def evidence_of_hit(self) -> float:

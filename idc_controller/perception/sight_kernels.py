@@ -9,34 +9,25 @@ from idc_controller.perception.voxel_kernels import HELD, PASSED, cell_index, fi
 
 @inlined
 def _is_seen(
-    table: Indices,
-    pages: Links,
-    cells: Cells,
-    links: Links,
-    x: int,
-    y: int,
-    z: int,
-    width: int,
-    free_passes: int,
-    rays: int,
+    table: Indices, pages: Links, cells: Cells, links: Links, x: int, y: int, z: int, width: int, rays: int
 ) -> bool:
-    """Return whether enough rays have passed a cube of voxels from (x, y, z) on, or there are points at it.
+    """Return whether ``rays`` have passed a cube of voxels from (x, y, z) on, or there are points at it.
 
-    A ray passes ``3 width - 2`` voxels of the cube at most: ``rays`` passes are those of as many as one voxel needs.
+    A ray passes ``3 width - 2`` voxels of the cube at most; those through one voxel are as many rays.
     """
     block = find_block(table, pages, x, y, z)
     if block < 0:
         return False
-    passed = 0
+    passes = 0
     for i in range(x, x + width):
         for j in range(y, y + width):
             for k in range(z, z + width):
                 cell = cell_index(i, j, k)
                 value = cells[block, cell]
-                if value & HELD or links[block, cell] & 255 or value & PASSED >= free_passes:
+                if value & HELD or links[block, cell] & 255 or value & PASSED >= rays:
                     return True
-                passed += value & PASSED
-    return passed >= rays
+                passes += value & PASSED
+    return passes > (rays - 1) * (3 * width - 2)
 
 
 @kernel(
@@ -52,7 +43,7 @@ def unseen_cells(
     body: Array,
     size: float,
     width: int,
-    free_passes: int,
+    rays: int,
     found: Array,
 ) -> int:
     """Return how many cells of a body's way from the first place of its path on were not seen free.
@@ -67,11 +58,10 @@ def unseen_cells(
             is seen (4,) (m).
         size: edge of a voxel (m).
         width: voxels along the edge of a cell, a divisor of a block's.
-        free_passes: rays through a voxel from which on it was seen free.
+        rays: followed rays through a cell from which on it was seen free.
         found: to be written to, at most so many (M, 4): last place before, by its index, and middle of the cell.
     """
     edge = width * size
-    rays = (free_passes - 1) * (3 * width - 2) + 1
     radius, up, down, height = body[0], body[1], body[2], body[3]
     square = radius * radius
     before, count = 0, 0
@@ -97,9 +87,7 @@ def unseen_cells(
                         continue
                     if was_first and first_top <= place <= first_bottom:
                         continue
-                    if not _is_seen(
-                        table, pages, cells, links, i * width, j * width, k * width, width, free_passes, rays
-                    ):
+                    if not _is_seen(table, pages, cells, links, i * width, j * width, k * width, width, rays):
                         if count == found.shape[0]:
                             return count
                         found[count, 0], found[count, 1], found[count, 2], found[count, 3] = before, north, east, place

@@ -139,7 +139,7 @@ class StandingMap:
         s, v, found = self.settings, self._store, np.empty((most, 4))
         count = unseen_cells(
             v.table, v.pages, v.cells, v.links, np.ascontiguousarray(path), body, s.voxel, s.sight_width,
-            s.free_passes, found,
+            s.sight_rays, found,
         )  # fmt: skip
         return found[:count, 0].astype(np.int64), found[:count, 1:]
 
