@@ -166,7 +166,7 @@ def seen_about(settings, rng, rays=4000, hit=None):
 def test_unseen_cells_are_those_of_the_plain_formula(seed):
     rng = np.random.default_rng(seed)
     settings = StandingMapSettings()
-    seen = seen_about(settings, rng, hit=rng.uniform(2.0, 3.0, (5, 3)))
+    seen = seen_about(settings, rng, rays=150, hit=rng.uniform(2.0, 3.0, (5, 3)))
     path = np.linspace([0.0, 0.0, -1.0], [4.5, 1.0, -2.0], 30)
     body = np.array([1.2, 1.0, 0.8, 0.4])
     before, middles = seen.unseen(path, body, 10_000)
