@@ -176,3 +176,9 @@ def test_integer_four_is_not_sent_as_the_float_four() -> None:
 def test_parameters_that_cannot_be_sent_are_refused(value: float, kind: int) -> None:
     with pytest.raises(ValueError, match=r"parameter|float"):
         px4.parameter_to_wire(value, kind)
+
+
+@pytest.mark.parametrize("kind", [mavlink.MAV_PARAM_TYPE_REAL64, mavlink.MAV_PARAM_TYPE_INT64, 0, 77])
+def test_parameters_of_a_type_that_is_not_used_are_not_read(kind: int) -> None:
+    with pytest.raises(ValueError, match=f"parameter type {kind} is not used"):
+        px4.parameter_from_wire(1.0, kind)
