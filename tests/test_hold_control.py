@@ -1,6 +1,7 @@
 """HOLD and LAND: attitude and thrust that follow from the plan, from what is measured, and from the limits."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -39,8 +40,9 @@ def bounded(vector, limit):
 class PlainHold:
     """The force of a hold by vectors: PID horizontally, PD vertically, each part of it bounded."""
 
-    def __init__(self, plan):
-        self.plan, self.integral, self.last, self.stands_at = plan, np.zeros(2), plan.start, None
+    def __init__(self, plan, integral_max):
+        self.plan, self.integral_max = plan, integral_max
+        self.integral, self.last, self.stands_at = np.zeros(2), plan.start, None
 
     def force(self, sample, now, supported):
         position, velocity = np.array(sample.position), np.array(sample.velocity)
@@ -53,7 +55,7 @@ class PlainHold:
         step = min(max(now - self.last, 0.0), GAINS.step_max)
         self.last = now
         error, drift = wanted[0] - position, wanted[1] - velocity
-        integral = bounded(self.integral + GAINS.horizontal_ki * step * error[:2], GAINS.integral_max)
+        integral = bounded(self.integral + GAINS.horizontal_ki * step * error[:2], self.integral_max)
         if not supported:
             self.integral = integral
         level = wanted[2][:2] + GAINS.horizontal_kp * error[:2] + GAINS.horizontal_kd * drift[:2]
@@ -64,12 +66,13 @@ class PlainHold:
 
 
 @settings(deadline=None, derandomize=True, max_examples=30)
-@given(seed=st.integers(0, 10**6), spread=st.sampled_from([0.1, 1.0, 30.0]))
-def test_force_follows_from_plan_and_measurement(seed, spread):
+@given(seed=st.integers(0, 10**6), spread=st.sampled_from([0.1, 1.0, 30.0]), integral_max=st.sampled_from([0.02, 2.5]))
+def test_force_follows_from_plan_and_measurement(seed, spread, integral_max):
     random = np.random.default_rng(seed)
     descent = () if random.random() < 0.5 else (1.5, 0.6, 0.8)
     plan = HoldPlan.to_rest(0.5, HERE, (1.5, -1.0, 0.4), 0.4, BrakingSettings(), *descent)
-    controller, plain = HoldController(plan, HOVER, LEAST, G, GAINS), PlainHold(plan)
+    gains = replace(GAINS, integral_max=integral_max)
+    controller, plain = HoldController(plan, HOVER, LEAST, G, gains), PlainHold(plan, integral_max)
     now = 0.4
     for _ in range(40):
         sample = measured(np.array(plan.at(now).position) + spread * random.normal(size=3), random.normal(size=3))
