@@ -20,7 +20,7 @@ BEAT = packed(mavlink.MAVLink_heartbeat_message(2, 12, 0, 0, 3, 3))
 
 
 def sample(stamp=0):
-    """The messages of one sample: the attitude with its ``stamp`` (ms), the landed state, for all others a heartbeat."""
+    """The messages of one sample: attitude with its ``stamp`` (ms), landed state, else a heartbeat."""
     attitude = packed(mavlink.MAVLink_attitude_quaternion_message(stamp, 1, 0, 0, 0, 0, 0, 0))
     of_kind = {ATTITUDE: attitude, STATE: packed(mavlink.MAVLink_extended_sys_state_message(0, 1))}
     return SimpleNamespace(messages=lambda key: of_kind.get(key[1], BEAT))
