@@ -1,5 +1,6 @@
 """Noise adaptation: sensors that are noisier, forces that change faster than assumed."""
 
+from itertools import count
 from types import SimpleNamespace
 
 import numpy as np
@@ -52,6 +53,56 @@ def test_scales_return_to_one_after_disturbance():
     pushed, noisy = random.standard_normal((200, 50)) + 1.0, 5.0 * random.standard_normal((100, 50))
     adaptation = adapted([*pushed, *noisy, *calm])
     assert (adaptation.measurement_scale, adaptation.level) == (1.0, 0)
+
+
+def test_level_stays_for_the_dwell_between_two_changes_up_and_down():
+    s, adaptation = NoiseAdaptationSettings(), NoiseAdaptation(3)
+    levels, rows = [], np.ones(50, dtype=bool)
+    for k in range(40 * (s.dwell + 1)):
+        # Innovations that keep pointing the same way, then ones that turn round each time.
+        same_way = k < 20 * (s.dwell + 1)
+        normalised = np.ones(50) * (1.0 if same_way else (-1.0) ** k)
+        adaptation.learn(0.04 * k, KEYS, normalised, np.ones(10), rows, PAYLOAD_ROWS)
+        levels.append(adaptation.level)
+        assert adaptation.process_scale == s.process_step**adaptation.level
+        assert adaptation.is_at_limit == (adaptation.level == s.process_levels)
+    changes = np.flatnonzero(np.diff(levels))
+    assert np.diff(levels)[changes].tolist() == [1] * s.process_levels + [-1] * s.process_levels
+    apart = np.diff(changes)
+    assert set(apart[: s.process_levels - 1]) == set(apart[s.process_levels :]) == {s.dwell + 1}
+
+
+@pytest.mark.parametrize(("share", "learns"), [(0.99, True), (1.01, False)])
+def test_only_updates_close_to_one_another_are_correlated(share, learns):
+    s, adaptation, rows = NoiseAdaptationSettings(), NoiseAdaptation(3), np.ones(50, dtype=bool)
+    for k in range(10 * s.dwell):
+        adaptation.learn(share * s.gap * k, KEYS, np.ones(50), np.ones(10), rows, PAYLOAD_ROWS)
+    assert (adaptation.level > 0) is learns
+    assert adaptation.measurement_scale == 1.0
+
+
+def test_scale_grows_while_the_median_is_beyond_its_limit_and_decays_below_one():
+    s, adaptation, rows = NoiseAdaptationSettings(), NoiseAdaptation(3), np.ones(50, dtype=bool)
+    times = count(0.0, 1.0)  # s, too far apart for a correlation
+
+    def learned(median, odd=False):
+        """Scale after an update of ten measurements, or nine, whose median is this; their innovations are new."""
+        keys = KEYS[:-1] if odd else KEYS
+        spread = np.linspace(-0.5, 0.5, len(keys))
+        adaptation.learn(next(times), keys, np.ones(50), median + spread, rows, rows)
+        return adaptation.measurement_scale
+
+    assert learned(0.99 * s.median_limit) == 1.0 and learned(0.99 * s.median_limit, odd=True) == 1.0
+    assert learned(1.01 * s.median_limit) == pytest.approx(s.growth)
+    assert learned(1.01 * s.median_limit, odd=True) == pytest.approx(s.growth**2)
+    assert learned(1.01) == pytest.approx(s.growth**2)
+    assert learned(0.99) == pytest.approx(s.growth**2 * s.decay)
+    for _ in range(100):
+        learned(9.0)
+    assert adaptation.measurement_scale == s.measurement_scale_max
+    for _ in range(1000):
+        learned(0.5)
+    assert adaptation.measurement_scale == 1.0
 
 
 SOURCES = (PAYLOAD, 0, 1, 2, 3)
