@@ -1,4 +1,4 @@
-"""Streams of a vehicle to one peer: when each message is due, what is repeated, and what is never sent twice."""
+"""Streams of a vehicle to its peers: when each message is due, what is repeated or never sent twice, and to whom."""
 
 import math
 from types import SimpleNamespace
@@ -11,6 +11,7 @@ from gcs.mavlink import px4
 from gcs.mavlink.codec import Codec
 from gcs.mavlink.layout import packed
 from vehicle_sim.mavlink.peer import Peer, Stream, default_intervals
+from vehicle_sim.mavlink.peers import Peers
 
 OWN, UNIT = px4.AUTOPILOT_COMPONENT, px4.PAYLOAD_UNIT_COMPONENT
 HEARTBEAT, ATTITUDE = mavlink.MAVLINK_MSG_ID_HEARTBEAT, mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION
@@ -143,3 +144,82 @@ def test_components_have_sequence_numbers_of_their_own():
                 numbers[received.component].append(received.sequence)
     for found in numbers.values():
         assert len(found) > 3 and found == list(range(len(found)))
+
+
+LIMITED = VehicleLinkSettings(peers_max=2, peer_timeout=10.0)
+GROUND, FIRST, SECOND, THIRD = (("10.0.0.1", port) for port in range(4))
+
+
+class Builders:
+    """What the peers send of: of all kinds a heartbeat."""
+
+    def __init__(self):
+        self.builders = dict.fromkeys(default_intervals(StreamIntervals(), 0.02), lambda now: BEAT)
+
+
+def peers(ground=None):
+    intervals = default_intervals(StreamIntervals(), 0.02)
+    return Peers(lambda address: Peer(address, 3, intervals, LIMITED), ground, LIMITED)
+
+
+def addressees(served, now):
+    return {address for _, address in served.datagrams_to_send(Builders(), now)}
+
+
+def test_vehicle_without_peers_is_never_due_and_one_that_offers_itself_at_once():
+    assert peers().next_due == math.inf and addressees(peers(), 0.0) == set()
+    offering = peers(GROUND)
+    assert offering.next_due == -math.inf and addressees(offering, 0.0) == {GROUND}
+    assert offering.next_due == pytest.approx(1.0) and addressees(offering, 0.5) == set()
+
+
+@pytest.mark.parametrize(("ground", "number"), [(None, 2), (GROUND, 2)])
+def test_number_of_peers_is_bounded_beside_the_ground(ground, number):
+    served = peers(ground)
+    found = [served.receive_from(address, 0.0) is not None for address in (FIRST, SECOND, THIRD)]
+    assert found == [True] * number + [False] * (3 - number)
+    assert served.receive_from(FIRST, 0.0) is served.receive_from(FIRST, 1.0)
+    if ground is not None:
+        assert served.receive_from(ground, 0.0) is not None
+    assert len(list(served)) == number + (ground is not None)
+
+
+@pytest.mark.parametrize(("age", "room"), [(9.9, False), (10.1, True)])
+def test_silent_peer_makes_room_after_the_timeout(age, room):
+    served = peers()
+    served.receive_from(FIRST, 0.0)
+    served.receive_from(SECOND, age)
+    assert (served.receive_from(THIRD, age) is not None) is room
+    assert (FIRST in {peer.address for peer in served}) is not room
+
+
+def test_streams_of_a_silent_peer_stop_and_the_ground_is_offered_heartbeats_again():
+    served = peers(GROUND)
+    for address in (GROUND, FIRST, SECOND):
+        assert served.receive_from(address, 0.0).is_streaming
+    served.receive_from(SECOND, 5.0)
+    assert addressees(served, 9.9) == {GROUND, FIRST, SECOND}
+    assert addressees(served, 10.1) == {GROUND, SECOND}
+    assert [peer.is_streaming for peer in served] == [False, True]
+    assert addressees(served, 10.3) == {SECOND} and addressees(served, 11.0) == {GROUND, SECOND}
+    assert served.receive_from(GROUND, 11.0).is_streaming
+
+
+def test_texts_go_to_all_that_get_the_streams_and_changed_messages_to_all():
+    served = peers(GROUND)
+    served.receive_from(FIRST, 0.0)
+    addressees(served, 0.0)
+    served.send_statustext("landed")
+    assert addressees(served, 0.001) == {FIRST}
+    served.repeat(HEARTBEAT)
+    assert served.next_due == -math.inf and addressees(served, 0.002) == {GROUND, FIRST}
+
+
+def test_message_is_built_once_for_all_peers():
+    served, built = peers(), []
+    for address in (FIRST, SECOND):
+        served.receive_from(address, 0.0)
+    telemetry = Builders()
+    telemetry.builders = {key: lambda now, key=key: built.append((key, now)) or BEAT for key in telemetry.builders}
+    served.datagrams_to_send(telemetry, 7.0)
+    assert sorted(built) == sorted((key, 7.0) for key in telemetry.builders)
