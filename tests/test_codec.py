@@ -5,6 +5,7 @@ import pymavlink.dialects.v20.common as mavlink
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from pymavlink import mavutil
 
 from gcs.mavlink import px4
 from gcs.mavlink.codec import BAD_FRAMES_MAX, DATAGRAM_LIMIT, Codec, gather
@@ -150,6 +151,23 @@ def test_custom_modes() -> None:
     assert px4.mode_name(px4.MODE_HOLD) == "AUTO.LOITER"
     assert px4.mode_name(px4.MODE_OFFBOARD) == "OFFBOARD"
     assert px4.mode_name(99 << 16) == "mode 99.0"
+
+
+def test_modes_have_the_numbers_by_which_pymavlink_tells_them() -> None:
+    names = {
+        **{mode.name: (int(mode), 0) for mode in px4.MainMode},
+        **{mode.name: (4, int(mode)) for mode in px4.AutoMode},
+    }
+    other_names = {"FOLLOWME": "FOLLOW_TARGET"}
+    compared = 0
+    for name, (_, main, sub) in mavutil.px4_map.items():
+        if (own := other_names.get(name, name)) in names:
+            assert names[own] == (main, sub), name
+            assert px4.encode_custom_mode(main, sub) == main << 16 | sub << 24
+            compared += 1
+    assert compared == 12
+    # It does not know these two, which PX4 has had since.
+    assert (px4.AutoMode.READY, px4.AutoMode.PRECLAND) == (1, 9)
 
 
 @given(st.integers(-4_000_000, 2**31 - 1).filter(lambda i: not 0x7F800001 <= i <= 0x7FBFFFFF))
