@@ -65,7 +65,7 @@ class PlainHold:
         return carried / G * np.array([*level, up - G])
 
 
-@settings(deadline=None, derandomize=True, max_examples=30)
+@settings(deadline=None, derandomize=True, max_examples=20)
 @given(seed=st.integers(0, 10**6), spread=st.sampled_from([0.1, 1.0, 30.0]), integral_max=st.sampled_from([0.02, 2.5]))
 def test_force_follows_from_plan_and_measurement(seed, spread, integral_max):
     random = np.random.default_rng(seed)

@@ -381,7 +381,7 @@ def plans(avoided, mission, steps):
 
 def test_lag_is_how_far_the_trajectory_is_behind_its_reference_along_the_path():
     avoided, lags = avoidance([sphere("s", (5.0, 0.3, -5.0))]), []
-    for time, reference, before, _ in plans(avoided, straight(16.0), 100):
+    for time, reference, before, _ in plans(avoided, straight(16.0), 80):
         at = np.array([time])
         wanted = reference.derivatives(at)[:, 0]
         apart, speed = before.derivatives(at)[0, 0] - wanted[0], np.linalg.norm(wanted[1])
@@ -394,7 +394,7 @@ def test_lag_is_how_far_the_trajectory_is_behind_its_reference_along_the_path():
 def test_lag_of_a_team_that_is_to_rest_is_its_horizontal_distance_from_there():
     avoided, lags = avoidance([sphere("m", (4.0, 0.5, -5.0), (-1.0, 0.0, 0.0))]), []
     rest = RestTrajectory([0.0, 0.0, -5.0], 0.0)
-    for time, _, before, _ in plans(avoided, rest, 80):
+    for time, _, before, _ in plans(avoided, rest, 60):
         lags.append(avoided.report.lag)
         assert lags[-1] == pytest.approx(np.hypot(*before.derivatives(np.array([time]))[0, 0, :2]), abs=1e-9)
     assert max(lags) > 0.3
