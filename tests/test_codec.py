@@ -5,6 +5,7 @@ import pymavlink.dialects.v20.common as mavlink
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from pymavlink import mavutil
 
 from gcs.mavlink import px4
 from gcs.mavlink.codec import BAD_FRAMES_MAX, DATAGRAM_LIMIT, Codec, gather
@@ -152,6 +153,23 @@ def test_custom_modes() -> None:
     assert px4.mode_name(99 << 16) == "mode 99.0"
 
 
+def test_modes_have_the_numbers_by_which_pymavlink_tells_them() -> None:
+    names = {
+        **{mode.name: (int(mode), 0) for mode in px4.MainMode},
+        **{mode.name: (4, int(mode)) for mode in px4.AutoMode},
+    }
+    other_names = {"FOLLOWME": "FOLLOW_TARGET"}
+    compared = 0
+    for name, (_, main, sub) in mavutil.px4_map.items():
+        if (own := other_names.get(name, name)) in names:
+            assert names[own] == (main, sub), name
+            assert px4.encode_custom_mode(main, sub) == main << 16 | sub << 24
+            compared += 1
+    assert compared == 12
+    # It does not know these two, which PX4 has had since.
+    assert (px4.AutoMode.READY, px4.AutoMode.PRECLAND) == (1, 9)
+
+
 @given(st.integers(-4_000_000, 2**31 - 1).filter(lambda i: not 0x7F800001 <= i <= 0x7FBFFFFF))
 def test_integer_parameters_are_encoded_byte_wise(value: int) -> None:
     kind = mavlink.MAV_PARAM_TYPE_INT32
@@ -176,3 +194,9 @@ def test_integer_four_is_not_sent_as_the_float_four() -> None:
 def test_parameters_that_cannot_be_sent_are_refused(value: float, kind: int) -> None:
     with pytest.raises(ValueError, match=r"parameter|float"):
         px4.parameter_to_wire(value, kind)
+
+
+@pytest.mark.parametrize("kind", [mavlink.MAV_PARAM_TYPE_REAL64, mavlink.MAV_PARAM_TYPE_INT64, 0, 77])
+def test_parameters_of_a_type_that_is_not_used_are_not_read(kind: int) -> None:
+    with pytest.raises(ValueError, match=f"parameter type {kind} is not used"):
+        px4.parameter_from_wire(1.0, kind)

@@ -9,7 +9,7 @@ from gcs.config import SystemConfig
 from gcs.config.flight_settings import DEFAULTS
 from gcs.flight import stack
 from gcs.flight.alarms import AlarmLog
-from gcs.flight.detectors import MonitorAlarm, detectors
+from gcs.flight.detectors import LinkTiming, MonitorAlarm, detectors
 from gcs.flight.monitor_step import MonitorStep
 from gcs.mavlink import px4
 from gcs.mavlink.id_check import SystemIdCheck
@@ -143,3 +143,69 @@ def test_payload_measurements_that_are_no_numbers_raise_an_alarm_of_the_payload(
     for _ in range(DEFAULTS.monitor.event_count):
         monitored.links[1].statistics.add_not_finite(px4.PAYLOAD_UNIT_COMPONENT)
     assert monitored.raised(steps=1) == [("payload", MonitorAlarm.VALUES_NOT_FINITE)]
+
+
+PERIOD = 0.05
+LATENCY, JITTER = DEFAULTS.monitor.latency_periods * PERIOD, DEFAULTS.monitor.jitter_periods * PERIOD
+CLOCK = DEFAULTS.monitor.clock_error
+
+
+def timing_alarms(*clocks, spacing=1.0, in_air=True):
+    """Alarms of the second of two links, whose latency, jitter and offset (s) are ``clocks`` in turn."""
+    log, good = AlarmLog(), SimpleNamespace(delay=0.0, spread=0.0, offset=-3.0)
+    detector = LinkTiming(DEFAULTS.monitor, PERIOD, 2)
+    for k, (delay, spread, offset) in enumerate(clocks):
+        links = [SimpleNamespace(clock=c) for c in (good, SimpleNamespace(delay=delay, spread=spread, offset=offset))]
+        flight = SimpleNamespace(system=SimpleNamespace(team=SimpleNamespace(links=links)))
+        now = 100.0 + spacing * k
+        detector(MonitorStep(now, now, flight, None, log, None, in_air, NAMES, clear=in_air, steady=True))
+    assert {alarm.source for alarm in log.alarms} <= {"vehicle 2"}
+    return [(alarm.code, alarm.text) for alarm in log.alarms]
+
+
+def test_latency_and_jitter_of_a_link_beyond_their_limits_raise_an_alarm():
+    latency = (MonitorAlarm.LINK_LATENCY, "link latency is 30 ms (limit 25 ms)")
+    jitter = (MonitorAlarm.LINK_JITTER, "link latency varies by 20 ms (limit 12.5 ms)")
+    assert timing_alarms((0.99 * LATENCY, 0.99 * JITTER, 5.0)) == []
+    assert timing_alarms((0.030, 0.0, 5.0)) == [latency]
+    assert timing_alarms((0.0, 0.020, 5.0)) == [jitter]
+    assert timing_alarms((0.030, 0.020, 5.0)) == [latency]  # which explains the jitter
+    assert timing_alarms((0.030, 0.0, 5.0), in_air=False) == []
+    assert [code for code, _ in timing_alarms((1.01 * LATENCY, 0.0, 5.0))] == [MonitorAlarm.LINK_LATENCY]
+    assert [code for code, _ in timing_alarms((0.0, 1.01 * JITTER, 5.0))] == [MonitorAlarm.LINK_JITTER]
+
+
+def test_clock_that_moves_beyond_its_limit_within_the_window_raises_an_alarm():
+    window = DEFAULTS.monitor.clock_window
+    moved = [(MonitorAlarm.CLOCK_ERROR, f"clock moved by 20 ms in {window:g} s")]
+    for sign in (1.0, -1.0):
+        assert timing_alarms((0.0, 0.0, 7.0), (0.0, 0.0, 7.0 + 0.99 * sign * CLOCK)) == []
+        assert timing_alarms((0.0, 0.0, 7.0), (0.0, 0.0, 7.0 + sign * 0.020)) == moved
+    apart = [(0.0, 0.0, 7.0), (0.0, 0.0, 7.0), (0.0, 0.0, 7.020)]
+    assert timing_alarms(*apart, spacing=0.99 * window) == moved
+    # A slow drift is none.
+    drift = [(0.0, 0.0, 7.0 + 0.006 * k) for k in range(5)]
+    assert timing_alarms(*drift, spacing=0.9 * window) == []
+    # A link whose latency varies tells no time.
+    assert [code for code, _ in timing_alarms((0.0, 0.02, 7.0), (0.0, 0.02, 7.5))] == [MonitorAlarm.LINK_JITTER]
+
+
+def test_telemetry_of_a_vehicle_that_paused_between_two_steps_raises_an_alarm_in_the_air():
+    timeout = DEFAULTS.monitor.missed_samples / SYSTEM.rates.telemetry
+
+    def alarms(pause, in_air=True):
+        """Of vehicle 2, whose telemetry pauses (s) and is back by the next step."""
+        links = [SimpleNamespace(complete_telemetry_received_at=10.0, payload_received_at=10.0) for _ in range(N)]
+        monitored, log = Monitored(), AlarmLog()
+        flight = SimpleNamespace(system=SimpleNamespace(team=SimpleNamespace(links=links)))
+        for now in (10.0, 10.0 + pause):
+            for i, link in enumerate(links):
+                link.complete_telemetry_received_at = now if i == 1 else max(now, 10.0 + pause)
+                link.payload_received_at = 10.0 + pause
+            step = MonitorStep(now, now, flight, None, log, None, in_air, NAMES, clear=in_air, steady=True)
+            monitored.detectors[0](step)
+        return [(alarm.source, alarm.code, alarm.text) for alarm in log.alarms]
+
+    assert alarms(0.99 * timeout) == []
+    assert alarms(2.0) == [("vehicle 2", MonitorAlarm.TELEMETRY_TIMEOUT, "no telemetry for 2.00 s")]
+    assert alarms(2.0, in_air=False) == []

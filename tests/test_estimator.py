@@ -124,6 +124,45 @@ def test_held_payload_keeps_its_position_when_its_unit_times_out():
     assert 1.5 * sigma < without_sigma
 
 
+def test_estimate_is_drawn_to_where_the_payload_is_held():
+    """In place and heading, against what the links say of it."""
+
+    def held(aside, yaw):
+        rng, estimator = np.random.default_rng(4), started()
+        for k in range(1, 60):
+            time = k * INTERVAL
+            for m in all_samples(time, rng):
+                if m.source != PAYLOAD:
+                    estimator.add(m)
+            estimator.hold_payload(time, HOVER + np.array([0.0, aside, 0.0]), yaw)
+            estimate = estimator.estimate(time, REFERENCE)
+        return estimate.x[:12]
+
+    straight, beside, turned = held(0.0, 0.0), held(0.02, 0.0), held(0.0, 0.02)
+    assert 0.1 < (beside - straight)[1] / 0.02 < 1.0 and 0.25 < (turned - straight)[8] / 0.02 < 1.0
+    assert abs((beside - straight)[0]) < 1e-4 and abs((turned - straight)[1]) < 1e-4
+
+
+@pytest.mark.parametrize(("share", "held"), [(0.95, False), (1.05, True)])
+def test_payload_is_held_once_its_unit_is_silent_for_the_timeout(share, held):
+    silent = share * EstimatorSettings().payload_timeout
+    estimates = []
+    for hold in (False, True):
+        estimator = started()
+        for moment in samples_of(1.0):
+            for m in moment:
+                estimator.add(m)
+        last = moment[0].time
+        estimator.estimate(last, REFERENCE)
+        for m in all_samples(last + silent, np.random.default_rng(2)):
+            if m.source != PAYLOAD:
+                estimator.add(m)
+        if hold:
+            estimator.hold_payload(last + silent, HOVER + 0.02, 0.0)
+        estimates.append(estimator.estimate(last + silent, REFERENCE).x)
+    assert np.array_equal(*estimates) is not held
+
+
 def test_held_position_is_ignored_when_payload_unit_is_received():
     estimator = started()
     for moment in samples_of(1.0):

@@ -5,7 +5,6 @@ import json
 import os
 import signal
 import socket
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -292,7 +291,7 @@ def test_touchdown_is_not_detected_high_above_the_ground(tmp_path):
                 found = true(*arguments)
                 x = found.x.copy()
                 x[2], x[5] = -height, 0.0
-                return replace(found, x=x)
+                return found._replace(x=x)
 
             return estimate
 

@@ -14,7 +14,7 @@ from gcs.drivers.simulator import Simulator
 from gcs.errors import GcsError
 
 PROGRAM = """\
-import pathlib, signal, sys, time
+import pathlib, signal, sys
 kind, folder = sys.argv[-2:]
 print(*sys.argv[1:], flush=True)
 print("a warning", file=sys.stderr)
@@ -28,8 +28,7 @@ if kind == "deaf":
     signal.signal(signal.SIGTERM, signal.SIG_IGN)
 sys.stdin.read()
 if kind in ("deaf", "flies on"):
-    time.sleep(60.0)
-time.sleep(0.1)
+    signal.pause()
 (pathlib.Path(folder) / "landed").write_text("all")
 """
 

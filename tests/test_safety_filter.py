@@ -363,3 +363,57 @@ def test_number_of_qps_reported_is_that_of_those_solved(monkeypatch):
         assert avoided.report.qp_count == expected, time
         counts.append(expected)
     assert len({*counts}) >= 3
+
+
+def plans(avoided, mission, steps):
+    """Reference, trajectory before and trajectory from then on, at every new plan; the payload is on the trajectory."""
+    before = None
+    for k in range(steps):
+        time = STEP * k
+        place = mission.position(time) if before is None else before.derivatives(np.array([time]))[0, 0]
+        reference = avoided.guidance.reference(time, mission)
+        now = avoided.safety.filter(time, reference, estimate_at(time, place))
+        avoided.guidance.observe(now, avoided.report.lag, avoided.report.deviation, None)
+        if before is not None and now is not before:
+            yield time, reference, before, now
+        before = now
+
+
+def test_lag_is_how_far_the_trajectory_is_behind_its_reference_along_the_path():
+    avoided, lags = avoidance([sphere("s", (5.0, 0.3, -5.0))]), []
+    for time, reference, before, _ in plans(avoided, straight(16.0), 80):
+        at = np.array([time])
+        wanted = reference.derivatives(at)[:, 0]
+        apart, speed = before.derivatives(at)[0, 0] - wanted[0], np.linalg.norm(wanted[1])
+        behind = -apart @ wanted[1] / speed if speed > 0.05 else np.linalg.norm(apart[:2])
+        assert avoided.report.lag == pytest.approx(max(behind, 0.0), abs=1e-9), time
+        lags.append(avoided.report.lag)
+    assert max(lags) > 0.1
+
+
+def test_lag_of_a_team_that_is_to_rest_is_its_horizontal_distance_from_there():
+    avoided, lags = avoidance([sphere("m", (4.0, 0.5, -5.0), (-1.0, 0.0, 0.0))]), []
+    rest = RestTrajectory([0.0, 0.0, -5.0], 0.0)
+    for time, _, before, _ in plans(avoided, rest, 60):
+        lags.append(avoided.report.lag)
+        assert lags[-1] == pytest.approx(np.hypot(*before.derivatives(np.array([time]))[0, 0, :2]), abs=1e-9)
+    assert max(lags) > 0.3
+
+
+def test_plan_in_force_goes_on_where_no_other_is_found(monkeypatch):
+    """It is flown to its end, and the report says that there was no solution."""
+    avoided = avoidance([sphere("s", (5.0, 0.3, -5.0))])
+    horizon = avoided.safety.settings.chain.times[-1]
+    made = plans(avoided, straight(16.0), 100)
+    time, _, _, last = next(plan for plan in made if plan[0] > 1.5)
+    assert avoided.report.active and not avoided.report.infeasible
+    monkeypatch.setattr(avoided.safety.planner, "solve", lambda *arguments: None)
+    # The reference may go on at another rate: what is kept is the deviation from it.
+    ahead = time + np.linspace(0.3, 0.95 * horizon, 9)
+    first = avoided.safety._pieces[-1].reference
+    kept = (last.derivatives(ahead) - first.derivatives(ahead))[:3]
+    assert np.abs(kept[0]).max() > 0.05
+    for _ in range(2):
+        time, reference, _, now = next(made)
+        assert avoided.report.infeasible and avoided.report.active and avoided.report.nearest == "s"
+        np.testing.assert_allclose((now.derivatives(ahead) - reference.derivatives(ahead))[:3], kept, atol=1e-6)

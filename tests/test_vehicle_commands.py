@@ -15,6 +15,7 @@ from vehicle_bench import (
     GROUND,
     OFFBOARD,
     REJECTED,
+    STRANGER,
     UNSUPPORTED,
     Bench,
     attitude_target,
@@ -132,3 +133,78 @@ def test_timesync_and_ping_are_answered_to_the_sender(bench: Bench) -> None:
     assert bench.request(mavlink.MAVLink_timesync_message(5, 6)) == []
     [answer] = bench.request(mavlink.MAVLink_ping_message(77, 8, 0, 0))
     assert (answer.time_usec, answer.seq, answer.target_system, answer.target_component) == (77, 8, 255, 190)
+
+
+STREAMED = mavlink.MAVLINK_MSG_ID_ATTITUDE
+
+
+@pytest.mark.parametrize(
+    ("microseconds", "result"),
+    [(4000, ACCEPTED), (3999, DENIED), (3.6e9, ACCEPTED), (3.7e9, DENIED), (0, ACCEPTED), (-1, ACCEPTED), (-2, DENIED)],
+)
+def test_interval_of_a_message_is_from_that_of_the_onboard_loop_to_an_hour(
+    bench: Bench, microseconds: float, result: int
+) -> None:
+    assert bench.result(command(511, STREAMED, microseconds)) == result
+
+
+@pytest.mark.parametrize("number", [-1.0, 30.5, float(1 << 24), 99999.0, math.nan])
+@pytest.mark.parametrize("what", [511, 512])
+def test_message_that_there_is_not_is_unsupported(bench: Bench, what: int, number: float) -> None:
+    assert bench.result(command(what, number, 20000)) == UNSUPPORTED
+
+
+def test_message_without_data_is_refused_for_now_until_there_are_some() -> None:
+    bench = Bench()
+    wanted = command(512, mavlink.MAVLINK_MSG_ID_GPS_RAW_INT)
+    assert bench.result(wanted) == REJECTED
+    bench.run(0.1)
+    assert bench.result(wanted) == ACCEPTED and bench.got("GPS_RAW_INT")
+
+
+def test_interval_is_that_of_the_link_that_asked_for_it_alone(bench: Bench) -> None:
+    bench.send(mavlink.MAVLink_heartbeat_message(6, 8, 0, 0, 0, 3), STRANGER)
+    assert bench.result(command(511, STREAMED, 10000)) == ACCEPTED
+    bench.run(0.02)
+    bench.inbox.clear()
+    bench.run(0.5)
+    assert (len(bench.got("ATTITUDE")), len(bench.got("ATTITUDE", STRANGER))) == (50, 5)
+
+
+@pytest.mark.parametrize(
+    ("number", "mode"), [(21, px4.MODE_LAND), (20, None), (22, None)], ids=["land", "return", "take off"]
+)
+def test_commands_of_manoeuvres_enter_the_mode_or_are_denied(flying: Bench, number: int, mode: int | None) -> None:
+    before = flying.vehicle.autopilot.mode
+    assert flying.result(command(number)) == (DENIED if mode is None else ACCEPTED)
+    assert flying.vehicle.autopilot.mode == (before if mode is None else mode)
+
+
+@pytest.mark.parametrize(("sub", "mode"), [(px4.AutoMode.LOITER, px4.MODE_HOLD), (px4.AutoMode.LAND, px4.MODE_LAND)])
+def test_mode_of_automatic_flight_is_told_by_its_part(flying: Bench, sub: int, mode: int) -> None:
+    assert flying.result(command(176, 1, px4.MainMode.AUTO, sub)) == ACCEPTED
+    assert flying.vehicle.autopilot.mode == mode
+    assert flying.result(command(176, 1, px4.MainMode.AUTO, 2.5)) == DENIED
+    assert flying.vehicle.autopilot.mode == mode
+
+
+@pytest.mark.parametrize("sub", [0, px4.AutoMode.LAND, math.nan])
+def test_part_counts_in_automatic_flight_alone(bench: Bench, sub: float) -> None:
+    assert bench.result(command(176, 1, px4.MainMode.POSCTL, sub)) == ACCEPTED
+    assert bench.vehicle.autopilot.mode == px4.MODE_POSCTL
+
+
+def test_mode_without_the_flag_of_custom_modes_is_denied_with_the_reason(bench: Bench) -> None:
+    before = bench.vehicle.autopilot.mode
+    bench.request(mavlink.MAVLink_set_mode_message(1, 0, px4.MODE_POSCTL))
+    assert bench.vehicle.autopilot.mode == before
+    assert "only custom modes are known" in bench.got("STATUSTEXT")[-1].text
+    assert bench.result(command(176, 4, px4.MainMode.POSCTL)) == DENIED
+    bench.request(mavlink.MAVLink_set_mode_message(1, 1 | 128, px4.MODE_POSCTL))
+    assert bench.vehicle.autopilot.mode == px4.MODE_POSCTL
+
+
+def test_answer_goes_to_the_system_and_component_that_asked(bench: Bench) -> None:
+    [answer] = [m for m in bench.request(command(520), STRANGER, system=77) if m.get_type() == "COMMAND_ACK"]
+    assert (answer.target_system, answer.target_component, answer.command) == (77, 190, 520)
+    assert (answer.progress, answer.result_param2) == (0, 0)

@@ -13,6 +13,7 @@ from idc_controller.geometry.box import Wall
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
 from vehicle_sim.world.errors import SimulationError
+from vehicle_sim.world.ground import Ground
 from vehicle_sim.world.world import World
 
 
@@ -31,6 +32,32 @@ def test_uav_driven_into_a_sphere_counts_as_contact():
         assert seen[0] == 0
         assert max(seen) >= 1
         assert not world.touching_ground()
+
+
+@pytest.mark.parametrize("speed", [4.0, 30.0])
+def test_obstacle_that_comes_near_is_noticed_however_long_the_team_was_clear(monkeypatch, speed):
+    """Of a team that is clear the engine is asked seldom."""
+    asked, contacts = [], Ground.contacts
+    monkeypatch.setattr(Ground, "contacts", lambda *arguments: asked.append(0) or contacts(*arguments))
+    parameters = system(4)
+    lift, met = parameters.hover_thrust.tolist(), False
+    with World(parameters) as world:
+        place(world, hover_state(parameters, (0, 0, -10.0)))
+        world.obstacles.add("ball", Sphere(0.5), (20.0, 0.0, -10.0))
+        for _ in range(200):
+            world.step(lift, [(0.0, 0.0, 0.0)] * 4)
+            assert world.contacts().pairs == 0
+        assert 1 <= len(asked) <= 12
+        for k in range(2000):
+            world.obstacles.move("ball", (3.0 - speed * k / world.physics_hz, 0.0, -10.0))
+            world.step(lift, [(0.0, 0.0, 0.0)] * 4)
+            distance = closest_distance(world, "ball")
+            met = world.contacts().pairs > 0
+            assert met or distance > 0.0, distance
+            if met:
+                assert distance < 0.025
+                break
+    assert met
 
 
 def test_link_contacts_pole_and_wall_stops_payload():

@@ -1,0 +1,143 @@
+"""Control of a vehicle: who gets it, how long it lasts, which set-points are passed on; at both sides of the limits."""
+
+from types import SimpleNamespace
+
+import pymavlink.dialects.v20.common as mavlink
+import pytest
+
+from gcs.config.vehicle_settings import VehicleLinkSettings
+from vehicle_sim.autopilot.answer import ACCEPTED
+from vehicle_sim.autopilot.setpoints import AttitudeSetpoint
+from vehicle_sim.mavlink.control_owner import ControlOwner
+
+LOSS = 0.5
+"""s: time without set-points after which they are lost."""
+SETTINGS = VehicleLinkSettings()
+GROUND, SAME_ADDRESS, STRANGER = (("10.0.0.1", 1), 255), (("10.0.0.1", 1), 42), (("10.0.0.2", 1), 255)
+
+
+class Autopilot:
+    """An autopilot that keeps the set-points that it is to fly."""
+
+    def __init__(self):
+        self.armed, self.wants_setpoints = False, False
+        self.state = SimpleNamespace(setpoint_loss_time=LOSS)
+        self.flown, self.entered = [], []
+
+    def follow(self, setpoint, now):
+        self.flown.append((setpoint.time_boot_ms, now))
+
+    def enter_offboard(self, setpoint, received, now):
+        self.wants_setpoints = True
+        self.entered.append((setpoint.time_boot_ms, received, now))
+        return ACCEPTED
+
+
+def setpoint(stamp):
+    return AttitudeSetpoint((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.5, stamp)
+
+
+@pytest.fixture
+def owner():
+    return ControlOwner(Autopilot(), SETTINGS)
+
+
+def controlled(owner, since=10.0):
+    """The ground in control, whose last set-point came a tenth of a second after ``since`` (s)."""
+    owner.take(setpoint(5000), GROUND, since)
+    owner.take(setpoint(5100), GROUND, since + 0.1)
+    assert owner.enter_offboard(GROUND, since + 0.1) == ACCEPTED
+    return owner._autopilot
+
+
+@pytest.mark.parametrize(
+    ("times", "accepted"),
+    [
+        ([], False), ([10.0], False), ([10.0, 10.49], True), ([10.0, 10.51], False), ([9.0, 10.0, 10.49], True),
+        ([9.5, 9.51], False), ([9.61, 10.01], True),
+    ],
+)  # fmt: skip
+def test_offboard_takes_two_setpoints_in_time_the_last_of_them_fresh(owner, times, accepted):
+    for k, time in enumerate(times):
+        owner.take(setpoint(5000 + k), GROUND, time)
+    owner.take(setpoint(1), STRANGER, 10.49)
+    answer = owner.enter_offboard(GROUND, 10.5)
+    assert (answer.result == mavlink.MAV_RESULT_ACCEPTED) is accepted
+    assert owner.in_control(10.5) == (GROUND if accepted else None)
+    if accepted:
+        assert owner._autopilot.entered == [(5000 + len(times) - 1, times[-1], 10.5)]
+    else:
+        assert answer.result == mavlink.MAV_RESULT_TEMPORARILY_REJECTED and "no set-points from you" in answer.text
+
+
+def test_control_lasts_until_setpoints_stop_for_the_loss_time(owner):
+    controlled(owner)
+    for now, expected in ((10.1 + 0.99 * LOSS, GROUND), (10.1 + 1.01 * LOSS, None)):
+        assert owner.in_control(now) == expected
+        assert owner.is_stranger(STRANGER, now) is owner.is_stranger(SAME_ADDRESS, now) is (expected is not None)
+        assert not owner.is_stranger(GROUND, now)
+
+
+@pytest.mark.parametrize(("armed", "wants", "expected"), [(1, 1, GROUND), (1, 0, GROUND), (0, 1, GROUND), (0, 0, None)])
+def test_control_ends_on_a_disarmed_vehicle_out_of_offboard(owner, armed, wants, expected):
+    autopilot = controlled(owner)
+    autopilot.armed, autopilot.wants_setpoints = bool(armed), bool(wants)
+    assert owner.in_control(10.2) == expected
+
+
+def test_stranger_at_the_address_of_the_ground_in_control_is_told_from_others(owner):
+    assert not owner.is_stranger(STRANGER, 10.0)
+    controlled(owner)
+    found = [owner.is_stranger_at_its_address(sender, 10.2) for sender in (GROUND, SAME_ADDRESS, STRANGER)]
+    assert found == [False, True, False]
+    assert not owner.is_stranger_at_its_address(SAME_ADDRESS, 10.1 + 1.01 * LOSS)
+
+
+def test_setpoints_of_the_ground_in_control_alone_are_flown(owner):
+    autopilot = controlled(owner)
+    owner.take(setpoint(5150), GROUND, 10.15)
+    owner.take(setpoint(5200), STRANGER, 10.2)
+    owner.take(setpoint(5200), SAME_ADDRESS, 10.2)
+    assert autopilot.flown == [(5150, 10.15)]
+    autopilot.wants_setpoints = False
+    owner.take(setpoint(5250), GROUND, 10.25)
+    assert autopilot.flown == [(5150, 10.15)]
+
+
+@pytest.mark.parametrize(
+    ("stamp", "now", "flown"),
+    [(5100, 10.2, True), (5099, 10.2, False), (4101, 10.2, False), (4100, 10.2, True), (5099, 10.61, True)],
+    ids=["same stamp", "overtaken", "just within the window", "clock was set", "after a loss"],
+)
+def test_overtaken_setpoint_is_dropped(owner, stamp, now, flown):
+    autopilot = controlled(owner)
+    owner.take(setpoint(stamp), GROUND, now)
+    assert bool(autopilot.flown) is flown
+    # One that is dropped does not prolong control.
+    assert (owner.in_control(10.55 if now < 10.5 else 11.0) is not None) and (
+        owner.in_control(10.65) is not None
+    ) is flown
+
+
+def test_stamps_go_on_where_they_wrap_round(owner):
+    owner.take(setpoint(0xFFFFFFFF), GROUND, 10.0)
+    owner.take(setpoint(9), GROUND, 10.01)
+    assert owner.enter_offboard(GROUND, 10.01) == ACCEPTED
+    owner.take(setpoint(0xFFFFFFFE), GROUND, 10.02)
+    owner.take(setpoint(20), GROUND, 10.03)
+    assert owner._autopilot.flown == [(20, 10.03)]
+
+
+def test_number_of_streams_is_bounded_and_silent_ones_are_forgotten(owner):
+    senders = [(("10.0.1.1", port), 255) for port in range(SETTINGS.setpoint_streams_max)]
+    for sender in senders:
+        owner.take(setpoint(1), sender, 10.0)
+    for stamp, now in ((5000, 10.1), (5001, 10.2)):
+        owner.take(setpoint(stamp), GROUND, now)
+    assert owner.enter_offboard(GROUND, 10.2) != ACCEPTED
+    for now in (10.3, 10.49):
+        owner.take(setpoint(2), senders[0], now)
+    for stamp, now in ((5002, 10.51), (5003, 10.6)):
+        owner.take(setpoint(stamp), GROUND, now)
+    assert owner.enter_offboard(GROUND, 10.6) == ACCEPTED
+    assert owner.enter_offboard(senders[0], 10.6) == ACCEPTED

@@ -1,0 +1,120 @@
+"""Before take-off: what a vehicle lacks is named, and where payload and vehicles stand is averaged."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from gcs.config.flight_settings import DEFAULTS
+from gcs.flight.preflight import NEEDED_PARAMETERS, Preflight
+from gcs.mavlink.vehicle_link import VehicleLink
+from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
+
+NOW = 50.0
+TIMEOUT = DEFAULTS.failsafe.telemetry_timeout
+ADDRESSES = [("10.0.0.4", 14540), ("10.0.0.7", 14541)]
+
+
+def complete(system_id, address):
+    """A link on which everything has come."""
+    link = VehicleLink(system_id, address)
+    link.received_at = link.attitude_received_at = link.position_received_at = link.payload_received_at = NOW
+    link.status.parameters.update(dict.fromkeys(NEEDED_PARAMETERS, 1.0))
+    link.status.prearm_ok = False
+    return link
+
+
+@pytest.fixture
+def links():
+    return [complete(system_id, address) for system_id, address in zip((4, 7), ADDRESSES, strict=True)]
+
+
+def connected(links, now=NOW):
+    preflight = Preflight(SimpleNamespace(links=links))
+    done = preflight.connect(now)
+    assert done == (preflight.missing == "")
+    return preflight.missing
+
+
+def test_vehicles_that_have_sent_all_are_connected_whether_ready_or_not(links):
+    assert connected(links) == ""
+    links[0].status.prearm_ok = True
+    assert connected(links) == ""
+
+
+@pytest.mark.parametrize(
+    ("field", "text"),
+    [
+        ("received_at", "does not answer at 10.0.0.7:14541"),
+        ("attitude_received_at", "sends no attitude and position"),
+        ("position_received_at", "sends no attitude and position"),
+        ("payload_received_at", "relays no payload navigation data"),
+    ],
+)
+def test_what_has_not_come_for_the_timeout_is_named_with_its_vehicle(links, field, text):
+    setattr(links[1], field, NOW - 0.99 * TIMEOUT)
+    assert connected(links) == ""
+    setattr(links[1], field, NOW - 1.01 * TIMEOUT)
+    assert connected(links) == f"vehicle 7 {text}"
+
+
+def test_parameters_and_readiness_that_are_not_known_are_named(links):
+    links[1].status.prearm_ok = None
+    assert connected(links) == "vehicle 7 has not reported whether it is ready"
+    del links[1].status.parameters[NEEDED_PARAMETERS[1]], links[1].status.parameters[NEEDED_PARAMETERS[4]]
+    assert connected(links) == f"vehicle 7 does not send {NEEDED_PARAMETERS[1]}, {NEEDED_PARAMETERS[4]}"
+
+
+def test_first_vehicle_that_lacks_something_is_named_by_what_lacks_first(links):
+    for link in links:
+        link.status.prearm_ok = None
+        link.status.parameters.clear()
+    assert connected(links).startswith("vehicle 4 does not send ")
+    links[0].payload_received_at = links[0].position_received_at = 0.0
+    assert connected(links) == "vehicle 4 sends no attitude and position"
+    links[0].received_at = 0.0
+    links[0].other_system_id = 9
+    assert connected(links) == "vehicle 4 does not answer at 10.0.0.4:14540: vehicle 9 does"
+    links[0].address = None
+    assert connected(links) == "vehicle 4 has not called in"
+
+
+def test_parameters_are_requested_from_all_and_the_time_of_the_first_attempt_is_kept(links):
+    for link in links:
+        link.status.parameters.clear()
+    preflight = Preflight(SimpleNamespace(links=links))
+    assert np.isnan(preflight.connect_start)
+    for now in (NOW, NOW + 1.0):
+        preflight.connect(now)
+    assert preflight.connect_start == NOW
+    for link in links:
+        assert sorted(m.param_id for m in link.requests.due(NOW)) == sorted(NEEDED_PARAMETERS)
+
+
+def position(source, *place):
+    return Position(NOW, source, np.array(place), np.zeros(3))
+
+
+def test_places_are_the_means_of_the_last_samples(links):
+    preflight, kept = Preflight(SimpleNamespace(links=links)), DEFAULTS.takeoff_landing.position_samples
+    for source in (1, PAYLOAD, 0):
+        assert not preflight.has_positions
+        preflight.add(Attitude(NOW, source, np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3)))
+        preflight.add(position(source, np.nan, np.nan, np.nan))
+        assert not preflight.has_positions
+        preflight.add(position(source, source, 2.0, -1.0))
+        preflight.add(position(source, source, 4.0, -2.0))
+    assert preflight.has_positions
+    np.testing.assert_allclose(preflight.payload, [-1.0, 3.0, -1.5])
+    np.testing.assert_allclose(preflight.vehicles, [[0.0, 3.0, -1.5], [1.0, 3.0, -1.5]])
+    for k in range(kept + 5):
+        preflight.add(position(0, float(k), 0.0, 0.0))
+    np.testing.assert_allclose(preflight.vehicles[0], [5.0 + 0.5 * (kept - 1), 0.0, 0.0])
+
+
+def test_places_are_settled_once_averaged_for_their_time(links):
+    preflight = Preflight(SimpleNamespace(links=links))
+    assert not preflight.is_settled(1e9)
+    preflight.check_start = 20.0
+    settle_time = DEFAULTS.takeoff_landing.settle_time
+    assert not preflight.is_settled(20.0 + 0.99 * settle_time) and preflight.is_settled(20.0 + settle_time)

@@ -1,0 +1,225 @@
+"""Streams of a vehicle to its peers: when each message is due, what is repeated or never sent twice, and to whom."""
+
+import math
+from types import SimpleNamespace
+
+import pymavlink.dialects.v20.common as mavlink
+import pytest
+
+from gcs.config.vehicle_settings import StreamIntervals, VehicleLinkSettings
+from gcs.mavlink import px4
+from gcs.mavlink.codec import Codec
+from gcs.mavlink.layout import packed
+from vehicle_sim.mavlink.peer import Peer, Stream, default_intervals
+from vehicle_sim.mavlink.peers import Peers
+
+OWN, UNIT = px4.AUTOPILOT_COMPONENT, px4.PAYLOAD_UNIT_COMPONENT
+HEARTBEAT, ATTITUDE = mavlink.MAVLINK_MSG_ID_HEARTBEAT, mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION
+STATE = mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE
+SETTINGS = VehicleLinkSettings()
+BEAT = packed(mavlink.MAVLink_heartbeat_message(2, 12, 0, 0, 3, 3))
+
+
+def sample(stamp=0):
+    """The messages of one sample: attitude with its ``stamp`` (ms), landed state, else a heartbeat."""
+    attitude = packed(mavlink.MAVLink_attitude_quaternion_message(stamp, 1, 0, 0, 0, 0, 0, 0))
+    of_kind = {ATTITUDE: attitude, STATE: packed(mavlink.MAVLink_extended_sys_state_message(0, 1))}
+    return SimpleNamespace(messages=lambda key: of_kind.get(key[1], BEAT))
+
+
+@pytest.mark.parametrize(
+    ("now", "due"), [(0.0, 0.25), (0.1, 0.25), (0.2499, 0.25), (0.2499995, 0.5), (0.25, 0.5), (0.7, 0.75)]
+)
+def test_stream_is_due_at_the_next_multiple_of_its_interval(now, due):
+    stream = Stream(OWN, HEARTBEAT, 0.25)
+    assert stream.due == -math.inf and stream.key == (OWN, HEARTBEAT)
+    assert stream.take(sample(), now, 0.04) == BEAT
+    assert stream.due == pytest.approx(due)
+
+
+def test_repetitions_are_due_sooner_and_end():
+    stream = Stream(OWN, HEARTBEAT, 1.0)
+    stream.repeats = 2
+    times = [10.0]
+    for _ in range(4):
+        stream.take(sample(), times[-1], 0.04)
+        times.append(stream.due)
+    assert times == pytest.approx([10.0, 10.04, 10.08, 11.0, 12.0])
+    stream.repeats = 1
+    stream.take(sample(), 12.99, 0.04)
+    assert stream.due == pytest.approx(13.0)  # the stream itself is due sooner still
+
+
+def test_messages_of_one_sample_are_sent_once_and_others_again_and_again():
+    for number, expected in ((ATTITUDE, [1, 0, 1, 0, 1]), (HEARTBEAT, [1, 1, 1, 1, 1])):
+        stream = Stream(OWN, number, 0.02)
+        taken = [len(stream.take(sample(stamp), 0.02 * k, 0.04)) for k, stamp in enumerate((40, 40, 60, 60, 40))]
+        assert taken == expected
+
+
+def peer(settings=SETTINGS):
+    return Peer(("10.0.0.1", 5), 3, default_intervals(StreamIntervals(), 0.02), settings)
+
+
+def sent(to, now, stamp=0):
+    """Kinds and components of what goes out."""
+    received = [r for datagram in to.datagrams(sample(stamp), now) for r in Codec(254, 1).decode(datagram)]
+    return [(r.message.get_srcComponent(), r.layout.message_id) for r in received]
+
+
+def test_peer_without_streams_gets_answers_alone():
+    new = peer()
+    assert not new.is_streaming and sent(new, 0.0) == []
+    new.reply(mavlink.MAVLink_extended_sys_state_message(0, 1))
+    assert sent(new, 0.0) == [(OWN, STATE)] and sent(new, 0.0) == []
+
+
+def test_peer_that_never_answered_is_offered_heartbeats():
+    offered = peer()
+    offered.offer()
+    assert not offered.is_streaming
+    assert [sent(offered, t) for t in (0.1, 0.9, 1.0, 1.5)] == [[(OWN, HEARTBEAT)], [], [(OWN, HEARTBEAT)], []]
+    assert offered.next_due == pytest.approx(2.0)
+    offered.repeat(HEARTBEAT)
+    assert [len(sent(offered, t)) for t in (1.5, 1.54, 1.58, 2.0)] == [1, 0, 0, 1]
+
+
+def test_streaming_peer_gets_everything_at_once_and_changed_messages_repeatedly():
+    streaming = peer()
+    streaming.start_streams()
+    assert streaming.is_streaming and streaming.next_due == -math.inf
+    assert len(sent(streaming, 10.0)) == len(default_intervals(StreamIntervals(), 0.02))
+    assert streaming.next_due == pytest.approx(10.02)
+    streaming.repeat(STATE)
+    times = [10.001 + SETTINGS.repeat_interval * k for k in range(5)]
+    found = [sum(key == (OWN, STATE) for key in sent(streaming, t, stamp=k)) for k, t in enumerate(times)]
+    assert found == [1] * (SETTINGS.repeats + 1) + [0]
+
+
+def test_interval_of_a_message_can_be_set_stopped_and_restored():
+    streaming, key = peer(), (OWN, STATE)
+    streaming.start_streams()
+    sent(streaming, 0.0)
+
+    def count(begin):
+        return sum(sent(streaming, begin + 0.01 * k, stamp=k).count(key) for k in range(1, 101))
+
+    usual = round(1.0 / StreamIntervals().extended_sys_state)
+    assert count(0.0) == usual
+    for interval, expected in ((0.1, 10), (math.inf, 0), (0.5, 2), (0.0, usual)):
+        streaming.set_interval(STATE, interval)
+        assert streaming.next_due == -math.inf
+        sent(streaming, 0.0)
+        assert count(0.0) == expected
+    # The default of what is not streamed is silence.
+    streaming.set_interval(mavlink.MAVLINK_MSG_ID_ODOMETRY, 0.1)
+    streaming.set_interval(mavlink.MAVLINK_MSG_ID_ODOMETRY, 0.0)
+    sent(streaming, 0.0)
+    assert not any(number == mavlink.MAVLINK_MSG_ID_ODOMETRY for _, number in sent(streaming, 0.5, stamp=7))
+
+
+def test_answers_beyond_the_limit_are_dropped():
+    busy = peer(VehicleLinkSettings(replies_max=3))
+    for _ in range(5):
+        busy.reply(mavlink.MAVLink_extended_sys_state_message(0, 1))
+    assert len(sent(busy, 0.0)) == 3
+
+
+def test_long_text_is_sent_in_pieces():
+    talking = peer()
+    text = "".join(chr(97 + k % 26) for k in range(120)) + "é"
+    talking.send_statustext(text)
+    pieces = [r.message for datagram in talking.datagrams(sample(), 0.0) for r in Codec(254, 1).decode(datagram)]
+    assert [piece.text for piece in pieces] == [text[:50], text[50:100], text[100:120] + "?"]
+    assert {piece.severity for piece in pieces} == {mavlink.MAV_SEVERITY_WARNING}
+
+
+def test_components_have_sequence_numbers_of_their_own():
+    streaming = peer()
+    streaming.start_streams()
+    numbers = {OWN: [], UNIT: []}
+    for k in range(3):
+        for datagram in streaming.datagrams(sample(k), 0.02 * k):
+            for received in Codec(254, 1).decode(datagram):
+                numbers[received.component].append(received.sequence)
+    for found in numbers.values():
+        assert len(found) > 3 and found == list(range(len(found)))
+
+
+LIMITED = VehicleLinkSettings(peers_max=2, peer_timeout=10.0)
+GROUND, FIRST, SECOND, THIRD = (("10.0.0.1", port) for port in range(4))
+
+
+class Builders:
+    """What the peers send of: of all kinds a heartbeat."""
+
+    def __init__(self):
+        self.builders = dict.fromkeys(default_intervals(StreamIntervals(), 0.02), lambda now: BEAT)
+
+
+def peers(ground=None):
+    intervals = default_intervals(StreamIntervals(), 0.02)
+    return Peers(lambda address: Peer(address, 3, intervals, LIMITED), ground, LIMITED)
+
+
+def addressees(served, now):
+    return {address for _, address in served.datagrams_to_send(Builders(), now)}
+
+
+def test_vehicle_without_peers_is_never_due_and_one_that_offers_itself_at_once():
+    assert peers().next_due == math.inf and addressees(peers(), 0.0) == set()
+    offering = peers(GROUND)
+    assert offering.next_due == -math.inf and addressees(offering, 0.0) == {GROUND}
+    assert offering.next_due == pytest.approx(1.0) and addressees(offering, 0.5) == set()
+
+
+@pytest.mark.parametrize(("ground", "number"), [(None, 2), (GROUND, 2)])
+def test_number_of_peers_is_bounded_beside_the_ground(ground, number):
+    served = peers(ground)
+    found = [served.receive_from(address, 0.0) is not None for address in (FIRST, SECOND, THIRD)]
+    assert found == [True] * number + [False] * (3 - number)
+    assert served.receive_from(FIRST, 0.0) is served.receive_from(FIRST, 1.0)
+    if ground is not None:
+        assert served.receive_from(ground, 0.0) is not None
+    assert len(list(served)) == number + (ground is not None)
+
+
+@pytest.mark.parametrize(("age", "room"), [(9.9, False), (10.1, True)])
+def test_silent_peer_makes_room_after_the_timeout(age, room):
+    served = peers()
+    served.receive_from(FIRST, 0.0)
+    served.receive_from(SECOND, age)
+    assert (served.receive_from(THIRD, age) is not None) is room
+    assert (FIRST in {peer.address for peer in served}) is not room
+
+
+def test_streams_of_a_silent_peer_stop_and_the_ground_is_offered_heartbeats_again():
+    served = peers(GROUND)
+    for address in (GROUND, FIRST, SECOND):
+        assert served.receive_from(address, 0.0).is_streaming
+    served.receive_from(SECOND, 5.0)
+    assert addressees(served, 9.9) == {GROUND, FIRST, SECOND}
+    assert addressees(served, 10.1) == {GROUND, SECOND}
+    assert [peer.is_streaming for peer in served] == [False, True]
+    assert addressees(served, 10.3) == {SECOND} and addressees(served, 11.0) == {GROUND, SECOND}
+    assert served.receive_from(GROUND, 11.0).is_streaming
+
+
+def test_texts_go_to_all_that_get_the_streams_and_changed_messages_to_all():
+    served = peers(GROUND)
+    served.receive_from(FIRST, 0.0)
+    addressees(served, 0.0)
+    served.send_statustext("landed")
+    assert addressees(served, 0.001) == {FIRST}
+    served.repeat(HEARTBEAT)
+    assert served.next_due == -math.inf and addressees(served, 0.002) == {GROUND, FIRST}
+
+
+def test_message_is_built_once_for_all_peers():
+    served, built = peers(), []
+    for address in (FIRST, SECOND):
+        served.receive_from(address, 0.0)
+    telemetry = Builders()
+    telemetry.builders = {key: lambda now, key=key: built.append((key, now)) or BEAT for key in telemetry.builders}
+    served.datagrams_to_send(telemetry, 7.0)
+    assert sorted(built) == sorted((key, 7.0) for key in telemetry.builders)
