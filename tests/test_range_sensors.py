@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from idc_controller.perception.scan_assembly import RangeSensors
 
+from idc_controller.perception.range_sensors import RangeSensors
 from idc_controller.perception.settings import ScanSettings
 
 S = ScanSettings()
