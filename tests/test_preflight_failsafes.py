@@ -48,7 +48,7 @@ def checked(time, armed=(), failing=(), places=PLACES, silent=(), begin=BEGIN, *
     for source, place in ((PAYLOAD, PAD), *enumerate(places)):
         if source not in silent:
             preflight.add(Position(begin, source, place, np.zeros(3)))
-    failsafes = FailsafeState(System(team, None, None, None, preflight), AlarmLog())
+    failsafes = FailsafeState(System(team, None, None, None, preflight, None), AlarmLog())
     return failsafes.evaluate(Check.PREFLIGHT, Moment(Phase.CHECK, time, 0.0))
 
 

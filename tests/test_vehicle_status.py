@@ -128,7 +128,7 @@ def test_version_tells_capabilities_and_the_vehicle(still: Bench) -> None:
 
 
 def test_health_is_what_works_of_what_there_is(still: Bench) -> None:
-    no_points = np.empty(0, int), np.empty((0, 3))
+    no_points = np.empty((0, 3))
 
     def status() -> tuple[int, int]:
         found = fields(still, "SYS_STATUS")
@@ -139,9 +139,9 @@ def test_health_is_what_works_of_what_there_is(still: Bench) -> None:
 
     everything = SENSORS | ALWAYS | PREARM
     assert status() == (everything, everything)
-    still.vehicle.take_scan(RangeSample(still.now, 10.0, *no_points))
+    still.vehicle.take_scan(RangeSample(still.now, 10.0, no_points))
     assert status() == (everything | RANGE, everything | RANGE)
-    still.vehicle.take_scan(RangeSample(still.now, 10.0, *no_points, works=False))
+    still.vehicle.take_scan(RangeSample(still.now, 10.0, no_points, works=False))
     assert status() == (everything | RANGE, everything)
     for _ in range(1000):
         step_alone(still.vehicle.autopilot, None, still.now)
@@ -183,12 +183,12 @@ def test_heartbeat_tells_mode_arming_and_failsafe() -> None:
     }  # fmt: skip
 
 
-def test_points_of_a_scan_have_their_range_and_object(still: Bench) -> None:
+def test_points_of_a_scan_have_their_ranges_and_no_object(still: Bench) -> None:
     points = np.array([[1.0, 2.0, 3.0], [-4.0, 5.0, -6.0]])
-    still.vehicle.take_scan(RangeSample(0.75, 12.0, np.array([3, 8]), points))
+    still.vehicle.take_scan(RangeSample(0.75, 12.0, points, range_min=0.25))
     run = still.vehicle.telemetry.build(1.0, 1, mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D)
     sent = [r.message for frame in type(still.reader)(1, 1).frames(run) for r in still.reader.decode(frame)]
-    assert [(m.x, m.y, m.z, m.obstacle_id) for m in sent] == [(1.0, 2.0, 3.0, 3), (-4.0, 5.0, -6.0, 8)]
+    assert [(m.x, m.y, m.z, m.obstacle_id) for m in sent] == [(1.0, 2.0, 3.0, 65535), (-4.0, 5.0, -6.0, 65535)]
     for message in sent:
-        assert (message.time_boot_ms, message.max_distance) == (750, 12.0)
+        assert (message.time_boot_ms, message.min_distance, message.max_distance) == (750, 0.25, 12.0)
         assert message.sensor_type == mavlink.MAV_DISTANCE_SENSOR_LASER and message.frame == mavlink.MAV_FRAME_BODY_FRD
