@@ -176,6 +176,13 @@ def test_predictions_of_obstacles_are_compared_within_half_of_the_time_between_s
     assert stack.perception(system(range_sensor={"rate": 25})).tracking.manoeuvre.frame == 0.02
 
 
+@pytest.mark.parametrize(("missed_share", "passes"), [(0.0, 1), (0.02, 2), (0.1, 3), (0.5, 10)])
+def test_space_counts_as_free_by_as_many_rays_as_the_range_sensors_missed_share_takes(missed_share, passes):
+    """The probability that all of them missed what fills it is 1e-3 at most."""
+    settings = stack.perception(system(range_sensor={"missed_share": missed_share})).standing_map
+    assert settings.free_passes == passes
+
+
 @pytest.mark.parametrize("tries", [2, 4])
 def test_commands_are_repeated_as_often_and_as_soon_as_the_file_says(tmp_path, tries):
     path = tmp_path / "system.toml"

@@ -51,8 +51,9 @@ def estimator(config: SystemConfig, model: LinearModel) -> Estimator:
 
 
 def perception(config: SystemConfig) -> PerceptionSettings:
-    """Return the settings of perception at the rates of the system file."""
-    return config.perception.at_rates(config.rates.telemetry, config.range_sensor.rate)
+    """Return the settings of perception for the rates and the range sensors of the system file."""
+    sensor = config.range_sensor
+    return config.perception.of_sensors(config.rates.telemetry, sensor.rate, sensor.missed_share)
 
 
 def obstacle_map(mission: Mission) -> ObstacleMap:

@@ -185,7 +185,8 @@ class StandingMapSettings(SettingsTable):
     voxel: float = setting(
         0.25, "m", "edge of a voxel: three standard deviations of a return at most of the range", gt=0.0
     )
-    missed_share: float = setting(0.02, "", "share of rays that return nothing though they hit", gt=0.0, lt=1.0)
+    missed_share: float = derived(0.02)
+    """Share of the range sensors' rays that return nothing though they hit."""
     false_share: float = setting(0.01, "", "share of returns where nothing is", gt=0.0, lt=1.0)
     false_free: float = setting(1e-3, "", "probability that what fills a voxel is seen free", gt=0.0, lt=1.0)
     false_removal: float = setting(
@@ -221,6 +222,8 @@ class StandingMapSettings(SettingsTable):
     @cached_property
     def free_passes(self) -> int:
         """Rays through a voxel from which on it counts as seen free: each of them may have been missed."""
+        if self.missed_share == 0.0:
+            return 1
         return max(math.ceil(math.log(self.false_free) / math.log(self.missed_share)), 1)
 
     @cached_property
@@ -270,8 +273,11 @@ class PerceptionSettings(SettingsTable):
     tracking: ObstacleFilterSettings = field(default_factory=ObstacleFilterSettings)
     standing_map: StandingMapSettings = field(default_factory=StandingMapSettings)
 
-    def at_rates(self, telemetry: float, scans: float) -> Self:
-        """Return the settings at the rates (Hz) of telemetry and of the range sensors."""
-        manoeuvre = replace(self.tracking.manoeuvre, rate=scans)
-        tracking = replace(self.tracking, manoeuvre=manoeuvre)
-        return replace(self, scans=replace(self.scans, rate=telemetry), tracking=tracking)
+    def of_sensors(self, telemetry: float, scans: float, missed_share: float) -> Self:
+        """Return the settings at the rates (Hz) of telemetry and of range sensors that miss a share of the hits."""
+        return replace(
+            self,
+            scans=replace(self.scans, rate=telemetry),
+            tracking=replace(self.tracking, manoeuvre=replace(self.tracking.manoeuvre, rate=scans)),
+            standing_map=replace(self.standing_map, missed_share=missed_share),
+        )
