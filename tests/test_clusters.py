@@ -59,7 +59,7 @@ def test_motion_of_a_small_cluster_is_seen_where_both_its_sides_are(others, free
     own = rays((0.0,), 4.0)
     scan = scan_of(own + others, free=free)
     rows = np.arange(len(scan.returns)) < len(own)
-    [cluster], seen = Segmentation(SPACING, CUT, SIZE).candidates(scan, rows, ~everything(scan))
+    [cluster], seen = Segmentation(SPACING, CUT, SIZE).candidates(scan, rows, ~everything(scan), everything(scan))
     assert (cluster.number in seen) == expected
 
 
@@ -67,7 +67,8 @@ def test_cluster_mostly_unexplained_is_a_candidate_whatever_its_sides():
     scan = scan_of(rays((0.0,), 4.0) + rays((0.15,), 4.2))
     rows = np.arange(6) < 3
     for unexplained, expected in (([1, 1, 0, 0, 0, 0], True), ([1, 0, 0, 1, 1, 1], False)):
-        [cluster], seen = Segmentation(SPACING, CUT, SIZE).candidates(scan, rows, np.array(unexplained, dtype=bool))
+        mask = np.array(unexplained, dtype=bool)
+        [cluster], seen = Segmentation(SPACING, CUT, SIZE).candidates(scan, rows, mask, ~mask)
         assert (cluster.number in seen) == expected
-        assert cluster.unexplained == sum(unexplained[:3])
+        assert cluster.unexplained == sum(unexplained[:3]) and cluster.explained == 3 - sum(unexplained[:3])
         assert cluster.shifted(np.ones(3)).unexplained == cluster.unexplained

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from moving_scene import BEGIN, HORIZONS, KINDS, SHAPES, surface, watch
-from obstacle_scene import HERE, moving_tracks, outside, wall
+from obstacle_scene import HERE, Scene, map_of, moving_tracks, outside, run, sphere, wall
 
 #: Time after its appearance within the range in which what moves is found (s): slow bodies must leave their own noise.
 FOUND, FOUND_SLOW = 2.5, 4.0
@@ -159,6 +159,22 @@ def test_mover_along_the_line_of_sight_is_found_though_it_was_never_seen_elsewhe
     # Of a period of 6.3 s, half moves away.
     assert max(moving) > 0 and min(moving[40:]) > 0
     assert m.found < 3.0
+
+
+@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("phase", [0.0, 2.0, 3.0, 5.0])
+def test_swinging_sphere_is_found_on_the_way_to_it_though_its_way_was_never_seen_free(phase, seed):
+    """At the end of the range a ray of a scan or none hits it: rays through where it was say that it has left."""
+    place = lambda t: np.array([14.0, 1.5 * np.sin(t + phase), -3.0])  # noqa: E731
+    centre = lambda t: np.array([2.0 * max(t - 1.0, 0.0), 0.3 * np.sin(t), -6.0])  # noqa: E731
+    m, found = map_of(), []
+
+    def each(t):
+        if not found and moving_tracks(m):
+            found.append(np.linalg.norm(place(t) - centre(t)))
+
+    run(m, lambda t: [sphere(place(t))], 6.5, scene=Scene(seed), centre=centre, each=each)
+    assert found and found[0] > 4.0
 
 
 def test_what_stands_beside_the_way_of_a_mover_stays_covered():

@@ -30,6 +30,8 @@ class Cluster(NamedTuple):
     part: slice = slice(None)
     unexplained: int = 0
     """Returns of it that nothing standing explains."""
+    explained: int = 0
+    """Returns of it where something has stood before."""
 
     @property
     def surface_points(self) -> SurfacePoints:
@@ -49,7 +51,7 @@ class Cluster(NamedTuple):
     def shifted(self, by: Array) -> Cluster:
         """Return the cluster with its points shifted ``by`` (3,) (NED, m), detected from the same place."""
         own = self.surface_points
-        return Cluster(self.uav, self.number, replace(own, points=own.points + by), unexplained=self.unexplained)
+        return self._replace(scan=replace(own, points=own.points + by), part=slice(None))
 
 
 class Segmentation:
@@ -66,16 +68,24 @@ class Segmentation:
         self._spacing, self._cut_range, self._size = spacing, cut_range, size
         self._numbers = count()
 
-    def candidates(self, scan: PlacedScan, rows: Mask, unexplained: Mask) -> tuple[list[Cluster], set[int]]:
+    def candidates(
+        self, scan: PlacedScan, rows: Mask, unexplained: Mask, explained: Mask
+    ) -> tuple[list[Cluster], set[int]]:
         """Return the clusters of the returns ``rows`` (n,), and the numbers of those whose motion can be seen.
 
         They are mostly ``unexplained`` (n,) by what stands, or small with both sides in sight.
+        ``explained`` (n,): where something has stood before.
         """
         order, clusters = self._segmented(scan, rows)
         if not clusters:
             return clusters, set()
         indices = np.flatnonzero(rows)[order]
-        clusters = [c._replace(unexplained=int(unexplained[indices[c.part]].sum())) for c in clusters]
+        clusters = [
+            c._replace(
+                unexplained=int(unexplained[indices[c.part]].sum()), explained=int(explained[indices[c.part]].sum())
+            )
+            for c in clusters
+        ]
         labels = np.full(len(scan.returns), -1)
         for label, cluster in enumerate(clusters):
             labels[indices[cluster.part]] = label

@@ -174,17 +174,22 @@ class ObstacleMap:
         excluded = frozenset() if self.map_offset_detected else frozenset(offsets)
         placed: list[Cluster] = []
         candidates: set[int] = set()
+        usable: list[PlacedScan] = []
         for scan in frame:
             corrected = shifted(scan, -offsets[scan.uav]) if scan.uav in offsets else scan
             known, of_tracks, unexplained, is_new = self._classified(corrected)
-            clusters, seen = self._segmentation.candidates(scan, of_tracks | unexplained | is_new, unexplained)
+            before = frame[0].time - self._settings.scans.simultaneous
+            explained = self.seen.map.is_standing(corrected.returns, before)
+            rows = of_tracks | unexplained | is_new
+            clusters, seen = self._segmentation.candidates(scan, rows, unexplained, explained)
             candidates |= seen
             # Whole, also where only a part of what is offset lies within the gate.
             placed += [*clusters, *self._segmentation.clusters(scan, known[1] & ~of_tracks)]
             if scan.uav not in excluded:
                 self.seen.map.add(corrected, known[0] | of_tracks)
+                usable.append(corrected)
         if placed:
-            self._associate(placed, offsets, excluded, candidates)
+            self._associate(placed, offsets, usable, candidates)
 
     def _classified(self, scan: PlacedScan) -> tuple[tuple[Mask, Mask], Mask, Mask, Mask]:
         """Return which returns of a scan (n,) belong to what.
@@ -207,9 +212,17 @@ class ObstacleMap:
         return (known, distance <= s.remembered_gate), of_tracks, unexplained, is_new
 
     def _associate(
-        self, placed: list[Cluster], offsets: dict[int, Array], excluded: frozenset[int], candidates: set[int]
+        self, placed: list[Cluster], offsets: dict[int, Array], usable: list[PlacedScan], candidates: set[int]
     ) -> None:
-        """Update map check and tracks by the clusters of a frame; ``candidates``: numbers of those that may be new."""
+        """Update map check and tracks by the clusters of a frame.
+
+        Args:
+            placed: where the vehicles' poses place them.
+            offsets: of what vehicles detect from the map.
+            usable: scans by which tracks are updated, without their offset.
+            candidates: numbers of the clusters that may begin a track.
+        """
+        uavs = {scan.uav for scan in usable}
         time = max(cluster.scan.time for cluster in placed)
         clusters = [c.shifted(-offsets[c.uav]) if c.uav in offsets else c for c in placed]
         standing = self._standing.names
@@ -219,18 +232,18 @@ class ObstacleMap:
         on_map = [None if body is None or body < n else body - n for body in bodies]
         self._check.compare(placed, on_map, distances[:, n:])
 
-        bodies = [None if c.uav in excluded else body for c, body in zip(clusters, bodies, strict=True)]
+        bodies = [body if c.uav in uavs else None for c, body in zip(clusters, bodies, strict=True)]
         assigned: dict[int, list[Cluster]] = defaultdict(list)
         unassigned: list[Cluster] = []
         for cluster, body in zip(clusters, bodies, strict=True):
             if body is None:
-                if cluster.uav not in excluded and cluster.number in candidates:
+                if cluster.uav in uavs and cluster.number in candidates:
                     unassigned.append(cluster)
             elif body < n:
                 assigned[body].append(cluster)
-        self._tracks.update(assigned)
+        self._tracks.update(assigned, usable)
         self._tracks.merge(clusters, bodies, distances, standing)
-        self._tracks.begin(unassigned)
+        self._tracks.begin(unassigned, usable)
 
     def _distances(self, clusters: list[Cluster], time: float) -> tuple[Array, Array]:
         """Return mean distances of the clusters from tracks and standing obstacles (m), and the gates of those (m)."""

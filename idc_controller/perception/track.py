@@ -1,27 +1,20 @@
 """Track of one obstacle."""
 
 import math
-from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from idc_controller.arrays import Array, Mask
+from idc_controller.arrays import Array
 from idc_controller.geometry.obstacles import PredictedObstacle
 from idc_controller.geometry.shape import Shape
+from idc_controller.perception.motion_evidence import MotionEvidence, PartOfScan
 from idc_controller.perception.motion_imm import MotionModels
 from idc_controller.perception.obstacle_filter import ObstacleFilter
+from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.settings import PerceptionSettings
 from idc_controller.perception.surfaces.points import SurfacePoints, joined
-
-_UNEXPLAINED = 0.5
-"""Least share of the frames of what moves that contradict that it stands."""
-_FRAMES, _APART = 20, 0.45
-"""Frames whose points are remembered; time from which on one is earlier (s)."""
-_BESIDE = 0.15
-"""Distance of a ray from a point within which it passes through the place of that (m)."""
-_SIGMAS = 3.0
-"""Standard deviations by which it must end beyond."""
 
 
 @dataclass(eq=False)
@@ -34,42 +27,13 @@ class Detections:
     """Points of the last frame (n, 3)."""
     places: list[Array] = field(default_factory=list)
     """Its centres (3,), until they are taken."""
-    evidence: float = 0.0
-    """Evidence of its frames that it does not stand (nats), not below 0."""
-    earlier: deque[tuple[float, Array]] = field(default_factory=lambda: deque(maxlen=_FRAMES))
-    """Times (s) and points (n, 3) of the last frames."""
+    evidence: MotionEvidence = field(default_factory=MotionEvidence)
 
     def add(self, points: SurfacePoints, clusters: int, centre: Array) -> None:
         """Add one frame."""
         self.last, self.points = max(self.last, points.time), points.points
         self.clusters += clusters
         self.places.append(centre)
-
-    def looked_through(self, points: SurfacePoints) -> Mask:
-        """Return which points (n,) were seen through places where points of the last frames were."""
-        before = [found for time, found in self.earlier if points.time - time > _APART]
-        if not before:
-            return np.zeros(len(points.points), dtype=bool)
-        way = points.points - points.origins
-        length = np.linalg.norm(way, axis=1)
-        offset = np.concatenate(before)[None] - points.origins[:, None]
-        along = np.einsum("nmi,ni->nm", offset, way / length[:, None])
-        square = np.einsum("nmi,nmi->nm", offset, offset) - along**2
-        sigma = np.sqrt(2.0 * (points.noise**2 + points.pose_variance))
-        beyond = length[:, None] - along > _SIGMAS * sigma[:, None] + _BESIDE
-        return np.asarray(((square < _BESIDE**2) & (along > 0.0) & beyond).any(axis=1))
-
-    def add_evidence(self, is_unexplained: bool, false_share: float) -> None:
-        """Take whether most of a frame contradicts that it stands: a cumulative sum test (Page 1954).
-
-        Nothing that stands explains its points, or they are seen through where points were before.
-
-        A fit to few points moves as the view of a body changes: its velocity alone is no evidence of motion.
-        ``false_share``: of the frames of what stands that contradict it.
-        """
-        likely = _UNEXPLAINED if is_unexplained else 1.0 - _UNEXPLAINED
-        by_chance = false_share if is_unexplained else 1.0 - false_share
-        self.evidence = max(self.evidence + math.log(likely / by_chance), 0.0)
 
     def take_places(self) -> list[Array]:
         """Return the centres since the last call."""
@@ -101,10 +65,15 @@ class Track:
     overlaps: dict[str, int] = field(default_factory=dict)
     """Frames in a row in which its points belonged to another track as well."""
 
-    def update(self, parts: list[SurfacePoints], unexplained: int = 0) -> None:
+    def update(
+        self, parts: list[SurfacePoints], explained: Sequence[PartOfScan] = (), scans: Sequence[PlacedScan] = ()
+    ) -> None:
         """Take the points of one frame, by all vehicles that detect it.
 
-        ``unexplained``: number of those that what stands does not explain.
+        Args:
+            parts: its points by vehicle.
+            explained: what the map says of them, by vehicle.
+            scans: all of the frame.
         """
         points = joined(parts)
         if self.filter is None:
@@ -113,14 +82,11 @@ class Track:
             )
         else:
             self.filter.update(points)
-        s = self.settings.standing_map
         self.detections.add(points, len(parts), self.filter.state[0])
         if not self.has_moved:
-            contradicted = max(unexplained, int(self.detections.looked_through(points).sum()))
-            self.detections.add_evidence(2 * contradicted > len(points.points), s.false_share)
-            self.detections.earlier.append((points.time, points.points))
-            is_evident = self.detections.evidence > -math.log(s.false_alarm)
-            self.has_moved = is_evident and self.filter.is_moving(s.false_alarm)
+            s, evidence = self.settings.standing_map, self.detections.evidence
+            evidence.add(points, explained, scans, s)
+            self.has_moved = evidence.nats > -math.log(s.false_alarm) and self.filter.is_moving(s.false_alarm)
         self.is_deleted = False
 
     @property

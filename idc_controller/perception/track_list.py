@@ -9,7 +9,9 @@ from idc_controller.arrays import Array, Mask
 from idc_controller.geometry.obstacles import Bodies, PointGroups
 from idc_controller.perception.association import gating_shape
 from idc_controller.perception.clusters import Cluster
+from idc_controller.perception.motion_evidence import PartOfScan
 from idc_controller.perception.motion_imm import MotionModels
+from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.settings import PerceptionSettings
 from idc_controller.perception.track import Track
 
@@ -29,24 +31,22 @@ class TrackList:
         self._next_number = 1
         self._scatter = 0.0
 
-    def update(self, assigned: dict[int, list[Cluster]]) -> None:
-        """Update tracks by the clusters of one frame, by index of the track."""
+    def update(self, assigned: dict[int, list[Cluster]], scans: Sequence[PlacedScan]) -> None:
+        """Update tracks by the clusters of one frame, by index of the track, and by all ``scans`` of the frame."""
         for index, members in assigned.items():
-            self.tracks[index].update(
-                [cluster.surface_points for cluster in members], sum(cluster.unexplained for cluster in members)
-            )
+            self._update(self.tracks[index], members, scans)
         # Scatter is of the sensors: new tracks begin with it.
         scatter = [t.filter.scatter for t in self.tracks if t.map_shape is None and t.filter is not None]
         self._scatter = max(scatter, default=self._scatter)
 
-    def begin(self, clusters: list[Cluster]) -> None:
-        """Begin tracks from clusters that belong to no obstacle."""
+    def begin(self, clusters: list[Cluster], scans: Sequence[PlacedScan]) -> None:
+        """Begin tracks from clusters of one frame that belong to no obstacle."""
         for members in self._grouped(clusters):
             while f"track {self._next_number}" in self._names:
                 self._next_number += 1
             track = self._track(f"track {self._next_number}")
             self._next_number += 1
-            track.update([member.surface_points for member in members], sum(member.unexplained for member in members))
+            self._update(track, members, scans)
             self.tracks.append(track)
 
     def merge(self, clusters: list[Cluster], bodies: list[int | None], distances: Array, standing: list[str]) -> None:
@@ -140,6 +140,11 @@ class TrackList:
         self._deleted.clear()
         for track in self.tracks:
             track.is_retained = track.is_retained or track.is_confirmed
+
+    @staticmethod
+    def _update(track: Track, members: list[Cluster], scans: Sequence[PlacedScan]) -> None:
+        explained = [PartOfScan(member.uav, member.unexplained, member.explained) for member in members]
+        track.update([member.surface_points for member in members], explained, scans)
 
     def _track(self, name: str) -> Track:
         return Track(name, self._models, self._settings, scatter=self._scatter)

@@ -1,0 +1,129 @@
+"""Evidence that a body does not stand, from what its points and the rays of all vehicles say (nats).
+
+A fit to few points moves as the view of a body changes: its velocity alone is no evidence of motion. What stands is hit
+at the same places again, and rays that pass there end at it as often as they ever did. The evidence is a cumulative sum
+(Page 1954) of the log-likelihood ratios of each vehicle's scan:
+
+- most of the points of the body lie in what was seen free, or where something has stood before. Those in space of which
+  nothing is known say neither, and beside what is so thin that rays pass it, space is seen free;
+- rays through the places of its earlier points end there, or beyond. Rays pass beside what is thin also while it
+  stands: how often, those of the other vehicles at the same time say. All rays of a scan together count as one, as the
+  error of the pose is common to them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from idc_controller.arrays import Array
+from idc_controller.perception.motion_evidence_kernels import count_rays
+from idc_controller.perception.placed_scan import PlacedScan
+from idc_controller.perception.settings import StandingMapSettings
+from idc_controller.perception.surfaces.points import SurfacePoints
+
+_UNEXPLAINED = 0.5
+"""Share of the scans of what moves that contradict that it stands, where it can be told."""
+_FRAMES, _APART = 20, 0.45
+"""Frames whose points are remembered; time from which on one is earlier (s)."""
+_BESIDE = 0.15
+"""Distance of a ray from a point within which it passes through the place of that (m)."""
+_SIGMAS = 3.0
+"""Standard deviations by which it must end beyond."""
+
+
+class PartOfScan(NamedTuple):
+    """Points of a body in one vehicle's scan."""
+
+    uav: int
+    unexplained: int
+    """Number of those that lie in what was seen free, away from all that stands."""
+    explained: int
+    """Number of those where something has stood before."""
+
+    def joined(self, other: PartOfScan) -> PartOfScan:
+        """Return both parts of one scan."""
+        return PartOfScan(self.uav, self.unexplained + other.unexplained, self.explained + other.explained)
+
+
+class MotionEvidence:
+    """Evidence of one body. Times in s, NED, m."""
+
+    def __init__(self) -> None:
+        self._frames: deque[tuple[float, Array, Array]] = deque(maxlen=_FRAMES)
+        self._ends, self._passes = 0.0, 0.0
+        """Scans through points that others saw then: sums of the shares of rays that ended there, and passed."""
+        self.nats = 0.0
+        """Evidence that it does not stand, not below 0."""
+
+    def add(
+        self,
+        points: SurfacePoints,
+        parts: Sequence[PartOfScan],
+        scans: Sequence[PlacedScan],
+        settings: StandingMapSettings,
+    ) -> None:
+        """Take one frame.
+
+        Args:
+            points: of the body.
+            parts: what the map says of them.
+            scans: all of the frame.
+            settings: of the map, on false returns and rays that pass what is seen free.
+        """
+        of_uav: dict[int, PartOfScan] = {}
+        for part in parts:
+            of_uav[part.uav] = part if part.uav not in of_uav else part.joined(of_uav[part.uav])
+        variances = points.noise**2 + points.pose_variance
+        earlier = self._earlier(points.time)
+        for scan in scans:
+            ratio = self._ratio_of_points(of_uav[scan.uav], settings) if scan.uav in of_uav else 0.0
+            self.nats = max(self.nats + ratio + self._ratio_of_rays(scan, earlier), 0.0)
+            of_others = (points.origins != scan.origin).any(axis=1)
+            ends, passes = _shares(scan, (points.points[of_others], variances[of_others]))
+            self._ends += ends
+            self._passes += passes
+        self._frames.append((points.time, points.points, variances))
+
+    @property
+    def _passing(self) -> float:
+        """Share of the rays through the places of its points that pass while it stands, by Laplace's rule."""
+        return (self._passes + 1.0) / (self._ends + self._passes + 2.0)
+
+    def _ratio_of_points(self, part: PartOfScan, settings: StandingMapSettings) -> float:
+        if not part.unexplained and not part.explained:
+            return 0.0
+        # Its place is seen free if all of the rays pass that it takes.
+        by_chance = max(settings.false_share, min(self._passing**settings.free_passes, _UNEXPLAINED))
+        if part.unexplained > part.explained:
+            return math.log(_UNEXPLAINED / by_chance)
+        return math.log((1.0 - _UNEXPLAINED) / (1.0 - by_chance))
+
+    def _ratio_of_rays(self, scan: PlacedScan, earlier: tuple[Array, Array]) -> float:
+        ends, passes = _shares(scan, earlier)
+        # Where it has left, half of those that would have met it pass as well.
+        return passes * math.log(0.5 * (1.0 + self._passing) / self._passing) + ends * math.log(0.5)
+
+    def _earlier(self, time: float) -> tuple[Array, Array]:
+        chosen = [(places, variances) for at, places, variances in self._frames if time - at > _APART]
+        if not chosen:
+            return np.empty((0, 3)), np.empty(0)
+        return np.concatenate([places for places, _ in chosen]), np.concatenate([v for _, v in chosen])
+
+
+def _shares(scan: PlacedScan, places: tuple[Array, Array]) -> tuple[float, float]:
+    """Return of the rays of a scan that meet places which share ends there, and which passes; 0 and 0 if none does."""
+    counts = np.zeros(2)
+    if len(places[0]):
+        sigmas = np.array([scan.range_sigma, scan.position_sigma, scan.attitude_sigma])
+        count_rays(
+            np.ascontiguousarray(scan.origin), np.ascontiguousarray(scan.returns),
+            np.ascontiguousarray(scan.free_rays), sigmas, *places, _BESIDE, _SIGMAS, counts,
+        )  # fmt: skip
+    ends, passes = counts.tolist()
+    met = max(ends + passes, 1.0)
+    return ends / met, passes / met
