@@ -3,9 +3,10 @@
 from dataclasses import replace
 
 import numpy as np
+from scipy.special import ndtri
 
 from idc_controller.arrays import Array
-from idc_controller.estimation.health.chi_squared import upper_quantile
+from idc_controller.estimation.health.chi_squared import length_quantile, upper_quantile
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.obstacles import Bodies
 from idc_controller.geometry.shape import Shape
@@ -44,6 +45,7 @@ class ObstacleFilter:
         """
         self.settings = settings
         self._complexity = {"sphere": 0.0, "pole": self.settings.pole_complexity, "wall": self.settings.wall_complexity}
+        self._outside_sigmas = float(-ndtri(settings.outside_share))
         self.frames = 0
         self._known = known
         self._scores: dict[str, float] = {}
@@ -158,12 +160,12 @@ class ObstacleFilter:
     def predict(self, times: Array) -> tuple[Array, Array]:
         """Return the predicted centre (K, 3) (NED, m) at ``times`` (K,) (s), and the growth of the body (K,) (m)."""
         mean, covariance = self._imm.predict(times)
-        # Gershgorin's bound on the largest eigenvalue; exact where one axis, or one diagonal, dominates.
-        variance = np.abs(covariance).sum(axis=-1).max(axis=-1) + self._surface.size_sigma**2 + self._scatter
-        variance += self._manoeuvre.variance(np.maximum(np.asarray(times) - self._imm.time, 0.0))
+        unmodelled = self._manoeuvre.variance(np.maximum(np.asarray(times) - self._imm.time, 0.0))
+        position = length_quantile(self.settings.outside_share, covariance + unmodelled[:, None, None] * np.eye(3))
+        extent = self._outside_sigmas**2 * (self._surface.size_sigma**2 + self._scatter)
         # Where points scatter, its motion is estimated late.
         limit = self._manoeuvre.growth_limit(np.sqrt(self._scatter))
-        growth = np.minimum(np.sqrt(variance), limit)
+        growth = np.minimum(np.sqrt(position**2 + extent), limit)
         if self._uncovered > self.settings.uncovered_min:
             growth = growth + self._uncovered
         return mean + self._surface.offset, growth

@@ -158,6 +158,13 @@ class SurfaceSettings(SettingsTable):
 class ObstacleFilterSettings(SettingsTable):
     """Shape and motion of one track."""
 
+    outside_share: float = setting(
+        0.01,
+        "",
+        "probability that the true body reaches out of the predicted one, where its growth has no limit",
+        gt=0.0,
+        lt=0.5,
+    )
     static_speed: float = setting(0.1, "m/s", "speed below which a track is static", gt=0.0)
     static_weight: float = setting(0.5, "", "weight of the static model above which it is", gt=0.0, lt=1.0)
     late_speed: float = setting(0.5, "m/s", "uncertainty of the speed by which late frames are moved", ge=0.0)

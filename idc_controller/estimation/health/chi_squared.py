@@ -12,6 +12,18 @@ def lower_quantile(probability: float, freedom: ArrayLike) -> Array:
     return np.asarray(2.0 * gammaincinv(np.asarray(freedom) / 2.0, probability))
 
 
+def length_quantile(probability: float, covariance: Array) -> Array:
+    """Return the length (K,) that normal errors with ``covariance`` (K, n, n) exceed with that probability, about.
+
+    By a chi-squared distribution with the mean and variance of the squared length (Satterthwaite 1946): exact for one
+    axis and for equal ones.
+    """
+    mean = np.trace(covariance, axis1=-2, axis2=-1)
+    squares = np.sum(covariance**2, axis=(-2, -1))
+    scale = squares / np.maximum(mean, 1e-12)
+    return np.asarray(np.sqrt(scale * upper_quantile(probability, mean / np.maximum(scale, 1e-12))))
+
+
 def upper_quantile(probability: float, freedom: ArrayLike) -> Array:
     """Return what a share ``probability`` of samples with ``freedom`` degrees of freedom exceeds."""
     return np.asarray(chdtri(freedom, probability))
