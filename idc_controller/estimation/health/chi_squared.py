@@ -20,8 +20,8 @@ def length_quantile(probability: float, covariance: Array) -> Array:
     """
     mean = np.trace(covariance, axis1=-2, axis2=-1)
     squares = np.sum(covariance**2, axis=(-2, -1))
-    scale = squares / np.maximum(mean, 1e-12)
-    return np.asarray(np.sqrt(scale * upper_quantile(probability, mean / np.maximum(scale, 1e-12))))
+    scale = squares / np.maximum(mean, 1e-300)
+    return np.asarray(np.sqrt(scale * upper_quantile(probability, np.maximum(mean / np.maximum(scale, 1e-300), 1.0))))
 
 
 def upper_quantile(probability: float, freedom: ArrayLike) -> Array:
