@@ -1,9 +1,11 @@
 """Lockstep driver of the ground: it answers the world's ticks, and notices when none come. The world is scripted."""
 
+from contextlib import closing
 from types import SimpleNamespace
 
 import pytest
 
+from gcs.drivers.connection import Connection, LockstepConnection
 from gcs.drivers.lockstep import run_in_lockstep
 from gcs.drivers.settings import DriverSettings
 from gcs.flight.failsafe import Failsafe
@@ -127,3 +129,23 @@ def test_interrupt_is_raised_once_at_the_next_tick():
     world, station = World([tick(1, 1000)], [tick(2, 2000)]), Station(2)
     run(world, station, requested=True)
     assert station.failsafes == [(0.001, Failsafe.INTERRUPTED, "interrupted")]
+
+
+def test_tick_alone_ends_a_wait_and_comes_behind_the_datagrams_of_the_vehicles():
+    with closing(Connection()) as ground, closing(Connection()) as clock, closing(Connection()) as vehicle:
+        clock_address, ground_address = clock.socket.getsockname(), ground.socket.getsockname()
+        with closing(LockstepConnection(ground, clock_address)) as connection:
+            connection.send(b"join", clock_address)
+            connection.send(b"heartbeat", vehicle.socket.getsockname())
+            assert list(vehicle.receive()) == [(b"heartbeat", ground_address)]
+            [(join, joined_from)] = clock.receive()
+            assert join == b"join" and joined_from != ground_address
+
+            vehicle.send(b"telemetry", ground_address)
+            assert not connection.wait(0.0)
+            clock.send(b"tick", joined_from)
+            assert connection.wait(0.0)
+            vehicle.send(b"more", ground_address)
+            sent_by_vehicle = [(data, vehicle.socket.getsockname()) for data in (b"telemetry", b"more")]
+            assert list(connection.receive()) == [*sent_by_vehicle, (b"tick", clock_address)]
+            assert not connection.wait(0.0) and list(connection.receive()) == []
