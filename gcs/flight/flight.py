@@ -1,6 +1,7 @@
 """One flight, from connecting to disarming: its phases, the control step in each, and the reactions to failsafes."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -95,13 +96,14 @@ class Flight:
 
     # Telemetry
 
-    def add_measurement(self, measurement: Measurement) -> Measurement | None:
-        """Take telemetry of a vehicle or of the payload unit; return what is used of it."""
+    def add_measurements(self, measurements: Sequence[Measurement]) -> Sequence[Measurement]:
+        """Take telemetry of the vehicles and of the payload unit; return what is used of it."""
         if self.phase in CONTROLLED:
-            return self.control.estimator.add(measurement)
+            return [used for taken in measurements if (used := self.control.estimator.add(taken)) is not None]
         if self.phase in (Phase.CHECK, Phase.ARM):
-            self.system.preflight.add(measurement)
-        return measurement
+            for taken in measurements:
+                self.system.preflight.add(taken)
+        return measurements
 
     # Failsafes
 
