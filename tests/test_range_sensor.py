@@ -21,7 +21,7 @@ from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
 from idc_controller.geometry.visibility_kernels import points_of_pole, points_of_sphere
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
-from vehicle_sim.faults import FaultInjector
+from vehicle_sim.faults.fault_injector import FaultInjector
 from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.obstacle_bodies import ScanTargets
 from vehicle_sim.world.range_sensor import RangeSensor, visible_rays

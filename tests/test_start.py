@@ -19,6 +19,7 @@ FOR_FLIGHTS = {
 }  # fmt: skip
 NOT_FOR_FLIGHTS = {
     "PIL", "hypothesis", "matplotlib", "pandas", "pyarrow", "pymap3d", "shapely", "trimesh",
+    "gcs.faults.kinds",  # of missions with faults
     "numba.np.polynomial.polynomial_core", "numba.typed.dictimpl",  # of the registries by which numba compiles
 }  # fmt: skip
 PROGRAM = """\

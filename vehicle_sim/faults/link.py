@@ -2,7 +2,8 @@
 
 from gcs.faults import link as kinds
 from vehicle_sim.faults.frames import frames
-from vehicle_sim.faults.impairment import Datagram, GilbertElliottProcess, LinkImpairment, OrderedImpairment
+from vehicle_sim.faults.impairment import GilbertElliottProcess, LinkImpairment, OrderedImpairment
+from vehicle_sim.faults.no_faults import Datagram
 from vehicle_sim.faults.schedule import TOLERANCE, Moment
 
 
