@@ -290,6 +290,31 @@ def test_planning_in_steps_equals_planning_at_once():
     assert np.allclose(stepwise.passages, at_once.passages)
 
 
+def sequence_in_sequences():
+    """Return a sequence of a sequence of a sequence, with rests of known end between motions of unknown end."""
+
+    def to(place):
+        return lambda now, here: WaypointTrajectory(here, [Leg(place, 1.5)], LIMITS, start=now)
+
+    inner = to([2, 0, -5])(0.0, HIGH).then(lambda now, here: RestTrajectory(here, now, now + 4.0)).then(to([2, 2, -5]))
+    middle = to([1, 0, -5])(-6.0, HIGH).then(lambda now, here: inner)
+    return middle.then(lambda now, here: RestTrajectory(here, now, now + 4.0)).then(to(HIGH))
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_sequence_in_sequences_evaluated_in_steps_equals_that_evaluated_at_once(seed):
+    rng = np.random.default_rng(seed)
+    at_once, stepwise = sequence_in_sequences(), sequence_in_sequences()
+    at_once.derivatives([200.0])
+    horizon = np.linspace(-0.3, 1.0, 8)
+    for now in np.arange(-7.0, at_once.end + 1.0, 0.1):
+        times = now + horizon[: rng.integers(1, 9)]
+        assert (stepwise.derivatives(times) == at_once.derivatives(times)).all()
+    assert stepwise.end == at_once.end
+    for now in rng.uniform(-7.0, at_once.end, 50):
+        assert (stepwise.derivatives(now + horizon) == at_once.derivatives(now + horizon)).all()
+
+
 def test_holding_for_ever_and_stopping_then_flying_home():
     trajectory = WaypointTrajectory(HIGH, [Leg([5, 0, -5], 1.5, math.inf)], LIMITS, start=3.0)
     assert np.allclose(trajectory.position(1e4), [5, 0, -5])
