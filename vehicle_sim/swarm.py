@@ -85,7 +85,7 @@ class Swarm:
         )  # fmt: skip
         self._team = Team(self.vehicles, arrays, rotors, config, seed, self._faults)
         self._modes_recorded = False
-        self._wrenches: list[Wrenches] = []
+        self._wrenches: Wrenches = [], []
         """Of the physics steps between the last and the next onboard step."""
         self._onboard(self.world.states())
         self._team.relay()
@@ -161,11 +161,12 @@ class Swarm:
         world, periods = self.world, self._periods
         if self._obstacles.any_moves and self.take_off_time is not None:
             self._obstacles.move((world.steps + 1) / world.physics_hz - self.take_off_time)
-        thrusts, torques = self._wrenches[world.steps % periods.onboard]
+        thrusts, torques = self._wrenches
+        k = world.steps % periods.onboard
         if self._faults.any_of_world:
-            world.step(thrusts, torques, *(self._faults.disturb(world, world.time) or ()))
+            world.step(thrusts[k], torques[k], *(self._faults.disturb(world, world.time) or ()))
         else:
-            world.step(thrusts, torques)
+            world.step(thrusts[k], torques[k])
         if self._truth is not None and (pairs := world.contacts().pairs) > self._contacts:
             self._contacts = pairs
         if self.take_off_time is None and not world.all_cradled:

@@ -45,7 +45,7 @@ class Team:
         self._times = np.empty(len(ids))
         self._payload_sample: tuple[float, Array] | None = None
 
-    def wrenches(self) -> list[Wrenches]:
+    def wrenches(self) -> Wrenches:
         """Return the wrenches of the rotors for the physics steps up to the next step of the onboard loops."""
         return self._rotors.advance(self._arrays.speeds)
 
