@@ -40,10 +40,11 @@ class Flight:
         self.mission, self.control, self._settings = mission, control, mission.system.flight
         settings = self._settings
         payload, preflight = PayloadMonitor(control.controller.parameters, settings), Preflight(team, settings)
-        system = System(
+        self.system = System(
             team, control.estimator, control.controller.guidance, payload, preflight, obstacle_map, settings.failsafe
         )
-        self.failsafes = FailsafeState(system, alarms)
+        """The objects that the conditions of failsafes are evaluated on."""
+        self.failsafes = FailsafeState(self.system, alarms)
         self.phase = Phase.CONNECT
         self.time = 0.0
         """Team time of the last control step."""
@@ -54,11 +55,6 @@ class Flight:
         self._pad: Trajectory | None = None
         self._touchdown: Touchdown | None = None
         self._sequence: CommandSequence | None = None
-
-    @property
-    def system(self) -> System:
-        """The objects that the conditions of failsafes are evaluated on."""
-        return self.failsafes.system
 
     @property
     def ended(self) -> bool:
