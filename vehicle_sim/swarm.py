@@ -143,16 +143,15 @@ class Swarm:
             i = vehicle.system_id
             for arrived, source in faults.to_vehicle(i, (), now):
                 vehicle.receive(arrived, source, now)
-            leaving = faults.from_vehicle(i, vehicle.datagrams_to_send(now), now)
-            out += [(i, datagram, address) for datagram, address in leaving]
+            for datagram, address in faults.from_vehicle(i, vehicle.datagrams_to_send(now), now):
+                out.append((i, datagram, address))
         return out
 
     def next_timer(self) -> float | None:
         """Return when :meth:`datagrams_to_send` has something to do (s; in the past: at once), None: never."""
-        timers = [timer for vehicle in self.vehicles if (timer := vehicle.next_timer()) is not None]
-        if (timer := self._faults.next_timer()) is not None:
-            timers.append(timer)
-        return min(timers, default=None)
+        timers = [vehicle.next_timer() for vehicle in self.vehicles]
+        timers.append(self._faults.next_timer())
+        return min([timer for timer in timers if timer is not None], default=None)
 
     # Inside
 
