@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from idc_controller.arrays import Array, Indices
-from idc_controller.estimation.kalman_filter import Innovation, SparseRows, StructuredKalmanFilter
+from idc_controller.estimation.kalman_filter import Innovation, StructuredKalmanFilter
 from idc_controller.estimation.process_model import ProcessModel
 from idc_controller.estimation.propagation_kernels import about_reference, are_finite
 from idc_controller.estimation.setpoint_history import SetpointHistory
@@ -118,13 +118,6 @@ class ErrorStateFilter:
     def inflate(self, added: Array) -> None:
         """Add ``added`` (n, n) to the covariance."""
         self._kf.P = self._kf.P + added
-
-    def innovation(self, y: Array, rows: SparseRows, starts: Indices, sizes: Indices) -> Innovation:
-        """Return the innovation of the measurements ``y`` (m,), less reference, that ``rows`` observe.
-
-        ``starts``, ``sizes``: first row and number of rows of each (K,).
-        """
-        return self._kf.innovation(y, rows, starts, sizes)
 
     def update(self, innovation: Innovation, variance: Array, measured: Indices) -> float:
         """Correct by measurements and return their normalised innovation squared.
