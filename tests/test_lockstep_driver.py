@@ -4,6 +4,7 @@ from contextlib import closing
 from types import SimpleNamespace
 
 import pytest
+from scripted_station import VEHICLE, ScriptedStation
 
 from gcs.drivers.connection import Connection, LockstepConnection
 from gcs.drivers.lockstep import run_in_lockstep
@@ -11,7 +12,7 @@ from gcs.drivers.settings import DriverSettings
 from gcs.flight.failsafe import Failsafe
 from gcs.mavlink.lockstep import Done, Tick, decode_done
 
-CLOCK, VEHICLE = ("127.0.0.1", 14500), ("127.0.0.1", 14541)
+CLOCK = ("127.0.0.1", 14500)
 JOIN, LEAVE = Done(0, None), Done(0, None, leaving=True)
 SETTINGS = DriverSettings(join_interval=1.0, tick_timeout=3.0)
 
@@ -42,33 +43,15 @@ class World:
             self.commands.append((datagram, address))
 
 
-class Station:
-    """A ground station that ends its flight after so many ticks; each is answered by a datagram to the vehicle."""
+class Station(ScriptedStation):
+    """A ground station that ends its flight after so many ticks, and is due next at ``due`` (s)."""
 
     def __init__(self, ticks, due=None):
-        self.ticks, self.due, self.times, self.received, self.failsafes = ticks, due, [], [], []
-
-    @property
-    def ended(self):
-        return len(self.times) >= self.ticks
-
-    def receive_all(self, datagrams, now):
-        self.received += [(datagram, sender, now) for datagram, sender in datagrams]
-
-    def datagrams_to_send(self, now):
-        self.times.append(now)
-        return [(b"command", VEHICLE)]
+        super().__init__(ticks)
+        self.due = due
 
     def next_timer(self):
         return self.due
-
-    def raise_failsafe(self, now, failsafe, reason):
-        self.failsafes.append((now, failsafe, reason))
-
-    def resume(self):
-        pass
-
-    sent = resume
 
 
 def run(world, station, requested=False, end_reason=lambda: None):
