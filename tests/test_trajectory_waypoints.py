@@ -167,6 +167,15 @@ def test_spline_stops_within_a_braking_distance_on_its_curve(moment, standing):
     assert np.abs(stopped.derivatives([stopped.end])[1:]).max() < 1e-9
 
 
+@pytest.mark.parametrize(("steps", "length"), [(12, 0.3), (30, 0.1), (30, 0.3)])
+def test_stop_of_a_spline_never_ends_later_than_the_spline(steps, length):
+    along = np.concatenate([np.zeros(5), length * np.arange(1, steps + 1), np.full(5, length * steps)])
+    spline = SplineTrajectory(np.column_stack([along, 0.0 * along, 0.0 * along - 5.0]), 0.25, 0.0, LIMITS)
+    ends = [spline.stop(time).end for time in np.arange(0.5, spline.end, 0.25)]
+    assert min(ends) < spline.end
+    assert max(ends) <= spline.end
+
+
 def test_snap_is_continuous():
     trajectory = planned([Leg([3, 0, -5], 1.5), Leg([3, 4, -6], 1.0)])
     knots = trajectory.start + np.arange(1, 60) * smoothing_for(LIMITS).interval
