@@ -60,7 +60,7 @@ def run(world, station, requested=False, end_reason=lambda: None):
 
 
 @pytest.mark.parametrize(
-    ("due", "next_us"), [(None, None), (0.05, 50_000), (0.07, 70_000), (0.0500004, 50_001), (0.0, 1001)],
+    ("due", "next_us"), [(None, None), (0.05, 50_000), (0.1 + 0.2, 300_000), (0.0500004, 50_001), (0.0, 1001)],
     ids=["never", "whole", "whole but for rounding", "rounded up", "past"],
 )  # fmt: skip
 def test_each_tick_is_answered_with_the_time_of_the_next_timer(due, next_us):
