@@ -28,7 +28,7 @@ class Contacts(NamedTuple):
     standing: bool
 
 
-NO_CONTACTS = Contacts(0, False)
+NO_CONTACTS, _STANDING = Contacts(0, False), Contacts(0, True)
 
 
 class Ground:
@@ -79,4 +79,4 @@ class Ground:
                 standing = True
             else:
                 pairs.add((body_a, link_a, body_b, link_b))
-        return Contacts(len(pairs), standing)
+        return Contacts(len(pairs), standing) if pairs or not standing else _STANDING
