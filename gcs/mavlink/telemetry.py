@@ -11,7 +11,6 @@ from gcs.mavlink import px4
 from gcs.mavlink.layout import LAYOUTS
 from gcs.mavlink.messages import Received
 from gcs.mavlink.telemetry_kernels import poses_and_motions
-from idc_controller.arrays import Array
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, Position
 from idc_controller.perception.scan_assembly import Detections
 
@@ -25,8 +24,8 @@ _READ = 32
 """Bytes of a navigation message that are read: stamp, pose and motion."""
 
 
-def setpoint_flown(fields: tuple[Any, ...], thrust_max: float) -> Array | None:
-    """Return the tilt of the thrust (north, east) and thrust (N), (3,), in an ATTITUDE_TARGET; None: it has neither.
+def setpoint_flown(fields: tuple[Any, ...], thrust_max: float) -> tuple[float, float, float] | None:
+    """Return the tilt of the thrust (north, east) and thrust (N) in an ATTITUDE_TARGET; None: it has neither.
 
     ``fields`` in the order of the wire; ``thrust_max`` (N) is what the vehicle means by thrust 1.
     """
@@ -34,7 +33,7 @@ def setpoint_flown(fields: tuple[Any, ...], thrust_max: float) -> Array | None:
     if type_mask & mavlink.ATTITUDE_TARGET_TYPEMASK_ATTITUDE_IGNORE:
         return None
     flown = (-2.0 * (x * z + w * y), -2.0 * (y * z - w * x), thrust * thrust_max)
-    return np.array(flown) if math.isfinite(sum(flown)) else None
+    return flown if math.isfinite(sum(flown)) else None
 
 
 def measurements(messages: Sequence[tuple[Received, int, float]]) -> tuple[list[Measurement], list[int]]:
