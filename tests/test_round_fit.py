@@ -82,8 +82,9 @@ def test_fit_of_kernel_agrees_with_fit_in_numpy(seed, axes, scatter):
 def test_points_are_placed_by_the_pose_of_their_vehicle():
     rng = np.random.default_rng(1)
     body, position = rng.normal(0.0, 5.0, (20, 3)), rng.normal(size=3)
-    rotation = rotation_from_quaternion(quaternion_from_euler(0.1, -0.2, 2.0))
-    world, cut, variance = placed_points(body, position, rotation, 8.0, 0.02, 0.003)
+    quaternion = quaternion_from_euler(0.1, -0.2, 2.0)
+    rotation = rotation_from_quaternion(quaternion)
+    world, cut, variance = placed_points(body, position, quaternion, 8.0, 0.02, 0.003)
     distance = np.linalg.norm(body, axis=1)
     np.testing.assert_allclose(world, position + body @ rotation.T, atol=1e-12)
     np.testing.assert_array_equal(cut, distance > 8.0)

@@ -14,7 +14,6 @@ from idc_controller.perception.pose_history import PoseHistory
 from idc_controller.perception.scan_kernels import grouped, placed_points, possible_points
 from idc_controller.perception.settings import ScanSettings
 from idc_controller.perception.surfaces.points import SurfacePoints
-from idc_controller.rotations import rotation_from_quaternion
 
 _POINT_BYTES = "V24"
 """A row of three numbers as one value."""
@@ -231,7 +230,7 @@ class ScanAssembly:
         """Return the points of a scan, ``body`` (n, 3) in the body frame, in the world."""
         noise = self._sensors.range_noise
         world, cut, variance = placed_points(
-            body, np.ascontiguousarray(position), rotation_from_quaternion(quaternion),
+            body, np.ascontiguousarray(position), np.ascontiguousarray(quaternion),
             scan.max_range - self._settings.cut_sigmas * noise, position_sigma, attitude_sigma,
         )  # fmt: skip
         return SurfacePoints(scan.time, world, np.tile(position, (len(body), 1)), cut, noise, variance)

@@ -7,30 +7,38 @@ import numpy as np
 from idc_controller.arrays import Array, Indices, Mask
 from idc_controller.compiled import kernel
 
+_POSE = "Array(float64, 1, 'C', readonly=True)"
+"""Type of a part of a pose, which is only read."""
+
 
 @kernel(
     "Tuple((float64[:, ::1], boolean[::1], float64[::1]))"
-    "(float64[:, ::1], float64[::1], float64[:, ::1], float64, float64, float64)"
+    f"(float64[:, ::1], {_POSE}, {_POSE}, float64, float64, float64)"
 )
 def placed_points(
-    body: Array, position: Array, rotation: Array, cut_range: float, position_sigma: float, attitude_sigma: float
+    body: Array, position: Array, quaternion: Array, cut_range: float, position_sigma: float, attitude_sigma: float
 ) -> tuple[Array, Mask, Array]:
     """Return points in the world (n, 3), whether they are beyond ``cut_range`` (m) (n,), and their variance (n,).
 
     Args:
         body: points in the vehicle's frame (n, 3).
         position: of the vehicle (3,), NED.
-        rotation: its attitude, body to world (3, 3).
+        quaternion: its attitude, body to world, w first (4,).
         cut_range: distance from which on a point ends the sensor's range.
         position_sigma, attitude_sigma: standard deviations of the pose (m, rad).
     """
-    n = body.shape[0]
+    n, (w, x, y, z) = body.shape[0], quaternion
+    rotation = (
+        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
+    )
     world, cut, variance = np.empty((n, 3)), np.empty(n, np.bool_), np.empty(n)
     for p in range(n):
         a, b, c = body[p, 0], body[p, 1], body[p, 2]
         distance = math.sqrt(a * a + b * b + c * c)
         for i in range(3):
-            world[p, i] = position[i] + (a * rotation[i, 0] + b * rotation[i, 1] + c * rotation[i, 2])
+            world[p, i] = position[i] + (a * rotation[i][0] + b * rotation[i][1] + c * rotation[i][2])
         cut[p] = distance > cut_range
         variance[p] = position_sigma**2 + (attitude_sigma * distance) ** 2
     return world, cut, variance
