@@ -5,7 +5,7 @@ import pytest
 from filterpy.kalman import KalmanFilter
 from scipy.linalg import expm
 
-from idc_controller.perception.imm_kernels import advanced, predicted, updated
+from idc_controller.perception.imm_kernels import advanced, predicted, updated, variance_bounds
 from idc_controller.perception.motion_imm import MotionImm, MotionModels
 from idc_controller.perception.settings import ImmSettings
 
@@ -233,3 +233,10 @@ def test_kernels_agree_with_formulas_in_numpy(seed):
         ahead = MODELS.horizon(np.linspace(0.0, 5.0 * dt, 8))
         for ours, theirs in zip(predicted(*state, *ahead), predicted_in_numpy(*state, *ahead), strict=True):
             np.testing.assert_allclose(ours, theirs, rtol=1e-9, atol=1e-12)
+
+
+def test_variance_bounds_are_the_largest_row_sums():
+    rng = np.random.default_rng(4)
+    covariance = rng.normal(size=(50, 3, 3))
+    covariance[[3, 7, 9], [0, 1, 2], [2, 0, 1]] = np.nan
+    np.testing.assert_array_equal(variance_bounds(covariance), np.abs(covariance).sum(axis=-1).max(axis=-1))

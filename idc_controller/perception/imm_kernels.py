@@ -159,3 +159,20 @@ def predicted(weight: Array, x: Array, P: Array, F: Array, Q: Array) -> tuple[Ar
                 for b in range(3):
                     covariance[k, a, b] += weight[i] * apart[a] * apart[b]
     return mean, covariance
+
+
+@kernel("float64[::1](float64[:, :, ::1])")
+def variance_bounds(covariance: Array) -> Array:
+    """Return Gershgorin's bounds (K,) on the largest eigenvalues of ``covariance`` (K, 3, 3).
+
+    They are exact where one axis, or one diagonal, dominates; nan where an element is.
+    """
+    bounds = np.empty(len(covariance))
+    for k in range(len(covariance)):
+        bound = 0.0
+        for a in range(3):
+            row = abs(covariance[k, a, 0]) + abs(covariance[k, a, 1]) + abs(covariance[k, a, 2])
+            if row > bound or row != row:  # nan stays
+                bound = row
+        bounds[k] = bound
+    return bounds

@@ -8,6 +8,7 @@ from idc_controller.arrays import Array
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.obstacles import Bodies
 from idc_controller.geometry.shape import Shape
+from idc_controller.perception.imm_kernels import variance_bounds
 from idc_controller.perception.manoeuvre import ManoeuvreDetector
 from idc_controller.perception.motion_imm import MotionImm, MotionModels
 from idc_controller.perception.settings import ObstacleFilterSettings, SurfaceSettings
@@ -146,8 +147,7 @@ class ObstacleFilter:
     def predict(self, times: Array) -> tuple[Array, Array]:
         """Return the predicted centre (K, 3) (NED, m) at ``times`` (K,) (s), and the growth of the body (K,) (m)."""
         mean, covariance = self._imm.predict(times)
-        # Gershgorin's bound on the largest eigenvalue; exact where one axis, or one diagonal, dominates.
-        variance = np.abs(covariance).sum(axis=-1).max(axis=-1) + self._surface.size_sigma**2 + self._scatter
+        variance = variance_bounds(covariance) + self._surface.size_sigma**2 + self._scatter
         variance += self._manoeuvre.variance(np.maximum(np.asarray(times) - self._imm.time, 0.0))
         # Where points scatter, its motion is estimated late.
         limit = self._manoeuvre.growth_limit(np.sqrt(self._scatter))
