@@ -157,11 +157,11 @@ class Swarm:
 
     def _step(self) -> None:
         """Take one physics step."""
-        world, periods = self.world, self._periods
+        world, (onboard, row, scan) = self.world, self._periods
         if self._obstacles.any_moves and self.take_off_time is not None:
             self._obstacles.move((world.steps + 1) / world.physics_hz - self.take_off_time)
         thrusts, torques = self._wrenches
-        k = world.steps % periods.onboard
+        k = world.steps % onboard
         if self._faults.any_of_world:
             world.step(thrusts[k], torques[k], *(self._faults.disturb(world, world.time) or ()))
         else:
@@ -172,9 +172,9 @@ class Swarm:
             self.take_off_time = world.time
             self._faults.took_off(world.time)
         steps = world.steps
-        measures = steps % periods.onboard == 0
-        scans = steps % periods.scan == 0 and bool(world.obstacles.all())
-        records = steps % periods.row == 0 and self._truth is not None
+        measures = steps % onboard == 0
+        scans = steps % scan == 0 and bool(world.obstacles.all())
+        records = steps % row == 0 and self._truth is not None
         if not (measures or scans or records):
             return
         states = world.states()

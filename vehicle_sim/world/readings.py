@@ -31,6 +31,7 @@ class Readings:
         self._velocity: _Velocity = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
         self._before: tuple[_Velocity, Uavs] = self._velocity, self.uavs
         self._payload: Pose | None = None
+        self._states: Array | None = None
         self.update()
         self._before = self._velocity, self.uavs
 
@@ -43,7 +44,7 @@ class Readings:
         self._before = self._velocity, self.uavs
         self.uavs = pybullet.getLinkStates(self._body, self._links, 1, 1, self._client)
         self._velocity = pybullet.getBaseVelocity(self._body, self._client)
-        self._payload = None
+        self._payload = self._states = None
 
     @property
     def payload(self) -> Pose:
@@ -53,7 +54,9 @@ class Readings:
         return self._payload
 
     def states(self) -> Array:
-        """Return the true states of payload and UAVs now, (N + 1, 13) as in :mod:`.state_kernels`."""
+        """Return the true states of payload and UAVs now, (N + 1, 13) as in :mod:`.state_kernels`, to be read only."""
+        if self._states is not None:
+            return self._states
         position, attitude = self.payload
         (velocity, rates), ((velocity_before, rates_before), uavs_before) = self._velocity, self._before
         numbers = [*position, *attitude, *velocity, *rates, *velocity_before, *rates_before]
@@ -61,6 +64,6 @@ class Readings:
             _, _, _, _, _, _, v_before, w_before = uavs_before[i]
             numbers += (*place, *turn, *v, *w, *v_before, *w_before)
         self._pack(self._rows.data, 0, *numbers)
-        states = np.empty((len(self._rows), STATE_COLUMNS))
+        self._states = states = np.empty((len(self._rows), STATE_COLUMNS))
         states_from_engine(self._rows, self._payload_in_axes, states)
         return states
