@@ -11,7 +11,7 @@ from gcs.mission.model import DEFAULT_HOME, Home, Obstacle
 from idc_controller.arrays import Array
 from vehicle_sim.autopilot.airframe import Airframe
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
-from vehicle_sim.faults.no_faults import NoFaults
+from vehicle_sim.faults.disturbances import Disturbances
 from vehicle_sim.mavlink.vehicle import Vehicle
 from vehicle_sim.team import Team
 from vehicle_sim.world.obstacle_bodies import MovingObstacles
@@ -49,7 +49,7 @@ class Swarm:
         home: Home | None = None,
         obstacles: Sequence[Obstacle] = (),
         ground_address: Address | None = None,
-        faults: NoFaults | None = None,
+        faults: Disturbances | None = None,
         gui: bool = False,
     ) -> None:
         """``ground_address`` is where the vehicles offer themselves. Raises :class:`SimulationError`."""
@@ -62,7 +62,7 @@ class Swarm:
             raise
         self.failsafe = config.flight.failsafe
         self.take_off_time: float | None = None
-        self._faults = faults or NoFaults()
+        self._faults = faults or Disturbances()
         self._truth: TruthLog | None = None
         self._periods = _Periods(
             rates.physics // rates.onboard, rates.physics // rates.truth, rates.physics // config.range_sensor.rate

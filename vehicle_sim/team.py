@@ -10,7 +10,7 @@ from gcs.config.tables import SensorsConfig
 from idc_controller.arrays import Array
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
 from vehicle_sim.autopilot.onboard_loop import step_together
-from vehicle_sim.faults.no_faults import NoFaults
+from vehicle_sim.faults.disturbances import Disturbances
 from vehicle_sim.mavlink.vehicle import Vehicle
 from vehicle_sim.world.obstacle_bodies import ObstacleBodies
 from vehicle_sim.world.range_sensor import RangeSensor
@@ -29,7 +29,7 @@ class Team:
         rotors: Rotors,
         config: SystemConfig,
         seed: int,
-        faults: NoFaults,
+        faults: Disturbances,
     ) -> None:
         """``arrays`` of these vehicles, each of which has its row."""
         self.vehicles = tuple(vehicles)

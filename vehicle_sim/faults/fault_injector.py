@@ -8,8 +8,8 @@ from gcs.config import SystemConfig
 from gcs.mission.model import Fault
 from vehicle_sim.faults import link, sensors, timing, values
 from vehicle_sim.faults.active import ActiveFault
+from vehicle_sim.faults.disturbances import Datagram, Disturbances, Forces
 from vehicle_sim.faults.impairment import LinkImpairment
-from vehicle_sim.faults.no_faults import Datagram, Forces, NoFaults
 from vehicle_sim.faults.samples import OWN, PAYLOAD, REPORTED, SCAN, SampleImpairment
 from vehicle_sim.faults.world import WorldFaults
 from vehicle_sim.world.range_sensor import RangeSample
@@ -22,7 +22,7 @@ _SAMPLE_IMPAIRMENTS = sensors.SAMPLE_IMPAIRMENTS | timing.SAMPLE_IMPAIRMENTS | v
 _Sample = TypeVar("_Sample")
 
 
-class FaultInjector(NoFaults):
+class FaultInjector(Disturbances):
     """Faults of one flight, each active from its start (s after the first vehicle lifts off) on.
 
     They act between the vehicles and their sensors, between the vehicles and the wire, and on the world.

@@ -9,7 +9,7 @@ import numpy as np
 
 from gcs.faults import Direction
 from vehicle_sim.faults.active import ActiveFault
-from vehicle_sim.faults.no_faults import Datagram
+from vehicle_sim.faults.disturbances import Datagram
 from vehicle_sim.faults.schedule import TOLERANCE, Moment
 
 

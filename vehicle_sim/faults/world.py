@@ -13,7 +13,7 @@ from gcs.config.tables import AirSettings
 from gcs.faults import world as kinds
 from idc_controller.rotations_float import Vector, into_body
 from vehicle_sim.faults.active import WORLD, ActiveFault
-from vehicle_sim.faults.no_faults import Forces
+from vehicle_sim.faults.disturbances import Forces
 from vehicle_sim.world.world import World
 
 

@@ -1,4 +1,4 @@
-"""A flight without faults: samples, datagrams and the world pass as they are."""
+"""Where faults may act on a swarm: its world, its samples and its datagrams; without faults, all pass as they are."""
 
 from collections.abc import Callable, Sequence
 
@@ -14,8 +14,8 @@ Forces = tuple[Vector, Sequence[Vector]]
 """Forces on the payload and on each UAV, at the centres of mass, north-east-down (N)."""
 
 
-class NoFaults:
-    """What a swarm lets its samples, datagrams and world pass through; by itself it changes nothing.
+class Disturbances:
+    """What a swarm passes its samples, datagrams and world through. This base class leaves all of them as they are.
 
     Vehicles are numbered by their system id, from 1; times in s. ``any_of_world``: a fault acts on the world.
     """
