@@ -132,6 +132,7 @@ def test_a_kernel_from_disk_is_compiled_into_one_that_calls_it(imported_caller):
     assert module.area(1.0, 2.0) == 113.0 * 115.0 + 2.0
 
 
+@pytest.mark.slow
 def test_a_kernel_from_disk_imports_nothing_to_compile_with_and_still_names_arrays_that_do_not_fit(tmp_path):
     (tmp_path / "sum_kernels.py").write_text(SUM)
     program = (
