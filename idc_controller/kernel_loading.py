@@ -1,11 +1,13 @@
 """Machine code from numba's cache: loaded without what only the compilation of further kernels needs."""
 
+from collections.abc import Sequence
 from typing import Any
 
 from llvmlite import binding
 from numba.core.caching import CompileResultCacheImpl, FunctionCache
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import compile_result
+from numba.core.environment import Environment, lookup_environment
 from numba.core.runtime.nrt import rtsys
 
 
@@ -23,8 +25,36 @@ class _LoadedLibrary(JITCodeLibrary):
         return self._codegen._engine.get_function_address(name)
 
 
+class _Constants:
+    """The environment of an inner function as it is written to disk: numba's would import the function's module."""
+
+    def __init__(self, environment: Any) -> None:
+        self._environment = environment
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        found = self._environment
+        return _environment, (found.globals["__name__"], list(found.consts), found.env_name)
+
+
+def _environment(module: str, constants: Sequence[Any], name: str) -> Any:
+    """Return the environment ``name``; of the module's variables compiled code reads none."""
+    found = lookup_environment(name)
+    if found is None:
+        found = Environment({"__name__": module})
+        found.consts[:] = constants
+        found.env_name = name
+        Environment._memo[name] = found
+    return found
+
+
 class _LoadedKernel(CompileResultCacheImpl):
-    """How a kernel is written to disk, as numba does, and read back."""
+    """How a kernel is written to disk, and read back."""
+
+    def reduce(self, compiled: Any) -> tuple[Any, ...]:
+        """Return what numba writes, of the environments of inner functions those alone that the machine code reads."""
+        *parts, environments = super().reduce(compiled)  # type: ignore[no-untyped-call]
+        code = str(compiled.library._final_module)
+        return *parts, tuple(_Constants(found) for found in environments if code.count(found.env_name) > 1)
 
     def rebuild(self, target_context: Any, payload: tuple[Any, ...]) -> Any:
         """Return what :class:`numba.core.compiler.CompileResult` has made for the disk as its like."""

@@ -6,7 +6,7 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 from gcs.config import read_system
 from gcs.mavlink.codec import Codec
 from gcs.mission.model import Fault
-from vehicle_sim.faults import FaultInjector
+from vehicle_sim.faults.fault_injector import FaultInjector
 from vehicle_sim.world.sensors import Measurement
 
 SYSTEM = read_system()

@@ -14,7 +14,7 @@ from gcs.app.fly import flight_result, ground_station
 from gcs.mission.read import read_mission
 from gcs.record.recorder import FlightRecorder
 from gcs.record.summary import within_limits
-from vehicle_sim.faults import FaultInjector
+from vehicle_sim.faults.fault_injector import FaultInjector
 from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.truth_log import TruthLog
 

@@ -52,7 +52,7 @@ class Body:
         return measured(self.sensor, self.now, self.attitude, self.rates, self.position, self.velocity)
 
     def advance(self) -> None:
-        [((self.thrust,), (torque,))] = self.rotors.advance(np.array([self.command]))
+        [[self.thrust]], [[torque]] = self.rotors.advance(np.array([self.command]))
         w, x, y, z = self.attitude.tolist()
         # The third column of the rotation matrix; the inertia is a multiple of the identity: no gyroscopic term.
         up = np.array([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)])

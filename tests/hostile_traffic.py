@@ -8,7 +8,7 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink.codec import Codec
 from gcs.mavlink.frames import spans
-from vehicle_sim.faults import FaultInjector
+from vehicle_sim.faults.fault_injector import FaultInjector
 
 REMEMBERED = 64  # genuine datagrams that may be imitated
 

@@ -6,4 +6,5 @@ from gcs.mavlink.layout import Packed
 
 
 def message_of(packed: Packed) -> Any:
-    return packed.layout.message(packed.payload)
+    layout, payload = packed
+    return layout.message(payload)

@@ -15,7 +15,7 @@ from gcs.mavlink.settings import LinkSettings
 from gcs.mission.model import Fault
 from gcs.mission.read import read_mission
 from gcs.record.tables import ALARM_COLUMNS, read_text_table
-from vehicle_sim.faults import FaultInjector
+from vehicle_sim.faults.fault_injector import FaultInjector
 
 
 def test_alarm_log_records_a_lasting_condition_once():

@@ -38,6 +38,14 @@ from lengths.length_kernels import length
 def area(x, y):
     return length(x) * length(y) + FACTOR
 """
+SUM = """
+from idc_controller.compiled import kernel
+
+
+@kernel("float64[::1](float64[::1], float64[::1])")
+def sums(a, b):
+    return a + b
+"""
 CONSTANTS = "OFFSET = 10.0\nWIDTHS = (0.0, 100.0)\n"
 FUNCTIONS = "def longer(x):\n    return 2.0 * x\n"
 
@@ -122,6 +130,25 @@ def test_a_kernel_from_disk_is_compiled_into_one_that_calls_it(imported_caller):
     assert is_compiled_anew(module.area)
     assert not is_compiled_anew(module.length)
     assert module.area(1.0, 2.0) == 113.0 * 115.0 + 2.0
+
+
+@pytest.mark.slow
+def test_a_kernel_from_disk_imports_nothing_to_compile_with_and_still_names_arrays_that_do_not_fit(tmp_path):
+    (tmp_path / "sum_kernels.py").write_text(SUM)
+    program = (
+        "import sys, numpy as np; from sum_kernels import sums\n"
+        "print(sum(sums.stats.cache_hits.values()), 'numba.np.arrayobj' in sys.modules, sums(np.ones(2), np.ones(2)))\n"
+        "try: sums(np.ones(2), np.ones(3))\n"
+        "except ValueError as error: print(error)"
+    )
+    environment = {**os.environ, "PYTHONPATH": f"{tmp_path}:{ROOT}"}
+    compiled, loaded = (
+        subprocess.run([sys.executable, "-c", program], env=environment, check=True, capture_output=True, text=True)
+        for _ in range(2)
+    )
+    assert compiled.stdout.startswith("0 True [2. 2.]")
+    assert loaded.stdout.startswith("1 False [2. 2.]")
+    assert "unable to broadcast" in loaded.stdout
 
 
 def test_a_change_of_something_else_compiles_nothing(imported, tmp_path):

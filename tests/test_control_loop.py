@@ -5,6 +5,7 @@ from itertools import count
 import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 import pytest
+from one_measurement import measurement
 from test_control_step import AT_REST, HOVER, LAYOUT, MODEL, REST, SYSTEM, N, P, estimated, received
 
 from gcs.flight import stack
@@ -13,7 +14,6 @@ from gcs.flight.control_loop import STOP_PLANS, ControlLoop, Setpoints, StepReco
 from gcs.mavlink import px4
 from gcs.mavlink.codec import Codec
 from gcs.mavlink.setpoints import attitude_target
-from gcs.mavlink.telemetry import measurement
 from idc_controller.rotations import rotation_from_quaternion
 from idc_controller.safety.filter_protocol import NoObstacles
 from idc_controller.trajectory.stop_plan import Braking

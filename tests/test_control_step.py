@@ -10,6 +10,7 @@ import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 import pytest
 from flight_in_process import MISSIONS
+from one_measurement import measurement
 
 from gcs.config import read_system
 from gcs.config.flight_settings import DEFAULTS
@@ -20,7 +21,6 @@ from gcs.mavlink.clock import RemoteClock
 from gcs.mavlink.codec import Codec
 from gcs.mavlink.setpoints import SetpointStream, attitude_target, stop_plan_message
 from gcs.mavlink.settings import LinkSettings
-from gcs.mavlink.telemetry import measurement
 from idc_controller.control.controller import IntegratedDecisionController
 from idc_controller.control.load_adaptation import LoadAdaptation
 from idc_controller.control.settings import ControllerSettings

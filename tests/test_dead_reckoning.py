@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from idc_controller.estimation.health.dead_reckoning import DeadReckoning
-from idc_controller.estimation.health.dead_reckoning_kernels import drift_ratio, integrate
+from idc_controller.estimation.health.dead_reckoning_kernels import drift_ratio, integrate, reckon
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position, SampleStack, SensorGroup
 from idc_controller.estimation.settings import DeadReckoningSettings
 from idc_controller.rotations import quaternion_from_euler, quaternion_product
@@ -24,6 +24,29 @@ def add(reckoning, *samples):
     values = np.concatenate([part for sample in samples for part in (sample.pose, sample.motion)])
     values.flags.writeable = False
     reckoning.add(SampleStack(np.array([sample.time for sample in samples]), sources, is_position, values))
+
+
+def reckoned(times, window=WINDOW):
+    """What the kernel returns of positions of one vehicle that are reported at these times, the last of them."""
+    s, made = DeadReckoningSettings(), DeadReckoning(1)
+    for t in times:
+        position, velocity = path(t)
+        found = reckon(
+            np.array([t]), np.zeros(1, dtype=int), np.array([True]), np.concatenate([position, velocity]), 1, window,
+            s.gap, s.samples, s.position_error, s.attitude_error, s.sigmas, made._recent, made._motion,
+            made._integral, made._differences, made._counts, made._ratio,
+        )  # fmt: skip
+    return found, made._recent.shape[1]
+
+
+def test_window_and_tests_are_counted_from_none():
+    (longest, tests), kept = reckoned([1.0])
+    assert (longest, tests) == (0, 0)
+    (longest, tests), _ = reckoned(1.0 + INTERVAL * np.arange(kept))
+    assert longest == 1
+    count = round(0.5 * WINDOW / INTERVAL)
+    (longest, _), _ = reckoned(1.0 + INTERVAL * np.arange(kept + count))
+    assert longest == 1 + count
 
 
 def path(t):

@@ -12,8 +12,9 @@ from programs import PATIENCE, process
 from scripted_ground import ScriptedGround, exchange
 
 from gcs.faults.record import fault_notes
-from vehicle_sim.faults import FaultInjector, record_faults
 from vehicle_sim.faults.active import ActiveFault
+from vehicle_sim.faults.fault_injector import FaultInjector
+from vehicle_sim.faults.record import record_faults
 from vehicle_sim.faults.world import Wind, WorldFaults
 from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.truth_log import TruthLog

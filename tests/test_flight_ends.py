@@ -18,7 +18,7 @@ from gcs.mavlink import px4
 from gcs.record.landing import is_set_down
 from gcs.record.modes import stops_after
 from idc_controller.trajectory.trajectory import RestTrajectory
-from vehicle_sim.faults import FaultInjector
+from vehicle_sim.faults.fault_injector import FaultInjector
 
 
 def check_records_closed(folder):

@@ -9,12 +9,12 @@ import struct
 import subprocess
 import sys
 import threading
-import time
 from pathlib import Path
 
 import pytest
+from file_events import wait_for_ends, wait_for_file
 from flight_in_process import HOP, system_file
-from programs import ENVIRONMENT, PATIENCE, gcs_fly
+from programs import ENVIRONMENT, gcs_fly
 
 from gcs.campaign.flight_worker import FlightWorker
 from gcs.campaign.process_pool import fly_process, run_parallel
@@ -66,14 +66,6 @@ def marked(mark):
     return found
 
 
-def wait_until(condition):
-    """Look again until it holds: what is waited for happens in other processes."""
-    deadline = time.monotonic() + PATIENCE
-    while not condition():
-        assert time.monotonic() < deadline
-        time.sleep(0.02)
-
-
 @pytest.fixture
 def mark(monkeypatch, request):
     monkeypatch.setenv("FLIGHT_WORKER_TEST", f"{request.node.name}-{os.getpid()}")
@@ -101,7 +93,7 @@ def test_refused_or_killed_flight_leaves_the_next_undisturbed(hop, tmp_path, mar
         [warm] = marked(mark)
 
         def kill():
-            wait_until(lambda: list(tmp_path.glob(".killed-*/truth.csv")))
+            wait_for_file(tmp_path, ".killed-*/truth.csv")
             [flight] = map(int, Path(f"/proc/{warm}/task/{warm}/children").read_text().split())
             os.kill(flight, signal.SIGKILL)
 
@@ -109,7 +101,7 @@ def test_refused_or_killed_flight_leaves_the_next_undisturbed(hop, tmp_path, mar
         killer.start()
         assert fly_process(hop, (), tmp_path / "killed", worker).exit_code == -signal.SIGKILL
         killer.join()
-        wait_until(lambda: marked(mark) == [warm])  # the simulator has ended with its ground
+        wait_for_ends(lambda: [process for process in marked(mark) if process != warm])  # the simulator, too
         flown = fly_process(hop, (), tmp_path / "flown", worker)
         assert flown.exit_code == 0 and flown.summary["completed"]
         os.kill(warm, signal.SIGKILL)
@@ -122,19 +114,19 @@ def test_flight_that_takes_too_long_is_ended(hop, tmp_path, mark):
     with FlightWorker() as worker:
         code, output, messages = worker.run(["fly", str(hop), "--run-dir", str(tmp_path / "run"), "--with-parent"], 0.0)
         assert (code, output, messages) == (-signal.SIGKILL, "", "")
-    wait_until(lambda: marked(mark) == [])
+    wait_for_ends(lambda: marked(mark))
 
 
 def test_interrupted_flights_end_and_leave_nothing(hop, tmp_path, mark):
     def begun(_):
-        wait_until(lambda: list(tmp_path.glob(".flight-*/truth.csv")))
+        wait_for_file(tmp_path, ".flight-*/truth.csv")
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
         run_parallel(
             [1, 2], 2, lambda n, worker: fly_process(hop, (), tmp_path / f"flight-{n}", worker), begun, lambda *_: None
         )
-    wait_until(lambda: marked(mark) == [])
+    wait_for_ends(lambda: marked(mark))
     assert list(tmp_path.iterdir()) == []
 
 
@@ -146,6 +138,6 @@ def test_flights_end_with_the_process_that_started_them(hop, tmp_path, mark):
     )
     environment = ENVIRONMENT | {"FLIGHT_WORKER_TEST": mark.partition("=")[2]}
     with subprocess.Popen([sys.executable, "-c", program, hop, tmp_path / "run"], env=environment) as campaign:
-        wait_until(lambda: list(tmp_path.glob(".run-*/truth.csv")))
+        wait_for_file(tmp_path, ".run-*/truth.csv")
         campaign.kill()
-    wait_until(lambda: marked(mark) == [])
+    wait_for_ends(lambda: marked(mark))

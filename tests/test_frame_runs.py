@@ -212,13 +212,13 @@ def test_records_are_those_of_the_splitter(parts, cuts):
     data = b"".join(parts)
     ends = sorted(min(cut, len(data)) for cut in (*cuts, len(data)))
     datagrams = [data[start:end] for start, end in zip([0, *ends], ends, strict=False)]
-    stamps = [bytes([k] * 8) for k in range(len(datagrams))]
-    found = stamped_frames(
-        np.frombuffer(bytearray(data), np.uint8),
-        np.array(ends),
-        np.frombuffer(bytearray(b"".join(stamps)), np.uint8).reshape(-1, 8),
-    )
-    expected = [stamp + d[start:end] for stamp, d in zip(stamps, datagrams, strict=True) for start, end in spans(d)]
+    stamps = [0x0102030405060708 + (k << 40) for k in range(len(datagrams))]
+    found = stamped_frames(np.frombuffer(bytearray(data), np.uint8), np.array(ends), np.array(stamps))
+    expected = [
+        stamp.to_bytes(8, "big") + d[start:end]
+        for stamp, d in zip(stamps, datagrams, strict=True)
+        for start, end in spans(d)
+    ]
     assert found.tobytes() == b"".join(expected)
 
 

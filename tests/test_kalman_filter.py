@@ -14,7 +14,7 @@ from test_flatness import Wave
 from gcs.config import read_system
 from idc_controller.estimation.estimator import Estimator
 from idc_controller.estimation.health.chi_squared import lower_quantile, upper_quantile
-from idc_controller.estimation.kalman_filter import SparseRows, StructuredKalmanFilter
+from idc_controller.estimation.kalman_filter import Innovation, SparseRows, StructuredKalmanFilter
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
 from idc_controller.estimation.process_model import ProcessModel
 from idc_controller.estimation.propagation_kernels import about_reference, are_finite
@@ -49,8 +49,9 @@ def corrected(seed, P, variance):
     rng, m = np.random.default_rng(seed), len(variance)
     compiled, plain = both(rng, P)
     rows, y = sparse_rows(rng, m, len(P)), rng.standard_normal(m)
-    squared = compiled.correct(compiled.innovation(y, rows, np.zeros(1, dtype=int), np.array([m])), variance)
-    plain.update(y, R=np.diag(variance), H=rows.dense(len(P)))
+    H = rows.dense(len(P))
+    squared = compiled.correct(Innovation(rows, y - H @ compiled.x, H @ P @ H.T), variance)
+    plain.update(y, R=np.diag(variance), H=H)
     assert squared == pytest.approx(plain.y @ plain.SI @ plain.y, rel=1e-10)
     return compiled, plain
 
@@ -75,20 +76,6 @@ def test_correction_that_cancels_a_variance_takes_josephs_form(seed):
 def test_correction_without_positive_definite_covariance_is_filterpys():
     compiled, plain = corrected(1, -np.eye(N_STATES), np.full(3, 0.1))
     assert compiled.x == pytest.approx(plain.x)
-
-
-@pytest.mark.parametrize("seed", range(5))
-def test_innovation_and_its_subset_equal_dense_products(seed):
-    rng, sizes = np.random.default_rng(seed), np.array([6, 4, 2])
-    m, starts = sizes.sum(), np.cumsum(sizes) - sizes
-    filter, _ = both(rng, positive_definite(rng, N_STATES))
-    rows, y, which = sparse_rows(rng, m, N_STATES), rng.standard_normal(m), rng.random(m) < 0.5
-    innovation, H = filter.innovation(y, rows, starts, sizes), rows.dense(N_STATES)
-    of_one = np.kron(np.eye(3), np.ones((6, 6)))[np.ix_(*2 * [np.r_[:6, 6:10, 12:14]])]
-    for part, kept in ((innovation, np.full(m, True)), (innovation.subset(which), which)):
-        expected = (of_one * (H @ filter.P @ H.T))[np.ix_(kept, kept)]
-        assert part.covariance == pytest.approx(expected, rel=1e-12, abs=1e-12)
-        assert part.residual == pytest.approx((y - H @ filter.x)[kept], rel=1e-12, abs=1e-12)
 
 
 def van_loan(process, densities, interval_us, force_scale):
@@ -223,7 +210,7 @@ def test_gate_rejects_measurement_without_covariance_and_accepts_others():
 
 
 @pytest.mark.parametrize("vehicles", [3, 4, 6])
-def test_compiled_measured_less_reference_equals_plain_one(vehicles):
+def test_compiled_innovation_and_its_subset_equal_plain_ones(vehicles):
     parameters = read_system(MISSIONS / "system.toml").with_vehicles(vehicles).parameters()
     model = Estimator(LinearModel(parameters)).measurement_model
     flat = flat_reference(parameters, Wave(), np.array([1.0, 2.0]), Load(parameters.m_0, np.zeros(3)))
@@ -250,13 +237,21 @@ def test_compiled_measured_less_reference_equals_plain_one(vehicles):
     observation = model.observation(tuple((sample.source, type(sample)) for sample in samples))
     stacked = observation.samples(samples)
     stacked.values.flags.writeable = False
-    y, rows = model.observe(observation, stacked, flat, 1)
-    assert y == pytest.approx(np.concatenate(expected), rel=1e-12, abs=1e-12, nan_ok=True)
-    upright, tilted, n = observation.rows.dense(layout.size), rows.dense(layout.size), layout.s.start
+    error, P = rng.standard_normal(layout.size), positive_definite(rng, layout.size)
+    innovation = model.innovation(observation, stacked, flat, 1, error, P)
+    upright, tilted, n = observation.rows.dense(layout.size), innovation.rows.dense(layout.size), layout.s.start
     for source, height in zip(observation.uavs, observation.heights, strict=True):
         slope, at = parameters.l[source] * flat.links.q[1, :2] / flat.links.q[1, 2], n + 2 * source
         upright[height, at : at + 2] = upright[height + 3, at + 2 * vehicles : at + 2 * vehicles + 2] = slope
     assert tilted == pytest.approx(upright, rel=1e-14)
+    sizes, m = observation.stack.sizes, len(tilted)
+    number = np.repeat(np.arange(len(sizes)), sizes)
+    covariance = (number == number[:, None]) * (tilted @ P @ tilted.T)
+    residual = np.concatenate(expected) - tilted @ error
+    which = rng.random(m) < 0.5
+    for part, kept in ((innovation, np.full(m, True)), (innovation.subset(which), which)):
+        assert part.residual == pytest.approx(residual[kept], rel=1e-12, abs=1e-11, nan_ok=True)
+        assert part.covariance == pytest.approx(covariance[np.ix_(kept, kept)], rel=1e-12, abs=1e-10)
 
 
 def test_chi_squared_quantiles_equal_scipys():

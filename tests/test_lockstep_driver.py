@@ -1,15 +1,18 @@
 """Lockstep driver of the ground: it answers the world's ticks, and notices when none come. The world is scripted."""
 
+from contextlib import closing
 from types import SimpleNamespace
 
 import pytest
+from scripted_station import VEHICLE, ScriptedStation
 
+from gcs.drivers.connection import Connection, LockstepConnection
 from gcs.drivers.lockstep import run_in_lockstep
 from gcs.drivers.settings import DriverSettings
 from gcs.flight.failsafe import Failsafe
 from gcs.mavlink.lockstep import Done, Tick, decode_done
 
-CLOCK, VEHICLE = ("127.0.0.1", 14500), ("127.0.0.1", 14541)
+CLOCK = ("127.0.0.1", 14500)
 JOIN, LEAVE = Done(0, None), Done(0, None, leaving=True)
 SETTINGS = DriverSettings(join_interval=1.0, tick_timeout=3.0)
 
@@ -40,33 +43,15 @@ class World:
             self.commands.append((datagram, address))
 
 
-class Station:
-    """A ground station that ends its flight after so many ticks; each is answered by a datagram to the vehicle."""
+class Station(ScriptedStation):
+    """A ground station that ends its flight after so many ticks, and is due next at ``due`` (s)."""
 
     def __init__(self, ticks, due=None):
-        self.ticks, self.due, self.times, self.received, self.failsafes = ticks, due, [], [], []
-
-    @property
-    def ended(self):
-        return len(self.times) >= self.ticks
-
-    def receive_all(self, datagrams, now):
-        self.received += [(datagram, sender, now) for datagram, sender in datagrams]
-
-    def datagrams_to_send(self, now):
-        self.times.append(now)
-        return [(b"command", VEHICLE)]
+        super().__init__(ticks)
+        self.due = due
 
     def next_timer(self):
         return self.due
-
-    def raise_failsafe(self, now, failsafe, reason):
-        self.failsafes.append((now, failsafe, reason))
-
-    def resume(self):
-        pass
-
-    sent = resume
 
 
 def run(world, station, requested=False, end_reason=lambda: None):
@@ -75,8 +60,8 @@ def run(world, station, requested=False, end_reason=lambda: None):
 
 
 @pytest.mark.parametrize(
-    ("due", "next_us"), [(None, None), (0.05, 50_000), (0.0500004, 50_001), (0.0, 1001)],
-    ids=["never", "whole", "rounded up", "past"],
+    ("due", "next_us"), [(None, None), (0.05, 50_000), (0.1 + 0.2, 300_000), (0.0500004, 50_001), (0.0, 1001)],
+    ids=["never", "whole", "whole but for rounding", "rounded up", "past"],
 )  # fmt: skip
 def test_each_tick_is_answered_with_the_time_of_the_next_timer(due, next_us):
     world, station = World([tick(7, 1000)]), Station(1, due)
@@ -127,3 +112,23 @@ def test_interrupt_is_raised_once_at_the_next_tick():
     world, station = World([tick(1, 1000)], [tick(2, 2000)]), Station(2)
     run(world, station, requested=True)
     assert station.failsafes == [(0.001, Failsafe.INTERRUPTED, "interrupted")]
+
+
+def test_tick_alone_ends_a_wait_and_comes_behind_the_datagrams_of_the_vehicles():
+    with closing(Connection()) as ground, closing(Connection()) as clock, closing(Connection()) as vehicle:
+        clock_address, ground_address = clock.socket.getsockname(), ground.socket.getsockname()
+        with closing(LockstepConnection(ground, clock_address)) as connection:
+            connection.send(b"join", clock_address)
+            connection.send(b"heartbeat", vehicle.socket.getsockname())
+            assert list(vehicle.receive()) == [(b"heartbeat", ground_address)]
+            [(join, joined_from)] = clock.receive()
+            assert join == b"join" and joined_from != ground_address
+
+            vehicle.send(b"telemetry", ground_address)
+            assert not connection.wait(0.0)
+            clock.send(b"tick", joined_from)
+            assert connection.wait(0.0)
+            vehicle.send(b"more", ground_address)
+            sent_by_vehicle = [(data, vehicle.socket.getsockname()) for data in (b"telemetry", b"more")]
+            assert list(connection.receive()) == [*sent_by_vehicle, (b"tick", clock_address)]
+            assert not connection.wait(0.0) and list(connection.receive()) == []

@@ -34,9 +34,9 @@ def test_estimated_vehicles_match_measurement_model():
     for measurement in (vehicles.sample(i, kind) for i in range(len(vehicles.values)) for kind in (Position, Attitude)):
         observation = model.observation(((measurement.source, type(measurement)),))
         expected = observation.rows.dense(LAYOUT.size) @ (moved - flat.x[0])
-        assert model.observe(observation, observation.samples([measurement]), flat, 0)[0] == pytest.approx(
-            expected, abs=2e-3
-        )
+        samples, n = observation.samples([measurement]), LAYOUT.size
+        innovation = model.innovation(observation, samples, flat, 0, np.zeros(n), np.eye(n))
+        assert innovation.residual == pytest.approx(expected, abs=2e-3)
 
 
 def vehicle_states_in_arrays(x, layout, p, l):

@@ -135,6 +135,7 @@ def test_unusable_mesh_is_refused_with_file_line_field_and_reason(tmp_path, make
     assert reason in reasons[0]
 
 
+@pytest.mark.slow
 def test_check_of_mission_with_unusable_mesh_exits_with_2(tmp_path):
     (tmp_path / "mission.toml").write_text(TOML + MESH.format("rock.stl"))
     command = [sys.executable, "-m", "gcs", "check", str(tmp_path / "mission.toml")]

@@ -205,6 +205,16 @@ def predicted_in_numpy(weight, x, P, F, Q):
     return mean, covariance + np.einsum("m,mka->ka", weight, variances)[:, :, None] * np.eye(3)
 
 
+def test_mixing_loses_no_covariance_far_from_home():
+    rng = np.random.default_rng(7)
+    imm = followed(lambda t: np.array([np.sin(t), 0.3 * t, -5.0]), until=2.0)
+    far = imm.x.copy()
+    far[:, :, 0] += np.array([2.0e5, -3.0e5, 1.0e5]) + np.round(rng.normal(0.0, 50.0, 3))
+    _, _, P = advanced(imm.weight, imm.x, imm.P, *MODELS.step(0.1), 0.01)
+    _, _, P_far = advanced(imm.weight, far, imm.P, *MODELS.step(0.1), 0.01)
+    np.testing.assert_allclose(P_far, P, rtol=1e-6, atol=1e-9)
+
+
 @pytest.mark.parametrize("seed", range(5))
 def test_kernels_agree_with_formulas_in_numpy(seed):
     rng = np.random.default_rng(seed)

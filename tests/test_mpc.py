@@ -1,5 +1,7 @@
 """The model predictive controller against the Riccati equation and against a solver of another kind."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from flight_in_process import MISSIONS
@@ -171,6 +173,28 @@ def test_qp_refuses_values_that_are_not_finite(where):
     with pytest.raises(SolverError, match="not finite"):
         qp.solve(bad, good) if where == "gradient" else qp.solve(-2.0 * good, bad)
     assert qp.solve(-2.0 * good, good).x == pytest.approx([1.0, 1.0], abs=1e-5)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_optimum_without_active_constraint_is_that_of_plain_products_and_needs_no_solver(seed):
+    rng, solved = np.random.default_rng(seed), []
+    P, gradient = np.diag(rng.uniform(1.0, 2.0, 4)), rng.normal(size=(4, 3))
+    some = rng.normal(size=(2, 4))
+    G = np.vstack([np.eye(4), -np.eye(4), some, some[::-1], -some, np.zeros((1, 4))])
+    response = np.vstack([np.zeros((8, 3)), np.ones((7, 3))])
+    qp = ParametricQp(P, G, np.full(len(G), -1), slack_linear=1.0, slack_quadratic=1.0, gradient=gradient,
+                      response=response, solver=SimpleNamespace(solve=solved.append))  # fmt: skip
+    p = rng.normal(size=3)
+    x = -np.linalg.solve(P, gradient @ p)
+    assert qp.unconstrained(p) == pytest.approx(x)
+    left = G @ x + response @ p
+    solution = qp.solve(p, left + 1e-9)
+    assert solution.x == pytest.approx(x)
+    assert solution.iterations == 0
+    for row in range(len(G)):
+        with pytest.raises(AttributeError):  # the solver returns nothing
+            qp.solve(p, left + np.where(np.arange(len(G)) == row, -1e-6, 1e-9))
+        assert len(solved) == row + 1
 
 
 def test_contradictory_hard_rows_raise():

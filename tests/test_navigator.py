@@ -183,6 +183,12 @@ def test_waypoint_inside_obstacle_is_named_in_reason(navigator):
     assert "10.0 m north" in navigator.hold_up.reason
 
 
+def test_detour_with_nothing_in_its_way_leads_back_to_where_the_mission_is(navigator):
+    progress, _ = held_up(navigator, [], navigator.settings.patience + 0.1)
+    assert navigator.detours == 1 and progress == 0.0
+    assert navigator.mission_progress(3.0) == 5.0
+
+
 def test_reset_discards_detour(navigator):
     mission = straight(18.0)
     held_up(navigator, [ACROSS], 0.6, mission=mission)

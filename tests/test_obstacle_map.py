@@ -165,8 +165,8 @@ def test_map_in_flight_has_the_obstacles_the_vehicles_detect(tmp_path):
     mission = replace(mission, obstacles=obstacles)
     with InProcessFlight(mission, tmp_path / "run") as flight:
         obstacle_map = stack.obstacle_map(mission)
-        failsafes = flight.flight.failsafes
-        failsafes.system = replace(failsafes.system, obstacle_map=obstacle_map)
+        flown = flight.flight
+        flown.system = flown.failsafes.system = replace(flown.system, obstacle_map=obstacle_map)
         flight.swarm.close()
         flight.swarm = Swarm(mission.system, seed=1, home=mission.home, obstacles=obstacles)
         flight.fly(until=6.0)

@@ -3,12 +3,12 @@
 from types import SimpleNamespace
 
 import pytest
+from scripted_station import VEHICLE, ScriptedStation
 
 from gcs.drivers.realtime import run_in_real_time
 from gcs.drivers.settings import DriverSettings
 from gcs.flight.failsafe import Failsafe
 
-VEHICLE = ("127.0.0.1", 14541)
 SETTINGS = DriverSettings(wait_max=0.2)
 
 
@@ -34,32 +34,18 @@ class Wire:
         self.clock += timeout
 
 
-class Station:
+class Station(ScriptedStation):
     """A ground station with a timer each ``interval`` (s); its flight ends after so many steps."""
 
     def __init__(self, steps, interval):
-        self.steps, self.interval = steps, interval
-        self.times, self.received, self.latencies, self.failsafes, self.order = [], [], [], [], []
-
-    @property
-    def ended(self):
-        return len(self.times) >= self.steps
-
-    def receive_all(self, datagrams, now):
-        self.received += [(datagram, sender, now) for datagram, sender in datagrams]
-
-    def datagrams_to_send(self, now):
-        self.times.append(now)
-        return [(b"command", VEHICLE)]
+        super().__init__(steps)
+        self.interval, self.latencies, self.order = interval, [], []
 
     def next_timer(self):
         return None if self.ended or self.interval is None else self.times[-1] + self.interval
 
     def add_latency(self, latency):
         self.latencies.append(latency)
-
-    def raise_failsafe(self, now, failsafe, reason):
-        self.failsafes.append((now, failsafe, reason))
 
     def sent(self):
         self.order.append("sent")

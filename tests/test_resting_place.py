@@ -152,7 +152,7 @@ def test_braking_with_most_clearance_is_chosen_when_none_is_clear():
     assert clearance_at_rest(USUAL) - 0.2 < chosen < RestingPlaceSettings().clearance
 
 
-@pytest.mark.parametrize("speed", [0.0, 0.5, 2.0])
+@pytest.mark.parametrize("speed", [0.0, 0.5, 2.0, 8.0])
 @pytest.mark.parametrize("acceleration", [0.0, 1.5])
 def test_obstacles_are_considered_as_far_as_any_stop_leads(speed, acceleration):
     class Watched(StandingObstacles):
@@ -173,4 +173,4 @@ def test_obstacles_are_considered_as_far_as_any_stop_leads(speed, acceleration):
             places = path(np.linspace(0.0, path.x[-1], 50)) - region.place
             farthest = max(farthest, np.linalg.norm(places, axis=1).max())
         assert region.place == pytest.approx(state[0])
-        assert region.radius > farthest + WIDTH + settings.clearance
+        assert region.radius > farthest + WIDTH - 0.01 + settings.clearance + settings.growth_max

@@ -29,7 +29,7 @@ def wrench_of(f_1, f_2, f_3, f_4):
 
 def wrench_after(rotors, command):
     """Mean thrust and torques of one vehicle's rotors over a step."""
-    [((thrust,), (torques,))] = rotors.advance(np.array([command], dtype=float))
+    [[thrust]], [[torques]] = rotors.advance(np.array([command], dtype=float))
     return thrust, *torques
 
 

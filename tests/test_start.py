@@ -19,6 +19,7 @@ FOR_FLIGHTS = {
 }  # fmt: skip
 NOT_FOR_FLIGHTS = {
     "PIL", "hypothesis", "matplotlib", "pandas", "pyarrow", "pymap3d", "shapely", "trimesh",
+    "gcs.faults.kinds",  # of missions with faults
     "numba.np.polynomial.polynomial_core", "numba.typed.dictimpl",  # of the registries by which numba compiles
 }  # fmt: skip
 PROGRAM = """\
@@ -42,6 +43,7 @@ def modules_of(program: str, *arguments: str, status: int = 0) -> set[str]:
     return set(done.stdout.splitlines()[-1].split())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "command",
     [
@@ -57,6 +59,7 @@ def test_help_imports_neither_numbers_nor_flight(command: tuple[str, ...]) -> No
     assert not modules_of(*command) & (FOR_NUMBERS | FOR_FLIGHTS)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("mission", "needed"),
     [
@@ -71,6 +74,7 @@ def test_check_imports_only_what_the_mission_needs(mission: str, needed: set[str
     assert modules_of("gcs.app.cli", "check", f"missions/{mission}") & FOR_FLIGHTS == needed
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("mission", "options"),
     [
@@ -90,6 +94,7 @@ def test_a_flight_with_unusable_input_imports_no_more_than_check_and_leaves_noth
     assert not run_dir.exists()
 
 
+@pytest.mark.slow
 def test_a_flight_imports_neither_what_draws_nor_the_compiler_of_kernels() -> None:
     script = "import sys, gcs.app.fly, vehicle_sim.app.launch; print(*sys.modules)"
     command = [sys.executable, "-c", script]
@@ -110,6 +115,7 @@ def test_imports_are_passed_over_by_collections_of_garbage() -> None:
         gc.unfreeze()
 
 
+@pytest.mark.slow
 def test_check_imports_no_kinds_of_fault_without_faults() -> None:
     script = "import sys; from gcs.mission.read import read_mission; read_mission(sys.argv[1]); print(*sys.modules)"
     command = [sys.executable, "-c", script, "missions/figure_eight_spheres.toml"]
@@ -119,6 +125,7 @@ def test_check_imports_no_kinds_of_fault_without_faults() -> None:
     assert not imported & {"gcs.faults.kinds", "gcs.mission.compile", "gcs.mission.plan", "gcs.mission.wpl"}
 
 
+@pytest.mark.slow
 def test_commands_use_one_blas_thread() -> None:
     script = "import sys, threadpoolctl; from gcs.app.cli import main; main(sys.argv[1:]); import scipy.linalg\n"
     script += "print({library['num_threads'] for library in threadpoolctl.threadpool_info()})"

@@ -17,7 +17,7 @@ from gcs.mission.motion import HarmonicMotion, LinearMotion
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
-from vehicle_sim.faults import FaultInjector
+from vehicle_sim.faults.fault_injector import FaultInjector
 from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.errors import SimulationError, UnsupportedWorld
 from vehicle_sim.world.truth_log import TruthLog

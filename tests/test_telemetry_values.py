@@ -6,11 +6,12 @@ import random
 import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 import pytest
+from one_measurement import measurement
 
 from gcs.mavlink import px4
 from gcs.mavlink.codec import Codec
-from gcs.mavlink.telemetry import measurement, scan_returns, setpoint_flown
-from idc_controller.estimation.measurements import PAYLOAD, Attitude
+from gcs.mavlink.telemetry import measurements, scan_returns, setpoint_flown
+from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
 
 SPECIAL = (0.0, 1.0, math.nan, math.inf, -math.inf, 3e38)
 
@@ -43,43 +44,31 @@ def expected_values(message):
 @pytest.mark.parametrize(("component", "source"), [(px4.AUTOPILOT_COMPONENT, 2), (px4.PAYLOAD_UNIT_COMPONENT, PAYLOAD)])
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")
 def test_measurement_has_the_values_of_the_message_as_far_as_they_can_be_measured(component, source):
-    rng, partly, none = random.Random(4), 0, 0
+    rng, messages = random.Random(4), []
     for _ in range(1000):
         quaternion = numbers(rng, 4)
         if rng.random() < 0.7 and math.isfinite(norm := math.hypot(*quaternion)) and 1e-3 < norm < 1e30:
             quaternion = [c / norm for c in quaternion]
-        for message in (
+        messages += [
             mavlink.MAVLink_attitude_quaternion_message(1234, *quaternion, *numbers(rng, 3)),
             mavlink.MAVLink_local_position_ned_message(1234, *numbers(rng, 6)),
-        ):
-            on_wire = received(message, component=component)
-            expected, sample = expected_values(on_wire.message), measurement(on_wire, 2, 7.5)
-            if expected is None or sample is None:
-                assert sample is None and expected is None
-                none += 1
-                continue
-            assert (sample.time, sample.source) == (7.5, source)
-            assert isinstance(sample, Attitude) == isinstance(message, mavlink.MAVLink_attitude_quaternion_message)
-            np.testing.assert_array_equal(sample.pose, expected[0])
-            np.testing.assert_array_equal(sample.motion, expected[1])
-            partly += not (sample.has_pose and sample.has_motion)
-    assert partly > 50 and none > 10
+        ]
+    on_wire = [received(message, component=component) for message in messages]
+    expected = [(k, values) for k, r in enumerate(on_wire) if (values := expected_values(r.message)) is not None]
+    found, partial = measurements([(message, 2, float(k)) for k, message in enumerate(on_wire)])
+    for (k, (pose, motion)), sample in zip(expected, found, strict=True):
+        assert (sample.time, sample.source) == (k, source)
+        assert type(sample) is (Position if k % 2 else Attitude)
+        np.testing.assert_array_equal(sample.pose, pose)
+        np.testing.assert_array_equal(sample.motion, motion)
+    whole = {k for k, values in expected if not np.isnan(np.concatenate(values)).any()}
+    assert partial == [k for k in range(len(messages)) if k not in whole]
+    assert len(expected) - len(whole) > 50 and len(messages) - len(expected) > 10
 
 
-def test_equal_relays_of_the_payload_unit_are_read_once():
-    message = mavlink.MAVLink_local_position_ned_message(1234, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
-    first, second = (
-        measurement(received(message, system, px4.PAYLOAD_UNIT_COMPONENT), system - 1, 0.001 * system)
-        for system in (1, 2)
-    )
-    assert first.pose is second.pose and first.motion is second.motion
-    assert (first.time, second.time) == (0.001, 0.002)
-
-
-def test_messages_of_other_components_and_kinds_measure_nothing():
+def test_messages_of_other_components_measure_nothing():
     position = mavlink.MAVLink_local_position_ned_message(1, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
-    assert measurement(received(position, component=77), 0, 0.0) is None
-    assert measurement(received(mavlink.MAVLink_heartbeat_message(2, 12, 0, 0, 4, 3)), 0, 0.0) is None
+    assert measurements([(received(position, component=77), 0, 0.0)]) == ([], [])
 
 
 def test_set_point_flown_is_tilt_and_thrust():
@@ -105,7 +94,6 @@ def test_return_has_point_and_range_of_the_message():
 
 @pytest.mark.parametrize("component", [px4.AUTOPILOT_COMPONENT, px4.PAYLOAD_UNIT_COMPONENT])
 def test_measurements_are_arrays_to_read_only(component):
-    """What several vehicles relay is read once: whoever wrote to one measurement would change the others."""
     message = mavlink.MAVLink_local_position_ned_message(1234, 1.0, 2.0, 3.0, 4.0, 5.0, math.nan)
     sample = measurement(received(message, component=component), 2, 7.5)
     for values in (sample.pose, sample.motion):

@@ -169,6 +169,15 @@ def test_spline_stops_within_a_braking_distance_on_its_curve(moment, standing):
     assert np.abs(stopped.derivatives([stopped.end])[1:]).max() < 1e-9
 
 
+@pytest.mark.parametrize(("steps", "length"), [(12, 0.3), (30, 0.1), (30, 0.3)])
+def test_stop_of_a_spline_never_ends_later_than_the_spline(steps, length):
+    along = np.concatenate([np.zeros(5), length * np.arange(1, steps + 1), np.full(5, length * steps)])
+    spline = SplineTrajectory(np.column_stack([along, 0.0 * along, 0.0 * along - 5.0]), 0.25, 0.0, LIMITS)
+    ends = [spline.stop(time).end for time in np.arange(0.5, spline.end, 0.25)]
+    assert min(ends) < spline.end
+    assert max(ends) <= spline.end
+
+
 def test_snap_is_continuous():
     trajectory = planned([Leg([3, 0, -5], 1.5), Leg([3, 4, -6], 1.0)])
     knots = trajectory.start + np.arange(1, 60) * smoothing_for(LIMITS).interval
@@ -290,6 +299,31 @@ def test_planning_in_steps_equals_planning_at_once():
         assert np.allclose(stepwise.derivatives([time]), at_once.derivatives([time]), atol=1e-9)
     assert stepwise.end == pytest.approx(at_once.end)
     assert np.allclose(stepwise.passages, at_once.passages)
+
+
+def sequence_in_sequences():
+    """Return a sequence of a sequence of a sequence, with rests of known end between motions of unknown end."""
+
+    def to(place):
+        return lambda now, here: WaypointTrajectory(here, [Leg(place, 1.5)], LIMITS, start=now)
+
+    inner = to([2, 0, -5])(0.0, HIGH).then(lambda now, here: RestTrajectory(here, now, now + 4.0)).then(to([2, 2, -5]))
+    middle = to([1, 0, -5])(-6.0, HIGH).then(lambda now, here: inner)
+    return middle.then(lambda now, here: RestTrajectory(here, now, now + 4.0)).then(to(HIGH))
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_sequence_in_sequences_evaluated_in_steps_equals_that_evaluated_at_once(seed):
+    rng = np.random.default_rng(seed)
+    at_once, stepwise = sequence_in_sequences(), sequence_in_sequences()
+    at_once.derivatives([200.0])
+    horizon = np.linspace(-0.3, 1.0, 8)
+    for now in np.arange(-7.0, at_once.end + 1.0, 0.1):
+        times = now + horizon[: rng.integers(1, 9)]
+        assert (stepwise.derivatives(times) == at_once.derivatives(times)).all()
+    assert stepwise.end == at_once.end
+    for now in rng.uniform(-7.0, at_once.end, 50):
+        assert (stepwise.derivatives(now + horizon) == at_once.derivatives(now + horizon)).all()
 
 
 def test_holding_for_ever_and_stopping_then_flying_home():

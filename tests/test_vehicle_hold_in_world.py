@@ -68,7 +68,8 @@ def test_payload_is_braked_held_and_set_down(velocity: tuple[float, float]) -> N
                     sinking.append(state.payload_velocity_in_world[2])
                 if not any(pilot.armed for pilot in pilots):
                     break
-            world.step(*rotors.advance(speeds)[0])
+            thrusts, torques = rotors.advance(speeds)
+            world.step(thrusts[0], torques[0])
         assert world.touching_ground()
         # Flown to the loss (0.8 s), unnoticed (0.5 s), and half of the braking time (4 s).
         braking_distance = math.hypot(*velocity) * (0.8 + 0.5 + 2.0)

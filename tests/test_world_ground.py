@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pybullet
 import pytest
 from nonlinear_motion import hover_state, uav_positions
 from paper_system import system
@@ -47,6 +48,24 @@ def test_each_cradle_releases_when_thrust_exceeds_weight_of_its_uav():
         assert state.payload_position_in_world[2] == pytest.approx(STANDING_ON_PAD, abs=1e-3)
         # Links stay upright on the pull of their UAVs.
         np.testing.assert_allclose(uav_array(state, "position_in_world")[:, :2], parameters.p[:, :2], atol=0.01)
+
+
+def test_cradle_that_holds_its_uav_takes_no_second_hold():
+    with World(system(4)) as world:
+        held, before = world.state().uavs[0], pybullet.getNumConstraints(world._client)
+        world._cradles.latch(0, held.position_in_world, held.quaternion)
+        assert pybullet.getNumConstraints(world._client) == before
+        world._cradles.release(0)
+        assert pybullet.getNumConstraints(world._client) == before - 1
+        assert not world._cradles.held(0) and not world.all_cradled
+
+
+def test_world_leaves_no_engine_behind():
+    with World(system(3)) as world:
+        engine = world._client
+        assert pybullet.isConnected(engine)
+    assert not pybullet.isConnected(engine)
+    world.close()  # once more does nothing
 
 
 def land(world, offset=0.0):

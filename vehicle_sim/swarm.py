@@ -11,7 +11,7 @@ from gcs.mission.model import DEFAULT_HOME, Home, Obstacle
 from idc_controller.arrays import Array
 from vehicle_sim.autopilot.airframe import Airframe
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
-from vehicle_sim.faults.fault_injector import FaultInjector
+from vehicle_sim.faults.disturbances import Disturbances
 from vehicle_sim.mavlink.vehicle import Vehicle
 from vehicle_sim.team import Team
 from vehicle_sim.world.obstacle_bodies import MovingObstacles
@@ -49,7 +49,7 @@ class Swarm:
         home: Home | None = None,
         obstacles: Sequence[Obstacle] = (),
         ground_address: Address | None = None,
-        faults: FaultInjector | None = None,
+        faults: Disturbances | None = None,
         gui: bool = False,
     ) -> None:
         """``ground_address`` is where the vehicles offer themselves. Raises :class:`SimulationError`."""
@@ -62,7 +62,7 @@ class Swarm:
             raise
         self.failsafe = config.flight.failsafe
         self.take_off_time: float | None = None
-        self._faults = faults or FaultInjector()
+        self._faults = faults or Disturbances()
         self._truth: TruthLog | None = None
         self._periods = _Periods(
             rates.physics // rates.onboard, rates.physics // rates.truth, rates.physics // config.range_sensor.rate
@@ -85,7 +85,7 @@ class Swarm:
         )  # fmt: skip
         self._team = Team(self.vehicles, arrays, rotors, config, seed, self._faults)
         self._modes_recorded = False
-        self._wrenches: list[Wrenches] = []
+        self._wrenches: Wrenches = [], []
         """Of the physics steps between the last and the next onboard step."""
         self._onboard(self.world.states())
         self._team.relay()
@@ -143,38 +143,38 @@ class Swarm:
             i = vehicle.system_id
             for arrived, source in faults.to_vehicle(i, (), now):
                 vehicle.receive(arrived, source, now)
-            leaving = faults.from_vehicle(i, vehicle.datagrams_to_send(now), now)
-            out += [(i, datagram, address) for datagram, address in leaving]
+            for datagram, address in faults.from_vehicle(i, vehicle.datagrams_to_send(now), now):
+                out.append((i, datagram, address))
         return out
 
     def next_timer(self) -> float | None:
         """Return when :meth:`datagrams_to_send` has something to do (s; in the past: at once), None: never."""
-        timers = [timer for vehicle in self.vehicles if (timer := vehicle.next_timer()) is not None]
-        if (timer := self._faults.next_timer()) is not None:
-            timers.append(timer)
-        return min(timers, default=None)
+        timers = [vehicle.next_timer() for vehicle in self.vehicles]
+        timers.append(self._faults.next_timer())
+        return min([timer for timer in timers if timer is not None], default=None)
 
     # Inside
 
     def _step(self) -> None:
         """Take one physics step."""
-        world, periods = self.world, self._periods
+        world, (onboard, row, scan) = self.world, self._periods
         if self._obstacles.any_moves and self.take_off_time is not None:
             self._obstacles.move((world.steps + 1) / world.physics_hz - self.take_off_time)
-        thrusts, torques = self._wrenches[world.steps % periods.onboard]
+        thrusts, torques = self._wrenches
+        k = world.steps % onboard
         if self._faults.any_of_world:
-            world.step(thrusts, torques, *(self._faults.disturb(world, world.time) or ()))
+            world.step(thrusts[k], torques[k], *(self._faults.disturb(world, world.time) or ()))
         else:
-            world.step(thrusts, torques)
+            world.step(thrusts[k], torques[k])
         if self._truth is not None and (pairs := world.contacts().pairs) > self._contacts:
             self._contacts = pairs
         if self.take_off_time is None and not world.all_cradled:
             self.take_off_time = world.time
             self._faults.took_off(world.time)
         steps = world.steps
-        measures = steps % periods.onboard == 0
-        scans = steps % periods.scan == 0 and bool(world.obstacles.all())
-        records = steps % periods.row == 0 and self._truth is not None
+        measures = steps % onboard == 0
+        scans = steps % scan == 0 and bool(world.obstacles.all())
+        records = steps % row == 0 and self._truth is not None
         if not (measures or scans or records):
             return
         states = world.states()

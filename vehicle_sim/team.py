@@ -10,7 +10,7 @@ from gcs.config.tables import SensorsConfig
 from idc_controller.arrays import Array
 from vehicle_sim.autopilot.onboard_arrays import OnboardArrays
 from vehicle_sim.autopilot.onboard_loop import step_together
-from vehicle_sim.faults.fault_injector import FaultInjector
+from vehicle_sim.faults.disturbances import Disturbances
 from vehicle_sim.mavlink.vehicle import Vehicle
 from vehicle_sim.world.obstacle_bodies import ObstacleBodies
 from vehicle_sim.world.range_sensor import RangeSensor
@@ -29,7 +29,7 @@ class Team:
         rotors: Rotors,
         config: SystemConfig,
         seed: int,
-        faults: FaultInjector,
+        faults: Disturbances,
     ) -> None:
         """``arrays`` of these vehicles, each of which has its row."""
         self.vehicles = tuple(vehicles)
@@ -42,21 +42,21 @@ class Team:
         self._faults = faults
         self._disturbed = [vehicle for vehicle in vehicles if faults.disturbs_samples(vehicle.system_id)]
         self._undisturbed = [vehicle for vehicle in vehicles if vehicle not in self._disturbed]
+        self._samples = self._sensors.samples[1:]
         self._times = np.empty(len(ids))
-        self._payload_sample: tuple[float, Array] | None = None
+        self._measured_at = math.nan
 
-    def wrenches(self) -> list[Wrenches]:
+    def wrenches(self) -> Wrenches:
         """Return the wrenches of the rotors for the physics steps up to the next step of the onboard loops."""
         return self._rotors.advance(self._arrays.speeds)
 
     def step(self, states: Array, now: float) -> bool:
         """Measure the true ``states``, and let every autopilot take a step; return True if a HEARTBEAT changes."""
-        rows = self._sensors.measure(states)
-        self._payload_sample = now, rows[0]
-        samples, times = rows[1:], self._times
-        times.fill(now)
-        missing = self._disturb(samples, times) if self._disturbed else ()
-        changed = step_together(self._autopilots, self._arrays, samples, times, now, missing)
+        self._sensors.measure(states)
+        self._measured_at = now
+        self._times.fill(now)
+        missing = self._disturb() if self._disturbed else ()
+        changed = step_together(self._autopilots, self._arrays, self._samples, self._times, now, missing)
         for i in changed:
             self.vehicles[i].send_changes()
         for vehicle in self._disturbed:
@@ -66,22 +66,22 @@ class Team:
 
     def relay(self) -> None:
         """Let the vehicles relay the payload's newest sample; those that a fault disturbs get every one at once."""
-        if self._payload_sample is None:
-            return
-        time, row = self._payload_sample
-        sample = Measurement.of_row(time, row.tolist())
+        sample = self._payload_sample()
         for vehicle in self._undisturbed:
             vehicle.relay(sample)
 
-    def _disturb(self, samples: Array, times: Array) -> list[int]:
-        """Let the faults act on the vehicles' ``samples`` (N, 13), their ``times`` (N,), and what they relay.
+    def _payload_sample(self) -> Measurement:
+        """Return the newest sample of the payload's unit."""
+        return Measurement.of_row(self._measured_at, self._sensors.samples[0].tolist())
+
+    def _disturb(self) -> list[int]:
+        """Let the faults act on the vehicles' samples (N, 13), their times (N,), and what they relay.
 
         Return the vehicles (from 0) to which no sample comes.
         """
         missing = []
-        assert self._payload_sample is not None
-        time, row = self._payload_sample
-        payload_sample = Measurement.of_row(time, row.tolist())
+        samples, times, time = self._samples, self._times, self._measured_at
+        payload_sample = self._payload_sample()
         for vehicle in self._disturbed:
             number = vehicle.system_id
             vehicle.relay(self._faults.payload_sample(number, payload_sample))

@@ -14,7 +14,7 @@ from typing import Any
 from gcs.app.exit_status import ExitStatus
 from gcs.app.flight_log import FlightLog
 from gcs.app.fly_options import FlyOptions
-from gcs.drivers.connection import Connection
+from gcs.drivers.connection import Connection, LockstepConnection
 from gcs.drivers.forked_program import ForkedProgram
 from gcs.drivers.interrupt import Interrupt
 from gcs.drivers.lockstep import run_in_lockstep
@@ -120,7 +120,8 @@ def fly(
                 )
             else:
                 clock = _clock_address(options, simulator)
-                run_in_lockstep(station, connection, clock, interrupt, settings, progress=update, end_reason=ended)
+                in_lockstep = resources.enter_context(closing(LockstepConnection(connection, clock)))
+                run_in_lockstep(station, in_lockstep, clock, interrupt, settings, progress=update, end_reason=ended)
         except KeyboardInterrupt:
             flight = station.flight
             reason = "interrupted twice: the vehicles land autonomously"

@@ -17,6 +17,7 @@ class FlightProgress:
 
     def __init__(self, console: Console) -> None:
         self._console = console
+        self._at_terminal = console.is_terminal  # asks the system each time
         self._progress = Progress(
             SpinnerColumn(),
             TextColumn("{task.description:<12}"),
@@ -25,7 +26,7 @@ class FlightProgress:
             TimeElapsedColumn(),
             console=console,
             transient=True,
-            disable=not console.is_terminal,
+            disable=not self._at_terminal,
         )
         self._task = self._progress.add_task("connect", total=None, flown="")
         self._phase: Phase | None = None
@@ -38,10 +39,10 @@ class FlightProgress:
         flown = math.isfinite(time)
         if changed:
             self._phase = flight.phase
-            if not self._console.is_terminal:
+            if not self._at_terminal:
                 self._console.print(f"{flight.time:8.2f} s  {flight.phase.value}")
         second = math.floor(time) if flown else -1
-        if self._console.is_terminal and (changed or second != self._second):
+        if self._at_terminal and (changed or second != self._second):
             self._second = second
             end = flight.expected_end - flight.takeoff_time if flown else math.inf
             self._progress.update(

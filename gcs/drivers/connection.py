@@ -3,6 +3,7 @@
 import select
 import socket
 from collections.abc import Iterator
+from itertools import chain
 
 from gcs.errors import UnusableInput
 from gcs.mavlink.address import Address
@@ -40,3 +41,31 @@ class Connection:
     def close(self) -> None:
         """Close the socket."""
         self.socket.close()
+
+
+class LockstepConnection:
+    """A connection to vehicles in lockstep, with a socket of its own for the world's clock: its ticks alone end a wait.
+
+    The world ticks after it has sent the datagrams of all vehicles. A ground that waits for those is woken by the first
+    of them, and takes the processor from a world that is still sending.
+    """
+
+    def __init__(self, vehicles: Connection, clock_address: Address) -> None:
+        self._vehicles, self._clock_address = vehicles, clock_address
+        self._clock = Connection((vehicles.socket.getsockname()[0], 0))
+
+    def send(self, datagram: bytes, address: Address) -> None:
+        """Send as :meth:`Connection.send`."""
+        (self._clock if address == self._clock_address else self._vehicles).send(datagram, address)
+
+    def receive(self) -> Iterator[tuple[bytes, Address]]:
+        """Return the datagrams that have come, those of the clock last."""
+        return chain(self._vehicles.receive(), self._clock.receive())
+
+    def wait(self, timeout: float) -> bool:
+        """Wait for the clock, at most ``timeout`` (s); return False if it is silent."""
+        return self._clock.wait(timeout)
+
+    def close(self) -> None:
+        """Close the socket of the clock."""
+        self._clock.close()

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable
 
-from gcs.drivers.connection import Connection
+from gcs.drivers.connection import LockstepConnection
 from gcs.drivers.interrupt import Interrupt
 from gcs.drivers.settings import DriverSettings
 from gcs.flight.failsafe import Failsafe
@@ -14,7 +14,7 @@ from gcs.mavlink.lockstep import Done, Tick, decode_tick
 
 def run_in_lockstep(
     station: GroundStation,
-    connection: Connection,
+    connection: LockstepConnection,
     clock_address: Address,
     interrupt: Interrupt,
     settings: DriverSettings,
@@ -67,7 +67,9 @@ def run_in_lockstep(
         connection.send(Done(0, None, leaving=True).encode(), clock_address)
 
 
-def _next_tick(connection: Connection, clock_address: Address, inbox: list[tuple[bytes, Address]]) -> Tick | None:
+def _next_tick(
+    connection: LockstepConnection, clock_address: Address, inbox: list[tuple[bytes, Address]]
+) -> Tick | None:
     """Return the next tick that has come, None: none; put all datagrams before it into ``inbox``."""
     for datagram, sender in connection.receive():
         if sender == clock_address:

@@ -1,6 +1,7 @@
 """One flight, from connecting to disarming: its phases, the control step in each, and the reactions to failsafes."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -41,11 +42,12 @@ class Flight:
         settings = self._settings
         payload, preflight = PayloadMonitor(control.controller.parameters, settings), Preflight(team, settings)
         plan = PlanMonitor(control.controller.parameters.number_of_uavs, settings.failsafe)
-        system = System(
+        self.system = System(
             team, control.estimator, control.controller.guidance, payload, preflight, plan, obstacle_map,
             settings.failsafe,
         )  # fmt: skip
-        self.failsafes = FailsafeState(system, alarms)
+        """The objects that the conditions of failsafes are evaluated on."""
+        self.failsafes = FailsafeState(self.system, alarms)
         self.phase = Phase.CONNECT
         self.time = 0.0
         """Team time of the last control step."""
@@ -56,11 +58,6 @@ class Flight:
         self._pad: Trajectory | None = None
         self._touchdown: Touchdown | None = None
         self._sequence: CommandSequence | None = None
-
-    @property
-    def system(self) -> System:
-        """The objects that the conditions of failsafes are evaluated on."""
-        return self.failsafes.system
 
     @property
     def ended(self) -> bool:
@@ -98,14 +95,16 @@ class Flight:
 
     # Telemetry
 
-    def add_measurement(self, measurement: Measurement) -> Measurement | None:
-        """Take telemetry of a vehicle or of the payload unit; return what is used of it."""
+    def add_measurements(self, measurements: Sequence[Measurement]) -> Sequence[Measurement]:
+        """Take telemetry of the vehicles and of the payload unit; return what is used of it."""
         if self.phase in CONTROLLED:
-            self.system.plan.add(measurement)
-            return self.control.estimator.add(measurement)
+            for taken in measurements:
+                self.system.plan.add(taken)
+            return [used for taken in measurements if (used := self.control.estimator.add(taken)) is not None]
         if self.phase in (Phase.CHECK, Phase.ARM):
-            self.system.preflight.add(measurement)
-        return measurement
+            for taken in measurements:
+                self.system.preflight.add(taken)
+        return measurements
 
     # Failsafes
 

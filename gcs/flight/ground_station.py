@@ -45,8 +45,8 @@ _TIMESYNC = LAYOUTS[mavlink.MAVLINK_MSG_ID_TIMESYNC]
 class Recorder(Protocol):
     """Records of a ground station."""
 
-    def datagram(self, now: float, datagram: bytes) -> None:
-        """Record one datagram, sent or received."""
+    def datagrams(self, now: float, datagrams: Sequence[bytes]) -> None:
+        """Record datagrams, sent or received."""
         ...
 
     def end_exchange(self) -> None:
@@ -113,19 +113,18 @@ class GroundStation:
 
     def receive_all(self, datagrams: Sequence[tuple[bytes, Address]], now: float) -> None:
         """Take datagrams, each with its sender, as :meth:`receive` does one by one."""
-        for datagram in self.router.receive(datagrams, now):
-            self._recorder.datagram(now, datagram)
+        self._recorder.datagrams(now, self.router.receive(datagrams, now))
 
     def datagrams_to_send(self, now: float) -> list[tuple[bytes, Address]]:
         """Return all that is due at ``now`` (s), each with its address."""
-        times, record = self._times, None
+        times, links, record = self._times, self.links, None
         times.lap(Part.TELEMETRY)
-        messages: list[list[Packed]] = [[] for _ in self.links]
+        messages: list[list[Packed]] = [[] for _ in links]
         if self._heartbeat.is_due(now):
             for queue in messages:
                 queue += _HEARTBEAT
         if self._timesync.is_due(now):
-            for link, queue in zip(self.links, messages, strict=True):
+            for link, queue in zip(links, messages, strict=True):
                 queue.append(_TIMESYNC.pack(0, link.clock.request(now)))
         self._stepped = self._control.is_due(now)
         times.lap(Part.SETPOINTS)
@@ -137,11 +136,11 @@ class GroundStation:
         if self._stepped and self._control.begin(now, self._clock, connecting=self.flight.phase is Phase.CONNECT):
             record = self._step(now, messages)
         times.lap(Part.MONITORING)
-        carries_setpoints = [self._stepped] * len(self.links)
+        carries_setpoints = [self._stepped] * len(links)
         for i, due in self._schedule.take(now):
             messages[i].extend(due)
             carries_setpoints[i] = True
-        for link, queue in zip(self.links, messages, strict=True):
+        for link, queue in zip(links, messages, strict=True):
             if requests := link.requests.due(now):
                 queue += packed(*requests)
         out = self._encoded(now, messages, carries_setpoints)
@@ -236,8 +235,7 @@ class GroundStation:
                 out += [(datagram, link.address)] * copies
             recorded += datagrams
         self._times.lap(Part.SETPOINTS)
-        for datagram in recorded:
-            self._recorder.datagram(now, datagram)
+        self._recorder.datagrams(now, recorded)
         return out
 
     def _setpoint_messages(self, now: float, setpoints: Setpoints | None) -> list[list[Packed]]:

@@ -37,6 +37,8 @@ class SetpointSchedule:
 
     def take(self, now: float) -> list[tuple[int, list[Packed]]]:
         """Return what is due at ``now``, with the vehicle's index."""
+        if not self._waiting:
+            return []
         due = [(i, messages) for time, i, messages in self._waiting if time <= now + TOLERANCE]
         self._waiting = [entry for entry in self._waiting if entry[0] > now + TOLERANCE]
         return due
@@ -48,4 +50,4 @@ class SetpointSchedule:
     @property
     def next_due(self) -> float:
         """Time at which the next message is due; inf: none waits."""
-        return min((due for due, _, _ in self._waiting), default=math.inf)
+        return min(due for due, _, _ in self._waiting) if self._waiting else math.inf

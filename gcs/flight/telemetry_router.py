@@ -16,9 +16,9 @@ from gcs.mavlink.codec import Codec
 from gcs.mavlink.id_check import SystemIdCheck
 from gcs.mavlink.messages import Received
 from gcs.mavlink.scan_sequence import RETURNS, SCAN_END, scan_stamp
-from gcs.mavlink.telemetry import measurement, scan_end, scan_returns, setpoint_flown
+from gcs.mavlink.telemetry import measurements, scan_end, scan_returns, setpoint_flown
 from gcs.mavlink.vehicle_link import VehicleLink
-from idc_controller.estimation.measurements import PAYLOAD, Measurement
+from idc_controller.estimation.measurements import PAYLOAD
 
 _SETPOINT, _SCAN = mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET, (RETURNS, SCAN_END)
 _STAMPED = frozenset(
@@ -30,8 +30,10 @@ _STAMPED = frozenset(
 class _Routed(NamedTuple):
     """What has come in one exchange for the estimator, in order."""
 
-    samples: list[tuple[Received, int, int, float]]
-    """Measurements: the message, its sender (0 .. N-1), the vehicle that sends as that, time of validity (s)."""
+    samples: list[tuple[Received, int, float]]
+    """Measurements: the message, the vehicle that sent it (0 .. N-1), time of validity (s)."""
+    senders: list[int]
+    """The vehicle (0 .. N-1) as which each of them was sent."""
     setpoints: list[tuple[Received, int, float, float, float, float]]
     """Set-points that vehicles report to fly: the message, the vehicle (0 .. N-1), since and until when (s), jitter and
     largest latency of its link then (s)."""
@@ -65,7 +67,7 @@ class TelemetryRouter:
         # many calls of one kind cost far less in a row.
         read = [(codec.read(datagram), codec.unread) for datagram, _ in datagrams]
         known = []
-        routed = _Routed([], [])
+        routed = _Routed([], [], [])
         for (datagram, sender), (messages, unread) in zip(datagrams, read, strict=True):
             if unread > self._unread:
                 self._unread = unread
@@ -74,8 +76,8 @@ class TelemetryRouter:
             if self._take(messages, sender, now, routed):
                 known.append(datagram)
         self.refused += len(datagrams) - len(known)
-        for sample in self._measurements(routed):
-            self._add_measurement(sample)
+        if routed.samples:
+            self._add_measurements(routed)
         for report in routed.setpoints:
             self._confirm_setpoint(*report)
         return known
@@ -152,20 +154,23 @@ class TelemetryRouter:
                     else:
                         obstacle_map.placement.end(scan_end(received, link.statistics.scans), index, time, now)
             else:
-                routed.samples.append((received, index, uav, time))
+                routed.samples.append((received, uav, time))
+                routed.senders.append(index)
             if time > latest:
                 latest = time
 
-    def _measurements(self, routed: _Routed) -> list[Measurement]:
-        """Return the measurements, as far as there are numbers in the messages."""
-        found = []
-        for received, sender, uav, time in routed.samples:
-            sample = measurement(received, uav, time)
-            if sample is None or not sample.is_whole:
-                self._links[sender].statistics.add_not_finite(received.component)
-            if sample is not None:
-                found.append(sample)
-        return found
+    def _add_measurements(self, routed: _Routed) -> None:
+        taken, partial = measurements(routed.samples)
+        for k in partial:
+            self._links[routed.senders[k]].statistics.add_not_finite(routed.samples[k][0].component)
+        used = self._flight.add_measurements(taken)
+        for sample in taken:
+            if sample.source != PAYLOAD:
+                self._id_check.add(sample)
+        if (obstacle_map := self._flight.system.obstacle_map) is not None:
+            for sample in used:
+                if sample.source != PAYLOAD:
+                    obstacle_map.placement.poses.add_measured(sample)
 
     def _confirm_setpoint(
         self, received: Received, index: int, since: float, until: float, jitter: float, latency_max: float
@@ -177,14 +182,6 @@ class TelemetryRouter:
         confirmation = flight.control.estimator.confirm_setpoint(index, since, until, setpoint, jitter, latency_max)
         if confirmation is not None:
             link.setpoints.confirm(confirmation)
-
-    def _add_measurement(self, sample: Measurement) -> None:
-        used = self._flight.add_measurement(sample)
-        if sample.source == PAYLOAD:
-            return
-        self._id_check.add(sample)
-        if used is not None and (obstacle_map := self._flight.system.obstacle_map) is not None:
-            obstacle_map.placement.poses.add_measured(used)
 
 
 def whole_ms(time: float) -> float:

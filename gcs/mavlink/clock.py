@@ -13,7 +13,6 @@ class _RoundTrips(NamedTuple):
     """The last round trips (s)."""
 
     shortest: float = 0.0
-    median: float = 0.0
     spread: float = 0.0
     """Upper quartile less the shortest."""
     longest: float = math.inf
@@ -38,6 +37,8 @@ class RemoteClock:
         """Time of its offset's last step (s, ground): it was set, or datagrams come otherwise than before."""
         self.lag = 0.0
         """Delay (s) of the last stamp beyond the least delay of the last second."""
+        self.delay = 0.0
+        """Link latency (s): half of the median round trip."""
         self._requests: deque[int] = deque(maxlen=settings.open_requests)
         self._round_trips: list[float] = []
         self._arrivals: list[float] = []
@@ -83,7 +84,8 @@ class RemoteClock:
             del self._round_trips[: -self._settings.round_trips], self._arrivals[: -self._settings.round_trips]
             trips, recent = sorted(self._round_trips), self._round_trips[-self._settings.recent_round_trips :]
             spread = trips[3 * (len(trips) - 1) // 4] - trips[0]
-            self._trips = _RoundTrips(trips[0], median(trips), spread, max(recent))
+            self._trips = _RoundTrips(trips[0], spread, max(recent))
+            self.delay = median(trips) / 2.0
 
     @property
     def known(self) -> bool:
@@ -113,8 +115,3 @@ class RemoteClock:
         """
         before = bisect_right(self._arrivals, now - duration)
         return min(self._round_trips[before - 1 :]) / 2.0 if before else 0.0
-
-    @property
-    def delay(self) -> float:
-        """Link latency (s): half of the median round trip."""
-        return self._trips.median / 2.0

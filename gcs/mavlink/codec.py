@@ -19,9 +19,9 @@ DATAGRAM_LIMIT = 1200
 BAD_FRAMES_MAX = 32
 
 _MARKER = bytes([V2])
-_HEADER = struct.Struct("<BBBBBB3s")
-"""Of MAVLink 2, behind the marker: length, incompatible and compatible flags, sequence number, system, component, id of
-the message."""
+_HEADER = struct.Struct("<BHB2s3s")
+"""Of MAVLink 2, behind the marker: length, flags, sequence number, sender, id of the message."""
+_CHECKSUM = struct.Struct("<H")
 
 _POINT = mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D
 """The kind of message of which many come at once."""
@@ -55,7 +55,7 @@ class Codec:
     def __init__(self, system_id: int, component_id: int) -> None:
         self.system_id = system_id
         """The sender's system id in every encoded frame."""
-        self._component_id = component_id
+        self._sender = bytes([system_id, component_id])
         self._sequence = 0
         self.bad_frames = 0
         self.skipped_bytes = 0
@@ -75,19 +75,16 @@ class Codec:
     def frame(self, message: Packed) -> bytes:
         """Return a MAVLink 2 frame of a message that is packed already, as :meth:`encode` does."""
         layout, payload = message
-        body = _HEADER.pack(
-            len(payload), 0, 0, self._sequence, self.system_id, self._component_id, layout.wire_id
-        ) + payload  # fmt: skip
-        self._sequence = (self._sequence + 1) & 0xFF
-        return _MARKER + body + _checksum(body + layout.crc_extra).to_bytes(2, "little")
+        sequence = self._sequence
+        self._sequence = (sequence + 1) & 0xFF
+        body = _HEADER.pack(len(payload), 0, sequence, self._sender, layout.wire_id) + payload
+        return _MARKER + body + _CHECKSUM.pack(_checksum(body + layout.crc_extra))
 
     def frames(self, run: PackedRun) -> list[bytes]:
         """Return the MAVLink 2 frames of a run, as :meth:`frame` does one by one."""
         layout, values = run
         length = layout.dtype.itemsize
-        header = _MARKER + _HEADER.pack(
-            length, 0, 0, self._sequence, self.system_id, self._component_id, layout.wire_id
-        )  # fmt: skip
+        header = _MARKER + _HEADER.pack(length, 0, self._sequence, self._sender, layout.wire_id)
         self._sequence = (self._sequence + len(values)) & 0xFF
         payloads = values.view(np.uint8).reshape(-1, length)
         data = framed_run(np.frombuffer(bytearray(header), np.uint8), payloads, layout.crc_extra[0]).tobytes()
@@ -95,13 +92,8 @@ class Codec:
 
     def decode(self, datagram: bytes) -> list[Received]:
         """Return all messages of one datagram, in order. Frames never reach across datagrams."""
-        messages: list[Received] = []
-        for received in self.read(datagram):
-            if received.run == 1:
-                messages.append(received)
-            else:
-                messages += received.split()
-        return messages
+        read = self.read(datagram)
+        return [message for received in read for message in ((received,) if received.run == 1 else received.split())]
 
     def read(self, datagram: bytes) -> list[Received]:
         """Return the same as :meth:`decode`, but OBSTACLE_DISTANCE_3D of one scan, one behind the other, as one.

@@ -22,6 +22,8 @@ AROUND = HEADER + CHECKSUM
 RUN_LIMIT = 256
 """Largest number of messages of a run: as many as there are sequence numbers."""
 _SEQUENCE, _STAMP = 4, 4
+_STAMP_BYTES = 8
+"""Bytes of the stamp of a record."""
 
 
 @inlined
@@ -168,8 +170,8 @@ def framed_run(header: Bytes, payloads: Bytes, extra: int) -> Bytes:
     return frames
 
 
-@kernel("uint8[::1](uint8[::1], int64[::1], uint8[:, ::1])")
-def stamped_frames(data: Bytes, ends: NDArray[np.int64], stamps: Bytes) -> Bytes:
+@kernel("uint8[::1](uint8[::1], int64[::1], int64[::1])")
+def stamped_frames(data: Bytes, ends: NDArray[np.int64], stamps: NDArray[np.int64]) -> Bytes:
     """Return every frame that :func:`gcs.mavlink.frames.spans` finds in datagrams, each behind its datagram's stamp.
 
     Bytes that belong to no frame are left out.
@@ -177,10 +179,10 @@ def stamped_frames(data: Bytes, ends: NDArray[np.int64], stamps: Bytes) -> Bytes
     Args:
         data: The datagrams (n,), one behind the other.
         ends: Where in ``data`` each of them ends (k,).
-        stamps: Of each of them (k, s).
+        stamps: Of each of them (k,), written as 8 bytes, big-endian.
     """
-    all_bytes, width = data.shape[0], stamps.shape[1]
-    records, count, at = np.empty(all_bytes + (all_bytes // 8 + 1) * width, np.uint8), 0, 0
+    all_bytes = data.shape[0]
+    records, count, at = np.empty(all_bytes + (all_bytes // 8 + 1) * _STAMP_BYTES, np.uint8), 0, 0
     for k in range(ends.shape[0]):
         size = ends[k]
         while at < size:
@@ -188,9 +190,10 @@ def stamped_frames(data: Bytes, ends: NDArray[np.int64], stamps: Bytes) -> Bytes
             if end == 0:
                 at += 1
                 continue
-            records[count : count + width] = stamps[k]
-            count += width
+            for byte in range(_STAMP_BYTES):
+                records[count + byte] = (stamps[k] >> 8 * (_STAMP_BYTES - 1 - byte)) & 0xFF
+            count += _STAMP_BYTES
             records[count : count + end - at] = data[at:end]
             count += end - at
             at = end
-    return records[:count].copy()
+    return records[:count]

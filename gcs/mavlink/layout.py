@@ -7,7 +7,7 @@ from functools import cached_property
 from itertools import accumulate
 from operator import attrgetter, itemgetter
 from struct import calcsize
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
@@ -16,11 +16,8 @@ from numpy.typing import NDArray
 Message = mavlink.MAVLink_message
 
 
-class Packed(NamedTuple):
-    """A message without its header: the same for all who get it."""
-
-    layout: Layout
-    payload: bytes
+Packed: TypeAlias = "tuple[Layout, bytes]"
+"""A message without its header, its layout and its payload: the same for all who get it."""
 
 
 class PackedRun(NamedTuple):
@@ -80,8 +77,7 @@ class Layout:
         Raises ``struct.error`` or ``OverflowError`` when a field does not fit its type.
         """
         payload = self._pack(*values)
-        # Trailing zeros are not sent, but at least one byte is. Without the call of its own __new__, as it is slow.
-        return tuple.__new__(Packed, (self, payload.rstrip(b"\0") or payload[:1]))
+        return self, payload.rstrip(b"\0") or payload[:1]  # trailing zeros are not sent, but at least one byte is
 
     def pack_message(self, message: Message) -> Packed:
         """Return a message of this kind, packed. Raises as :meth:`pack`."""

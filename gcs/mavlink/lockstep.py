@@ -1,11 +1,11 @@
 """The barrier that lets a world and a ground station share one virtual clock over UDP.
 
 The world owns the time. At every moment at which anything is due it first sends the vehicles' datagrams and then, from
-its clock port to the ground's socket, a :class:`Tick`. Loopback UDP keeps the order of arrival, so when the ground
-reads the tick it has read all that was sent before. It answers all of it at that time, and last of all, to the clock
-port, with :class:`Done`, which names the next moment at which it wants to be called. When vehicles have something to
-say to what they received, the world ticks again at the same time; otherwise it lets time go on to the earliest of what
-is due on either side.
+its clock port to the socket from which the ground has joined, a :class:`Tick`. Loopback UDP keeps the order of arrival,
+so all that was sent before the tick is there with it. The ground answers all of it at that time, and last of all, to
+the clock port, with :class:`Done`, which names the next moment at which it wants to be called. When vehicles have
+something to say to what they received, the world ticks again at the same time; otherwise it lets time go on to the
+earliest of what is due on either side.
 
 The barrier carries only time and stands outside MAVLink, so that no fault on a link can stop the clock.
 """

@@ -62,6 +62,8 @@ class Requests:
     def due(self, now: float) -> list[Message]:
         """Return the requests that are to be sent at ``now``."""
         messages: list[Message] = []
+        if not (self._wanted or self._pending):
+            return messages
         target = self._system_id, px4.AUTOPILOT_COMPONENT
         for name, due in self._wanted.items():
             if now >= due:

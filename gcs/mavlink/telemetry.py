@@ -1,9 +1,7 @@
 """Telemetry: MAVLink messages of the vehicles become measurements for the estimator."""
 
 import math
-from collections.abc import Callable
-from functools import lru_cache
-from struct import Struct
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -13,24 +11,23 @@ from gcs.mavlink import px4
 from gcs.mavlink.layout import LAYOUTS
 from gcs.mavlink.messages import Received
 from gcs.mavlink.scan_sequence import ScanSequence, scan_stamp
-from idc_controller.arrays import Array
+from gcs.mavlink.telemetry_kernels import poses_and_motions
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Measurement, Position
 from idc_controller.perception.scan_placement import Returns, ScanEnd
 
-_ATTITUDE = LAYOUTS[mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION]
-_POSITION = LAYOUTS[mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED]
 _POINT = LAYOUTS[mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D]
 _SCAN_END = LAYOUTS[mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE]
-_NAN = math.nan
-_THREE, _FOUR = Struct("3d").pack, Struct("4d").pack
-_THREE_UNKNOWN, _FOUR_UNKNOWN = _THREE(*[_NAN] * 3), _FOUR(*[_NAN] * 4)
+_AUTOPILOT, _PAYLOAD_UNIT = px4.AUTOPILOT_COMPONENT, px4.PAYLOAD_UNIT_COMPONENT
+_KINDS: dict[int, type[Measurement]] = {
+    mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION: Attitude,
+    mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED: Position,
+}
+_READ = 32
+"""Bytes of a navigation message that are read: stamp, pose and motion."""
 
-_Values = tuple[Array, Array] | None
-"""Pose and motion, one of them nan if it cannot be a measurement; None: neither can."""
 
-
-def setpoint_flown(fields: tuple[Any, ...], thrust_max: float) -> Array | None:
-    """Return the tilt of the thrust (north, east) and thrust (N), (3,), in an ATTITUDE_TARGET; None: it has neither.
+def setpoint_flown(fields: tuple[Any, ...], thrust_max: float) -> tuple[float, float, float] | None:
+    """Return the tilt of the thrust (north, east) and thrust (N) in an ATTITUDE_TARGET; None: it has neither.
 
     ``fields`` in the order of the wire; ``thrust_max`` (N) is what the vehicle means by thrust 1.
     """
@@ -38,28 +35,44 @@ def setpoint_flown(fields: tuple[Any, ...], thrust_max: float) -> Array | None:
     if type_mask & mavlink.ATTITUDE_TARGET_TYPEMASK_ATTITUDE_IGNORE:
         return None
     flown = (-2.0 * (x * z + w * y), -2.0 * (y * z - w * x), thrust * thrust_max)
-    return np.array(flown) if math.isfinite(sum(flown)) else None
+    return flown if math.isfinite(sum(flown)) else None
 
 
-def measurement(received: Received, uav: int, time: float) -> Measurement | None:
-    """Return the measurement in a message of UAV ``uav`` (0 .. N-1), true at ``time`` (s, team time).
+def measurements(messages: Sequence[tuple[Received, int, float]]) -> tuple[list[Measurement], list[int]]:
+    """Return the measurements in ATTITUDE_QUATERNION and LOCAL_POSITION_NED, in order.
 
-    None for messages that measure nothing and for values that cannot be measurements (not finite, no rotation). Where
-    only the pose or only the motion cannot be one, that part is nan, as MAVLink has it for an unknown rate.
-    The payload's navigation unit is a component of its own, relayed by every vehicle.
+    There is none in values that cannot be measurements (not finite, no rotation). Where only the pose or only the
+    motion cannot be one, that part is nan, as MAVLink has it for an unknown rate. The payload's navigation unit is a
+    component of its own, relayed by every vehicle. Nobody can write to their arrays, which share memory.
+
+    Args:
+        messages: Each with its UAV (0 .. N-1) and its time of validity (s, team time).
+
+    Returns:
+        The measurements, and the indices of the messages without a pose, a motion or both.
     """
-    layout, component = received.layout, received.component
-    if layout is not _ATTITUDE and layout is not _POSITION:
-        return None
-    if component == px4.AUTOPILOT_COMPONENT:
-        source, values = uav, _READ[layout.message_id](received.payload)
-    elif component == px4.PAYLOAD_UNIT_COMPONENT:
-        source, values = PAYLOAD, _READ_ONCE[layout.message_id](received.payload)
-    else:
-        return None
-    if values is None:
-        return None
-    return (Attitude if layout is _ATTITUDE else Position)(time, source, *values)
+    data = bytearray().join([received.payload[:_READ].ljust(_READ, b"\0") for received, _, _ in messages])
+    kinds = [_KINDS[received.layout.message_id] for received, _, _ in messages]
+    is_attitude = [kind is Attitude for kind in kinds]
+    values, measured = poses_and_motions(np.frombuffer(data, "<f4").reshape(-1, _READ // 4), np.array(is_attitude))
+    values.flags.writeable = False
+    found: list[Measurement] = []
+    partial: list[int] = []
+    parts = zip(messages, kinds, measured.tolist(), values[:, :4], values[:, 4:], strict=True)
+    for k, ((received, uav, time), kind, (has_pose, has_motion), pose, motion) in enumerate(parts):
+        component = received.component
+        if component == _AUTOPILOT:
+            source = uav
+        elif component == _PAYLOAD_UNIT:
+            source = PAYLOAD
+        else:
+            continue
+        if not (has_pose and has_motion):
+            partial.append(k)
+            if not (has_pose or has_motion):
+                continue
+        found.append(kind(time, source, pose if kind is Attitude else pose[:3], motion))
+    return found, partial
 
 
 def scan_returns(received: Received) -> Returns:
@@ -71,7 +84,7 @@ def scan_returns(received: Received) -> Returns:
     values = np.frombuffer(data, _POINT.dtype, received.run)
     points = np.empty((len(values), 3))
     points[:, 0], points[:, 1], points[:, 2] = values["x"], values["y"], values["z"]
-    points[values["frame"] != mavlink.MAV_FRAME_BODY_FRD] = _NAN
+    points[values["frame"] != mavlink.MAV_FRAME_BODY_FRD] = math.nan
     return Returns(received.time_boot_ms, points, values["max_distance"].astype(float))
 
 
@@ -80,37 +93,3 @@ def scan_end(received: Received, scans: ScanSequence) -> ScanEnd:
     stamp, size = scan_stamp(received), _SCAN_END.dtype.itemsize
     values = np.frombuffer(received.payload[:size].ljust(size, b"\0"), _SCAN_END.dtype)
     return ScanEnd(stamp, 0.01 * values["max_distance"].item(), scans.is_complete(stamp))
-
-
-def _attitude(payload: bytes) -> _Values:
-    _, w, x, y, z, p, q, r, _, _, _, _ = _ATTITUDE.fields(payload)
-    norm = math.sqrt(w * w + x * x + y * y + z * z)
-    return _values(
-        _FOUR(w / norm, x / norm, y / norm, z / norm) if 0.9 < norm < 1.1 else None,
-        _THREE(p, q, r) if math.isfinite(p + q + r) else None,
-        unknown_pose=_FOUR_UNKNOWN,
-    )
-
-
-def _position(payload: bytes) -> _Values:
-    _, x, y, z, v_x, v_y, v_z = _POSITION.fields(payload)
-    return _values(
-        _THREE(x, y, z) if math.isfinite(x + y + z) else None,
-        _THREE(v_x, v_y, v_z) if math.isfinite(v_x + v_y + v_z) else None,
-        unknown_pose=_THREE_UNKNOWN,
-    )
-
-
-def _values(pose: bytes | None, motion: bytes | None, unknown_pose: bytes) -> _Values:
-    """Return pose and motion as arrays that nobody can write to: all who relay them share them.
-
-    None: it cannot be a measurement.
-    """
-    if pose is None and motion is None:
-        return None
-    return np.frombuffer(pose or unknown_pose), np.frombuffer(motion or _THREE_UNKNOWN)
-
-
-_READ: dict[int, Callable[[bytes], _Values]] = {_ATTITUDE.message_id: _attitude, _POSITION.message_id: _position}
-#: The payload unit's messages are equal from whomever relays them: each is read once.
-_READ_ONCE = {message_id: lru_cache(maxsize=4)(read) for message_id, read in _READ.items()}

@@ -36,8 +36,11 @@ _NOT_READ = frozenset(
 class VehicleStatus:
     """Status that a vehicle has last reported."""
 
-    base_mode: int = 0
     custom_mode: int = 0
+    armed: bool = False
+    """True if its last heartbeat says so."""
+    offboard: bool = False
+    """True if it flies the ground's set-points, as its last heartbeat says."""
     landed_state: int = mavlink.MAV_LANDED_STATE_UNDEFINED
     prearm_ok: bool | None = None
     """Result of its prearm checks, from SYS_STATUS; None: not reported yet."""
@@ -47,19 +50,15 @@ class VehicleStatus:
     texts: deque[str] = field(default_factory=lambda: deque(maxlen=20))
 
     @property
-    def armed(self) -> bool:
-        """True if its last heartbeat says so."""
-        return bool(self.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
-
-    @property
-    def offboard(self) -> bool:
-        """True if it flies the ground's set-points, as its last heartbeat says."""
-        return self.custom_mode == px4.MODE_OFFBOARD
-
-    @property
     def last_text(self) -> str:
         """Its last STATUSTEXT in brackets; empty: there is none."""
         return f" ({self.texts[-1]})" if self.texts else ""
+
+    def heartbeat(self, base_mode: int, custom_mode: int) -> None:
+        """Take the modes in a heartbeat of the autopilot."""
+        self.custom_mode = custom_mode
+        self.armed = bool(base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
+        self.offboard = custom_mode == px4.MODE_OFFBOARD
 
     def handle(self, message: Message) -> None:
         """Take what ``message`` reports, if it reports anything."""
@@ -145,6 +144,6 @@ class VehicleLink:
 
     def _handle_message(self, message: Message, component: int) -> None:
         if component == _AUTOPILOT and isinstance(message, mavlink.MAVLink_heartbeat_message):
-            self.status.base_mode, self.status.custom_mode = message.base_mode, message.custom_mode
+            self.status.heartbeat(message.base_mode, message.custom_mode)
         self.status.handle(message)
         self.requests.handle(message)

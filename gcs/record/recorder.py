@@ -54,9 +54,9 @@ class FlightRecorder:
         self._next_row: int | None = None
         self.last_time = 0.0
 
-    def datagram(self, now: float, datagram: bytes) -> None:
-        """Record a datagram, sent or received."""
-        self._tlog.write(now, datagram)
+    def datagrams(self, now: float, datagrams: Sequence[bytes]) -> None:
+        """Record datagrams, sent or received."""
+        self._tlog.write(now, *datagrams)
 
     def end_exchange(self) -> None:
         """Write the datagrams of an exchange."""

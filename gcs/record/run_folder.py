@@ -122,7 +122,7 @@ def versions() -> Mapping[str, str]:
     """Return the versions of Python, of this package and of its dependencies at run time."""
     found = {"python": platform.python_version()}
     try:
-        found[_DISTRIBUTION] = metadata.version(_DISTRIBUTION)
+        found[_DISTRIBUTION] = _version(_DISTRIBUTION)
         required = metadata.requires(_DISTRIBUTION) or []
     except metadata.PackageNotFoundError:  # run from a checkout that is not installed
         required = ["matplotlib", "numpy", "pybullet", "proxsuite", "pymavlink", "scipy"]
@@ -131,10 +131,17 @@ def versions() -> Mapping[str, str]:
         if match is None or "extra ==" in requirement:
             continue
         try:
-            found[match[0]] = metadata.version(match[0])
+            found[match[0]] = _version(match[0])
         except metadata.PackageNotFoundError:
             found[match[0]] = "not installed"
     return found
+
+
+def _version(distribution: str) -> str:
+    """Return the version of a distribution: of its metadata, which are long, the one line."""
+    lines = metadata.distribution(distribution).read_text("METADATA") or ""
+    match = re.search(r"^Version: *(.+?) *$", lines, re.MULTILINE)
+    return match[1] if match else metadata.version(distribution)
 
 
 def to_json(value: Any) -> Any:

@@ -12,8 +12,6 @@ import numpy as np
 from gcs.mavlink.frame_kernels import stamped_frames
 from gcs.record.append_file import AppendOnlyFile
 
-_STAMP = np.dtype(">u8")
-
 
 class TelemetryLog(AppendOnlyFile):
     """Writes a tlog; ``start_epoch`` is the wall-clock time (s since 1970, UTC) of flight time 0.
@@ -27,21 +25,20 @@ class TelemetryLog(AppendOnlyFile):
         self._stamps: list[int] = []
         self._datagrams: list[bytes] = []
 
-    def write(self, now: float, datagram: bytes) -> None:
-        """Record a datagram that was sent or received at flight time ``now`` (s): one record a frame.
+    def write(self, now: float, *datagrams: bytes) -> None:
+        """Record datagrams that were sent or received at flight time ``now`` (s): one record a frame.
 
         Bytes that belong to no frame, as a damaged datagram may hold, are left out.
         """
-        self._stamps.append((self._start_us + round(now * 1e6)) & ~0x3)
-        self._datagrams.append(datagram)
+        self._stamps += [(self._start_us + round(now * 1e6)) & ~0x3] * len(datagrams)
+        self._datagrams += datagrams
 
     def flush(self) -> None:
         """Append the frames that were recorded since the last call."""
         if not self._datagrams:
             return
         data = np.frombuffer(bytearray().join(self._datagrams), np.uint8)
-        ends = np.array([*accumulate(map(len, self._datagrams))])
-        stamps = np.array(self._stamps, _STAMP).view(np.uint8).reshape(-1, _STAMP.itemsize)
+        ends, stamps = np.array([*accumulate(map(len, self._datagrams))]), np.array(self._stamps)
         self._stamps.clear()
         self._datagrams.clear()
         if records := stamped_frames(data, ends, stamps).tobytes():

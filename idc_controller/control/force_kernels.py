@@ -75,18 +75,18 @@ def tracking_error(x: Array, reference: Array, hover: Array, tilts: int, positio
     return error
 
 
-@kernel(f"float64[::1](float64[:, ::1], int64[::1], {_PARAMETER}, {_PARAMETER}, {_PARAMETER})")
-def input_bounds(u: Array, stages: Indices, hover: Array, lower: Array, upper: Array) -> Array:
-    """Return how far set-points are from their limits, upper then lower ones of each stage (M 6 N,).
+@kernel(f"void(float64[::1], float64[:, ::1], int64[::1], {_PARAMETER}, {_PARAMETER}, {_PARAMETER})")
+def fill_input_bounds(bounds: Array, u: Array, stages: Indices, hover: Array, lower: Array, upper: Array) -> None:
+    """Fill the first M 6 N of ``bounds`` with how far set-points are from their limits, upper then lower ones by stage.
 
     Args:
+        bounds: to fill (M 6 N or more,).
         u: tilts and thrusts of the reference at all stages (K, 3 N).
         stages: those whose bounds are returned (M,).
         hover: thrusts in hover (N,) (N).
         lower, upper: limits in components of force (3 N,).
     """
     number, inputs = len(hover), u.shape[1]
-    bounds = np.empty(2 * len(stages) * inputs)
     for k in range(len(stages)):
         above, below = bounds[2 * k * inputs :], bounds[(2 * k + 1) * inputs :]
         for i in range(number):
@@ -95,7 +95,6 @@ def input_bounds(u: Array, stages: Indices, hover: Array, lower: Array, upper: A
             north, east, upward = n_x * (f / hover[i]), n_y * (f / hover[i]), f * _cosine(n_x, n_y)
             above[x], above[y], above[z] = upper[x] - north, upper[y] - east, upper[z] - upward
             below[x], below[y], below[z] = north - lower[x], east - lower[y], upward - lower[z]
-    return bounds
 
 
 @kernel(f"float64[::1](float64[::1], float64[::1], {_PARAMETER}, float64)")

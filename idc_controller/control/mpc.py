@@ -78,9 +78,9 @@ class ModelPredictiveController:
 
     def bounds(self, reference: FlatReference) -> Array:
         """Return h of the QP: of the inputs of every move, then of the states at every constrained stage."""
-        h, inputs = self._bounds.copy(), self._input_limits.h(reference.u, self.prediction.first_stages)
-        h[: len(inputs)] = inputs
-        states = h[len(inputs) :].reshape(len(self._stages), -1)
+        h = self._bounds.copy()
+        self._input_limits.fill(h, reference.u, self.prediction.first_stages)
+        states = h[2 * self.prediction.H.shape[2] :].reshape(len(self._stages), -1)
         for constraint, columns in zip(self.state_constraints, self._columns, strict=True):
             used = constraint.used(reference, self._stages)
             if used is not None:

@@ -6,6 +6,8 @@ it, and all later ones are applied again. Disturbance forces on the payload and 
 payload's mass are estimated along with the state, so that none of them leaves an offset.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from idc_controller.arrays import Array
@@ -68,8 +70,9 @@ class Estimator:
         return self._replay.time
 
     def confirm_setpoint(
-        self, uav: int, since: float, until: float, reported: Array, jitter: float = 0.0, latency_max: float = np.inf
-    ) -> Confirmation | None:
+        self, uav: int, since: float, until: float, reported: Sequence[float], jitter: float = 0.0,
+        latency_max: float = np.inf,
+    ) -> Confirmation | None:  # fmt: skip
         """Take a vehicle's report of the set-point it flew, see :meth:`SetpointHistory.confirm`."""
         confirmation = self.setpoints.confirm(uav, since, until, reported, jitter, latency_max)
         if confirmation is not None and confirmation.corrected_from is not None:

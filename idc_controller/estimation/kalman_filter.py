@@ -10,7 +10,7 @@ from filterpy.kalman import KalmanFilter
 
 from idc_controller.arrays import Array, Indices, Mask
 from idc_controller.estimation.propagation_kernels import propagated, propagated_state
-from idc_controller.estimation.update_kernels import corrected, predicted
+from idc_controller.estimation.update_kernels import corrected
 
 _CANCELLED = 1e-6
 """Share of a variance that a correction may leave before its rounding needs Joseph's form."""
@@ -99,13 +99,6 @@ class StructuredKalmanFilter(KalmanFilter):  # type: ignore[misc]  # filterpy ha
         self.x, self.P = propagated(
             self.x, self.P, dense, push, direction, columns, coefficients, B, u, Q, change, probability
         )
-
-    def innovation(self, y: Array, rows: SparseRows, starts: Indices, sizes: Indices) -> Innovation:
-        """Return the innovation of measurements ``y`` (m,) that ``rows`` observe.
-
-        ``starts``, ``sizes``: first row and number of rows of each measurement (K,).
-        """
-        return Innovation(rows, *predicted(self.x, self.P, y, *rows, starts, sizes))
 
     def correct(self, innovation: Innovation, variance: Array) -> float:
         """Correct by measurements with ``variance`` (m,) and return their normalised innovation squared.

@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 
 from idc_controller.arrays import Array, Indices, Mask
-from idc_controller.estimation.kalman_filter import SparseRows
+from idc_controller.estimation.kalman_filter import Innovation, SparseRows
 from idc_controller.estimation.measurements import (
     PAYLOAD,
     Attitude,
@@ -21,7 +21,7 @@ from idc_controller.estimation.measurements import (
     VehicleStates,
 )
 from idc_controller.estimation.settings import MeasurementModelSettings
-from idc_controller.estimation.update_kernels import observed
+from idc_controller.estimation.update_kernels import innovations
 from idc_controller.estimation.vehicle_kernels import vehicle_states
 from idc_controller.model.linear import LinearModel
 from idc_controller.trajectory.flatness import FlatReference
@@ -135,19 +135,19 @@ class MeasurementModel:
             sparse.columns[heights + below, -2:] = part.start + 2 * uavs[:, None] + np.arange(2)
         return Observation(stack, sparse, sources, is_position, uavs, heights)
 
-    def observe(
-        self, observation: Observation, samples: SampleStack, reference: FlatReference, k: int
-    ) -> tuple[Array, SparseRows]:
-        """Return measured less reference (m,) at the reference's time ``k``, and the rows that observe the error there.
+    def innovation(
+        self, observation: Observation, samples: SampleStack, reference: FlatReference, k: int, x: Array, P: Array
+    ) -> Innovation:
+        """Return the innovation of ``samples`` at the reference's time ``k``; nan where nothing was measured.
 
-        What was not measured is nan.
+        ``x``: error about the reference that is predicted for then (n,), and ``P``: its covariance (n, n).
         """
-        links, p, (columns, coefficients) = reference.links, self.parameters, observation.rows
-        y, coefficients = observed(
+        links, p, stack, (columns, coefficients) = reference.links, self.parameters, observation.stack, observation.rows
+        coefficients, residual, covariance = innovations(
             samples.values, samples.sources, samples.is_position, reference.x, reference.payload, links.q, links.q_dot,
-            k, p.p, p.l, coefficients, observation.uavs, observation.heights,
+            k, p.p, p.l, columns, coefficients, observation.uavs, observation.heights, stack.starts, stack.sizes, x, P,
         )  # fmt: skip
-        return y, SparseRows(columns, coefficients)
+        return Innovation(SparseRows(columns, coefficients), residual, covariance)
 
     def vehicles(self, time: float, x: Array) -> VehicleStates:
         """Return the UAVs in the state ``x`` (n,) at ``time`` (s), heading north."""

@@ -47,8 +47,7 @@ class MeasurementUpdate:
         health.dead_reckoning.add(samples)
         if health.isolated_groups:
             samples = observation.samples([health.usable(measurement) for measurement in measurements])
-        y, rows = model.observe(observation, samples, flat, k)
-        innovation = filter.innovation(y, rows, whole.starts, whole.sizes)
+        innovation = model.innovation(observation, samples, flat, k, filter.x, filter.P)
         present = health.usable_rows(whole, innovation)
         usable = int(np.count_nonzero(present))
         if not usable:
@@ -61,7 +60,7 @@ class MeasurementUpdate:
         reaction = adaptation.react(moment.time, keys, test) if adapt else Reaction.NONE
         if reaction is Reaction.COVARIANCE_RESET:
             filter.inflate(filter.process.covariance_reset(filter.P, self._settings.reset))
-            innovation = filter.innovation(y, rows, whole.starts, whole.sizes)
+            innovation = model.innovation(observation, samples, flat, k, filter.x, filter.P)
             innovation = innovation if stack is whole else innovation.subset(present)
         if reaction is not Reaction.NONE:
             test = self._gate.test(innovation, stack, adaptation.measurement_scale)

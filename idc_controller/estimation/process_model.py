@@ -7,6 +7,7 @@ import numpy as np
 from idc_controller.arrays import Array, Indices, Mask
 from idc_controller.estimation.integrated_noise import IntegratedNoise
 from idc_controller.estimation.kalman_filter import SparseRows, Transition
+from idc_controller.estimation.propagation_kernels import add_variances
 from idc_controller.estimation.settings import CovarianceResetSettings, InitialCovarianceSettings, ProcessNoiseSettings
 from idc_controller.model.linear import LinearModel
 
@@ -38,10 +39,7 @@ class ProcessModel:
 
         A UAV with a wrong attitude estimate pulls aside. The force of one that is not measured is not adapted.
         """
-        for uav in measured.tolist():
-            north = self.uav_force.start + 2 * uav
-            for state in (north, north + 1):
-                P[state, state] += self._densities.per_vehicle_force**2
+        add_variances(P, self.uav_force.start, measured, self._densities.per_vehicle_force**2)
 
     def initial_covariance(self, settings: InitialCovarianceSettings) -> Array:
         """Return the covariance (n, n) of the whole state of a team on the ground."""

@@ -1,18 +1,21 @@
 """Propagation of the filter's state from its last update to the time of the next set-points."""
 
+from bisect import bisect_left
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from idc_controller.arrays import Array, Indices
-from idc_controller.estimation.kalman_filter import Innovation, SparseRows, StructuredKalmanFilter
+from idc_controller.estimation.kalman_filter import Innovation, StructuredKalmanFilter
 from idc_controller.estimation.process_model import ProcessModel
 from idc_controller.estimation.propagation_kernels import about_reference, are_finite
 from idc_controller.estimation.setpoint_history import SetpointHistory
 from idc_controller.trajectory.reference import Reference
 
 _NONE = np.zeros(0)
+_SAME = 1e-6
+"""Times closer than this (s) are the same."""
 
 
 class PropagationInterval:
@@ -29,8 +32,10 @@ class PropagationInterval:
     ) -> None:
         """``start``, ``moments`` of the measurements in between, and ``end`` (s)."""
         times = sorted([start, *moments, end])
-        switches = setpoints.switches(start + 1e-6, end - 1e-6)
-        times += [t for t in switches if min(abs(t - other) for other in times) > 1e-6]
+        for switch in setpoints.switches(start + _SAME, end - _SAME):
+            after = bisect_left(times, switch)
+            if switch - times[after - 1] > _SAME and times[after] - switch > _SAME:
+                times.insert(after, switch)
         self.times = sorted(set(times))
         self.flat = reference.at(np.array(self.times))
         links, p = self.flat.links, process.model.parameters
@@ -45,12 +50,11 @@ class PropagationInterval:
         )
         """The reference's set-points (K - 1, 3 N), and the force of one kilogram of excess of mass (K - 1, 3) (N/kg),
         from each time to the next; state of the exact reference at each time (K, n)."""
-        self.setpoints = [setpoints.in_force(a, b) for a, b in pairwise(self.times)]
+        steps = list(pairwise(self.times))
+        self.setpoints = [setpoints.in_force(*step) for step in steps]
         """Set-points in force from each time to the next."""
-
-    def duration_us(self, k: int) -> int:
-        """Return the duration from time ``k`` to the next (us)."""
-        return max(round((self.times[k + 1] - self.times[k]) * 1e6), 1)
+        self.durations = [max(round((later - earlier) * 1e6), 1) for earlier, later in steps]
+        """Durations from each time to the next (us)."""
 
     def input(self, k: int) -> Array:
         """Return the set-points in force less the reference's (3 N,) from time ``k`` to the next."""
@@ -88,7 +92,7 @@ class ErrorStateFilter:
     def predict(self, interval: PropagationInterval, k: int, force_scale: float) -> None:
         """Propagate from time ``k`` to the next under the set-points in force; ``force_scale``: of process noise."""
         _, change, probability = interval.setpoints[k]
-        duration = interval.duration_us(k)
+        duration = interval.durations[k]
         self._kf.propagate(
             self.process.transition(duration), interval.force_of_mass[k], interval.input(k),
             self.process.noise(duration, force_scale), _NONE if change is None else change, probability,
@@ -98,7 +102,7 @@ class ErrorStateFilter:
         """Return the absolute state (n,) at the end of the interval from that at time ``k``, which remains."""
         x = self._kf.x
         for later in range(k, len(interval.times) - 1):
-            transition = self.process.transition(interval.duration_us(later))
+            transition = self.process.transition(interval.durations[later])
             x = transition.state(x, interval.force_of_mass[later], interval.input(later))
         return np.asarray(x + self._nominal[-1])
 
@@ -114,13 +118,6 @@ class ErrorStateFilter:
     def inflate(self, added: Array) -> None:
         """Add ``added`` (n, n) to the covariance."""
         self._kf.P = self._kf.P + added
-
-    def innovation(self, y: Array, rows: SparseRows, starts: Indices, sizes: Indices) -> Innovation:
-        """Return the innovation of the measurements ``y`` (m,), less reference, that ``rows`` observe.
-
-        ``starts``, ``sizes``: first row and number of rows of each (K,).
-        """
-        return self._kf.innovation(y, rows, starts, sizes)
 
     def update(self, innovation: Innovation, variance: Array, measured: Indices) -> float:
         """Correct by measurements and return their normalised innovation squared.
@@ -152,7 +149,7 @@ class Outlook(NamedTuple):
         force = self.process.force
         covariance = self.P[force, force]
         for k in range(self.k, len(self.interval.times) - 1):
-            covariance = covariance + self.process.noise(self.interval.duration_us(k), self.force_scale)[force, force]
+            covariance = covariance + self.process.noise(self.interval.durations[k], self.force_scale)[force, force]
         return covariance
 
     def covariance(self) -> Array:

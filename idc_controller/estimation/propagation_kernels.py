@@ -73,24 +73,27 @@ def propagated(
     covariance = np.empty((n, n))
     top = np.dot(first, P)
     covariance[:d, :d] = np.dot(top, first.T)
-    row = np.empty(n)
+    # The last columns of F P as rows: the last rows of F combine whole ones of these.
+    rest, row = np.empty((n - d, n)), np.empty(n - d)
+    for o in range(d):
+        for c in range(n - d):
+            rest[c, o] = top[o, d + c]
     for r in range(n - d):
         row[:] = 0.0
         for a in range(W):
             weight, column = coefficients[r, a], columns[r, a]
             if weight != 0.0:
-                for c in range(d, n):
-                    row[c] += weight * P[column, c]
-        for o in range(d):
-            total = 0.0
-            for a in range(W):
-                total += coefficients[r, a] * top[o, columns[r, a]]
-            covariance[d + r, o] = total
-        for o in range(r + 1):
-            total = 0.0
-            for a in range(W):
-                total += coefficients[o, a] * row[columns[o, a]]
-            covariance[d + r, d + o] = total
+                for c in range(n - d):
+                    row[c] += weight * P[column, d + c]
+        for c in range(n - d):
+            rest[c, d + r] = row[c]
+    covariance[d:] = 0.0
+    for r in range(n - d):
+        for a in range(W):
+            weight, column = coefficients[r, a], columns[r, a] - d
+            if weight != 0.0:
+                for c in range(n):
+                    covariance[d + r, c] += weight * rest[column, c]
     if len(change):
         N = len(probability)
         share = np.sqrt(probability)
@@ -100,16 +103,26 @@ def propagated(
                 lost[i, r] = share[i] * (B[r, 2 * i] * change[2 * i] + B[r, 2 * i + 1] * change[2 * i + 1])
                 lost[N + i, r] = share[i] * B[r, 2 * N + i] * change[2 * N + i]
         for r in range(n):
-            for c in range(2 * N):
-                weight = lost[c, r]
-                if weight != 0.0:  # a set-point moves payload, links and its own vehicle
-                    for o in range(r + 1):
-                        covariance[r, o] += weight * lost[c, o]
+            for i in range(N):
+                tilt, thrust = lost[i, r], lost[N + i, r]
+                for o in range(r + 1):
+                    covariance[r, o] += tilt * lost[i, o] + thrust * lost[N + i, o]
     for r in range(n):
         for o in range(r + 1):
             covariance[r, o] += Q[r, o]
             covariance[o, r] = covariance[r, o]
     return result, covariance
+
+
+@kernel("void(float64[:, ::1], int64, int64[::1], float64)")
+def add_variances(P: Array, first: int, uavs: Indices, variance: float) -> None:
+    """Add a ``variance`` to those of two states of each of ``uavs`` (K,) in the covariance ``P`` (n, n).
+
+    ``first``: index of the first UAV's two states; those of the others follow.
+    """
+    for i in range(len(uavs)):
+        for state in range(first + 2 * uavs[i], first + 2 * uavs[i] + 2):
+            P[state, state] += variance
 
 
 @kernel(f"boolean({_VECTOR}, {_MATRIX})")

@@ -2,7 +2,9 @@
 
 import bisect
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -34,7 +36,7 @@ class _Entry:
     def __post_init__(self) -> None:
         self.numbers = [] if self.sent is None else self.sent.tolist()
 
-    def is_reported(self, which: list[int], reported: list[float], settings: SetpointHistorySettings) -> bool:
+    def is_reported(self, which: list[int], reported: Sequence[float], settings: SetpointHistorySettings) -> bool:
         """Return whether a vehicle ``reported`` the elements ``which`` (tilts and thrust) of what was sent."""
         u = self.numbers
         if not u:
@@ -139,8 +141,9 @@ class SetpointHistory:
         return np.asarray(np.einsum("ki,ki->i", np.hstack([np.repeat(shares, 2, axis=1), shares]), flown))
 
     def confirm(
-        self, uav: int, since: float, until: float, reported: Array, jitter: float, latency_max: float = math.inf
-    ) -> Confirmation | None:
+        self, uav: int, since: float, until: float, reported: Sequence[float], jitter: float,
+        latency_max: float = math.inf,
+    ) -> Confirmation | None:  # fmt: skip
         """Correct the history by a vehicle's report of the set-point that it flew.
 
         Set-points that should have followed since were lost. A time of effect before the set-point was sent, or later
@@ -158,20 +161,20 @@ class SetpointHistory:
         """
         self._jitter[uav] = jitter
         s, entries, tolerance = self._settings, self._entries, self._settings.time_tolerance + jitter
-        which, values = [2 * uav, 2 * uav + 1, 2 * self._N + uav], reported.tolist()
+        which = [2 * uav, 2 * uav + 1, 2 * self._N + uav]
         newest = self._at(until + tolerance)
         # Those that should be in force already; then those that would come earlier than they should.
-        for flown in (*range(newest, max(newest - s.losses_max, -1), -1), *range(newest + 1, len(entries))):
-            if entries[flown].is_reported(which, values, s):
+        for flown in chain(range(newest, max(newest - s.losses_max, -1), -1), range(newest + 1, len(entries))):
+            if entries[flown].is_reported(which, reported, s):
                 break
         else:
             return None
         changed = math.inf
-        overdue = [k for k in range(flown + 1, newest + 1) if entries[k].effective + tolerance < until]
-        for k in overdue:
-            changed = min(changed, self._set_lost(entries[k], uav, which, reported))
+        overdue = [entry for entry in entries[flown + 1 : newest + 1] if entry.effective + tolerance < until]
+        for entry in overdue:
+            changed = min(changed, self._set_lost(entry, uav, which, reported))
         first = flown
-        while first > 0 and entries[first - 1].is_reported(which, values, s):
+        while first > 0 and entries[first - 1].is_reported(which, reported, s):
             first -= 1
         delay = None
         latency = since - entries[first].sent_at[uav]
@@ -188,7 +191,7 @@ class SetpointHistory:
             return None
         return Confirmation(as_sent, changed if changed < math.inf else None, delay)
 
-    def _set_lost(self, entry: _Entry, uav: int, which: list[int], flown: Array) -> float:
+    def _set_lost(self, entry: _Entry, uav: int, which: list[int], flown: Sequence[float]) -> float:
         """Set what a vehicle flew instead of a lost set-point; return from when on the history changes (s)."""
         entry.confirmed[uav] = True
         if entry.flown is None or bool((entry.flown[which] == flown).all()):

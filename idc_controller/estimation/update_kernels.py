@@ -16,7 +16,7 @@ _VECTOR, _MATRIX, _CUBE = (f"Array(float64, {axes}, 'C', readonly=True)" for axe
 
 @inlined
 def _measured_less_reference(
-    values: Array, sources: Indices, is_position: Mask, m: int, x: Array, payload: Array,
+    values: Array, sources: Indices, is_position: Mask, m: int, reference: Array, payload: Array,
     q: Array, q_dot: Array, k: int, p: Array, l: Array,
 ) -> Array:  # fmt: skip
     """Return measured less reference (m,) of K measurements of one moment; nan where nothing was measured.
@@ -29,7 +29,7 @@ def _measured_less_reference(
         sources: UAV (K,), or negative for the payload.
         is_position: whether each is a position; else it is an attitude (K,).
         m: number of rows.
-        x: states of the reference in the linear model's coordinates (T, 12 + 11 N).
+        reference: states of the reference in the linear model's coordinates (T, 12 + 11 N).
         payload: derivatives of the payload's position (5, T, 3).
         q, q_dot: direction of the links and its derivative (3,), at time ``k``.
         k: index of the time in the reference.
@@ -61,48 +61,16 @@ def _measured_less_reference(
             row += 6
         else:
             n, n_dot = 12 + 4 * N + 2 * i, 12 + 6 * N + 2 * i
-            result[row] = -2.0 * (a * c + w * b) - x[k, n]
-            result[row + 1] = -2.0 * (b * c - w * a) - x[k, n + 1]
+            result[row] = -2.0 * (a * c + w * b) - reference[k, n]
+            result[row + 1] = -2.0 * (b * c - w * a) - reference[k, n + 1]
             turn, cross = 2.0 * (a * b - w * c), 2.0 * (a * b + w * c)
-            result[row + 2] = turn * omega_x - (1.0 - 2.0 * (b * b + c * c)) * omega_y - x[k, n_dot]
-            result[row + 3] = (1.0 - 2.0 * (a * a + c * c)) * omega_x - cross * omega_y - x[k, n_dot + 1]
+            result[row + 2] = turn * omega_x - (1.0 - 2.0 * (b * b + c * c)) * omega_y - reference[k, n_dot]
+            result[row + 3] = (1.0 - 2.0 * (a * a + c * c)) * omega_x - cross * omega_y - reference[k, n_dot + 1]
             row += 4
     return result
 
 
-@kernel(
-    f"Tuple((float64[::1], float64[:, ::1]))({_VECTOR}, int64[::1], boolean[::1], {_MATRIX}, {_CUBE}, {_MATRIX}, "
-    f"{_MATRIX}, int64, {_MATRIX}, {_VECTOR}, {_MATRIX}, int64[::1], int64[::1])"
-)
-def observed(
-    values: Array, sources: Indices, is_position: Mask, x: Array, payload: Array, q: Array, q_dot: Array, k: int,
-    p: Array, l: Array, coefficients: Array, uavs: Indices, heights: Indices,
-) -> tuple[Array, Array]:  # fmt: skip
-    """Return measured less reference (m,), and the coefficients (m, W) of the rows that observe the error there.
-
-    A change of the lateral part of a tilted link changes its height too.
-
-    Args:
-        values, sources, is_position, x, payload, k, p, l: see :func:`_measured_less_reference`.
-        q, q_dot: direction of the links and its derivative (T, 3).
-        coefficients: with links upright (m, W); the last two of the heights' rows are those of the link.
-        uavs: UAVs whose position is observed (P,).
-        heights: rows of their heights (P,); those of the vertical velocities are three below.
-    """
-    tilted = coefficients.copy()
-    for j in range(len(uavs)):
-        for axis in range(2):
-            slope = l[uavs[j]] * (q[k, axis] / q[k, 2])
-            at = coefficients.shape[1] - 2 + axis
-            tilted[heights[j], at] = tilted[heights[j] + 3, at] = slope
-    m = len(coefficients)
-    return _measured_less_reference(values, sources, is_position, m, x, payload, q[k], q_dot[k], k, p, l), tilted
-
-
-@kernel(
-    f"Tuple((float64[::1], float64[:, ::1]))({_VECTOR}, {_MATRIX}, float64[::1], int64[:, ::1], float64[:, ::1], "
-    "int64[::1], int64[::1])"
-)
+@inlined
 def predicted(
     x: Array, P: Array, y: Array, columns: Indices, coefficients: Array, starts: Indices, sizes: Indices
 ) -> tuple[Array, Array]:
@@ -131,6 +99,44 @@ def predicted(
             for o in range(starts[j], r):
                 covariance[o, r] = covariance[r, o]
     return residual, covariance
+
+
+@kernel(
+    f"Tuple((float64[:, ::1], float64[::1], float64[:, ::1]))({_VECTOR}, int64[::1], boolean[::1], {_MATRIX}, {_CUBE}, "
+    f"{_MATRIX}, {_MATRIX}, int64, {_MATRIX}, {_VECTOR}, int64[:, ::1], {_MATRIX}, int64[::1], int64[::1], "
+    f"int64[::1], int64[::1], {_VECTOR}, {_MATRIX})"
+)
+def innovations(
+    values: Array, sources: Indices, is_position: Mask, reference: Array, payload: Array, q: Array, q_dot: Array,
+    k: int, p: Array, l: Array, columns: Indices, coefficients: Array, uavs: Indices, heights: Indices,
+    starts: Indices, sizes: Indices, x: Array, P: Array,
+) -> tuple[Array, Array, Array]:  # fmt: skip
+    """Return the innovations of K measurements, and the coefficients of the rows that observe the error there.
+
+    A change of the lateral part of a tilted link changes its height too.
+
+    Args:
+        values, sources, is_position, reference, payload, k, p, l: see :func:`_measured_less_reference`.
+        q, q_dot: direction of the links and its derivative (T, 3).
+        columns, coefficients: with links upright (m, W); the last two of the heights' rows are those of the link.
+        uavs: UAVs whose position is observed (P,).
+        heights: rows of their heights (P,); those of the vertical velocities are three below.
+        starts, sizes, x, P: see :func:`predicted`.
+
+    Returns:
+        Coefficients (m, W), residual (m,), nan where nothing was measured, and H P H' (m, m), see :func:`predicted`.
+    """
+    tilted = coefficients.copy()
+    for j in range(len(uavs)):
+        for axis in range(2):
+            slope = l[uavs[j]] * (q[k, axis] / q[k, 2])
+            at = coefficients.shape[1] - 2 + axis
+            tilted[heights[j], at] = tilted[heights[j] + 3, at] = slope
+    y = _measured_less_reference(
+        values, sources, is_position, len(coefficients), reference, payload, q[k], q_dot[k], k, p, l
+    )
+    residual, covariance = predicted(x, P, y, columns, tilted, starts, sizes)
+    return tilted, residual, covariance
 
 
 @kernel(

@@ -8,7 +8,7 @@ import numpy as np
 from idc_controller.arrays import Array
 from idc_controller.estimation.measurements import Attitude, Measurement, Position, SensorKey, VehicleStates
 from idc_controller.perception.settings import ScanSettings
-from idc_controller.rotations import quaternion_product
+from idc_controller.rotations_float import turned
 
 Timed = TypeVar("Timed", Measurement, VehicleStates)
 
@@ -57,8 +57,8 @@ class PoseHistory:
         moving = position if position.has_motion else self._sample(uav, Position, time, True)
         quaternion, place = attitude.pose, position.pose
         if turning is not None and abs(dt := time - attitude.time) > 1e-4:
-            quaternion = quaternion_product(quaternion, np.append(1.0, 0.5 * dt * turning.motion))
-            quaternion = quaternion / np.linalg.norm(quaternion)
+            (w, x, y, z), (p, q, r) = quaternion.tolist(), turning.motion.tolist()
+            quaternion = np.array(turned((w, x, y, z), (p, q, r), dt))
         if moving is not None:
             place = place + (time - position.time) * moving.motion
         return place, quaternion

@@ -4,7 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Indices
+from idc_controller.qp.parametric_kernels import optimum_and_rows
 from idc_controller.qp.problem import QpSolution, QpSolver, QuadraticProgram
 from idc_controller.qp.proxqp_solver import ProxqpSolver
 
@@ -15,8 +16,8 @@ class ParametricQp:
     Rows of ``G`` (m, n) with ``slack_of_row`` (m,) >= 0 may be exceeded by the slack of that number, at a linear
     and a quadratic cost; -1 marks a hard row. The linear cost is exact: a slack is zero whenever the rows can be kept.
 
-    The unconstrained optimum and what it makes of the rows are one product each with p. It is the answer whenever it
-    keeps all rows, so it is checked first; the solver is called only when it does not.
+    The unconstrained optimum and what it makes of the rows are one product with p. It is the answer whenever it keeps
+    all rows, so it is checked first; the solver is called only when it does not.
     """
 
     def __init__(
@@ -38,7 +39,8 @@ class ParametricQp:
         self._gradient = np.eye(n) if gradient is None else gradient
         self._response = np.zeros((m, n)) if response is None else response
         self._optimum = -np.linalg.inv(P) @ self._gradient
-        self._rows_at_optimum = G @ self._optimum + self._response
+        rows_at_optimum = G @ self._optimum + self._response
+        self._products = _distinct_up_to_sign(np.vstack([self._optimum, rows_at_optimum]))
         slacks = int(slack_of_row.max()) + 1 if m else 0
         columns = np.zeros((m, slacks))
         soft = slack_of_row >= 0
@@ -67,7 +69,24 @@ class ParametricQp:
         Raises:
             SolverError: the hard rows cannot be kept, or the solver does not converge.
         """
-        if (self._rows_at_optimum @ p <= h).all():
-            return QpSolution(self.unconstrained(p), 0)
+        is_kept, optimum = optimum_and_rows(p, *self._products, h)
+        if is_kept:
+            return QpSolution(optimum, 0)
         solution = self.solver.solve(self.problem(p, h))
         return QpSolution(solution.x[: len(self.P)].copy(), solution.iterations)
+
+
+def _distinct_up_to_sign(rows: Array) -> tuple[Array, Indices, Array]:
+    """Return the rows (R, q) of which none is another one or its negative as columns (q, D).
+
+    Then which of them each row is (R,), and its sign (R,). Limits both ways have every row twice.
+    """
+    seen: dict[bytes, int] = {}
+    which, sign = np.empty(len(rows), dtype=int), np.ones(len(rows))
+    for r, row in enumerate(rows):
+        key, opposite = (row + 0.0).tobytes(), (0.0 - row).tobytes()  # no zero has a sign
+        if opposite in seen and key not in seen:
+            sign[r], key = -1.0, opposite
+        which[r] = seen.setdefault(key, len(seen))
+    distinct = np.array([np.frombuffer(key) for key in seen]).reshape(len(seen), rows.shape[1])
+    return np.ascontiguousarray(distinct.T), which, sign

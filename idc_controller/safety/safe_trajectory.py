@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import count
 
 import numpy as np
 
@@ -11,6 +10,8 @@ from idc_controller.trajectory.integrator_chain import Chain
 from idc_controller.trajectory.scaled import ScaledReference
 from idc_controller.trajectory.trajectory import Times, Trajectory
 from idc_controller.trajectory.trajectory_kernels import deflect, progress
+
+_NO_STATES = np.zeros((0, 5, 3))
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,17 +33,23 @@ class SafeTrajectory:
 
     def __init__(self, pieces: Sequence[Piece], chain: Chain) -> None:
         self._chain = chain
-        # Pieces that follow the same trajectory are evaluated together.
         numbers: dict[Trajectory, int] = {}
-        references = [piece.reference for piece in pieces]
-        self._followed = np.array([numbers.setdefault(r.trajectory, len(numbers)) for r in references])
-        self._trajectories = list(numbers)
-        self._scalings = np.array([(r.start, r.progress, r.rate) for r in references], dtype=float)
-        deviations = [piece.deviation for piece in pieces if piece.deviation is not None]
-        rows = count(0, chain.stages + 1)
-        self._rows = np.array([-1 if piece.deviation is None else next(rows) for piece in pieces])
-        self._states = np.concatenate(deviations) if deviations else np.zeros((0, 5, 3))
-        self._is_changed = bool(deviations) or any(r.rate != 1.0 for r in references)
+        followed: list[int] = []
+        scalings: list[float] = []
+        rows: list[int] = []
+        deviations: list[Array] = []
+        for piece in pieces:
+            reference, deviation = piece.reference, piece.deviation
+            followed.append(numbers.setdefault(reference.trajectory, len(numbers)))
+            scalings += reference.start, reference.progress, reference.rate
+            rows.append(-1 if deviation is None else len(deviations) * (chain.stages + 1))
+            if deviation is not None:
+                deviations.append(deviation)
+        # Pieces that follow the same trajectory are evaluated together.
+        self._followed, self._trajectories = np.array(followed), list(numbers)
+        self._scalings, self._rows = np.array(scalings, dtype=float).reshape(-1, 3), np.array(rows)
+        self._states = np.concatenate(deviations) if deviations else _NO_STATES
+        self._is_changed = bool(deviations) or scalings[2::3] != [1.0] * len(rows)
 
     def derivatives(self, times: Array, order: int = 4) -> Array:
         """Return position to the derivative ``order`` (order + 1, K, 3), NED, SI, at ``times`` (K,) (s)."""

@@ -104,16 +104,16 @@ class LissajousTrajectory(Trajectory):
         self._set_phase(_phase(knots, [0.0, rate, rate, 0.0], 0.0))
 
     def _set_phase(self, phase: PPoly) -> None:
-        self._phase, self._rate, self._shape = phase, phase.derivative(), self.curve.as_array()
+        self._phase, self._rate, self._shape = (phase.c, phase.x), phase.derivative(), self.curve.as_array()
         self.start, self._end = float(phase.x[0]), float(phase.x[-1])
 
     def phase(self, times: ArrayLike, order: int = 0) -> Array:
         """Phase and its derivatives at times (K,), s: (order + 1, K), rad / s^d."""
-        return phase_at(self._phase.c, self._phase.x, np.ascontiguousarray(times, dtype=float), order, True)
+        return phase_at(*self._phase, np.ascontiguousarray(times, dtype=float), order, True)
 
     def evaluate(self, times: Times, order: int) -> Array:
         """See ``Trajectory.evaluate``; analytic, by the chain rule."""
-        return figure_eight_at(self._shape, self._phase.c, self._phase.x, times.values, order)
+        return figure_eight_at(self._shape, *self._phase, times.values, order)
 
     def stop(self, time: float) -> Trajectory:
         """See ``Trajectory.stop``; stays on the curve."""

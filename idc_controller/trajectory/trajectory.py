@@ -150,7 +150,8 @@ class SequenceTrajectory(Trajectory):
         if times.latest > first.end:
             later = times.values > first.end
             result[:, later] = self._next().derivatives(times.values[later], order)
-        elif first.end < math.inf:
+        elif first.end < math.inf or (isinstance(first, SequenceTrajectory) and first._in_force[1] < math.inf):
+            # A sequence whose end is not known yet has parts whose own end is.
             self._set_in_force(first, -math.inf, first.end)
         return result
 

@@ -83,8 +83,10 @@ def main():
     options = parser.parse_args()
     time.perf_counter = time.thread_time
     try:  # as the command does
-        from gcs.app.fly_options import FlyOptions, prepare
         from gcs.app.imports import importing
+
+        with importing():
+            from gcs.app.fly_options import FlyOptions, prepare
     except ImportError:  # in trees before these modules
         from gcs.app.fly import FlyOptions, prepare
 

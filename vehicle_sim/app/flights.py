@@ -18,7 +18,8 @@ with importing(), greeting_of_engine_dropped():
     import gcs.app.progress
     import gcs.record.summary_table  # noqa: F401
     import vehicle_sim.app.cli
-    import vehicle_sim.app.launch  # noqa: F401
+    import vehicle_sim.app.launch
+    import vehicle_sim.faults.record  # noqa: F401
     from gcs.drivers.forked_program import FORK, run_program
     from gcs.record.run_folder import versions
 

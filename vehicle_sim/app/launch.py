@@ -1,5 +1,7 @@
 """From options to a running simulator: reads what is to be simulated, opens everything or nothing, runs a driver."""
 
+from __future__ import annotations
+
 import contextlib
 import dataclasses
 import os
@@ -7,11 +9,11 @@ import sys
 from argparse import Namespace
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from threadpoolctl import threadpool_limits
 
 from gcs.config import SystemConfig, read_system
-from gcs.faults.record import notes_of
 from gcs.mavlink.address import Address
 from gcs.mission.faults import check_faults_of
 from gcs.mission.model import Mission
@@ -22,12 +24,13 @@ from vehicle_sim.app.ending import Ending
 from vehicle_sim.app.lockstep import LockstepDriver
 from vehicle_sim.app.realtime import RealTimeDriver
 from vehicle_sim.app.sockets import SwarmSockets, url
-from vehicle_sim.faults import FaultInjector, record_faults
-from vehicle_sim.faults.record import faults_record
 from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.display import check_display
 from vehicle_sim.world.engine_messages import messages_of_engine_aside
 from vehicle_sim.world.truth_log import TruthLog
+
+if TYPE_CHECKING:
+    from vehicle_sim.faults.fault_injector import FaultInjector
 
 DEFAULT_SEED = 1
 
@@ -52,6 +55,9 @@ def _run(options: Namespace, arguments: list[str], started: contextlib.ExitStack
     started.enter_context(ending.on_signals())
     injector = None
     if mission is not None and mission.faults:
+        # The kinds take long to import, spent only where there are faults.
+        from vehicle_sim.faults.fault_injector import FaultInjector
+
         injector = FaultInjector(mission.faults, seed, config)
     with messages_of_engine_aside() if options.gui else contextlib.nullcontext():
         swarm = started.enter_context(
@@ -118,6 +124,9 @@ def _truth_log(
 
 def _report_faults(options: Namespace, injector: FaultInjector, swarm: Swarm) -> None:
     """Record what the faults affected, and print notes on those that affected nothing."""
+    from gcs.faults.record import notes_of
+    from vehicle_sim.faults.record import faults_record, record_faults
+
     if options.run_dir is not None:
         record_faults(options.run_dir, injector, swarm.time)
     if not options.with_parent:

@@ -8,9 +8,10 @@ from gcs.config import SystemConfig
 from gcs.mission.model import Fault
 from vehicle_sim.faults import link, sensors, timing, values
 from vehicle_sim.faults.active import ActiveFault
-from vehicle_sim.faults.impairment import Datagram, LinkImpairment
+from vehicle_sim.faults.disturbances import Datagram, Disturbances, Forces
+from vehicle_sim.faults.impairment import LinkImpairment
 from vehicle_sim.faults.samples import OWN, PAYLOAD, REPORTED, SCAN, SampleImpairment
-from vehicle_sim.faults.world import Forces, WorldFaults
+from vehicle_sim.faults.world import WorldFaults
 from vehicle_sim.world.range_sensor import RangeSample
 from vehicle_sim.world.sensors import Measurement, ReportedState
 from vehicle_sim.world.world import World
@@ -21,16 +22,13 @@ _SAMPLE_IMPAIRMENTS = sensors.SAMPLE_IMPAIRMENTS | timing.SAMPLE_IMPAIRMENTS | v
 _Sample = TypeVar("_Sample")
 
 
-class FaultInjector:
+class FaultInjector(Disturbances):
     """Faults of one flight, each active from its start (s after the first vehicle lifts off) on.
 
-    They act between the vehicles and their sensors, between the vehicles and the wire, and on the world. Vehicles are
-    numbered by their system id, from 1; times in s.
+    They act between the vehicles and their sensors, between the vehicles and the wire, and on the world.
 
     Equal seeds and faults disturb equal samples and datagrams equally; the random numbers of each fault, vehicle and
     direction are its own, so that one fault more or less does not change what the others do.
-
-    ``any_of_world``: one acts on the world.
     """
 
     def __init__(self, faults: Sequence[Fault] = (), seed: int = 1, system: SystemConfig = SystemConfig()) -> None:

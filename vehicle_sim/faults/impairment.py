@@ -8,12 +8,9 @@ from typing import ClassVar
 import numpy as np
 
 from gcs.faults import Direction
-from gcs.mavlink.address import Address
 from vehicle_sim.faults.active import ActiveFault
+from vehicle_sim.faults.disturbances import Datagram
 from vehicle_sim.faults.schedule import TOLERANCE, Moment
-
-Datagram = tuple[bytes, Address]
-"""Bytes, and the address on the other side."""
 
 
 class LinkImpairment(ABC):

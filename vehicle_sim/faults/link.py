@@ -1,8 +1,9 @@
 """Impairments of a link, one class a kind of fault."""
 
 from gcs.faults import link as kinds
+from vehicle_sim.faults.disturbances import Datagram
 from vehicle_sim.faults.frames import frames
-from vehicle_sim.faults.impairment import Datagram, GilbertElliottProcess, LinkImpairment, OrderedImpairment
+from vehicle_sim.faults.impairment import GilbertElliottProcess, LinkImpairment, OrderedImpairment
 from vehicle_sim.faults.schedule import TOLERANCE, Moment
 
 

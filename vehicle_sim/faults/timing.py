@@ -5,8 +5,9 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.faults import timing as kinds
 from vehicle_sim.faults.active import ActiveFault
+from vehicle_sim.faults.disturbances import Datagram
 from vehicle_sim.faults.frames import Frame, frames
-from vehicle_sim.faults.impairment import Datagram, LinkImpairment
+from vehicle_sim.faults.impairment import LinkImpairment
 from vehicle_sim.faults.samples import PAYLOAD, REPORTED, SCAN, SampleImpairment
 from vehicle_sim.faults.schedule import Moment
 from vehicle_sim.world.range_sensor import RangeSample

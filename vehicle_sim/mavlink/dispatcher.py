@@ -1,6 +1,7 @@
 """The services of a vehicle by the messages that they handle."""
 
 from collections.abc import Callable
+from operator import attrgetter
 from typing import Any, NamedTuple, TypeVar
 
 from gcs.mavlink.messages import Message, Received
@@ -28,18 +29,19 @@ class Dispatcher:
     """The services of a vehicle by the class of the messages they handle."""
 
     def __init__(self) -> None:
-        self._handlers: dict[type[Message], Callable[[Received, Request], None]] = {}
+        self._handlers: dict[type[Message], tuple[Callable[..., None], Callable[[Received], Any]]] = {}
+        """The handler of each class, and what of a message is handed to it."""
 
     def register(self, kind: type[M], handler: Callable[[M, Request], None]) -> None:
         """Hand every message of a class to ``handler``."""
-        handle: Callable[..., None] = handler
-        self._handlers[kind] = lambda received, request: handle(received.message, request)
+        self._handlers[kind] = handler, attrgetter("message")
 
     def register_fields(self, kind: type[Message], handler: Callable[[tuple[Any, ...], Request], None]) -> None:
         """Hand the fields of every message of a class, in the order of the wire, to ``handler``."""
-        self._handlers[kind] = lambda received, request: handler(received.fields, request)
+        self._handlers[kind] = handler, attrgetter("fields")
 
     def dispatch(self, received: Received, request: Request) -> None:
         """Hand a message to its service; one without a service is ignored."""
-        if (handler := self._handlers.get(received.layout.kind)) is not None:
-            handler(received, request)
+        if (service := self._handlers.get(received.layout.kind)) is not None:
+            handler, part = service
+            handler(part(received), request)

@@ -82,7 +82,7 @@ class Stream:
             self.due = min(self.due, now + repeat_interval)
         messages = sample.messages(self.key)
         if messages and self._of_one_sample:
-            first = messages.values[0].tobytes() if isinstance(messages, PackedRun) else messages[0].payload
+            first = messages.values[0].tobytes() if isinstance(messages, PackedRun) else messages[0][1]
             stamp = first[:_STAMP_LENGTH]
             if stamp == self._last_stamp:
                 return ()

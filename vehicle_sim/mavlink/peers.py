@@ -44,11 +44,10 @@ class Peers:
         """Return all that is due at ``now`` (s), each with its address."""
         out: list[tuple[bytes, Address]] = []
         latest = now + TIME_TOLERANCE
-        due = [peer for peer in self._peers.values() if peer.next_due <= latest]
-        if not due:
+        if self.next_due > latest:
             return out
         sample = TelemetrySample(telemetry, now)
-        for peer in due:
+        for peer in [peer for peer in self._peers.values() if peer.next_due <= latest]:
             if self._is_silent(peer, now):
                 self._remove_silent(now)
                 if peer.address not in self._peers:
@@ -59,7 +58,11 @@ class Peers:
     @property
     def next_due(self) -> float:
         """Time at which something is to be sent (s); -inf: at once, inf: never."""
-        return min([peer.next_due for peer in self._peers.values()], default=math.inf)
+        due = math.inf
+        for peer in self._peers.values():
+            if peer.next_due < due:
+                due = peer.next_due
+        return due
 
     def repeat(self, *message_ids: int) -> None:
         """Send these messages to all at once, and repeatedly: their content has changed."""

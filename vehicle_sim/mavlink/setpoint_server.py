@@ -6,7 +6,7 @@ from typing import Any
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from vehicle_sim.autopilot.autopilot import Autopilot
-from vehicle_sim.autopilot.setpoints import SetpointError, read_setpoint, read_stop_plan
+from vehicle_sim.autopilot.setpoints import SetpointError, StopPlan, read_setpoint, read_stop_plan
 from vehicle_sim.mavlink.control_owner import ControlOwner
 from vehicle_sim.mavlink.dispatcher import Dispatcher, Request
 
@@ -55,4 +55,4 @@ class SetpointServer:
         start = plan.start - (self._clock(now) - now)
         # The ground estimates this clock from stamps of 32 bits, which may have begun anew since.
         start += round((now - start) / STAMP_WRAP) * STAMP_WRAP
-        self._autopilot.take_stop_plan(plan._replace(start=start))
+        self._autopilot.take_stop_plan(StopPlan(start, *plan[1:]))

@@ -282,7 +282,7 @@ class Telemetry:
         )
         end["sensor_type"], end["frame"] = mavlink.MAV_DISTANCE_SENSOR_LASER, mavlink.MAV_FRAME_BODY_FRD
         end["increment"] = 360 // _SECTORS
-        return Packed(_OBSTACLE_DISTANCE, end.tobytes())
+        return _OBSTACLE_DISTANCE, end.tobytes()
 
     @property
     def _own_attitude(self) -> Measurement | None:

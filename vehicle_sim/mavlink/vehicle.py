@@ -102,10 +102,12 @@ class Vehicle:
 
     def receive(self, datagram: bytes, sender: Address, now: float) -> None:
         """Take what came from an address. Never raises for anything that a datagram can hold."""
-        self._latest = max(self._latest, now)
-        peer = None
+        if now > self._latest:
+            self._latest = now
+        peer = request = None
         for received in self._decoder.decode(datagram):
-            if received.system in (BROADCAST, self.system_id):
+            system = received.system
+            if system in (BROADCAST, self.system_id):
                 continue  # nobody, or its own messages coming back
             if peer is None:
                 peer = self._peers.receive_from(sender, now)
@@ -113,12 +115,15 @@ class Vehicle:
                     return
                 self.autopilot.ground_message_received(now)
             if received.is_for(self.system_id, px4.AUTOPILOT_COMPONENT):
-                request = Request((sender, received.system), received.component, peer, now)
+                component = received.component
+                if request is None or request.component != component or request.system != system:
+                    request = Request((sender, system), component, peer, now)
                 self._dispatcher.dispatch(received, request)
 
     def datagrams_to_send(self, now: float) -> list[tuple[bytes, Address]]:
         """Return all that is due at ``now`` (s), each with its address."""
-        self._latest = max(self._latest, now)
+        if now > self._latest:
+            self._latest = now
         if self.autopilot.changes != self._sent_changes or self.autopilot.state.notices:
             self.send_changes()
         return self._peers.datagrams_to_send(self.telemetry, now)
@@ -128,7 +133,7 @@ class Vehicle:
         due = self._peers.next_due
         if due == -math.inf:
             return self._latest if math.isfinite(self._latest) else 0.0
-        return due if math.isfinite(due) else None
+        return due if due < math.inf else None
 
     def send_changes(self) -> None:
         """Send the HEARTBEAT anew, and what is to be said to the operator."""

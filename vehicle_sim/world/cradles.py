@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import pybullet
 
 from gcs.config.tables import CradleSettings
+from vehicle_sim.world.readings import Uavs
 
 # Upper bound of what a cradle bears (N): far above any load of this size of system.
 _MAX_FORCE = 1e4
@@ -26,7 +27,8 @@ class Cradles:
         self._body = body
         self._links = tuple(links)
         self._weights = tuple(weights)
-        self._settings = settings
+        self._release_thrusts = [settings.release_factor * weight for weight in weights]
+        self._latch_speed = settings.latch_speed
         self._constraints: list[int | None] = [None] * len(self._links)
         self.number_held = 0
 
@@ -34,16 +36,20 @@ class Cradles:
         """Return True if UAV ``i`` (from 0) is held."""
         return self._constraints[i] is not None
 
-    def wants_release(self, i: int, upward_thrust: float) -> bool:
-        """Return True if UAV ``i`` is held and lifts (``upward_thrust`` in N) more than its own weight."""
-        return self._constraints[i] is not None and upward_thrust > self._settings.release_factor * self._weights[i]
+    def due(self, thrusts: Sequence[float], uavs: Uavs) -> list[int]:
+        """Return the UAVs (from 0) to be released: held, lifting more than their weight; or latched: free, slow, less.
 
-    def wants_latch(self, i: int, upward_thrust: float, velocity: Sequence[float]) -> bool:
-        """Return True if UAV ``i`` is free, slow (m/s) and lifts less than its own weight."""
-        if self._constraints[i] is not None or upward_thrust >= self._weights[i]:
-            return False
-        a, b, c = velocity
-        return math.sqrt(a * a + b * b + c * c) < self._settings.latch_speed
+        ``thrusts`` in N, ``uavs`` as the engine gives them.
+        """
+        due = []
+        for i, (_, (x, y, _, _), _, _, _, _, (v_x, v_y, v_z), _) in enumerate(uavs):
+            upward = thrusts[i] * (1.0 - 2.0 * (x * x + y * y))
+            if self._constraints[i] is not None:
+                if upward > self._release_thrusts[i]:
+                    due.append(i)
+            elif upward < self._weights[i] and math.sqrt(v_x * v_x + v_y * v_y + v_z * v_z) < self._latch_speed:
+                due.append(i)
+        return due
 
     def latch(self, i: int, position: Sequence[float], quaternion: Sequence[float]) -> None:
         """Hold UAV ``i`` at a pose, in the engine's frame and order."""

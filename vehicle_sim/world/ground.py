@@ -28,7 +28,7 @@ class Contacts(NamedTuple):
     standing: bool
 
 
-NO_CONTACTS = Contacts(0, False)
+NO_CONTACTS, _STANDING = Contacts(0, False), Contacts(0, True)
 
 
 class Ground:
@@ -69,10 +69,9 @@ class Ground:
         lower_face = up_x * x + up_y * y + up_z * z - self._lower_face
         pairs: set[tuple[int, int, int, int]] = set()
         standing = False
-        for point in points:
-            if point[8] > 0.0 and point[9] <= 0.0:  # its distance and its force
+        for _, body_a, body_b, link_a, link_b, on_a, on_b, _, distance, force, _, _, _, _ in points:
+            if distance > 0.0 and force <= 0.0:
                 continue
-            _, body_a, body_b, link_a, link_b, on_a, on_b = point[:7]
             if body_b == body and body_a != body_b:
                 body_a, body_b, link_a, link_b, on_a = body_b, body_a, link_b, link_a, on_b
             is_of_payload = link_a == -1 and body_b in grounds
@@ -80,4 +79,4 @@ class Ground:
                 standing = True
             else:
                 pairs.add((body_a, link_a, body_b, link_b))
-        return Contacts(len(pairs), standing)
+        return Contacts(len(pairs), standing) if pairs or not standing else _STANDING

@@ -12,15 +12,13 @@ from vehicle_sim.world.ground import Pose
 from vehicle_sim.world.multibody import Multibody
 from vehicle_sim.world.state_kernels import READING_COLUMNS, STATE_COLUMNS, states_from_engine
 
-_Uavs = Sequence[tuple[tuple[float, ...], ...]]
+Uavs = Sequence[tuple[tuple[float, ...], ...]]
+"""States of the UAVs: position, attitude, four that are not used, velocity, angular velocity."""
 _Velocity = tuple[Vector, Vector]
 
 
 class Readings:
-    """What the engine gives after a step, in its own frames, and its velocities of the step before.
-
-    ``uavs``: states of the UAVs: position, attitude, four that are not used, velocity, angular velocity.
-    """
+    """What the engine gives after a step, in its own frames, and its velocities of the step before."""
 
     def __init__(self, client: int, system: Multibody) -> None:
         self._body, self._links, self._client = system.body, system.uavs, client
@@ -29,10 +27,11 @@ class Readings:
         self._rows = np.empty((rows, READING_COLUMNS))
         # A third of the time that an assignment of lists takes.
         self._pack = struct.Struct(f"{self._rows.size}d").pack_into
-        self.uavs: _Uavs = ()
+        self.uavs: Uavs = ()
         self._velocity: _Velocity = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-        self._before: tuple[_Velocity, _Uavs] = self._velocity, self.uavs
+        self._before: tuple[_Velocity, Uavs] = self._velocity, self.uavs
         self._payload: Pose | None = None
+        self._states: Array | None = None
         self.update()
         self._before = self._velocity, self.uavs
 
@@ -45,7 +44,7 @@ class Readings:
         self._before = self._velocity, self.uavs
         self.uavs = pybullet.getLinkStates(self._body, self._links, 1, 1, self._client)
         self._velocity = pybullet.getBaseVelocity(self._body, self._client)
-        self._payload = None
+        self._payload = self._states = None
 
     @property
     def payload(self) -> Pose:
@@ -55,15 +54,16 @@ class Readings:
         return self._payload
 
     def states(self) -> Array:
-        """Return the true states of payload and UAVs now, (N + 1, 13) as in :mod:`.state_kernels`."""
+        """Return the true states of payload and UAVs now, (N + 1, 13) as in :mod:`.state_kernels`, to be read only."""
+        if self._states is not None:
+            return self._states
         position, attitude = self.payload
         (velocity, rates), ((velocity_before, rates_before), uavs_before) = self._velocity, self._before
         numbers = [*position, *attitude, *velocity, *rates, *velocity_before, *rates_before]
-        for uav, before in zip(self.uavs, uavs_before, strict=True):
-            place, turn, _, _, _, _, v, w = uav
-            _, _, _, _, _, _, v_before, w_before = before
+        for i, (place, turn, _, _, _, _, v, w) in enumerate(self.uavs):
+            _, _, _, _, _, _, v_before, w_before = uavs_before[i]
             numbers += (*place, *turn, *v, *w, *v_before, *w_before)
         self._pack(self._rows.data, 0, *numbers)
-        states = np.empty((len(self._rows), STATE_COLUMNS))
+        self._states = states = np.empty((len(self._rows), STATE_COLUMNS))
         states_from_engine(self._rows, self._payload_in_axes, states)
         return states

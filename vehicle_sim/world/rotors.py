@@ -16,8 +16,8 @@ from vehicle_sim.world.rotor_kernels import advance_rotors
 
 Four = tuple[float, float, float, float]
 
-Wrenches = tuple[list[float], list[list[float]]]
-"""Thrusts (N) of N vehicles over a physics step, and their body torques (N m, FRD)."""
+Wrenches = tuple[list[list[float]], list[list[list[float]]]]
+"""Thrusts (N) of N vehicles over each of some physics steps, and their body torques (N m, FRD)."""
 
 
 @dataclass(frozen=True)
@@ -83,10 +83,10 @@ class Rotors:
         self.speeds = np.zeros((n, 4))
         self._thrusts, self._torques = np.zeros((steps, n)), np.zeros((steps, n, 3))
 
-    def advance(self, commands: Array) -> list[Wrenches]:
-        """Take the physics steps under the commanded speeds (N, 4) (rad/s), and return each one's mean wrenches."""
+    def advance(self, commands: Array) -> Wrenches:
+        """Take the physics steps under the commanded speeds (N, 4) (rad/s), and return their mean wrenches."""
         advance_rotors(self._motors, commands, self.speeds, self._thrusts, self._torques)
-        return list(zip(self._thrusts.tolist(), self._torques.tolist(), strict=True))
+        return self._thrusts.tolist(), self._torques.tolist()
 
 
 def _motor(geometry: RotorGeometry, ratio: float) -> tuple[float, ...]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from idc_controller.arrays import Array
 from vehicle_sim.world.errors import SimulationError
-from vehicle_sim.world.state_kernels import measure
+from vehicle_sim.world.state_kernels import STATE_COLUMNS, measure
 
 #: The payload's navigation unit draws from the generator of this id; vehicles count from 1.
 PAYLOAD_UNIT = 0
@@ -94,18 +94,21 @@ class SensorNoise:
 
 
 class NavigationSensors:
-    """Add noise to the truth; the same seed and id give the same noise, different ids independent noise."""
+    """Add noise to the truth; the same seed and id give the same noise, different ids independent noise.
+
+    ``samples`` (M, 13): the newest, rows of states as in :mod:`.state_kernels`.
+    """
 
     def __init__(self, noises: Sequence[SensorNoise], seed: int, sensor_ids: Sequence[int]) -> None:
         """``sensor_ids``: the vehicles' system ids and :data:`PAYLOAD_UNIT`, one for each of the ``noises``."""
         self._sigmas = np.array([(n.position, n.attitude, n.velocity, n.rates) for n in noises])
+        self.samples = np.full((len(noises), STATE_COLUMNS), np.nan)
         self._normals = _normals([np.random.default_rng([seed, sensor_id]) for sensor_id in sensor_ids])
 
     def measure(self, states: Array) -> Array:
-        """Return samples of the true ``states``, both (M, 13) as in :mod:`.state_kernels`."""
-        samples = np.empty_like(states)
-        measure(states, self._sigmas, next(self._normals), samples)
-        return samples
+        """Return the ``samples``, now those of the true ``states`` (M, 13)."""
+        measure(states, self._sigmas, next(self._normals), self.samples)
+        return self.samples
 
 
 def _normals(generators: Sequence[np.random.Generator]) -> Iterator[Array]:

@@ -24,6 +24,8 @@ from vehicle_sim.world.world_state import UavState, WorldState, flipped
 
 _ORIGIN = (0.0, 0.0, 0.0)
 _LINK_FRAME, _WORLD_FRAME = pybullet.LINK_FRAME, pybullet.WORLD_FRAME
+_apply_force, _apply_torque = pybullet.applyExternalForce, pybullet.applyExternalTorque
+_step_simulation = pybullet.stepSimulation
 
 
 class World:
@@ -114,17 +116,19 @@ class World:
         order at its end, with velocities that belong to half a step earlier; :meth:`state` brings those forward.
         """
         client, body, uavs = self._client, self._system.body, self._system.uavs
-        apply_force, apply_torque = pybullet.applyExternalForce, pybullet.applyExternalTorque
+        if not len(uavs) == len(thrusts) == len(torques):
+            raise ValueError(f"{len(thrusts)} thrusts and {len(torques)} torques for {len(uavs)} UAVs")
         # The height of a UAV, which is at hand, says mostly that no cradle has anything to do.
         if self._cradles.number_held or self._readings.uavs[0][0][2] <= self._ground.standing_height + self._system.arm:
             self._update_cradles(thrusts)
-        for uav, thrust, (x, y, z) in zip(uavs, thrusts, torques, strict=True):
-            apply_force(body, uav, (0.0, 0.0, thrust), _ORIGIN, _LINK_FRAME, client)
-            apply_torque(body, uav, (x, -y, -z), _LINK_FRAME, client)
+        for i, uav in enumerate(uavs):
+            x, y, z = torques[i]
+            _apply_force(body, uav, (0.0, 0.0, thrusts[i]), _ORIGIN, _LINK_FRAME, client)
+            _apply_torque(body, uav, (x, -y, -z), _LINK_FRAME, client)
         if (payload_force is not None or uav_forces is not None) and not self.all_cradled:
             # A payload between held links hangs as much as it stands: wind would swing what the ground should hold.
             self._push(payload_force, uav_forces)
-        pybullet.stepSimulation(client)
+        _step_simulation(client)
         self.steps += 1
         self._thrusts = tuple(thrusts)
         self._readings.update()
@@ -207,14 +211,12 @@ class World:
 
     def _update_cradles(self, thrusts: Sequence[float]) -> None:
         """Release and latch."""
-        cradles = self._cradles
-        for i, uav in enumerate(self._readings.uavs):
-            x, y, _, _ = uav[1]
-            upward = thrusts[i] * (1.0 - 2.0 * (x * x + y * y))
-            if cradles.wants_release(i, upward):
+        cradles, uavs = self._cradles, self._readings.uavs
+        for i in cradles.due(thrusts, uavs):
+            if cradles.held(i):
                 cradles.release(i)
-            elif cradles.wants_latch(i, upward, uav[6]) and self._is_low and self._is_supported:
-                cradles.latch(i, uav[0], uav[1])
+            elif self._is_low and self._is_supported:
+                cradles.latch(i, uavs[i][0], uavs[i][1])
 
 
 def _parts(row: list[float]) -> tuple[Vector, Quaternion, Vector, Vector]:

@@ -52,8 +52,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command, and return its exit status."""
-    from gcs.app.fly_options import FlyOptions, prepare
-    from gcs.mavlink.address import parse_url
+    with importing():
+        from gcs.app.fly_options import FlyOptions, prepare
+        from gcs.mavlink.address import parse_url
 
     options = FlyOptions(
         mission=arguments.mission,

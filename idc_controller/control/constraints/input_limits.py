@@ -3,7 +3,7 @@
 import numpy as np
 
 from idc_controller.arrays import Array, Indices
-from idc_controller.control.force_kernels import input_bounds
+from idc_controller.control.force_kernels import fill_input_bounds
 from idc_controller.control.settings import MpcSettings
 from idc_controller.model.linear import LinearModel
 
@@ -21,9 +21,9 @@ class InputLimits:
         self.G = np.vstack([np.eye(3 * N), -np.eye(3 * N)])
         """(6 N, 3 N)"""
 
-    def h(self, u: Array, stages: Indices) -> Array:
-        """Return the bounds (M 6 N,) at ``stages`` (M,), upper then lower ones, for the reference's set-points.
+    def fill(self, h: Array, u: Array, stages: Indices) -> None:
+        """Fill the first M 6 N of ``h`` with the bounds at ``stages`` (M,), upper then lower ones by stage.
 
-        These are ``u`` (K, 3 N) at all stages.
+        ``u`` (K, 3 N): the reference's set-points at all stages.
         """
-        return input_bounds(u, stages, self._hover, self._lower, self._upper)
+        fill_input_bounds(h, u, stages, self._hover, self._lower, self._upper)

@@ -33,9 +33,13 @@ class StuckSensors:
             return False, False
         if time <= last.time + (self._settings.relay_interval if measurement.source == PAYLOAD else 0.0):
             return last.stuck
-        of_pose, of_motion = last.repeats
-        last.repeats = of_pose + 1 if pose == last.pose else 0, of_motion + 1 if motion == last.motion else 0
-        last.stuck = self._stuck_parts(key, last.repeats) if any(last.repeats) else (False, False)
+        same_pose, same_motion = pose == last.pose, motion == last.motion
+        if same_pose or same_motion:
+            of_pose, of_motion = last.repeats
+            last.repeats = of_pose + 1 if same_pose else 0, of_motion + 1 if same_motion else 0
+            last.stuck = self._stuck_parts(key, last.repeats)
+        else:
+            last.repeats, last.stuck = (0, 0), (False, False)
         last.time, last.pose, last.motion = time, pose, motion
         return last.stuck
 
