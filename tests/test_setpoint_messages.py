@@ -1,13 +1,17 @@
-"""Set-points and stop plans on the wire: the bytes that pymavlink's own messages give."""
+"""Set-points and stop plans on the wire: the bytes that pymavlink's own messages give, and how long they take."""
 
 import math
+from types import SimpleNamespace
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from gcs.mavlink import px4
 from gcs.mavlink.layout import packed
-from gcs.mavlink.setpoints import IGNORE_RATES, attitude_target, stop_plan_message
+from gcs.mavlink.setpoints import IGNORE_RATES, SetpointStream, attitude_target, stop_plan_message
+from gcs.mavlink.settings import LinkSettings
 from idc_controller.rotations_float import attitude_of_direction
 
 ANGLES = st.floats(-math.pi, math.pi)
@@ -34,3 +38,11 @@ def test_stop_plan_is_packed_as_by_pymavlink(boot_time, duration, points):
         max(round(boot_time * 1e6), 0), 5, x, y, z, [duration] * 5, [0.0] * 5
     )
     assert stop_plan_message(boot_time, duration, points) == packed(message)[0]
+
+
+@pytest.mark.parametrize(("rate", "step"), [(250.0, 0.004), (100.0, 0.01), (0.0, 0.0), (None, 0.0)])
+def test_setpoint_takes_the_latency_of_the_link_and_an_onboard_step_where_its_rate_is_known(rate, step):
+    parameters = {} if rate is None else {px4.PARAM_ONBOARD_RATE: rate}
+    stream = SetpointStream(SimpleNamespace(delay=0.03, round_trip_max=0.1), parameters, LinkSettings())
+    assert stream.delay == pytest.approx(0.03 + step)
+    assert stream.delay_max == pytest.approx(0.1 + 2.0 * step + LinkSettings().stamp_error)

@@ -248,8 +248,8 @@ def test_take_off_and_landing_are_vertical():
 
 
 def test_circle_keeps_its_radius_and_direction_and_slows_down_where_it_is_tight():
-    for clockwise, sign in ((True, 1.0), (False, -1.0)):
-        trajectory = planned([Circle([3, 0, -5], 3.0, 2.0, 1.5, clockwise)])
+    for direction, sign in (((), 1.0), ((True,), 1.0), ((False,), -1.0)):
+        trajectory = planned([Circle([3, 0, -5], 3.0, 2.0, 1.5, *direction)])
         _, d = sampled(trajectory)
         arm = d[0] - [3, 0, -5]
         assert np.abs(np.linalg.norm(arm, axis=1) - 3.0).max() < 0.15
