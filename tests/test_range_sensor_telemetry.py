@@ -20,7 +20,7 @@ from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
 from idc_controller.perception.ray_pattern import scan_index
 from idc_controller.perception.scan_placement_kernels import rays_of_returns
-from vehicle_sim.faults import FaultInjector
+from vehicle_sim.faults.fault_injector import FaultInjector
 from vehicle_sim.mavlink.scan_kernels import nearest_by_sector
 from vehicle_sim.swarm import Swarm
 

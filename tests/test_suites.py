@@ -214,8 +214,9 @@ def test_small_file_of_many_aliases_is_refused_at_once(folder):
     assert "aliases" in refused(test_file(folder, "\n".join(rows)))[0]
 
 
-def test_deeply_nested_file_is_refused(folder):
-    assert refused(test_file(folder, "a: " + "[" * 20000))
+@pytest.mark.parametrize("opening", ["[", "{b: ", "- "])
+def test_deeply_nested_file_is_refused_at_once(folder, opening):
+    assert "nested more than 32 levels" in refused(test_file(folder, "a:\n " + opening * 20000))[0]
 
 
 def test_yaml_keys_know_their_lines(folder):

@@ -10,6 +10,9 @@ import yaml
 from gcs.config.text_file import read_text
 from gcs.config.validate import Key, UnusableFile, dotted
 
+_DEPTH_MAX = 32
+"""Levels of a file that are read; a test has five."""
+
 
 @dataclass(frozen=True)
 class YamlFile:
@@ -31,18 +34,13 @@ def read_yaml(path: Path) -> YamlFile:
     text = read_text(path)
     loader = yaml.SafeLoader(text)
     try:
-        # An alias stands for all that it names, over and over: a small file could become too large.
-        for event in yaml.parse(text, Loader=yaml.SafeLoader):
-            if isinstance(event, yaml.AliasEvent):
-                raise UnusableFile([f"{path}: line {event.start_mark.line + 1}: aliases (*) are not supported"])
+        _check_size(path, text)
         node = loader.get_single_node()
         lines: dict[Key, int] = {}
         problems = [] if node is None else _lines_of_keys(path, node, (), lines)
         if problems:
             raise UnusableFile(problems)
         data = None if node is None else loader.construct_document(node)
-    except RecursionError as error:
-        raise UnusableFile([f"{path}: nested too deeply"]) from error
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         raise UnusableFile([f"{path}: line {mark.line + 1 if mark else 1}: not valid YAML: {error.problem}"]) from error
@@ -51,6 +49,20 @@ def read_yaml(path: Path) -> YamlFile:
     if not isinstance(data, dict):
         raise UnusableFile([f"{path}: line 1: must be a mapping of keys"])
     return YamlFile(path, data, lines)
+
+
+def _check_size(path: Path, text: str) -> None:
+    """Raise :class:`UnusableFile` where a small file would take long to read."""
+    depth = 0
+    for event in yaml.parse(text, Loader=yaml.SafeLoader):
+        line = event.start_mark.line + 1
+        # An alias stands for all that it names, over and over.
+        if isinstance(event, yaml.AliasEvent):
+            raise UnusableFile([f"{path}: line {line}: aliases (*) are not supported"])
+        # The time to read grows with the square of the depth.
+        depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
+        if depth > _DEPTH_MAX:
+            raise UnusableFile([f"{path}: line {line}: nested more than {_DEPTH_MAX} levels deep"])
 
 
 def _lines_of_keys(path: Path, node: yaml.Node, key: Key, lines: dict[Key, int]) -> list[str]:
