@@ -64,8 +64,30 @@ def test_blocking_obstacle_is_passed_by_detour(name):
     rates = np.array(flown.rates)
     assert rates.min() < 0.9
     assert rates[-1] == 1.0
-    assert np.abs(np.diff(rates)).max() <= 0.051 + 1e-9
+    changes = np.diff(rates)
+    assert (changes <= 0.051 + 1e-9).all()
+    # At the end of a detour, at rest, the mission is resumed from rest.
+    assert np.count_nonzero(changes < -0.051 - 1e-9) <= flown.avoidance.guidance.detours
     assert flown.avoidance.guidance.blocked(flown.times[-1]) == ""
+
+
+def test_reference_after_a_detour_begins_at_rest():
+    obstacles, speed = ROUND["high wall"]
+    stack = avoidance(obstacles, speed=speed)
+    velocities, reference = [], stack.guidance.reference
+
+    def watched(time, mission):
+        found = reference(time, mission)
+        velocities.append(found.derivatives(np.array([time]), 1)[1, 0])
+        return found
+
+    stack.guidance.reference = watched
+    flown = fly(stack, straight(16.0, speed), 60.0)
+    check_arrived(flown)
+    assert stack.guidance.detours == 1
+    steps = np.linalg.norm(np.diff(velocities, axis=0), axis=1)
+    # By no more than the rate at which the mission is held up, not by the mission's speed.
+    assert steps.max() < stack.guidance.navigator.settings.held_up_rate * speed
 
 
 def test_wide_gap_is_flown_through():

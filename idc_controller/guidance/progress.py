@@ -80,7 +80,7 @@ class AdaptiveGuidance(Guidance):
         self._stages, self._weight = stages, weight
         self._current: ScaledReference | None = None
         self._observed: ScaledReference | None = None
-        self._next_rate = 1.0
+        self._next_rate = self._wanted_rate = 1.0
         self._tracked: PayloadTrajectory | None = None
         self._deflected = False
         self._restart: tuple[float, float] | None = None
@@ -106,7 +106,11 @@ class AdaptiveGuidance(Guidance):
         current = self._current
         if self._restart is None and current is not None and time < current.start + self._interval:
             return current
-        progress = self.navigator.advance(self._followed_progress(time))
+        followed = self._followed_progress(time)
+        progress = self.navigator.advance(followed)
+        if progress != followed:
+            # A detour ends at rest: the mission is resumed from there, not at its speed.
+            self._next_rate = 0.0
         if self._tracked is not None:
             progress = self.navigator.watch(time, progress, self._held_up_rate(), mission, self._tracked)
         self._restart = None
@@ -178,7 +182,7 @@ class AdaptiveGuidance(Guidance):
         wanted, step = min(max((s.lag_at_rest - lag) / s.slowing_lag, 0.0), 1.0), s.rate_step
         if rate_in_wind is not None and rate_in_wind <= wanted:
             wanted, step = rate_in_wind, s.rate_step_in_wind
-        fall = step
+        self._wanted_rate, fall = wanted, step
         if self._by_sight is not None:
             self._by_sight.compare(current.start, wanted, s.rate_step)
             if self._by_sight.is_least:
@@ -188,10 +192,11 @@ class AdaptiveGuidance(Guidance):
         return 1.0 if changed > 0.999 else changed
 
     def _held_up_rate(self) -> float:
-        """Return the rate by which the mission counts as held up: slow for what is not seen yet, it is not."""
+        """Return the rate by which the mission counts as held up: not while it rises, or is slow for what is unseen."""
+        rate = max(self._next_rate, self._wanted_rate)
         if self._by_sight is None or not self._by_sight.is_least:
-            return self._next_rate
-        return max(self._next_rate, self.navigator.settings.held_up_rate)
+            return rate
+        return max(rate, self.navigator.settings.held_up_rate)
 
     @property
     def _interval(self) -> float:
