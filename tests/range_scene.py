@@ -126,3 +126,12 @@ class Sensor:
             placed + (end[:, None] * seen)[~returned],
         )  # fmt: skip
         return scan, origin + hit[returned, None] * ways[returned]
+
+
+def return_variance(scan):
+    """The covariance of each return of a placed scan (n, 3, 3) (m2), as the kernels compute it where they need it."""
+    ways = scan.returns - scan.origin
+    square = np.einsum("ni,ni->n", ways, ways)[:, None, None]
+    along = ways[:, :, None] * ways[:, None, :] / np.maximum(square, 1e-12)
+    own = scan.position_sigma**2 * np.eye(3) + scan.range_sigma**2 * along
+    return own + scan.attitude_sigma**2 * square * (np.eye(3) - along)

@@ -5,6 +5,7 @@ from unittest.mock import patch
 import numpy as np
 import pytest
 from flight_in_process import MISSIONS, InProcessFlight
+from range_scene import return_variance
 
 from gcs.mission.read import read_mission
 from idc_controller.geometry.obstacles import Bodies
@@ -55,7 +56,7 @@ def test_errors_of_returns_agree_with_their_covariances(flown):
         slopes = [bodies.distance(points + step, centres).min(axis=0) - distance for step in 1e-5 * np.eye(3)]
         normals = np.stack(slopes, axis=1)
         normals /= np.linalg.norm(normals, axis=1)[:, None]
-        variance = np.einsum("ni,nij,nj->n", normals, scan.return_variance, normals)
+        variance = np.einsum("ni,nij,nj->n", normals, return_variance(scan), normals)
         normalised.append(distance**2 / variance)
     squares = np.concatenate(normalised)
     assert len(squares) > 10_000

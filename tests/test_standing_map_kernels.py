@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from range_scene import return_variance
 from scipy.stats import chi2, norm
 
 from idc_controller.perception.carving_kernels import followed_rays
@@ -86,7 +87,7 @@ def test_elements_have_weighted_moments_and_bounds_of_their_points():
         scan = scan_of(returns=returns, origin=origin)
         standing.add(scan)
         points.append(returns)
-        weights.append(3.0 / np.trace(scan.return_variance, axis1=1, axis2=2))
+        weights.append(3.0 / np.trace(return_variance(scan), axis1=1, axis2=2))
     points, weights = np.concatenate(points), np.concatenate(weights)
     elements = standing.occupied()
     assert elements.voxels.tolist() == [[0, 0, 0]]
@@ -102,8 +103,8 @@ def test_elements_have_weighted_moments_and_bounds_of_their_points():
 def test_covariance_of_returns_is_range_noise_along_the_ray_and_attitude_noise_across():
     scan = scan_of(returns=[(4.0, 0.0, 0.0), (0.0, 0.0, 2.0)])
     along, across = 0.05**2 + 0.03**2, 0.03**2
-    np.testing.assert_allclose(scan.return_variance[0], np.diag([along, *[across + (4.0 * 0.009) ** 2] * 2]))
-    np.testing.assert_allclose(scan.return_variance[1], np.diag([*[across + (2.0 * 0.009) ** 2] * 2, along]))
+    np.testing.assert_allclose(return_variance(scan)[0], np.diag([along, *[across + (4.0 * 0.009) ** 2] * 2]))
+    np.testing.assert_allclose(return_variance(scan)[1], np.diag([*[across + (2.0 * 0.009) ** 2] * 2, along]))
 
 
 def test_least_direction_is_the_eigenvector_of_the_least_eigenvalue():
@@ -124,7 +125,7 @@ def unexplained(standing, scan):
     limit = chi2.ppf(1.0 - SETTINGS.false_alarm, 3)
     elements, found = standing.occupied(), []
     rows = standing._store.elements[elements.indices]
-    for point, own in zip(scan.returns, scan.return_variance, strict=True):
+    for point, own in zip(scan.returns, return_variance(scan), strict=True):
         radius = math.sqrt(limit * np.linalg.eigvalsh(own).max())
         first, last = np.floor((point - radius) / SIZE).astype(int), np.floor((point + radius) / SIZE).astype(int)
         free = True

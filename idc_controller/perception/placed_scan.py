@@ -16,7 +16,8 @@ class PlacedScan:
     """Returns and rays without return of one scan. SI units, NED; times are the team's (s).
 
     Each return lies on the first surface of its ray; nothing says to which obstacle it belongs. The noise of a return
-    is kept as three standard deviations, of which its covariance follows: see :attr:`return_variance`.
+    is kept as three standard deviations, of which its covariance follows: along the ray, of the position on every axis,
+    and across the ray by the attitude.
     """
 
     time: float
@@ -38,14 +39,3 @@ class PlacedScan:
     """
     uav: int = 0
     """The vehicle (0 .. N-1)."""
-
-    @property
-    def return_variance(self) -> Array:
-        """Covariance of each return (n, 3, 3) (m2), as the kernels compute it where they need it."""
-        ways = self.returns - self.origin
-        square = np.einsum("ni,ni->n", ways, ways)[:, None, None]
-        along = ways[:, :, None] * ways[:, None, :] / np.maximum(square, 1e-12)
-        across = np.eye(3) - along
-        return np.asarray(
-            self.position_sigma**2 * np.eye(3) + self.range_sigma**2 * along + self.attitude_sigma**2 * square * across
-        )
