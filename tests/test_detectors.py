@@ -117,6 +117,20 @@ def test_failed_range_sensor_raises_an_alarm_in_the_air_only():
         assert monitored.raised(steps=2, in_air=in_air, clear=in_air) == expected
 
 
+@pytest.mark.parametrize(
+    ("sensors", "code"),
+    [
+        ({"silent": {1}, "displaced": set()}, MonitorAlarm.RANGE_SENSOR_SILENT),
+        ({"silent": set(), "displaced": {1}}, MonitorAlarm.RANGE_SENSOR_DISPLACED),
+    ],
+    ids=lambda value: value.code if isinstance(value, MonitorAlarm) else "",
+)
+def test_silent_and_displaced_range_sensors_raise_alarms(sensors, code):
+    monitored, found = Monitored(), SimpleNamespace(range_sensors=SimpleNamespace(**sensors))
+    monitored.flight.system.obstacle_map = SimpleNamespace(placement=found, map_offsets={}, take_deleted_tracks=list)
+    assert monitored.raised(steps=2) == [("vehicle 2", code)]
+
+
 EVENTS = {
     MonitorAlarm.MESSAGES_LOST: lambda link: vars(link.statistics).update(lost=link.statistics.lost + 1),
     MonitorAlarm.MESSAGES_CORRUPTED: lambda link: vars(link.statistics).update(damaged=link.statistics.damaged + 1),

@@ -34,6 +34,8 @@ def test_lost_sensors_are_missing_from_telemetry_or_on_board():
     assert failed.points.shape == (0, 3) and not failed.works
     assert (failed.time, failed.reach, failed.range_min) == (scan.time, scan.reach, scan.range_min)
     assert dark.range_sample(1, scan) is scan
+    silent = injected(fault("obstacle_sensing_lost", reported=False)).range_sample(2, scan)
+    assert silent.works and not silent.is_sent and not failed.is_sent
 
 
 def test_position_glitches_and_drifts():

@@ -43,6 +43,16 @@ def test_off_plan_only_after_its_time_without_a_break():
     assert monitor.is_off(0.15 + 1.01 * SETTINGS.deviation_time)
 
 
+def test_positions_that_contradict_their_velocities_say_nothing_of_the_plan():
+    monitor = PlanMonitor(4)
+    report(monitor, 0.0, [np.array([3.0, 0.0, 0.0])] * 4)
+    monitor.compare(0.05, PLACES, contradicted=True)
+    assert np.isnan(monitor.deviations).all()
+    assert not monitor.is_off(9.0)
+    monitor.compare(0.1, PLACES)
+    assert monitor.is_off(0.1 + 1.01 * SETTINGS.deviation_time)
+
+
 def test_positions_are_brought_to_the_time_of_the_plan():
     monitor, velocity = PlanMonitor(4), np.array([2.5, 0.0, 0.0])
     for i in range(4):

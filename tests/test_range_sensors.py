@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from idc_controller.estimation.measurements import Attitude, Position
+from idc_controller.perception.pose_history import PoseHistory
 from idc_controller.perception.range_sensors import RangeSensors
 from idc_controller.perception.settings import ScanSettings
 
@@ -67,3 +69,67 @@ def test_sensor_is_stuck_where_most_points_repeat_earlier_ones(sensors):
 def test_points_of_sensors_without_noise_may_repeat():
     sensors = RangeSensors(False, S)
     assert [sensors.check(0, 0.1 * k, scan(1)) for k in range(20)] == [False] * 20
+
+
+# Silent sensors
+
+
+def add_poses(poses, uav, first, last):
+    for time in np.arange(first, last, 1.0 / S.rate):
+        poses.add_measured(Position(time, uav, np.zeros(3), np.zeros(3)))
+        poses.add_measured(Attitude(time, uav, np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3)))
+
+
+@pytest.mark.parametrize(("elapsed", "silent"), [(-0.1, set()), (0.1, {1})])
+def test_sensor_is_silent_when_poses_come_and_scans_do_not(sensors, elapsed, silent):
+    poses, until = PoseHistory(S), 10.0 + S.silent_after + elapsed
+    for uav in (0, 1):
+        add_poses(poses, uav, 9.0, until)
+    sensors.add_scan(0, until - 0.1)
+    sensors.add_scan(1, 10.0)
+    sensors.update_silent(poses, until)
+    assert sensors.silent == silent
+    assert sensors.valid((0, 1), until) == ((0,) if silent else (0, 1))
+    sensors.add_scan(1, until)
+    sensors.update_silent(poses, until)
+    assert not sensors.silent
+
+
+def test_all_silent_sensors_are_lost_sensing(sensors):
+    poses = PoseHistory(S)
+    for uav in (0, 1):
+        add_poses(poses, uav, 9.0, 12.0)
+        sensors.add_scan(uav, 10.0)
+    sensors.update_silent(poses, 12.0)
+    assert sensors.silent == {0, 1} and not sensors.lost((0, 1), 12.0)
+    sensors.update_silent(poses, 12.0 + S.invalid_after)
+    assert sensors.lost((0, 1), 12.0 + S.invalid_after)
+
+
+def test_vehicle_that_is_not_heard_has_no_silent_sensor(sensors):
+    poses = PoseHistory(S)
+    add_poses(poses, 0, 9.0, 10.2)
+    sensors.add_scan(0, 10.0)
+    add_poses(poses, 0, 15.0, 15.1)  # heard again, its next scan is not there yet
+    sensors.update_silent(poses, 15.1)
+    assert not sensors.silent
+
+
+def test_team_that_has_never_sent_a_scan_has_no_silent_sensors(sensors):
+    poses = PoseHistory(S)
+    add_poses(poses, 0, 9.0, 12.0)
+    add_poses(poses, 1, 9.0, 12.0)
+    sensors.update_silent(poses, 12.0)
+    assert not sensors.silent
+    sensors.add_scan(1, 12.0)  # they have sensors: the other one's is silent
+    sensors.update_silent(poses, 12.0)
+    assert sensors.silent == {0}
+
+
+def test_displaced_sensor_is_not_valid_until_it_is_none(sensors):
+    sensors.set_displaced(2, True, 10.0)
+    sensors.set_displaced(2, True, 10.4)
+    assert sensors.valid(TEAM, 10.0) == (0, 1) and sensors.displaced == {2}
+    assert sensors.lost((2,), 10.0 + S.invalid_after)
+    sensors.set_displaced(2, False, 11.0)
+    assert sensors.valid(TEAM, 11.0) == (0, 1, 2)

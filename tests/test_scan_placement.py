@@ -21,6 +21,7 @@ from idc_controller.perception.scan_placement_kernels import (
     rays_of_returns,
     repeated_returns,
 )
+from idc_controller.perception.settings import ScanSettings
 from idc_controller.rotations import quaternion_from_euler, rotation_from_quaternion
 from vehicle_sim.world.range_sensor import RangeSensor
 from vehicle_sim.world.ray_bodies import RayBodies
@@ -32,6 +33,7 @@ PATTERN = RayPattern(CONFIG.rays, math.radians(CONFIG.elevation_min_deg), math.r
 RAYS = SensorRays(PATTERN, CONFIG.rate, CONFIG.ground_height)
 SENSORS = SensorModel(0.05, 0.02, math.radians(0.2))
 EXACT = SensorModel(0.0, 0.0, 0.0)
+RAY_OFFSET_DURATION = ScanSettings().ray_offset_duration
 HERE = np.array([1.0, -2.0, -6.0])
 TILTED = quaternion_from_euler(0.1, -0.15, 2.0)
 SCENE = [(Wall((0.3, 6.0, 5.0), 0.4), (5.0, -1.0, -3.0)), (Pole(0.2, 12.0), (-2.0, 2.0, -6.0))]
@@ -328,3 +330,25 @@ def test_stuck_sensor_is_invalid():
         scans = placing.scans(time)
         assert bool(scans) == (k == 0)
     assert placing.range_sensors.valid((0,), 3.2) == ()
+
+
+# Displaced returns
+
+
+def test_returns_beside_the_rays_are_placed_without_their_offset_and_their_sensor_is_displaced():
+    placing, offset = placement(), np.array([0.15, -0.1, 0.1])
+    for k in range(8):
+        stamp, time = 1300 + 100 * k, 1.3 + 0.1 * k
+        placing.poses.add_measured(Position(time, 0, HERE, np.zeros(3)))
+        placing.poses.add_measured(Attitude(time, 0, np.array(TILTED), np.zeros(3)))
+        exact = measure(stamp=stamp)
+        placing.add(returns_of(exact + offset, stamp), 0, time, time)
+        placing.end(ScanEnd(stamp, 10.0, True), 0, time, time)
+        [scan] = placing.scans(time)
+        true = HERE + exact @ rotation_from_quaternion(TILTED).T
+        displaced = placing.range_sensors.displaced
+        assert displaced == (frozenset({0}) if 0.1 * k >= RAY_OFFSET_DURATION - 1e-9 else frozenset())
+        np.testing.assert_allclose(
+            np.linalg.norm(scan.returns - true, axis=1), 0.0 if displaced else np.linalg.norm(offset), atol=1e-3
+        )
+    assert placing.range_sensors.valid((0,), 2.0) == ()

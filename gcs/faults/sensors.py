@@ -56,3 +56,8 @@ class PayloadUnitLost(FaultSettings):
 @kind("obstacle_sensing_lost", "sensors")
 class ObstacleSensingLost(FaultSettings):
     """The vehicles no longer detect obstacles."""
+
+    reported: Annotated[
+        bool,
+        parameter("true: the vehicles report that their sensors have failed; false: those fall silent"),
+    ] = True

@@ -27,6 +27,10 @@ class MonitorAlarm(ScopedAlarm):
         "{missed_samples} telemetry periods passed without attitude or position of a vehicle, or without the payload")
     RANGE_SENSOR_FAILED = (Scope.IN_AIR, Severity.WARNING, "check the sensor",
         "a vehicle reports that its range sensor does not work")
+    RANGE_SENSOR_SILENT = (Scope.IN_AIR, Severity.WARNING, "check the sensor",
+        "no scan of a vehicle's range sensor comes, though its poses do")
+    RANGE_SENSOR_DISPLACED = (Scope.IN_AIR, Severity.WARNING, "check the sensor and its mounting",
+        "the points of a vehicle's range sensor are displaced from its rays, all in one direction")
     LINK_LATENCY = (Scope.IN_AIR, Severity.WARNING, "check the MAVLink link for congestion",
         "datagrams usually take more than {latency_periods} control periods one way (`TIMESYNC`)")
     LINK_JITTER = (Scope.IN_AIR, Severity.WARNING, "check the MAVLink link for congestion",
@@ -200,10 +204,18 @@ _OF_FINDING = {
 
 
 def _range_sensors(step: MonitorStep) -> None:
-    """Range sensors that vehicles report as failed."""
+    """Range sensors that vehicles report as failed, and those that are silent or displaced."""
     for i, link in enumerate(step.links):
         if not link.status.obstacle_sensing_valid:
             step.raise_alarm(step.name(i), MonitorAlarm.RANGE_SENSOR_FAILED)
+    if (obstacle_map := step.flight.system.obstacle_map) is None:
+        return
+    sensors = obstacle_map.placement.range_sensors
+    for i in sensors.silent:
+        if step.links[i].status.obstacle_sensing_valid:
+            step.raise_alarm(step.name(i), MonitorAlarm.RANGE_SENSOR_SILENT)
+    for i in sensors.displaced:
+        step.raise_alarm(step.name(i), MonitorAlarm.RANGE_SENSOR_DISPLACED)
 
 
 def _estimator_health(step: MonitorStep) -> None:

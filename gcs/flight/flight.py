@@ -246,7 +246,8 @@ class Flight:
         if in_air:
             self.control.send(record, effective, leaves)
             places = self.control.estimator.measurement_model.vehicles(time, record.decision.flat.x[0])
-            self.system.plan.compare(estimate.time, places.values[:, :3])
+            contradicted = self.control.estimator.health.uav_positions_isolated
+            self.system.plan.compare(estimate.time, places.values[:, :3], contradicted)
         self._advance(time, estimate, share)
         return Setpoints(record.decision.directions, record.decision.thrusts * share), record
 

@@ -39,11 +39,19 @@ class PlanMonitor:
             tilt = math.acos(min(max(1.0 - 2.0 * (x * x + y * y), -1.0), 1.0))
             self._overturned = self._overturned + 1 if tilt > self._settings.tilt_limit else 0
 
-    def compare(self, time: float, places: Array) -> None:
-        """Take the vehicles' ``places`` in the plan (N, 3) (NED, m) at ``time`` (s); once a control step."""
+    def compare(self, time: float, places: Array, contradicted: bool = False) -> None:
+        """Take the vehicles' ``places`` in the plan (N, 3) (NED, m) at ``time`` (s); once a control step.
+
+        ``contradicted``: the vehicles' positions do not follow from their velocities, while the payload's do. They say
+        nothing of the plan then; those of a wreck follow from them.
+        """
         for i, (position, place) in enumerate(zip(self._positions, places, strict=True)):
             self.deviations[i] = math.nan
-            if position is not None and abs(time - position.time) < self._settings.telemetry_timeout:
+            if (
+                position is not None
+                and not contradicted
+                and abs(time - position.time) < self._settings.telemetry_timeout
+            ):
                 moved = (time - position.time) * position.motion if position.has_motion else 0.0
                 self.deviations[i] = np.linalg.norm(position.pose + moved - place)
         known = self.deviations[~np.isnan(self.deviations)]

@@ -94,7 +94,7 @@ class ObstacleMap:
 
     @property
     def sensing_lost(self) -> bool:
-        """Return whether no vehicle has had a valid range sensor for some time."""
+        """Return whether no vehicle has had a valid range sensor for some time, one that is not silent or displaced."""
         return self.placement.range_sensors.lost(self.placement.poses.uavs, self._time)
 
     @property
@@ -172,6 +172,8 @@ class ObstacleMap:
         offsets = self._check.offsets
         # With their offset removed, they are used only if there are no others.
         excluded = frozenset() if self.map_offset_detected else frozenset(offsets)
+        if (displaced := self.placement.range_sensors.displaced) and set(self._valid_uavs()) - excluded:
+            excluded |= displaced
         placed: list[Cluster] = []
         candidates: set[int] = set()
         usable: list[PlacedScan] = []

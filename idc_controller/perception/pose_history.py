@@ -35,6 +35,14 @@ class PoseHistory:
         """Vehicles (0 .. N-1) with a measured position."""
         return tuple(source for source, kind in self._measured if kind is Position)
 
+    def has_since(self, uav: int, time: float, count: int) -> bool:
+        """Return whether the last ``count`` measured positions of a vehicle, or attitudes, are later than ``time`` (s).
+
+        Not more are kept than :attr:`~idc_controller.perception.settings.ScanSettings.poses`.
+        """
+        histories = [self._measured.get((uav, kind), ()) for kind in (Position, Attitude)]
+        return any(len(history) >= count and history[-count].time > time for history in histories)
+
     def position(self, uav: int, time: float, within: float) -> Array | None:
         """Return the last measured position (3,) (NED, m), None if it is not ``within`` that time of ``time`` (s)."""
         history = self._measured.get((uav, Position))

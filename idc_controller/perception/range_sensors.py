@@ -5,6 +5,7 @@ from collections.abc import Iterable, Set
 from dataclasses import dataclass
 
 from idc_controller.arrays import Array
+from idc_controller.perception.pose_history import PoseHistory
 from idc_controller.perception.settings import ScanSettings
 
 _POINT_BYTES = "V24"
@@ -32,11 +33,46 @@ class RangeSensors:
         self._valid: dict[int, float] = {}
         self._invalid: dict[int, float] = {}
         self._failed: dict[int, float] = {}
+        self._heard: dict[int, float] = {}
+        self._silent: dict[int, float] = {}
+        self._displaced: dict[int, float] = {}
         self._points: dict[int, set[bytes]] = {}
 
     def set_failed(self, uavs: Set[int], time: float) -> None:
         """Set the vehicles (0 .. N-1) that report a failure of their sensor."""
         self._failed = {uav: self._failed.get(uav, time) for uav in uavs}
+
+    def set_displaced(self, uav: int, is_displaced: bool, time: float) -> None:
+        """Set whether the returns of a vehicle lie beside the rays of its sensor."""
+        if not is_displaced:
+            self._displaced.pop(uav, None)
+        else:
+            self._displaced.setdefault(uav, time)
+
+    @property
+    def displaced(self) -> frozenset[int]:
+        """Vehicles whose returns lie beside the rays of their sensor."""
+        return frozenset(self._displaced)
+
+    def add_scan(self, uav: int, time: float) -> None:
+        """Note that telemetry of a scan made at ``time`` has come."""
+        self._heard[uav] = max(time, self._heard.get(uav, -math.inf))
+
+    def update_silent(self, poses: PoseHistory, time: float) -> None:
+        """Find the sensors of which nothing comes while poses of their vehicle do; none before the first scan of any.
+
+        Lost telemetry loses both, and a scan's messages are not all lost by chance.
+        """
+        count = self._settings.silent
+        silent = {
+            uav for uav in poses.uavs if self._heard and poses.has_since(uav, self._heard.get(uav, -math.inf), count)
+        }
+        self._silent = {uav: self._silent.get(uav, time) for uav in silent}
+
+    @property
+    def silent(self) -> frozenset[int]:
+        """Vehicles whose sensor sends no scans."""
+        return frozenset(self._silent)
 
     def add_invalid(self, uav: int, time: float) -> None:
         """Note an impossible detection of a vehicle."""
@@ -62,7 +98,8 @@ class RangeSensors:
         s = self._settings
 
         def is_invalid(uav: int) -> bool:
-            if now - self._failed.get(uav, math.inf) >= patience:
+            since = min(of.get(uav, math.inf) for of in (self._failed, self._silent, self._displaced))
+            if now - since >= patience:
                 return True
             invalid = self._invalid.get(uav, -math.inf)
             return now - invalid <= s.recovery and invalid - self._valid.get(uav, -math.inf) > s.invalid_after

@@ -10,6 +10,7 @@ from idc_controller.arrays import Array
 from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.pose_history import PoseHistory
 from idc_controller.perception.range_sensors import RangeSensors, SensorModel
+from idc_controller.perception.ray_offset import RayOffset
 from idc_controller.perception.ray_pattern import RayPattern, scan_index
 from idc_controller.perception.scan_kernels import possible_points
 from idc_controller.perception.scan_placement_kernels import free_ends, placed_returns
@@ -113,12 +114,14 @@ class ScanPlacement:
         self._placed = defaultdict[int, deque[int]](lambda: deque(maxlen=_REMEMBERED))
         """Stamps of the last scans of each vehicle that have been placed or discarded."""
         self._scatter = defaultdict[int, _Scatter](_Scatter)
+        self._offsets = defaultdict[int, RayOffset](lambda: RayOffset(settings))
         self.discarded = 0
         """Returns that were impossible, stuck, too late or too many, or had no pose."""
 
     def add(self, returns: Returns, uav: int, time: float, now: float) -> None:
         """Add returns of UAV ``uav`` (0 .. N-1) of a scan made at ``time``, that came at ``now`` (s)."""
         points = returns.points
+        self.range_sensors.add_scan(uav, time)
         scan = self._scan(uav, returns.stamp, time, now)
         if scan is None:
             self.discarded += len(points)
@@ -152,6 +155,7 @@ class ScanPlacement:
 
     def end(self, end: ScanEnd, uav: int, time: float, now: float) -> None:
         """Add the end of a scan of UAV ``uav`` made at ``time``, that came at ``now`` (s)."""
+        self.range_sensors.add_scan(uav, time)
         scan = self._scan(uav, end.stamp, time, now)
         if scan is not None and end.max_range > 0.0:
             scan.max_range, scan.is_complete = end.max_range, end.is_complete
@@ -174,6 +178,7 @@ class ScanPlacement:
             unusable_attitudes: vehicles whose measured attitude is not.
         """
         s = self._settings
+        self.range_sensors.update_silent(self.poses, now)
         placed: list[PlacedScan] = []
         for uav, scan in [(uav, scan) for uav, scans in self._waiting.items() for scan in scans.values()]:
             if not scan.is_complete and now - scan.since < s.assembly:
@@ -213,6 +218,7 @@ class ScanPlacement:
         along, (anywhere, turning) = self._sensors.range_noise, sigmas
         place = np.concatenate(pose)
         directions = pattern.directions(scan_index(scan.stamp, rate))
+        points = self._corrected(uav, scan.time, points, directions)
         returns, rays, (square, angle) = placed_returns(points, directions, place)
         # Returns lie on the sensor's rays: how far they are off tells of an error that its noise is not.
         off = self._scatter[uav].add(float(square), len(returns))
@@ -222,3 +228,15 @@ class ScanPlacement:
             reach = scan.max_range
             free = free_ends(directions, rays, place, reach, self.free_height(reach, anywhere, turning))
         return PlacedScan(scan.time, place[:3], returns, along, math.hypot(anywhere, off), turning, free, uav)
+
+    def _corrected(self, uav: int, time: float, points: Array, directions: Array) -> Array:
+        """Return a vehicle's returns ``points`` (n, 3) without their offset from the rays in these ``directions``."""
+        if not len(points):
+            return points
+        offset = self._offsets[uav]
+        offset.add(time, points, directions)
+        self.range_sensors.set_displaced(uav, offset.is_detected, time)
+        if not offset.is_detected:
+            return points
+        corrected = points - offset.correction
+        return np.ascontiguousarray(corrected[corrected.any(axis=1)])

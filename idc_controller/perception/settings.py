@@ -24,8 +24,18 @@ class ScanSettings(SampledSettings):
     points_max: int = setting(2000, "", "points of a vehicle that wait at a time", ge=1)
     invalid_after: float = setting(0.5, "s", "of invalid detections until a range sensor counts as lost", ge=0.0)
     recovery: float = setting(1.0, "s", "after the last of them for which it still does", ge=0.0)
+    silent_after: float = setting(1.0, "s", "of poses of a vehicle without a scan until its sensor is silent", gt=0.0)
+    ray_offset_min: float = setting(
+        0.1, "m", "offset of returns from the sensor's rays from which on they are displaced", gt=0.0
+    )
+    ray_offset_false_alarm: float = setting(
+        1e-6, "", "probability that the scatter of returns about the rays looks like an offset", gt=0.0, lt=1.0
+    )
+    ray_offset_duration: float = setting(0.4, "s", "for which an offset from the rays must last", ge=0.0)
     poses = SampleCount("pose_memory")
     """Poses of a vehicle that are kept."""
+    silent = SampleCount("silent_after")
+    """Poses of a vehicle without a scan from which on its sensor is silent."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)

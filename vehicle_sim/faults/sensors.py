@@ -126,7 +126,7 @@ class ObstacleSensingLost(SampleImpairment):
 
     def scan(self, vehicle: int, sample: RangeSample, moment: Moment) -> RangeSample:
         """Return a scan of a failed sensor, of which nothing is sent: without any, the last one would stay in force."""
-        return sample._replace(points=sample.points[:0], works=False)
+        return sample._replace(points=sample.points[:0], works=not self.fault.settings.reported, is_sent=False)
 
 
 SAMPLE_IMPAIRMENTS: dict[type, type[SampleImpairment]] = {

@@ -258,7 +258,7 @@ class Telemetry:
         """Return the last scan with its messages, built once for all peers; a failed sensor makes none."""
         scan = self.scan
         if scan is not self._scan_messages[0]:
-            made = scan is not None and scan.works
+            made = scan is not None and scan.works and scan.is_sent
             returns = self._points(scan) if scan is not None and made and len(scan.points) else ()
             self._scan_messages = scan, returns, (self._sectors(scan),) if scan is not None and made else ()
         return self._scan_messages

@@ -25,7 +25,10 @@ _NO_POSE = np.full(7, math.nan)
 
 
 class RangeSample(NamedTuple):
-    """All returns of one scan at ``time`` (s); the sensor's largest and least distance (m), and whether it works."""
+    """All returns of one scan at ``time`` (s); the sensor's largest and least distance (m).
+
+    And whether the sensor works, as far as the vehicle knows, and has sent the scan.
+    """
 
     time: float
     reach: float
@@ -33,6 +36,7 @@ class RangeSample(NamedTuple):
     """Places in the body frame, forward-right-down (n, 3) (m), in the order of the rays."""
     works: bool = True
     range_min: float = RangeSensorConfig.range_min
+    is_sent: bool = True
 
 
 class RangeSensor:

@@ -59,6 +59,11 @@ class SensorHealth:
         self.adaptation, self.isolation = snapshot.adaptation.copy(), snapshot.isolation.copy()
 
     @property
+    def uav_positions_isolated(self) -> bool:
+        """Return whether the positions of all UAVs are isolated, as they contradict their velocities."""
+        return self.isolated_groups.get(SensorGroup(False, Position), (False, False))[0]
+
+    @property
     def stuck_channels(self) -> list[Channel]:
         """Channels that repeat the same value."""
         return self._stuck.channels()
