@@ -15,7 +15,7 @@ def searches(hold_up, rates, begin=100.0, step=0.05, answer="blocked by it"):
     found = []
     for k, rate in enumerate(rates):
         time = begin + step * k
-        if hold_up.search_is_due(time, rate):
+        if hold_up.search_is_due(time, rate, 0.0):
             hold_up.not_found(time, answer)
             found.append(step * k)
     return found
@@ -38,6 +38,14 @@ def test_mission_is_held_up_below_its_rate(rate, expected):
     assert bool(searches(HoldUp(SETTINGS), [rate] * 40)) is expected
 
 
+def test_detour_is_not_searched_before_the_payload_is_about_to_stop():
+    """Its trajectory begins at rest; the patience has passed meanwhile."""
+    hold_up = HoldUp(SETTINGS)
+    for k in range(100):
+        assert not hold_up.search_is_due(100.0 + 0.05 * k, SLOW, 1.01 * SETTINGS.begin_speed)
+    assert hold_up.search_is_due(105.0, SLOW, 0.99 * SETTINGS.begin_speed)
+
+
 def test_patience_begins_anew_when_the_mission_goes_on():
     just_less = int(0.9 * SETTINGS.patience / 0.05)
     assert searches(HoldUp(SETTINGS), ([SLOW] * just_less + [BETWEEN]) * 20) == []
@@ -53,7 +61,7 @@ def test_mission_is_blocked_once_no_detour_was_found_for_long():
 
 @pytest.mark.parametrize(
     "ends",
-    [HoldUp.clear, HoldUp.found, lambda hold_up: hold_up.search_is_due(105.0, FAST)],
+    [HoldUp.clear, HoldUp.found, lambda hold_up: hold_up.search_is_due(105.0, FAST, 0.0)],
     ids=["clear", "found", "resumed"],
 )
 def test_mission_that_goes_on_is_not_blocked(ends):
@@ -68,7 +76,7 @@ def test_mission_that_goes_on_is_not_blocked(ends):
 def test_mission_that_goes_on_slowly_is_still_blocked():
     hold_up = HoldUp(SETTINGS)
     hold_up.not_found(100.0, "blocked by a wall")
-    assert not hold_up.search_is_due(105.0, BETWEEN)
+    assert not hold_up.search_is_due(105.0, BETWEEN, 0.0)
     assert hold_up.blocked(100.0 + 1.01 * SETTINGS.give_up) == "blocked by a wall"
 
 

@@ -78,6 +78,16 @@ def test_detour_is_searched_only_after_patience_has_elapsed(navigator):
     assert navigator.detours == 1
 
 
+def test_detour_begins_only_where_the_payload_is_about_to_stop(navigator):
+    mission = moving = straight(18.0)
+    for time in 8.0 + 0.05 * np.arange(40):
+        assert np.linalg.norm(moving.derivatives(np.array([time]), 1)[1, 0]) > navigator.settings.begin_speed
+        navigator.watch(time, 8.0, 0.3, mission, moving)
+    assert navigator.detours == 0
+    held_up(navigator, [ACROSS], 0.05, begin=10.0)
+    assert navigator.detours == 1
+
+
 @pytest.mark.parametrize("obstacles", [[ACROSS], [pole("p", 10.0, 0.0)], [pole("a", 10.0, -1.0), pole("b", 10.0, 1.0)]])
 def test_detour_keeps_margin_and_returns_to_mission(navigator, obstacles):
     mission = straight(18.0)

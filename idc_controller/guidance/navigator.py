@@ -5,6 +5,7 @@ the obstacle, safe but held up. Then a detour is searched on the present map and
 again behind the obstacle. Where there is no detour the reason is kept: the flight ends for it.
 """
 
+import math
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -52,8 +53,11 @@ class HoldUp:
         if self._blocked_since is None:
             self._blocked_since = time
 
-    def search_is_due(self, time: float, rate: float) -> bool:
-        """Return whether a detour is to be searched at ``time`` (s), by the progress ``rate``."""
+    def search_is_due(self, time: float, rate: float, speed: float) -> bool:
+        """Return whether a detour is to be searched at ``time`` (s), by progress ``rate`` and ``speed`` (m/s).
+
+        A detour begins at rest: not before the payload is about to stop.
+        """
         s = self._settings
         if rate >= s.held_up_rate:
             self._since = None
@@ -62,7 +66,7 @@ class HoldUp:
             return False
         if self._since is None:
             self._since = time
-        if time - self._since < s.patience or time - self._last_search < self._interval:
+        if time - self._since < s.patience or time - self._last_search < self._interval or speed > s.begin_speed:
             return False
         self._last_search = time
         # A search that found nothing is repeated ever more rarely: the map must change first.
@@ -134,9 +138,9 @@ class Navigator:
             mission: what the detour leads back to.
             tracked: the trajectory that is tracked now; the detour begins on it.
         """
-        if not self.hold_up.search_is_due(time, rate):
+        position, velocity = tracked.derivatives(np.array([time]), 1)[:, 0]
+        if not self.hold_up.search_is_due(time, rate, math.hypot(*velocity)):
             return progress
-        position = tracked.derivatives(np.array([time]), 0)[0, 0]
         obstacles = list(self.obstacles.predict(time + self._stages))
         found = self._search(self.mission_progress(progress), mission, position, obstacles)
         if isinstance(found, _NoPath):

@@ -66,6 +66,9 @@ class NavigatorSettings(SettingsTable):
     link_tilt: float = setting(0.08726646259971647, "rad", "link tilt for which a detour leaves clearance", ge=0.0)
     held_up_rate: float = setting(0.5, "", "progress rate below which the mission is held up", gt=0.0, lt=1.0)
     patience: float = setting(0.5, "s", "how long it may be held up before a detour is searched", ge=0.0)
+    begin_speed: float = setting(
+        0.5, "m/s", "of the payload, up to which a detour may begin: it begins at rest", gt=0.0
+    )
     search_interval: float = setting(1.0, "s", "between searches, at first", gt=0.0)
     search_interval_max: float = setting(8.0, "s", "between searches that find nothing, at most", gt=0.0)
     give_up: float = setting(15.0, "s", "held up for so long without a detour, the mission counts as blocked", gt=0.0)
