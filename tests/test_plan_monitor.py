@@ -34,7 +34,7 @@ def test_off_plan_if_half_of_the_vehicles_are(far, wreck):
 
 
 def test_off_plan_only_after_its_time_without_a_break():
-    monitor, far = PlanMonitor(4), [np.array([3.0, 0.0, 0.0])] * 4
+    monitor, far = PlanMonitor(4), [np.array([2.0 * SETTINGS.deviation_limit, 0.0, 0.0])] * 4
     report(monitor, 0.0, far)
     assert not monitor.is_off(0.5 * SETTINGS.deviation_time)
     report(monitor, 0.1, [np.zeros(3)] * 4)
@@ -45,7 +45,7 @@ def test_off_plan_only_after_its_time_without_a_break():
 
 def test_positions_that_contradict_their_velocities_say_nothing_of_the_plan():
     monitor = PlanMonitor(4)
-    report(monitor, 0.0, [np.array([3.0, 0.0, 0.0])] * 4)
+    report(monitor, 0.0, [np.array([2.0 * SETTINGS.deviation_limit, 0.0, 0.0])] * 4)
     monitor.compare(0.05, PLACES, contradicted=True)
     assert np.isnan(monitor.deviations).all()
     assert not monitor.is_off(9.0)

@@ -25,7 +25,10 @@ class FailsafeSettings(SettingsTable):
         math.radians(45.0), "rad", "payload tilt at which control is lost, or it is overturned by its own unit", gt=0.0
     )
     deviation_limit: float = setting(
-        1.5, "m", "of half of the vehicles from their places in the plan, by their own positions", gt=0.0
+        3.5,
+        "m",
+        "of half of the vehicles from their places in the plan: wind of 4 m/s at lift-off displaces by up to 2.4 m",
+        gt=0.0,
     )
     deviation_time: float = setting(0.2, "s", "for which they must be that far off", ge=0.0)
     confirming_deviation: float = setting(
