@@ -36,7 +36,7 @@ CONFIG = read_system()
         ("rate = 10 ", "rate = 100 ", "range_sensor.rate: 100 Hz is faster than telemetry"),
         ("noise = 0.05 ", "noise = -0.1 ", "range_sensor.noise: "),
         ("noise = 0.05 ", "nose = 0.05 ", "range_sensor.nose: unknown key"),
-        ("rays = 500 ", "rays = 0 ", "range_sensor.rays: "),
+        ("rays = 2000 ", "rays = 0 ", "range_sensor.rays: "),
         ("missed_share = 0.02 ", "missed_share = 1.0 ", "range_sensor.missed_share: "),
         ("elevation_min_deg = -70.0 ", "elevation_min_deg = -91.0 ", "range_sensor.elevation_min_deg: "),
         (

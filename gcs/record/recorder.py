@@ -18,6 +18,7 @@ from gcs.record.tables import (
     OBSTACLE_ESTIMATE_COLUMNS,
     PLAN_COLUMNS,
     REFERENCE_COLUMNS,
+    STANDING_OBSTACLE_COLUMNS,
     STEP_COLUMNS,
     STEP_PART_COLUMNS,
     TableWriter,
@@ -29,12 +30,16 @@ if TYPE_CHECKING:
     from gcs.flight.alarms import Alarm
     from gcs.flight.control_loop import StepRecord
     from gcs.flight.flight import Flight
+    from idc_controller.arrays import Array
     from idc_controller.control.controller import Decision
+    from idc_controller.geometry.shape import Shape
     from idc_controller.perception.obstacle_map import ObstacleMap
 
 REFERENCE_INTERVAL = 0.02  # s, the grid of truth.csv
 OBSTACLE_INTERVAL = 0.1  # s
 _GRID_TOLERANCE = 1e-6
+_NOTHING = (0.0,) * 7
+"""Columns of a piece that is no more."""
 
 
 class FlightRecorder:
@@ -49,6 +54,8 @@ class FlightRecorder:
         self._alarms = TableWriter(run_dir / ALARMS, ALARM_COLUMNS)
         self._run_dir = run_dir
         self._obstacles: TableWriter | None = None
+        self._standing: TableWriter | None = None
+        self._pieces: dict[str, tuple[Shape, Array]] = {}
         self._next_obstacles = -math.inf
         self._plan = TableWriter(run_dir / "plan.csv", PLAN_COLUMNS)
         self._next_row: int | None = None
@@ -97,7 +104,7 @@ class FlightRecorder:
         )  # fmt: skip
 
     def obstacles(self, obstacle_map: ObstacleMap, time: float) -> None:
-        """Record the tracked obstacles at team ``time`` (s); ten times a second, once there are any."""
+        """Record tracked obstacles and changes of the standing ones at team ``time`` (s), ten times a second."""
         if time < self._next_obstacles - _GRID_TOLERANCE:
             return
         self._next_obstacles = (math.floor(time / OBSTACLE_INTERVAL + _GRID_TOLERANCE) + 1) * OBSTACLE_INTERVAL
@@ -109,6 +116,23 @@ class FlightRecorder:
                 [round(time, 6), track.name, shape.kind, *track.position.tolist(), *track.velocity.tolist(),
                  columns.radius, *columns.size, columns.yaw, track.growth]
             )  # fmt: skip
+
+        self._record_standing(obstacle_map.seen.pieces, time)
+
+    def _record_standing(self, pieces: Sequence[tuple[str, Shape, Array]], time: float) -> None:
+        """Record which pieces are new, have changed or are no more since the last time."""
+        before, self._pieces = self._pieces, {name: (shape, centre) for name, shape, centre in pieces}
+        gone = [(name, *_NOTHING) for name in before if name not in self._pieces]
+        changed = [
+            (name, *centre.tolist(), *shape.columns.size, shape.columns.yaw)
+            for name, shape, centre in pieces
+            if name not in before or before[name][0] is not shape
+        ]
+        if (gone or changed) and self._standing is None:
+            self._standing = TableWriter(self._run_dir / "obstacles_standing.csv", STANDING_OBSTACLE_COLUMNS)
+        for row in (*gone, *changed):
+            assert self._standing is not None
+            self._standing.write([round(time, 6), *row])
 
     def alarm(self, alarm: Alarm) -> None:
         """Record a new alarm."""
@@ -130,7 +154,15 @@ class FlightRecorder:
 
     def close(self) -> None:
         """Close all files; harmless when they are closed."""
-        tables = (self._reference, self._estimate, self._steps, self._alarms, self._plan, self._obstacles)
+        tables = (
+            self._reference,
+            self._estimate,
+            self._steps,
+            self._alarms,
+            self._plan,
+            self._obstacles,
+            self._standing,
+        )
         for file in (self._tlog, *tables):
             if file is not None:
                 file.close()

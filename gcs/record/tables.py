@@ -44,6 +44,10 @@ OBSTACLE_ESTIMATE_COLUMNS = (
     "time_s", "name", "kind", "x_m", "y_m", "z_m", "vx_mps", "vy_mps", "vz_mps", "radius_m",
     "size_x_m", "size_y_m", "size_z_m", "yaw_rad", "growth_m",
 )  # fmt: skip
+# What the vehicles' sensors have seen to stand: the boxes that cover it; a row when one is new, changes, or is no more.
+STANDING_OBSTACLE_COLUMNS = (
+    "time_s", "name", "x_m", "y_m", "z_m", "size_x_m", "size_y_m", "size_z_m", "yaw_rad",
+)  # fmt: skip
 # What each vehicle flew from when on, as it stood on board, and whether against the ground's intention.
 MODE_COLUMNS = ("time_s", "vehicle", "mode", "armed", "failsafe")
 
