@@ -24,7 +24,8 @@ def detector_of(motion, until, seed=1):
         detector.add_innovation(imm.update(motion(imm.time) + SIGMA * rng.standard_normal(3), VARIANCE))
         detector.compare(*imm.state[:2])
         if detector.is_settled:
-            detector.add_prediction(imm.predict(np.array([imm.time + SETTINGS.horizon]))[0][0])
+            mean, covariance = imm.predict(np.array([imm.time + SETTINGS.horizon]))
+            detector.add_prediction(mean[0], np.sqrt(np.trace(covariance[0])))
     return detector
 
 
@@ -71,7 +72,7 @@ def test_detector_finds_prediction_error_of_obstacle_that_stops_and_starts_again
 def test_prediction_error_decays():
     detector = ManoeuvreDetector(0.0, SETTINGS)
     detector.advance(4.0)
-    detector.add_prediction(np.zeros(3))
+    detector.add_prediction(np.zeros(3), 0.1)
     detector.advance(5.0)
     detector.compare(np.array([0.65, 0.0, 0.0]), np.zeros(3))
     assert detector.prediction_error == pytest.approx(0.5)
@@ -80,10 +81,20 @@ def test_prediction_error_decays():
     assert detector.prediction_error == pytest.approx(0.5 / np.e)
 
 
+@pytest.mark.parametrize(("expected", "counted"), [(0.7, 0.0), (0.6, 0.5)])
+def test_error_that_a_prediction_expects_of_itself_is_no_manoeuvre(expected, counted):
+    detector = ManoeuvreDetector(0.0, SETTINGS)
+    detector.advance(4.0)
+    detector.add_prediction(np.zeros(3), expected)
+    detector.advance(5.0)
+    detector.compare(np.array([0.65, 0.0, 0.0]), np.zeros(3))
+    assert detector.prediction_error == pytest.approx(counted)
+
+
 def test_prediction_between_frames_is_compared_at_its_time():
     detector = ManoeuvreDetector(0.0, SETTINGS)
     detector.advance(4.0)
-    detector.add_prediction(np.array([1.0, 0.0, 0.0]))
+    detector.add_prediction(np.array([1.0, 0.0, 0.0]), 0.1)
     detector.advance(5.04)
     detector.compare(np.array([1.04, 0.0, 0.0]), np.array([1.0, 0.0, 0.0]))
     assert detector.prediction_error == 0.0

@@ -1,5 +1,6 @@
 """Shape and motion of one obstacle from the points of four UAVs' sensors, against the truth."""
 
+import math
 from dataclasses import replace
 from functools import partial
 
@@ -184,7 +185,8 @@ def test_filter_tracks_moving_sphere(name, record_property):
     assert np.mean(rows[:, 2] < 2.5 * rows[:, 4]) > 0.85
     assert np.mean(rows[:, 0] < rows[:, 3]) > 0.95
     # Beyond its usual limit it grows only after a prediction error: the obstacle stopped, and started again.
-    assert rows[:, 4].max() <= (0.6 if limit is not None else 1.5)
+    # What was seen of it outside of its shape, by noise for the most part, adds.
+    assert rows[:, 4].max() <= math.hypot(0.6 if limit is not None else 1.5, 0.2)
     if name == "stop and go":
         assert rows[:, 4].max() > 0.7
 

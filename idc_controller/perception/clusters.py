@@ -12,6 +12,7 @@ import numpy as np
 from idc_controller.arrays import Array, Indices, Mask
 from idc_controller.perception.cluster_kernels import bounded_clusters, connected
 from idc_controller.perception.placed_scan import PlacedScan
+from idc_controller.perception.ray_pattern import RayPattern
 from idc_controller.perception.surfaces.points import SurfacePoints
 
 _GAP_MIN = 0.6
@@ -57,15 +58,17 @@ class Cluster(NamedTuple):
 class Segmentation:
     """Numbers clusters: no two of them have the same number."""
 
-    def __init__(self, spacing: float, cut_range: float, size: float) -> None:
+    def __init__(self, pattern: RayPattern, cut_range: float, size: float) -> None:
         """Set what counts.
 
         Args:
-            spacing: angle between rays (rad).
+            pattern: of the rays.
             cut_range: returns beyond are at the end of the range (m).
             size: horizontal extent up to which a cluster is small (m).
         """
-        self._spacing, self._cut_range, self._size = spacing, cut_range, size
+        self._spacing, self._cut_range, self._size = pattern.spacing, cut_range, size
+        # Beyond the last rays, more of a body may lie out of view.
+        self._elevations = pattern.elevation_min + pattern.spacing, pattern.elevation_max - pattern.spacing
         self._numbers = count()
 
     def candidates(
@@ -114,8 +117,11 @@ class Segmentation:
         labels = connected(points * _COMPRESSION, gap)
         order = np.argsort(labels, kind="stable")
         points, distance = points[order], distance[order]
+        lowest, highest = np.sin(self._elevations)
+        height = (points - scan.origin) @ scan.up
+        cut = (distance > self._cut_range) | (height < lowest * distance) | (height > highest * distance)
         surface = SurfacePoints(
-            scan.time, points, np.tile(scan.origin, (len(points), 1)), distance > self._cut_range, scan.range_sigma,
+            scan.time, points, np.tile(scan.origin, (len(points), 1)), cut, scan.range_sigma,
             scan.position_sigma**2 + (scan.attitude_sigma * distance) ** 2,
         )  # fmt: skip
         ends = np.cumsum(np.bincount(labels, minlength=1)).tolist()

@@ -22,9 +22,9 @@ class ManoeuvreDetector:
         self._mean_square = 0.5
         self.model_mismatch = 0.0
         """Recent mismatch of the motion models, 0 to 1."""
-        self._predictions: deque[tuple[float, Array]] = deque()
+        self._predictions: deque[tuple[float, Array, float]] = deque()
         self.prediction_error = 0.0
-        """Recent excess of the error of predictions over ``horizon`` (m)."""
+        """Recent excess of the error of predictions over ``horizon``, of those that did not expect it (m)."""
 
     @property
     def is_settled(self) -> bool:
@@ -45,17 +45,21 @@ class ManoeuvreDetector:
         mismatch = (self._mean_square - s.mismatch_begin) / (s.mismatch_full - s.mismatch_begin)
         self.model_mismatch = max(self.model_mismatch, min(mismatch, 1.0))
 
-    def add_prediction(self, position: Array) -> None:
-        """Take the prediction that it is at ``position`` (3,) (NED, m) after ``horizon``."""
-        self._predictions.append((self._time + self._settings.horizon, position))
+    def add_prediction(self, position: Array, error: float) -> None:
+        """Take the prediction that it is at ``position`` (3,) (NED, m) after ``horizon``, and its expected error (m).
+
+        What a prediction says of its own error is no manoeuvre: at first, most of all, velocities are hardly known.
+        """
+        self._predictions.append((self._time + self._settings.horizon, position, error))
 
     def compare(self, position: Array, velocity: Array) -> None:
         """Compare the predictions for about now with ``position`` (3,) (NED, m) and ``velocity`` (3,) (m/s)."""
         s = self._settings
         while self._predictions and self._predictions[0][0] <= self._time + s.frame:
-            time, predicted = self._predictions.popleft()
+            time, predicted, expected = self._predictions.popleft()
             error = float(np.linalg.norm(position + velocity * (time - self._time) - predicted))
-            self.prediction_error = max(self.prediction_error, error - s.usual_error)
+            if error > expected:
+                self.prediction_error = max(self.prediction_error, error - s.usual_error)
 
     def variance(self, elapsed: Array) -> Array:
         """Return the variance (m2) on any axis after the times ``elapsed`` (K,) (s), beside the motion models'."""

@@ -1,5 +1,6 @@
 """Shape, size, place and motion of one obstacle from its surface points."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -8,10 +9,10 @@ from scipy.special import ndtri
 from idc_controller.arrays import Array
 from idc_controller.estimation.health.chi_squared import length_quantile, upper_quantile
 from idc_controller.geometry.box import Wall
-from idc_controller.geometry.obstacles import Bodies
 from idc_controller.geometry.shape import Shape
 from idc_controller.perception.manoeuvre import ManoeuvreDetector
 from idc_controller.perception.motion_imm import MotionImm, MotionModels
+from idc_controller.perception.seen_points import SeenPoints
 from idc_controller.perception.settings import ObstacleFilterSettings, SurfaceSettings
 from idc_controller.perception.surfaces.flat import FlatSurface
 from idc_controller.perception.surfaces.known import KnownSurface
@@ -50,8 +51,9 @@ class ObstacleFilter:
         self._known = known
         self._scores: dict[str, float] = {}
         self._scatter = scatter
+        self._seen = SeenPoints(self.settings.seen_memory)
         self._uncovered = 0.0
-        """Distance of points outside of the fitted shape, which is then not the obstacle's (m)."""
+        """Distance of the outermost of these outside of the fitted shape, which is then not the obstacle's (m)."""
         self._surface = surface_of(known.kind if known else "sphere", known, self.settings.surfaces)
         if known is None and scatter == 0.0 and len(first.points) >= self.settings.points_min:
             # Before the kind is chosen: with much scatter a wall would fit anything.
@@ -65,6 +67,7 @@ class ObstacleFilter:
         if known is None:
             self._scores["sphere"] = fit.score
             self._consider_kinds(first, fit)
+            self._remember(first)
 
     @property
     def time(self) -> float:
@@ -134,40 +137,43 @@ class ObstacleFilter:
         self._manoeuvre.add_innovation(imm.update(fit.position, fit.variance))
         self._compare_predictions()
         self.frames += 1
-        if self._known is None and len(points.points) >= self.settings.points_min:
+        if self._known is not None:
+            return
+        if len(points.points) >= s.points_min:
             self._note(self.kind, fit.score)
-            self._learn_uncovered(points, fit)
             if self.frames <= s.every_frame_until or self.frames % s.every_frames == 0 or fit.score > s.retry_score:
                 self._consider_kinds(points, fit)
             elif self._scatter > 0.0:
                 self._learn_scatter(fit.unexplained)
+        self._remember(points)
 
-    def _learn_uncovered(self, points: SurfacePoints, fit: Fit) -> None:
-        """Follow how far the outermost points of a frame lie outside of the fitted shape, beyond their noise."""
-        distance = Bodies([self.shape]).distance(points.points, (fit.position + self._surface.offset)[None])[0]
-        noise = np.sqrt(points.noise**2 + float(points.pose_variance.mean()) + points.scatter)
-        outside = max(float(distance.max()) - self.settings.outermost_sigmas * noise, 0.0)
-        self._uncovered += self.settings.uncovered_smoothing * (outside - self._uncovered)
+    def _remember(self, points: SurfacePoints) -> None:
+        """Remember the points of a frame, and how far the outermost of the last ones lies outside, beyond their noise.
+
+        The body is never less than what was seen of it, however well the shape fits each frame.
+        """
+        noise = np.sqrt(points.noise**2 + points.pose_variance + points.scatter)
+        self._seen.add(points.time, points.points - self._imm.state[0], self.settings.outermost_sigmas * noise)
+        self._uncovered = self._seen.outermost(self.shape, self._surface.offset, self.settings.false_share)
 
     def _compare_predictions(self) -> None:
         """Compare an earlier prediction with the state now, and predict anew."""
         position, velocity, _ = self._imm.state
         self._manoeuvre.compare(position, velocity)
         if self._manoeuvre.is_settled:
-            mean, _ = self._imm.predict(np.array([self._imm.time + self.settings.manoeuvre.horizon]))
-            self._manoeuvre.add_prediction(mean[0])
+            mean, covariance = self._imm.predict(np.array([self._imm.time + self.settings.manoeuvre.horizon]))
+            self._manoeuvre.add_prediction(mean[0], math.sqrt(float(np.trace(covariance[0]))))
 
     def predict(self, times: Array) -> tuple[Array, Array]:
         """Return the predicted centre (K, 3) (NED, m) at ``times`` (K,) (s), and the growth of the body (K,) (m)."""
         mean, covariance = self._imm.predict(times)
         unmodelled = self._manoeuvre.variance(np.maximum(np.asarray(times) - self._imm.time, 0.0))
         position = length_quantile(self.settings.outside_share, covariance + unmodelled[:, None, None] * np.eye(3))
-        extent = self._outside_sigmas**2 * (self._surface.size_sigma**2 + self._scatter)
+        # Centre and size are of the same points: their errors may add.
+        extent = self._outside_sigmas * np.hypot(self._surface.size_sigma, np.sqrt(self._scatter))
         # Where points scatter, its motion is estimated late.
         limit = self._manoeuvre.growth_limit(np.sqrt(self._scatter))
-        growth = np.minimum(np.sqrt(position**2 + extent), limit)
-        if self._uncovered > self.settings.uncovered_min:
-            growth = growth + self._uncovered
+        growth = np.hypot(np.minimum(position + extent, limit), self._uncovered)
         return mean + self._surface.offset, growth
 
     def _note(self, kind: str, score: float) -> None:
@@ -198,6 +204,7 @@ class ObstacleFilter:
             old = self._imm.state[0]
             self._surface, place = tried[best]
             self._imm.shift(place - old)
+            self._seen.shift(old - place)
 
     def _learn_scatter(self, unexplained: float, share: float | None = None) -> None:
         """Learn from points that lie on no shape that the sensors are worse than specified."""

@@ -62,7 +62,7 @@ class ObstacleMap:
         self.placement = ScanPlacement(sensors, rays, s.scans)
         """Takes scans, poses and failures of the range sensors from telemetry."""
         self._segmentation = Segmentation(
-            rays.pattern.spacing,
+            rays.pattern,
             sensor_range - s.scans.cut_sigmas * sensors.range_noise,
             2.0 * s.tracking.surfaces.radius_max,
         )

@@ -11,6 +11,10 @@ def _none() -> Array:
     return np.empty((0, 3))
 
 
+def _up() -> Array:
+    return np.array([0.0, 0.0, -1.0])
+
+
 @dataclass(frozen=True, eq=False)
 class PlacedScan:
     """Returns and rays without return of one scan. SI units, NED; times are the team's (s).
@@ -39,3 +43,5 @@ class PlacedScan:
     """
     uav: int = 0
     """The vehicle (0 .. N-1)."""
+    up: Array = field(default_factory=_up)
+    """Upward axis of its body frame (3,)."""

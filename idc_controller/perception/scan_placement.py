@@ -15,6 +15,7 @@ from idc_controller.perception.ray_pattern import RayPattern, scan_index
 from idc_controller.perception.scan_kernels import possible_points
 from idc_controller.perception.scan_placement_kernels import free_ends, placed_returns
 from idc_controller.perception.settings import ScanSettings
+from idc_controller.rotations import rotation_from_quaternion
 
 _OFF_RAY = 0.25
 """Share of the mean angle between rays by which a return may lie off the next one, to be that ray's surely."""
@@ -227,7 +228,8 @@ class ScanPlacement:
         if is_sure and scan.max_range is not None:
             reach = scan.max_range
             free = free_ends(directions, rays, place, reach, self.free_height(reach, anywhere, turning))
-        return PlacedScan(scan.time, place[:3], returns, along, math.hypot(anywhere, off), turning, free, uav)
+        up = -rotation_from_quaternion(pose[1])[:, 2]
+        return PlacedScan(scan.time, place[:3], returns, along, math.hypot(anywhere, off), turning, free, uav, up)
 
     def _corrected(self, uav: int, time: float, points: Array, directions: Array) -> Array:
         """Return a vehicle's returns ``points`` (n, 3) without their offset from the rays in these ``directions``."""
