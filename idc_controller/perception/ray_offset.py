@@ -5,6 +5,7 @@ it is not, and no comparison with other vehicles is needed to know it, nor a map
 """
 
 import math
+from collections import deque
 
 import numpy as np
 from scipy.special import fdtri
@@ -18,9 +19,13 @@ _MEMORY = 0.8
 _ROUNDING = 2e-3
 """Distances from the rays (m) that telemetry's rounding explains, with much to spare."""
 _FIT = 0.02
-"""Scatter about the corrected rays (m) up to which an offset explains where the returns are."""
-_SEARCHED, _FEWEST, _ITERATIONS = 1.5, 8, 4
-"""Offsets that are searched (m); returns that a search takes; fits of each candidate."""
+"""Scatter about the corrected rays (m) up to which a constant offset explains where the returns are."""
+_SEARCHED, _ITERATIONS = 1.5, 4
+"""Offsets that are searched (m); fits of each candidate."""
+_SCANS, _FEWEST, _MOST = 10, 8, 48
+"""Last scans whose returns are searched; least and largest number of those."""
+_CHANCE = 0.1
+"""Share of the distance between rays up to which the scatter is not that of points anywhere between them."""
 _FREEDOM = 3
 
 
@@ -34,6 +39,8 @@ class RayOffset:
 
     def __init__(self, settings: ScanSettings) -> None:
         self._settings = settings
+        self._recent = deque[tuple[Array, Array]](maxlen=_SCANS)
+        """Returns and rays of the last scans that have some."""
         self._clear()
         self._mean, self._scatter = np.zeros(3), 0.0
         self._since = self._agreeing_since = math.inf
@@ -43,7 +50,8 @@ class RayOffset:
     @property
     def correction(self) -> Array:
         """Detected offset (3,) (m); 0 if there is none, or none that explains where the returns are."""
-        return self._mean if self.is_detected and self._fits else np.zeros(3)
+        explains = self._scatter < self._settings.ray_offset_min**2
+        return self._mean if self.is_detected and explains else np.zeros(3)
 
     def add(self, time: float, points: Array, directions: Array) -> None:
         """Take the returns of a scan.
@@ -61,10 +69,12 @@ class RayOffset:
         is_tracked = math.isfinite(self._since)
         if not is_tracked and mean_square < _ROUNDING**2:
             self._clear()
+            self._recent.clear()
             return
-        if not is_near and not (is_tracked and self._fits) and len(points) >= _FEWEST and time >= self._search_from:
+        self._recent.append((points, directions))
+        if not is_near and not (is_tracked and self._fits) and time >= self._search_from:
             self._search_from = time + s.recovery
-            found = self._searched(points, directions)
+            found = self._searched()
             if found is not None:
                 self._clear()
                 self._mean, self._since, is_tracked = found, min(self._since, time), True
@@ -107,23 +117,34 @@ class RayOffset:
         elif not self.is_detected:
             self._since = math.inf
 
-    def _searched(self, points: Array, directions: Array) -> Array | None:
-        """Return the offset (3,) that brings points (n, 3) onto rays in these ``directions`` (m, 3); None: none does.
+    def _searched(self) -> Array | None:
+        """Return the offset (3,) that brings the last scans' returns onto their rays; None: none does.
 
-        Candidates are those that bring the nearest point onto a ray: there they are closest to each other. What lies
+        Candidates are those that bring the nearest return onto a ray: there they are closest to each other. What lies
         beside it is fitted first: of that, it does not matter how far the offset is along the rays.
         """
-        first = points[int(np.argmin(np.linalg.norm(points, axis=1)))]
-        points = np.ascontiguousarray(points[np.argsort(np.linalg.norm(points - first, axis=1))])
-        along = directions @ first
-        offsets = first - along[along > 0.0, None] * directions[along > 0.0]
+        points = np.concatenate([points for points, _ in self._recent])
+        first = int(np.argmin(np.linalg.norm(points, axis=1)))
+        order = np.argsort(np.linalg.norm(points - points[first], axis=1))[:_MOST]
+        scans = np.repeat(np.arange(len(self._recent)), [len(points) for points, _ in self._recent])[order]
+        points, directions = points[order], np.array([directions for _, directions in self._recent])[scans]
+        if len(points) < _FEWEST:
+            return None
+        rays = directions[0]
+        height = float(rays[0, 2] - rays[-1, 2])
+        apart = math.sqrt(math.tau * height / len(rays)) * float(np.linalg.norm(points[0]))
+        limit = min(_FIT, _CHANCE * apart) ** 2
+        along = rays @ points[0]
+        offsets = points[0] - along[along > 0.0, None] * rays[along > 0.0]
         for candidate in offsets[np.linalg.norm(offsets, axis=1) < _SEARCHED]:
             mean, count, scatter = candidate, _FEWEST, 0.0
-            while scatter < _FIT**2:
+            while scatter < limit:
+                near, around = points[:count], directions[:count]
                 for _ in range(_ITERATIONS):
-                    rays = directions[rays_of_returns(points[:count] - mean, directions)[0]]
-                    mean, scatter = _fit(*_sums(points[:count], rays), 2.0 * min(count, len(points)) - _FREEDOM)
-                if scatter < _FIT**2 and count >= len(points):
+                    nearest = np.einsum("nrk,nk->nr", around, near - mean).argmax(axis=1)
+                    sums = _sums(near, around[np.arange(len(near)), nearest])
+                    mean, scatter = _fit(*sums, 2.0 * len(near) - _FREEDOM)
+                if scatter < limit and count >= len(points):
                     return np.asarray(mean)
                 count *= 2
         return None
