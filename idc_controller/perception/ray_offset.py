@@ -20,6 +20,8 @@ _ROUNDING = 2e-3
 """Distances from the rays (m) that telemetry's rounding explains, with much to spare."""
 _FIT = 0.02
 """Scatter about the corrected rays (m) up to which a constant offset explains where the returns are."""
+_DRIFT = 0.07
+"""The same of one that drifts by 0.1 m/s on every axis, over the memory."""
 _SEARCHED, _ITERATIONS = 1.5, 4
 """Offsets that are searched (m); fits of each candidate."""
 _SCANS, _FEWEST, _MOST = 10, 8, 48
@@ -50,8 +52,7 @@ class RayOffset:
     @property
     def correction(self) -> Array:
         """Detected offset (3,) (m); 0 if there is none, or none that explains where the returns are."""
-        explains = self._scatter < self._settings.ray_offset_min**2
-        return self._mean if self.is_detected and explains else np.zeros(3)
+        return self._mean if self.is_detected and self._explains else np.zeros(3)
 
     def add(self, time: float, points: Array, directions: Array) -> None:
         """Take the returns of a scan.
@@ -72,10 +73,10 @@ class RayOffset:
             self._recent.clear()
             return
         self._recent.append((points, directions))
-        if not is_near and not (is_tracked and self._fits) and time >= self._search_from:
+        if not is_near and not (is_tracked and self._explains) and time >= self._search_from:
             self._search_from = time + s.recovery
             found = self._searched()
-            if found is not None:
+            if found is not None and float(np.linalg.norm(found)) > s.ray_offset_min:
                 self._clear()
                 self._mean, self._since, is_tracked = found, min(self._since, time), True
         if is_tracked:
@@ -88,8 +89,8 @@ class RayOffset:
             self._clear()
 
     @property
-    def _fits(self) -> bool:
-        return self._scatter < _FIT**2
+    def _explains(self) -> bool:
+        return self._scatter < _DRIFT**2
 
     def _clear(self) -> None:
         self._information, self._vector = np.zeros((3, 3)), np.zeros(3)
@@ -118,7 +119,7 @@ class RayOffset:
             self._since = math.inf
 
     def _searched(self) -> Array | None:
-        """Return the offset (3,) that brings the last scans' returns onto their rays; None: none does.
+        """Return an offset (3,) that brings the last scans' returns onto their rays, a small one; None: none does.
 
         Candidates are those that bring the nearest return onto a ray: there they are closest to each other. What lies
         beside it is fitted first: of that, it does not matter how far the offset is along the rays.
@@ -136,7 +137,8 @@ class RayOffset:
         limit = min(_FIT, _CHANCE * apart) ** 2
         along = rays @ points[0]
         offsets = points[0] - along[along > 0.0, None] * rays[along > 0.0]
-        for candidate in offsets[np.linalg.norm(offsets, axis=1) < _SEARCHED]:
+        sizes = np.linalg.norm(offsets, axis=1)
+        for candidate in offsets[np.argsort(sizes)][: np.count_nonzero(sizes < _SEARCHED)]:
             mean, count, scatter = candidate, _FEWEST, 0.0
             while scatter < limit:
                 near, around = points[:count], directions[:count]
