@@ -83,11 +83,23 @@ def test_motion_that_was_not_measured_is_the_estimated_one():
     assert yaw_of(quaternion) == pytest.approx(0.35, abs=1e-4)
 
 
-def test_last_position_counts_within_its_time_and_the_payload_and_motions_alone_do_not():
-    poses = history(place(10.0), place(10.5, at=(4.0, 5.0, -6.0)), place(11.0, uav=PAYLOAD), heading(10.0, uav=2))
+def test_last_pose_counts_within_its_time_and_the_payload_and_motions_alone_do_not():
+    poses = history(
+        place(10.0), place(10.5, at=(4.0, 5.0, -6.0)), heading(10.4), place(11.0, uav=PAYLOAD), heading(10.0, uav=2)
+    )
     poses.add_measured(Position(12.0, 1, NOTHING, np.zeros(3)))
     assert poses.uavs == (0,)
-    np.testing.assert_array_equal(poses.position(0, 11.0, 0.5), [4.0, 5.0, -6.0])
-    np.testing.assert_array_equal(poses.position(0, 10.0, 0.5), [4.0, 5.0, -6.0])
-    assert poses.position(0, 11.01, 0.5) is None and poses.position(0, 9.99, 0.5) is None
-    assert poses.position(1, 12.0, 0.5) is None and poses.position(PAYLOAD, 11.0, 0.5) is None
+    for time in (10.9, 10.0):
+        position, attitude = poses.last_pose(0, time, 0.5)
+        np.testing.assert_array_equal(position, [4.0, 5.0, -6.0])
+        np.testing.assert_array_equal(attitude, heading(10.4).pose)
+    assert poses.last_pose(0, 10.91, 0.5) is None and poses.last_pose(0, 9.99, 0.5) is None
+    assert poses.last_pose(1, 12.0, 0.5) is None and poses.last_pose(2, 10.0, 0.5) is None
+    assert poses.last_pose(PAYLOAD, 11.0, 0.5) is None
+
+
+def test_poses_since_a_time_are_counted_of_either_kind():
+    poses = history(*(place(10.0 + 0.1 * k) for k in range(5)), *(heading(10.0 + 0.1 * k, uav=2) for k in range(5)))
+    assert poses.has_since(0, 10.15, 3) and not poses.has_since(0, 10.25, 3)
+    assert poses.has_since(2, 9.0, 5) and not poses.has_since(2, 9.0, 6)
+    assert not poses.has_since(1, 0.0, 1)

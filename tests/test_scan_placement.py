@@ -352,3 +352,18 @@ def test_returns_beside_the_rays_are_placed_without_their_offset_and_their_senso
             np.linalg.norm(scan.returns - true, axis=1), 0.0 if displaced else np.linalg.norm(offset), atol=1e-3
         )
     assert placing.range_sensors.valid((0,), 2.0) == ()
+
+
+def test_scans_of_one_moment_are_placed_together_and_in_the_order_of_time():
+    placing = placement()
+    for uav, time in ((1, 1.3), (0, 1.4)):
+        placing.poses.add_measured(Position(time, uav, HERE, np.zeros(3)))
+        placing.poses.add_measured(Attitude(time, uav, np.array(TILTED), np.zeros(3)))
+    assembly = ScanSettings().assembly
+    for uav, stamp, complete in ((0, 1300, True), (1, 1300, False), (0, 1400, True)):
+        time = 1e-3 * stamp
+        placing.add(returns_of(measure(stamp=stamp), stamp), uav, time, 1.31)
+        placing.end(ScanEnd(stamp, 10.0, complete), uav, time, 1.31)
+    assert placing.scans(1.31 + 0.9 * assembly) == []
+    found = [(scan.uav, round(scan.time, 3)) for scan in placing.scans(1.31 + 1.1 * assembly)]
+    assert found == [(0, 1.3), (1, 1.3), (0, 1.4)]

@@ -7,6 +7,7 @@ import pytest
 from obstacle_scene import HERE, Scene, map_of, moving_tracks, outside, run, sphere
 
 from idc_controller.perception.settings import PerceptionSettings
+from idc_controller.perception.track import Detections
 from idc_controller.perception.track_list import TrackList
 
 
@@ -70,7 +71,7 @@ def track(undetected, **changes):
         "is_confirmed": True, "is_obstacle": True, "is_static": False, "has_moved": True, "is_retained": False,
         "is_deleted": False, "map_shape": None,
     }  # fmt: skip
-    return SimpleNamespace(name="it", detections=SimpleNamespace(last=NOW - undetected), **(usual | changes))
+    return SimpleNamespace(name="it", detections=Detections(last=NOW - undetected), **(usual | changes))
 
 
 def retained(it, in_view=False, sensing_lost=False):
@@ -99,6 +100,31 @@ def test_track_that_is_not_detected_is_kept_for_its_time(changes, in_view, limit
     """Reported where a vehicle would have detected a confirmed one."""
     assert retained(track(0.99 * limit, **changes), in_view) == (True, [])
     assert retained(track(1.01 * limit, **changes), in_view) == (False, ["it"] if limit is IN_VIEW else [])
+
+
+def test_time_out_of_view_does_not_count_as_time_without_a_detection_in_view():
+    it, now = track(0.0), NOW
+    tracks = TrackList([it], [], None, PerceptionSettings())
+    for until, in_view in ((1.5, False), (1.9, True)):
+        while now < NOW + until:
+            assert tracks.retain(now, False, lambda _, seen=in_view: seen) == [] and tracks.tracks == [it]
+            now += 0.05
+    # In view again for as long as it takes, had it not been forgotten: out of view it is predicted too far.
+    assert it.detections.missed(NOW + 1.5 + 0.99 * IN_VIEW, True) < IN_VIEW
+    assert it.detections.missed(NOW + 1.5 + 1.01 * IN_VIEW, True) == pytest.approx(1.01 * IN_VIEW + 0.05, abs=0.06)
+
+
+def test_body_below_the_elevations_of_all_rays_is_out_of_view():
+    m, scene = map_of(), Scene(0)
+    run(m, lambda t: [sphere(crossing(t))], 2.5, scene=scene)
+    [it] = [track for track in m.tracks if track.name in moving_tracks(m)]
+    assert m._in_field_of_view(it)
+    # By the formation's rays, which end 70 deg below the horizon.
+    centre, _ = it.centre(2.5)
+    for beside, in_view in ((3.0, True), (0.5, False)):
+        scene.feed(m, 2.5, np.add(centre, [beside, 0.0, -5.0]), [])
+        m.update(2.5)
+        assert m._in_field_of_view(it) is in_view
 
 
 def test_track_that_does_not_count_as_an_obstacle_is_deleted_without_a_report():

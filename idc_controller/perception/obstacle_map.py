@@ -66,6 +66,7 @@ class ObstacleMap:
             sensor_range - s.scans.cut_sigmas * sensors.range_noise,
             2.0 * s.tracking.surfaces.radius_max,
         )
+        self._rays = rays
         self._check = MapCheck(self._standing.obstacles, self._view_range, s)
         self.seen = SeenObstacles(s.standing_map)
         """What the range sensors have seen to stand."""
@@ -268,12 +269,20 @@ class ObstacleMap:
         return self.placement.range_sensors.valid(self.placement.poses.uavs, self._time)
 
     def _in_field_of_view(self, track: Track) -> bool:
-        """Return whether the range sensor of a vehicle whose telemetry comes in would certainly detect a track now."""
-        timeout = self._settings.retention.link_timeout
-        places = [self.placement.poses.position(uav, self._time, timeout) for uav in self._valid_uavs()]
-        near = np.array([place for place in places if place is not None])
-        if not len(near):
-            return False
+        """Return whether the range sensor of a vehicle whose telemetry comes in would certainly detect a track now.
+
+        It is near, its middle within the elevations of the rays, and nothing that stands hides it.
+        """
+        timeout, poses = self._settings.retention.link_timeout, self.placement.poses
         centre, _ = track.centre(self._time)
-        distance = Bodies([track.shape]).distance(near, centre[None])
-        return bool(distance.min() < self._view_range)
+        near = [
+            pose[0]
+            for uav in self._valid_uavs()
+            if (pose := poses.last_pose(uav, self._time, timeout)) is not None and self._rays.are_towards(centre, *pose)
+        ]
+        if not near:
+            return False
+        sensors = np.array(near)
+        distance = Bodies([track.shape]).distance(sensors, centre[None])[0]
+        sensors = sensors[distance < self._view_range]
+        return bool(len(sensors)) and self.seen.map.first_hidden(centre[None], sensors, np.zeros(1)) > 0

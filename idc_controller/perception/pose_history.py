@@ -43,12 +43,14 @@ class PoseHistory:
         histories = [self._measured.get((uav, kind), ()) for kind in (Position, Attitude)]
         return any(len(history) >= count and history[-count].time > time for history in histories)
 
-    def position(self, uav: int, time: float, within: float) -> Array | None:
-        """Return the last measured position (3,) (NED, m), None if it is not ``within`` that time of ``time`` (s)."""
-        history = self._measured.get((uav, Position))
-        if not history or not abs(time - history[-1].time) <= within:
-            return None
-        return history[-1].pose
+    def last_pose(self, uav: int, time: float, within: float) -> tuple[Array, Array] | None:
+        """Return the last measured position (3,) (NED, m) and quaternion (4,).
+
+        None if one of them is not ``within`` that time of ``time`` (s).
+        """
+        histories = [self._measured.get((uav, kind)) for kind in (Position, Attitude)]
+        last = [history[-1] for history in histories if history and abs(time - history[-1].time) <= within]
+        return (last[0].pose, last[1].pose) if len(last) == len(histories) else None
 
     def pose(
         self, uav: int, time: float, estimated_position: bool, estimated_attitude: bool

@@ -36,6 +36,15 @@ class SensorRays(NamedTuple):
     ground_height: float
     """Height above the ground up to which a vehicle leaves returns out (m)."""
 
+    def are_towards(self, point: Array, place: Array, attitude: Array) -> bool:
+        """Return whether a ``point`` (3,) lies within their elevations.
+
+        From a vehicle at a ``place`` (3,) (NED, m) with an ``attitude`` (4,), body to world.
+        """
+        way = rotation_from_quaternion(attitude).T @ (point - place)
+        elevation = math.atan2(-way[2], math.hypot(way[0], way[1]))
+        return self.pattern.elevation_min <= elevation <= self.pattern.elevation_max
+
 
 class Returns(NamedTuple):
     """Returns of one scan of a vehicle, all of them or a part, as its telemetry reports them."""
@@ -170,7 +179,8 @@ class ScanPlacement:
     ) -> list[PlacedScan]:
         """Return the scans that can be placed, oldest first.
 
-        A complete scan is placed at once; another one when no part of it is likely to come any more.
+        A complete scan is placed at once, and another one when no part of it is likely to come any more: until then
+        those of its moment and later ones wait. So what several see of a body is one fit of it, in the order of time.
 
         Args:
             now: s.
@@ -181,8 +191,11 @@ class ScanPlacement:
         s = self._settings
         self.range_sensors.update_silent(self.poses, now)
         placed: list[PlacedScan] = []
-        for uav, scan in [(uav, scan) for uav, scans in self._waiting.items() for scan in scans.values()]:
-            if not scan.is_complete and now - scan.since < s.assembly:
+        waiting = [(uav, scan) for uav, scans in self._waiting.items() for scan in scans.values()]
+        unfinished = [scan.time for _, scan in waiting if not scan.is_complete and now - scan.since < s.assembly]
+        before = min(unfinished, default=math.inf) - s.simultaneous
+        for uav, scan in waiting:
+            if scan.time >= before:
                 continue
             estimated_attitude = uav in unusable_attitudes
             pose = self.poses.pose(uav, scan.time, uav in unusable_positions, estimated_attitude)

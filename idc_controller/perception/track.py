@@ -22,6 +22,8 @@ class Detections:
     """When and where a track was detected. Times in s, NED, m."""
 
     last: float = -math.inf
+    out_of_view: float = -math.inf
+    """When it was out of view last, of the times at which it was not detected."""
     clusters: int = 0
     points: Array = field(default_factory=lambda: np.empty((0, 3)))
     """Points of the last frame (n, 3)."""
@@ -34,6 +36,12 @@ class Detections:
         self.last, self.points = max(self.last, points.time), points.points
         self.clusters += clusters
         self.places.append(centre)
+
+    def missed(self, time: float, in_view: bool) -> float:
+        """Return for how long (s) it has been in view undetected; ``in_view``: whether it is at ``time`` (s)."""
+        if not in_view:
+            self.out_of_view = time
+        return time - max(self.last, self.out_of_view)
 
     def take_places(self) -> list[Array]:
         """Return the centres since the last call."""

@@ -119,7 +119,7 @@ class TrackList:
                 kept.append(track)
             elif not track.is_confirmed:
                 pass
-            elif undetected > s.delete_after and in_field_of_view(track):
+            elif track.detections.missed(now, in_field_of_view(track)) > s.delete_after:
                 if track.is_obstacle:
                     deleted.append(track.name)
                     self._deleted.append((now, track))
