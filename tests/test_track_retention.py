@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from obstacle_scene import HERE, Scene, map_of, moving_tracks, outside, run, sphere
+from obstacle_scene import HERE, Scene, map_of, moving_tracks, outside, pole, run, sphere
 
 from idc_controller.perception.settings import PerceptionSettings
 from idc_controller.perception.track import Detections
@@ -59,6 +59,36 @@ def test_nothing_is_deleted_when_telemetry_of_all_vehicles_times_out():
     for k in range(60, 90):
         m.update(k / 20)
     assert m.seen.pieces == before and moving_tracks(m) == names
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_forest_that_stands_does_not_keep_its_tracks(seed):
+    """Before it has been seen for long, what is bounded may move; afterwards the map explains it."""
+    places = np.random.default_rng(seed).uniform(-9.0, 9.0, (40, 2))
+    trees = [pole((north, east, 0.0), radius=0.15) for north, east in places if np.hypot(north, east) > 2.0]
+    m = map_of()
+    run(m, lambda t: trees, 6.0, scene=Scene(seed))
+    assert len(m.tracks) < 2 * len(trees)
+    assert moving_tracks(m) == []
+
+
+@pytest.mark.parametrize(
+    ("changes", "since", "kept"),
+    [
+        ({"seems_to_stand": True}, 1.0, False),
+        ({"seems_to_stand": True}, 3.0, True),
+        ({"seems_to_stand": False}, 1.0, True),
+        ({"is_static": True, "seems_to_stand": False}, 3.0, False),
+        ({"seems_to_stand": True, "map_shape": "sphere"}, 1.0, True),
+    ],
+)
+def test_track_is_absorbed_by_what_has_stood_there_or_where_it_has_come_to_rest(changes, since, kept):
+    """``since``: when the map first held its points."""
+    it = track(0.0, **changes)
+    it.detections.points = np.zeros((4, 3))
+    tracks = TrackList([it], [], None, PerceptionSettings())
+    tracks.absorb(lambda points, before: np.full(len(points), since < before), 2.0)
+    assert bool(tracks.tracks) is kept
 
 
 RETENTION = PerceptionSettings().retention

@@ -90,7 +90,7 @@ class ObstacleMap:
             moved = [body for track in self.tracks for body in track.take_places()]
             self.seen.map.release(moved, self._settings.association.map_gate)
             self.seen.update()
-            self._tracks.absorb(self.seen.map.is_standing)
+            self._tracks.absorb(self.seen.map.is_standing, now - self._settings.standing_map.settling_time)
         self._deleted += self._tracks.retain(now, self.sensing_lost, self._in_field_of_view)
 
     @property

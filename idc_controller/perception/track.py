@@ -120,6 +120,11 @@ class Track:
         return self.filter is not None and self.filter.is_static
 
     @property
+    def seems_to_stand(self) -> bool:
+        """Return whether it has never moved, and there is no evidence now that it does."""
+        return not self.has_moved and self.detections.evidence.nats == 0.0
+
+    @property
     def shape(self) -> Shape:
         """Shape on the map or as estimated."""
         if self.map_shape is not None:

@@ -1,5 +1,6 @@
 """List of tracks: initiation from unassigned clusters, merging, and retention."""
 
+import math
 from collections import defaultdict
 from collections.abc import Callable, Sequence
 
@@ -87,15 +88,24 @@ class TrackList:
                     break
             track.overlaps = overlaps
 
-    def absorb(self, stands: Callable[[Array], Mask]) -> None:
-        """Remove tracks that have come to rest, once the standing map holds the points that were seen of them last.
+    def absorb(self, stands: Callable[[Array, float], Mask], observed: float) -> None:
+        """Remove tracks of what stands, once the standing map holds the points that were seen of them last.
 
-        ``stands``: returns whether the map holds what stands at points (n, 3) (n,).
+        They have come to rest, or have never moved, nothing says that they do, and what the map holds there was first
+        hit before ``observed`` (s).
+
+        Args:
+            stands: returns whether the map holds what stands at points (n, 3) (n,), first hit before a time (s).
+            observed: time before which what moves would have been elsewhere (s).
         """
         self.tracks = [
             track
             for track in self.tracks
-            if track.map_shape is not None or not track.is_static or not stands(track.detections.points).mean() > 0.5
+            if track.map_shape is not None
+            or not (
+                (track.is_static and stands(track.detections.points, math.inf).mean() > 0.5)
+                or (track.seems_to_stand and stands(track.detections.points, observed).mean() > 0.5)
+            )
         ]
 
     def retain(self, now: float, sensing_lost: bool, in_field_of_view: Callable[[Track], bool]) -> list[str]:
