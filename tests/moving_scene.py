@@ -16,9 +16,13 @@ HORIZONS = (0.0, 1.0, 2.0)
 BEHIND = wall((9.6, 0.0, -6.0), (0.3, 16.0, 8.0), 0.0, "behind")
 
 
+#: When what stops and goes starts again (s).
+SECOND_START = 3.0
+
+
 def stop_and_go(t):
     """Distance: 1.5 m/s for 1.5 s, standing for 1.5 s, and so on."""
-    return 2.25 * (t // 3.0) + 1.5 * min(t % 3.0, 1.5)
+    return 2.25 * (t // SECOND_START) + 1.5 * min(t % SECOND_START, 1.5)
 
 
 #: Centre (3,) by the time since :data:`BEGIN`.
