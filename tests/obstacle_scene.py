@@ -28,7 +28,8 @@ REACH, NOISE = 10.0, 0.05
 POSITION_NOISE, ATTITUDE_NOISE = 0.02, math.radians(0.2)
 #: Of four UAVs about the formation's centre, at the height at which they fly above the payload.
 FORMATION = np.array([[0.5, 0.5, 0.0], [0.5, -0.5, 0.0], [-0.5, -0.5, 0.0], [-0.5, 0.5, 0.0]])
-CONFIG = RangeSensorConfig(range=REACH, noise=NOISE)
+#: A quarter of the default rays: fewer returns, and less time.
+CONFIG = RangeSensorConfig(range=REACH, noise=NOISE, rays=500)
 RAYS = sensor_rays(CONFIG)
 #: A lidar that looks everywhere and that no telemetry link limits, for fits to points of one obstacle.
 DENSE = replace(CONFIG, rays=6000, elevation_min_deg=-89.0, elevation_max_deg=89.0)

@@ -11,14 +11,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gcs.flight.phase import CLEAR_OF_GROUND
+from gcs.record.obstacle_recorder import ObstacleRecorder
 from gcs.record.tables import (
     ALARM_COLUMNS,
     ALARMS,
     ESTIMATE_COLUMNS,
-    OBSTACLE_ESTIMATE_COLUMNS,
     PLAN_COLUMNS,
     REFERENCE_COLUMNS,
-    STANDING_OBSTACLE_COLUMNS,
     STEP_COLUMNS,
     STEP_PART_COLUMNS,
     TableWriter,
@@ -30,16 +29,11 @@ if TYPE_CHECKING:
     from gcs.flight.alarms import Alarm
     from gcs.flight.control_loop import StepRecord
     from gcs.flight.flight import Flight
-    from idc_controller.arrays import Array
     from idc_controller.control.controller import Decision
-    from idc_controller.geometry.shape import Shape
     from idc_controller.perception.obstacle_map import ObstacleMap
 
 REFERENCE_INTERVAL = 0.02  # s, the grid of truth.csv
-OBSTACLE_INTERVAL = 0.1  # s
 _GRID_TOLERANCE = 1e-6
-_NOTHING = (0.0,) * 7
-"""Columns of a piece that is no more."""
 
 
 class FlightRecorder:
@@ -52,11 +46,7 @@ class FlightRecorder:
         self._estimate = TableWriter(run_dir / "estimate.csv", ESTIMATE_COLUMNS)
         self._steps = TableWriter(run_dir / "steps.csv", (*STEP_COLUMNS, *STEP_PART_COLUMNS))
         self._alarms = TableWriter(run_dir / ALARMS, ALARM_COLUMNS)
-        self._run_dir = run_dir
-        self._obstacles: TableWriter | None = None
-        self._standing: TableWriter | None = None
-        self._pieces: dict[str, tuple[Shape, Array]] = {}
-        self._next_obstacles = -math.inf
+        self._obstacles = ObstacleRecorder(run_dir)
         self._plan = TableWriter(run_dir / "plan.csv", PLAN_COLUMNS)
         self._next_row: int | None = None
         self.last_time = 0.0
@@ -104,35 +94,8 @@ class FlightRecorder:
         )  # fmt: skip
 
     def obstacles(self, obstacle_map: ObstacleMap, time: float) -> None:
-        """Record tracked obstacles and changes of the standing ones at team ``time`` (s), ten times a second."""
-        if time < self._next_obstacles - _GRID_TOLERANCE:
-            return
-        self._next_obstacles = (math.floor(time / OBSTACLE_INTERVAL + _GRID_TOLERANCE) + 1) * OBSTACLE_INTERVAL
-        for track in obstacle_map.confirmed_tracks(time):
-            if self._obstacles is None:
-                self._obstacles = TableWriter(self._run_dir / "obstacles_estimate.csv", OBSTACLE_ESTIMATE_COLUMNS)
-            shape, columns = track.shape, track.shape.columns
-            self._obstacles.write(
-                [round(time, 6), track.name, shape.kind, *track.position.tolist(), *track.velocity.tolist(),
-                 columns.radius, *columns.size, columns.yaw, track.growth]
-            )  # fmt: skip
-
-        self._record_standing(obstacle_map.seen.pieces, time)
-
-    def _record_standing(self, pieces: Sequence[tuple[str, Shape, Array]], time: float) -> None:
-        """Record which pieces are new, have changed or are no more since the last time."""
-        before, self._pieces = self._pieces, {name: (shape, centre) for name, shape, centre in pieces}
-        gone = [(name, *_NOTHING) for name in before if name not in self._pieces]
-        changed = [
-            (name, *centre.tolist(), *shape.columns.size, shape.columns.yaw)
-            for name, shape, centre in pieces
-            if name not in before or before[name][0] is not shape
-        ]
-        if (gone or changed) and self._standing is None:
-            self._standing = TableWriter(self._run_dir / "obstacles_standing.csv", STANDING_OBSTACLE_COLUMNS)
-        for row in (*gone, *changed):
-            assert self._standing is not None
-            self._standing.write([round(time, 6), *row])
+        """Record the detected obstacles at team ``time`` (s)."""
+        self._obstacles.record(obstacle_map, time)
 
     def alarm(self, alarm: Alarm) -> None:
         """Record a new alarm."""
@@ -154,18 +117,9 @@ class FlightRecorder:
 
     def close(self) -> None:
         """Close all files; harmless when they are closed."""
-        tables = (
-            self._reference,
-            self._estimate,
-            self._steps,
-            self._alarms,
-            self._plan,
-            self._obstacles,
-            self._standing,
-        )
+        tables = (self._reference, self._estimate, self._steps, self._alarms, self._plan, self._obstacles)
         for file in (self._tlog, *tables):
-            if file is not None:
-                file.close()
+            file.close()
 
     def __enter__(self) -> FlightRecorder:
         return self

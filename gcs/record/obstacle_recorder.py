@@ -1,0 +1,66 @@
+"""Recorder of the obstacles that the ground has detected: tracks, and what stands."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from gcs.record.tables import OBSTACLE_ESTIMATE_COLUMNS, STANDING_OBSTACLE_COLUMNS, TableWriter
+
+if TYPE_CHECKING:
+    from idc_controller.arrays import Array
+    from idc_controller.geometry.shape import Shape
+    from idc_controller.perception.obstacle_map import ObstacleMap
+
+INTERVAL = 0.1  # s
+_GRID_TOLERANCE = 1e-6
+_NOTHING = (0.0,) * 7
+"""Columns of a piece that is no more."""
+
+
+class ObstacleRecorder:
+    """Writes both tables of a run, each once there is something for it."""
+
+    def __init__(self, run_dir: Path) -> None:
+        self._run_dir = run_dir
+        self._tracks: TableWriter | None = None
+        self._standing: TableWriter | None = None
+        self._pieces: dict[str, tuple[Shape, Array]] = {}
+        self._next = -math.inf
+
+    def record(self, obstacle_map: ObstacleMap, time: float) -> None:
+        """Record tracked obstacles and changes of the standing ones at team ``time`` (s), ten times a second."""
+        if time < self._next - _GRID_TOLERANCE:
+            return
+        self._next = (math.floor(time / INTERVAL + _GRID_TOLERANCE) + 1) * INTERVAL
+        for track in obstacle_map.confirmed_tracks(time):
+            if self._tracks is None:
+                self._tracks = TableWriter(self._run_dir / "obstacles_estimate.csv", OBSTACLE_ESTIMATE_COLUMNS)
+            shape, columns = track.shape, track.shape.columns
+            self._tracks.write(
+                [round(time, 6), track.name, shape.kind, *track.position.tolist(), *track.velocity.tolist(),
+                 columns.radius, *columns.size, columns.yaw, track.growth]
+            )  # fmt: skip
+        self._record_standing(obstacle_map.seen.pieces, time)
+
+    def close(self) -> None:
+        """Close the tables; harmless when they are closed."""
+        for table in (self._tracks, self._standing):
+            if table is not None:
+                table.close()
+
+    def _record_standing(self, pieces: Sequence[tuple[str, Shape, Array]], time: float) -> None:
+        """Record which pieces are new, have changed or are no more since the last time."""
+        before, self._pieces = self._pieces, {name: (shape, centre) for name, shape, centre in pieces}
+        gone = [(name, *_NOTHING) for name in before if name not in self._pieces]
+        changed = [
+            (name, *centre.tolist(), *shape.columns.size, shape.columns.yaw)
+            for name, shape, centre in pieces
+            if name not in before or before[name][0] is not shape
+        ]
+        for row in (*gone, *changed):
+            if self._standing is None:
+                self._standing = TableWriter(self._run_dir / "obstacles_standing.csv", STANDING_OBSTACLE_COLUMNS)
+            self._standing.write([round(time, 6), *row])
