@@ -1,4 +1,4 @@
-"""Offsets of returns from the rays of their range sensor: found, followed, searched, and not seen in noise."""
+"""Offsets of returns from the rays of their range sensor: found, ended, and not seen in noise."""
 
 import math
 
@@ -42,35 +42,10 @@ def flown(seed, displacement, scans=60, scatter=0.0):
 
 @pytest.mark.parametrize("rate", [0.05, -0.1])
 @pytest.mark.parametrize("seed", range(3))
-def test_drift_is_detected_once_it_is_large_and_followed(seed, rate):
+def test_drift_is_detected_once_it_is_large(seed, rate):
     offset, at = flown(seed, lambda t: rate * t * DIAGONAL)
     large = S.ray_offset_min / (abs(rate) * math.sqrt(3.0))
-    assert large < at < large + S.ray_offset_duration + 0.7
-    # The mean of the last scans is some scans old.
-    np.testing.assert_allclose(offset.correction, rate * 5.9 * DIAGONAL, atol=0.6 * abs(rate))
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_sudden_offset_larger_than_half_the_rays_are_apart_is_detected(seed):
-    offset, at = flown(seed, lambda t: 0.5 * DIAGONAL * (t > 1.0), scans=40)
-    assert 1.0 < at < 3.0
-    np.testing.assert_allclose(offset.correction, 0.5 * DIAGONAL, atol=1e-3)
-
-
-@pytest.mark.parametrize("azimuth", [0.5, 2.0, 4.0])
-def test_sudden_offset_of_a_small_body_with_few_returns_a_scan_is_detected(azimuth):
-    rng, offset, most = np.random.default_rng(1), RayOffset(S), 0
-    centre, radius = np.array([4.0 * math.cos(azimuth), 4.0 * math.sin(azimuth), 2.0]), 0.5
-    for k in range(30):
-        rays = PATTERN.directions(k)
-        along = rays @ centre
-        beside = np.sum((along[:, None] * rays - centre) ** 2, axis=1)
-        hit = (beside < radius**2) & (along > 0.0)
-        near = along[hit] - np.sqrt(radius**2 - beside[hit]) + CONFIG.noise * rng.normal(size=hit.sum())
-        most = max(most, len(near))
-        if len(near):
-            offset.add(0.1 * k, sent(rays[hit] * near[:, None] + 0.5 * DIAGONAL), rays)
-    assert most < 8
+    assert large < at < large + S.ray_offset_duration + 0.8
     assert offset.is_detected
 
 
@@ -78,8 +53,7 @@ def test_sudden_offset_of_a_small_body_with_few_returns_a_scan_is_detected(azimu
 @pytest.mark.parametrize("seed", range(4))
 def test_noise_across_the_rays_is_no_offset(seed, scatter):
     offset, at = flown(seed, lambda t: np.zeros(3), scatter=scatter)
-    assert math.isnan(at)
-    np.testing.assert_array_equal(offset.correction, np.zeros(3))
+    assert math.isnan(at) and not offset.is_detected
 
 
 def test_small_offset_is_none():
@@ -88,11 +62,10 @@ def test_small_offset_is_none():
 
 
 def test_offset_ends_a_while_after_returns_lie_on_the_rays_again():
-    offset, at = flown(1, lambda t: 0.2 * DIAGONAL * (t < 2.0), scans=20 + round(10 * S.recovery) - 2)
+    offset, at = flown(1, lambda t: 0.05 * DIAGONAL * (t < 2.0), scans=20 + round(10 * S.recovery) - 2)
     assert at < 2.0 and offset.is_detected
-    offset, _ = flown(1, lambda t: 0.2 * DIAGONAL * (t < 2.0), scans=20 + round(10 * S.recovery) + 2)
+    offset, _ = flown(1, lambda t: 0.05 * DIAGONAL * (t < 2.0), scans=20 + round(10 * S.recovery) + 2)
     assert not offset.is_detected
-    np.testing.assert_array_equal(offset.correction, np.zeros(3))
 
 
 def test_points_on_one_ray_say_nothing():

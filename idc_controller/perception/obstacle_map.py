@@ -173,8 +173,6 @@ class ObstacleMap:
         offsets = self._check.offsets
         # With their offset removed, they are used only if there are no others.
         excluded = frozenset() if self.map_offset_detected else frozenset(offsets)
-        if (displaced := self.placement.range_sensors.displaced) and set(self._valid_uavs()) - excluded:
-            excluded |= displaced
         placed: list[Cluster] = []
         candidates: set[int] = set()
         usable: list[PlacedScan] = []

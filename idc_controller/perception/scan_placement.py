@@ -126,7 +126,7 @@ class ScanPlacement:
         self._scatter = defaultdict[int, _Scatter](_Scatter)
         self._offsets = defaultdict[int, RayOffset](lambda: RayOffset(settings))
         self.discarded = 0
-        """Returns that were impossible, stuck, too late or too many, or had no pose."""
+        """Returns that were impossible, stuck, displaced, too late or too many, or had no pose."""
 
     def add(self, returns: Returns, uav: int, time: float, now: float) -> None:
         """Add returns of UAV ``uav`` (0 .. N-1) of a scan made at ``time``, that came at ``now`` (s)."""
@@ -208,11 +208,13 @@ class ScanPlacement:
             self._placed[uav].append(scan.stamp)
             points = np.concatenate([np.empty((0, 3)), *scan.parts])
             stuck = bool(scan.count) and self.range_sensors.check(uav, scan.time, points)
-            if pose is None or stuck:
+            directions = self._rays.pattern.directions(scan_index(scan.stamp, self._rays.rate))
+            if self._is_displaced(uav, scan.time, points, directions) or pose is None or stuck:
                 self.discarded += scan.count
                 continue
             sigma = max(s.estimated_attitude_sigma * estimated_attitude, pose_noise_scale * self._sensors.attitude)
-            placed.append(self._place(uav, scan, points, pose, (pose_noise_scale * self._sensors.position, sigma)))
+            sigmas = pose_noise_scale * self._sensors.position, sigma
+            placed.append(self._place(uav, scan, (points, directions), pose, sigmas))
         placed.sort(key=lambda scan: scan.time)
         return placed
 
@@ -225,33 +227,35 @@ class ScanPlacement:
         return scan
 
     def _place(
-        self, uav: int, scan: _Waiting, points: Array, pose: tuple[Array, Array], sigmas: tuple[float, float]
+        self,
+        uav: int,
+        scan: _Waiting,
+        measured: tuple[Array, Array],
+        pose: tuple[Array, Array],
+        sigmas: tuple[float, float],
     ) -> PlacedScan:
-        """Return the scan with its returns ``points`` (n, 3) in the body frame, ``sigmas`` of the pose (m, rad)."""
-        pattern, rate, _ = self._rays
+        """Return the scan with what was ``measured``, ``sigmas`` of the pose (m, rad).
+
+        That is its returns (n, 3) and the directions of its rays (m, 3), in the body frame.
+        """
+        points, directions = measured
         along, (anywhere, turning) = self._sensors.range_noise, sigmas
         place = np.concatenate(pose)
-        directions = pattern.directions(scan_index(scan.stamp, rate))
-        points = self._corrected(uav, scan.time, points, directions)
         returns, rays, (square, angle) = placed_returns(points, directions, place)
         # Returns lie on the sensor's rays: how far they are off tells of an error that its noise is not.
         off = self._scatter[uav].add(float(square), len(returns))
         free = np.empty((0, 3))
-        is_sure = scan.is_complete and not scan.is_spoilt and angle <= _OFF_RAY * pattern.spacing
+        is_sure = scan.is_complete and not scan.is_spoilt and angle <= _OFF_RAY * self._rays.pattern.spacing
         if is_sure and scan.max_range is not None:
             reach = scan.max_range
             free = free_ends(directions, rays, place, reach, self.free_height(reach, anywhere, turning))
         up = -rotation_from_quaternion(pose[1])[:, 2]
         return PlacedScan(scan.time, place[:3], returns, along, math.hypot(anywhere, off), turning, free, uav, up)
 
-    def _corrected(self, uav: int, time: float, points: Array, directions: Array) -> Array:
-        """Return a vehicle's returns ``points`` (n, 3) without their offset from the rays in these ``directions``."""
-        if not len(points):
-            return points
+    def _is_displaced(self, uav: int, time: float, points: Array, directions: Array) -> bool:
+        """Take a vehicle's returns ``points`` (n, 3); return whether they are displaced from its rays."""
         offset = self._offsets[uav]
-        offset.add(time, points, directions)
-        self.range_sensors.set_displaced(uav, offset.is_detected, time)
-        if not offset.is_detected:
-            return points
-        corrected = points - offset.correction
-        return np.ascontiguousarray(corrected[corrected.any(axis=1)])
+        if len(points):
+            offset.add(time, points, directions)
+            self.range_sensors.set_displaced(uav, offset.is_detected, time)
+        return offset.is_detected

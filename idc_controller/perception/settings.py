@@ -26,7 +26,7 @@ class ScanSettings(SampledSettings):
     recovery: float = setting(1.0, "s", "after the last of them for which it still does", ge=0.0)
     silent_after: float = setting(1.0, "s", "of poses of a vehicle without a scan until its sensor is silent", gt=0.0)
     ray_offset_min: float = setting(
-        0.1, "m", "offset of returns from the sensor's rays from which on they are displaced", gt=0.0
+        0.05, "m", "offset of returns from the sensor's rays from which on they are displaced", gt=0.0
     )
     ray_offset_false_alarm: float = setting(
         1e-6, "", "probability that the scatter of returns about the rays looks like an offset", gt=0.0, lt=1.0
