@@ -1,6 +1,7 @@
 """Placement of scans: returns with their covariances, rays without a return, and what may be missing."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -28,7 +29,7 @@ from vehicle_sim.world.ray_bodies import RayBodies
 from vehicle_sim.world.ray_cast_kernels import first_hits
 from vehicle_sim.world.sensors import Measurement
 
-CONFIG = RangeSensorConfig()
+CONFIG = RangeSensorConfig(rays=500)
 PATTERN = RayPattern(CONFIG.rays, math.radians(CONFIG.elevation_min_deg), math.radians(CONFIG.elevation_max_deg))
 RAYS = SensorRays(PATTERN, CONFIG.rate, CONFIG.ground_height)
 SENSORS = SensorModel(0.05, 0.02, math.radians(0.2))
@@ -37,7 +38,7 @@ RAY_OFFSET_DURATION = ScanSettings().ray_offset_duration
 HERE = np.array([1.0, -2.0, -6.0])
 TILTED = quaternion_from_euler(0.1, -0.15, 2.0)
 SCENE = [(Wall((0.3, 6.0, 5.0), 0.4), (5.0, -1.0, -3.0)), (Pole(0.2, 12.0), (-2.0, 2.0, -6.0))]
-NOT_MISSED = RangeSensorConfig(noise=0.0, missed_share=0.0)
+NOT_MISSED = replace(CONFIG, noise=0.0, missed_share=0.0)
 
 
 def measure(config=NOT_MISSED, stamp=1300, bodies=SCENE, place=HERE, attitude=TILTED, seed=1):
@@ -168,7 +169,7 @@ def test_errors_of_returns_agree_with_their_covariances():
     wall = [(Wall((0.2, 40.0, 40.0)), (5.0, 0.0, -50.0))]
     true_place = np.array([0.0, 0.0, -50.0])
     for k in range(300):
-        points = measure(RangeSensorConfig(missed_share=0.0), 100 * k, wall, true_place, (1.0, 0.0, 0.0, 0.0), seed=k)
+        points = measure(replace(CONFIG, missed_share=0.0), 100 * k, wall, true_place, (1.0, 0.0, 0.0, 0.0), seed=k)
         exact = measure(NOT_MISSED, 100 * k, wall, true_place, (1.0, 0.0, 0.0, 0.0), seed=k)
         assert len(points) == len(exact)
         turned = quaternion_from_euler(*rng.normal(0.0, SENSORS.attitude, 3))
