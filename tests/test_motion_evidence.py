@@ -39,11 +39,12 @@ def counted(origin, returns, free, sigmas, places, variances, beside, deviations
 
 
 @settings(deadline=None, derandomize=True, max_examples=60)
-@given(seed=st.integers(0, 10_000), count=st.integers(1, 30), spread=st.floats(0.05, 2.0))
-def test_counted_rays_agree_with_plain_reference(seed, count, spread):
+@given(seed=st.integers(0, 10_000), count=st.integers(1, 30), spread=st.floats(0.05, 2.0), upright=st.floats(1.0, 9.0))
+def test_counted_rays_agree_with_plain_reference(seed, count, spread, upright):
     rng = np.random.default_rng(seed)
     origin = rng.normal(size=3)
-    places = origin + np.array([rng.uniform(0.3, 8.0), 0.0, 0.0]) + rng.normal(0.0, spread, (count, 3))
+    spreads = spread * np.array([1.0, 1.0, upright])
+    places = origin + np.array([rng.uniform(0.3, 8.0), 0.0, 0.0]) + rng.normal(0.0, spreads, (count, 3))
     ends = places[rng.integers(count, size=60)] + rng.normal(0.0, 0.2, (60, 3))
     ends = origin + (ends - origin) * rng.uniform(0.6, 1.8, (60, 1))
     sigmas, variances, found = np.array([0.05, 0.02, 0.004]), rng.uniform(0.001, 0.01, count), np.zeros(2)

@@ -63,18 +63,28 @@ def count_rays(
     counts[:] = 0.0
     if not places.shape[0]:
         return
-    middle, radius = np.zeros(3), 0.0
+    middle, radius, level = np.zeros(3), 0.0, 0.0
     for i in range(3):
         middle[i] = places[:, i].mean() - origin[i]
     for m in range(places.shape[0]):
         square = 0.0
         for i in range(3):
             square += (places[m, i] - origin[i] - middle[i]) ** 2
+            if i == 1:
+                level = max(level, math.sqrt(square) + beside)
         radius = max(radius, math.sqrt(square) + beside)
     distance = math.sqrt(middle[0] ** 2 + middle[1] ** 2 + middle[2] ** 2)
+    level_square = level * level * (1.0 + 1e-9)
+    is_beside = middle[0] ** 2 + middle[1] ** 2 > level_square
     for r in range(returns.shape[0] + free.shape[0]):
         returned = r < returns.shape[0]
         end = returns[r] if returned else free[r - returns.shape[0]]
+        if is_beside:
+            # In plan view, where what is upright is small, rays pass it as near or nearer.
+            north, east = end[0] - origin[0], end[1] - origin[1]
+            across = north * middle[1] - east * middle[0]
+            if north * middle[0] + east * middle[1] <= 0.0 or across * across > level_square * (north**2 + east**2):
+                continue
         square, along = 0.0, 0.0
         for i in range(3):
             way = end[i] - origin[i]
