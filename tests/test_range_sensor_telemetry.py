@@ -25,6 +25,7 @@ from vehicle_sim.mavlink.scan_kernels import nearest_by_sector
 from vehicle_sim.swarm import Swarm
 
 CONFIG = read_system()
+CONFIG = replace(CONFIG, range_sensor=replace(CONFIG.range_sensor, rays=500))
 
 
 @pytest.mark.parametrize(
