@@ -147,21 +147,16 @@ def test_blocked_path_ends_in_safe_stop(tmp_path):
     assert np.abs(truth["payload_vz_mps"][-5:]).max() < 0.02
 
 
-@pytest.mark.parametrize(
-    ("fault", "reason"),
-    [
-        ('kind = "drift"\nrate = 0.1', "no vehicle detects obstacles where they are"),
-        ('kind = "stuck"', "is impossible"),
-    ],
-)
-def test_flight_ends_safely_when_all_range_sensors_fail_alike(tmp_path, fault, reason):
+@pytest.mark.parametrize("fault", ['kind = "drift"\nrate = 0.1', 'kind = "stuck"'])
+def test_flight_ends_safely_when_all_range_sensors_fail_alike(tmp_path, fault):
+    """Returns that drift lie beside the known rays: they are as impossible as those that repeat to the digit."""
     shape = 'shape = "pole"\nposition = [7.0, 0.0]\nradius = 0.3\nheight = 12.0'
     mission = STRAIGHT.format(name="pole", obstacle="mast", shape=shape)
     wrong = f'\n[[fault]]\nchannel = "obstacles"\nstart = 6.0\n{fault}\n'
     result = flown(tmp_path, mission + wrong)
     check_safe(result.summary)
     assert result.exit_code == ExitStatus.OUTSIDE_LIMITS and result.summary["outcome"] == "aborted"
-    assert reason in result.reason
+    assert "is impossible" in result.reason
     assert result.summary["landing"]["on_ground"]
 
 
