@@ -63,6 +63,27 @@ def test_wall_is_oriented_by_points_far_apart():
         assert abs(surface.shape.yaw) == pytest.approx(np.pi, abs=1e-4)  # its front looks at the sensor
 
 
+@pytest.mark.parametrize(
+    ("cut", "moved", "sigma"), [(False, 0.2, S.sideways_sigma), (True, 0.0, S.unseen_sigma)], ids=["ends seen", "cut"]
+)
+def test_wall_is_seen_to_move_along_itself_only_where_both_of_its_ends_are_in_view(cut, moved, sigma):
+    def frame(shift):
+        y, z = np.meshgrid(np.linspace(-1.0, 1.0, 9) + shift, np.linspace(-1.0, 1.0, 5) - 3.0)
+        points = np.column_stack([np.full(y.size, 4.0), y.ravel(), z.ravel()])
+        at_end = np.isclose(points[:, 1], 1.0 + shift) if cut else np.zeros(len(points), dtype=bool)
+        sensors = np.tile([0.0, 0.0, -3.0], (len(points), 1))
+        return SurfacePoints(0.0, points, sensors, at_end, 0.05, np.full(len(points), 1e-4))
+
+    surface = FlatSurface(None, S)
+    place = surface.fit(frame(0.0), surface.guess(frame(0.0))).position
+    fit = surface.fit(frame(0.2), place)
+    assert fit.position - place == pytest.approx([0.0, moved, 0.0], abs=1e-2)
+    assert np.sqrt(fit.variance[1]) == pytest.approx(sigma, rel=0.01)
+    assert np.sqrt(fit.variance[2]) == pytest.approx(S.sideways_sigma)
+    width = surface.shape.size[1]
+    assert width == pytest.approx(2.0, abs=0.02) if not cut else width > 2.0
+
+
 def points_on(box, centre, sensor, count, rng, noise=0.0):
     """Points on the sides of a box that face a sensor."""
     body = (sensor - centre) @ box.rotation

@@ -139,7 +139,10 @@ class SurfaceSettings(SettingsTable):
     """Fits of spheres, poles, walls and known shapes to the points of one frame."""
 
     model_sigma: float = setting(0.015, "m", "standard deviation of a real surface about its shape", ge=0.0)
-    sideways_sigma: float = setting(0.1, "m", "movement expected on axes on which no point shows it", gt=0.0)
+    sideways_sigma: float = setting(
+        0.1, "m", "movement expected on axes on which no point shows it, and of a wall along itself by its ends", gt=0.0
+    )
+    unseen_sigma: float = setting(0.5, "m", "of the place of a wall along itself while its ends are not seen", gt=0.0)
     scatter_loss: float = setting(18.0, "", "factor of scatter in the uncertainty of a centre: by trial", ge=0.0)
     radius: float = setting(0.6, "m", "of a sphere or pole before anything is detected: rather too large", gt=0.0)
     radius_sigma: float = setting(0.35, "m", "its standard deviation", gt=0.0)

@@ -13,8 +13,8 @@ from idc_controller.perception.surfaces.points import EndOfSurface, Fit, Surface
 class FlatSurface:
     """A wall. Its reference point lies on the front; its own frame has x along the front's outward normal, z down.
 
-    It is taken to move along that normal only: a plane shows no other motion, and edges that move are covered by
-    making the wall longer. ``known``: the shape is given and stays as it is; the reference is then its centre.
+    A plane shows motion along that normal only; along itself it is seen to move where both of its ends are in view.
+    ``known``: the shape is given and stays as it is; the reference is then its centre.
     """
 
     kind = "wall"
@@ -114,13 +114,28 @@ class FlatSurface:
         q[:, 0] -= shift
         common = float(np.mean(scan.pose_variance)) / scan.sensors
         front_variance = (scan.noise**2 + scan.scatter) / max(int(np.count_nonzero(front)), 1) + common
+        moved, sideways = np.array([shift, 0.0, 0.0]), np.zeros(3)
+        for axis in (1, 2):
+            moved[axis], sideways[axis] = self._moved_along(axis, q[:, axis], scan.cut)
+        q[:, 1:] -= moved[1:]
         for (axis, sign), end in self._ends.items():
             end.update(sign * q[:, axis], scan.cut)
         self._learn_thickness(q, front, scan)
-        position = predicted + rotation[:, 0] * shift
-        variance = rotation[:, :2] ** 2 @ np.array([front_variance, s.sideways_sigma**2])
-        variance[2] = s.sideways_sigma**2
-        return Fit(position, variance, *self._score(q, noise))
+        variance = rotation[:, :2] ** 2 @ np.array([front_variance, sideways[1]])
+        variance[2] = sideways[2]
+        return Fit(predicted + rotation @ moved, variance, *self._score(q, noise))
+
+    def _moved_along(self, axis: int, along: Array, cut: Mask) -> tuple[float, float]:
+        """Return how far the front has moved along an ``axis`` of itself (m), and the variance (m2).
+
+        Its motion shows where both of its ends are seen; else an end that moves may as well be more of it in sight.
+        """
+        s = self._settings
+        ahead = self._ends[axis, 1].displacement(along, cut)
+        behind = self._ends[axis, -1].displacement(-along, cut)
+        if ahead is None or behind is None:
+            return 0.0, s.unseen_sigma**2
+        return 0.5 * (ahead - behind), s.sideways_sigma**2
 
     def _fit_known(self, scan: SurfacePoints, predicted: Array) -> Fit:
         """Only the place is to be found: every point moves the face that it lies on."""

@@ -111,6 +111,11 @@ class EndOfSurface:
         """Coordinate up to which the surface may reach (m)."""
         return float(self._value if self._is_observed else self._value + self._extension)
 
+    def displacement(self, along: Array, cut: Mask) -> float | None:
+        """Return how far (m) the end is beyond where it was, for a frame as in :meth:`update`; None: not seen."""
+        last = int(np.argmax(along))
+        return float(along[last] - self._value) if self._is_observed and not cut[last] else None
+
     def update(self, along: Array, cut: Mask) -> None:
         """Points of one frame, by their coordinate in that direction (n,), and whether they end the sensor's range."""
         last, s = int(np.argmax(along)), self._settings
