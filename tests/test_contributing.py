@@ -48,11 +48,11 @@ def apply(diff, root):
 
 
 def copy_of_project(root):
-    """Copy what the programs and their documents are made of."""
+    """Copy what the programs and their documents are made of, with the kernels as they are compiled."""
     for name in COPIED:
         source = ROOT / name
         if source.is_dir():
-            shutil.copytree(source, root / name, ignore=shutil.ignore_patterns("__pycache__"))
+            shutil.copytree(source, root / name, ignore=shutil.ignore_patterns("*.pyc"))
         else:
             shutil.copy(source, root / name)
 

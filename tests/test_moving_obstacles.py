@@ -9,32 +9,33 @@ from obstacle_scene import HERE, Scene, map_of, moving_tracks, outside, run, sph
 FOUND, FOUND_SLOW = 2.5, 4.0
 #: Three standard deviations of a return (m).
 NOISE = 0.18
-SLOW = [pytest.param(seed, marks=pytest.mark.slow) for seed in (1, 2, 3)]
 EACH = [(kind, shape) for kind in KINDS for shape in SHAPES]
 
 
-@pytest.fixture(scope="module")
-def watched():
-    """Figures of each kind of motion and shape, by seed; computed once."""
-    known = {}
-
-    def of(*key):
-        if key not in known:
-            kind, shape, seed = key
-            known[key] = watch(KINDS[kind], SHAPES[shape], seed)
-        return known[key]
-
-    return of
+@pytest.fixture(scope="module", params=EACH, ids="-".join)
+def mover(request):
+    """Kind, shape and figures of a mover: a fixture with parameters, so that tests of one follow each other."""
+    kind, shape = request.param
+    return kind, shape, watch(KINDS[kind], SHAPES[shape], 0)
 
 
-@pytest.mark.parametrize("seed", [0, *SLOW])
-@pytest.mark.parametrize(("kind", "shape"), EACH)
-def test_what_moves_is_found_in_time(watched, kind, shape, seed):
-    found = watched(kind, shape, seed).found
+def check_found_in_time(kind, found):
     if kind == "stop and go" and found >= SECOND_START:
         # It may come to rest before there is evidence enough, and evidence does not outlast the rest.
         found -= SECOND_START
     assert found <= (FOUND_SLOW if kind.startswith("slow") else FOUND)
+
+
+def test_what_moves_is_found_in_time(mover):
+    kind, _, figures = mover
+    check_found_in_time(kind, figures.found)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize(("kind", "shape"), EACH)
+def test_what_moves_is_found_in_time_in_other_scenes(kind, shape, seed):
+    check_found_in_time(kind, watch(KINDS[kind], SHAPES[shape], seed).found)
 
 
 #: Where there are pieces left of its way: as many as were measured; there should be none.
@@ -47,9 +48,9 @@ LEFT = {
 }
 
 
-@pytest.mark.parametrize(("kind", "shape"), EACH)
-def test_nothing_is_left_of_its_way_but_what_is_known(watched, kind, shape):
-    pieces = watched(kind, shape, 0).obstacle_map.seen.pieces
+def test_nothing_is_left_of_its_way_but_what_is_known(mover):
+    kind, shape, figures = mover
+    pieces = figures.obstacle_map.seen.pieces
     left = [c for _, _, c in pieces if c[0] < 8.5 and np.linalg.norm((c - KINDS[kind](8.0))[:2]) > 1.2]
     assert len(left) <= LEFT.get((kind, shape), 0)
 
@@ -65,10 +66,10 @@ VELOCITY = {
 }
 
 
-@pytest.mark.parametrize(("kind", "shape"), EACH)
-def test_velocity_is_within_its_variance_or_what_is_known(watched, kind, shape):
+def test_velocity_is_within_its_variance_or_what_is_known(mover):
+    kind, shape, figures = mover
     # Half as much again: single frames of a start or stop make most of it.
-    assert np.mean(watched(kind, shape, 0).velocity) < 1.5 * VELOCITY.get((kind, shape), 1.0)
+    assert np.mean(figures.velocity) < 1.5 * VELOCITY.get((kind, shape), 1.0)
 
 
 #: Share of the frames, 0, 1 and 2 s ahead, where it was measured to be less than the 0.99 that it should be.
@@ -100,9 +101,9 @@ PREDICTED = {
 }
 
 
-@pytest.mark.parametrize(("kind", "shape"), EACH)
-def test_predicted_set_holds_the_body_in_99_of_100_frames_or_what_is_known(watched, kind, shape):
-    shares = [np.mean(np.array(watched(kind, shape, 0).outside[horizon]) <= 0.0) for horizon in HORIZONS]
+def test_predicted_set_holds_the_body_in_99_of_100_frames_or_what_is_known(mover):
+    kind, shape, figures = mover
+    shares = [np.mean(np.array(figures.outside[horizon]) <= 0.0) for horizon in HORIZONS]
     # Three of some 70 frames less: sums of another machine may differ in the last digits.
     least = [min(known - 0.05, 0.99) for known in PREDICTED.get((kind, shape), (1.1, 1.1, 1.1))]
     assert all(share >= limit for share, limit in zip(shares, least, strict=True))
