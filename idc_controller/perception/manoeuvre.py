@@ -31,6 +31,11 @@ class ManoeuvreDetector:
         """Return whether it was detected for long enough for its predictions to be compared."""
         return self._time - self._since > self._settings.settling
 
+    @property
+    def is_unpredictable(self) -> bool:
+        """Return whether predictions have erred of late by more than the growth of the body holds otherwise."""
+        return self.prediction_error > self._settings.growth_max
+
     def advance(self, time: float) -> None:
         """Decay until ``time`` (s)."""
         share = float(np.exp(-max(time - self._time, 0.0) / self._settings.memory))

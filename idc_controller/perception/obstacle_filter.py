@@ -113,6 +113,11 @@ class ObstacleFilter:
         self._manoeuvre.advance(time)
 
     @property
+    def is_unpredictable(self) -> bool:
+        """Return whether its motion has proved to be none of the models' of late."""
+        return self._manoeuvre.is_unpredictable
+
+    @property
     def position_sigma(self) -> float:
         """Largest standard deviation of the position on any axis at :attr:`time` (m)."""
         return float(np.sqrt(self._imm.position_variance.max()))

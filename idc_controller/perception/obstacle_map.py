@@ -124,7 +124,10 @@ class ObstacleMap:
         """Return all obstacles at ``times`` (K,) (s); standing ones that are out of ``region`` are left out."""
         times = np.asarray(times, dtype=float)
         found = self._standing.predict(len(times), region) + self.seen.predict(len(times), region)
-        return found + [track.predict(times, self._time) for track in self.tracks if track.is_obstacle]
+        for track in self.tracks:
+            if track.is_obstacle:
+                found += track.obstacles(times, self._time)
+        return found
 
     def unseen(self, time: float, path: Array, body: Array) -> tuple[Indices, Array]:
         """See :class:`idc_controller.guidance.sight.Sight`."""

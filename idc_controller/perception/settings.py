@@ -64,6 +64,10 @@ class RetentionSettings(SettingsTable):
     restorable: float = setting(3.0, "s", "after deletion in which lost sensing restores a track", ge=0.0)
     in_view_share: float = setting(0.8, "", "share of the range within which detection is certain", gt=0.0, le=1.0)
     link_timeout: float = setting(0.3, "s", "age of a position up to which a vehicle's field of view counts", gt=0.0)
+    visited_memory: float = setting(
+        10.0, "s", "for which the places are kept that an unpredictable track visited", gt=0.0
+    )
+    visited_before: float = setting(1.0, "s", "ago, from which on a place counts as visited before", ge=0.0)
     undetected_growth: float = setting(0.5, "m", "growth of a moving map obstacle not detected yet", ge=0.0)
 
 

@@ -15,6 +15,7 @@ from idc_controller.perception.obstacle_filter import ObstacleFilter
 from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.settings import PerceptionSettings
 from idc_controller.perception.surfaces.points import SurfacePoints, joined
+from idc_controller.perception.visited_region import VisitedRegion
 
 
 @dataclass(eq=False)
@@ -73,6 +74,9 @@ class Track:
     overlaps: dict[str, int] = field(default_factory=dict)
     """Frames in a row in which its points belonged to another track as well."""
 
+    def __post_init__(self) -> None:
+        self._visited = VisitedRegion(self.settings.retention.visited_memory)
+
     def update(
         self, parts: list[SurfacePoints], explained: Sequence[PartOfScan] = (), scans: Sequence[PlacedScan] = ()
     ) -> None:
@@ -91,6 +95,7 @@ class Track:
         else:
             self.filter.update(points)
         self.detections.add(points, len(parts), self.filter.state[0])
+        self._visited.add(self.filter.time, self.filter.state[0])
         if not self.has_moved:
             s, evidence = self.settings.standing_map, self.detections.evidence
             evidence.add(points, explained, scans, s)
@@ -136,6 +141,27 @@ class Track:
     def velocity(self) -> Array:
         """Velocity (3,) (NED, m/s)."""
         return np.zeros(3) if self.filter is None else self.filter.state[1]
+
+    @property
+    def is_unpredictable(self) -> bool:
+        """Return whether its motion has proved to be none of the models' of late: it may be where it has been."""
+        return self.filter is not None and self.map_shape is None and self.filter.is_unpredictable
+
+    def obstacles(self, times: Array, now: float) -> list[PredictedObstacle]:
+        """Return what holds it at ``times`` (K,) as estimated at ``now`` (s).
+
+        If it is unpredictable, that is the region that it visited of late, and its prediction only while it is where it
+        has not been before.
+        """
+        if not self.is_unpredictable:
+            return [self.predict(times, now)]
+        shape, centre = self._visited.box(self.shape)
+        count = len(times)
+        region = PredictedObstacle(f"{self.name} region", shape, np.tile(centre, (count, 1)), np.zeros(count))
+        place, _ = self.centre(now)
+        if self._visited.holds(place, now - self.settings.retention.visited_before):
+            return [region]
+        return [region, self.predict(times, now)]
 
     def predict(self, times: Array, now: float) -> PredictedObstacle:
         """Return the obstacle at ``times`` (K,) as estimated at ``now`` (s); a static one that coasts stays at rest."""

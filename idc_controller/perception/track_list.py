@@ -102,6 +102,7 @@ class TrackList:
             track
             for track in self.tracks
             if track.map_shape is not None
+            or track.is_unpredictable
             or not (
                 (track.is_static and stands(track.detections.points, math.inf).mean() > 0.5)
                 or (track.seems_to_stand and stands(track.detections.points, observed).mean() > 0.5)
@@ -136,7 +137,11 @@ class TrackList:
                 if on_map:
                     track.is_deleted = True
                     kept.append(track)
-            elif on_map or (track.has_moved and track.is_static) or undetected <= s.forget_after:
+            elif (
+                on_map
+                or (track.has_moved and track.is_static)
+                or undetected <= (s.visited_memory if track.is_unpredictable else s.forget_after)
+            ):
                 kept.append(track)
         self.tracks = kept
         return deleted
