@@ -36,6 +36,12 @@ class ManoeuvreDetector:
         """Return whether predictions have erred of late by more than the growth of the body holds otherwise."""
         return self.prediction_error > self._settings.growth_max
 
+    @property
+    def is_predictable(self) -> bool:
+        """Return whether predictions have been compared, and proved right of late."""
+        compared = self._time - self._since > self._settings.settling + self._settings.horizon
+        return compared and not self.is_unpredictable
+
     def advance(self, time: float) -> None:
         """Decay until ``time`` (s)."""
         share = float(np.exp(-max(time - self._time, 0.0) / self._settings.memory))

@@ -118,6 +118,11 @@ class ObstacleFilter:
         return self._manoeuvre.is_unpredictable
 
     @property
+    def is_predictable(self) -> bool:
+        """Return whether predictions of its motion have been compared, and proved right of late."""
+        return self._manoeuvre.is_predictable
+
+    @property
     def position_sigma(self) -> float:
         """Largest standard deviation of the position on any axis at :attr:`time` (m)."""
         return float(np.sqrt(self._imm.position_variance.max()))

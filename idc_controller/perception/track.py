@@ -147,19 +147,26 @@ class Track:
         """Return whether its motion has proved to be none of the models' of late: it may be where it has been."""
         return self.filter is not None and self.map_shape is None and self.filter.is_unpredictable
 
+    @property
+    def is_bound_to_region(self) -> bool:
+        """Return whether it moves, and its predictions have not proved right: it may be where it has been."""
+        if self.filter is None or self.map_shape is not None or not self.has_moved:
+            return False
+        return not self.filter.is_predictable
+
     def obstacles(self, times: Array, now: float) -> list[PredictedObstacle]:
         """Return what holds it at ``times`` (K,) as estimated at ``now`` (s).
 
-        If it is unpredictable, that is the region that it visited of late, and its prediction only while it is where it
-        has not been before.
+        Until its predictions have proved right, that is the region that it visited of late, and its prediction; if they
+        have proved wrong, the latter only while it is where it has not been before.
         """
-        if not self.is_unpredictable:
+        if not self.is_bound_to_region:
             return [self.predict(times, now)]
         shape, centre = self._visited.box(self.shape)
         count = len(times)
         region = PredictedObstacle(f"{self.name} region", shape, np.tile(centre, (count, 1)), np.zeros(count))
         place, _ = self.centre(now)
-        if self._visited.holds(place, now - self.settings.retention.visited_before):
+        if self.is_unpredictable and self._visited.holds(place, now - self.settings.retention.visited_before):
             return [region]
         return [region, self.predict(times, now)]
 

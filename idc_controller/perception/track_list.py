@@ -140,7 +140,7 @@ class TrackList:
             elif (
                 on_map
                 or (track.has_moved and track.is_static)
-                or undetected <= (s.visited_memory if track.is_unpredictable else s.forget_after)
+                or undetected <= (s.visited_memory if track.is_bound_to_region else s.forget_after)
             ):
                 kept.append(track)
         self.tracks = kept

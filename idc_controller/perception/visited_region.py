@@ -55,7 +55,7 @@ def _turned(offsets: Array, yaw: float) -> Array:
 
 
 def _upright_box(places: Array) -> tuple[Array, Array, float]:
-    """Return centre (3,), edges (3,) (m) and yaw (rad) of an upright box about ``places`` (n, 3), along their spread."""
+    """Return centre (3,), edges (3,) (m) and yaw (rad) of an upright box about ``places`` (n, 3), along them."""
     mean = places.mean(axis=0)
     x, y, _ = (places - mean).T
     yaw = 0.5 * math.atan2(2.0 * float(x @ y), float(x @ x - y @ y))
