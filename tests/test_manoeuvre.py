@@ -38,7 +38,7 @@ def detectors(motion, until):
 
 
 def stopping(t):
-    return 2.0 * min(t, 3.0)
+    return 2.0 * min(t, 5.0)
 
 
 def test_detector_finds_no_manoeuvre_in_steady_motion():
@@ -48,8 +48,8 @@ def test_detector_finds_no_manoeuvre_in_steady_motion():
 
 
 def test_detector_finds_mismatch_of_obstacle_that_stops():
-    steady = detectors(along_north(lambda t: 2.0 * t), until=4.0)
-    stopped = detectors(along_north(stopping), until=4.0)
+    steady = detectors(along_north(lambda t: 2.0 * t), until=6.0)
+    stopped = detectors(along_north(stopping), until=6.0)
     assert np.mean([detector.model_mismatch for detector in steady]) < 0.5
     assert min(detector.model_mismatch for detector in stopped) > 0.6
     detector = stopped[0]
@@ -119,3 +119,24 @@ def test_lasting_innovations_are_no_mismatch_up_to_one_limit_and_a_whole_one_fro
         detector.add_innovation(mean_square)
     expected = 0.0 if mean_square == SETTINGS.mismatch_begin else 1.0
     assert detector.model_mismatch == pytest.approx(expected, abs=1e-9)
+
+
+def test_what_is_learnt_of_the_shape_is_no_mismatch_once_it_is_settled():
+    detector = ManoeuvreDetector(0.0, SETTINGS)
+    for time in (0.1, 0.2, 0.3):
+        detector.advance(time)
+        detector.add_innovation(5.0)
+    assert detector.model_mismatch > 0.5
+    detector.advance(SETTINGS.settling + 0.1)
+    detector.add_innovation(0.5)
+    assert detector.model_mismatch == 0.0
+
+
+def test_motion_is_predictable_once_compared_until_a_prediction_proves_wrong():
+    detector = ManoeuvreDetector(0.0, SETTINGS)
+    for time, error, predictable in ((3.5, 0.0, False), (4.5, 0.0, True), (5.5, 2.0, False)):
+        detector.advance(time)
+        detector.compare(np.array([error, 0.0, 0.0]), np.zeros(3))
+        assert detector.is_predictable is predictable
+        detector.add_prediction(np.zeros(3), 0.1)
+    assert detector.is_unpredictable

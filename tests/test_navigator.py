@@ -1,5 +1,7 @@
 """Conditions of a search for a detour, its path, and the reason reported when there is none."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from avoidance_scene import Scene, pole, straight, wall
@@ -9,7 +11,10 @@ from idc_controller.geometry.box import Wall
 from idc_controller.geometry.free_space import BoundingCylinder, first_conflict
 from idc_controller.guidance.navigator import Navigator
 from idc_controller.guidance.settings import NavigatorSettings
+from idc_controller.trajectory.paths import Leg
+from idc_controller.trajectory.settings import Limits
 from idc_controller.trajectory.trajectory import RestTrajectory
+from idc_controller.trajectory.waypoints import WaypointTrajectory
 
 ACROSS = wall("barrier", 10.0, 0.0, (0.3, 6.0, 12.0))
 CLOSED = wall("the long wall", 10.0, 0.0, (0.3, 400.0, 60.0))
@@ -216,3 +221,25 @@ def test_obstacle_that_drifts_less_than_the_limit_stands_at_its_waypoint(navigat
     drifting = name, shape, lambda t: place(t) + np.outer(t, [0.0, drift, 0.0]), growth
     held_up(navigator, [drifting], 1.0, progress=north / 1.5 - 2.0, mission=straight(north))
     assert ("block stands at the waypoint" in navigator.hold_up.reason) == stands
+
+
+class ThatMayLeave(WatchedScene):
+    """Obstacles that may leave where they are."""
+
+    def predict(self, times):
+        return [replace(obstacle, may_leave=True) for obstacle in super().predict(times)]
+
+
+def test_way_beyond_a_waypoint_is_searched_where_what_covers_that_may_leave(navigator, monkeypatch):
+    waypoint = 10.0
+    legs = [Leg(np.array([north, 0.0, -5.0]), 1.5) for north in (waypoint, 30.0)]
+    mission = WaypointTrajectory([0.0, 0.0, -5.0], legs, Limits(1.5, 1.5, 2.0, 6.0))
+    block = wall("block", waypoint, 0.0, (3.0, 3.0, 8.0))
+    held_up(navigator, [block], 1.0, progress=waypoint / 1.5 - 2.0, mission=mission)
+    assert "block stands at the waypoint" in navigator.hold_up.reason
+    assert navigator.detours == 0
+    monkeypatch.setitem(globals(), "WatchedScene", ThatMayLeave)
+    held_up(navigator, [block], 1.0, progress=waypoint / 1.5 - 2.0, begin=20.0, mission=mission)
+    assert navigator.detours == 1
+    end = navigator.followed(mission).derivatives(np.array([99.0]), 0)[0, 0]
+    assert end[0] > waypoint + 1.5

@@ -142,7 +142,10 @@ MOVING = {
 
 
 def tracked(motion, seed=0, until=9.0, radius=0.5, loss=0.0):
-    """Errors of position and velocity and of the prediction by 1 s, its growth, by frame from 1.5 s on."""
+    """Errors of position, velocity and the prediction by 1 s, growth now and then, by frame from 1.5 s on.
+
+    The last column: whether the prediction is all that holds the obstacle, not the region that it has visited as well.
+    """
     scene, track, rows = dense(seed, loss=loss), None, []
     place = np.array([0.0, 0.0, -6.0])
     for k in range(round(until / PERIOD)):
@@ -162,6 +165,7 @@ def tracked(motion, seed=0, until=9.0, radius=0.5, loss=0.0):
             np.linalg.norm(position - motion(time) - place),
             np.linalg.norm(velocity - (motion(time + 0.01) - motion(time - 0.01)) / 0.02),
             np.linalg.norm(mean[1] - motion(time + 1.0) - place), growth[0], growth[1],
+            track.is_predictable,
         ))  # fmt: skip
     return track, np.array(rows)
 
@@ -182,7 +186,8 @@ def test_filter_tracks_moving_sphere(name, record_property):
     if limit is not None:
         assert figures["1 s ahead"] < limit
     # Consistency: the errors, 1 s ahead and now, are not much larger than the growth says.
-    assert np.mean(rows[:, 2] < 2.5 * rows[:, 4]) > 0.85
+    alone = rows[:, 5] == 1.0
+    assert np.mean((rows[:, 2] < 2.5 * rows[:, 4]) | ~alone) > 0.95
     assert np.mean(rows[:, 0] < rows[:, 3]) > 0.95
     # Beyond its usual limit it grows only after a prediction error: the obstacle stopped, and started again.
     # What was seen of it outside of its shape, by noise for the most part, adds.

@@ -99,7 +99,7 @@ def track(undetected, **changes):
     """A confirmed track of a moving obstacle, detected last ``undetected`` s before now."""
     usual = {
         "is_confirmed": True, "is_obstacle": True, "is_static": False, "has_moved": True, "is_retained": False,
-        "is_deleted": False, "map_shape": None,
+        "is_deleted": False, "map_shape": None, "is_bound_to_region": False,
     }  # fmt: skip
     return SimpleNamespace(name="it", detections=Detections(last=NOW - undetected), **(usual | changes))
 

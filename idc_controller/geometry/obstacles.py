@@ -31,6 +31,8 @@ class PredictedObstacle:
     """Centres in the world (K, 3) (m)."""
     growth: Array
     """Growth of the body at each moment, for what is not known (K,) (m)."""
+    may_leave: bool = False
+    """It moves, or has moved of late: where it is, it need not stay."""
 
 
 class Region(NamedTuple):

@@ -171,7 +171,11 @@ class Navigator:
         begin = int(np.argmax(conflicts)) if conflicts.any() else 0
         free = np.flatnonzero(~conflicts[begin:]) + begin
         until = ahead[int(free[0])] if len(free) else ahead[-1]
-        fixed = [i for i, o in enumerate(obstacles) if np.linalg.norm(o.positions[-1] - o.positions[0]) < s.standing]
+        fixed = [
+            i
+            for i, o in enumerate(obstacles)
+            if not o.may_leave and np.linalg.norm(o.positions[-1] - o.positions[0]) < s.standing
+        ]
         # The progress is ahead of the payload when that is held up.
         waypoints = mission.waypoints(progress - s.behind, until)
         for waypoint, clearance in zip(waypoints, space.clearance(waypoints)[:, fixed], strict=True):

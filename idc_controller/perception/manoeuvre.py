@@ -12,6 +12,9 @@ import numpy as np
 from idc_controller.arrays import Array
 from idc_controller.perception.settings import ManoeuvreSettings
 
+_USUAL = 0.5
+"""Mean squared innovation of models that fit: their mixture's variance is larger than theirs."""
+
 
 class ManoeuvreDetector:
     """Model mismatch and prediction error of one obstacle that was first detected at ``time`` (s)."""
@@ -19,7 +22,7 @@ class ManoeuvreDetector:
     def __init__(self, time: float, settings: ManoeuvreSettings = ManoeuvreSettings()) -> None:
         self._settings = settings
         self._since = self._time = time
-        self._mean_square = 0.5
+        self._mean_square = _USUAL
         self.model_mismatch = 0.0
         """Recent mismatch of the motion models, 0 to 1."""
         self._predictions: deque[tuple[float, Array, float]] = deque()
@@ -44,10 +47,14 @@ class ManoeuvreDetector:
 
     def advance(self, time: float) -> None:
         """Decay until ``time`` (s)."""
+        was_settled = self.is_settled
         share = float(np.exp(-max(time - self._time, 0.0) / self._settings.memory))
         self.model_mismatch *= share
         self.prediction_error *= share
         self._time = max(time, self._time)
+        if self.is_settled and not was_settled:
+            # Until then the shape was learnt, whose changes are no motion.
+            self._mean_square, self.model_mismatch = _USUAL, 0.0
 
     def add_innovation(self, mean_square: float) -> None:
         """Take the last innovation: its ``mean_square`` over the axes, normalised by its variance."""

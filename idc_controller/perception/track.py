@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -31,12 +31,14 @@ class Detections:
     places: list[Array] = field(default_factory=list)
     """Its centres (3,), until they are taken."""
     evidence: MotionEvidence = field(default_factory=MotionEvidence)
+    visited: VisitedRegion = field(default_factory=VisitedRegion)
 
-    def add(self, points: SurfacePoints, clusters: int, centre: Array) -> None:
-        """Add one frame."""
+    def add(self, points: SurfacePoints, clusters: int, centre: Array, time: float) -> None:
+        """Add one frame; ``time`` (s) of the ``centre`` (3,)."""
         self.last, self.points = max(self.last, points.time), points.points
         self.clusters += clusters
         self.places.append(centre)
+        self.visited.add(time, centre)
 
     def missed(self, time: float, in_view: bool) -> float:
         """Return for how long (s) it has been in view undetected; ``in_view``: whether it is at ``time`` (s)."""
@@ -74,9 +76,6 @@ class Track:
     overlaps: dict[str, int] = field(default_factory=dict)
     """Frames in a row in which its points belonged to another track as well."""
 
-    def __post_init__(self) -> None:
-        self._visited = VisitedRegion(self.settings.retention.visited_memory)
-
     def update(
         self, parts: list[SurfacePoints], explained: Sequence[PartOfScan] = (), scans: Sequence[PlacedScan] = ()
     ) -> None:
@@ -94,8 +93,7 @@ class Track:
             )
         else:
             self.filter.update(points)
-        self.detections.add(points, len(parts), self.filter.state[0])
-        self._visited.add(self.filter.time, self.filter.state[0])
+        self.detections.add(points, len(parts), self.filter.state[0], self.filter.time)
         if not self.has_moved:
             s, evidence = self.settings.standing_map, self.detections.evidence
             evidence.add(points, explained, scans, s)
@@ -143,11 +141,6 @@ class Track:
         return np.zeros(3) if self.filter is None else self.filter.state[1]
 
     @property
-    def is_unpredictable(self) -> bool:
-        """Return whether its motion has proved to be none of the models' of late: it may be where it has been."""
-        return self.filter is not None and self.map_shape is None and self.filter.is_unpredictable
-
-    @property
     def is_bound_to_region(self) -> bool:
         """Return whether it moves, and its predictions have not proved right: it may be where it has been."""
         if self.filter is None or self.map_shape is not None or not self.has_moved:
@@ -162,13 +155,15 @@ class Track:
         """
         if not self.is_bound_to_region:
             return [self.predict(times, now)]
-        shape, centre = self._visited.box(self.shape)
+        assert self.filter is not None
+        visited, retention = self.detections.visited, self.settings.retention
+        shape, centre = visited.box(self.shape, now - retention.visited_memory)
         count = len(times)
-        region = PredictedObstacle(f"{self.name} region", shape, np.tile(centre, (count, 1)), np.zeros(count))
+        region = PredictedObstacle(f"{self.name} region", shape, np.tile(centre, (count, 1)), np.zeros(count), True)
         place, _ = self.centre(now)
-        if self.is_unpredictable and self._visited.holds(place, now - self.settings.retention.visited_before):
+        if self.filter.is_unpredictable and visited.holds(place, now - retention.visited_before):
             return [region]
-        return [region, self.predict(times, now)]
+        return [region, replace(self.predict(times, now), may_leave=True)]
 
     def predict(self, times: Array, now: float) -> PredictedObstacle:
         """Return the obstacle at ``times`` (K,) as estimated at ``now`` (s); a static one that coasts stays at rest."""

@@ -102,7 +102,7 @@ class TrackList:
             track
             for track in self.tracks
             if track.map_shape is not None
-            or track.is_unpredictable
+            or track.is_bound_to_region
             or not (
                 (track.is_static and stands(track.detections.points, math.inf).mean() > 0.5)
                 or (track.seems_to_stand and stands(track.detections.points, observed).mean() > 0.5)

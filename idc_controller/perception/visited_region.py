@@ -17,21 +17,23 @@ from idc_controller.geometry.shape import Shape
 class VisitedRegion:
     """Places of a body's centre (NED, m) of late. Times in s."""
 
-    def __init__(self, memory: float) -> None:
-        """``memory``: time for which places are remembered (s)."""
-        self._memory = memory
+    def __init__(self) -> None:
         self._places: deque[tuple[float, Array]] = deque()
         self._region: tuple[Array, Array, float] | None = None
 
     def add(self, time: float, place: Array) -> None:
         """Add the ``place`` (3,) of the centre at ``time`` (s)."""
         self._places.append((time, place))
-        while self._places[0][0] < time - self._memory:
-            self._places.popleft()
         self._region = None
 
-    def box(self, shape: Shape) -> tuple[Wall, Array]:
-        """Return an upright box, and its centre (3,), that holds a body of this ``shape`` at all the places."""
+    def box(self, shape: Shape, since: float) -> tuple[Wall, Array]:
+        """Return an upright box, and its centre (3,), that holds a body of this ``shape`` where it was from ``since``.
+
+        Earlier places are forgotten, but the last one.
+        """
+        while len(self._places) > 1 and self._places[0][0] < since:
+            self._places.popleft()
+            self._region = None
         if self._region is None:
             self._region = _upright_box(np.array([place for _, place in self._places]))
         centre, edges, yaw = self._region
