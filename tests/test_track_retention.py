@@ -79,6 +79,9 @@ def test_forest_that_stands_does_not_keep_its_tracks(seed):
         ({"seems_to_stand": True}, 3.0, True),
         ({"seems_to_stand": False}, 1.0, True),
         ({"is_static": True, "seems_to_stand": False}, 3.0, False),
+        ({"is_static": True, "seems_to_stand": False, "is_bound_to_region": True}, 3.0, True),
+        ({"is_static": True, "seems_to_stand": False, "is_bound_to_region": True}, 1.0, False),
+        ({"seems_to_stand": False, "is_bound_to_region": True}, 1.0, True),
         ({"seems_to_stand": True, "map_shape": "sphere"}, 1.0, True),
     ],
 )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate
@@ -33,6 +33,8 @@ class PredictedObstacle:
     """Growth of the body at each moment, for what is not known (K,) (m)."""
     may_leave: bool = False
     """It moves, or has moved of late: where it is, it need not stay."""
+    estimate: Callable[[], tuple[Shape, Array]] | None = None
+    """Returns the most probable body and its centre (3,), where ``shape`` covers what is uncertain as well."""
 
 
 class Region(NamedTuple):

@@ -15,7 +15,6 @@ from idc_controller.arrays import Array
 from idc_controller.geometry.formation import BoundingCylinder
 from idc_controller.geometry.free_space import TOUCHING, FreeSpace
 from idc_controller.geometry.obstacles import ObstacleSource, PredictedObstacle
-from idc_controller.geometry.shape import Shape
 from idc_controller.guidance.detour import find_detour
 from idc_controller.guidance.settings import NavigatorSettings
 from idc_controller.parameters import SystemParameters
@@ -203,28 +202,23 @@ class Navigator:
         if detour.reason.startswith("the formation at the goal"):
             return _NoPath(f"{reason}: {detour.reason}")
         last = path[goals[-1]]
-        return _NoPath(reason, lambda: self._narrowest_gap(bodies, growth, names, position, last, highest))
+        return _NoPath(reason, lambda: self._narrowest_gap(obstacles, position, last, highest))
 
-    def _narrowest_gap(
-        self,
-        bodies: list[tuple[Shape, Array]],
-        growth: list[float],
-        names: list[str],
-        position: Array,
-        goal: Array,
-        highest: float,
-    ) -> str:
+    def _narrowest_gap(self, obstacles: list[PredictedObstacle], position: Array, goal: Array, highest: float) -> str:
         """Return the narrowest gap from ``position`` to ``goal`` in words, by estimates, else as the search sees it."""
         # Imports shapely, which takes long and is spent only where there is no path.
         from idc_controller.guidance.narrowest_gap import narrowest_gap
 
         keep = self.settings.margin + self.settings.spare
-        for more in (None, growth):
+        covers = [(o.shape, o.positions[0]) for o in obstacles]
+        estimates = [o.estimate() if o.estimate else cover for o, cover in zip(obstacles, covers, strict=True)]
+        for bodies, growth in ((estimates, None), (covers, [float(o.growth[0]) for o in obstacles])):
             gap = narrowest_gap(
-                bodies, position, goal, self.formation, keep, lowest=self.lowest, highest=highest, growth=more,
-                names=names, settings=self.settings.detour,
+                bodies, position, goal, self.formation, keep, lowest=self.lowest, highest=highest, growth=growth,
+                names=[o.name for o in obstacles], settings=self.settings.detour,
             )  # fmt: skip
-            if gap is not None:
+            # Where estimates leave a way, what they do not know closes it.
+            if gap is not None and (gap.clearance < keep or growth is not None):
                 needed = gap.width + 2.0 * (keep - gap.clearance)
                 if gap.is_height:
                     needed = gap.width + keep - gap.clearance

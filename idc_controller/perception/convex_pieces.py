@@ -24,6 +24,8 @@ _TRIES = 20
 _LARGER = 1.3
 """Growth of a pair's number of voxels after which its merging is tried again."""
 _NOWHERE = np.empty(0, dtype=np.int64)
+_LEAST_MEMBERS, _OUTLIERS = 8, 0.02
+"""Voxels from which on a body is estimated by them; share of them on each side that are noise."""
 
 
 @dataclass(eq=False)
@@ -55,6 +57,21 @@ class Piece:
     def centre(self) -> Array:
         """(3,), NED (m)."""
         return self.box[:3]
+
+    def estimate(self, standing: StandingMap) -> tuple[Wall, Array]:
+        """Return the most probable body and its centre (3,): the box about the means of its points, not their noise.
+
+        As of the ``standing`` map now; the cover, where too little is left there.
+        """
+        members = self.members[standing.are_current(self.members, self.numbers)]
+        if len(members) < _LEAST_MEMBERS:
+            return self.shape, self.centre
+        cosine, sine = self.box[6:]
+        axes = np.array([(cosine, sine, 0.0), (-sine, cosine, 0.0), (0.0, 0.0, 1.0)])
+        places = (standing.elements(members).means - self.centre) @ axes.T
+        low, high = np.quantile(places, (_OUTLIERS, 1.0 - _OUTLIERS), axis=0)
+        x, y, z = np.maximum(high - low, standing.settings.tolerance).tolist()
+        return Wall((x, y, z), self.shape.yaw), self.centre + 0.5 * (low + high) @ axes
 
     @property
     def shape(self) -> Wall:

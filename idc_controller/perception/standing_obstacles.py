@@ -1,7 +1,9 @@
 """Standing obstacles: those of the map, and the convex pieces that cover what range sensors have hit."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -70,6 +72,7 @@ class SeenObstacles:
         self._cover = ConvexPieces()
         self._known: dict[int, tuple[Array, Shape]] = {}
         self._pieces: list[tuple[str, Shape, Array]] = []
+        self._estimates: list[Callable[[], tuple[Shape, Array]]] = []
         self._places = np.empty((0, 2))
         self._reach = np.empty(0)
         self._predicted: dict[int, list[PredictedObstacle]] = {}
@@ -77,12 +80,14 @@ class SeenObstacles:
     def update(self) -> None:
         """Cover what has changed in the map."""
         known: dict[int, tuple[Array, Shape]] = {}
-        for piece in self._cover.update(self.map):
+        pieces = self._cover.update(self.map)
+        for piece in pieces:
             box, shape = self._known.get(piece.number, (None, None))
             if shape is None or box is not piece.box:
                 shape = piece.shape
             known[piece.number] = piece.box, shape
         self._known = known
+        self._estimates = [partial(piece.estimate, self.map) for piece in pieces]
         self._pieces = [(f"piece {number}", shape, box[:3]) for number, (box, shape) in known.items()]
         self._places = np.array([centre[:2] for *_, centre in self._pieces]).reshape(-1, 2)
         self._reach = np.array([shape.horizontal_reach for _, shape, _ in self._pieces])
@@ -96,7 +101,10 @@ class SeenObstacles:
     def predict(self, count: int, region: Region | None) -> list[PredictedObstacle]:
         """Return them at ``count`` moments, all or those that reach into a ``region``."""
         if count not in self._predicted:
-            self._predicted[count] = [at_rest(count, *piece) for piece in self._pieces]
+            self._predicted[count] = [
+                replace(at_rest(count, *piece), estimate=estimate)
+                for piece, estimate in zip(self._pieces, self._estimates, strict=True)
+            ]
         predicted = self._predicted[count]
         if region is None:
             return predicted[:]

@@ -98,16 +98,17 @@ class TrackList:
             stands: returns whether the map holds what stands at points (n, 3) (n,), first hit before a time (s).
             observed: time before which what moves would have been elsewhere (s).
         """
-        self.tracks = [
-            track
-            for track in self.tracks
-            if track.map_shape is not None
-            or track.is_bound_to_region
-            or not (
-                (track.is_static and stands(track.detections.points, math.inf).mean() > 0.5)
-                or (track.seems_to_stand and stands(track.detections.points, observed).mean() > 0.5)
+
+        def is_absorbed(track: Track) -> bool:
+            rests = track.is_static and not track.is_bound_to_region
+            # What stops and goes may have come to rest for a moment only.
+            may_stand = track.seems_to_stand or (track.is_static and track.is_bound_to_region)
+            points = track.detections.points
+            return (rests and stands(points, math.inf).mean() > 0.5) or (
+                may_stand and stands(points, observed).mean() > 0.5
             )
-        ]
+
+        self.tracks = [track for track in self.tracks if track.map_shape is not None or not is_absorbed(track)]
 
     def retain(self, now: float, sensing_lost: bool, in_field_of_view: Callable[[Track], bool]) -> list[str]:
         """Delete tracks that are not detected; return the names of those that counted as obstacles.

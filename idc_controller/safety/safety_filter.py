@@ -145,7 +145,7 @@ class AvoidanceFilter:
         """Solve again with the planes of the plan before, ``passes`` times; also returns the QPs solved."""
         plan = None
         for count in range(1, passes + 1):
-            near = self._near(position, acceleration, obstacles)
+            near = [separation.one_sided() for separation in self._near(position, acceleration, obstacles)]
             plan = self.planner.solve(start, ahead, near, acceleration, crackle)
             if plan is None:
                 return None, count

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Self
 
 import coal
 import numpy as np
@@ -34,6 +35,22 @@ class Separation:
     def clearance(self) -> float:
         """Least distance over the stages, less the growth (m)."""
         return float(np.min(self.distance - self.obstacle.growth))
+
+    def one_sided(self) -> Self:
+        """Return the separation with planes that do not change sides where the hull leads through the obstacle.
+
+        Of a hull inside an obstacle the normal is that of the nearest way out. Where it turns round from one stage to
+        the next, the hull would come out on the other side, which planes on both sides would let it do; from there on
+        the plane stays as it was before.
+        """
+        turned = (self.normals[1:] * self.normals[:-1]).sum(axis=1) < 0.0
+        turned &= np.minimum(self.distance[1:], self.distance[:-1]) < 0.0
+        if not turned.any():
+            return self
+        first = int(turned.argmax())
+        normals = self.normals.copy()
+        normals[first + 1 :] = normals[first]
+        return replace(self, normals=normals)
 
 
 class PredictedObstacles:
