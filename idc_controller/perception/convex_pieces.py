@@ -70,6 +70,8 @@ class Piece:
         axes = np.array([(cosine, sine, 0.0), (-sine, cosine, 0.0), (0.0, 0.0, 1.0)])
         places = (standing.elements(members).means - self.centre) @ axes.T
         low, high = np.quantile(places, (_OUTLIERS, 1.0 - _OUTLIERS), axis=0)
+        # Its top may be out of the field of view: it is as high as the cover says.
+        low[2] = -self.box[5]
         x, y, z = np.maximum(high - low, standing.settings.tolerance).tolist()
         return Wall((x, y, z), self.shape.yaw), self.centre + 0.5 * (low + high) @ axes
 
