@@ -152,3 +152,27 @@ def test_pieces_of_an_obstacle_taken_away_go_with_its_points():
     left = sum(float(np.prod(2.0 * piece.box[3:6])) for piece in flight.pieces)
     assert left < 0.5 * covered
     assert flight.gaps() == 0
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.4, math.pi / 4.0])
+def test_width_of_a_door_is_that_between_estimated_bodies(turn):
+    width, edges = 3.0, (0.3, 4.0, 9.0)
+    across = np.array([-math.sin(turn), math.cos(turn), 0.0])
+    middle = np.array([6.0, 0.0, -4.5])
+    walls = [Box(middle + side * (width + edges[1]) / 2.0 * across, edges, turn) for side in (-1.0, 1.0)]
+    flight = Flight(walls)
+    flight.fly(lambda t: (0.0, 1.5 * math.sin(t), -4.0), 0.0, 6.0)
+    line = np.linspace(-width / 2.0 - 1.0, width / 2.0 + 1.0, 1000)
+    # Along the faces that are seen.
+    front = middle - 0.5 * edges[0] * np.array([math.cos(turn), math.sin(turn), 0.0])
+    places = front + [0.0, 0.0, 0.5] + line[:, None] * across
+
+    def open_width(bodies):
+        shapes, centres = zip(*bodies, strict=True)
+        free = (Bodies(shapes).distance(places, np.array(centres)) > 0.1).all(axis=0)
+        return np.ptp(line[free]) + 0.2
+
+    estimated = open_width([piece.estimate(flight.standing) for piece in flight.pieces])
+    covered = open_width([(piece.shape, piece.centre) for piece in flight.pieces])
+    assert covered < estimated
+    assert estimated == pytest.approx(width, abs=0.3)

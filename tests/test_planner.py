@@ -345,3 +345,41 @@ def test_plan_is_feasible_with_other_integrator_chains():
     obstacle = PredictedObstacle("o", Sphere(0.4), np.tile([2.0, 0.3, -7.0], (k, 1)), np.zeros(k))
     near = separations(planner.formation, mission[0], mission[2], PredictedObstacles([obstacle]), 2.5)
     assert planner.solve(np.zeros((5, 3)), mission, near, mission[2]) is not None
+
+
+# Planes of a hull that leads through an obstacle
+
+
+def through(planner, thickness, at):
+    """Separations of a mission that leads through a plate (its thickness and distance in m)."""
+    mission = cruising(speed=2.4)
+    obstacles = PredictedObstacles([standing(Wall((thickness, 30.0, 30.0)), [at, 0.0, -5.0])])
+    return mission, separations(planner.formation, mission[0], mission[2], obstacles, 2.5)
+
+
+@pytest.mark.parametrize("at", [4.0, 4.5, 5.0])
+def test_plan_does_not_lead_through_a_thin_obstacle(planner, at):
+    mission, near = through(planner, 0.3, at)
+    start = np.zeros((5, 3))
+    tunnelling = planner.solve(start, mission, near, mission[2])
+    assert (mission[0] + tunnelling.deviation[:, 0])[-1, 0] > at  # planes on both sides keep it from neither
+    plan = planner.solve(start, mission, [s.one_sided() for s in near], mission[2])
+    ends = (mission[0] + plan.deviation[:, 0])[:, 0]
+    assert ends.max() < at
+
+
+def test_planes_change_sides_nowhere_inside_an_obstacle(planner):
+    _, [separation] = through(planner, 0.3, 4.5)
+    normals = separation.one_sided().normals
+    assert separation.normals[:, 0].min() < -0.9
+    assert (normals[1:] * normals[:-1]).sum(axis=1).min() >= 0.0
+    unchanged = int((separation.normals != normals).any(axis=1).argmax())
+    assert (normals[unchanged:] == normals[unchanged - 1]).all()
+
+
+def test_planes_about_an_obstacle_that_is_passed_stay_as_they_are(planner):
+    mission = cruising()
+    obstacles = PredictedObstacles([standing(Pole(0.2, 10.0), [3.0, 2.5, -5.0])])
+    [separation] = separations(planner.formation, mission[0], mission[2], obstacles, 2.5)
+    assert separation.distance.min() > 0.0
+    assert separation.one_sided() is separation
