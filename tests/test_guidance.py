@@ -91,3 +91,12 @@ def test_held_up_payload_is_stopped_ahead_of_where_it_is(guidance):
     assert guidance.rate < 1.0
     rest, _ = guidance.stopping_trajectory(7.0, mission)
     assert isinstance(rest, RestTrajectory)
+
+
+@pytest.mark.parametrize(("share", "rate"), [(0.0, 1.0), (0.45, 1.0), (0.75, 0.5), (1.0, 0.0), (3.0, 0.0)])
+def test_progress_slows_down_for_a_plan_that_misses_the_margin_and_rests_for_one_that_misses_all(guidance, share, rate):
+    mission, missed = straight(400.0, SPEED), share * guidance.navigator.settings.margin
+    for k in range(60):
+        guidance.reference(8.0 + STEP * k, mission)
+        guidance.observe(RestTrajectory(np.zeros(3)), 0.0, None, None, missed)
+    assert guidance.rate == pytest.approx(rate, abs=1e-9)

@@ -1,5 +1,7 @@
 """The safety QP: its barrier, its optimum against another solver, its slacks and its limits."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -383,3 +385,14 @@ def test_planes_about_an_obstacle_that_is_passed_stay_as_they_are(planner):
     [separation] = separations(planner.formation, mission[0], mission[2], obstacles, 2.5)
     assert separation.distance.min() > 0.0
     assert separation.one_sided() is separation
+
+
+def test_slack_of_what_stands_is_separate_from_that_of_what_moves(planner):
+    mission = cruising(speed=2.4)
+    ball = standing(Sphere(0.5), [2.0, 0.0, -5.0])
+    moving = replace(ball, positions=ball.positions + np.linspace(0.0, 0.1, K + 1)[:, None])
+    for obstacle, stands in ((ball, True), (moving, False), (replace(ball, may_leave=True), False)):
+        near = separations(planner.formation, mission[0], mission[2], PredictedObstacles([obstacle]), 2.5)
+        plan = planner.solve(np.zeros((5, 3)), mission, near, mission[2])
+        assert plan.slack > 0.1
+        assert plan.standing_slack == (plan.slack if stands else 0.0)

@@ -107,8 +107,9 @@ class IntegratedDecisionController:
         trajectory: PayloadTrajectory = mission
         if not on_ground:
             trajectory = self.safety.filter(estimate.time, self.guidance.reference(estimate.time, mission), estimate)
+            report = self.safety.report
             self.guidance.observe(
-                trajectory, self.safety.report.lag, self.safety.report.deviation, self.load.estimate.air
+                trajectory, report.lag, report.deviation, self.load.estimate.air, report.standing_slack
             )
         self._tracked = None if on_ground else trajectory
         planned = self._stopwatch()

@@ -36,6 +36,11 @@ class PredictedObstacle:
     estimate: Callable[[], tuple[Shape, Array]] | None = None
     """Returns the most probable body and its centre (3,), where ``shape`` covers what is uncertain as well."""
 
+    @property
+    def stands(self) -> bool:
+        """Return whether it stays where it is."""
+        return not self.may_leave and bool((self.positions[0] == self.positions[-1]).all())
+
 
 class Region(NamedTuple):
     """All within ``radius`` (m) of the vertical line through ``place`` (3,), NED (m)."""

@@ -38,7 +38,14 @@ class Guidance:
         """Return the reference from ``time`` (s) on; the same object as before as long as nothing changes."""
         return ScaledReference(mission)
 
-    def observe(self, tracked: PayloadTrajectory, lag: float, deviation: Array | None, air: Air | None) -> None:
+    def observe(
+        self,
+        tracked: PayloadTrajectory,
+        lag: float,
+        deviation: Array | None,
+        air: Air | None,
+        missed: float = 0.0,
+    ) -> None:
         """Take note of what the safety filter made of the last reference.
 
         Args:
@@ -46,6 +53,7 @@ class Guidance:
             lag: of that trajectory behind the reference, along its path (m).
             deviation: states of its deviation from the reference at the stages (K + 1, 5, 3), SI; None: none.
             air: estimated motion and drag of the air; None: not estimated.
+            missed: clearance by which it misses the margin from what stands (m).
         """
 
     def progress(self, time: float) -> float:
@@ -117,7 +125,14 @@ class AdaptiveGuidance(Guidance):
         self._current = ScaledReference(self.navigator.followed(mission), time, progress, self._next_rate)
         return self._current
 
-    def observe(self, tracked: PayloadTrajectory, lag: float, deviation: Array | None, air: Air | None) -> None:
+    def observe(
+        self,
+        tracked: PayloadTrajectory,
+        lag: float,
+        deviation: Array | None,
+        air: Air | None,
+        missed: float = 0.0,
+    ) -> None:
         """See :meth:`Guidance.observe`."""
         self._tracked = tracked
         if self._current is None or self._observed is self._current:
@@ -127,6 +142,9 @@ class AdaptiveGuidance(Guidance):
         current = self._current
         if self._by_sight is not None:
             self._by_sight.update(current.start, current, tracked)
+        # What misses half of the margin slows the progress down, and all of it is rest: a slower plan keeps it. Before
+        # what comes nearer, resting would not help.
+        lag = max(lag, missed / self.navigator.settings.margin * self.settings.lag_at_rest)
         self._next_rate = self._changed_rate(current, lag, rate_in_wind)
 
     def progress(self, time: float) -> float:

@@ -15,6 +15,8 @@ class SafetyReport(NamedTuple):
     """States of the plan's deviation from the reference at the stages (K + 1, 5, 3), SI; None: not deflected."""
     slack: float = 0.0
     """Largest violation of the barrier over the plan (m)."""
+    standing_slack: float = 0.0
+    """The same of obstacles that stand (m)."""
     infeasible: bool = False
     """The QP had no solution and the plan before was kept."""
     qp_count: int = 0

@@ -41,6 +41,8 @@ class Plan:
     cost: float
     slack: float
     """Largest slack of an obstacle (m)."""
+    standing_slack: float = 0.0
+    """Largest slack of an obstacle that stands (m)."""
 
 
 class Planner:
@@ -90,9 +92,16 @@ class Planner:
         n = 3 * chain.knots
         slack = x[n:]
         penalty = float(0.5 * slack @ (layout.quadratic * slack) + layout.linear @ slack)
-        missed = x[layout.slacks[self.barrier.penalty]].max(initial=0.0)
+        missed = x[layout.slacks[self.barrier.penalty]].reshape(-1, 2).max(axis=1, initial=0.0)
+        stands = np.array([separation.obstacle.stands for separation in separations], dtype=bool)
         knots = x[:n].reshape(3, chain.knots).T
-        return Plan(knots, chain.roll_out(start, knots), self.cost.of(start, x[:n]) + penalty, float(missed))
+        return Plan(
+            knots,
+            chain.roll_out(start, knots),
+            self.cost.of(start, x[:n]) + penalty,
+            float(missed.max(initial=0.0)),
+            float(missed[stands].max(initial=0.0)),
+        )
 
     def is_within_limits(self, plan: Plan, reference: Array, crackle: Array = STEADY) -> bool:
         """Return whether a plan about ``reference`` (5, K + 1, 3) keeps pop, snap, acceleration and height.

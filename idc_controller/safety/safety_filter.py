@@ -70,6 +70,7 @@ class AvoidanceFilter:
         self.report = SafetyReport(
             deviation=deviation,
             slack=plan.slack if plan is not None else 0.0,
+            standing_slack=plan.standing_slack if plan is not None else 0.0,
             infeasible=infeasible,
             qp_count=qp_count,
             nearest=nearest,
@@ -160,7 +161,7 @@ class AvoidanceFilter:
         if self._plan is None:
             return None
         states = np.ascontiguousarray(self._shifted(self._plan, time).transpose(1, 0, 2))
-        return Plan(self._plan.knots, states, self._plan.cost, self._plan.slack)
+        return Plan(self._plan.knots, states, self._plan.cost, self._plan.slack, self._plan.standing_slack)
 
     def _shifted(self, plan: Plan, time: float) -> Array:
         """States (5, K + 1, 3) of the deviation of the plan in force at the stages from ``time`` (s) on."""
