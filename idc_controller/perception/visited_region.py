@@ -13,6 +13,9 @@ from idc_controller.arrays import Array
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.shape import Shape
 
+_ABOUT = 0.1
+"""Distance outside of the region up to which a place still counts as visited: errors of the centre (m)."""
+
 
 class VisitedRegion:
     """Places of a body's centre (NED, m) of late. Times in s."""
@@ -46,7 +49,7 @@ class VisitedRegion:
         if not earlier:
             return False
         centre, edges, yaw = _upright_box(np.array(earlier))
-        return bool((np.abs(_turned(place - centre, yaw)) <= 0.5 * edges + 0.1).all())
+        return bool((np.abs(_turned(place - centre, yaw)) <= 0.5 * edges + _ABOUT).all())
 
 
 def _turned(offsets: Array, yaw: float) -> Array:
