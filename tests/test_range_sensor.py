@@ -1,7 +1,6 @@
 """Range sensors: first hits of rays, noise, misses, the ground, repeatability."""
 
 import math
-import time
 from statistics import NormalDist
 
 import numpy as np
@@ -325,31 +324,3 @@ def test_order_of_obstacles_does_not_matter():
     np.testing.assert_array_equal(
         scan_of(RangeSensorConfig(), scene).points, scan_of(RangeSensorConfig(), scene[::-1]).points
     )
-
-
-# Cost
-
-
-def cpu_per_simulated_second(count, seconds=2.0):
-    """CPU time (s) of the scans of four vehicles at 10 Hz, ``count`` obstacles within reach."""
-    rng = np.random.default_rng(1)
-    places = rng.uniform(-9.0, 9.0, (count, 2))
-    bodies = RayBodies.of(
-        [(Pole(0.2, 15.0) if k % 2 else random_shape(rng, k % 6), (x, y, -7.5)) for k, (x, y) in enumerate(places)]
-    )
-    sensors = [RangeSensor(RangeSensorConfig(), 1, i) for i in range(1, 5)]
-    best = math.inf
-    for _ in range(5):
-        begin = time.process_time()
-        for index in range(round(10 * seconds)):
-            for sensor in sensors:
-                place = (0.1, 0.2, -9.0)
-                sensor.scan(0.0, 100 * index, place, LEVEL, estimate_at(place), bodies)
-        best = min(best, (time.process_time() - begin) / seconds)
-    return best
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("count", "limit"), [(3, 0.003), (200, 0.015)])
-def test_scans_cost_little(count, limit):
-    assert cpu_per_simulated_second(count) < limit

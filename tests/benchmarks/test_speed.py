@@ -22,14 +22,18 @@ from flight_in_process import MISSIONS  # noqa: E402
 from flying import AIRFRAME, Body  # noqa: E402
 from onboard import step_alone  # noqa: E402
 from test_mpc import DEFAULT, STAGES, error_of  # noqa: E402
+from test_range_sensor import LEVEL, estimate_at, random_shape  # noqa: E402
 from yardstick import in_yardsticks  # noqa: E402
 
-from gcs.config import read_system  # noqa: E402
+from gcs.config import RangeSensorConfig, read_system  # noqa: E402
 from gcs.mavlink.codec import Codec, gather  # noqa: E402
 from gcs.mavlink.setpoints import attitude_target  # noqa: E402
+from idc_controller.geometry.pole import Pole  # noqa: E402
 from vehicle_sim.autopilot.autopilot import Autopilot  # noqa: E402
 from vehicle_sim.autopilot.parameter_table import vehicle_parameters  # noqa: E402
 from vehicle_sim.autopilot.setpoints import AttitudeSetpoint  # noqa: E402
+from vehicle_sim.world.range_sensor import RangeSensor  # noqa: E402
+from vehicle_sim.world.ray_bodies import RayBodies  # noqa: E402
 from vehicle_sim.world.world import World  # noqa: E402
 
 RESULTS: dict[str, object] = {}
@@ -66,6 +70,8 @@ def test_cost_of_parts():
         "decode a datagram of four messages": in_yardsticks(lambda: reader.decode(datagram), 2000),
         "onboard loop, one vehicle": onboard(),
         "physics step, four vehicles": physics(),
+        "one scan, 3 obstacles in reach": scan(3),
+        "one scan, 200 obstacles in reach": scan(200),
     }
     RESULTS["parts_yardsticks"] = parts
     show("parts", parts)
@@ -88,6 +94,16 @@ def onboard():
 
     assert min(step()) > 0.0  # its rotors turn
     return in_yardsticks(step, 2000)
+
+
+def scan(count):
+    rng = np.random.default_rng(1)
+    places = rng.uniform(-9.0, 9.0, (count, 2))
+    bodies = RayBodies.of(
+        [(Pole(0.2, 15.0) if k % 2 else random_shape(rng, k % 6), (x, y, -7.5)) for k, (x, y) in enumerate(places)]
+    )
+    sensor, place = RangeSensor(RangeSensorConfig(), 1, 1), (0.1, 0.2, -9.0)
+    return in_yardsticks(lambda: sensor.scan(0.0, 0, place, LEVEL, estimate_at(place), bodies), 400)
 
 
 def physics():
