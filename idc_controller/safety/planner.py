@@ -63,6 +63,11 @@ class Planner:
         knots = z.reshape(3, -1).T
         return Plan(knots, self.settings.chain.roll_out(start, knots), self.cost.of(start, z), 0.0)
 
+    def nearest_rest(self, state: Array) -> Array:
+        """Return the place (3,) (m) at which the motion from ``state`` (5, 3), position to snap, ends for the least cost."""
+        to_rest = np.vstack([np.zeros((1, 3)), state[1:]])
+        return np.asarray(state[0] + self.cost.cheapest_offset(to_rest))
+
     def solve(
         self,
         start: Array,
@@ -189,6 +194,13 @@ class DeviationCost:
     """(15, 15)"""
     gain: Array
     """H^-1 G (3 knots, 15): the optimum without constraints is -gain y."""
+
+    def cheapest_offset(self, start: Array) -> Array:
+        """Return the offset (3,) (m) of the target for which the way there from ``start`` (5, 3) costs least."""
+        P = self.C - self.G.T @ self.gain  # of the cost of a start, without constraints
+        position = slice(0, None, 5)
+        rest = P @ start.T.ravel()
+        return np.asarray(np.linalg.solve(P[position, position], rest[position]))
 
     def of(self, start: Array, z: Array) -> float:
         """Return the cost of a deviation from ``start`` (5, 3) under ``z`` (3 knots,)."""

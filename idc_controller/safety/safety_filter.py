@@ -2,6 +2,7 @@
 
 import math
 from collections import deque
+from dataclasses import replace
 
 import numpy as np
 
@@ -61,6 +62,9 @@ class AvoidanceFilter:
         off = 0.0 if now is None else math.dist(estimate.x[0:3], now[0])
         obstacles = PredictedObstacles(predicted, self._extra_growth(off))
         plan, nearest, infeasible, qp_count = self._decide(time, start, crackle, ahead, obstacles)
+        if plan is not None and plan.standing_slack > 0.0:
+            plan, count = self._safer(plan, start, crackle, ahead, obstacles)
+            qp_count += count
         negligible = plan is None or bool(np.abs(plan.deviation).max() < NEGLIGIBLE)
         deviation = None if negligible or plan is None else plan.deviation
         self._pieces.append(Piece(reference, deviation))
@@ -138,6 +142,26 @@ class AvoidanceFilter:
             kept = self._kept(time)
             return kept if kept is not None else free, nearest.obstacle.name, True, qp_count
         return best, nearest.obstacle.name, False, qp_count
+
+    def _safer(
+        self, plan: Plan, start: Array, crackle: Array, ahead: Array, obstacles: PredictedObstacles
+    ) -> tuple[Plan, int]:
+        """Return ``plan`` or, where that comes less near to obstacles, a stop; and the QPs solved."""
+        planner = self.planner
+        now = start + ahead[:, 0]
+        rest = np.zeros_like(ahead)
+        rest[0] = planner.nearest_rest(now)
+        begin = now - rest[:, 0]
+        stop, count = self._refine(begin, crackle, rest, *_absolute(rest, planner.free(begin)), obstacles, 2)
+        if stop is None or self._clearance(rest, stop, obstacles) <= self._clearance(ahead, plan, obstacles):
+            return plan, count
+        deviation = stop.deviation + (rest - ahead).transpose(1, 0, 2)
+        return replace(plan, deviation=deviation), count
+
+    def _clearance(self, ahead: Array, plan: Plan, obstacles: PredictedObstacles) -> float:
+        """Return the least clearance (m) of a plan, up to the margin."""
+        near = self._near(*_absolute(ahead, plan), obstacles)
+        return min((separation.clearance for separation in near), default=math.inf)
 
     def _refine(
         self, start: Array, crackle: Array, ahead: Array, position: Array, acceleration: Array,
