@@ -156,11 +156,26 @@ class Navigator:
     def _search(
         self, progress: float, mission: Trajectory, position: Array, obstacles: list[PredictedObstacle]
     ) -> tuple[Array, float] | _NoPath:
-        """Return waypoints of a detour and the mission's progress where it leads, or why there is no detour."""
+        """Return waypoints of a detour and the mission's progress where it leads, or why there is no detour.
+
+        Its clearance is the margin and what is spared beyond that, or the margin alone where there is no such path: as
+        near as that the safety filter led the formation here.
+        """
+        s = self.settings
+        found: tuple[Array, float] | _NoPath = _NoPath("")
+        for keep in (s.margin + s.spare, s.margin):
+            found = self._path(progress, mission, position, obstacles, keep)
+            if not isinstance(found, _NoPath):
+                break
+        return found
+
+    def _path(
+        self, progress: float, mission: Trajectory, position: Array, obstacles: list[PredictedObstacle], keep: float
+    ) -> tuple[Array, float] | _NoPath:
+        """See :meth:`_search`, with a clearance ``keep`` (m)."""
         s = self.settings
         ahead = progress + np.arange(0.0, s.look_ahead, s.sample)
         path = mission.derivatives(ahead, 0)[0]
-        keep = s.margin + s.spare
         bodies = [(o.shape, o.positions[0]) for o in obstacles]
         growth = [float(o.growth[0]) for o in obstacles]
         names = [o.name for o in obstacles]
@@ -209,7 +224,7 @@ class Navigator:
         # Imports shapely, which takes long and is spent only where there is no path.
         from idc_controller.guidance.narrowest_gap import narrowest_gap
 
-        keep = self.settings.margin + self.settings.spare
+        keep = self.settings.margin
         covers = [(o.shape, o.positions[0]) for o in obstacles]
         estimates = [o.estimate() if o.estimate else cover for o, cover in zip(obstacles, covers, strict=True)]
         for bodies, growth in ((estimates, None), (covers, [float(o.growth[0]) for o in obstacles])):

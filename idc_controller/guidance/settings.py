@@ -61,7 +61,12 @@ class NavigatorSettings(SettingsTable):
     """Limits of the trajectories: table ``motion``."""
     margin: float = derived(AvoidanceSettings.margin)
     """Clearance to keep between hull and obstacles (m): ``avoidance.margin``."""
-    spare: float = setting(0.2, "m", "more than the margin, so that the safety filter need not act on a detour", ge=0.0)
+    spare: float = setting(
+        0.2,
+        "m",
+        "more than the margin, where there is such a path: the safety filter then need not act on a detour",
+        ge=0.0,
+    )
     corner: float = setting(0.1, "m", "by how much a detour's corners are cut", gt=0.0)
     link_tilt: float = setting(0.08726646259971647, "rad", "link tilt for which a detour leaves clearance", ge=0.0)
     held_up_rate: float = setting(0.5, "", "progress rate below which the mission is held up", gt=0.0, lt=1.0)

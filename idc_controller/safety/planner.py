@@ -64,7 +64,7 @@ class Planner:
         return Plan(knots, self.settings.chain.roll_out(start, knots), self.cost.of(start, z), 0.0)
 
     def nearest_rest(self, state: Array) -> Array:
-        """Return the place (3,) (m) at which the motion from ``state`` (5, 3), position to snap, ends for the least cost."""
+        """Return the place (3,) (m) where motion from ``state`` (5, 3), position to snap, ends for the least cost."""
         to_rest = np.vstack([np.zeros((1, 3)), state[1:]])
         return np.asarray(state[0] + self.cost.cheapest_offset(to_rest))
 

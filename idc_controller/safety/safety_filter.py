@@ -62,7 +62,7 @@ class AvoidanceFilter:
         off = 0.0 if now is None else math.dist(estimate.x[0:3], now[0])
         obstacles = PredictedObstacles(predicted, self._extra_growth(off))
         plan, nearest, infeasible, qp_count = self._decide(time, start, crackle, ahead, obstacles)
-        if plan is not None and plan.standing_slack > 0.0:
+        if plan is not None and plan.standing_slack > NEGLIGIBLE:
             plan, count = self._safer(plan, start, crackle, ahead, obstacles)
             qp_count += count
         negligible = plan is None or bool(np.abs(plan.deviation).max() < NEGLIGIBLE)
@@ -161,7 +161,7 @@ class AvoidanceFilter:
     def _clearance(self, ahead: Array, plan: Plan, obstacles: PredictedObstacles) -> float:
         """Return the least clearance (m) of a plan, up to the margin."""
         near = self._near(*_absolute(ahead, plan), obstacles)
-        return min((separation.clearance for separation in near), default=math.inf)
+        return min([self.settings.margin, *(separation.clearance for separation in near)])
 
     def _refine(
         self, start: Array, crackle: Array, ahead: Array, position: Array, acceleration: Array,
