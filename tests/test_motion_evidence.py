@@ -18,8 +18,9 @@ MAP = StandingMapSettings()
 EVIDENT = -math.log(1e-3)
 
 
-def counted(origin, returns, free, sigmas, places, variances, beside, deviations):
+def counted(origin, returns, free, sigmas, places, variances, normals, beside, deviations):
     """Plain reference of the kernel: all rays against all places."""
+    known = normals.any(axis=1)
     counts = [0, 0]
     for end, returned in [*((end, True) for end in returns), *((end, False) for end in free)]:
         way = end - origin
@@ -30,7 +31,10 @@ def counted(origin, returns, free, sigmas, places, variances, beside, deviations
         variance = sigmas[1] ** 2 + (sigmas[2] * length) ** 2 + (sigmas[0] ** 2 if returned else 0.0)
         noise = deviations * np.sqrt(variance + variances)
         ends = met & (abs(length - along) <= noise)
-        passes = met & (length - along > noise + beside)
+        across = np.abs(normals @ way) / length
+        with np.errstate(divide="ignore"):
+            nearer = np.where(known, beside * np.sqrt(1.0 - across**2) / across, beside)
+        passes = met & (length - along > noise + np.maximum(nearer, beside))
         if ends.any():
             counts[0] += returned
         elif passes.any():
@@ -48,8 +52,11 @@ def test_counted_rays_agree_with_plain_reference(seed, count, spread, upright):
     ends = places[rng.integers(count, size=60)] + rng.normal(0.0, 0.2, (60, 3))
     ends = origin + (ends - origin) * rng.uniform(0.6, 1.8, (60, 1))
     sigmas, variances, found = np.array([0.05, 0.02, 0.004]), rng.uniform(0.001, 0.01, count), np.zeros(2)
-    count_rays(origin, ends[:40], ends[40:], sigmas, places, variances, 0.15, 3.0, found)
-    assert found.tolist() == counted(origin, ends[:40], ends[40:], sigmas, places, variances, 0.15, 3.0)
+    normals = rng.normal(size=(count, 3))
+    normals *= rng.integers(2, size=(count, 1)) / np.linalg.norm(normals, axis=1)[:, None]
+    scene = origin, ends[:40], ends[40:], sigmas, places, variances, normals, 0.15, 3.0
+    count_rays(*scene, found)
+    assert found.tolist() == counted(*scene)
 
 
 def scan_of(returns, free=(), uav=0, time=0.0):

@@ -1,9 +1,9 @@
-"""Free space of the whole formation: its bounding cylinder against obstacles and altitudes.
+"""Free space of the whole formation: its upright bounds against obstacles and altitudes.
 
-The cylinder is upright and moves with the payload's centre. The obstacles, by their upright bounds (a box turned about
-the vertical, rounded), have closed forms of distance to it: a horizontal and a vertical gap, joined by Pythagoras.
-Every distance is a convex function along a straight line, so its least value on a segment is found exactly by golden
-section.
+The bounds, a rounded rectangle in plan view, move with the payload's centre and are not turned. The obstacles, by their
+upright bounds (a box turned about the vertical, rounded), have closed forms of distance to them, or of a lower bound of
+it: a horizontal and a vertical gap, joined by Pythagoras. Every distance is a convex function along a straight line, so
+its least value on a segment is found exactly by golden section.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class FreeSpace:
 
     Args:
         obstacles: (shape, centre (3,)) of each.
-        formation: the upright cylinder that must keep away.
+        formation: the upright bounds of what must keep away.
         margin: m, the least distance to keep between formation and obstacles.
         lowest, highest: altitudes between which the payload's centre may be (m, up).
         growth: m, by how much each obstacle is to be taken larger; None: not at all.
@@ -58,7 +58,7 @@ class FreeSpace:
         if self.growth.shape != (len(obstacles),) or not np.isfinite(self.centres).all():
             raise TrajectoryError("every obstacle needs a finite centre and one growth")
         self._bodies = _Bodies([shape for shape, _ in obstacles])
-        self._cylinder = np.array([formation.radius, formation.above, formation.below])
+        self._row = formation.row
         self.lateral_reach = np.array([shape.horizontal_reach for shape, _ in obstacles]) + self.growth
         """Extent of each obstacle from its centre outwards (M,) (m)."""
         self.vertical_reach = self._bodies.half_height + self.growth
@@ -81,7 +81,7 @@ class FreeSpace:
         free = np.broadcast_to(altitude, (len(north), len(east), len(down))).copy()
         keep = self.margin + extra + self.growth - TOUCHING
         around = self.lateral_reach - self.growth + self.formation.radius + keep
-        kernels.bar_lattice(free, north, east, down, keep, around, self.centres, self._bodies.sizes, self._cylinder)
+        kernels.bar_lattice(free, north, east, down, keep, around, self.centres, self._bodies.sizes, self._row)
         return free
 
     def within_bounds(self, places: Array) -> Mask:
@@ -100,7 +100,7 @@ class FreeSpace:
             return np.ones(len(starts), dtype=bool)
         return kernels.keep_away(
             np.ascontiguousarray(starts), np.ascontiguousarray(ends), least, self.centres, self.growth,
-            self._bodies.sizes, self._cylinder,
+            self._bodies.sizes, self._row,
         )  # fmt: skip
 
 
@@ -143,11 +143,18 @@ class _Bodies:
     def gaps(self, offsets: Array, formation: BoundingCylinder) -> tuple[Array, Array]:
         """Horizontal and vertical part (..., M) of the distance to the bodies less their ``ball`` (m)."""
         x, y = offsets[..., 0], offsets[..., 1]
+        c, s = np.abs(self._cosine), np.abs(self._sine)
+        half_x, half_y = formation.core
+        along = np.maximum(
+            np.abs(x) - half_x - self._half_x * c - self._half_y * s,
+            np.abs(y) - half_y - self._half_x * s - self._half_y * c,
+        )
         if self._turned:
             x, y = self._cosine * x + self._sine * y, self._cosine * y - self._sine * x
         x, y = np.abs(x) - self._half_x, np.abs(y) - self._half_y
-        horizontal = _joined(x, y) - self._upright - formation.radius
-        # The cylinder reaches from `below` under the payload's centre (down is positive) to `above` over it.
+        along = np.maximum(along, np.maximum(x - half_x * c - half_y * s, y - half_x * s - half_y * c))
+        horizontal = np.maximum(_joined(x, y) - formation.radius, along - formation.rounding) - self._upright
+        # The formation reaches from `below` under the payload's centre (down is positive) to `above` over it.
         z = offsets[..., 2] + (formation.below - formation.above) / 2.0
         vertical = np.abs(z) - self._half_z - (formation.below + formation.above) / 2.0
         return np.asarray(horizontal), np.asarray(vertical)

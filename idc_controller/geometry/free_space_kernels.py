@@ -1,7 +1,8 @@
 """Free space of the formation on lattices and segments, compiled; see :mod:`idc_controller.geometry.free_space`.
 
-A body is a row of 7 numbers, an :class:`~idc_controller.geometry.shape.UprightBounds`. The formation is its upright
-cylinder: radius, height above and depth below the payload's centre (m). SI, NED.
+A body is a row of 7 numbers, an :class:`~idc_controller.geometry.shape.UprightBounds`. The formation is a row of 6, its
+upright bounds: radius, height above and depth below the payload's centre, half edges north and east of the rectangle
+and how far its rounded corners reach beyond (m). SI, NED.
 """
 
 import math
@@ -23,10 +24,19 @@ def _joined(a: float, b: float) -> float:
 
 
 @inlined
-def _level_gap(body: Array, radius: float, x: float, y: float) -> float:
-    """Return the horizontal gap (m) between a body and the formation (x, y) away from it."""
-    u, v = body[5] * x + body[6] * y, body[5] * y - body[6] * x
-    return float(_joined(abs(u) - body[0], abs(v) - body[1]) - body[3] - radius)
+def _level_gap(body: Array, formation: Array, x: float, y: float) -> float:
+    """Return the horizontal gap (m) between a body and the formation (x, y) away from it, or somewhat less.
+
+    The larger of two lower bounds, both convex: the distance to the formation's circle, and the largest distance along
+    an edge of one of the rectangles (separating axes).
+    """
+    c, s = body[5], body[6]
+    u, v = abs(c * x + s * y), abs(c * y - s * x)
+    circle = _joined(u - body[0], v - body[1]) - formation[0]
+    c, s, half_x, half_y = abs(c), abs(s), formation[3], formation[4]
+    along = max(u - body[0] - half_x * c - half_y * s, v - body[1] - half_x * s - half_y * c)
+    along = max(along, abs(x) - half_x - body[0] * c - body[1] * s, abs(y) - half_y - body[0] * s - body[1] * c)
+    return float(max(circle, along - formation[5]) - body[3])
 
 
 @inlined
@@ -36,20 +46,20 @@ def _height_gap(body: Array, above: float, below: float, z: float) -> float:
 
 
 @inlined
-def _distance(body: Array, cylinder: Array, x: float, y: float, z: float) -> float:
+def _distance(body: Array, formation: Array, x: float, y: float, z: float) -> float:
     """Return the distance (m) between a body and the formation (x, y, z) away from it."""
-    level = _level_gap(body, cylinder[0], x, y)
-    return float(_joined(level, _height_gap(body, cylinder[1], cylinder[2], z)) - body[4])
+    level = _level_gap(body, formation, x, y)
+    return float(_joined(level, _height_gap(body, formation[1], formation[2], z)) - body[4])
 
 
 @inlined
-def _least_distance(body: Array, cylinder: Array, offset: Array, segment: Array) -> float:
+def _least_distance(body: Array, formation: Array, offset: Array, segment: Array) -> float:
     """Return the least distance (m) to a body on the ``segment`` (3,) that begins at an ``offset`` (3,) from it."""
     low, high, left, right = 0.0, 1.0, 1.0 - _GOLDEN, _GOLDEN
     at_left, at_right, new, falls = 0.0, 0.0, left, False
     for step in range(_SEARCH_STEPS + 2):
         at_new = _distance(
-            body, cylinder, offset[0] + new * segment[0], offset[1] + new * segment[1], offset[2] + new * segment[2]
+            body, formation, offset[0] + new * segment[0], offset[1] + new * segment[1], offset[2] + new * segment[2]
         )
         if step == 0:
             at_left, new = at_new, right
@@ -75,7 +85,7 @@ def _least_distance(body: Array, cylinder: Array, offset: Array, segment: Array)
     " float64[::1])"
 )
 def keep_away(
-    starts: Array, ends: Array, least: Array, centres: Array, growth: Array, bodies: Array, cylinder: Array
+    starts: Array, ends: Array, least: Array, centres: Array, growth: Array, bodies: Array, formation: Array
 ) -> Mask:
     """Return whether the clearance is ``least`` (M,) (m) or more on the segments ``starts`` to ``ends`` (E, 3) -> (E,).
 
@@ -84,7 +94,7 @@ def keep_away(
         centres: of the bodies (M, 3) (m).
         growth: by which they are taken larger (M,) (m).
         bodies: (M, 7).
-        cylinder: the formation (3,).
+        formation: (6,).
     """
     kept = np.ones(len(starts), dtype=np.bool_)
     offset, segment = np.empty(3), np.empty(3)
@@ -97,19 +107,19 @@ def keep_away(
         for m in range(len(centres)):
             for i in range(3):
                 offset[i] = (starts[e, i] + ends[e, i]) / 2.0 - centres[m, i]
-            middle = _distance(bodies[m], cylinder, offset[0], offset[1], offset[2]) - growth[m] - least[m]
+            middle = _distance(bodies[m], formation, offset[0], offset[1], offset[2]) - growth[m] - least[m]
             # Nowhere does the distance change faster than the place.
             if middle > 2.0 * half:
                 continue
             for i in range(3):
                 offset[i] = ends[e, i] - centres[m, i]
-            outer = _distance(bodies[m], cylinder, offset[0], offset[1], offset[2])
+            outer = _distance(bodies[m], formation, offset[0], offset[1], offset[2])
             for i in range(3):
                 offset[i] = starts[e, i] - centres[m, i]
-            outer = min(outer, _distance(bodies[m], cylinder, offset[0], offset[1], offset[2])) - growth[m] - least[m]
+            outer = min(outer, _distance(bodies[m], formation, offset[0], offset[1], offset[2])) - growth[m] - least[m]
             kept[e] = middle >= 0.0 and outer >= 0.0
             if kept[e] and outer + middle < half:
-                kept[e] = _least_distance(bodies[m], cylinder, offset, segment) - growth[m] >= least[m]
+                kept[e] = _least_distance(bodies[m], formation, offset, segment) - growth[m] >= least[m]
             if not kept[e]:
                 break
     return kept
@@ -128,7 +138,7 @@ def bar_lattice(
     around: Array,
     centres: Array,
     bodies: Array,
-    cylinder: Array,
+    formation: Array,
 ) -> None:
     """Clear ``free`` (X, Y, Z) where the formation is too near a body.
 
@@ -139,17 +149,17 @@ def bar_lattice(
         around: beyond this from its centre, north and east, nothing is near it (M,) (m).
         centres: of the bodies (M, 3) (m).
         bodies: (M, 7).
-        cylinder: the formation (3,).
+        formation: (6,).
     """
     over = np.empty(len(down))
     for m in range(len(centres)):
         x, y, z = centres[m, 0], centres[m, 1], centres[m, 2]
         nearest = keep[m] + bodies[m, 4]
         for k in range(len(down)):
-            over[k] = max(_height_gap(bodies[m], cylinder[1], cylinder[2], down[k] - z), 0.0)
+            over[k] = max(_height_gap(bodies[m], formation[1], formation[2], down[k] - z), 0.0)
         first, last = np.searchsorted(east, y - around[m]), np.searchsorted(east, y + around[m])
         for i in range(np.searchsorted(north, x - around[m]), np.searchsorted(north, x + around[m])):
             for j in range(first, last):
-                across = max(_level_gap(bodies[m], cylinder[0], north[i] - x, east[j] - y), 0.0)
+                across = max(_level_gap(bodies[m], formation, north[i] - x, east[j] - y), 0.0)
                 for k in range(len(down)):
                     free[i, j, k] &= across * across + over[k] * over[k] >= nearest * nearest

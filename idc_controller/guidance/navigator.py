@@ -97,6 +97,15 @@ class Navigator:
         """Args: the ``stages`` (K + 1,) (s) over which obstacles are predicted."""
         self.formation = BoundingCylinder.of(parameters, settings.link_tilt)
         self.settings, self.obstacles = settings, obstacles
+        at_rest = BoundingCylinder.of(parameters)
+        self.clearances = (
+            (self.formation, settings.margin + settings.spare), (self.formation, settings.margin),
+            (at_rest, settings.margin),
+        )  # fmt: skip
+        """Formations and their clearances (m) on detours, in the order in which they are tried."""
+        self._usable = len(self.clearances)
+        """How many of them are tried: not those on which the formation was held up on this way back to the mission."""
+        self._used = 0
         self._stages = stages
         self.lowest = self.formation.below + settings.ground_clearance
         """Lowest altitude of the payload's centre on a detour (m)."""
@@ -117,12 +126,14 @@ class Navigator:
     def reset(self) -> None:
         """Follow whatever mission is given next, by its own progress."""
         self._detour = None
+        self._usable = len(self.clearances)
         self.hold_up.clear()
 
     def advance(self, progress: float) -> float:
         """Return the progress (s) to go on with: back on the mission when the detour is flown."""
         if self._detour is not None and progress >= self._detour.end - self.settings.rejoin:
             self._detour = None
+            self._usable = len(self.clearances)
             return self._resume
         return progress
 
@@ -140,6 +151,9 @@ class Navigator:
         position, velocity = tracked.derivatives(np.array([time]), 1)[:, 0]
         if not self.hold_up.search_is_due(time, rate, math.hypot(*velocity)):
             return progress
+        if self._detour is not None and self._used > 0:
+            # The formation did not pass so near to what stands there.
+            self._usable = min(self._usable, self._used)
         obstacles = list(self.obstacles.predict(time + self._stages))
         found = self._search(self.mission_progress(progress), mission, position, obstacles)
         if isinstance(found, _NoPath):
@@ -158,21 +172,27 @@ class Navigator:
     ) -> tuple[Array, float] | _NoPath:
         """Return waypoints of a detour and the mission's progress where it leads, or why there is no detour.
 
-        Its clearance is the margin and what is spared beyond that, or the margin alone where there is no such path: as
-        near as that the safety filter led the formation here.
+        It has the largest of the clearances for which there is one: as near as the margin, at rest, the safety filter
+        leads the formation by itself.
         """
-        s = self.settings
         found: tuple[Array, float] | _NoPath = _NoPath("")
-        for keep in (s.margin + s.spare, s.margin):
-            found = self._path(progress, mission, position, obstacles, keep)
+        for number, (formation, keep) in enumerate(self.clearances[: self._usable]):
+            self._used = number
+            found = self._path(progress, mission, position, obstacles, formation, keep)
             if not isinstance(found, _NoPath):
                 break
         return found
 
     def _path(
-        self, progress: float, mission: Trajectory, position: Array, obstacles: list[PredictedObstacle], keep: float
+        self,
+        progress: float,
+        mission: Trajectory,
+        position: Array,
+        obstacles: list[PredictedObstacle],
+        formation: BoundingCylinder,
+        keep: float,
     ) -> tuple[Array, float] | _NoPath:
-        """See :meth:`_search`, with a clearance ``keep`` (m)."""
+        """See :meth:`_search`, with a clearance ``keep`` (m) of the ``formation``."""
         s = self.settings
         ahead = progress + np.arange(0.0, s.look_ahead, s.sample)
         path = mission.derivatives(ahead, 0)[0]
@@ -180,7 +200,7 @@ class Navigator:
         growth = [float(o.growth[0]) for o in obstacles]
         names = [o.name for o in obstacles]
         highest = float(-path[:, 2].min()) + s.climb
-        space = FreeSpace(bodies, self.formation, keep, self.lowest, highest, growth=growth)
+        space = FreeSpace(bodies, formation, keep, self.lowest, highest, growth=growth)
         conflicts = np.asarray(np.any(space.clearance(path) < keep - TOUCHING, axis=1))
         begin = int(np.argmax(conflicts)) if conflicts.any() else 0
         free = np.flatnonzero(~conflicts[begin:]) + begin
@@ -204,7 +224,7 @@ class Navigator:
         )
         for goal in goals:
             detour = find_detour(
-                bodies, position, path[goal], self.formation, keep, lowest=self.lowest, highest=highest,
+                bodies, position, path[goal], formation, keep, lowest=self.lowest, highest=highest,
                 growth=growth, names=names, settings=s.detour,
             )  # fmt: skip
             if detour.waypoints is not None:

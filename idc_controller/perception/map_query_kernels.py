@@ -6,6 +6,7 @@ import numpy as np
 
 from idc_controller.arrays import Array, Cells, Indices, Links, Mask
 from idc_controller.compiled import inlined, kernel
+from idc_controller.perception.normal_kernels import surface_normal
 from idc_controller.perception.voxel_kernels import (
     BORN,
     CELLS,
@@ -47,6 +48,23 @@ def stands_at(
         x, y, z = voxel(points[p, 0], size), voxel(points[p, 1], size), voxel(points[p, 2], size)
         index = element_at(table, pages, links, x, y, z)
         found[p] = index >= 0 and elements[index, PROVEN] == 1.0 and elements[index, BORN] <= since
+    return found
+
+
+@kernel(
+    "float64[:, ::1](int64[:, ::1], int32[:, ::1], int64[:, ::1], int32[:, ::1], float64[:, ::1], float64[:, ::1],"
+    " float64)"
+)
+def normals_at(
+    table: Indices, pages: Links, blocks: Indices, links: Links, elements: Array, points: Array, size: float
+) -> Array:
+    """Return the unit normals of what stands at ``points`` (n, 3) -> (n, 3); zero where nothing does."""
+    found = np.zeros((points.shape[0], 3))
+    for p in range(points.shape[0]):
+        x, y, z = voxel(points[p, 0], size), voxel(points[p, 1], size), voxel(points[p, 2], size)
+        index = element_at(table, pages, links, x, y, z)
+        if index >= 0 and elements[index, PROVEN] == 1.0:
+            surface_normal(table, pages, blocks, links, elements, elements[index], found[p])
     return found
 
 

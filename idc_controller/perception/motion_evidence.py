@@ -6,8 +6,9 @@ at the same places again, and rays that pass there end at it as often as they ev
 
 - most of the points of the body lie in what was seen free, or where something has stood before. Those in space of which
   nothing is known say neither, and beside what is so thin that rays pass it, space is seen free;
-- rays through the places of its earlier points end there, or beyond. Rays pass beside what is thin also while it
-  stands: how often, those of the other vehicles at the same time say. All rays of a scan together count as one, as the
+- rays through the places of its earlier points end there, or beyond; along a surface, a ray beside them ends beyond
+  also while that stands. Rays pass beside what is thin also while it stands: how often, those of the other vehicles at
+  the same time say. All rays of a scan together count as one, as the
   error of the pose is common to them.
 """
 
@@ -15,7 +16,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -34,6 +35,15 @@ _BESIDE = 0.15
 """Distance of a ray from a point within which it passes through the place of that (m)."""
 _SIGMAS = 3.0
 """Standard deviations by which it must end beyond."""
+
+
+Normals = Callable[[Array], Array]
+"""Unit normals (n, 3) of what stands at points (n, 3), zero where they are not known."""
+
+
+def unknown_normals(points: Array) -> Array:
+    """Return that no normal is known."""
+    return np.zeros((len(points), 3))
 
 
 class PartOfScan(NamedTuple):
@@ -66,6 +76,7 @@ class MotionEvidence:
         parts: Sequence[PartOfScan],
         scans: Sequence[PlacedScan],
         settings: StandingMapSettings,
+        normals: Normals = unknown_normals,
     ) -> None:
         """Take one frame.
 
@@ -74,17 +85,19 @@ class MotionEvidence:
             parts: what the map says of them.
             scans: all of the frame.
             settings: of the map, on false returns and rays that pass what is seen free.
+            normals: of the surface at points.
         """
         of_uav: dict[int, PartOfScan] = {}
         for part in parts:
             of_uav[part.uav] = part if part.uav not in of_uav else part.joined(of_uav[part.uav])
         variances = points.noise**2 + points.pose_variance
-        earlier = self._earlier(points.time)
+        earlier = self._earlier(points.time, normals)
+        surface = normals(points.points)
         for scan in scans:
             ratio = self._ratio_of_points(of_uav[scan.uav], settings) if scan.uav in of_uav else 0.0
             self.nats = max(self.nats + ratio + self._ratio_of_rays(scan, earlier), 0.0)
             of_others = (points.origins != scan.origin).any(axis=1)
-            ends, passes = _shares(scan, (points.points[of_others], variances[of_others]))
+            ends, passes = _shares(scan, (points.points[of_others], variances[of_others], surface[of_others]))
             self._ends += ends
             self._passes += passes
         self._frames.append((points.time, points.points, variances))
@@ -103,19 +116,21 @@ class MotionEvidence:
             return math.log(_UNEXPLAINED / by_chance)
         return math.log((1.0 - _UNEXPLAINED) / (1.0 - by_chance))
 
-    def _ratio_of_rays(self, scan: PlacedScan, earlier: tuple[Array, Array]) -> float:
+    def _ratio_of_rays(self, scan: PlacedScan, earlier: tuple[Array, Array, Array]) -> float:
         ends, passes = _shares(scan, earlier)
         # Where it has left, half of those that would have met it pass as well.
         return passes * math.log(0.5 * (1.0 + self._passing) / self._passing) + ends * math.log(0.5)
 
-    def _earlier(self, time: float) -> tuple[Array, Array]:
+    def _earlier(self, time: float, normals: Normals) -> tuple[Array, Array, Array]:
+        """Return the places of its earlier points (m, 3), their variances (m,) (m2) and normals there (m, 3)."""
         chosen = [(places, variances) for at, places, variances in self._frames if time - at > _APART]
         if not chosen:
-            return np.empty((0, 3)), np.empty(0)
-        return np.concatenate([places for places, _ in chosen]), np.concatenate([v for _, v in chosen])
+            return np.empty((0, 3)), np.empty(0), np.empty((0, 3))
+        earlier = np.concatenate([places for places, _ in chosen])
+        return earlier, np.concatenate([v for _, v in chosen]), normals(earlier)
 
 
-def _shares(scan: PlacedScan, places: tuple[Array, Array]) -> tuple[float, float]:
+def _shares(scan: PlacedScan, places: tuple[Array, Array, Array]) -> tuple[float, float]:
     """Return of the rays of a scan that meet places which share ends there, and which passes; 0 and 0 if none does."""
     counts = np.zeros(2)
     if len(places[0]):

@@ -10,7 +10,14 @@ from idc_controller.compiled import inlined, kernel
 
 @inlined
 def _meeting(
-    origin: Array, end: Array, variance: float, places: Array, variances: Array, beside: float, sigmas: float
+    origin: Array,
+    end: Array,
+    variance: float,
+    places: Array,
+    variances: Array,
+    normals: Array,
+    beside: float,
+    sigmas: float,
 ) -> tuple[bool, bool]:
     """Return whether a ray ends at one of the places, and whether it passes one and ends beyond."""
     x, y, z = end[0] - origin[0], end[1] - origin[1], end[2] - origin[2]
@@ -27,13 +34,18 @@ def _meeting(
         beyond, noise = length - along, sigmas * math.sqrt(variance + variances[m])
         if abs(beyond) <= noise:
             return True, False
-        passes = passes or beyond > noise + beside
+        if passes or beyond <= noise + beside:
+            continue
+        # A ray so far beside the place meets the surface there so much farther, by its angle to that.
+        across = abs(x * normals[m, 0] + y * normals[m, 1] + z * normals[m, 2])
+        is_known = normals[m, 0] != 0.0 or normals[m, 1] != 0.0 or normals[m, 2] != 0.0
+        passes = not is_known or (beyond - noise) * across > beside * math.sqrt(max(1.0 - across * across, 0.0))
     return False, passes
 
 
 @kernel(
-    "void(float64[::1], float64[:, ::1], float64[:, ::1], float64[::1], float64[:, ::1], float64[::1], float64,"
-    " float64, float64[::1])"
+    "void(float64[::1], float64[:, ::1], float64[:, ::1], float64[::1], float64[:, ::1], float64[::1],"
+    " float64[:, ::1], float64, float64, float64[::1])"
 )
 def count_rays(
     origin: Array,
@@ -42,6 +54,7 @@ def count_rays(
     sigmas: Array,
     places: Array,
     variances: Array,
+    normals: Array,
     beside: float,
     deviations: float,
     counts: Array,
@@ -55,8 +68,9 @@ def count_rays(
         sigmas: standard deviations of range (m), position (m) and attitude (rad).
         places: of the points (m, 3).
         variances: of each on any axis (m,) (m2).
-        beside: distance of a ray from a point up to which it passes through the place of that (m); a surface that is
-            turned by up to 45 deg from the ray is not more than that nearer or farther there.
+        normals: unit normals of the surface at each (m, 3); zero where it is not known: then it is taken to be turned
+            by up to 45 deg from a ray.
+        beside: distance of a ray from a point up to which it passes through the place of that (m).
         deviations: standard deviations within which it ends there.
         counts: of rays that end there, and that pass (2,), written to.
     """
@@ -94,7 +108,7 @@ def count_rays(
         if distance > radius and (along <= 0.0 or (distance**2 - radius**2) * square > along * along):
             continue
         variance = sigmas[1] ** 2 + sigmas[2] ** 2 * square + (sigmas[0] ** 2 if returned else 0.0)
-        ends, passes = _meeting(origin, end, variance, places, variances, beside, deviations)
+        ends, passes = _meeting(origin, end, variance, places, variances, normals, beside, deviations)
         if ends and returned:
             counts[0] += 1.0
         elif passes:

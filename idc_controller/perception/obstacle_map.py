@@ -57,7 +57,10 @@ class ObstacleMap:
         models = MotionModels(s.tracking.motion)
         moving = [Track(o.name, models, s, o.shape, o.centre) for o in known if o.moves]
         self._standing = StandingObstacles([o for o in known if not o.moves])
-        self._tracks = TrackList(moving, [obstacle.name for obstacle in known], models, s)
+        self.seen = SeenObstacles(s.standing_map)
+        """What the range sensors have seen to stand."""
+        names = [obstacle.name for obstacle in known]
+        self._tracks = TrackList(moving, names, models, s, self.seen.map.normals)
         self._view_range = s.retention.in_view_share * sensor_range
         self.placement = ScanPlacement(sensors, rays, s.scans)
         """Takes scans, poses and failures of the range sensors from telemetry."""
@@ -68,8 +71,6 @@ class ObstacleMap:
         )
         self._rays = rays
         self._check = MapCheck(self._standing.obstacles, self._view_range, s)
-        self.seen = SeenObstacles(s.standing_map)
-        """What the range sensors have seen to stand."""
         self._sigmas = math.sqrt(float(upper_quantile(s.standing_map.false_alarm, 3)))
         self._time = -math.inf
         self._deleted: list[str] = []

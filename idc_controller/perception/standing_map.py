@@ -28,6 +28,7 @@ from idc_controller.perception.settings import StandingMapSettings
 from idc_controller.perception.sight_kernels import first_hidden, unseen_cells
 from idc_controller.perception.voxel_kernels import (
     BLOCKS,
+    BORN,
     CHANGE,
     EDGE,
     HELD,
@@ -107,18 +108,27 @@ class StandingMap:
             s.incidence_min, self._prior, self._evidence, s.memory,
         )  # fmt: skip
 
-    def release(self, bodies: Sequence[tuple[Shape, Array]], gap: float) -> None:
-        """Remove the points within ``gap`` (m) of bodies that move, each a shape and its centre (3,) (NED, m).
+    def normals(self, points: Array) -> Array:
+        """Return the unit normals of what stands at ``points`` (n, 3) -> (n, 3); zero where they are not known."""
+        v, points = self._store, np.ascontiguousarray(points, dtype=float).reshape(-1, 3)
+        return queries.normals_at(v.table, v.pages, v.blocks, v.links, v.elements, points, self.settings.voxel)
 
-        Where a body is, or was when it was seen, nothing else stands.
+    def release(self, bodies: Sequence[tuple[Shape, Array, float]], gap: float) -> None:
+        """Remove the points within ``gap`` (m) of bodies that move, unless they have stood for longer than these.
+
+        Each body is a shape, its centre (3,) (NED, m) and the time (s) since which it has been seen: what was hit more
+        than the settling time before is not of it.
         """
         v = self._store
         indices = queries.used_elements(v.elements, v.counts)
         if not len(indices) or not bodies:
             return
         means = v.elements[indices, MEAN : MEAN + 3]
-        distance = Bodies([shape for shape, _ in bodies]).distance(means, np.array([centre for _, centre in bodies]))
-        found = indices[(distance <= gap).any(axis=0)]
+        shapes, centres, first = zip(*bodies, strict=True)
+        distance = Bodies(shapes).distance(means, np.array(centres))
+        since = np.array(first) - self.settings.settling_time
+        is_its = (distance <= gap) & (v.elements[indices, BORN] >= since[:, None])
+        found = indices[is_its.any(axis=0)]
         release(v.table, v.pages, v.blocks, v.cells, v.links, v.elements, v.counts, found, self.settings.free_passes)
 
     def is_occupied(self, points: Array) -> Mask:

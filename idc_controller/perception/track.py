@@ -9,7 +9,7 @@ import numpy as np
 from idc_controller.arrays import Array
 from idc_controller.geometry.obstacles import PredictedObstacle
 from idc_controller.geometry.shape import Shape
-from idc_controller.perception.motion_evidence import MotionEvidence, PartOfScan
+from idc_controller.perception.motion_evidence import MotionEvidence, Normals, PartOfScan, unknown_normals
 from idc_controller.perception.motion_imm import MotionModels
 from idc_controller.perception.obstacle_filter import ObstacleFilter
 from idc_controller.perception.placed_scan import PlacedScan
@@ -28,6 +28,8 @@ class Detections:
     clusters: int = 0
     points: Array = field(default_factory=lambda: np.empty((0, 3)))
     """Points of the last frame (n, 3)."""
+    first: float = math.inf
+    """When it was detected first."""
     places: list[Array] = field(default_factory=list)
     """Its centres (3,), until they are taken."""
     evidence: MotionEvidence = field(default_factory=MotionEvidence)
@@ -37,6 +39,7 @@ class Detections:
         """Add one frame; ``time`` (s) of the ``centre`` (3,)."""
         self.last, self.points = max(self.last, points.time), points.points
         self.clusters += clusters
+        self.first = min(self.first, points.time)
         self.places.append(centre)
         self.visited.add(time, centre)
 
@@ -63,6 +66,8 @@ class Track:
     """Shape of an obstacle of the map."""
     map_centre: Array = field(default_factory=lambda: np.zeros(3))
     """Its place on the map (3,) (NED, m), until it is detected."""
+    normals: Normals = unknown_normals
+    """Of the surface at points, by the standing map."""
     scatter: float = 0.0
     """Variance of its points beyond their sensors' (m2), until it is detected."""
     filter: ObstacleFilter | None = None
@@ -96,7 +101,7 @@ class Track:
         self.detections.add(points, len(parts), self.filter.state[0], self.filter.time)
         if not self.has_moved:
             s, evidence = self.settings.standing_map, self.detections.evidence
-            evidence.add(points, explained, scans, s)
+            evidence.add(points, explained, scans, s, self.normals)
             self.has_moved = evidence.nats > -math.log(s.false_alarm) and self.filter.is_moving(s.false_alarm)
         self.is_deleted = False
 
@@ -106,11 +111,14 @@ class Track:
         confirmed = self.map_shape is not None or self.detections.clusters >= self.settings.retention.confirmations
         return not self.is_deleted and confirmed
 
-    def take_places(self) -> list[tuple[Shape, Array]]:
-        """Return its body at all places where it was seen since the last call, none before it is known to move."""
+    def take_places(self) -> list[tuple[Shape, Array, float]]:
+        """Return its body at all places where it was seen since the last call, and since when it has been seen (s).
+
+        None before it is known to move.
+        """
         if not (self.has_moved and not self.is_static and self.is_confirmed):
             return []
-        return [(self.shape, place) for place in self.detections.take_places()]
+        return [(self.shape, place, self.detections.first) for place in self.detections.take_places()]
 
     @property
     def is_obstacle(self) -> bool:

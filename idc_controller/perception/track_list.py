@@ -10,7 +10,7 @@ from idc_controller.arrays import Array, Mask
 from idc_controller.geometry.obstacles import Bodies, PointGroups
 from idc_controller.perception.association import gating_shape
 from idc_controller.perception.clusters import Cluster
-from idc_controller.perception.motion_evidence import PartOfScan
+from idc_controller.perception.motion_evidence import Normals, PartOfScan, unknown_normals
 from idc_controller.perception.motion_imm import MotionModels
 from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.settings import PerceptionSettings
@@ -21,12 +21,17 @@ class TrackList:
     """Tracks, the oldest first. Times are the team's (s)."""
 
     def __init__(
-        self, known: Sequence[Track], names: Sequence[str], models: MotionModels, settings: PerceptionSettings
+        self,
+        known: Sequence[Track],
+        names: Sequence[str],
+        models: MotionModels,
+        settings: PerceptionSettings,
+        normals: Normals = unknown_normals,
     ) -> None:
-        """``known``: tracks of the map's moving obstacles; ``names``: of all its obstacles."""
+        """``known``: tracks of the map's moving obstacles; ``names``: of all its obstacles; ``normals`` of surfaces."""
         self._settings = settings
         self.tracks = list(known)
-        self._models = models
+        self._models, self._normals = models, normals
         self._names = set(names)
         self._deleted: list[tuple[float, Track]] = []
         self._next_number = 1
@@ -163,7 +168,7 @@ class TrackList:
         track.update([member.surface_points for member in members], explained, scans)
 
     def _track(self, name: str) -> Track:
-        return Track(name, self._models, self._settings, scatter=self._scatter)
+        return Track(name, self._models, self._settings, normals=self._normals, scatter=self._scatter)
 
     def _grouped(self, clusters: list[Cluster]) -> list[list[Cluster]]:
         """Return clusters of several vehicles that lie on one surface, together."""

@@ -62,7 +62,7 @@ class AvoidanceFilter:
         off = 0.0 if now is None else math.dist(estimate.x[0:3], now[0])
         obstacles = PredictedObstacles(predicted, self._extra_growth(off))
         plan, nearest, infeasible, qp_count = self._decide(time, start, crackle, ahead, obstacles)
-        if plan is not None and plan.standing_slack > NEGLIGIBLE:
+        if plan is not None and plan.slack > NEGLIGIBLE:
             plan, count = self._safer(plan, start, crackle, ahead, obstacles)
             qp_count += count
         negligible = plan is None or bool(np.abs(plan.deviation).max() < NEGLIGIBLE)
