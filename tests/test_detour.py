@@ -256,6 +256,35 @@ def test_clearance_equals_that_of_collision_library():
             assert (distance if distance > 0 else 0.0) == pytest.approx(max(expected, 0.0), abs=1e-3)
 
 
+def test_clearance_of_rectangle_is_a_lower_bound_and_exact_beside_its_edges():
+    rng = np.random.default_rng(6)
+    core, rounding = (0.9, 0.4), 0.3
+    formation = BoundingCylinder(math.hypot(*core) + rounding, 3.75, 0.25, core, rounding)
+    box = coal.Box(2.0 * core[0], 2.0 * core[1], 4.0)
+    for _ in range(60):
+        shape = Wall(size=(*rng.uniform(0.2, 3.0, 2), 4.0), yaw=rng.uniform(-2.0, 2.0))
+        place = np.array([*rng.uniform(-4.0, 4.0, 2), 0.0])
+        found = FreeSpace([(shape, place)], formation, 0.0, -100.0, 100.0).clearance(np.zeros((1, 3)))[0, 0]
+        exact = coal.distance(
+            box, coal.Transform3s.Identity(), shape.geometry(), coal.Transform3s(shape.rotation, place),
+            coal.DistanceRequest(), coal.DistanceResult(),
+        ) - rounding  # fmt: skip
+        assert found <= exact + 1e-6 or exact < 0.0
+        cylinder = FreeSpace([(shape, place)], BoundingCylinder(formation.radius, 3.75, 0.25), 0.0, -100.0, 100.0)
+        assert found >= cylinder.clearance(np.zeros((1, 3)))[0, 0]
+    beside = FreeSpace([(Wall((0.4, 8.0, 9.0)), (3.0, 0.0, 0.0))], formation, 0.0, -100.0, 100.0)
+    assert beside.clearance(np.zeros((1, 3)))[0, 0] == pytest.approx(3.0 - 0.2 - 0.9 - 0.3)
+
+
+def test_detour_leads_through_gap_that_only_the_narrow_side_fits():
+    """Between two walls 2.6 m apart, with 0.5 m to each: too narrow for the cylinder of 1.1 m, which goes round."""
+    walls = [(Wall((8.0, 20.0, 40.0)), np.array([8.0, side * (10.0 + 1.3), -5.0])) for side in (-1.0, 1.0)]
+    slim = BoundingCylinder(1.1, 3.75, 0.25, (0.6, 0.3), 0.4)
+    for formation, is_straight in ((slim, True), (BoundingCylinder(1.1, 3.75, 0.25), False)):
+        detour = find_detour(walls, (0.0, 0.0, -5.0), (16.0, 0.0, -5.0), formation, 0.5)
+        assert (detour.length == 16.0) == is_straight
+
+
 def test_first_conflict_of_path_is_found():
     times = np.linspace(0.0, 6.0, 61)
     positions = np.column_stack([2.0 * times, np.zeros(61), np.full(61, -5.0)])
