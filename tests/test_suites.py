@@ -264,7 +264,7 @@ def test_each_line_of_a_list_becomes_a_mission(tmp_path):
         ({"speed": -1}, "speed: must be greater than 0, found -1"),
         ({"poles": [{"north": 1.0, "east": 0.5, "radius": 0.2}]}, "poles[1].height: missing key"),
         ({"poles": [{"north": 9.0, "east": 0.5, "radius": 0.0, "height": 3.0}]}, "poles[1].radius: must be greater"),
-        ({"poles": [{"north": 1.0, "east": 0.5, "radius": 0.2, "height": 9.0}]}, "poles[1]: stands -"),
+        ({"poles": [{"north": 1.0, "east": 0.5, "radius": 0.2, "height": 9.0}]}, "poles[1]: stands 0.00 m"),
         ({"towers": []}, "towers: unknown key"),
         ({"boxes": [{"north": "x"}]}, 'boxes[1].north: must be a valid number, found "x"'),
     ],

@@ -63,7 +63,9 @@ class PartOfScan(NamedTuple):
 class MotionEvidence:
     """Evidence of one body. Times in s, NED, m."""
 
-    def __init__(self) -> None:
+    def __init__(self, normals: Normals = unknown_normals) -> None:
+        """``normals``: of what stands at points."""
+        self._normals = normals
         self._frames: deque[tuple[float, Array, Array]] = deque(maxlen=_FRAMES)
         self._ends, self._passes = 0.0, 0.0
         """Scans through points that others saw then: sums of the shares of rays that ended there, and passed."""
@@ -76,7 +78,6 @@ class MotionEvidence:
         parts: Sequence[PartOfScan],
         scans: Sequence[PlacedScan],
         settings: StandingMapSettings,
-        normals: Normals = unknown_normals,
     ) -> None:
         """Take one frame.
 
@@ -85,14 +86,13 @@ class MotionEvidence:
             parts: what the map says of them.
             scans: all of the frame.
             settings: of the map, on false returns and rays that pass what is seen free.
-            normals: of the surface at points.
         """
         of_uav: dict[int, PartOfScan] = {}
         for part in parts:
             of_uav[part.uav] = part if part.uav not in of_uav else part.joined(of_uav[part.uav])
         variances = points.noise**2 + points.pose_variance
-        earlier = self._earlier(points.time, normals)
-        surface = normals(points.points)
+        earlier = self._earlier(points.time)
+        surface = self._normals(points.points)
         for scan in scans:
             ratio = self._ratio_of_points(of_uav[scan.uav], settings) if scan.uav in of_uav else 0.0
             self.nats = max(self.nats + ratio + self._ratio_of_rays(scan, earlier), 0.0)
@@ -121,13 +121,13 @@ class MotionEvidence:
         # Where it has left, half of those that would have met it pass as well.
         return passes * math.log(0.5 * (1.0 + self._passing) / self._passing) + ends * math.log(0.5)
 
-    def _earlier(self, time: float, normals: Normals) -> tuple[Array, Array, Array]:
+    def _earlier(self, time: float) -> tuple[Array, Array, Array]:
         """Return the places of its earlier points (m, 3), their variances (m,) (m2) and normals there (m, 3)."""
         chosen = [(places, variances) for at, places, variances in self._frames if time - at > _APART]
         if not chosen:
             return np.empty((0, 3)), np.empty(0), np.empty((0, 3))
         earlier = np.concatenate([places for places, _ in chosen])
-        return earlier, np.concatenate([v for _, v in chosen]), normals(earlier)
+        return earlier, np.concatenate([v for _, v in chosen]), self._normals(earlier)
 
 
 def _shares(scan: PlacedScan, places: tuple[Array, Array, Array]) -> tuple[float, float]:

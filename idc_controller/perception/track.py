@@ -9,7 +9,7 @@ import numpy as np
 from idc_controller.arrays import Array
 from idc_controller.geometry.obstacles import PredictedObstacle
 from idc_controller.geometry.shape import Shape
-from idc_controller.perception.motion_evidence import MotionEvidence, Normals, PartOfScan, unknown_normals
+from idc_controller.perception.motion_evidence import MotionEvidence, PartOfScan
 from idc_controller.perception.motion_imm import MotionModels
 from idc_controller.perception.obstacle_filter import ObstacleFilter
 from idc_controller.perception.placed_scan import PlacedScan
@@ -66,8 +66,6 @@ class Track:
     """Shape of an obstacle of the map."""
     map_centre: Array = field(default_factory=lambda: np.zeros(3))
     """Its place on the map (3,) (NED, m), until it is detected."""
-    normals: Normals = unknown_normals
-    """Of the surface at points, by the standing map."""
     scatter: float = 0.0
     """Variance of its points beyond their sensors' (m2), until it is detected."""
     filter: ObstacleFilter | None = None
@@ -101,7 +99,7 @@ class Track:
         self.detections.add(points, len(parts), self.filter.state[0], self.filter.time)
         if not self.has_moved:
             s, evidence = self.settings.standing_map, self.detections.evidence
-            evidence.add(points, explained, scans, s, self.normals)
+            evidence.add(points, explained, scans, s)
             self.has_moved = evidence.nats > -math.log(s.false_alarm) and self.filter.is_moving(s.false_alarm)
         self.is_deleted = False
 

@@ -10,11 +10,11 @@ from idc_controller.arrays import Array, Mask
 from idc_controller.geometry.obstacles import Bodies, PointGroups
 from idc_controller.perception.association import gating_shape
 from idc_controller.perception.clusters import Cluster
-from idc_controller.perception.motion_evidence import Normals, PartOfScan, unknown_normals
+from idc_controller.perception.motion_evidence import MotionEvidence, Normals, PartOfScan, unknown_normals
 from idc_controller.perception.motion_imm import MotionModels
 from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.settings import PerceptionSettings
-from idc_controller.perception.track import Track
+from idc_controller.perception.track import Detections, Track
 
 
 class TrackList:
@@ -168,7 +168,8 @@ class TrackList:
         track.update([member.surface_points for member in members], explained, scans)
 
     def _track(self, name: str) -> Track:
-        return Track(name, self._models, self._settings, normals=self._normals, scatter=self._scatter)
+        detections = Detections(evidence=MotionEvidence(self._normals))
+        return Track(name, self._models, self._settings, scatter=self._scatter, detections=detections)
 
     def _grouped(self, clusters: list[Cluster]) -> list[list[Cluster]]:
         """Return clusters of several vehicles that lie on one surface, together."""
