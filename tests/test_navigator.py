@@ -9,6 +9,7 @@ from paper_system import system
 
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.free_space import BoundingCylinder, first_conflict
+from idc_controller.guidance import navigator as navigator_module
 from idc_controller.guidance.navigator import Navigator
 from idc_controller.guidance.settings import NavigatorSettings
 from idc_controller.trajectory.paths import Leg
@@ -112,6 +113,34 @@ def test_detour_keeps_margin_and_returns_to_mission(navigator, obstacles):
     # Beyond where it leads the mission is free.
     beyond = mission.derivatives(np.linspace(resume, mission.end, 50), 0)[0]
     assert first_conflict(beyond, now(*obstacles), formation(), s.margin) is None
+
+
+def test_clearance_at_which_a_detour_was_held_up_is_not_tried_again_until_the_mission_is_resumed(
+    navigator, monkeypatch
+):
+    tried = []
+
+    def path(progress, mission, position, obstacles, formation, keep):
+        tried.append(navigator.clearances.index((formation, keep)))
+        return ways[tried[-1]]
+
+    none = navigator_module._NoPath("none")
+    monkeypatch.setattr(navigator, "_path", path)
+    ways = [none, none, (np.array([HERE, HERE + np.array([0.0, 4.0, 0.0])]), 9.0)]
+    held_up(navigator, [ACROSS], 0.6)
+    assert (tried, navigator.detours) == ([0, 1, 2], 1)
+    # Held up on that detour, and again: what was not flown stays.
+    ways[2] = none
+    for begin in (10.0, 20.0, 40.0):
+        tried.clear()
+        for time in begin + 0.05 * np.arange(20):
+            navigator.watch(time, 1.0, 0.3, straight(18.0), TRACKED)
+        assert tried == [0, 1]
+    navigator.reset()
+    tried.clear()
+    for time in 60.0 + 0.05 * np.arange(20):
+        navigator.watch(time, 5.0, 0.3, straight(18.0), TRACKED)
+    assert tried == [0, 1, 2]
 
 
 def test_mission_is_resumed_at_end_of_detour(navigator):

@@ -104,8 +104,9 @@ class Navigator:
         )  # fmt: skip
         """Formations and their clearances (m) on detours, in the order in which they are tried."""
         self._usable = len(self.clearances)
-        """How many of them are tried: not those on which the formation was held up on this way back to the mission."""
-        self._used = 0
+        """How many of them are tried: not those at which the formation was held up on this way back to the mission."""
+        self._flown = 0
+        """Which of them the last detour has."""
         self._stages = stages
         self.lowest = self.formation.below + settings.ground_clearance
         """Lowest altitude of the payload's centre on a detour (m)."""
@@ -151,16 +152,16 @@ class Navigator:
         position, velocity = tracked.derivatives(np.array([time]), 1)[:, 0]
         if not self.hold_up.search_is_due(time, rate, math.hypot(*velocity)):
             return progress
-        if self._detour is not None and self._used > 0:
+        if self._detour is not None and self._flown > 0:
             # The formation did not pass so near to what stands there.
-            self._usable = min(self._usable, self._used)
+            self._usable = min(self._usable, self._flown)
         obstacles = list(self.obstacles.predict(time + self._stages))
-        found = self._search(self.mission_progress(progress), mission, position, obstacles)
+        found, number = self._search(self.mission_progress(progress), mission, position, obstacles)
         if isinstance(found, _NoPath):
             self.hold_up.not_found(time, *found)
             return progress
         self.hold_up.found()
-        waypoints, self._resume = found
+        (waypoints, self._resume), self._flown = found, number
         limits = self.settings.limits
         legs = [Leg(waypoint, limits.speed) for waypoint in waypoints[1:]]
         self._detour = WaypointTrajectory(position, legs, limits, corner=self.settings.corner)
@@ -169,19 +170,18 @@ class Navigator:
 
     def _search(
         self, progress: float, mission: Trajectory, position: Array, obstacles: list[PredictedObstacle]
-    ) -> tuple[Array, float] | _NoPath:
-        """Return waypoints of a detour and the mission's progress where it leads, or why there is no detour.
+    ) -> tuple[tuple[Array, float] | _NoPath, int]:
+        """Return waypoints of a detour and the mission's progress where it leads, or why there is none; its clearance.
 
         It has the largest of the clearances for which there is one: as near as the margin, at rest, the safety filter
         leads the formation by itself.
         """
         found: tuple[Array, float] | _NoPath = _NoPath("")
         for number, (formation, keep) in enumerate(self.clearances[: self._usable]):
-            self._used = number
             found = self._path(progress, mission, position, obstacles, formation, keep)
             if not isinstance(found, _NoPath):
-                break
-        return found
+                return found, number
+        return found, self._usable
 
     def _path(
         self,
@@ -192,7 +192,7 @@ class Navigator:
         formation: BoundingCylinder,
         keep: float,
     ) -> tuple[Array, float] | _NoPath:
-        """See :meth:`_search`, with a clearance ``keep`` (m) of the ``formation``."""
+        """Return a detour with a clearance ``keep`` (m) of the ``formation``, or why there is none."""
         s = self.settings
         ahead = progress + np.arange(0.0, s.look_ahead, s.sample)
         path = mission.derivatives(ahead, 0)[0]

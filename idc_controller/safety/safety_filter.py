@@ -155,6 +155,7 @@ class AvoidanceFilter:
         stop, count = self._refine(begin, crackle, rest, *_absolute(rest, planner.free(begin)), obstacles, 2)
         if stop is None or self._clearance(rest, stop, obstacles) <= self._clearance(ahead, plan, obstacles):
             return plan, count
+        # The slack stays that of the plan: by it the progress rests.
         deviation = stop.deviation + (rest - ahead).transpose(1, 0, 2)
         return replace(plan, deviation=deviation), count
 
