@@ -3,6 +3,9 @@
 MISSION ?= missions/figure_eight_spheres.toml
 # The commit that benchmark-check compares with.
 BASE ?= HEAD~1
+# The OpenBLAS kernels of test-numerics, and the tests that it runs.
+KERNELS ?= Sandybridge Nehalem
+NUMERICS = $(shell grep -l pytest.mark.numerics tests/test_*.py)
 VENV := .venv
 INSTALLED := $(VENV)/installed
 COMPILED := $(VENV)/compiled
@@ -13,7 +16,7 @@ export OPENBLAS_NUM_THREADS := 1
 # Compiled modules are kept: the tests start many programs.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help install fly test test-fast test-lowest mutants golden golden-renew
+.PHONY: help install fly test test-fast test-lowest test-numerics mutants golden golden-renew
 .PHONY: benchmark benchmark-parts benchmark-campaign benchmark-check docs clean
 
 help:
@@ -21,6 +24,7 @@ help:
 	@echo "make test         ruff, mypy and the tests"
 	@echo "make test-fast    ruff, mypy and the tests that need no flight"
 	@echo "make test-lowest  some tests and a flight with the lowest versions that pyproject.toml allows"
+	@echo "make test-numerics  tests of linear algebra and a flight with other OpenBLAS kernels (KERNELS='$(KERNELS)')"
 	@echo "make mutants      see whether the fast tests notice changes of the flight path (MUTANTS='--number 60 --seed 1')"
 	@echo "make golden       compare short flights, to the byte, with tests/golden/checksums.json"
 	@echo "make golden-renew write these checksums anew"
@@ -50,6 +54,14 @@ test-fast: $(COMPILED)
 # Builds the package as a wheel and flies a mission with the lowest versions that pyproject.toml allows.
 test-lowest: $(INSTALLED)
 	tests/packaging/lowest $(VENV)/bin/python
+
+# Any that the processor has; those that sum as the pinned ones do, such as Zen, prove nothing.
+test-numerics: $(COMPILED)
+	@for kernels in $(KERNELS); do \
+		echo "OpenBLAS kernels $$kernels, numpy without AVX2"; \
+		COOPLIFT_KERNELS=unpinned OPENBLAS_CORETYPE=$$kernels NPY_DISABLE_CPU_FEATURES="X86_V3 AVX2 FMA3" \
+			$(VENV)/bin/python -m pytest --numprocesses auto --dist loadfile -m numerics $(NUMERICS) || exit 1; \
+	done
 
 mutants: $(COMPILED)
 	$(VENV)/bin/python tests/mutation/mutants.py $(MUTANTS)

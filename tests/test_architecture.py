@@ -96,7 +96,7 @@ COMMON = {
         "rotations_float",
         "settings",
     )
-} | {"gcs.errors"}
+} | {"gcs.errors", "gcs.numerics"}
 """Modules beside the sub-packages that everything above them may import."""
 
 

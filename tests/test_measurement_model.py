@@ -14,6 +14,8 @@ from idc_controller.model.linear import StateLayout
 from idc_controller.rotations import quaternion_from_euler, quaternion_product, rotation_from_quaternion
 from idc_controller.rotations_float import attitude_of_direction
 
+pytestmark = pytest.mark.numerics
+
 
 def test_stacked_observations_know_the_rows_of_the_payload_unit_and_of_each_height():
     model = MeasurementModel(MODEL, MeasurementNoise(), MeasurementModelSettings())

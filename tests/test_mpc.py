@@ -21,6 +21,8 @@ from idc_controller.trajectory.flatness import Load
 from idc_controller.trajectory.reference import Reference
 from idc_controller.trajectory.trajectory import RestTrajectory
 
+pytestmark = pytest.mark.numerics
+
 CONFIG = read_system(MISSIONS / "system.toml")
 MODEL = LinearModel(CONFIG.parameters())
 LAYOUT = MODEL.layout

@@ -8,6 +8,8 @@ from idc_controller.qp.daqp_solver import DaqpSolver
 from idc_controller.qp.problem import QuadraticProgram
 from idc_controller.qp.proxqp_solver import ProxqpSolver
 
+pytestmark = pytest.mark.numerics
+
 SOLVERS = [DaqpSolver, ProxqpSolver]
 INF = np.inf
 LOWER = np.array([-0.2, -0.2, -INF, -INF, -0.3, -INF])

@@ -18,6 +18,8 @@ from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.shapes import SHAPES, shape_class
 from idc_controller.geometry.sphere import Sphere
 
+pytestmark = pytest.mark.numerics
+
 ROCK = MeshHull("rock.stl", ((-1.0, -0.6, 0.5), (0.9, -0.7, 0.5), (1.0, 0.8, 0.5), (-0.8, 0.7, 0.4), (0.1, 0.0, -0.5)))
 EXAMPLES = [
     Sphere(0.6), Pole(0.3, 4.0), Wall((0.4, 3.0, 2.0), 0.4), Capsule(0.3, 1.5, roll=0.4, pitch=-0.7, yaw=2.0),

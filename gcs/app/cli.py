@@ -12,6 +12,7 @@ from gcs.app.exit_status import ExitStatus
 from gcs.app.imports import importing
 from gcs.app.logs import LOG, add_log_arguments, logging_to
 from gcs.errors import GcsError, UnusableInput
+from gcs.numerics import choose_kernels
 from idc_controller.errors import IdcError
 
 COMMANDS = {
@@ -40,8 +41,7 @@ The ground station of cooplift: UAVs that carry one payload together.
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command, and return its exit status."""
     words = sys.argv[1:] if argv is None else list(argv)
-    # Small matrices: more threads cost time, and sums in another order are other sums. Read when numpy is imported.
-    os.environ |= {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+    choose_kernels()
     # pydantic would read the metadata of all that is installed.
     os.environ["PYDANTIC_DISABLE_PLUGINS"] = "__all__"
     arguments = _parser(words[0] if words else "").parse_args(words)

@@ -14,6 +14,7 @@ from typing import Any
 from gcs.app.exit_status import ExitStatus
 from gcs.app.flight_log import FlightLog
 from gcs.app.fly_options import FlyOptions
+from gcs.app.logs import LOG
 from gcs.drivers.connection import Connection, LockstepConnection
 from gcs.drivers.forked_program import ForkedProgram
 from gcs.drivers.interrupt import Interrupt
@@ -33,6 +34,7 @@ from gcs.flight.team import Team
 from gcs.mavlink.address import Address, ConnectionUrl
 from gcs.mavlink.vehicle_link import VehicleLink
 from gcs.mission.model import Mission
+from gcs.numerics import differences
 from gcs.record.landing import is_set_down
 from gcs.record.recorder import FlightRecorder
 from gcs.record.run_data import RunData, read_run
@@ -89,6 +91,8 @@ def fly(
     run_dir = open_run_folder(mission.name, options.run_dir)
     started = datetime.now(UTC)
     write_manifest(run_dir, command=sys.argv, seed=mission.seed, mission=mission, system=mission.system, start=started)
+    if others := differences():
+        LOG.warning(others)
     with ExitStack() as resources:
         if vehicle_sim is None and not options.connect:
             vehicle_sim = resources.enter_context(ForkedProgram(PROGRAM))

@@ -69,7 +69,6 @@ class FlightWorker:
             stdout=subprocess.PIPE,
             stderr=self._messages,
             start_new_session=True,  # Ctrl-C is for this process, which ends its flights itself
-            env={**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
         )
 
     def _end(self) -> int:

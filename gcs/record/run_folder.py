@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from gcs.errors import UnusableInput
+from gcs.numerics import numerics
 
 MANIFEST = "manifest.json"
 _DISTRIBUTION = "cooplift"
@@ -88,7 +89,7 @@ def write_manifest(
     system: object,
     start: datetime | str,
 ) -> Path:
-    """Write ``manifest.json``: mission and system as read, versions, and the time of the start.
+    """Write ``manifest.json``: mission and system as read, versions, numeric libraries, and the time of the start.
 
     Raises :class:`UnusableInput` if the file cannot be written.
     """
@@ -97,6 +98,7 @@ def write_manifest(
         "seed": seed,
         "start": start,
         "versions": versions(),
+        "numerics": numerics(),
         "mission": mission,
         "system": system,
     }

@@ -5,6 +5,7 @@ import sys
 from gcs.app.imports import importing
 from gcs.app.logs import logging_to
 from gcs.errors import GcsError
+from gcs.numerics import choose_kernels
 from idc_controller.errors import IdcError
 from vehicle_sim.app.arguments import parse
 from vehicle_sim.app.ending import INTERRUPTED
@@ -17,6 +18,7 @@ UNUSABLE_INPUT = 2
 def main(argv: list[str] | None = None) -> int:
     """Run the command; ``argv`` without the program's name. Returns the exit status."""
     arguments = sys.argv[1:] if argv is None else argv
+    choose_kernels()
     try:
         options = parse(arguments)
         with importing(), greeting_of_engine_dropped():

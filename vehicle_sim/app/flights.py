@@ -10,8 +10,10 @@ import os
 import sys
 
 from gcs.app.imports import importing
+from gcs.numerics import choose_kernels
 from vehicle_sim.world.engine_messages import greeting_of_engine_dropped
 
+choose_kernels()
 with importing(), greeting_of_engine_dropped():
     import gcs.app.cli
     import gcs.app.fly

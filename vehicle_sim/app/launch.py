@@ -11,19 +11,19 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from threadpoolctl import threadpool_limits
-
 from gcs.config import SystemConfig, read_system
 from gcs.mavlink.address import Address
 from gcs.mission.faults import check_faults_of
 from gcs.mission.model import Mission
 from gcs.mission.read import read_mission
+from gcs.numerics import differences
 from gcs.record.run_folder import open_run_folder, write_manifest
 from vehicle_sim.app.arguments import GROUND_PORT
 from vehicle_sim.app.ending import Ending
 from vehicle_sim.app.lockstep import LockstepDriver
 from vehicle_sim.app.realtime import RealTimeDriver
 from vehicle_sim.app.sockets import SwarmSockets, url
+from vehicle_sim.app.swarm_log import LOG
 from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.display import check_display
 from vehicle_sim.world.engine_messages import messages_of_engine_aside
@@ -49,8 +49,8 @@ def _run(options: Namespace, arguments: list[str], started: contextlib.ExitStack
     seed = options.seed if options.seed is not None else DEFAULT_SEED if mission is None else mission.seed
     if options.gui:
         check_display()
-    # Small matrices: more threads cost time, and sums in another order are other sums.
-    started.enter_context(threadpool_limits(1))
+    if not options.with_parent and (others := differences()):
+        LOG.warning(others)
     ending = started.enter_context(contextlib.closing(Ending(sys.stdin.fileno() if options.with_parent else None)))
     started.enter_context(ending.on_signals())
     injector = None
