@@ -7,13 +7,14 @@ than it in every round: beyond the spread. Both trees run in this environment.
 """
 
 import argparse
-import os
 import statistics
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+from commit_tree import tree_of
 from measure import FLIGHTS, ROOT, fly, use_one_core, write_missions
 
 LIMIT = 1.10
@@ -26,23 +27,8 @@ def main():
     parser.add_argument("--rounds", type=int, default=5)
     options = parser.parse_args()
     use_one_core()
-    with tempfile.TemporaryDirectory() as scratch:
-        base = Path(scratch) / "base"
-        git = ["git", "-C", str(ROOT), "worktree"]
-        subprocess.run([*git, "add", "--quiet", "--detach", str(base), options.base], check=True)
-        try:
-            compile_kernels(base)
-            return compare(base, Path(scratch), options)
-        finally:
-            subprocess.run([*git, "remove", "--force", str(base)], check=True)
-
-
-def compile_kernels(tree):
-    """Compile what the base compiles at installation."""
-    if (tree / "vehicle_sim" / "app" / "compile_kernels.py").exists():
-        command = [sys.executable, "-m", "vehicle_sim.app.compile_kernels"]
-        environment = {**os.environ, "PYTHONPATH": str(tree)}
-        subprocess.run(command, cwd=tree, env=environment, stdout=subprocess.DEVNULL, check=True)
+    with tree_of(options.base) as base, tempfile.TemporaryDirectory() as scratch:
+        return compare(base, Path(scratch), options)
 
 
 def compare(base, scratch, options):

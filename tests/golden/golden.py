@@ -1,17 +1,17 @@
-"""Fly short missions and compare the checksums of their records with those on file.
+"""Fly short missions by the work tree's `gcs fly` and by that of another commit, and compare their records to the byte.
 
-A refactoring that is meant to change no behaviour changes no checksum:
+A refactoring that is meant to change no behaviour changes no byte:
 
-  python tests/golden/golden.py                  compare; exit status 1 when a flight differs
-  python tests/golden/golden.py leg spheres_1    compare these flights only
-  python tests/golden/golden.py --renew          write the checksums anew, on purpose
-  python tests/golden/golden.py --records DIR    keep the records in DIR; where DIR has those of an earlier run (of the
-                                                 commit before, say), print the first row and column that differ, and
-                                                 the largest differences
+  python tests/golden/golden.py                  with the commit before (HEAD~1)
+  python tests/golden/golden.py --base main      with another commit
+  python tests/golden/golden.py leg forest       these flights only
+  python tests/golden/golden.py --renew          write the checksums anew, on purpose; no other commit is flown
 
-The checksums hold for the versions that `checksums.json` names, and for one kind of processor. `telemetry.tlog` is
-compared twice: whole, and without the texts of its STATUSTEXT messages, so that a reworded message can be distinguished
-from another flight.
+Both fly on this machine. The checksums on file are compared as well where they hold: with the versions that they name,
+and with the numeric code that the programs choose (`gcs/numerics.py`). Exit status 1 when a flight differs, with the
+first row and column that do, and the largest differences. `telemetry.tlog` is compared without its time stamps, which
+are those of the wall clock, twice: whole, and without the texts of its STATUSTEXT messages, so that a reworded message
+can be distinguished from another flight.
 """
 
 from __future__ import annotations
@@ -19,12 +19,14 @@ from __future__ import annotations
 import argparse
 import hashlib
 import json
-import multiprocessing
+import os
 import platform
-import shutil
+import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import partial
 from importlib.metadata import version
@@ -32,32 +34,24 @@ from itertools import zip_longest
 from pathlib import Path
 
 HERE = Path(__file__).parent
+ROOT = HERE.parents[1]
 sys.path.insert(0, str(HERE.parent))
 
 import pandas as pd  # noqa: E402
 import pymavlink.dialects.v20.common as mavlink  # noqa: E402
-from flight_in_process import InProcessFlight  # noqa: E402
-from threadpoolctl import threadpool_limits  # noqa: E402
+from commit_tree import environment_of, tree_of  # noqa: E402
 
-from gcs.flight.failsafe import Failsafe  # noqa: E402
-from gcs.mission.read import read_mission  # noqa: E402
+from gcs.numerics import choose_kernels, differences  # noqa: E402
 
 CHECKSUMS = HERE / "checksums.json"
 MISSIONS = HERE / "missions"
-FILES = ("truth.csv", "reference.csv", "estimate.csv", "plan.csv", "telemetry.tlog")
+FILES = (
+    "truth.csv", "reference.csv", "estimate.csv", "plan.csv", "obstacles_estimate.csv", "obstacles_standing.csv",
+    "telemetry.tlog",
+)  # fmt: skip
 PACKAGES = (
-    "coal",
-    "daqp",
-    "filterpy",
-    "numba",
-    "numpy",
-    "proxsuite",
-    "pybullet",
-    "pymavlink",
-    "scipy",
-    "shapely",
-    "trimesh",
-)
+    "coal", "daqp", "filterpy", "numba", "numpy", "proxsuite", "pybullet", "pymavlink", "scipy", "shapely", "trimesh",
+)  # fmt: skip
 WITHOUT_TEXT = "telemetry.tlog without STATUSTEXT"
 _STATUSTEXT = mavlink.MAVLINK_MSG_ID_STATUSTEXT
 _STAMP_LENGTH = 8
@@ -66,22 +60,11 @@ FIRST_SECONDS = 5.0
 
 @dataclass(frozen=True)
 class Golden:
-    """One flight: a mission file, tables appended to it, a seed, and what is done to the flight at each exchange.
-
-    ``detected``: the mission's obstacles are in the world, too, where the range sensors detect them.
-    """
+    """One flight: a mission file, tables appended to it, and a seed."""
 
     mission: Path
     tables: str = ""
     seed: int = 1
-    detected: bool = False
-    on_exchange: Callable[[InProcessFlight], None] = lambda flight: None
-
-
-def interrupt_at_8_seconds(flight: InProcessFlight) -> None:
-    """Break the flight off as Ctrl-C does."""
-    if flight.now >= 8.0:
-        flight.station.raise_failsafe(flight.now, Failsafe.INTERRUPTED, "interrupted")
 
 
 def fault(kind: str, keys: str) -> str:
@@ -89,68 +72,82 @@ def fault(kind: str, keys: str) -> str:
     return f'\n[[fault]]\nkind = "{kind}"\n{keys}\n'
 
 
+LEG = MISSIONS / "leg.toml"
 GOLDEN = {
     "figure_eight": Golden(MISSIONS / "figure_eight.toml"),
     "spheres_1": Golden(MISSIONS / "spheres.toml", seed=1),
     "spheres_2": Golden(MISSIONS / "spheres.toml", seed=2),
-    "spheres_3": Golden(MISSIONS / "spheres.toml", seed=3),
-    "spheres_detected": Golden(MISSIONS / "spheres.toml", detected=True),
     "poles": Golden(MISSIONS / "poles.toml"),
+    "boxes": Golden(MISSIONS / "boxes.toml"),
+    "forest": Golden(MISSIONS / "forest.toml"),
+    "rooms": Golden(MISSIONS / "rooms.toml"),
+    "overhang": Golden(MISSIONS / "overhang.toml"),
+    "stop_and_go": Golden(MISSIONS / "stop_and_go.toml"),
+    "mesh": Golden(MISSIONS / "mesh.toml"),
     "square": Golden(MISSIONS / "square.waypoints"),
-    "delivery": Golden(HERE.parents[1] / "missions" / "fenced_delivery.plan"),
-    "leg": Golden(MISSIONS / "leg.toml"),
+    "delivery": Golden(ROOT / "missions" / "fenced_delivery.plan"),
+    "leg": Golden(LEG),
     "fault_link": Golden(
-        MISSIONS / "leg.toml",
-        fault("packet_loss", "start = 0.0\nprobability = 0.1")
-        + fault("jitter", "start = 4.0\nspread = 0.02"),
+        LEG, fault("packet_loss", "start = 0.0\nprobability = 0.1") + fault("jitter", "start = 4.0\nspread = 0.02")
     ),
-    "fault_timing": Golden(MISSIONS / "leg.toml", fault("clock_step", "start = 6.0\nvehicles = [2]\nstep = 0.3")),
+    "fault_timing": Golden(LEG, fault("clock_step", "start = 6.0\nvehicles = [2]\nstep = 0.3")),
     "fault_values": Golden(
-        MISSIONS / "leg.toml",
-        fault("bias", 'start = 5.0\nvehicles = [2]\nchannel = "position"\namount = 0.5\naxes = ["x"]'),
+        LEG, fault("bias", 'start = 5.0\nvehicles = [2]\nchannel = "position"\namount = 0.5\naxes = ["x"]')
     ),
-    "fault_sensors": Golden(
-        MISSIONS / "leg.toml", fault("position_lost", "start = 6.0\nduration = 3.0\nvehicles = [1]")
-    ),
-    "fault_world": Golden(MISSIONS / "leg.toml", fault("wind", "start = 2.0\nvelocity = [0.0, 2.0, 0.0]\ngust = 0.5")),
-    "vehicle_lost": Golden(
-        MISSIONS / "leg.toml", fault("partition", 'start = 7.0\nvehicles = [3]\ndirection = "telemetry"')
-    ),
-    "interrupted": Golden(MISSIONS / "leg.toml", on_exchange=interrupt_at_8_seconds),
-}  # fmt: skip
+    "fault_sensors": Golden(LEG, fault("position_lost", "start = 6.0\nduration = 3.0\nvehicles = [1]")),
+    "fault_world": Golden(LEG, fault("wind", "start = 2.0\nvelocity = [0.0, 2.0, 0.0]\ngust = 0.5")),
+    "vehicle_lost": Golden(LEG, fault("partition", 'start = 7.0\nvehicles = [3]\ndirection = "telemetry"')),
+    "sensing_lost": Golden(LEG, fault("obstacle_sensing_lost", "start = 6.0")),
+}
 
 
-def fly(name: str, records: Path | None = None) -> tuple[str, dict[str, str], list[str]]:
-    """Return the name, the SHA-256 checksums by file, and the first differences from earlier ``records``."""
+def compare(name: str, base: Path | None) -> tuple[str, dict[str, str], list[str]]:
+    """Return the name, the SHA-256 checksums by file, and the first differences from the flight of the tree ``base``.
+
+    Args:
+        name: of :data:`GOLDEN`.
+        base: folder of the other commit; None: there is none.
+    """
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = fly(name, ROOT, Path(scratch) / "now")
+        if isinstance(folder, str):
+            return name, {}, [folder]
+        found = checksums(folder)
+        if base is None:
+            return name, found, []
+        earlier = fly(name, base, Path(scratch) / "before")
+        if isinstance(earlier, str):
+            return name, found, [earlier]
+        texts = {file: first_difference(earlier / file, folder / file) for file in FILES}
+        differing = [text for text in texts.values() if text]
+        for file, text in texts.items():
+            if text and file.endswith(".csv") and (earlier / file).exists() and (folder / file).exists():
+                differing.append(f"{file}: {largest_difference(earlier / file, folder / file)}")
+        return name, found, differing
+
+
+def fly(name: str, tree: Path, scratch: Path) -> Path | str:
+    """Fly a mission by the `gcs fly` of a tree; return the run folder, or what it printed where it flew nothing."""
     golden = GOLDEN[name]
-    with tempfile.TemporaryDirectory() as scratch, threadpool_limits(limits=1):
-        mission, folder = golden.mission, Path(scratch) / "run"
-        if golden.tables:
-            mission = Path(scratch) / golden.mission.name
-            system = HERE.parents[1] / "missions" / "system.toml"
-            text = golden.mission.read_text(encoding="utf-8")
-            text = text.replace('"../../../missions/system.toml"', json.dumps(str(system)))
-            mission.write_text(text + golden.tables, encoding="utf-8")
-        obstacles = read_mission(mission).obstacles if golden.detected else ()
-        with InProcessFlight(mission, folder, seed=golden.seed, obstacles=obstacles) as flight:
-            flight.fly(golden.on_exchange)
-        differences = []
-        if records is not None:
-            earlier = records / name
-            if earlier.exists():
-                differences = [text for file in FILES if (text := first_difference(earlier / file, folder / file))]
-                differences += [
-                    f"{file}: {largest_difference(earlier / file, folder / file)}"
-                    for file in FILES
-                    if file.endswith(".csv") and any(text.startswith(file) for text in differences)
-                ]
-            else:
-                shutil.copytree(folder, earlier)
-        return name, checksums(folder), differences
+    scratch.mkdir()
+    mission = scratch / golden.mission.name
+    system = json.dumps(str(tree / "missions" / "system.toml"))
+    text = golden.mission.read_text(encoding="utf-8").replace('"../../../missions/system.toml"', system)
+    rock = json.dumps(str(ROOT / "missions" / "rock.stl"))
+    mission.write_text(text.replace('"../../../missions/rock.stl"', rock) + golden.tables, encoding="utf-8")
+    command = [sys.executable, "-m", "gcs", "fly", mission, "--seed", golden.seed, "--run-dir", scratch / "run"]
+    done = subprocess.run(
+        [*map(str, command), "--no-pictures"], cwd=tree, env=environment_of(tree), capture_output=True, text=True
+    )
+    if not (scratch / "run" / "truth.csv").exists():
+        return f"{'work tree' if tree == ROOT else 'base'}: nothing flown: {done.stderr.strip()[-500:]}"
+    return scratch / "run"
 
 
 def first_difference(earlier: Path, later: Path) -> str:
     """Return the first row and column in which two records differ, with both values; empty where they are equal."""
+    if not (earlier.exists() and later.exists()):
+        return "" if earlier.exists() == later.exists() else f"{later.name}: in one of the two only"
     is_table = later.suffix == ".csv"
     old, new = (_rows(path.read_bytes(), is_table) for path in (earlier, later))
     for number, (one, other) in enumerate(zip_longest(old, new)):
@@ -179,28 +176,31 @@ def largest_difference(earlier: Path, later: Path) -> str:
 
 
 def _rows(data: bytes, is_table: bool) -> list[bytes]:
-    return data.splitlines() if is_table else list(_records(data))
+    return data.splitlines() if is_table else list(_frames(data))
 
 
 def checksums(folder: Path) -> dict[str, str]:
     """Return the SHA-256 checksums of the records in a run folder, by file."""
-    found = {file: _sha256((folder / file).read_bytes()) for file in FILES}
-    log = (folder / "telemetry.tlog").read_bytes()
-    found[WITHOUT_TEXT] = _sha256(b"".join(map(_without_text, _records(log))))
+    tables = [file for file in FILES if file.endswith(".csv") and (folder / file).exists()]
+    found = {file: _sha256((folder / file).read_bytes()) for file in tables}
+    frames = [*_frames((folder / "telemetry.tlog").read_bytes())]
+    found["telemetry.tlog"] = _sha256(b"".join(frames))
+    found[WITHOUT_TEXT] = _sha256(b"".join(map(_without_text, frames)))
     return found
 
 
-def _records(log: bytes) -> Iterator[bytes]:
+def _frames(log: bytes) -> Iterator[bytes]:
+    """Yield the MAVLink frames of a log without their time stamps."""
     at = 0
     while at < len(log):
-        length = _STAMP_LENGTH + 12 + log[at + _STAMP_LENGTH + 1]  # MAVLink 2, unsigned
-        yield log[at : at + length]
-        at += length
+        begin = at + _STAMP_LENGTH
+        at = begin + 12 + log[begin + 1]  # MAVLink 2, unsigned
+        yield log[begin:at]
 
 
-def _without_text(record: bytes) -> bytes:
-    is_text = int.from_bytes(record[_STAMP_LENGTH + 7 : _STAMP_LENGTH + 10], "little") == _STATUSTEXT
-    return record[: _STAMP_LENGTH + 11] if is_text else record
+def _without_text(frame: bytes) -> bytes:
+    is_text = int.from_bytes(frame[7:10], "little") == _STATUSTEXT
+    return frame[:11] if is_text else frame
 
 
 def _sha256(data: bytes) -> str:
@@ -216,32 +216,40 @@ def main() -> int:
     """Compare, or renew; return the exit status."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("flights", nargs="*", choices=[[], *GOLDEN], metavar="FLIGHT", help=", ".join(GOLDEN))
+    parser.add_argument("--base", default="HEAD~1", metavar="COMMIT", help="compare with this (default: %(default)s)")
     parser.add_argument("--renew", action="store_true", help="write the checksums of these flights anew")
-    parser.add_argument("--records", type=Path, metavar="DIR", help="folder of the records of this or an earlier run")
     options = parser.parse_args()
+    choose_kernels()
     names = options.flights or [*GOLDEN]
     on_file = json.loads(CHECKSUMS.read_text(encoding="utf-8")) if CHECKSUMS.exists() else {"flights": {}}
-    if not options.renew and (other := _differing(on_file["versions"], versions())):
-        print(f"the checksums on file are of other versions ({', '.join(other)}): compare with those, or --renew")
-        return 2
-    differing = 0
-    with multiprocessing.get_context("spawn").Pool() as pool:
-        for name, found, differences in pool.imap_unordered(partial(fly, records=options.records), names, chunksize=1):
+    unlike = _unlike(on_file.get("versions", {}))
+    if unlike:
+        print(f"checksums on file: not compared, {unlike}", flush=True)
+    unequal = 0
+    with ExitStack() as context:
+        base = None if options.renew else context.enter_context(tree_of(options.base))
+        pool = context.enter_context(ThreadPoolExecutor(len(os.sched_getaffinity(0))))
+        for name, found, differing in pool.map(partial(compare, base=base), names):
+            verdicts = [] if options.renew else [f"differs from {options.base}" if differing else "equal"]
             files = _differing(on_file["flights"].get(name, {}), found)
-            differing += bool(files)
-            verdict = "equal" if not files else ("renewed: " if options.renew else "differs: ") + ", ".join(files)
-            print(f"{name}: {verdict}", *differences, sep="\n  ", flush=True)
+            if files and (options.renew or not unlike):
+                verdicts.append(f"{'renewed' if options.renew else 'not as on file'}: {', '.join(files)}")
+            print(f"{name}: {'; '.join(verdicts)}", *differing, sep="\n  ", flush=True)
+            unequal += bool(differing) or (bool(files) and not unlike)
             on_file["flights"][name] = found
     if options.renew:
         ordered = {name: on_file["flights"][name] for name in GOLDEN if name in on_file["flights"]}
-        CHECKSUMS.write_text(
-            json.dumps({"versions": versions(), "flights": ordered}, indent=2) + "\n", encoding="utf-8"
-        )
+        content = json.dumps({"versions": versions(), "flights": ordered}, indent=2)
+        CHECKSUMS.write_text(content + "\n", encoding="utf-8")
         return 0
-    print(f"{len(names) - differing} of {len(names)} flights are equal")
-    if differing and options.records is None:
-        print("--records DIR, before and after the change, names the first row and column that differ")
-    return 1 if differing else 0
+    print(f"{len(names) - unequal} of {len(names)} flights are equal")
+    return 1 if unequal else 0
+
+
+def _unlike(on_file: dict[str, str]) -> str:
+    """Return why checksums of the versions ``on_file`` do not hold here; empty if they do."""
+    other = _differing(on_file, versions())
+    return f"they are of other versions: {', '.join(other)}" if other else differences()
 
 
 def _differing(one: dict[str, str], other: dict[str, str]) -> list[str]:
