@@ -39,9 +39,15 @@ def test_log_file_holds_every_level(tmp_path, capsys):
 
 
 def test_log_file_that_cannot_be_written_is_refused(tmp_path, capsys):
-    with pytest.raises(SystemExit) as exit_:
-        main(["check", "x.toml", "--log-file", str(tmp_path / "none" / "x.log")])
-    assert exit_.value.code == 2 and "cannot be written" in capsys.readouterr().err
+    assert main(["check", "x.toml", "--log-file", str(tmp_path / "none" / "x.log")]) == 2
+    assert "cannot be written" in capsys.readouterr().err
+
+
+def test_no_log_file_is_left_by_a_command_line_that_is_refused(tmp_path):
+    (tmp_path / "old.log").touch()
+    for name in ("new.log", "old.log"):
+        assert main(["check", "--log-file", str(tmp_path / name), "--none"]) == 2
+    assert [path.name for path in tmp_path.iterdir()] == ["old.log"]
 
 
 def test_help_imports_no_command():

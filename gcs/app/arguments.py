@@ -1,9 +1,58 @@
-"""Types of command-line arguments that several commands of both programs have."""
+"""The command lines of both programs: their parser, and types of arguments that several commands have."""
 
 import argparse
 import math
+from collections.abc import Sequence
+from difflib import get_close_matches
+from functools import partial
+from importlib import metadata
+from typing import Any, NoReturn
+
+from rich_argparse import RawDescriptionRichHelpFormatter
+
+from gcs.errors import UnusableInput
 
 CONTROLLERS = ("idc", "mpc", "paper")
+_DISTRIBUTION = "cooplift"
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser that raises :class:`UnusableInput` of one line, without usage, and takes no abbreviated options."""
+
+    def __init__(self, **keywords: Any) -> None:
+        super().__init__(**{"allow_abbrev": False, "formatter_class": RawDescriptionRichHelpFormatter, **keywords})
+
+    def error(self, message: str) -> NoReturn:
+        """Raise the error; ``--help`` prints the details."""
+        raise UnusableInput(f"{self.prog}: {message}")
+
+    def refuse_unknown(self, words: Sequence[str]) -> None:
+        """Raise :class:`UnusableInput` if there are ``words`` that were not understood; names what they could mean."""
+        if not words:
+            return
+        unknown = next((word.partition("=")[0] for word in words if word.startswith("-")), "")
+        hint = ""
+        if unknown in self._option_string_actions:
+            hint = f": {unknown} goes behind the command"
+        elif near := get_close_matches(unknown, self._option_string_actions, 1):
+            hint = f": did you mean {near[0]}?"
+        self.error(f"unrecognized arguments: {' '.join(words)}{hint}")
+
+
+class Version(argparse.Action):
+    """``--version``: print name and version, and exit."""
+
+    def __init__(self, option_strings: Sequence[str], dest: str) -> None:
+        super().__init__(option_strings, argparse.SUPPRESS, nargs=0, help="print name and version")
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> NoReturn:
+        """Look the version up only now: the metadata are long."""
+        try:
+            version = metadata.version(_DISTRIBUTION)
+        except metadata.PackageNotFoundError:
+            version = "(not installed)"
+        print(f"{parser.prog} {version} ({_DISTRIBUTION})")
+        parser.exit()
 
 
 def number_of_jobs(text: str) -> int | None:
@@ -31,3 +80,11 @@ def number(text: str, least: float, most: float) -> float:
     if not least <= value <= most:
         raise argparse.ArgumentTypeError(f"{text!r} is not a number from {least:g} to {most:g}")
     return value
+
+
+VEHICLES = partial(whole_number, least=3, most=254)
+"""Number of vehicles: fewer cannot carry a payload, and system ids end there."""
+SEED = partial(whole_number, least=0, most=2**63 - 1)
+"""Seed of a generator of random numbers."""
+SPEED = partial(number, least=0.001, most=1000.0)
+"""Simulated seconds per second of wall time."""

@@ -1,13 +1,12 @@
 """The command ``gcs``: a table of its sub-commands, each a module of :mod:`gcs.app.commands`."""
 
-import argparse
 import os
 import sys
+from argparse import Namespace
 from collections.abc import Sequence
 from importlib import import_module
 
-from rich_argparse import RawDescriptionRichHelpFormatter
-
+from gcs.app.arguments import Parser, Version
 from gcs.app.exit_status import ExitStatus
 from gcs.app.imports import importing
 from gcs.app.logs import LOG, add_log_arguments, logging_to
@@ -44,25 +43,38 @@ def main(argv: Sequence[str] | None = None) -> int:
     choose_kernels()
     # pydantic would read the metadata of all that is installed.
     os.environ["PYDANTIC_DISABLE_PLUGINS"] = "__all__"
-    arguments = _parser(words[0] if words else "").parse_args(words)
-    with logging_to(arguments):
-        try:
-            return int(arguments.run(arguments))
-        except UnusableInput as error:
-            for reason in error.reasons:
-                LOG.error(reason)
-            return ExitStatus.UNUSABLE_INPUT
-        except (GcsError, IdcError) as error:
-            LOG.error("gcs: %s", error)
-            return ExitStatus.OUTSIDE_LIMITS
-        except KeyboardInterrupt:
-            return ExitStatus.INTERRUPTED
+    try:
+        arguments = _parse(words)
+        with logging_to(arguments):
+            return _run(arguments)
+    except UnusableInput as error:
+        print(error, file=sys.stderr)
+        return ExitStatus.UNUSABLE_INPUT
+    except KeyboardInterrupt:
+        return ExitStatus.INTERRUPTED
 
 
-def _parser(command: str) -> argparse.ArgumentParser:
-    """Return the parser, with the arguments of ``command`` only: the modules of the others are not imported."""
-    style = RawDescriptionRichHelpFormatter
-    parser = argparse.ArgumentParser(prog="gcs", description=_DESCRIPTION, formatter_class=style)
+def _run(arguments: Namespace) -> int:
+    """Run the command, its errors as lines of the log; return its exit status."""
+    try:
+        return int(arguments.run(arguments))
+    except UnusableInput as error:
+        for reason in error.reasons:
+            LOG.error(reason)
+        return ExitStatus.UNUSABLE_INPUT
+    except (GcsError, IdcError) as error:
+        LOG.error("gcs: %s", error)
+        return ExitStatus.OUTSIDE_LIMITS
+
+
+def _parse(words: list[str]) -> Namespace:
+    """Return the arguments; those of the named command only are known: the modules of the others are not imported.
+
+    Raises :class:`UnusableInput`.
+    """
+    command = next((word for word in words if word in COMMANDS), "")
+    parser = chosen = Parser(prog="gcs", description=_DESCRIPTION)
+    parser.add_argument("--version", action=Version)
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     for name, summary in COMMANDS.items():
         if name != command:
@@ -70,11 +82,13 @@ def _parser(command: str) -> argparse.ArgumentParser:
             continue
         with importing():
             module = import_module(f"gcs.app.commands.{name}")
-        chosen = commands.add_parser(name, help=summary, description=module.DESCRIPTION, formatter_class=style)
+        chosen = commands.add_parser(name, help=summary, description=module.DESCRIPTION)
         module.add_arguments(chosen)
         add_log_arguments(chosen)
         chosen.set_defaults(run=module.run)
-    return parser
+    arguments, unknown = parser.parse_known_args(words)
+    chosen.refuse_unknown(unknown)
+    return arguments
 
 
 if __name__ == "__main__":

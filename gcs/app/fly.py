@@ -38,7 +38,7 @@ from gcs.numerics import differences
 from gcs.record.landing import is_set_down
 from gcs.record.recorder import FlightRecorder
 from gcs.record.run_data import RunData, read_run
-from gcs.record.run_folder import open_run_folder, write_manifest
+from gcs.record.run_folder import NewRunFolder, write_manifest
 from gcs.record.summary import summarise, within_limits, write_summary
 from idc_controller.guidance.progress import Guidance
 from idc_controller.paper.printed_filter import PrintedFilter
@@ -88,12 +88,14 @@ def fly(
 
     Raises :class:`UnusableInput` before anything is started, and :class:`GcsError` when no world could be started.
     """
-    run_dir = open_run_folder(mission.name, options.run_dir)
-    started = datetime.now(UTC)
-    write_manifest(run_dir, command=sys.argv, seed=mission.seed, mission=mission, system=mission.system, start=started)
-    if others := differences():
-        LOG.warning(others)
     with ExitStack() as resources:
+        folder = resources.enter_context(NewRunFolder(mission.name, options.run_dir))
+        run_dir, started = folder.path, datetime.now(UTC)
+        write_manifest(
+            run_dir, command=sys.argv, seed=mission.seed, mission=mission, system=mission.system, start=started
+        )
+        if others := differences():
+            LOG.warning(others)
         if vehicle_sim is None and not options.connect:
             vehicle_sim = resources.enter_context(ForkedProgram(PROGRAM))
         connection = resources.enter_context(closing(Connection(_local_address(options.connect))))
@@ -117,10 +119,11 @@ def fly(
             log.update()
             progress(station.flight)
 
+        folder.keep()
         try:
             if options.realtime:
                 run_in_real_time(
-                    station, connection, interrupt, settings, speed=options.speed, progress=update, end_reason=ended
+                    station, connection, interrupt, settings, speed=options.pace, progress=update, end_reason=ended
                 )
             else:
                 clock = _clock_address(options, simulator)
@@ -208,7 +211,7 @@ def _simulator_arguments(options: FlyOptions, mission: Mission, run_dir: Path) -
     arguments += ["--seed", str(mission.seed), "--run-dir", str(run_dir), "--base-port", "0"]
     if options.config is not None:
         arguments += ["--config", str(options.config)]
-    in_real_time = ["--realtime", "--speed", str(options.speed)]
+    in_real_time = ["--realtime", "--speed", str(options.pace)]
     return arguments + (in_real_time if options.realtime else ["--lockstep", "--ground-port", "0"])
 
 

@@ -4,11 +4,13 @@ import dataclasses
 from dataclasses import dataclass
 from pathlib import Path
 
+from gcs.drivers.simulator import VEHICLES_MAX
 from gcs.errors import UnusableInput
 from gcs.mavlink.address import ConnectionUrl
 from gcs.mission.faults import check_faults_of
 from gcs.mission.model import Mission
 from gcs.mission.read import read_mission
+from gcs.record.run_folder import check_run_folder
 
 
 @dataclass(frozen=True)
@@ -21,9 +23,15 @@ class FlyOptions:
     seed: int | None = None
     run_dir: Path | None = None
     realtime: bool = False
-    speed: float = 1.0
+    speed: float | None = None
+    """Simulated seconds per second of wall time; None: 1 in real time, in lockstep as many as can be."""
     controller: str = "idc"
     connect: tuple[ConnectionUrl, ...] = ()
+
+    @property
+    def pace(self) -> float:
+        """Simulated seconds per second of wall time in real time."""
+        return 1.0 if self.speed is None else self.speed
 
     @property
     def listens(self) -> bool:
@@ -34,17 +42,27 @@ class FlyOptions:
 def prepare(options: FlyOptions) -> Mission:
     """Read the mission as it will be flown. Raises :class:`UnusableInput`."""
     _check_urls(options)
-    mission = read_mission(options.mission, options.config)
+    if options.speed is not None and not options.realtime:
+        raise UnusableInput(f"--speed {options.speed:g}: lockstep is as fast as it can be; add --realtime")
+    check_run_folder(options.run_dir)
     vehicles = options.vehicles
     if options.connect and not options.listens:
         if vehicles is not None and vehicles != len(options.connect):
             raise UnusableInput(f"--vehicles {vehicles} does not agree with {len(options.connect)} URLs")
         vehicles = len(options.connect)
+    mission = read_mission_for(options.mission, options.config, vehicles)
+    vehicles = mission.system.team.vehicles
+    if not options.connect and vehicles > VEHICLES_MAX:
+        raise UnusableInput(f"{vehicles} vehicles: vehicle-sim simulates {VEHICLES_MAX} at most: see --vehicles")
+    return mission if options.seed is None else dataclasses.replace(mission, seed=options.seed)
+
+
+def read_mission_for(path: Path, config: Path | None = None, vehicles: int | None = None) -> Mission:
+    """Read a mission for a team of ``vehicles`` in place of the system file's. Raises :class:`UnusableInput`."""
+    mission = read_mission(path, config)
     if vehicles is not None:
         mission = dataclasses.replace(mission, system=mission.system.with_vehicles(vehicles))
-    if options.seed is not None:
-        mission = dataclasses.replace(mission, seed=options.seed)
-    check_faults_of(mission)  # the number of vehicles may be another than the file's
+        check_faults_of(mission)
     return mission
 
 

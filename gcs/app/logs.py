@@ -53,9 +53,14 @@ def logging_to(arguments: argparse.Namespace) -> Iterator[None]:
 
 def _log_file(text: str) -> Path:
     """Return an argument that names a file to append to."""
+    path = Path(text)
     try:
-        with Path(text).open("a", encoding="utf-8"):
-            return Path(text)
+        existed = path.exists()
+        with path.open("a", encoding="utf-8"):
+            pass
+        if not existed:  # the command may yet be refused
+            path.unlink()
+        return path
     except OSError as error:
         raise argparse.ArgumentTypeError(f"{text}: cannot be written: {error.strerror}") from None
 

@@ -11,10 +11,10 @@ from typing import Any, ClassVar
 from rich.console import RenderableType
 
 from gcs.campaign.flight_worker import FlightWorker
-from gcs.campaign.folder import adopt_folder, folder_lock, remove_folder, write_text
+from gcs.campaign.folder import adopt_folder, check_adoptable, folder_lock, remove_folder, write_text
 from gcs.campaign.process_pool import FlownProcess, all_cores, fly_process, run_parallel
 from gcs.campaign.result import Result, read_result, summary_columns
-from gcs.record.run_folder import make_folder, write_json
+from gcs.record.run_folder import check_writable, make_folder, write_json
 
 KEEP = ("failures", "all", "none")
 """The flights whose run folders are kept."""
@@ -83,14 +83,17 @@ class Campaign:
         """Write the missions. Raises :class:`gcs.errors.UnusableInput` for a folder of something else."""
         self.generator, self.out = generator, out
         self._jobs, self._keep = jobs or all_cores(), keep
-        if (settings := generator.settings) is not None:
+        settings = generator.settings
+        if settings is not None:
+            check_adoptable(out, settings)
+        check_writable(out)
+        self.plans = [*generator.plans(out)]  # refused before anything is written, if at all
+        if settings is not None:
             adopt_folder(out, settings)
         for name in ("missions", "flights", "results"):
             make_folder(out / name)
-        self.plans: list[FlightPlan] = []
         self._results: dict[str, Result] = {}
-        for plan in generator.plans(out):
-            self.plans.append(plan)
+        for plan in self.plans:
             written = [path for path, text in plan.files.items() if write_text(path, text)]
             if plan.mission in written:  # what was flown was another mission
                 self.result_path(plan).unlink(missing_ok=True)

@@ -38,23 +38,28 @@ def folder_lock(out: Path) -> Iterator[None]:
         yield
 
 
-def adopt_folder(folder: Path, settings: Mapping[str, Any]) -> None:
-    """Begin a campaign of ``settings`` in ``folder``, or go on with the one that is there.
-
-    Raises:
-        UnusableInput: The folder holds a campaign of other settings, or something else.
-    """
-    path = make_folder(folder) / SETTINGS
+def check_adoptable(folder: Path, settings: Mapping[str, Any]) -> None:
+    """Raise :class:`UnusableInput` if ``folder`` holds a campaign of other settings, or something else."""
+    path = folder / SETTINGS
     if path.exists():
         found = read_object(path)
         for name, value in settings.items():
             if found.get(name) != value:
                 reason = f"was begun with {name} {found.get(name)}, not {value}: name another with --out"
                 raise UnusableInput(f"{folder}: {reason}")
-    elif any(folder.iterdir()):
-        raise UnusableInput(f"{folder}: is neither empty nor the folder of a campaign")
-    else:
-        write_json(path, settings)
+    elif folder.is_dir() and any(folder.iterdir()):
+        raise UnusableInput(f"{folder}: is neither empty nor the folder of a campaign: name another with --out")
+
+
+def adopt_folder(folder: Path, settings: Mapping[str, Any]) -> None:
+    """Begin a campaign of ``settings`` in ``folder``, or go on with the one that is there.
+
+    Raises:
+        UnusableInput: The folder holds a campaign of other settings, or something else.
+    """
+    check_adoptable(folder, settings)
+    if not (make_folder(folder) / SETTINGS).exists():
+        write_json(folder / SETTINGS, settings)
 
 
 def read_object(path: Path) -> dict[str, Any]:

@@ -41,6 +41,11 @@ from idc_controller.parameters import SystemParameters, polygon_attachments
 from idc_controller.perception.settings import PerceptionSettings
 from idc_controller.trajectory.settings import AvoidanceSettings, BrakingSettings
 
+_OTHER_FILES = {
+    "mission": "this is a mission, no system file: gcs fly flies it",
+    "campaign": "this is a campaign, no system file: gcs faults flies it",
+}
+
 
 @dataclass(frozen=True)
 class SystemConfig:
@@ -157,6 +162,9 @@ def read_system(path: Path | None = None) -> SystemConfig:
     if path is None:
         return SystemConfig()
     file = read_toml(path)
+    for table, use in _OTHER_FILES.items():
+        if table in file.data:
+            raise UnusableFile([file.problem((table,), use)])
     config: SystemConfig = file.validated(_validator())
     if problems := _disagreements(config, file):
         raise UnusableFile(problems)

@@ -8,10 +8,14 @@ from types import TracebackType
 
 from gcs.drivers.forked_program import ForkedProgram
 from gcs.drivers.settings import DriverSettings
-from gcs.errors import GcsError
+from gcs.errors import GcsError, UnusableInput
 from gcs.mavlink.address import Address
 
 PROGRAM = "vehicle_sim"
+VEHICLES_MAX = 15
+"""Vehicles that it can simulate: what its physics engine can exchange of one body."""
+_REFUSED = 2
+"""Its exit code for unusable input."""
 _LINE = re.compile(r"^(?P<who>clock|vehicle \d+): udp://(?P<host>[^:]+):(?P<port>\d+)$")
 
 
@@ -22,7 +26,11 @@ class Simulator:
     """
 
     def __init__(self, program: ForkedProgram, arguments: Sequence[str], settings: DriverSettings) -> None:
-        """Start it and read where it listens. Raises :class:`GcsError` with its error output when it does not start."""
+        """Start it and read where it listens.
+
+        Raises :class:`UnusableInput` with its reason when it refuses the arguments, and :class:`GcsError` with the last
+        line of its error output when it does not start otherwise.
+        """
         self._settings = settings
         self._program = program
         self._process = program.process
@@ -38,8 +46,10 @@ class Simulator:
                 else:
                     self.vehicles.append(address)
         self._process.join()
-        error = program.errors().strip()
-        raise GcsError(f"vehicle-sim did not start: {error.splitlines()[-1] if error else 'no error output'}")
+        lines = program.errors().strip().splitlines()
+        if self._process.exitcode == _REFUSED and lines:
+            raise UnusableInput(lines[-1])
+        raise GcsError(f"vehicle-sim did not start: {lines[-1] if lines else 'no error output'}")
 
     def end_reason(self) -> str | None:
         """Return how it ended; None while it runs."""

@@ -2,16 +2,19 @@
 
 import dataclasses
 import enum
+import errno
 import json
 import math
+import os
 import platform
 import re
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from datetime import date, datetime
 from functools import cache
 from importlib import metadata
 from pathlib import Path, PurePath
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -36,10 +39,62 @@ def open_run_folder(mission_name: str, run_dir: Path | str | None = None, parent
             raise FileExistsError
         (folder / MANIFEST).touch(exist_ok=False)
     except FileExistsError:
-        raise UnusableInput(f"{folder}: the run folder is not empty") from None
+        raise _not_empty(folder) from None
     except OSError as error:
         raise _unwritable(folder, error) from None
     return folder
+
+
+def check_run_folder(run_dir: Path | str | None = None, parent: Path | str = "runs") -> None:
+    """Raise :class:`UnusableInput` if :func:`open_run_folder` would, as far as that can be known; makes nothing."""
+    if run_dir is None:
+        check_writable(parent)
+        return
+    folder = Path(run_dir)
+    check_writable(folder)
+    if folder.exists() and any(folder.iterdir()):
+        raise _not_empty(folder)
+
+
+def check_writable(folder: Path | str) -> None:
+    """Raise :class:`UnusableInput` for a folder that can be neither written nor made; makes nothing."""
+    folder = Path(folder)
+    try:
+        existing = next(path for path in (folder, *folder.absolute().parents) if path.exists())
+        if not existing.is_dir():
+            raise UnusableInput(f"{existing}: is a file, not a folder")
+        if not os.access(existing, os.R_OK | os.W_OK | os.X_OK):
+            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+    except OSError as error:  # also a name that is too long
+        raise _unwritable(folder, error) from None
+
+
+class NewRunFolder:
+    """A run folder of :func:`open_run_folder`; a context manager that removes it again, unless it is to be kept."""
+
+    def __init__(self, mission_name: str, run_dir: Path | str | None = None, parent: Path | str = "runs") -> None:
+        wanted = Path(parent) / "flight" if run_dir is None else Path(run_dir)
+        above = [folder for folder in wanted.parents if not folder.exists()]
+        existed = wanted.exists()
+        self.path = open_run_folder(mission_name, run_dir, parent)
+        self._made = above if existed else [self.path, *above]
+        self._kept = False
+
+    def keep(self) -> None:
+        """Keep the folder: from here on there is something to record."""
+        self._kept = True
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._kept:
+            return
+        for entry in self.path.iterdir():  # it was empty
+            entry.unlink()
+        for folder in self._made:
+            with suppress(OSError):  # another flight may have its folder there
+                folder.rmdir()
 
 
 def make_folder(folder: Path | str) -> Path:
@@ -69,6 +124,10 @@ def _numbered(parent: Path, name: str) -> Path:
                 number += 1
     except OSError as error:
         raise _unwritable(parent, error) from None
+
+
+def _not_empty(folder: Path) -> UnusableInput:
+    return UnusableInput(f"{folder}: the run folder is not empty: name another with --run-dir")
 
 
 def _unwritable(folder: Path, error: OSError) -> UnusableInput:
@@ -115,6 +174,8 @@ def write_json(path: Path | str, content: object) -> Path:
         draft.write_text(text, encoding="utf-8")
         draft.replace(path)
     except OSError as error:
+        with suppress(OSError):
+            draft.unlink(missing_ok=True)
         raise UnusableInput(f"{path}: cannot be written: {error.strerror}") from None
     return path
 

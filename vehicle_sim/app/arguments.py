@@ -3,15 +3,10 @@
 import argparse
 from collections.abc import Callable
 from functools import partial
-from importlib import metadata
 from pathlib import Path
-from typing import NoReturn
 
-from rich_argparse import RawDescriptionRichHelpFormatter
-
-from gcs.app.arguments import number, whole_number
+from gcs.app.arguments import SEED, SPEED, VEHICLES, Parser, Version, whole_number
 from gcs.app.logs import add_log_arguments
-from gcs.errors import UnusableInput
 
 BASE_PORT = 14540
 GROUND_PORT = 14550
@@ -41,24 +36,15 @@ error and nothing started, 130 interrupted.
 """
 
 
-class _Parser(argparse.ArgumentParser):
-    def error(self, message: str) -> NoReturn:
-        """One line, and no usage: ``--help`` prints the details."""
-        raise UnusableInput(message)
-
-
 def parse(argv: list[str] | None) -> argparse.Namespace:
-    """Return the options; raises :class:`UnusableInput` for what cannot be. ``--help`` and ``--version`` exit."""
-    parser = _Parser(
-        prog="vehicle-sim", description=_DESCRIPTION, epilog=_EPILOG, allow_abbrev=False,
-        formatter_class=RawDescriptionRichHelpFormatter,
-    )  # fmt: skip
+    """Return the options. Raises :class:`~gcs.errors.UnusableInput`; ``--help`` and ``--version`` exit."""
+    parser = Parser(prog="vehicle-sim", description=_DESCRIPTION, epilog=_EPILOG)
     add = parser.add_argument
-    add("--vehicles", type=_whole(3, 254), metavar="N", help="number of vehicles (default: the system file's)")
+    add("--vehicles", type=VEHICLES, metavar="N", help="number of vehicles (default: the system file's)")
     add("--mission", type=Path, metavar="M",
         help="mission file (.toml, .plan, .waypoints) that gives home, obstacles, seed and system")  # fmt: skip
     add("--config", type=Path, metavar="C", help="system file (default: the mission's, else the packaged one)")
-    add("--seed", type=_whole(0, 2**63 - 1), metavar="S",
+    add("--seed", type=SEED, metavar="S",
         help="seed of all sensor noise (default: the mission's, else 1)")  # fmt: skip
     add("--run-dir", type=Path, metavar="D",
         help="folder for truth.csv, obstacles.csv, manifest.json; made if absent, refused if not empty")  # fmt: skip
@@ -74,13 +60,14 @@ def parse(argv: list[str] | None) -> argparse.Namespace:
         help="on a virtual clock shared with one ground station, at port BASE - 1: as fast as both can, "
         "and the same every time",
     )  # fmt: skip
-    add("--speed", type=partial(number, least=0.001, most=1000.0), default=None, metavar="X",
+    add("--speed", type=SPEED, default=None, metavar="X",
         help="real time times X (default: 1)")  # fmt: skip
     add("--gui", action="store_true", help="show the world in a window")
     add("--with-parent", action="store_true", help=argparse.SUPPRESS)
     add_log_arguments(parser)
-    add("--version", action="version", version=f"vehicle-sim {_version()}")
-    options = parser.parse_args(argv)
+    add("--version", action=Version)
+    options, unknown = parser.parse_known_args(argv)
+    parser.refuse_unknown(unknown)
     if options.with_parent:  # which logs what it learns of the vehicles itself
         options.quiet += 1
     if options.lockstep and options.speed is not None:
@@ -92,10 +79,3 @@ def parse(argv: list[str] | None) -> argparse.Namespace:
 
 def _whole(least: int, most: int) -> Callable[[str], int]:
     return partial(whole_number, least=least, most=most)
-
-
-def _version() -> str:
-    try:
-        return metadata.version("cooplift")
-    except metadata.PackageNotFoundError:
-        return "(not installed)"

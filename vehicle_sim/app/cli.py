@@ -4,7 +4,7 @@ import sys
 
 from gcs.app.imports import importing
 from gcs.app.logs import logging_to
-from gcs.errors import GcsError
+from gcs.errors import GcsError, UnusableInput
 from gcs.numerics import choose_kernels
 from idc_controller.errors import IdcError
 from vehicle_sim.app.arguments import parse
@@ -21,6 +21,10 @@ def main(argv: list[str] | None = None) -> int:
     choose_kernels()
     try:
         options = parse(arguments)
+    except UnusableInput as error:
+        print(error, file=sys.stderr)
+        return UNUSABLE_INPUT
+    try:
         with importing(), greeting_of_engine_dropped():
             from vehicle_sim.app.launch import launch
         with logging_to(options):

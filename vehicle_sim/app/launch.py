@@ -8,7 +8,6 @@ import os
 import sys
 from argparse import Namespace
 from datetime import UTC, datetime
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gcs.config import SystemConfig, read_system
@@ -17,7 +16,7 @@ from gcs.mission.faults import check_faults_of
 from gcs.mission.model import Mission
 from gcs.mission.read import read_mission
 from gcs.numerics import differences
-from gcs.record.run_folder import open_run_folder, write_manifest
+from gcs.record.run_folder import NewRunFolder, check_run_folder, write_manifest
 from vehicle_sim.app.arguments import GROUND_PORT
 from vehicle_sim.app.ending import Ending
 from vehicle_sim.app.lockstep import LockstepDriver
@@ -45,6 +44,8 @@ def launch(options: Namespace, arguments: list[str]) -> int:
 
 
 def _run(options: Namespace, arguments: list[str], started: contextlib.ExitStack) -> int:
+    if not options.with_parent and options.run_dir is not None:
+        check_run_folder(options.run_dir)
     mission, config = _read(options)
     seed = options.seed if options.seed is not None else DEFAULT_SEED if mission is None else mission.seed
     if options.gui:
@@ -114,12 +115,14 @@ def _truth_log(
 ) -> TruthLog:
     if options.with_parent:  # the folder is the parent's, and so is the manifest
         return TruthLog(options.run_dir, config.team.vehicles)
-    folder: Path = open_run_folder("", options.run_dir)
-    write_manifest(
-        folder, command=["vehicle-sim", *arguments], seed=seed, mission=mission, system=config,
-        start=datetime.now(UTC),
-    )  # fmt: skip
-    return TruthLog(folder, config.team.vehicles)
+    with NewRunFolder("", options.run_dir) as folder:
+        write_manifest(
+            folder.path, command=["vehicle-sim", *arguments], seed=seed, mission=mission, system=config,
+            start=datetime.now(UTC),
+        )  # fmt: skip
+        truth = TruthLog(folder.path, config.team.vehicles)
+        folder.keep()
+    return truth
 
 
 def _report_faults(options: Namespace, injector: FaultInjector, swarm: Swarm) -> None:

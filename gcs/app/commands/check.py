@@ -3,6 +3,7 @@
 import argparse
 from pathlib import Path
 
+from gcs.app.arguments import VEHICLES
 from gcs.app.exit_status import ExitStatus
 from gcs.app.imports import importing
 
@@ -12,6 +13,9 @@ DESCRIPTION = "Reads a mission and says what will be flown, or every reason why 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument("mission", type=Path, metavar="MISSION", help="mission file")
+    parser.add_argument(
+        "--vehicles", type=VEHICLES, metavar="N", help="number of vehicles in place of the system file's"
+    )
     parser.add_argument("--config", type=Path, metavar="C", help="system file in place of the mission's")
 
 
@@ -20,8 +24,9 @@ def run(arguments: argparse.Namespace) -> int:
     with importing():
         from rich.console import Console
 
+        from gcs.app.fly_options import read_mission_for
         from gcs.mission.describe import describe
-        from gcs.mission.read import read_mission
 
-    Console(highlight=False).print(describe(read_mission(arguments.mission, arguments.config)))
+    mission = read_mission_for(arguments.mission, arguments.config, arguments.vehicles)
+    Console(highlight=False).print(describe(mission))
     return ExitStatus.DONE

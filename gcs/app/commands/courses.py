@@ -10,6 +10,7 @@ from gcs.campaign.engine import PlanGenerator
 from gcs.campaign.folder import plain
 from gcs.campaign.scenarios.generator import DEFAULT_KINDS, KINDS
 from gcs.campaign.scenarios.plans import Scenarios
+from gcs.config import read_system
 from gcs.errors import UnusableInput
 
 DESCRIPTION = """\
@@ -62,6 +63,7 @@ def _random(arguments: argparse.Namespace) -> tuple[PlanGenerator, str]:
     """Return random scenarios, and their name."""
     if arguments.speed is not None:
         raise UnusableInput("--speed goes with --suite: random scenarios have their own speeds")
+    read_system(arguments.config)  # refused before the campaign begins
     scenarios = Scenarios(
         count=arguments.count or COUNT,
         seed=arguments.seed,

@@ -34,6 +34,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command, and return its exit status."""
+    if arguments.kinds and arguments.campaign is not None:
+        raise UnusableInput(
+            f"gcs faults: --kinds lists the kinds of fault and flies nothing: leave {arguments.campaign} out"
+        )
     if arguments.kinds:
         Console(highlight=False).print(kinds_list())
         return ExitStatus.DONE

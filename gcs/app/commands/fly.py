@@ -3,10 +3,9 @@
 import argparse
 import json
 from contextlib import ExitStack
-from functools import partial
 from pathlib import Path
 
-from gcs.app.arguments import CONTROLLERS, number
+from gcs.app.arguments import CONTROLLERS, SEED, SPEED, VEHICLES
 from gcs.app.imports import importing
 from gcs.app.logs import LOG
 
@@ -32,14 +31,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add("mission", type=Path, metavar="MISSION", help="mission file")
     add("--realtime", action="store_true", help="run on the wall clock instead of in lockstep")
-    add("--speed", type=partial(number, least=0.001, most=1000.0), default=1.0, metavar="X",
+    add("--speed", type=SPEED, metavar="X",
         help="simulated seconds per second of wall time, with --realtime (default: 1)")  # fmt: skip
     add("--controller", choices=CONTROLLERS, default="idc",
         help="idc: tracking with obstacle avoidance (default); mpc: tracking only; paper: the paper's own filter",
     )  # fmt: skip
     add("--config", type=Path, metavar="C", help="system file in place of the mission's")
-    add("--vehicles", type=int, metavar="N", help="number of vehicles in place of the system file's")
-    add("--seed", type=int, metavar="S", help="seed of the noise in place of the mission's")
+    add("--vehicles", type=VEHICLES, metavar="N", help="number of vehicles in place of the system file's")
+    add("--seed", type=SEED, metavar="S", help="seed of the noise in place of the mission's")
     add("--run-dir", type=Path, metavar="D", help="run folder (default: runs/<mission>-<number>)")
     add("--connect", action="extend", nargs="+", default=[], metavar="URL",
         help="a running swarm: udp://HOST:PORT of every vehicle, in the order of their system ids, "

@@ -15,7 +15,7 @@ from gcs.app.arguments import number_of_jobs
 from gcs.errors import UnusableInput
 from gcs.mission.read import read_mission
 from gcs.record.run_data import read_run
-from gcs.record.run_folder import make_folder
+from gcs.record.run_folder import check_writable, make_folder
 from gcs.reproduce import figures, work
 from gcs.reproduce.animation import animate
 from gcs.reproduce.numbers import matrices, numbers
@@ -61,9 +61,10 @@ def run(arguments: argparse.Namespace) -> int:
     # All that can be wrong is looked for before anything is written.
     for mission, _ in chosen.flights.values():
         read_mission(arguments.missions / mission)
+    check_writable(out)
+    if out.exists() and any(out.iterdir()):
+        raise UnusableInput(f"{out}: the folder is not empty: name another with --out")
     make_folder(out)
-    if any(out.iterdir()):
-        raise UnusableInput(f"{out}: the folder is not empty")
     console = Console(highlight=False, soft_wrap=True)
     begin = time.monotonic()
     try:

@@ -21,6 +21,11 @@ Seed = Annotated[int, Field(ge=0, lt=2**63)]
 Severity = Annotated[dict[str, Annotated[tuple[Any, ...], Field(min_length=1, max_length=1000)]], Field(min_length=1)]
 _OWN_KEYS = ("name", "severity", "start_between")
 
+_OTHER_FILES = {
+    "mission": "this is a mission, no campaign: gcs fly flies it",
+    "uav": "this is a system file, no campaign: missions name it",
+}
+
 
 @strict
 @dataclass(frozen=True)
@@ -78,6 +83,9 @@ def _adapter() -> TypeAdapter[CampaignTables]:
 def read_campaign(path: Path) -> CampaignFile:
     """Read a campaign with its missions. Raises :class:`UnusableFile` with every reason found."""
     file = read_toml(path)
+    for other, use in _OTHER_FILES.items():
+        if other in file.data and "campaign" not in file.data:
+            raise UnusableFile([file.problem((other,), use)])
     raw = file.data.get("fault")
     data = {key: value for key, value in file.data.items() if key != "fault"}
     if isinstance(raw, list):
