@@ -12,6 +12,7 @@ from gcs.errors import UnusableInput
 from gcs.faults import KINDS, read_settings
 from gcs.faults.listing import parameters, renewed
 from gcs.faults.record import notes_of
+from gcs.faults.suggestions import kind_meant
 from gcs.mission.describe import describe
 from gcs.mission.model import Fault
 from gcs.mission.read import read_mission
@@ -100,6 +101,16 @@ def test_fault_is_read_and_described(tmp_path):
             "fault[1].vehicles: the payload has one navigation unit",
         ),
         (GOOD + fault("stall", "duration = 1", "probability = 1"), "probability", "fault[2].probability: unknown key"),
+        (fault("gps_loss"), "kind", "fault[1].kind: there is no kind 'gps_loss': did you mean 'position_lost'?"),
+        (fault("packet_loss", "prob = 0.1"), "prob =", "fault[1].prob: unknown key: did you mean 'probability'?"),
+        (fault("latency", "latency = 0.1"), "latency =", "fault[1].latency: unknown key: did you mean 'delay'?"),
+        (fault("partition", "duratoin = 5.0"), "duratoin", "fault[1].duratoin: unknown key: did you mean 'duration'?"),
+        (fault("partition", "drones = [1]"), "drones", "fault[1].drones: unknown key: did you mean 'vehicles'?"),
+        (fault("partition", 'direction = "uplink"'), "direction", "found \"uplink\": did you mean 'command'?"),
+        (fault("bias", 'channel = "attitude"', 'axes = ["yaw"]', "amount = 1"), "axes", "did you mean 'z'?"),
+        (fault("bias", 'channel = "position"', 'axes = ["North"]', "amount = 1"), "axes", "did you mean 'x'?"),
+        (fault("stuck", 'channel = "gyro"'), "channel", "found \"gyro\": did you mean 'rates'?"),
+        (fault("stuck", 'channel = "positon"'), "channel", "did you mean 'position'?"),
     ],
 )  # fmt: skip
 def test_impossible_fault_is_refused_with_its_line(tmp_path, capsys, faults, at, reason):
@@ -107,10 +118,52 @@ def test_impossible_fault_is_refused_with_its_line(tmp_path, capsys, faults, at,
     line = BEGIN.count("\n") + faults[: faults.rindex(at)].count("\n") + 1
     assert main(["check", str(path)]) == 2
     said = capsys.readouterr().err
-    assert f"{path}: line {line}: {reason.split(': ')[0]}" in said
+    assert said.count("\n") == 1
+    assert said.startswith(f"{path}: line {line}: fault[")
     assert reason in said
     assert main(["fly", str(path), "--run-dir", str(tmp_path / "run")]) == 2
     assert not (tmp_path / "run").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "kind"),
+    [
+        (
+            "gps_loss gnss_denied gps_failure gnss_outage no_gps position_loss gps_los GPS-Lost",
+            "position_lost",
+        ),
+        ("gps_glitch gnss_jump position_glich", "position_glitch"),
+        ("gps_spoofing gps_drift", "position_drift"),
+        ("imu_failure compass_loss attitude_lost_", "attitude_lost"),
+        ("gyro_failure", "rates_lost"),
+        ("lidar_failure camera_lost rangefinder_fault", "obstacle_sensing_lost"),
+        ("comm_loss link_loss datalink_lost rc_loss telemetry_dropout disconnect", "partition"),
+        ("drop packet_drop packetloss message_loss loss", "packet_loss"),
+        ("delay lag network_delay latncy", "latency"),
+        ("clock_drift", "clock_skew"),
+        ("clock_offset time_jump", "clock_step"),
+        ("gps_noise white_noise", "noise"),
+        ("gust turbulence wnd", "wind"),
+        ("mass load_change payload_release", "payload_mass"),
+        ("nan", "not_a_number"),
+        ("bandwidth throttle", "bandwidth_cap"),
+    ],
+)
+def test_other_names_of_a_kind_are_understood(words, kind):
+    assert {word: kind_meant(word) for word in words.split()} == dict.fromkeys(words.split(), kind)
+
+
+@pytest.mark.parametrize("word", ["motor_failure", "rotor_loss", "battery_low", "xyz", "servo", "", "_", "engine"])
+def test_what_is_no_kind_by_any_name_is_not_mistaken_for_one(word):
+    assert kind_meant(word) is None
+
+
+def test_every_alias_names_one_kind_and_every_kind_itself():
+    taken = {}
+    for kind in KINDS.values():
+        assert kind_meant(kind.name) == kind.name
+        for alias in kind.aliases:
+            assert taken.setdefault(alias, kind.name) == kind.name, alias
 
 
 def test_faults_are_checked_again_for_the_team_that_flies(tmp_path):

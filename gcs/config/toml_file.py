@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from gcs.config.text_file import read_text
-from gcs.config.validate import Key, T, UnusableFile, Validator, dotted, validated
+from gcs.config.validate import Key, Suggestions, T, UnusableFile, Validator, dotted, validated
 
 _HEADER = re.compile(r"^\s*(\[\[?)\s*([^\[\]]+?)\s*\]\]?\s*(#.*)?$")
 _ENTRY = re.compile(r"""^\s*([A-Za-z0-9_."'-]+(?:\s*\.\s*[A-Za-z0-9_"'-]+)*)\s*=""")
@@ -34,7 +34,13 @@ class TomlFile:
         """Return a message of one line: file, line, table.key, reason."""
         return f"{self.path}: line {self.line(key)}: {dotted(key)}: {reason}"
 
-    def validated(self, validator: Validator[T], data: dict[str, Any] | None = None, under: Key = ()) -> T:
+    def validated(
+        self,
+        validator: Validator[T],
+        data: dict[str, Any] | None = None,
+        under: Key = (),
+        suggestions: Suggestions | None = None,
+    ) -> T:
         """Return the file's data (or ``data`` in its place, of the same keys below ``under``) as the validator's type.
 
         Raises :class:`UnusableFile` with every unknown key, missing key and wrong value.
@@ -44,6 +50,7 @@ class TomlFile:
             self.data if data is None else data,
             lambda key, reason: self.problem((*under, *key), reason),
             {"folder": self.path.parent},
+            suggestions,
         )
 
 

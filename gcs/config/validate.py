@@ -1,7 +1,8 @@
 """Strict validation of data from files: every reason why a file is refused, one line each, with its key."""
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
+from difflib import get_close_matches
 from typing import Annotated, Any, Protocol, TypeVar
 
 from pydantic import ConfigDict, Field, ValidationError, with_config
@@ -52,16 +53,29 @@ def strict(cls: type[T]) -> type[T]:
     return with_config(ConfigDict(extra="forbid", allow_inf_nan=False))(cls)
 
 
+class Suggestions:
+    """What the words of a file could mean that its tables do not know; here: nothing."""
+
+    def key_meant(self, key: Key, given: Collection[str]) -> str | None:
+        """Return the name that the last part of an unknown ``key`` means, none of those ``given`` in its table."""
+        return None
+
+    def value_meant(self, key: Key, value: object) -> str | None:
+        """Return the value that is meant by one that the ``key`` does not take."""
+        return None
+
+
 def validated(
     validator: Validator[T],
     data: Any,
     problem: Callable[[Key, str], str],
     context: Mapping[str, Any] | None = None,
+    suggestions: Suggestions | None = None,
 ) -> T:
     """Return ``data`` as the validator's type.
 
     ``problem`` makes the line for a key and a reason. Raises :class:`UnusableFile` with every unknown key, missing key
-    and wrong value.
+    and wrong value: a line each, and one for a missing key that is there under another name.
     """
     try:
         # Through JSON: strict types, yet arrays become tuples and tables dataclasses. Dates, which JSON does not
@@ -71,7 +85,7 @@ def validated(
         found = error.errors(include_url=False)
     except (ValueError, RecursionError) as error:
         raise UnusableFile([problem((), str(error))]) from error
-    raise UnusableFile([problem(*_explained(data, dict(e))) for e in found])
+    raise UnusableFile([problem(*line) for line in _lines(data, [dict(error) for error in found], suggestions)])
 
 
 def dotted(key: Sequence[str | int]) -> str:
@@ -89,6 +103,35 @@ def shown(value: Any) -> str:
     except (ValueError, RecursionError):
         text = type(value).__name__
     return text if len(text) <= 40 else text[:37] + "..."
+
+
+def _lines(data: Any, errors: Sequence[dict[str, Any]], suggestions: Suggestions | None) -> list[tuple[Key, str]]:
+    """Return the keys and reasons of the errors that pydantic found in ``data``, with what was meant."""
+    suggestions = suggestions or Suggestions()
+    # Items that are wrong are not counted: one mistake in a list must not make it too short.
+    errors = [e for e in errors if e["type"] != "too_short" or len(e["input"]) < e["ctx"]["min_length"]]
+    lines = [_explained(data, error) for error in errors]
+    missing = {key for key, reason in lines if reason == "missing key"}
+    found = []
+    for (key, reason), error in zip(lines, errors, strict=True):
+        meant = None
+        if reason == "unknown key":
+            table, name = key[:-1], str(key[-1])
+            others = [str(other[-1]) for other in missing if other[:-1] == table]
+            meant = suggestions.key_meant(key, _keys(data, table)) or next(
+                iter(get_close_matches(name, others, 1)), None
+            )
+            missing.discard((*table, meant or ""))
+        elif error["type"] == "literal_error":
+            meant = suggestions.value_meant(key, error["input"])
+        found.append((key, reason + (f": did you mean '{meant}'?" if meant else "")))
+    return [(key, reason) for key, reason in found if reason != "missing key" or key in missing]
+
+
+def _keys(data: Any, table: Key) -> Collection[str]:
+    for part in table:
+        data = data[part]
+    return data.keys() if isinstance(data, dict) else ()
 
 
 def _explained(data: Any, error: dict[str, Any]) -> tuple[Key, str]:

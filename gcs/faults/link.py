@@ -2,20 +2,34 @@
 
 from typing import Annotated
 
-from gcs.faults.kind import FaultSettings, kind, parameter
+from gcs.faults.kind import LOST, FaultSettings, kind, names, parameter
 
-_Chance = Annotated[float, parameter("of a datagram", ge=0.0, le=1.0)]
+_LINKS = "link datalink data_link comm comms communication connection radio telemetry mavlink network gcs rc signal"
+_PACKETS = "packet packets message messages datagram datagrams frame frames data"
+_CHANCE_ALIASES = "p prob chance rate ratio share loss loss_rate percentage percent"
+_Chance = Annotated[float, parameter("of a datagram", aliases=_CHANCE_ALIASES, ge=0.0, le=1.0)]
+_DELAY_ALIASES = "latency lag time delay_s delay_ms seconds value"
 _Delay = 60.0  # s, the longest
 
 
-@kind("packet_loss", "link", direction="both")
+@kind(
+    "packet_loss",
+    "link",
+    direction="both",
+    aliases=(*names(_PACKETS, "loss losses lost drop drops dropped dropping"), "loss", "drop", "drops", "random_loss"),
+)
 class PacketLoss(FaultSettings):
     """Datagrams are lost, each independently of the others."""
 
     probability: _Chance
 
 
-@kind("burst_loss", "link", direction="both")
+@kind(
+    "burst_loss",
+    "link",
+    direction="both",
+    aliases=("burst", "bursts", "bursty_loss", "loss_burst", "gilbert_elliott", "fading"),
+)
 class BurstLoss(FaultSettings):
     """Datagrams are lost in bursts (Gilbert-Elliott): a good and a bad state alternate, with exponential durations."""
 
@@ -25,37 +39,71 @@ class BurstLoss(FaultSettings):
     loss_in_gap: Annotated[float, parameter("of a datagram in the good state", ge=0.0, le=1.0)] = 0.0
 
 
-@kind("latency", "link", direction="both")
+@kind(
+    "latency",
+    "link",
+    direction="both",
+    aliases=("delay", "lag", "ping", "slow_link", *names(f"{_LINKS} {_PACKETS} time transport", "delay latency lag")),
+)
 class Latency(FaultSettings):
     """Datagrams arrive later, in their order."""
 
-    delay: Annotated[float, parameter("delay", "s", ge=0.0, le=_Delay)]
+    delay: Annotated[float, parameter("delay", "s", aliases=_DELAY_ALIASES, ge=0.0, le=_Delay)]
 
 
-@kind("jitter", "link", direction="both")
+@kind(
+    "jitter",
+    "link",
+    direction="both",
+    aliases=("variable_delay", "random_delay", *names("delay latency", "variation jitter"), *names(_LINKS, "jitter")),
+)
 class Jitter(FaultSettings):
     """Datagrams arrive later by a random time, in their order."""
 
-    spread: Annotated[float, parameter("the longest delay; each is uniform from 0", "s", ge=0.0, le=_Delay)]
+    spread: Annotated[
+        float,
+        parameter(
+            "the longest delay; each is uniform from 0",
+            "s",
+            aliases=f"{_DELAY_ALIASES} delay jitter",
+            ge=0.0,
+            le=_Delay,
+        ),
+    ]
 
 
-@kind("reordering", "link", direction="both")
+@kind("reordering", "link", direction="both", aliases=("reorder", "out_of_order", *names(_PACKETS, "reordering order")))
 class Reordering(FaultSettings):
     """Some datagrams are delayed, so that later ones overtake them."""
 
     probability: _Chance
-    delay: Annotated[float, parameter("of such a datagram", "s", gt=0.0, le=_Delay)] = 0.05
+    delay: Annotated[float, parameter("of such a datagram", "s", aliases=_DELAY_ALIASES, gt=0.0, le=_Delay)] = 0.05
 
 
-@kind("duplication", "link", direction="both")
+@kind(
+    "duplication",
+    "link",
+    direction="both",
+    aliases=("duplicate", "duplicates", "repeat", *names(_PACKETS, "duplication duplicated repeated")),
+)
 class Duplication(FaultSettings):
     """Some datagrams arrive twice."""
 
     probability: _Chance
-    delay: Annotated[float, parameter("delay of the second one", "s", ge=0.0, le=_Delay)] = 0.0
+    delay: Annotated[float, parameter("delay of the second one", "s", aliases=_DELAY_ALIASES, ge=0.0, le=_Delay)] = 0.0
 
 
-@kind("corruption", "link", direction="both")
+@kind(
+    "corruption",
+    "link",
+    direction="both",
+    aliases=(
+        "corrupt",
+        "garbage",
+        *names("bit byte", "error errors flip flips"),
+        *names(_PACKETS, "corruption corrupted"),
+    ),
+)
 class Corruption(FaultSettings):
     """Some bytes of some datagrams are replaced by other ones, anywhere."""
 
@@ -63,21 +111,28 @@ class Corruption(FaultSettings):
     bytes: Annotated[int, parameter("number of bytes replaced", ge=1, le=1000)] = 1
 
 
-@kind("bad_checksum", "link", direction="both")
+@kind(
+    "bad_checksum", "link", direction="both", aliases=("crc", "bad_crc", *names("crc checksum", "error errors fault"))
+)
 class BadChecksum(FaultSettings):
     """The checksum of every message in some datagrams is wrong; the contents are not."""
 
     probability: _Chance
 
 
-@kind("truncation", "link", direction="both")
+@kind("truncation", "link", direction="both", aliases=("truncate", *names(_PACKETS, "truncation truncated cut")))
 class Truncation(FaultSettings):
     """Some datagrams are truncated at a random byte."""
 
     probability: _Chance
 
 
-@kind("bandwidth_cap", "link", direction="both")
+@kind(
+    "bandwidth_cap",
+    "link",
+    direction="both",
+    aliases=("throttle", "congestion", "baudrate", "baud_rate", *names("bandwidth rate low", "limit bandwidth cap")),
+)
 class BandwidthCap(FaultSettings):
     """Datagrams wait for those before them to pass, and are lost when too many wait."""
 
@@ -85,17 +140,28 @@ class BandwidthCap(FaultSettings):
     queue: Annotated[int, parameter("bytes that may wait", "bytes", ge=1, le=10**9)] = 8192
 
 
-@kind("partition", "link", direction="both")
+@kind(
+    "partition",
+    "link",
+    direction="both",
+    aliases=("no_link", "disconnect", "blackout", *names(_LINKS, f"{LOST} blackout partition")),
+)
 class Partition(FaultSettings):
     """No datagram passes, in both directions or in one."""
 
 
-@kind("stall", "link", direction="both", bounded=True)
+@kind(
+    "stall",
+    "link",
+    direction="both",
+    bounded=True,
+    aliases=("freeze", "buffering", *names("link datalink connection network telemetry", "stall freeze")),
+)
 class Stall(FaultSettings):
     """No datagram passes for the duration; then all delayed ones arrive at once."""
 
 
-@kind("flapping", "link", direction="both")
+@kind("flapping", "link", direction="both", aliases=("flap", *names(_LINKS, "flapping"), *names("unstable", _LINKS)))
 class Flapping(FaultSettings):
     """The link is down and up alternately, down first; what is sent while it is down is lost."""
 

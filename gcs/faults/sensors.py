@@ -2,23 +2,29 @@
 
 from typing import Annotated
 
-from gcs.faults.kind import FaultSettings, kind, parameter
+from gcs.faults.kind import LOST, FaultSettings, kind, names, parameter
 
 _Vector = tuple[float, float, float]
+_POSITION = "gps gnss position pos local_position global_position mocap vio baro barometer altitude"
+_JAMMED = "jamming jammed blackout"
 _Onboard = Annotated[
     bool,
     parameter("true: lost on board, too, where the other sensors are used; false: only in the telemetry"),
 ]
 
 
-@kind("position_lost", "sensors")
+@kind(
+    "position_lost",
+    "sensors",
+    aliases=("gps", "gnss", "no_gps", "jamming", *names(f"velocity {_POSITION}", f"{LOST} {_JAMMED}")),
+)
 class PositionLost(FaultSettings):
     """Position and velocity are no longer measured or reported."""
 
     onboard: _Onboard = True
 
 
-@kind("position_glitch", "sensors")
+@kind("position_glitch", "sensors", aliases=names(_POSITION, "glitch glitches jump jumps step hop"))
 class PositionGlitch(FaultSettings):
     """The measured position jumps away and back, level, in random directions, and the vehicle flies by it."""
 
@@ -27,33 +33,49 @@ class PositionGlitch(FaultSettings):
     hold: Annotated[float, parameter("duration of a jump", "s", gt=0.0, le=1e3)] = 0.2
 
 
-@kind("position_drift", "sensors")
+@kind("position_drift", "sensors", aliases=("spoofing", *names(_POSITION, "drift ramp spoof spoofing spoofed")))
 class PositionDrift(FaultSettings):
     """The measured position drifts away, the velocity does not, and the vehicle flies by it."""
 
     velocity: Annotated[_Vector, parameter("of the drift, north-east-down", "m/s")]
 
 
-@kind("attitude_lost", "sensors")
+@kind(
+    "attitude_lost",
+    "sensors",
+    aliases=names("attitude imu ahrs mag magnetometer compass heading yaw orientation", LOST),
+)
 class AttitudeLost(FaultSettings):
     """The attitude is no longer reported, nor the rates, which share its message."""
 
     onboard: _Onboard = False
 
 
-@kind("rates_lost", "sensors")
+@kind("rates_lost", "sensors", aliases=names("rate rates gyro gyroscope angular_rate body_rates", LOST))
 class RatesLost(FaultSettings):
     """The rates are reported as NaN, MAVLink's unknown value."""
 
     onboard: _Onboard = False
 
 
-@kind("payload_unit_lost", "sensors")
+@kind(
+    "payload_unit_lost",
+    "sensors",
+    aliases=names("payload payload_unit payload_imu payload_gps payload_sensor payload_nav", LOST),
+)
 class PayloadUnitLost(FaultSettings):
     """The vehicles receive nothing from the payload's navigation unit, and relay nothing."""
 
 
-@kind("obstacle_sensing_lost", "sensors")
+@kind(
+    "obstacle_sensing_lost",
+    "sensors",
+    aliases=names(
+        "lidar radar camera depth vision obstacle obstacles obstacle_sensor obstacle_sensing range range_sensor "
+        "rangefinder distance_sensor proximity",
+        LOST,
+    ),
+)
 class ObstacleSensingLost(FaultSettings):
     """The vehicles no longer detect obstacles."""
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from gcs.config import SystemConfig
-from gcs.faults.kind import FaultSettings, Problem, Vehicles, kind, parameter
+from gcs.faults.kind import FaultSettings, Problem, Vehicles, kind, names, parameter
 
 Channel = Literal[
     "position", "velocity", "attitude", "rates",
@@ -17,14 +17,35 @@ Channel = Literal[
 ]  # fmt: skip
 Axes = tuple[Literal["x", "y", "z"], ...]
 _Amount = 1e5
+_SENSORS = "sensor gps gnss position velocity imu gyro accel accelerometer rate attitude mag compass "
+_SENSORS += "heading baro altitude lidar"
+_CHANNELS = {
+    "gps": "position", "gnss": "position", "pos": "position", "location": "position", "altitude": "position",
+    "baro": "position", "speed": "velocity", "vel": "velocity", "acceleration": "velocity", "accelerometer": "velocity",
+    "orientation": "attitude", "quaternion": "attitude", "heading": "attitude", "yaw": "attitude", "roll": "attitude",
+    "pitch": "attitude", "compass": "attitude", "mag": "attitude", "magnetometer": "attitude", "imu": "attitude",
+    "gyro": "rates", "rate": "rates", "body_rates": "rates", "angular_velocity": "rates", "lidar": "obstacles",
+    "range": "obstacles", "points": "obstacles", "distance": "obstacles", "obstacle": "obstacles",
+}  # fmt: skip
+_AXES = {
+    "roll": "x", "pitch": "y", "yaw": "z", "heading": "z", "p": "x", "q": "y", "r": "z",
+    "north": "x", "east": "y", "down": "z", "up": "z", "n": "x", "e": "y", "d": "z",
+    "lat": "x", "latitude": "x", "lon": "y", "longitude": "y", "alt": "z", "altitude": "z", "height": "z",
+    "vx": "x", "vy": "y", "vz": "z", "forward": "x", "right": "y", "vertical": "z",
+}  # fmt: skip
+_AMOUNT_ALIASES = "value offset bias size magnitude"
 
 
 @dataclass(frozen=True, kw_only=True)
 class ValueFault(FaultSettings):
     """Settings that all but :class:`SwappedVehicles` share."""
 
-    channel: Annotated[Channel, parameter("what is disturbed")]
-    axes: Annotated[Axes, parameter("of the channel", min_length=1, max_length=3)] = ("x", "y", "z")
+    channel: Annotated[Channel, parameter("what is disturbed", aliases="sensor signal field", values=_CHANNELS)]
+    axes: Annotated[Axes, parameter("of the channel", aliases="axis", values=_AXES, min_length=1, max_length=3)] = (
+        "x",
+        "y",
+        "z",
+    )
     at_source: Annotated[
         bool,
         parameter(
@@ -40,33 +61,45 @@ class ValueFault(FaultSettings):
         return None
 
 
-@kind("bias", "values")
+@kind("bias", "values", aliases=("offset", "constant_offset", *names(_SENSORS, "bias offset")))
 class Bias(ValueFault):
     """A constant is added."""
 
-    amount: Annotated[float, parameter("on each of the axes", "channel's", ge=-_Amount, le=_Amount)]
+    amount: Annotated[
+        float, parameter("on each of the axes", "channel's", aliases=_AMOUNT_ALIASES, ge=-_Amount, le=_Amount)
+    ]
 
 
-@kind("drift", "values")
+@kind("drift", "values", aliases=("ramp", "random_walk", *names("sensor imu gyro attitude velocity", "drift ramp")))
 class Drift(ValueFault):
     """The added amount grows with the time since the start of the fault."""
 
     rate: Annotated[float, parameter("on each of the axes", "channel's/s", ge=-_Amount, le=_Amount)]
 
 
-@kind("scale", "values")
+@kind(
+    "scale", "values", aliases=("gain", "scaling", *names("scale gain", "factor error"), *names(_SENSORS, "scale gain"))
+)
 class Scale(ValueFault):
     """Values are multiplied."""
 
     factor: Annotated[float, parameter("factor", ge=-1e3, le=1e3)]
 
 
-@kind("stuck", "values")
+@kind(
+    "stuck",
+    "values",
+    aliases=("frozen", "stuck_at", *names(_SENSORS, "stuck frozen freeze"), *names("frozen stuck", _SENSORS)),
+)
 class Stuck(ValueFault):
     """Values remain those at the start of the fault; time stamps continue."""
 
 
-@kind("spikes", "values")
+@kind(
+    "spikes",
+    "values",
+    aliases=("spike", "glitch", "glitches", "outlier", "outliers", *names(_SENSORS, "spike spikes outlier outliers")),
+)
 class Spikes(ValueFault):
     """Single samples are off by an amount, up or down, each axis independently."""
 
@@ -74,7 +107,7 @@ class Spikes(ValueFault):
     amount: Annotated[float, parameter("size of a spike", "channel's", gt=0.0, le=_Amount)]
 
 
-@kind("not_a_number", "values")
+@kind("not_a_number", "values", aliases=("nan", "nans", "inf", "infinity", *names(_SENSORS, "nan inf")))
 class NotANumber(ValueFault):
     """Values are NaN or infinite. Messages with integer fields, which have no such value, are not sent."""
 
@@ -82,31 +115,35 @@ class NotANumber(ValueFault):
     probability: Annotated[float, parameter("of a sample", ge=0.0, le=1.0)] = 1.0
 
 
-@kind("quantisation", "values")
+@kind(
+    "quantisation",
+    "values",
+    aliases=("quantization", "rounding", "resolution", *names(_SENSORS, "quantisation resolution")),
+)
 class Quantisation(ValueFault):
     """Values are rounded coarsely."""
 
     step: Annotated[float, parameter("step between values", "channel's", gt=0.0, le=_Amount)]
 
 
-@kind("flipped_sign", "values")
+@kind("flipped_sign", "values", aliases=("inverted", "reversed", "negated", "sign", "sign_flip", "sign_error"))
 class FlippedSign(ValueFault):
     """Values have the opposite sign."""
 
 
-@kind("swapped_frame", "values")
+@kind("swapped_frame", "values", aliases=("enu", "wrong_frame", "frame_swap", "swapped_axes", "axes_swap"))
 class SwappedFrame(ValueFault):
     """Values are in another frame: x and y exchanged, z reversed (east-north-up for north-east-down)."""
 
 
-@kind("noise", "values")
+@kind("noise", "values", aliases=("noisy", *names(f"white gaussian {_SENSORS}", "noise"), *names("noisy", _SENSORS)))
 class Noise(ValueFault):
     """White noise is added, so that in all there is a multiple of the system file's; obstacles: on every axis."""
 
     factor: Annotated[float, parameter("noise with the fault over noise without", ge=1.0, le=1e3)]
 
 
-@kind("intermittent", "values")
+@kind("intermittent", "values", aliases=("flaky", "loose_contact", *names("intermittent flaky", _SENSORS)))
 class Intermittent(ValueFault):
     """Values are stuck and true alternately, for random times; true first."""
 
@@ -114,7 +151,11 @@ class Intermittent(ValueFault):
     stuck: Annotated[float, parameter("mean time of the last value", "s", gt=0.0, le=1e4)] = 0.5
 
 
-@kind("swapped_vehicles", "values")
+@kind(
+    "swapped_vehicles",
+    "values",
+    aliases=("swapped", *names("swapped", "ids id uavs"), *names("id ids vehicle", "swap mixup")),
+)
 class SwappedVehicles(FaultSettings):
     """Two vehicles report each other's attitude, rates, position and velocity as their own."""
 

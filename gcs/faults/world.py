@@ -3,14 +3,14 @@
 from typing import Annotated
 
 from gcs.config import SystemConfig
-from gcs.faults.kind import FaultSettings, Problem, Vehicles, kind, parameter
+from gcs.faults.kind import FaultSettings, Problem, Vehicles, kind, names, parameter
 from idc_controller.errors import ParameterError
 
 _Vector = tuple[float, float, float]
 LEAST_MASS = 0.1  # kg that must be left of the payload
 
 
-@kind("wind", "world", of_vehicles=False)
+@kind("wind", "world", of_vehicles=False, aliases=("gust", "gusts", "turbulence", "wind_gust", "wind_gusts"))
 class Wind(FaultSettings):
     """Wind, the same everywhere, with gusts: first-order coloured noise. Drag on payload and UAVs is quadratic."""
 
@@ -26,7 +26,12 @@ class Wind(FaultSettings):
         return ("velocity", "more than 100 m/s") if max(map(abs, self.velocity)) > 100.0 else None
 
 
-@kind("payload_mass", "world", of_vehicles=False)
+@kind(
+    "payload_mass",
+    "world",
+    of_vehicles=False,
+    aliases=("mass", "load", "weight", *names("payload load mass", "change step added removed weight release")),
+)
 class PayloadMass(FaultSettings):
     """The payload is heavier or lighter at once, inertia in proportion, centre of mass where it was."""
 

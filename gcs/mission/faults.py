@@ -1,7 +1,6 @@
 """Faults of a mission: read from their tables, and checked against their kinds and the team that flies."""
 
-from collections.abc import Iterator, Mapping
-from difflib import get_close_matches
+from collections.abc import Collection, Iterator, Mapping
 from functools import cache
 from typing import Any
 
@@ -9,11 +8,32 @@ from pydantic import TypeAdapter
 
 from gcs.config import SystemConfig, UnusableFile
 from gcs.config.toml_file import TomlFile
+from gcs.config.validate import Key, Suggestions
 from gcs.errors import UnusableInput
 from gcs.mission.model import Fault, Mission
 
 _KEYS = ("kind", "start", "duration", "every", "times", "vehicles", "direction")
 """Keys of every fault; all others are parameters of its kind."""
+
+
+class FaultSuggestions(Suggestions):
+    """What is meant in the tables of faults; ``kind`` of the fault, where the keys are those of one."""
+
+    def __init__(self, kind: str = "", given: Collection[str] = ()) -> None:
+        self._kind, self._given = kind, given
+
+    def key_meant(self, key: Key, given: Collection[str]) -> str | None:
+        """See :class:`Suggestions`."""
+        from gcs.faults.suggestions import key_meant
+
+        return key_meant(self._kind, str(key[-1]), {*self._given, *given}) if self._kind else None
+
+    def value_meant(self, key: Key, value: object) -> str | None:
+        """See :class:`Suggestions`."""
+        from gcs.faults.suggestions import value_meant
+
+        name = next((part for part in reversed(key) if isinstance(part, str)), "")
+        return value_meant(self._kind, name, value)
 
 
 def fault_data(file: TomlFile, index: int, table: Any) -> Any:
@@ -30,7 +50,7 @@ def read_fault(file: TomlFile, index: int, table: Mapping[str, Any]) -> Fault:
     Raises :class:`UnusableFile` for unknown kinds and keys and for wrong values; whether the fault agrees with itself
     and with a system, :func:`fault_problems` checks.
     """
-    fault = file.validated(_adapter(), fault_data(file, index, table), ("fault", index))
+    fault = file.validated(_adapter(), fault_data(file, index, table), ("fault", index), FaultSuggestions())
     if problems := parameter_problems(file, index, fault):
         raise UnusableFile(problems)
     return fault
@@ -46,11 +66,15 @@ def parameter_problems(file: TomlFile, index: int, fault: Fault) -> list[str]:
     from gcs.faults import KINDS, settings_adapter  # the kinds take long to import, spent only where there are faults
 
     if fault.kind not in KINDS:
-        near = get_close_matches(fault.kind, KINDS, 1)
-        hint = f": did you mean '{near[0]}'?" if near else ": gcs faults --kinds lists them"
+        from gcs.faults.suggestions import kind_meant
+
+        meant = kind_meant(fault.kind)
+        hint = f": did you mean '{meant}'?" if meant else ": gcs faults --kinds lists them"
         return [file.problem(("fault", index, "kind"), f"there is no kind '{fault.kind}'{hint}")]
     try:
-        file.validated(settings_adapter(fault.kind), dict(fault.settings), ("fault", index))
+        given = (key for key in _KEYS if getattr(fault, key) is not None)
+        suggestions = FaultSuggestions(fault.kind, {*given})
+        file.validated(settings_adapter(fault.kind), dict(fault.settings), ("fault", index), suggestions)
     except UnusableFile as error:
         return list(error.reasons)
     return []
