@@ -58,7 +58,7 @@ class SystemParameters:
             value.setflags(write=False)
             object.__setattr__(self, name, value)
         if n < 3:
-            raise ParameterError(f"{n} UAVs cannot hold a rigid payload level: three or more are needed")
+            raise ParameterError(f"three UAVs or more hold a rigid payload level, not {n}")
         positive = {
             "m_0": self.m_0, "m": self.m, "l": self.l,
             "disc_radius": self.disc_radius, "thrust_max": self.thrust_max, "g": self.g,
@@ -83,7 +83,8 @@ class SystemParameters:
         hover = self.hover_thrust
         if np.any(hover <= 0.0) or np.any(hover >= self.thrust_max):
             raise ParameterError(
-                f"hover needs {np.round(hover, 1).tolist()} N a UAV; it must lie in 0 .. {self.thrust_max} N"
+                f"hover needs {np.max(hover):.1f} N of one UAV (limit: less than its largest thrust, "
+                f"{self.thrust_max:g} N)"
             )
 
     @property

@@ -81,7 +81,7 @@ INF = (3, 16, 0, 0, 0, 0, "inf", 8.5, 5)
         (wpl(TAKE_OFF, row(115, 90), A), "line 4", "CONDITION_YAW is not supported"),
         (wpl(TAKE_OFF, row(207, 1), A), "line 4", "DO_FENCE_ENABLE is not supported"),
         (wpl(TAKE_OFF, row(208, 1), A), "line 4", "DO_PARACHUTE is not supported"),
-        (wpl(TAKE_OFF, row(31999), A), "line 4", "command 31999 is not supported"),
+        (wpl(TAKE_OFF, row(31999), A), "line 4", "(command 31999): command: 31999 is not supported"),
         (wpl(TAKE_OFF, row(93, "nan"), A), "line 4", "param 1: not given: a delay in seconds is needed"),
         (wpl(TAKE_OFF, row(93, -1), A), "line 4", "param 1: not given: a delay in seconds is needed"),
         (wpl(TAKE_OFF, row(178, 1, 0), A), "line 4", "would never arrive"),

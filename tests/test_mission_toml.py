@@ -87,6 +87,21 @@ def test_toml_refused(tmp_path: Path, text: str, old: str, new: str, at: str, re
     assert any(reason in r and f"line {line}: " in r for r in reasons), reasons
 
 
+@pytest.mark.parametrize(
+    ("text", "old", "new", "reason"),
+    [
+        (POINTS, "[4, 5, -6]", "[4, nan, -6]", "reference.points[2][2]: must be a finite number, found NaN"),
+        (POINTS, "[[1, 2, -3], [4, 5, -6]]", "[[nan, 2, -3]]", "reference.points[1][1]: must be a finite number"),
+        (TOML, "duration = 40.0", "duratoin = 40.0", "reference.duratoin: unknown key: did you mean 'duration'?"),
+        (TOML, "height = 15.0", "heigth = 15.0", "obstacle[2].heigth: unknown key: did you mean 'height'?"),
+    ],
+)
+def test_one_mistake_is_one_line(tmp_path: Path, text: str, old: str, new: str, reason: str) -> None:
+    assert old in text
+    (line,) = refusal(tmp_path, text.replace(old, new, 1), "mission.toml")
+    assert reason in line
+
+
 def test_toml_names_a_missing_or_wrong_waypoint_file(tmp_path: Path) -> None:
     text = '[mission]\nname = "p"\n[reference]\nkind = "waypoints"\nfile = "mission.txt"\n'
     assert "line 5: reference.file: there is no file" in refusal(tmp_path, text, "mission.toml")[0]

@@ -4,6 +4,7 @@ import dataclasses
 from dataclasses import dataclass
 from pathlib import Path
 
+from gcs.app.arguments import VEHICLES_MIN
 from gcs.drivers.simulator import VEHICLES_MAX
 from gcs.errors import UnusableInput
 from gcs.mavlink.address import ConnectionUrl
@@ -50,6 +51,11 @@ def prepare(options: FlyOptions) -> Mission:
         if vehicles is not None and vehicles != len(options.connect):
             raise UnusableInput(f"--vehicles {vehicles} does not agree with {len(options.connect)} URLs")
         vehicles = len(options.connect)
+        if vehicles < VEHICLES_MIN:
+            raise UnusableInput(
+                f"--connect {options.connect[0]}: {vehicles} of the team's vehicles, which are {VEHICLES_MIN} or more: "
+                "name the URL of each"
+            )
     mission = read_mission_for(options.mission, options.config, vehicles)
     vehicles = mission.system.team.vehicles
     if not options.connect and vehicles > VEHICLES_MAX:

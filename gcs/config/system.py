@@ -7,7 +7,8 @@ settings in its ``settings.py``; they are one field of :class:`SystemConfig`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from contextlib import suppress
+from dataclasses import dataclass, field, fields, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -29,7 +30,7 @@ from gcs.config.tables import (
     WorldConfig,
 )
 from gcs.config.toml_file import TomlFile, read_toml
-from gcs.config.validate import UnusableFile
+from gcs.config.validate import Key, UnusableFile
 from gcs.config.vehicle_settings import AutopilotSettings, VehicleLinkSettings
 from gcs.drivers.settings import DriverSettings
 from gcs.errors import UnusableInput
@@ -168,12 +169,26 @@ def read_system(path: Path | None = None) -> SystemConfig:
     config: SystemConfig = file.validated(_validator())
     if problems := _disagreements(config, file):
         raise UnusableFile(problems)
-    for key, parameters in (("team",), config.parameters), (("world", "payload_mass_factor"), config.true_parameters):
-        try:
-            parameters()
-        except ParameterError as error:
-            raise UnusableFile([file.problem(key, str(error))]) from error
+    try:
+        config.parameters()
+        config.true_parameters()
+    except ParameterError as error:
+        raise UnusableFile([file.problem(_cause(config, file), str(error))]) from error
     return config
+
+
+def _cause(config: SystemConfig, file: TomlFile) -> Key:
+    """Return the key of a number with whose default the system could fly; the team where no single one is the cause."""
+    for table in fields(config):
+        for key in file.data.get(table.name, ()):
+            default = getattr(getattr(SystemConfig(), table.name), key)
+            if not isinstance(default, int | float):
+                continue
+            changed = replace(getattr(config, table.name), **{key: default})
+            with suppress(ParameterError):
+                replace(config, **{table.name: changed}).true_parameters()
+                return table.name, key
+    return ("team",)
 
 
 def _disagreements(config: SystemConfig, file: TomlFile) -> list[str]:

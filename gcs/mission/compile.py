@@ -97,6 +97,7 @@ def _step(item: MissionItem, context: _Context) -> Step | None:
     name = command_name(item.command)
     if name.startswith("NAV_") or item.command <= LAST_NAVIGATION:
         raise ItemError("command", f"navigation by {name} is not supported")
+    name = name.removeprefix("command ")
     raise ItemError("command", f"{name} is not supported, and leaving it out could change the flight")
 
 

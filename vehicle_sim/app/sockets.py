@@ -22,7 +22,10 @@ class SwarmSockets:
         """``host`` is a name or an IPv4 address of this machine."""
         first = base_port - 1 if with_clock else base_port
         if base_port and not (first > 0 and base_port + vehicles - 1 <= 65535):
-            raise SimulationError(f"--base-port {base_port}: ports {first} .. {base_port + vehicles - 1} do not exist")
+            last = base_port + vehicles - 1
+            raise SimulationError(
+                f"--base-port {base_port}: needs the ports {first} .. {last}, and there are 1 .. 65535"
+            )
         with contextlib.ExitStack() as opened:
             self.clock = opened.enter_context(_bound(host, base_port and base_port - 1)) if with_clock else None
             self.vehicles = [opened.enter_context(_bound(host, base_port and base_port + i)) for i in range(vehicles)]
