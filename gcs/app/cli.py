@@ -10,6 +10,8 @@ from gcs.app.arguments import Parser, Version
 from gcs.app.exit_status import ExitStatus
 from gcs.app.imports import importing
 from gcs.app.logs import LOG, add_log_arguments, logging_to
+from gcs.app.output import output_that_may_end
+from gcs.drivers.interrupt import Interrupt
 from gcs.errors import GcsError, UnusableInput
 from gcs.numerics import choose_kernels
 from idc_controller.errors import IdcError
@@ -43,6 +45,11 @@ def main(argv: Sequence[str] | None = None) -> int:
     choose_kernels()
     # pydantic would read the metadata of all that is installed.
     os.environ["PYDANTIC_DISABLE_PLUGINS"] = "__all__"
+    with output_that_may_end("stdout", "stderr"), Interrupt():
+        return _main(words)
+
+
+def _main(words: list[str]) -> int:
     try:
         arguments = _parse(words)
         with logging_to(arguments):

@@ -13,4 +13,4 @@ class ExitStatus(IntEnum):
     UNUSABLE_INPUT = 2
     """Nothing was started; the reason is on standard error."""
     INTERRUPTED = 130
-    """Interrupted by Ctrl-C; vehicles landed, records closed."""
+    """Interrupted by Ctrl-C, SIGTERM or SIGHUP; vehicles landed, records closed."""

@@ -88,7 +88,7 @@ def fly(
 
     Raises :class:`UnusableInput` before anything is started, and :class:`GcsError` when no world could be started.
     """
-    with ExitStack() as resources:
+    with Interrupt() as interrupt, ExitStack() as resources:
         folder = resources.enter_context(NewRunFolder(mission.name, options.run_dir))
         run_dir, started = folder.path, datetime.now(UTC)
         write_manifest(
@@ -107,7 +107,6 @@ def fly(
         recorder = resources.enter_context(FlightRecorder(run_dir, started.timestamp()))
         station = ground_station(mission, addresses, recorder, options.controller)
         log = FlightLog(station)
-        interrupt = resources.enter_context(Interrupt())
         ended = simulator.end_reason if simulator is not None else lambda: None
 
         settings, wall = mission.system.drivers, time.monotonic()
@@ -120,6 +119,7 @@ def fly(
             progress(station.flight)
 
         folder.keep()
+        interrupt.begin_flight()
         try:
             if options.realtime:
                 run_in_real_time(
@@ -133,7 +133,9 @@ def fly(
             flight = station.flight
             reason = "interrupted twice: the vehicles land autonomously"
             flight.raise_failsafe(flight.time, Failsafe.INTERRUPTED_TWICE, Trigger(reason))
-    return flight_result(run_dir, mission, station, recorder.last_time, time.monotonic() - wall)
+        interrupt.end_flight()
+        resources.close()
+        return flight_result(run_dir, mission, station, recorder.last_time, time.monotonic() - wall)
 
 
 def flight_result(

@@ -11,10 +11,13 @@ import json
 import multiprocessing
 import os
 import runpy
+import signal
 import sys
 import tempfile
 from collections.abc import Iterator, Sequence
 from types import TracebackType
+
+from gcs.drivers.interrupt import SIGNALS
 
 FORK = multiprocessing.get_context("fork")
 
@@ -54,6 +57,8 @@ class ForkedProgram:
 
     def _wait(self, module: str, streams: Sequence[int]) -> None:
         os.setsid()
+        for number in SIGNALS:  # of the process that forked
+            signal.signal(number, signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL)
         os.close(self._input)
         os.close(self._output)
         with os.fdopen(streams[0], closefd=False) as given:

@@ -1,22 +1,41 @@
-"""Ctrl-C: the first one lands the flight, the second one ends control."""
+"""Signals that end the programs: Ctrl-C, SIGTERM, and SIGHUP, which a terminal sends when it is closed."""
 
 from __future__ import annotations
 
 import signal
+import threading
 from types import FrameType, TracebackType
 from typing import Any
 
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
 
 class Interrupt:
-    """While in use, SIGINT and SIGTERM are counted, and only the second one raises KeyboardInterrupt."""
+    """While in use, every signal of :data:`SIGNALS` raises :class:`KeyboardInterrupt`, except in a flight and after it.
+
+    In a flight the first one is a request, and only a second Ctrl-C or SIGTERM raises it; after it, while records are
+    closed, none does. SIGHUP, which comes from the terminal and again from the shell, is never a second one, and of no
+    effect where it was ignored before (``nohup``). A context manager; outside the main thread it does nothing.
+    """
 
     def __init__(self) -> None:
         self.requested = False
+        self._in_flight = self._flown = self._hung_up = False
         self._previous: dict[int, Any] = {}
 
+    def begin_flight(self) -> None:
+        """From here on the first signal is a request: see :attr:`requested`."""
+        self._in_flight = True
+
+    def end_flight(self) -> None:
+        """From here on signals are without effect."""
+        self._flown = True
+
     def __enter__(self) -> Interrupt:
-        for number in (signal.SIGINT, signal.SIGTERM):
-            self._previous[number] = signal.signal(number, self._on_signal)
+        if threading.current_thread() is threading.main_thread():
+            for number in SIGNALS:
+                if number != signal.SIGHUP or signal.getsignal(number) != signal.SIG_IGN:
+                    self._previous[number] = signal.signal(number, self._on_signal)
         return self
 
     def __exit__(
@@ -26,6 +45,12 @@ class Interrupt:
             signal.signal(number, handler)
 
     def _on_signal(self, number: int, frame: FrameType | None) -> None:
+        again, self._hung_up = self._hung_up, self._hung_up or number == signal.SIGHUP
+        if self._flown or (number == signal.SIGHUP and (again or self.requested)):
+            return
+        if not self._in_flight:
+            raise KeyboardInterrupt
         if self.requested:
+            self.end_flight()
             raise KeyboardInterrupt
         self.requested = True

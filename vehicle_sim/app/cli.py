@@ -4,6 +4,7 @@ import sys
 
 from gcs.app.imports import importing
 from gcs.app.logs import logging_to
+from gcs.app.output import output_that_may_end
 from gcs.errors import GcsError, UnusableInput
 from gcs.numerics import choose_kernels
 from idc_controller.errors import IdcError
@@ -17,7 +18,11 @@ UNUSABLE_INPUT = 2
 
 def main(argv: list[str] | None = None) -> int:
     """Run the command; ``argv`` without the program's name. Returns the exit status."""
-    arguments = sys.argv[1:] if argv is None else argv
+    with output_that_may_end("stderr"):
+        return _main(sys.argv[1:] if argv is None else argv)
+
+
+def _main(arguments: list[str]) -> int:
     choose_kernels()
     try:
         options = parse(arguments)

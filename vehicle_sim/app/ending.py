@@ -10,7 +10,7 @@ from types import FrameType
 from typing import Protocol
 
 INTERRUPTED = 130
-"""Exit status after Ctrl-C."""
+"""Exit status after Ctrl-C, and after SIGHUP of a closed terminal."""
 
 
 class _HasFileno(Protocol):
@@ -59,12 +59,14 @@ class Ending:
 
     @contextlib.contextmanager
     def on_signals(self) -> Iterator[None]:
-        """Ctrl-C and SIGTERM request the end while the block runs; main thread only.
+        """Ctrl-C, SIGTERM and SIGHUP request the end while the block runs; main thread only.
 
-        With a parent, Ctrl-C is the parent's business: a terminal sends it to both.
+        With a parent, Ctrl-C and a closed terminal are the parent's business: a terminal sends both signals to both.
         """
         handlers = {signal.SIGTERM: signal.signal(signal.SIGTERM, self._on_signal)}
-        handlers[signal.SIGINT] = signal.signal(signal.SIGINT, signal.SIG_IGN if self.has_parent else self._on_signal)
+        for number in (signal.SIGINT, signal.SIGHUP):
+            if number == signal.SIGINT or signal.getsignal(number) != signal.SIG_IGN:  # as nohup has it
+                handlers[number] = signal.signal(number, signal.SIG_IGN if self.has_parent else self._on_signal)
         try:
             yield
         finally:
@@ -77,7 +79,7 @@ class Ending:
         self._woken.close()
 
     def _on_signal(self, number: int, frame: FrameType | None) -> None:
-        self.request(INTERRUPTED if number == signal.SIGINT else 0)
+        self.request(0 if number == signal.SIGTERM else INTERRUPTED)
 
     def _read_parent(self) -> None:
         try:

@@ -19,8 +19,8 @@ With --connect it flies a swarm that runs already:
   gcs fly missions/figure_eight.toml --realtime --connect \\
       udp://127.0.0.1:14540 udp://127.0.0.1:14541 udp://127.0.0.1:14542 udp://127.0.0.1:14543
 
-Ctrl-C lands the vehicles and closes the records; a second one ends the ground station, and the
-vehicles land by their own failsafe.
+Ctrl-C, SIGTERM and a closed terminal land the vehicles and close the records; a second Ctrl-C or
+SIGTERM ends the ground station, and the vehicles land by their own failsafe.
 Exit status: 0 done and within limits; 1 flown but outside limits, or aborted safely; 2 unusable input;
 130 interrupted, vehicles landed.
 """
