@@ -5,6 +5,10 @@ class GcsError(Exception):
     """Root of every error raised by ``gcs``."""
 
 
+class UnwritableRecord(GcsError):
+    """A record of what has been done cannot be written: exit code 3."""
+
+
 class UnusableInput(GcsError):
     """A mission, configuration or argument that cannot be used: exit code 2.
 

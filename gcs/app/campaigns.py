@@ -11,6 +11,7 @@ from gcs.app.logs import LOG
 from gcs.campaign.engine import KEEP, Campaign, PlanGenerator
 from gcs.campaign.progress import fly_with_progress
 from gcs.campaign.tables import failed_flights, headline
+from gcs.errors import UnusableInput, UnwritableRecord
 
 WIDTH = 150
 """Characters of a line where standard output is no terminal."""
@@ -38,7 +39,10 @@ def run_campaign(generator: PlanGenerator, out: Path, arguments: argparse.Namesp
         interrupted = True
     results = campaign.results
     if results:
-        parts, files = generator.report(results, out)
+        try:
+            parts, files = generator.report(results, out)
+        except (OSError, UnusableInput) as error:
+            raise UnwritableRecord(f"{error}: the flights are kept; start the command again for its report") from None
         first = headline(results, generator.what, generator.passed_means)
         console.print(Group(first, *parts, *failed_flights(results)))
         console.print(f"Results   {'  '.join(map(str, files))}", markup=False)

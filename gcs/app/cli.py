@@ -12,7 +12,7 @@ from gcs.app.imports import importing
 from gcs.app.logs import LOG, add_log_arguments, logging_to
 from gcs.app.output import output_that_may_end
 from gcs.drivers.interrupt import Interrupt
-from gcs.errors import GcsError, UnusableInput
+from gcs.errors import GcsError, UnusableInput, UnwritableRecord
 from gcs.numerics import choose_kernels
 from idc_controller.errors import IdcError
 
@@ -69,6 +69,9 @@ def _run(arguments: Namespace) -> int:
         for reason in error.reasons:
             LOG.error(reason)
         return ExitStatus.UNUSABLE_INPUT
+    except UnwritableRecord as error:
+        LOG.error(error)
+        return ExitStatus.INCOMPLETE
     except (GcsError, IdcError) as error:
         LOG.error("gcs: %s", error)
         return ExitStatus.OUTSIDE_LIMITS

@@ -35,10 +35,11 @@ from gcs.mavlink.address import Address, ConnectionUrl
 from gcs.mavlink.vehicle_link import VehicleLink
 from gcs.mission.model import Mission
 from gcs.numerics import differences
+from gcs.record.incomplete import Incomplete, read_line
 from gcs.record.landing import is_set_down
 from gcs.record.recorder import FlightRecorder
-from gcs.record.run_data import RunData, read_run
-from gcs.record.run_folder import NewRunFolder, write_manifest
+from gcs.record.run_data import SUMMARY, TRUTH, RunData, read_run
+from gcs.record.run_folder import NewRunFolder, UnwritableFile, write_manifest
 from gcs.record.summary import summarise, within_limits, write_summary
 from idc_controller.guidance.progress import Guidance
 from idc_controller.paper.printed_filter import PrintedFilter
@@ -55,6 +56,8 @@ class FlightResult:
     interrupted: bool
     flown: bool
     """True if take-off had begun."""
+    incomplete: tuple[Incomplete, ...] = ()
+    """What could not be written: the figures are of what there is."""
 
     @property
     def run_dir(self) -> Path:
@@ -71,6 +74,8 @@ class FlightResult:
         """The exit status of the command."""
         if self.interrupted:
             return ExitStatus.INTERRUPTED
+        if self.incomplete:
+            return ExitStatus.INCOMPLETE
         held = self.summary["completed"] and within_limits(self.summary)
         return ExitStatus.DONE if held else ExitStatus.OUTSIDE_LIMITS
 
@@ -135,13 +140,25 @@ def fly(
             flight.raise_failsafe(flight.time, Failsafe.INTERRUPTED_TWICE, Trigger(reason))
         interrupt.end_flight()
         resources.close()
-        return flight_result(run_dir, mission, station, recorder.last_time, time.monotonic() - wall)
+        incomplete = [*recorder.incomplete.found]
+        if simulator is not None:
+            incomplete += [found for line in simulator.last_lines if (found := read_line(line)) is not None]
+        wall = time.monotonic() - wall
+        return flight_result(run_dir, mission, station, recorder.last_time, wall, tuple(incomplete))
 
 
 def flight_result(
-    run_dir: Path, mission: Mission, station: GroundStation, last_time: float, wall: float
+    run_dir: Path,
+    mission: Mission,
+    station: GroundStation,
+    last_time: float,
+    wall: float,
+    incomplete: tuple[Incomplete, ...] = (),
 ) -> FlightResult:
-    """Return how a flight of ``wall`` seconds ended, and write its summary; its records end at ``last_time`` (s)."""
+    """Return how a flight of ``wall`` seconds ended, and write its summary; its records end at ``last_time`` (s).
+
+    ``incomplete``: the records that end before.
+    """
     flight = station.flight
     limits = dataclasses.asdict(mission.limits) if mission.limits is not None else None
     begun = not math.isnan(flight.takeoff_time)
@@ -159,6 +176,10 @@ def flight_result(
     # By the clock of the records, as it may be before take-off.
     summary["broken_off_s"] = None if math.isnan(flight.failsafes.time) else round(flight.failsafes.time, 6)
     summary["alarms"] = len(flight.failsafes.alarms.alarms)
+    if incomplete:
+        summary["incomplete_records"] = {file.name: file.end for file in incomplete}
+    if any(file.name == TRUTH for file in incomplete):
+        summary["landing"] = None  # it is not on record
     # The ground may have lost its link to the vehicles, or be wrong about them: the truth decides.
     if begun and (landing := summary["landing"]) is not None:
         down = is_set_down(landing)
@@ -166,9 +187,12 @@ def flight_result(
         summary |= {"outcome": outcome, "completed": outcome == "completed"}
     if summary["contacts"]:
         summary |= {"outcome": "collided", "completed": False}
-    write_summary(run_dir, summary)
+    try:
+        write_summary(run_dir, summary)
+    except UnwritableFile as error:
+        incomplete = (*incomplete, Incomplete(SUMMARY, None, error.cause.strerror or str(error.cause)))
     records = records.with_summary(summary)
-    return FlightResult(records, mission, flight.reason, flight.failsafes.interrupted, begun)
+    return FlightResult(records, mission, flight.reason, flight.failsafes.interrupted, begun, incomplete)
 
 
 def ground_station(

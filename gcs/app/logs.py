@@ -9,7 +9,7 @@ import argparse
 import logging
 import sys
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import TextIO
 
@@ -35,7 +35,7 @@ def logging_to(arguments: argparse.Namespace) -> Iterator[None]:
     console.setLevel(_LEVELS[min(max(_DEFAULT + arguments.verbose - arguments.quiet, 0), len(_LEVELS) - 1)])
     handlers: list[logging.Handler] = [console]
     if arguments.log_file is not None:
-        file = logging.FileHandler(arguments.log_file, encoding="utf-8")
+        file = _LogFile(arguments.log_file, encoding="utf-8")
         file.setLevel(logging.DEBUG)
         file.setFormatter(logging.Formatter(_FILE_FORMAT, "%Y-%m-%d %H:%M:%S"))
         handlers.append(file)
@@ -63,6 +63,23 @@ def _log_file(text: str) -> Path:
         return path
     except OSError as error:
         raise argparse.ArgumentTypeError(f"{text}: cannot be written: {error.strerror}") from None
+
+
+class _LogFile(logging.FileHandler):
+    """Handler of a log file, which may end before the program: a full disk."""
+
+    _ended = False
+
+    def handleError(self, record: logging.LogRecord) -> None:
+        """Say so, once."""
+        if not self._ended:
+            self._ended = True
+            print(f"{self.baseFilename}: the log ends here: {sys.exc_info()[1]}", file=sys.stderr)
+
+    def close(self) -> None:
+        """Close the file; what is buffered may be lost."""
+        with suppress(OSError):
+            super().close()
 
 
 class _StandardError(logging.StreamHandler[TextIO]):

@@ -14,7 +14,9 @@ from gcs.campaign.flight_worker import FlightWorker
 from gcs.campaign.folder import adopt_folder, check_adoptable, folder_lock, remove_folder, write_text
 from gcs.campaign.process_pool import FlownProcess, all_cores, fly_process, run_parallel
 from gcs.campaign.result import Result, read_result, summary_columns
-from gcs.record.run_folder import check_writable, make_folder, write_json
+from gcs.errors import UnwritableRecord
+from gcs.record.incomplete import INCOMPLETE
+from gcs.record.run_folder import UnwritableFile, check_writable, make_folder, write_json
 
 KEEP = ("failures", "all", "none")
 """The flights whose run folders are kept."""
@@ -109,14 +111,18 @@ class Campaign:
         """Fly what has no result yet; both callbacks are called in the caller's thread.
 
         On an interrupt all flights are ended, and the results so far are kept. Raises
-        :class:`gcs.errors.UnusableInput` when another process flies in the folder.
+        :class:`gcs.errors.UnusableInput` when another process flies in the folder, and
+        :class:`gcs.errors.UnwritableRecord` when a result cannot be written.
         """
 
         def keep(plan: FlightPlan, result: Result) -> None:
             discard = self._keep == "none" or (self._keep == "failures" and result.passed)
             if discard:
                 result = dataclasses.replace(result, run_dir="")
-            write_json(self.result_path(plan), result.row(self.generator.columns))
+            try:
+                write_json(self.result_path(plan), result.row(self.generator.columns))
+            except UnwritableFile as error:
+                raise UnwritableRecord(f"{error}: the campaign ends here; start it again to resume") from None
             self._results[plan.name] = result
             if discard:
                 remove_folder(self.run_dir(plan))
@@ -153,7 +159,8 @@ class Campaign:
         """Return the result with what this campaign says of the flight: another one may have flown it."""
         labels: dict[str, Any] = {"number": plan.number, "name": plan.name, "replay": plan.replay, **plan.labels}
         result = dataclasses.replace(result, **labels)
-        return dataclasses.replace(result, passed=self.generator.passes(result))
+        judged = result.exit_code != INCOMPLETE
+        return dataclasses.replace(result, passed=judged and self.generator.passes(result))
 
 
 def replay_command(mission: Path, options: Sequence[str]) -> str:

@@ -36,7 +36,10 @@ class Simulator:
         self._process = program.process
         self.clock_address: Address | None = None
         self.vehicles: list[Address] = []
-        for line in program.begin(["--with-parent", *arguments]):
+        self.last_lines: list[str] = []
+        """What it has printed since it was ready; known when it has ended."""
+        self._lines = program.begin(["--with-parent", *arguments])
+        for line in self._lines:
             if line.strip() == "ready":
                 return
             if match := _LINE.match(line.strip()):
@@ -61,6 +64,10 @@ class Simulator:
 
     def close(self) -> None:
         """Let it end, and wait until its records are closed: without its parent's pipe it lands what is in the air."""
+        self._end()
+        self.last_lines += self._lines
+
+    def _end(self) -> None:
         s = self._settings
         self._program.end_input()
         for timeout, stop in ((s.landing_timeout, self._process.terminate), (s.end_timeout, self._process.kill)):

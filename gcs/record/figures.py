@@ -1,6 +1,7 @@
 """Pictures of a run folder: what ``gcs report`` draws, and every flight at its end."""
 
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -49,6 +50,8 @@ def save_picture(figure: Figure, path: Path, dpi: int) -> Path:
     try:
         figure.savefig(path, dpi=dpi, pil_kwargs={"compress_level": 1})  # half the time of 6, a fifth more bytes
     except OSError as error:
+        with suppress(OSError):
+            path.unlink(missing_ok=True)
         raise UnusableInput(f"{path}: cannot be written: {error.strerror}") from None
     return path
 

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from gcs.record.incomplete import IncompleteRecords
 from gcs.record.tables import OBSTACLE_ESTIMATE_COLUMNS, STANDING_OBSTACLE_COLUMNS, TableWriter
 
 if TYPE_CHECKING:
@@ -23,10 +24,14 @@ _NOTHING = (0.0,) * 7
 class ObstacleRecorder:
     """Writes both tables of a run, each once there is something for it."""
 
-    def __init__(self, run_dir: Path) -> None:
-        self._run_dir = run_dir
-        self._tracks: TableWriter | None = None
-        self._standing: TableWriter | None = None
+    def __init__(self, run_dir: Path, incomplete: IncompleteRecords | None = None) -> None:
+        self._tracks, self._standing = (
+            TableWriter(run_dir / name, columns, incomplete, when_needed=True)
+            for name, columns in (
+                ("obstacles_estimate.csv", OBSTACLE_ESTIMATE_COLUMNS),
+                ("obstacles_standing.csv", STANDING_OBSTACLE_COLUMNS),
+            )
+        )
         self._pieces: dict[str, tuple[Shape, Array]] = {}
         self._next = -math.inf
 
@@ -36,8 +41,6 @@ class ObstacleRecorder:
             return
         self._next = (math.floor(time / INTERVAL + _GRID_TOLERANCE) + 1) * INTERVAL
         for track in obstacle_map.confirmed_tracks(time):
-            if self._tracks is None:
-                self._tracks = TableWriter(self._run_dir / "obstacles_estimate.csv", OBSTACLE_ESTIMATE_COLUMNS)
             shape, columns = track.shape, track.shape.columns
             self._tracks.write(
                 [round(time, 6), track.name, shape.kind, *track.position.tolist(), *track.velocity.tolist(),
@@ -47,9 +50,8 @@ class ObstacleRecorder:
 
     def close(self) -> None:
         """Close the tables; harmless when they are closed."""
-        for table in (self._tracks, self._standing):
-            if table is not None:
-                table.close()
+        self._tracks.close()
+        self._standing.close()
 
     def _record_standing(self, pieces: Sequence[tuple[str, Shape, Array]], time: float) -> None:
         """Record which pieces are new, have changed or are no more since the last time."""
@@ -61,6 +63,4 @@ class ObstacleRecorder:
             if name not in before or before[name][0] is not shape
         ]
         for row in (*gone, *changed):
-            if self._standing is None:
-                self._standing = TableWriter(self._run_dir / "obstacles_standing.csv", STANDING_OBSTACLE_COLUMNS)
             self._standing.write([round(time, 6), *row])

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gcs.flight.phase import CLEAR_OF_GROUND
+from gcs.record.incomplete import IncompleteRecords
 from gcs.record.obstacle_recorder import ObstacleRecorder
 from gcs.record.tables import (
     ALARM_COLUMNS,
@@ -37,17 +38,21 @@ _GRID_TOLERANCE = 1e-6
 
 
 class FlightRecorder:
-    """The ground's records of one flight; a context manager that closes them."""
+    """The ground's records of one flight; a context manager that closes them.
+
+    ``incomplete``: what could not be written.
+    """
 
     def __init__(self, run_dir: Path, start_epoch: float) -> None:
         """``start_epoch``: seconds since 1970 at the ground's time 0, for the telemetry log."""
-        self._tlog = TelemetryLog(run_dir / "telemetry.tlog", start_epoch)
-        self._reference = TableWriter(run_dir / "reference.csv", REFERENCE_COLUMNS)
-        self._estimate = TableWriter(run_dir / "estimate.csv", ESTIMATE_COLUMNS)
-        self._steps = TableWriter(run_dir / "steps.csv", (*STEP_COLUMNS, *STEP_PART_COLUMNS))
-        self._alarms = TableWriter(run_dir / ALARMS, ALARM_COLUMNS)
-        self._obstacles = ObstacleRecorder(run_dir)
-        self._plan = TableWriter(run_dir / "plan.csv", PLAN_COLUMNS)
+        self.incomplete = incomplete = IncompleteRecords()
+        self._tlog = TelemetryLog(run_dir / "telemetry.tlog", start_epoch, incomplete)
+        self._reference = TableWriter(run_dir / "reference.csv", REFERENCE_COLUMNS, incomplete)
+        self._estimate = TableWriter(run_dir / "estimate.csv", ESTIMATE_COLUMNS, incomplete)
+        self._steps = TableWriter(run_dir / "steps.csv", (*STEP_COLUMNS, *STEP_PART_COLUMNS), incomplete)
+        self._alarms = TableWriter(run_dir / ALARMS, ALARM_COLUMNS, incomplete)
+        self._obstacles = ObstacleRecorder(run_dir, incomplete)
+        self._plan = TableWriter(run_dir / "plan.csv", PLAN_COLUMNS, incomplete)
         self._next_row: int | None = None
         self.last_time = 0.0
 
@@ -61,7 +66,7 @@ class FlightRecorder:
 
     def step(self, flight: Flight, time: float, record: StepRecord | None) -> None:
         """Record a control step at team ``time`` (s)."""
-        self.last_time = time
+        self.last_time = self.incomplete.time = time
         if not math.isnan(flight.takeoff_time):
             self._write_reference(flight, time)
         if record is None:

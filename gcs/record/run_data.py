@@ -34,7 +34,7 @@ from idc_controller.payload_hull import PayloadHull
 
 Table = dict[str, Array]
 
-SUMMARY = "summary.json"
+SUMMARY, TRUTH = "summary.json", "truth.csv"
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,10 +142,10 @@ def read_run(run_dir: Path | str) -> RunData:
     folder = Path(run_dir)
     if not folder.is_dir():
         raise UnusableInput(f"{folder}: is not a folder")
-    if not any((folder / name).exists() for name in (MANIFEST, "truth.csv", "estimate.csv")):
+    if not any((folder / name).exists() for name in (MANIFEST, TRUTH, "estimate.csv")):
         files = "manifest.json, truth.csv or estimate.csv"
         raise UnusableInput(f"{folder}: is not a run folder: it holds no {files}")
-    truth = _table(folder / "truth.csv")
+    truth = _table(folder / TRUTH)
     # A truth of no rows (its world never ran) must not hide what the ground recorded.
     from_truth = truth is not None and len(truth["time_s"]) > 0
     state = truth if from_truth else _table(folder / "estimate.csv", ESTIMATE_COLUMNS)
@@ -153,7 +153,7 @@ def read_run(run_dir: Path | str) -> RunData:
         state = {name: np.empty(0) for name in ESTIMATE_COLUMNS}
     n = sum(name.endswith("_thrust_n") for name in state) if from_truth else 0
     if from_truth:
-        _check_columns(folder / "truth.csv", state, truth_columns(n))
+        _check_columns(folder / TRUTH, state, truth_columns(n))
     time = state["time_s"]
 
     def stack(prefix: str, parts: tuple[str, ...]) -> Array:

@@ -25,6 +25,14 @@ MANIFEST = "manifest.json"
 _DISTRIBUTION = "cooplift"
 
 
+class UnwritableFile(UnusableInput):
+    """A file that cannot be written; ``cause`` is the error of the operating system."""
+
+    def __init__(self, path: Path, cause: OSError) -> None:
+        super().__init__(f"{path}: cannot be written: {cause.strerror}")
+        self.path, self.cause = path, cause
+
+
 def open_run_folder(mission_name: str, run_dir: Path | str | None = None, parent: Path | str = "runs") -> Path:
     """Make the folder for the records of one flight, and lock it by an empty manifest.
 
@@ -150,7 +158,7 @@ def write_manifest(
 ) -> Path:
     """Write ``manifest.json``: mission and system as read, versions, numeric libraries, and the time of the start.
 
-    Raises :class:`UnusableInput` if the file cannot be written.
+    Raises :class:`UnwritableFile`.
     """
     content = {
         "command": list(command),
@@ -165,7 +173,7 @@ def write_manifest(
 
 
 def write_json(path: Path | str, content: object) -> Path:
-    """Write strict JSON (see :func:`to_json`). Raises :class:`UnusableInput` if the file cannot be written."""
+    """Write strict JSON (see :func:`to_json`). Raises :class:`UnwritableFile`."""
     path = Path(path)
     text = json.dumps(to_json(content), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
     # Readers, and those after a killed process, find the old file or the new one, never half of it.
@@ -176,7 +184,7 @@ def write_json(path: Path | str, content: object) -> Path:
     except OSError as error:
         with suppress(OSError):
             draft.unlink(missing_ok=True)
-        raise UnusableInput(f"{path}: cannot be written: {error.strerror}") from None
+        raise UnwritableFile(path, error) from None
     return path
 
 

@@ -89,7 +89,7 @@ def summarise(
 
 
 def write_summary(run_dir: Path | str, summary: Mapping[str, Any]) -> Path:
-    """Write ``summary.json`` (strict JSON: what is not known is null). Raises :class:`UnusableInput`."""
+    """Write ``summary.json`` (strict JSON: what is not known is null). Raises :class:`UnwritableFile`."""
     return write_json(Path(run_dir) / SUMMARY, summary)
 
 

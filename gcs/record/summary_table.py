@@ -67,6 +67,8 @@ def summary_table(summary: Mapping[str, Any], run_dir: Path | str, pictures: Seq
     title = Text.assemble(("Flight ", "bold"), (outcome, f"bold {_COLOUR_OF_OUTCOME.get(outcome, 'white')}"))
     if limits:
         verdict = ("within its limits", "green") if held else ("OUTSIDE its limits", "bold red")
+        if "incomplete_records" in summary:
+            verdict = ("limits not judged, the records are incomplete", "yellow")
         title.append(", ").append(*verdict)
     title.append(f": {_number(summary['duration_s'], 1, 's')}")
     if summary["real_time_factor"] is not None:

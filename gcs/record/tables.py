@@ -11,6 +11,7 @@ import orjson
 
 from gcs.errors import UnusableInput
 from gcs.record.append_file import AppendOnlyFile
+from gcs.record.incomplete import IncompleteRecords
 from idc_controller.arrays import Array
 
 PAYLOAD_COLUMNS = (
@@ -71,10 +72,17 @@ class TableWriter(AppendOnlyFile):
     Numbers are written in the shortest form that reads back to the same double.
     """
 
-    def __init__(self, path: Path | str, columns: Sequence[str]) -> None:
-        super().__init__(path)
+    def __init__(
+        self,
+        path: Path | str,
+        columns: Sequence[str],
+        incomplete: IncompleteRecords | None = None,
+        *,
+        when_needed: bool = False,
+    ) -> None:
+        """See :class:`AppendOnlyFile`."""
         self.columns = tuple(columns)
-        self.append(_line(self.columns))
+        super().__init__(path, incomplete, head=_line(self.columns), when_needed=when_needed)
 
     def write(self, row: Iterable[Cell]) -> None:
         """Append one row, a value a column. Raises :class:`ValueError` for another number of values."""

@@ -11,6 +11,7 @@ import numpy as np
 
 from gcs.mavlink.frame_kernels import stamped_frames
 from gcs.record.append_file import AppendOnlyFile
+from gcs.record.incomplete import IncompleteRecords
 
 
 class TelemetryLog(AppendOnlyFile):
@@ -19,8 +20,8 @@ class TelemetryLog(AppendOnlyFile):
     The frames of one exchange go to the operating system together: with :meth:`flush`, or when the file is closed.
     """
 
-    def __init__(self, path: Path | str, start_epoch: float) -> None:
-        super().__init__(path)
+    def __init__(self, path: Path | str, start_epoch: float, incomplete: IncompleteRecords | None = None) -> None:
+        super().__init__(path, incomplete)
         self._start_us = round(start_epoch * 1e6)
         self._stamps: list[int] = []
         self._datagrams: list[bytes] = []

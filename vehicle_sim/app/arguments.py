@@ -32,7 +32,7 @@ Examples:
                                                  in another terminal: fly it
 
 Exit status: 0 ended by SIGTERM or with the process that started it, 2 unusable input, with the reason on standard
-error and nothing started, 130 interrupted, or its terminal closed.
+error and nothing started, 3 the records are incomplete, 130 interrupted, or its terminal closed.
 """
 
 

@@ -16,7 +16,8 @@ from gcs.mission.faults import check_faults_of
 from gcs.mission.model import Mission
 from gcs.mission.read import read_mission
 from gcs.numerics import differences
-from gcs.record.run_folder import NewRunFolder, check_run_folder, write_manifest
+from gcs.record.incomplete import INCOMPLETE, IncompleteRecords, in_one_line
+from gcs.record.run_folder import NewRunFolder, UnwritableFile, check_run_folder, write_manifest
 from vehicle_sim.app.arguments import GROUND_PORT
 from vehicle_sim.app.ending import Ending
 from vehicle_sim.app.lockstep import LockstepDriver
@@ -39,11 +40,20 @@ def launch(options: Namespace, arguments: list[str]) -> int:
 
     Raises :class:`~gcs.errors.GcsError` or :class:`SimulationError` for what cannot be done; nothing is left open.
     """
+    incomplete = IncompleteRecords()
     with contextlib.ExitStack() as started:
-        return _run(options, arguments, started)
+        status = _run(options, arguments, started, incomplete)
+    if not incomplete.found:
+        return status
+    if options.with_parent:
+        with contextlib.suppress(BrokenPipeError):  # which has ended before
+            print(*(file.line() for file in incomplete.found), sep="\n", flush=True)
+    else:
+        print(in_one_line(incomplete.found), file=sys.stderr)
+    return status or INCOMPLETE
 
 
-def _run(options: Namespace, arguments: list[str], started: contextlib.ExitStack) -> int:
+def _run(options: Namespace, arguments: list[str], started: contextlib.ExitStack, incomplete: IncompleteRecords) -> int:
     if not options.with_parent and options.run_dir is not None:
         check_run_folder(options.run_dir)
     mission, config = _read(options)
@@ -76,9 +86,12 @@ def _run(options: Namespace, arguments: list[str], started: contextlib.ExitStack
         SwarmSockets(options.host, options.base_port, len(swarm.vehicles), options.lockstep)
     )
     if options.run_dir is not None:
-        swarm.record(_truth_log(options, arguments, seed, mission, config))
+        truth = _truth_log(options, arguments, seed, mission, config)
+        started.callback(lambda: incomplete.found.extend(truth.incomplete.found))
+        swarm.record(truth)
+        started.callback(truth.close)
     if injector is not None:
-        started.callback(_report_faults, options, injector, swarm)
+        started.callback(_report_faults, options, injector, swarm, incomplete)
     driver: LockstepDriver | RealTimeDriver
     if options.lockstep:
         driver = LockstepDriver(swarm, sockets, ending)
@@ -125,13 +138,16 @@ def _truth_log(
     return truth
 
 
-def _report_faults(options: Namespace, injector: FaultInjector, swarm: Swarm) -> None:
+def _report_faults(options: Namespace, injector: FaultInjector, swarm: Swarm, incomplete: IncompleteRecords) -> None:
     """Record what the faults affected, and print notes on those that affected nothing."""
-    from gcs.faults.record import notes_of
+    from gcs.faults.record import FAULTS_FILE, notes_of
     from vehicle_sim.faults.record import faults_record, record_faults
 
     if options.run_dir is not None:
-        record_faults(options.run_dir, injector, swarm.time)
+        try:
+            record_faults(options.run_dir, injector, swarm.time)
+        except UnwritableFile as error:
+            incomplete.add(options.run_dir / FAULTS_FILE, error.cause)
     if not options.with_parent:
         for note in notes_of(faults_record(injector, swarm.time)):
             print(note, file=sys.stderr, flush=True)

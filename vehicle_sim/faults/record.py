@@ -11,7 +11,7 @@ _LISTED = 1000  # occurrences that are listed
 
 
 def record_faults(folder: Path, injector: FaultInjector, end: float) -> Path:
-    """Write the file; ``end`` of the flight in s. Raises :class:`gcs.errors.UnusableInput` where it cannot."""
+    """Write the file; ``end`` of the flight in s. Raises :class:`gcs.record.run_folder.UnwritableFile`."""
     return write_json(folder / FAULTS_FILE, faults_record(injector, end))
 
 

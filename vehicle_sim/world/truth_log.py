@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from gcs.record.obstacle_shapes import write_shapes
+from gcs.record.incomplete import IncompleteRecords
+from gcs.record.obstacle_shapes import OBSTACLE_SHAPES, write_shapes
 from gcs.record.run_folder import make_folder
 from gcs.record.tables import MODE_COLUMNS, OBSTACLE_COLUMNS, TableWriter, truth_columns
 from idc_controller.arrays import Array
@@ -22,27 +23,18 @@ class TruthLog:
 
     Rows are equal to the byte for equal states. Raises ``gcs.errors.UnusableInput`` if the folder cannot be
     written or holds a truth already; it is made if it is absent. A full disk stops the writing, not the
-    world: see ``error``.
+    world: see ``incomplete``.
     """
 
     def __init__(self, run_dir: Path | str, number_of_uavs: int) -> None:
-        self._run_dir = make_folder(run_dir)
-        self._truth = TableWriter(self._run_dir / "truth.csv", truth_columns(number_of_uavs))
-        self._obstacles: TableWriter | None = None
+        self._run_dir = folder = make_folder(run_dir)
+        self.incomplete = incomplete = IncompleteRecords()
+        self._truth = TableWriter(folder / "truth.csv", truth_columns(number_of_uavs), incomplete)
+        self._obstacles = TableWriter(folder / "obstacles.csv", OBSTACLE_COLUMNS, incomplete, when_needed=True)
+        self._modes = TableWriter(folder / "modes.csv", MODE_COLUMNS, incomplete, when_needed=True)
         self._rows: dict[str, tuple[Obstacle, bytes]] = {}
         """Obstacles as they were last written, with their rows without the time."""
-        self._modes: TableWriter | None = None
         self._flown: dict[int, tuple[str, bool, bool]] = {}
-        self._closed = False
-
-    @property
-    def error(self) -> OSError | None:
-        """Error that stopped writing before ``close()``, if any."""
-        return next((table.error for table in self._tables if table.error is not None), None)
-
-    @property
-    def _tables(self) -> list[TableWriter]:
-        return [table for table in (self._truth, self._obstacles, self._modes) if table is not None]
 
     def write(
         self, time: float, states: Array, thrusts: Sequence[float], contacts: int, obstacles: Sequence[Obstacle] = ()
@@ -52,6 +44,7 @@ class TruthLog:
         ``states`` (N + 1, 13) as in :mod:`.state_kernels`, ``thrusts`` (N) of the UAVs; ``contacts`` is the number of
         touching pairs, pad and cradles excluded. Raises ``ValueError`` for another number of UAVs.
         """
+        self.incomplete.time = time
         payload, *uavs = states.tolist()
         row = [time, *payload]
         for uav, thrust in zip(uavs, thrusts, strict=True):
@@ -59,13 +52,22 @@ class TruthLog:
             row.append(thrust)
         row.append(contacts)
         self._truth.write_numbers(row)
-        if not obstacles or self._closed:
+        if not obstacles or self._obstacles.closed:
             return
-        if self._obstacles is None:
-            self._obstacles = TableWriter(self._run_dir / "obstacles.csv", OBSTACLE_COLUMNS)
-            write_shapes(self._run_dir, {obstacle.name: obstacle.shape for obstacle in obstacles})
+        if not self._rows:
+            self._write_shapes(obstacles)
         table = self._obstacles
         table.write_behind(time, [self._row(table, obstacle) for obstacle in obstacles])
+
+    def _write_shapes(self, obstacles: Sequence[Obstacle]) -> None:
+        """Write those shapes that the columns do not hold; without them the obstacles cannot be read."""
+        try:
+            write_shapes(self._run_dir, {obstacle.name: obstacle.shape for obstacle in obstacles})
+        except OSError as error:
+            path = self._run_dir / OBSTACLE_SHAPES
+            path.unlink(missing_ok=True)
+            self.incomplete.add(path, error)
+            self._obstacles.close()
 
     def _row(self, table: TableWriter, obstacle: Obstacle) -> bytes:
         """Return the row of an obstacle without its time; of one that has not moved since, the same again."""
@@ -79,17 +81,14 @@ class TruthLog:
 
     def write_mode(self, time: float, vehicle: int, mode: str, armed: bool, failsafe: bool) -> None:
         """Append what a vehicle (its system id) flies from ``time`` (s) on, if it is not what it flew before."""
-        if self._closed or self._flown.get(vehicle) == (mode, armed, failsafe):
+        if self._flown.get(vehicle) == (mode, armed, failsafe):
             return
         self._flown[vehicle] = mode, armed, failsafe
-        if self._modes is None:
-            self._modes = TableWriter(self._run_dir / "modes.csv", MODE_COLUMNS)
         self._modes.write([float(time), vehicle, mode, armed, failsafe])
 
     def close(self) -> None:
         """Close all files; harmless when they are closed already."""
-        self._closed = True
-        for table in self._tables:
+        for table in (self._truth, self._obstacles, self._modes):
             table.close()
 
     def __enter__(self) -> TruthLog:

@@ -21,8 +21,8 @@ With --connect it flies a swarm that runs already:
 
 Ctrl-C, SIGTERM and a closed terminal land the vehicles and close the records; a second Ctrl-C or
 SIGTERM ends the ground station, and the vehicles land by their own failsafe.
-Exit status: 0 done and within limits; 1 flown but outside limits, or aborted safely; 2 unusable input;
-130 interrupted, vehicles landed.
+Exit status: 0 done and within limits; 1 flown but outside limits, or aborted safely; 2 unusable input or
+option, nothing started; 3 flown, but the records are incomplete; 130 interrupted, vehicles landed.
 """
 
 
@@ -76,6 +76,8 @@ def run(arguments: argparse.Namespace) -> int:
         from gcs.campaign.process_pool import BROKEN_OFF, end_with_parent
         from gcs.drivers.forked_program import ForkedProgram
         from gcs.drivers.simulator import PROGRAM
+        from gcs.errors import UnusableInput
+        from gcs.record.incomplete import in_one_line
         from gcs.record.summary_table import summary_table
     # With --json standard output is the summary and nothing else.
     console = Console(stderr=arguments.json, highlight=False)
@@ -91,9 +93,12 @@ def run(arguments: argparse.Namespace) -> int:
         with importing():
             from gcs.record.figures import report
 
-        pictures = report(result.records)
+        try:
+            pictures = report(result.records)
+        except UnusableInput as error:  # a full disk, a record that has no row
+            LOG.warning("note: no pictures: %s", error)
     if arguments.json:
-        print(json.dumps(result.summary, indent=2))
+        print(json.dumps({"run_dir": str(result.run_dir), **result.summary}, indent=2))
     else:
         console.print(summary_table(result.summary, result.run_dir, pictures))
     if mission.faults:
@@ -105,4 +110,6 @@ def run(arguments: argparse.Namespace) -> int:
         LOG.warning("note: faults come from the simulator: start it with vehicle-sim --mission %s", options.mission)
     if result.reason:
         LOG.error("%s%s", BROKEN_OFF, result.reason)
+    if result.incomplete:
+        LOG.error("%s; the figures are of what there is", in_one_line(result.incomplete))
     return result.exit_code

@@ -12,10 +12,10 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from gcs.app.arguments import number_of_jobs
-from gcs.errors import UnusableInput
+from gcs.errors import UnusableInput, UnwritableRecord
 from gcs.mission.read import read_mission
 from gcs.record.run_data import read_run
-from gcs.record.run_folder import check_writable, make_folder
+from gcs.record.run_folder import UnwritableFile, check_writable, make_folder
 from gcs.reproduce import figures, work
 from gcs.reproduce.animation import animate
 from gcs.reproduce.numbers import matrices, numbers
@@ -33,7 +33,8 @@ controller on the same plant. Read DIR/index.html first.
   gcs reproduce --out reproduction          everything, within 15 minutes on two cores
 
 numbers.json has every number that docs/paper.md quotes, matrices/ the matrices A and B as CSV. That a claim of the
-paper does not reproduce is a result, not a failure. Exit status: 0 done; 2 unusable input; 130 interrupted.
+paper does not reproduce is a result, not a failure. Exit status: 0 done; 2 unusable input; 3 DIR cannot
+be written any more; 130 interrupted.
 """
 COMPARED = ("printed", "corrected", "project")
 SHOWN = ("printed", "project")
@@ -79,8 +80,10 @@ def run(arguments: argparse.Namespace) -> int:
     except KeyboardInterrupt:
         Console(stderr=True, highlight=False).print(f"interrupted: {out} is not complete")
         return INTERRUPTED
+    except UnwritableFile as error:
+        raise UnwritableRecord(str(error)) from None
     except OSError as error:
-        raise UnusableInput(f"{error.filename or out}: cannot be written: {error.strerror}") from None
+        raise UnwritableRecord(f"{error.filename or out}: cannot be written: {error.strerror}") from None
     page = write_page(out, found, pictures, time.monotonic() - begin)
     console.print(_overview(found), markup=False)
     console.print(f"Results   {page}", markup=False)
