@@ -29,15 +29,18 @@ class ScriptedGround:
         self.commanded = False
         self.next = 0.0
         self.messages = []
+        self.of_payload = []
         self.stamps = {}
 
     def receive(self, datagram, sender, now):
         for received in self.decoders[sender].decode(datagram):
             message = received.message
             self.messages.append(message)
+            if message.get_srcSystem() == px4.PAYLOAD_UNIT_SYSTEM:
+                self.of_payload.append((sender, message))
             if message.get_type() != "LOCAL_POSITION_NED":
                 continue
-            if message.get_srcComponent() == px4.PAYLOAD_UNIT_COMPONENT:
+            if message.get_srcSystem() == px4.PAYLOAD_UNIT_SYSTEM:
                 self.finished |= -message.z > self.altitude_to_reach
             else:
                 self.stamps.setdefault(message.get_srcSystem(), []).append((message.time_boot_ms, now))

@@ -33,12 +33,13 @@ def control_loop(brake=lambda time, state: Braking(), stopwatch=lambda: 0.0):
 def telemetry(time, shift):
     """Messages of payload and vehicles at rest in formation, all ``shift`` (m) from where they should be."""
     for source, spot in enumerate(SPOTS + shift, start=-1):
-        component = px4.PAYLOAD_UNIT_COMPONENT if source < 0 else px4.AUTOPILOT_COMPONENT
+        unit = px4.PAYLOAD_UNIT_SYSTEM, px4.PAYLOAD_UNIT_COMPONENT
+        sender = unit if source < 0 else (source + 1, px4.AUTOPILOT_COMPONENT)
         for message in (
             mavlink.MAVLink_local_position_ned_message(round(1000 * time), *spot, 0.0, 0.0, 0.0),
             mavlink.MAVLink_attitude_quaternion_message(round(1000 * time), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         ):
-            yield measurement(received(message, max(source, 0) + 1, component), max(source, 0), time)
+            yield measurement(received(message, *sender), max(source, 0), time)
 
 
 def flown(loop, steps, shift):

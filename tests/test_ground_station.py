@@ -45,7 +45,7 @@ def test_acknowledgement_from_another_sender_is_ignored(station):
     answer = mavlink.MAVLink_command_ack_message(ARM, mavlink.MAV_RESULT_DENIED)
     send(station, answer, system=1, address=address_of(2))
     send(station, answer, system=2, address=address_of(1))
-    send(station, answer, system=1, address=("10.0.0.66", 14540))
+    send(station, answer, system=1, address=("10.0.0.66", 14580))
     assert command.state is CommandState.PENDING
     assert station.router.refused == 3
 

@@ -12,7 +12,7 @@ from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
 
 NOW = 50.0
 TIMEOUT = DEFAULTS.failsafe.telemetry_timeout
-ADDRESSES = [("10.0.0.4", 14540), ("10.0.0.7", 14541)]
+ADDRESSES = [("10.0.0.4", 14580), ("10.0.0.7", 14581)]
 
 
 def complete(system_id, address):
@@ -45,7 +45,7 @@ def test_vehicles_that_have_sent_all_are_connected_whether_ready_or_not(links):
 @pytest.mark.parametrize(
     ("field", "text"),
     [
-        ("received_at", "does not answer at 10.0.0.7:14541"),
+        ("received_at", "does not answer at 10.0.0.7:14581"),
         ("attitude_received_at", "sends no attitude and position"),
         ("position_received_at", "sends no attitude and position"),
         ("payload_received_at", "relays no payload navigation data"),
@@ -73,8 +73,8 @@ def test_first_vehicle_that_lacks_something_is_named_by_what_lacks_first(links):
     links[0].payload_received_at = links[0].position_received_at = 0.0
     assert connected(links) == "vehicle 4 sends no attitude and position"
     links[0].received_at = 0.0
-    links[0].other_system_id = 9
-    assert connected(links) == "vehicle 4 does not answer at 10.0.0.4:14540: vehicle 9 does"
+    links[0].conflict.other_system_id = 9
+    assert connected(links) == "vehicle 4 does not answer at 10.0.0.4:14580: vehicle 9 does"
     links[0].address = None
     assert connected(links) == "vehicle 4 has not called in"
 

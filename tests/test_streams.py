@@ -57,37 +57,38 @@ def test_messages_of_one_sample_are_sent_once_and_others_again_and_again():
         assert taken == expected
 
 
-def peer(settings=SETTINGS):
-    return Peer(("10.0.0.1", 5), 3, default_intervals(StreamIntervals(), 0.02), settings)
+def peer(settings=SETTINGS, **options):
+    return Peer(("10.0.0.1", 5), 3, default_intervals(StreamIntervals(), 0.02), settings, **options)
 
 
 def sent(to, now, stamp=0):
-    """Kinds and components of what goes out."""
+    """Kinds and components of what goes out, the payload unit's by a system id of its own."""
     received = [r for datagram in to.datagrams(sample(stamp), now) for r in Codec(254, 1).decode(datagram)]
-    return [(r.message.get_srcComponent(), r.layout.message_id) for r in received]
+    assert all(r.system == (px4.PAYLOAD_UNIT_SYSTEM if r.component == UNIT else 3) for r in received)
+    return [(r.component, r.layout.message_id) for r in received]
 
 
-def test_peer_without_streams_gets_answers_alone():
-    new = peer()
-    assert not new.is_streaming and sent(new, 0.0) == []
-    new.reply(mavlink.MAVLink_extended_sys_state_message(0, 1))
-    assert sent(new, 0.0) == [(OWN, STATE)] and sent(new, 0.0) == []
+def test_answers_go_out_before_what_is_due():
+    asking = peer()
+    sent(asking, 0.0)
+    asking.reply(mavlink.MAVLink_extended_sys_state_message(0, 1))
+    assert sent(asking, 0.001) == [(OWN, STATE)] and sent(asking, 0.001) == []
+    asking.reply(mavlink.MAVLink_extended_sys_state_message(0, 1), component=UNIT)
+    assert sent(asking, 0.02, stamp=1)[:1] == [(UNIT, STATE)]
 
 
-def test_peer_that_never_answered_is_offered_heartbeats():
-    offered = peer()
-    offered.offer()
-    assert not offered.is_streaming
-    assert [sent(offered, t) for t in (0.1, 0.9, 1.0, 1.5)] == [[(OWN, HEARTBEAT)], [], [(OWN, HEARTBEAT)], []]
-    assert offered.next_due == pytest.approx(2.0)
-    offered.repeat(HEARTBEAT)
-    assert [len(sent(offered, t)) for t in (1.5, 1.54, 1.58, 2.0)] == [1, 0, 0, 1]
+def test_peer_gets_the_payload_units_streams_by_default_or_on_request():
+    without = peer(with_payload=False)
+    assert {component for component, _ in sent(without, 0.0)} == {OWN}
+    without.set_interval(ATTITUDE, 0.0, UNIT)
+    assert [key for key in sent(without, 0.02, stamp=1) if key[0] == UNIT] == [(UNIT, ATTITUDE)]
+    without.set_interval(ATTITUDE, math.inf, UNIT)
+    assert {component for component, _ in sent(without, 0.04, stamp=2)} == {OWN}
 
 
 def test_streaming_peer_gets_everything_at_once_and_changed_messages_repeatedly():
     streaming = peer()
-    streaming.start_streams()
-    assert streaming.is_streaming and streaming.next_due == -math.inf
+    assert streaming.next_due == -math.inf
     assert len(sent(streaming, 10.0)) == len(default_intervals(StreamIntervals(), 0.02))
     assert streaming.next_due == pytest.approx(10.02)
     streaming.repeat(STATE)
@@ -98,7 +99,6 @@ def test_streaming_peer_gets_everything_at_once_and_changed_messages_repeatedly(
 
 def test_interval_of_a_message_can_be_set_stopped_and_restored():
     streaming, key = peer(), (OWN, STATE)
-    streaming.start_streams()
     sent(streaming, 0.0)
 
     def count(begin):
@@ -120,23 +120,24 @@ def test_interval_of_a_message_can_be_set_stopped_and_restored():
 
 def test_answers_beyond_the_limit_are_dropped():
     busy = peer(VehicleLinkSettings(replies_max=3))
+    sent(busy, 0.0)
     for _ in range(5):
         busy.reply(mavlink.MAVLink_extended_sys_state_message(0, 1))
-    assert len(sent(busy, 0.0)) == 3
+    assert len(sent(busy, 0.001)) == 3
 
 
 def test_long_text_is_sent_in_pieces():
     talking = peer()
+    sent(talking, 0.0)
     text = "".join(chr(97 + k % 26) for k in range(120)) + "é"
     talking.send_statustext(text)
-    pieces = [r.message for datagram in talking.datagrams(sample(), 0.0) for r in Codec(254, 1).decode(datagram)]
+    pieces = [r.message for datagram in talking.datagrams(sample(), 0.001) for r in Codec(254, 1).decode(datagram)]
     assert [piece.text for piece in pieces] == [text[:50], text[50:100], text[100:120] + "?"]
     assert {piece.severity for piece in pieces} == {mavlink.MAV_SEVERITY_WARNING}
 
 
 def test_components_have_sequence_numbers_of_their_own():
     streaming = peer()
-    streaming.start_streams()
     numbers = {OWN: [], UNIT: []}
     for k in range(3):
         for datagram in streaming.datagrams(sample(k), 0.02 * k):
@@ -147,7 +148,7 @@ def test_components_have_sequence_numbers_of_their_own():
 
 
 LIMITED = VehicleLinkSettings(peers_max=2, peer_timeout=10.0)
-GROUND, FIRST, SECOND, THIRD = (("10.0.0.1", port) for port in range(4))
+GROUND, FIRST, SECOND, THIRD, SDK = (("10.0.0.1", port) for port in range(5))
 
 
 class Builders:
@@ -157,31 +158,33 @@ class Builders:
         self.builders = dict.fromkeys(default_intervals(StreamIntervals(), 0.02), lambda now: BEAT)
 
 
-def peers(ground=None):
+def peers(*clients):
     intervals = default_intervals(StreamIntervals(), 0.02)
-    return Peers(lambda address: Peer(address, 3, intervals, LIMITED), ground, LIMITED)
+    return Peers(
+        lambda address, with_payload: Peer(address, 3, intervals, LIMITED, with_payload),
+        dict.fromkeys(clients, True), LIMITED,
+    )  # fmt: skip
 
 
 def addressees(served, now):
     return {address for _, address in served.datagrams_to_send(Builders(), now)}
 
 
-def test_vehicle_without_peers_is_never_due_and_one_that_offers_itself_at_once():
+def test_vehicle_without_peers_is_never_due_and_one_with_clients_at_once():
     assert peers().next_due == math.inf and addressees(peers(), 0.0) == set()
-    offering = peers(GROUND)
-    assert offering.next_due == -math.inf and addressees(offering, 0.0) == {GROUND}
-    assert offering.next_due == pytest.approx(1.0) and addressees(offering, 0.5) == set()
+    sending = peers(GROUND)
+    assert sending.next_due == -math.inf and addressees(sending, 0.0) == {GROUND}
+    assert sending.next_due == pytest.approx(0.02) and addressees(sending, 0.01) == set()
 
 
-@pytest.mark.parametrize(("ground", "number"), [(None, 2), (GROUND, 2)])
-def test_number_of_peers_is_bounded_beside_the_ground(ground, number):
-    served = peers(ground)
+@pytest.mark.parametrize("clients", [(), (GROUND,), (GROUND, SDK)])
+def test_number_of_peers_is_bounded_beside_the_clients(clients):
+    served = peers(*clients)
     found = [served.receive_from(address, 0.0) is not None for address in (FIRST, SECOND, THIRD)]
-    assert found == [True] * number + [False] * (3 - number)
+    assert found == [True, True, False]
     assert served.receive_from(FIRST, 0.0) is served.receive_from(FIRST, 1.0)
-    if ground is not None:
-        assert served.receive_from(ground, 0.0) is not None
-    assert len(list(served)) == number + (ground is not None)
+    assert all(served.receive_from(client, 0.0) is not None for client in clients)
+    assert len(list(served)) == 2 + len(clients)
 
 
 @pytest.mark.parametrize(("age", "room"), [(9.9, False), (10.1, True)])
@@ -193,24 +196,29 @@ def test_silent_peer_makes_room_after_the_timeout(age, room):
     assert (FIRST in {peer.address for peer in served}) is not room
 
 
-def test_streams_of_a_silent_peer_stop_and_the_ground_is_offered_heartbeats_again():
-    served = peers(GROUND)
+def test_streams_of_a_silent_peer_stop_and_those_of_a_client_do_not():
+    served = peers(GROUND, SDK)
     for address in (GROUND, FIRST, SECOND):
-        assert served.receive_from(address, 0.0).is_streaming
+        served.receive_from(address, 0.0)
     served.receive_from(SECOND, 5.0)
-    assert addressees(served, 9.9) == {GROUND, FIRST, SECOND}
-    assert addressees(served, 10.1) == {GROUND, SECOND}
-    assert [peer.is_streaming for peer in served] == [False, True]
-    assert addressees(served, 10.3) == {SECOND} and addressees(served, 11.0) == {GROUND, SECOND}
-    assert served.receive_from(GROUND, 11.0).is_streaming
+    assert addressees(served, 9.9) == {GROUND, SDK, FIRST, SECOND}
+    assert addressees(served, 10.1) == {GROUND, SDK, SECOND}
+    assert addressees(served, 3600.0) == {GROUND, SDK}
 
 
-def test_texts_go_to_all_that_get_the_streams_and_changed_messages_to_all():
+def test_listener_is_a_client_that_has_never_sent_anything():
+    served = peers(GROUND, SDK)
+    served.receive_from(FIRST, 0.0)
+    served.receive_from(SDK, 0.0)
+    assert [served.is_listener(address) for address in (GROUND, SDK, FIRST, THIRD)] == [True, False, False, False]
+
+
+def test_texts_and_changed_messages_go_to_all():
     served = peers(GROUND)
     served.receive_from(FIRST, 0.0)
     addressees(served, 0.0)
     served.send_statustext("landed")
-    assert addressees(served, 0.001) == {FIRST}
+    assert addressees(served, 0.001) == {FIRST, GROUND}
     served.repeat(HEARTBEAT)
     assert served.next_due == -math.inf and addressees(served, 0.002) == {GROUND, FIRST}
 

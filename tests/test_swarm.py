@@ -7,11 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scripted_ground import GROUND, ScriptedGround, exchange
+from scripted_ground import ScriptedGround, exchange
 
 from gcs.config import read_system
 from gcs.mavlink import px4
-from gcs.mavlink.codec import Codec
 from gcs.mission.model import Home, Obstacle
 from gcs.mission.motion import HarmonicMotion, LinearMotion
 from idc_controller.geometry.box import Wall
@@ -122,12 +121,12 @@ def test_telemetry_carries_newest_sample(flown):
 
 
 @pytest.mark.slow
-def test_every_vehicle_relays_the_payload_unit(flown):
+def test_every_vehicle_forwards_the_payload_unit_to_the_ground_that_calls_in(flown):
     _, _, ground, _, _ = flown
     samples = {}
-    for message in ground.of_type("LOCAL_POSITION_NED"):
-        if message.get_srcComponent() == px4.PAYLOAD_UNIT_COMPONENT:
-            samples.setdefault(message.time_boot_ms, set()).add((message.get_srcSystem(), message.x, message.z))
+    for sender, message in ground.of_payload:
+        if message.get_type() == "LOCAL_POSITION_NED":
+            samples.setdefault(message.time_boot_ms, set()).add((sender, message.x, message.z))
     complete = [of for of in samples.values() if len(of) == 4]
     assert len(complete) > 8 * CONFIG.rates.telemetry
     for of in complete:  # one unit, so one sample for all four
@@ -143,9 +142,8 @@ def test_noise_has_standard_deviation_of_system_file(flown):
         row = true.get(message.time_boot_ms)
         if row is None:
             continue
-        if message.get_srcComponent() == px4.PAYLOAD_UNIT_COMPONENT:
-            if message.get_srcSystem() == 1:
-                payload += [message.vx - float(row["payload_vx_mps"]), message.vz - float(row["payload_vz_mps"])]
+        if message.get_srcSystem() == px4.PAYLOAD_UNIT_SYSTEM:
+            payload += [message.vx - float(row["payload_vx_mps"]), message.vz - float(row["payload_vz_mps"])]
         else:
             i = message.get_srcSystem()
             uav += [message.x - float(row[f"uav{i}_x_m"]), message.z - float(row[f"uav{i}_z_m"])]
@@ -189,21 +187,11 @@ def test_contacts_between_two_rows_are_counted_in_the_second(tmp_path):
 
 
 def test_home_is_that_of_the_mission():
-    with Swarm(CONFIG, seed=1, home=Home(-33.5, 151.25, 12.0), ground_address=GROUND) as swarm:
+    with Swarm(CONFIG, seed=1, home=Home(-33.5, 151.25, 12.0)) as swarm:
         ground = ground_of(CONFIG)
         exchange(swarm, ground, 2.5)
         (message,) = ground.of_type("HOME_POSITION", 1)[:1]
         assert (message.latitude, message.longitude, message.altitude) == (-335000000, 1512500000, 12000)
-
-
-def test_vehicles_send_heartbeats_to_ground_address_before_contact():
-    with Swarm(CONFIG, seed=1, ground_address=GROUND) as swarm:
-        sent = swarm.datagrams_to_send(0.0)
-        assert [(i, address) for i, _, address in sent] == [(i, GROUND) for i in (1, 2, 3, 4)]
-        messages = [Codec(255, 1).decode(datagram)[0].message for _, datagram, _ in sent]
-        assert [m.get_type() for m in messages] == ["HEARTBEAT"] * 4
-        assert swarm.datagrams_to_send(0.0) == []
-        assert swarm.next_timer() == pytest.approx(1.0)
 
 
 def test_swarm_without_peer_has_no_timer():
@@ -245,13 +233,12 @@ def test_fault_injector_acts_on_samples_and_datagrams():
         def from_vehicle(self, vehicle, leaving, now):
             return [] if vehicle == 4 else leaving
 
-    with Swarm(CONFIG, seed=1, ground_address=GROUND, faults=Disturbed()) as swarm:
+    with Swarm(CONFIG, seed=1, faults=Disturbed()) as swarm:
         ground = ground_of(CONFIG)
         exchange(swarm, ground, 0.25)
         assert swarm.vehicles[1].autopilot.state.navigation.estimate is None
         received = {i: len([m for m in ground.messages if m.get_srcSystem() == i]) for i in (1, 2, 3, 4)}
-        assert received[1] > received[2] > received[3] == 1  # everything, all but samples, a heartbeat
-        assert received[4] == 0
+        assert received[1] > received[2] > received[3] == received[4] == 0  # all, all but samples, nothing
 
 
 def test_failed_construction_of_swarm_closes_world():

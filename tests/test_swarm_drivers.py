@@ -273,7 +273,19 @@ def test_real_time_over_udp_sends_each_sample_when_it_is_due():
 
 
 def test_real_time_vehicles_land_when_parent_process_ends(tmp_path):
-    arguments = ("--base-port", 0, "--ground-port", 0, "--with-parent", "--speed", 20, "--run-dir", tmp_path / "run")
+    arguments = (
+        "--base-port",
+        0,
+        "--ground-port",
+        0,
+        "--sdk-port",
+        0,
+        "--with-parent",
+        "--speed",
+        20,
+        "--run-dir",
+        tmp_path / "run",
+    )
     with process(*arguments) as (running, clock, vehicles):
         assert clock is None
         assert len(vehicles) == 4

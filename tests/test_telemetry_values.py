@@ -41,9 +41,12 @@ def expected_values(message):
     return np.where(has_pose, pose, np.nan), np.where(has_motion, motion, np.nan)
 
 
-@pytest.mark.parametrize(("component", "source"), [(px4.AUTOPILOT_COMPONENT, 2), (px4.PAYLOAD_UNIT_COMPONENT, PAYLOAD)])
+VEHICLE, UNIT = (3, px4.AUTOPILOT_COMPONENT), (px4.PAYLOAD_UNIT_SYSTEM, px4.PAYLOAD_UNIT_COMPONENT)
+
+
+@pytest.mark.parametrize(("sender", "source"), [(VEHICLE, 2), (UNIT, PAYLOAD)])
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")
-def test_measurement_has_the_values_of_the_message_as_far_as_they_can_be_measured(component, source):
+def test_measurement_has_the_values_of_the_message_as_far_as_they_can_be_measured(sender, source):
     rng, messages = random.Random(4), []
     for _ in range(1000):
         quaternion = numbers(rng, 4)
@@ -53,7 +56,7 @@ def test_measurement_has_the_values_of_the_message_as_far_as_they_can_be_measure
             mavlink.MAVLink_attitude_quaternion_message(1234, *quaternion, *numbers(rng, 3)),
             mavlink.MAVLink_local_position_ned_message(1234, *numbers(rng, 6)),
         ]
-    on_wire = [received(message, component=component) for message in messages]
+    on_wire = [received(message, *sender) for message in messages]
     expected = [(k, values) for k, r in enumerate(on_wire) if (values := expected_values(r.message)) is not None]
     found, partial = measurements([(message, 2, float(k)) for k, message in enumerate(on_wire)])
     for (k, (pose, motion)), sample in zip(expected, found, strict=True):
@@ -68,7 +71,8 @@ def test_measurement_has_the_values_of_the_message_as_far_as_they_can_be_measure
 
 def test_messages_of_other_components_measure_nothing():
     position = mavlink.MAVLink_local_position_ned_message(1, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
-    assert measurements([(received(position, component=77), 0, 0.0)]) == ([], [])
+    for sender in ((3, 77), (3, px4.PAYLOAD_UNIT_COMPONENT), (px4.PAYLOAD_UNIT_SYSTEM, 77)):
+        assert measurements([(received(position, *sender), 0, 0.0)]) == ([], [])
 
 
 def test_set_point_flown_is_tilt_and_thrust():
@@ -92,10 +96,10 @@ def test_return_has_point_and_range_of_the_message():
     assert np.isnan(read(mavlink.MAV_FRAME_GLOBAL).points).all()
 
 
-@pytest.mark.parametrize("component", [px4.AUTOPILOT_COMPONENT, px4.PAYLOAD_UNIT_COMPONENT])
-def test_measurements_are_arrays_to_read_only(component):
+@pytest.mark.parametrize("sender", [VEHICLE, UNIT])
+def test_measurements_are_arrays_to_read_only(sender):
     message = mavlink.MAVLink_local_position_ned_message(1234, 1.0, 2.0, 3.0, 4.0, 5.0, math.nan)
-    sample = measurement(received(message, component=component), 2, 7.5)
+    sample = measurement(received(message, *sender), 2, 7.5)
     for values in (sample.pose, sample.motion):
         with pytest.raises(ValueError, match="read-only"):
             values[0] = 0.0

@@ -14,6 +14,7 @@ from vehicle_bench import (
     DISARM,
     GROUND,
     OFFBOARD,
+    PAYLOAD_UNIT,
     REJECTED,
     STRANGER,
     UNSUPPORTED,
@@ -100,15 +101,75 @@ def test_commands_as_command_int_and_mode_as_set_mode(bench: Bench) -> None:
     assert bench.vehicle.autopilot.mode == px4.MODE_POSCTL
 
 
-@pytest.mark.parametrize("target", [(2, 1), (1, 25), (7, 0)])
+@pytest.mark.parametrize("target", [(2, 1), (7, 0), (0, 25)])
 def test_commands_to_others_are_not_answered(bench: Bench, target: tuple[int, int]) -> None:
     assert bench.request(command(400, 1, system=target[0], component=target[1])) == []
     assert not bench.vehicle.autopilot.armed
 
 
-def test_looped_back_own_messages_are_ignored(bench: Bench) -> None:
-    bench.send(ARM, GROUND, system=1)
+@pytest.mark.parametrize("component", [25, 158, 191, 250])
+def test_command_to_a_component_that_is_absent_is_refused_by_the_autopilot(bench: Bench, component: int) -> None:
+    as_int = mavlink.MAVLink_command_int_message(1, component, 0, 400, 0, 0, 1, 0, 0, 0, 0, 0, 0)
+    for message in (command(400, 1, component=component), command(512, 242, component=component), as_int):
+        [ack] = bench.request(message)
+        assert (ack.get_type(), ack.command, ack.result) == ("COMMAND_ACK", message.command, UNSUPPORTED)
+        assert (ack.get_srcSystem(), ack.get_srcComponent()) == (1, 1)
+        assert (ack.target_system, ack.target_component) == (255, 190)
     assert not bench.vehicle.autopilot.armed
+    # An answer is none to an answer.
+    assert bench.request(mavlink.MAVLink_command_ack_message(400, 0, 0, 0, 1, component)) == []
+
+
+def test_payload_unit_sends_its_messages_on_request_and_refuses_all_else(bench: Bench) -> None:
+    position = mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED
+    for number, parameters, component, result in (
+        (512, (position,), PAYLOAD_UNIT[1], ACCEPTED), (512, (mavlink.MAVLINK_MSG_ID_VFR_HUD,), 0, UNSUPPORTED),
+        (400, (1,), PAYLOAD_UNIT[1], UNSUPPORTED), (512, (position,), 1, UNSUPPORTED),
+        (511, (position, -1), 0, ACCEPTED),
+    ):  # fmt: skip
+        bench.run(0.02)
+        answers = bench.request(command(number, *parameters, system=PAYLOAD_UNIT[0], component=component))
+        [ack] = [m for m in answers if m.get_type() == "COMMAND_ACK"]
+        assert (ack.command, ack.result, ack.target_system) == (number, result, 255)
+        assert (ack.get_srcSystem(), ack.get_srcComponent()) == PAYLOAD_UNIT
+        sent = [m for m in answers if m.get_type() == "LOCAL_POSITION_NED" and m.get_srcSystem() == PAYLOAD_UNIT[0]]
+        assert len(sent) == (number == 512 and result == ACCEPTED)
+    bench.inbox.clear()
+    bench.run(0.5)
+    assert bench.got("LOCAL_POSITION_NED") and not bench.got("LOCAL_POSITION_NED", source=PAYLOAD_UNIT)
+    assert not bench.vehicle.autopilot.armed
+
+
+def test_payload_units_streams_start_on_request_where_another_vehicle_sends_them() -> None:
+    bench = Bench(clients={GROUND: False})
+    bench.run(0.5)
+    assert bench.got("ATTITUDE_QUATERNION") and not bench.got("ATTITUDE_QUATERNION", source=PAYLOAD_UNIT)
+    bench.send(command(511, mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, 0, system=PAYLOAD_UNIT[0], component=0))
+    bench.inbox.clear()
+    bench.run(1.0)
+    assert len(bench.got("ATTITUDE_QUATERNION", source=PAYLOAD_UNIT)) == 50
+
+
+@pytest.mark.parametrize("own", [(1, 1), PAYLOAD_UNIT])
+def test_looped_back_own_messages_are_ignored(own: tuple[int, int]) -> None:
+    bench = Bench()
+    bench.send(ARM, GROUND, *own)
+    bench.run(0.1)
+    assert not bench.vehicle.autopilot.armed and bench.inbox == {}
+
+
+@pytest.mark.parametrize("component", [190, 191, 240])
+def test_companion_with_the_vehicles_id_is_heard_and_answered(bench: Bench, component: int) -> None:
+    companion = ("127.0.0.1", 40191)
+    [answer] = bench.request(mavlink.MAVLink_timesync_message(0, 5), companion, 1, component)[-1:]
+    assert bench.got("ATTITUDE_QUATERNION", companion) and answer is not None
+    [ack] = bench.request(ARM, companion, 1, component)
+    assert (ack.result, ack.target_system, ack.target_component) == (ACCEPTED, 1, component)
+    assert bench.vehicle.autopilot.armed
+    parameters = bench.request(
+        mavlink.MAVLink_param_request_read_message(1, 1, b"MAV_SYS_ID", -1), companion, 1, component
+    )
+    assert [m.param_id for m in parameters] == ["MAV_SYS_ID"]
 
 
 def test_message_requests_and_intervals(bench: Bench) -> None:

@@ -21,7 +21,8 @@ class Linked:
 
     def __init__(self):
         self.link = VehicleLink(3, None)
-        self.senders = {component: Codec(3, component) for component in (OWN, UNIT, 77)}
+        self.senders = {component: Codec(3, component) for component in (OWN, 77)}
+        self.senders[UNIT] = Codec(px4.PAYLOAD_UNIT_SYSTEM, UNIT)
 
     def send(self, now, *messages, component=OWN, lost=0):
         sender = self.senders[component]
@@ -63,7 +64,7 @@ def received_at(link):
         ([attitude()], OWN, (7.0, 7.0, NEVER, NEVER)),
         ([position()], OWN, (7.0, NEVER, 7.0, NEVER)),
         ([attitude(), position()], OWN, (7.0, 7.0, 7.0, NEVER)),
-        ([attitude(), position()], UNIT, (7.0, NEVER, NEVER, 7.0)),
+        ([attitude(), position()], UNIT, (NEVER, NEVER, NEVER, 7.0)),
         ([attitude()], 77, (7.0, NEVER, NEVER, NEVER)),
     ],
 )

@@ -13,7 +13,22 @@ from test_swarm import rows
 from gcs.mavlink.codec import Codec
 from vehicle_sim.app.cli import main
 
-OPTIONS = ["vehicles", "mission", "config", "base-port", "realtime", "speed", "lockstep", "gui", "seed", "run-dir"]
+OPTIONS = [
+    "vehicles",
+    "mission",
+    "config",
+    "base-port",
+    "realtime",
+    "speed",
+    "lockstep",
+    "gui",
+    "seed",
+    "run-dir",
+    "host",
+    "ground-host",
+    "ground-port",
+    "sdk-port",
+]
 
 MISSION = """\
 [mission]
@@ -64,7 +79,18 @@ def somewhere_else(tmp_path, monkeypatch):
         ("--speed nan", "--speed: 'nan'"),
         ("--lockstep --speed 2", "--speed: lockstep has no speed"),
         ("--lockstep --realtime", "not allowed with"),
-        ("--lockstep --ground-port 14550", "--ground-port"),
+        ("--lockstep --ground-port 14550", "--ground-port: in lockstep"),
+        ("--lockstep --sdk-port 14540", "--sdk-port: in lockstep"),
+        ("--lockstep --ground-host 127.0.0.1", "--ground-host: in lockstep"),
+        ("--base-port 14540", "4 vehicles from --base-port 14540 on: port 14540 is a client's; choose another"),
+        ("--base-port 14538", "--base-port 14538 on: port 14540 is a client's"),
+        ("--base-port 14547 --sdk-port 0", "port 14550 is a client's"),
+        ("--sdk-port 65533", "--sdk-port 65533: port 65536 of vehicle 4"),
+        (
+            "--ground-host 192.0.2.1 --host 127.0.0.1",
+            "--host 127.0.0.1: from there nothing can be sent to --ground-host",
+        ),
+        ("--ground-host a..b", "--ground-host a..b: "),
         ("--base-port 65536", "--base-port: '65536'"),
         ("--base-port 65534", "needs the ports 65534 .. 65537, and there are 1 .. 65535"),
         ("--base-port 1 --lockstep", "needs the ports 0 .. 4, and there are"),
@@ -111,7 +137,11 @@ def test_help_lists_all_options_and_examples(capfd):
 @pytest.mark.parametrize("pace", ["--lockstep", "--realtime"])
 def test_signal_ends_simulation_with_closed_records(tmp_path, number, status, pace):
     arguments = ("--mission", "mission.toml", "--base-port", 0, "--run-dir", "run", pace)
-    with process(*arguments, *(("--ground-port", 0) if pace == "--realtime" else ())) as (running, clock, vehicles):
+    with process(*arguments, *(("--ground-port", 0, "--sdk-port", 0) if pace == "--realtime" else ())) as (
+        running,
+        clock,
+        vehicles,
+    ):
         assert (clock is not None) == (pace == "--lockstep")
         assert len(vehicles) == 4
         running.send_signal(number)
@@ -128,11 +158,22 @@ def test_signal_ends_simulation_with_closed_records(tmp_path, number, status, pa
 
 
 @pytest.mark.slow
-def test_vehicles_send_heartbeats_to_the_ground_port():
+def test_vehicles_send_to_the_ground_port_and_name_their_endpoints():
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as ground:
         ground.bind(("127.0.0.1", 0))
         ground.settimeout(PATIENCE)
-        arguments = ("--base-port", 0, "--ground-port", ground.getsockname()[1], "--vehicles", 3, "--seed", 4)
+        arguments = (
+            "--base-port",
+            0,
+            "--ground-port",
+            ground.getsockname()[1],
+            "--sdk-port",
+            0,
+            "--vehicles",
+            3,
+            "--seed",
+            4,
+        )
         with process(*arguments) as (running, _, vehicles):
             codec = Codec(255, mavlink.MAV_COMP_ID_MISSIONPLANNER)
             received = {}

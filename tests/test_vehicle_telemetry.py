@@ -12,6 +12,7 @@ from vehicle_bench import (
     ACCEPTED,
     ARM,
     GROUND,
+    PAYLOAD_UNIT,
     REJECTED,
     STRANGER,
     Bench,
@@ -25,16 +26,42 @@ from vehicle_sim.world.sensors import Measurement
 NO_POINTS = np.empty((0, 3))
 
 
-def test_vehicle_without_peer_sends_only_heartbeats_to_ground_address() -> None:
+def test_ports_of_clients_get_all_streams_from_the_start_and_for_ever_without_an_answer() -> None:
     assert Bench().vehicle.next_timer() is None
-    bench = Bench(ground_address=GROUND)
+    bench = Bench(clients={GROUND: True, STRANGER: False})
     assert bench.vehicle.next_timer() is not None
-    bench.run(3.01)
-    assert {m.get_type() for m in bench.inbox[GROUND]} == {"HEARTBEAT"}
-    assert 4 <= len(bench.inbox[GROUND]) <= 6
-    bench.send(mavlink.MAVLink_heartbeat_message(6, 8, 0, 0, 0, 3))
+    bench.run(0.1)
+    needed = {
+        "HEARTBEAT", "SYS_STATUS", "EXTENDED_SYS_STATE", "ATTITUDE", "ATTITUDE_QUATERNION", "LOCAL_POSITION_NED",
+        "GLOBAL_POSITION_INT", "GPS_RAW_INT", "HOME_POSITION", "BATTERY_STATUS", "VFR_HUD", "ATTITUDE_TARGET",
+    }  # fmt: skip
+    for address in (GROUND, STRANGER):
+        assert {m.get_type() for m in bench.inbox[address] if m.get_srcSystem() == 1} == needed
+    bench.body.tick += 500 * 70
+    bench.inbox.clear()
+    bench.run(1.0)
+    for address in (GROUND, STRANGER):
+        assert len(bench.got("ATTITUDE_QUATERNION", address)) == 50 and len(bench.got("HEARTBEAT", address)) >= 1
+    assert len(bench.got("LOCAL_POSITION_NED", GROUND, PAYLOAD_UNIT)) == 50
+    assert not bench.got("LOCAL_POSITION_NED", STRANGER, PAYLOAD_UNIT)
+
+
+def test_client_that_falls_silent_keeps_its_streams_on_its_port_alone() -> None:
+    bench = Bench(clients={GROUND: True})
+    for address in (GROUND, STRANGER):
+        bench.send(mavlink.MAVLink_heartbeat_message(6, 8, 0, 0, 0, 3), address)
+    bench.run(0.1)
+    bench.body.tick += 500 * 11
+    bench.inbox.clear()
     bench.run(0.5)
-    assert bench.got("ATTITUDE_QUATERNION")
+    assert len(bench.got("ATTITUDE_QUATERNION")) == 25 and STRANGER not in bench.inbox
+
+
+def test_no_message_under_the_vehicles_id_is_of_another_component(bench: Bench) -> None:
+    bench.run(2.0)
+    sources = {(m.get_srcSystem(), m.get_srcComponent()) for m in bench.inbox[GROUND]}
+    assert sources == {(1, 1), PAYLOAD_UNIT}
+    assert PAYLOAD_UNIT[0] == 100 and PAYLOAD_UNIT[1] != mavlink.MAV_COMP_ID_AUTOPILOT1
 
 
 def test_streams_have_their_rates_and_stamps_of_samples(bench: Bench) -> None:
@@ -52,27 +79,27 @@ def test_streams_have_their_rates_and_stamps_of_samples(bench: Bench) -> None:
     stamps = [m.time_boot_ms for m in bench.got("ATTITUDE_QUATERNION")]
     assert stamps == [m.time_boot_ms for m in bench.got("LOCAL_POSITION_NED")]
     assert np.all(np.diff(stamps) == 20) and stamps[0] % 20 == 0
-    assert len(bench.got("ATTITUDE_QUATERNION", component=25)) == 200
+    assert len(bench.got("ATTITUDE_QUATERNION", source=PAYLOAD_UNIT)) == 200
     assert {tuple(m.repr_offset_q) for m in bench.got("ATTITUDE_QUATERNION")} == {(0.0,) * 4}  # as it is mounted
     # Everything due at one instant shares a datagram.
     assert len(bench.datagrams) == 200
     assert max(len(datagram) for _, datagram, _ in bench.datagrams) <= DATAGRAM_LIMIT
 
 
-def test_payload_unit_is_relayed_as_a_component_with_its_own_stamp(bench: Bench) -> None:
+def test_payload_unit_is_forwarded_as_a_system_with_its_own_stamp(bench: Bench) -> None:
     sample = Measurement(123.456, (0.5, 0.5, -0.5, 0.5), (1, 2, 3), (4, 5, -6), (7, 8, 9))
     bench.vehicle.relay(sample)
     bench.body.tick += 10
     bench.collect()
-    attitude = bench.got("ATTITUDE_QUATERNION", component=25)[-1]
-    position = bench.got("LOCAL_POSITION_NED", component=25)[-1]
+    attitude = bench.got("ATTITUDE_QUATERNION", source=PAYLOAD_UNIT)[-1]
+    position = bench.got("LOCAL_POSITION_NED", source=PAYLOAD_UNIT)[-1]
     assert attitude.time_boot_ms == position.time_boot_ms == 123456
     assert (attitude.q1, attitude.q3, attitude.yawspeed) == (0.5, -0.5, 3.0)
     assert (position.x, position.z, position.vy) == (4.0, -6.0, 8.0)
-    before = len(bench.got("ATTITUDE_QUATERNION", component=25))
+    before = len(bench.got("ATTITUDE_QUATERNION", source=PAYLOAD_UNIT))
     bench.body.tick += 10
     bench.collect()
-    assert len(bench.got("ATTITUDE_QUATERNION", component=25)) == before  # the same sample is sent once
+    assert len(bench.got("ATTITUDE_QUATERNION", source=PAYLOAD_UNIT)) == before  # the same sample is sent once
 
 
 def test_sequence_numbers_have_no_gaps_on_any_link(bench: Bench) -> None:
@@ -80,8 +107,8 @@ def test_sequence_numbers_have_no_gaps_on_any_link(bench: Bench) -> None:
     bench.request(mavlink.MAVLink_param_request_list_message(1, 1), STRANGER)
     bench.run(1.0)
     for address in (GROUND, STRANGER):
-        for component in (1, 25):
-            numbers = [m.get_seq() for m in bench.inbox[address] if m.get_srcComponent() == component]
+        for system in (1, PAYLOAD_UNIT[0]):
+            numbers = [m.get_seq() for m in bench.inbox[address] if m.get_srcSystem() == system]
             assert len(numbers) > 50 and np.all(np.diff(numbers) % 256 == 1)
 
 

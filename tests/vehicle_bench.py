@@ -13,6 +13,7 @@ from gcs.mavlink.codec import Codec
 from vehicle_sim.mavlink.vehicle import Vehicle
 from vehicle_sim.world.sensors import Measurement
 
+PAYLOAD_UNIT = px4.PAYLOAD_UNIT_SYSTEM, px4.PAYLOAD_UNIT_COMPONENT
 GROUND, STRANGER = ("127.0.0.1", 40001), ("10.0.0.66", 40002)
 ACCEPTED, DENIED = mavlink.MAV_RESULT_ACCEPTED, mavlink.MAV_RESULT_DENIED
 REJECTED, UNSUPPORTED = mavlink.MAV_RESULT_TEMPORARILY_REJECTED, mavlink.MAV_RESULT_UNSUPPORTED
@@ -52,15 +53,15 @@ class Bench:
     def now(self) -> float:
         return self.body.now
 
-    def send(self, message: Any, sender: Any = GROUND, system: int = 255) -> None:
-        codec = self.codecs.setdefault((sender, system), Codec(system, 190))
+    def send(self, message: Any, sender: Any = GROUND, system: int = 255, component: int = 190) -> None:
+        codec = self.codecs.setdefault((sender, system, component), Codec(system, component))
         self.vehicle.receive(codec.encode(message), sender, self.now)
 
-    def request(self, message: Any, sender: Any = GROUND, system: int = 255) -> list[Any]:
+    def request(self, message: Any, sender: Any = GROUND, system: int = 255, component: int = 190) -> list[Any]:
         """Send, and return what came back to that address at once, apart from what streams anyway."""
         self.collect()
         before = len(self.inbox.setdefault(sender, []))
-        self.send(message, sender, system)
+        self.send(message, sender, system, component)
         self.collect()
         streamed = ("HEARTBEAT", "EXTENDED_SYS_STATE")
         new = self.inbox[sender][before:]
@@ -88,9 +89,10 @@ class Bench:
             self.collect()
             self.body.advance()
 
-    def got(self, kind: str, address: Any = GROUND, component: int = 1) -> list[Any]:
+    def got(self, kind: str, address: Any = GROUND, source: tuple[int, int] = (1, 1)) -> list[Any]:
+        """Return the messages of a kind that came to an address from a system and component."""
         found = self.inbox.get(address, [])
-        return [m for m in found if m.get_type() == kind and m.get_srcComponent() == component]
+        return [m for m in found if m.get_type() == kind and (m.get_srcSystem(), m.get_srcComponent()) == source]
 
     def fly(self) -> None:
         self.streaming[GROUND, 255] = attitude_target(thrust=HOVER * 1.2)

@@ -49,10 +49,15 @@ class Swarm:
         home: Home | None = None,
         obstacles: Sequence[Obstacle] = (),
         ground_address: Address | None = None,
+        sdk_address: Address | None = None,
         faults: Disturbances | None = None,
         gui: bool = False,
     ) -> None:
-        """``ground_address`` is where the vehicles offer themselves. Raises :class:`SimulationError`."""
+        """Open the world, or raise :class:`SimulationError`.
+
+        ``ground_address``: the port of ground stations, to which all vehicles send their streams; ``sdk_address``: the
+        port of an SDK, to which vehicle 1 sends them, the others to those that follow.
+        """
         system, rates = config.true_parameters(), config.rates
         self.world = World(system, rates.physics, gui, config.world)
         try:
@@ -74,7 +79,7 @@ class Swarm:
         self.vehicles = tuple(
             Vehicle(
                 i, airframe, onboard_rate=rates.onboard, telemetry_rate=rates.telemetry, home=home or DEFAULT_HOME,
-                ground_address=ground_address, clock=self._faults.clock_of(i), autopilot=onboard,
+                clients=_clients(i, ground_address, sdk_address), clock=self._faults.clock_of(i), autopilot=onboard,
                 link=config.vehicle_link, arrays=arrays.of_vehicle(i - 1),
             )
             for i, airframe in enumerate(airframes, start=1)
@@ -143,8 +148,11 @@ class Swarm:
             i = vehicle.system_id
             for arrived, source in faults.to_vehicle(i, (), now):
                 vehicle.receive(arrived, source, now)
-            for datagram, address in faults.from_vehicle(i, vehicle.datagrams_to_send(now), now):
-                out.append((i, datagram, address))
+            leaving = vehicle.datagrams_to_send(now)
+            # Who only listens takes nothing from the link to the ground, and has no part in its faults.
+            out += [(i, *datagram) for datagram in leaving if vehicle.is_listener(datagram[1])]
+            leaving = [datagram for datagram in leaving if not vehicle.is_listener(datagram[1])]
+            out += [(i, *datagram) for datagram in faults.from_vehicle(i, leaving, now)]
         return out
 
     def next_timer(self) -> float | None:
@@ -203,3 +211,17 @@ class Swarm:
             autopilot = vehicle.autopilot
             mode = px4.mode_name(autopilot.mode)
             self._truth.write_mode(now, vehicle.system_id, mode, autopilot.armed, autopilot.failsafe)
+
+
+def _clients(vehicle: int, ground: Address | None, sdk: Address | None) -> dict[Address, bool]:
+    """Return the ports of clients to which a vehicle sends, and whether it sends the payload unit's messages there.
+
+    All vehicles send to the ground stations' port: the first of them forwards the payload unit's messages, so that they
+    come once.
+    """
+    clients: dict[Address, bool] = {}
+    if sdk is not None:
+        clients[sdk[0], sdk[1] + vehicle - 1] = True
+    if ground is not None:
+        clients[ground] = vehicle == 1
+    return clients

@@ -144,7 +144,7 @@ class VehicleLinkSettings(SettingsTable):
     """Service of a vehicle to its peers: every address that sends it valid MAVLink."""
 
     peer_timeout: float = setting(10.0, "s", "without a message from a peer until its streams stop", gt=0.0)
-    peers_max: int = setting(8, "", "peers served at once, beside the ground that the vehicle offers itself to", ge=1)
+    peers_max: int = setting(8, "", "peers served at once, beside the ports of clients to which it always sends", ge=1)
     replies_max: int = setting(200, "", "answers queued for one peer; more requests at once are dropped", ge=1)
     interval_min: float = setting(
         0.004, "s", "shortest interval that SET_MESSAGE_INTERVAL may set: the onboard loop's period", gt=0.0

@@ -78,7 +78,7 @@ class Preflight:
         if now - link.received_at > timeout:
             if link.address is None:
                 return "has not called in"
-            other = "" if link.other_system_id is None else f": vehicle {link.other_system_id} does"
+            other = "" if link.conflict.other_system_id is None else f": vehicle {link.conflict.other_system_id} does"
             return f"does not answer at {link.address[0]}:{link.address[1]}{other}"
         if now - link.complete_telemetry_received_at > timeout:
             return "sends no attitude and position"

@@ -25,6 +25,8 @@ _STAMPED = frozenset(
     (mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED, _SETPOINT, *_SCAN)
 )
 """Messages of one moment, which their stamp names."""
+_SENDERS = dict.fromkeys((_SETPOINT, *_SCAN), px4.AUTOPILOT_COMPONENT)
+"""Messages that only one component sends: of another one's sequence nothing is known."""
 
 
 class _Routed(NamedTuple):
@@ -54,9 +56,12 @@ class TelemetryRouter:
         self._clock_settled = settings.clock_settled
         self._unread = codec.unread
         self._links = flight.system.team.links
-        self._by_address: dict[tuple[Address, int], int] = {
-            (link.address, link.system_id): i for i, link in enumerate(self._links) if link.address is not None
-        }
+        self._by_address: dict[tuple[Address, int], int] = {}
+        self._at: dict[Address, list[VehicleLink]] = {}
+        """Vehicles at each address: several behind a router."""
+        for i, link in enumerate(self._links):
+            if link.address is not None:
+                self._enter(i, link.address)
         self.refused = 0
         """Datagrams from addresses that belong to no vehicle of this flight."""
 
@@ -91,19 +96,23 @@ class TelemetryRouter:
                 system = received.system
                 index = self._by_address.get((sender, system))
                 if index is None:
-                    index = self._new_vehicle(received, sender)
+                    index = self._new_vehicle(received, sender, now)
                 if index is None:
                     continue
                 group = groups.setdefault(index, [])
             if received.target_system and not received.is_for(self._codec.system_id):
                 continue  # an answer to another system behind this address
-            if received.layout.message_id in _SCAN and received.component != px4.AUTOPILOT_COMPONENT:
-                continue  # of its sequence nothing is known
+            if received.component != _SENDERS.get(received.layout.message_id, received.component):
+                continue
+            if system == px4.PAYLOAD_UNIT_SYSTEM and received.component != px4.PAYLOAD_UNIT_COMPONENT:
+                continue
             group.append(received)
         for index, group in groups.items():
             if group:
                 link = self._links[index]
                 link.handle(group, now)
+                for other in self._at[sender]:
+                    other.payload_received_at = max(other.payload_received_at, link.payload_received_at)
                 stamped = [received for received in group if received.layout.message_id in _STAMPED]
                 if stamped and link.clock.known:
                     self._route(stamped, index, now, routed)
@@ -112,19 +121,31 @@ class TelemetryRouter:
     def _link_at(self, address: Address) -> VehicleLink | None:
         return next((link for link in self._links if link.address == address), None)
 
-    def _new_vehicle(self, received: Received, sender: Address) -> int | None:
-        """Return the index of a vehicle that calls in for the first time with this heartbeat; None: none does."""
+    def _enter(self, index: int, address: Address) -> None:
+        """Take what a vehicle sends from its address, and what it, or the first of several there, forwards."""
+        link = self._links[index]
+        self._at.setdefault(address, []).append(link)
+        self._by_address[address, link.system_id] = index
+        self._by_address.setdefault((address, px4.PAYLOAD_UNIT_SYSTEM), index)
+
+    def _new_vehicle(self, received: Received, sender: Address, now: float) -> int | None:
+        """Return the index of a vehicle that calls in for the first time with this heartbeat; None: none does.
+
+        A vehicle of this flight that calls in from a second address has an id that it shares with another.
+        """
         is_heartbeat = received.message_id == mavlink.MAVLINK_MSG_ID_HEARTBEAT
         if not is_heartbeat or received.component != px4.AUTOPILOT_COMPONENT:
             return None
         system_id = received.system
         for i, link in enumerate(self._links):
-            if link.address is None and link.system_id == system_id:
-                link.address = sender
-                self._by_address[sender, system_id] = i
-                return i
+            if link.system_id == system_id:
+                if link.address is None:
+                    link.address = sender
+                    self._enter(i, sender)
+                    return i
+                link.conflict.second_address, link.conflict.second_address_at = sender, now
             if link.address == sender:
-                link.other_system_id = system_id
+                link.conflict.other_system_id = system_id
         return None
 
     def _route(self, group: list[Received], index: int, now: float, routed: _Routed) -> None:

@@ -10,8 +10,10 @@ from functools import lru_cache
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 AUTOPILOT_COMPONENT: int = mavlink.MAV_COMP_ID_AUTOPILOT1
-#: The payload's navigation unit. Every vehicle relays it as a component of its own.
-PAYLOAD_UNIT_COMPONENT: int = mavlink.MAV_COMP_ID_USER1
+#: The payload's navigation unit: a MAVLink system of its own, whose messages every vehicle forwards to the ground.
+PAYLOAD_UNIT_SYSTEM = 100
+#: Not an autopilot's, which would make it a vehicle; MAVLink's for a device without parameters.
+PAYLOAD_UNIT_COMPONENT: int = mavlink.MAV_COMP_ID_PERIPHERAL
 
 #: ``param2`` of MAV_CMD_COMPONENT_ARM_DISARM that overrides the checks.
 FORCE_ARM_DISARM = 21196.0

@@ -17,7 +17,8 @@ from idc_controller.perception.scan_placement import Returns, ScanEnd
 
 _POINT = LAYOUTS[mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D]
 _SCAN_END = LAYOUTS[mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE]
-_AUTOPILOT, _PAYLOAD_UNIT = px4.AUTOPILOT_COMPONENT, px4.PAYLOAD_UNIT_COMPONENT
+_AUTOPILOT = px4.AUTOPILOT_COMPONENT
+_PAYLOAD_UNIT = px4.PAYLOAD_UNIT_SYSTEM, px4.PAYLOAD_UNIT_COMPONENT
 _KINDS: dict[int, type[Measurement]] = {
     mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION: Attitude,
     mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED: Position,
@@ -43,7 +44,7 @@ def measurements(messages: Sequence[tuple[Received, int, float]]) -> tuple[list[
 
     There is none in values that cannot be measurements (not finite, no rotation). Where only the pose or only the
     motion cannot be one, that part is nan, as MAVLink has it for an unknown rate. The payload's navigation unit is a
-    component of its own, relayed by every vehicle. Nobody can write to their arrays, which share memory.
+    system of its own, forwarded by every vehicle. Nobody can write to their arrays, which share memory.
 
     Args:
         messages: Each with its UAV (0 .. N-1) and its time of validity (s, team time).
@@ -60,11 +61,10 @@ def measurements(messages: Sequence[tuple[Received, int, float]]) -> tuple[list[
     partial: list[int] = []
     parts = zip(messages, kinds, measured.tolist(), values[:, :4], values[:, 4:], strict=True)
     for k, ((received, uav, time), kind, (has_pose, has_motion), pose, motion) in enumerate(parts):
-        component = received.component
-        if component == _AUTOPILOT:
-            source = uav
-        elif component == _PAYLOAD_UNIT:
+        if (received.system, received.component) == _PAYLOAD_UNIT:
             source = PAYLOAD
+        elif received.component == _AUTOPILOT:
+            source = uav
         else:
             continue
         if not (has_pose and has_motion):

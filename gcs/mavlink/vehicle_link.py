@@ -74,6 +74,18 @@ class VehicleStatus:
             self.texts.append(message.text)
 
 
+@dataclass
+class AddressConflict:
+    """Messages that show a wrong system id or address."""
+
+    other_system_id: int | None = None
+    """The system id that sends from the vehicle's address in its place."""
+    second_address: Address | None = None
+    """Another address from which the vehicle's system id was heard last."""
+    second_address_at: float = -math.inf
+    """When that was (s)."""
+
+
 class VehicleLink:
     """State of the link to one vehicle. Times are the ground's (s)."""
 
@@ -81,8 +93,7 @@ class VehicleLink:
         """``address``: None while it is not known: the vehicle has yet to offer itself."""
         settings = settings or LinkSettings()
         self.system_id, self.address = system_id, address
-        self.other_system_id: int | None = None
-        """The system id that sends from its address in its place."""
+        self.conflict = AddressConflict()
         self.status = VehicleStatus()
         self.clock = RemoteClock(settings.clock)
         self.statistics = LinkStatistics(settings.reordering_time)
@@ -105,12 +116,16 @@ class VehicleLink:
         return min(self.attitude_received_at, self.position_received_at)
 
     def handle(self, messages: Sequence[Received], now: float) -> None:
-        """Take messages of this vehicle, and runs of them, that came in one datagram."""
-        self.received_at = now
+        """Take messages of this vehicle and of the payload unit, and runs of them, that came in one datagram."""
         last_stamp = None
         for received in messages:
-            layout, _, run, _, component, sequence, _, _, stamp = received
+            layout, _, run, system, component, sequence, _, _, stamp = received
             message_id = layout.message_id
+            if system != self.system_id:
+                if component == px4.PAYLOAD_UNIT_COMPONENT and message_id in _NAVIGATION:
+                    self.payload_received_at = now
+                continue
+            self.received_at = now
             if component == _AUTOPILOT:
                 breaks = self.statistics.breaks
                 if run > 1:
@@ -129,11 +144,7 @@ class VehicleLink:
                     else:
                         self.position_received_at = now
                     continue
-            elif message_id in _SCAN:
-                continue
-            elif message_id in _NAVIGATION:
-                if component == px4.PAYLOAD_UNIT_COMPONENT:
-                    self.payload_received_at = now
+            elif message_id in _SCAN or message_id in _NAVIGATION:
                 continue
             if message_id == _TIMESYNC:
                 tc1, ts1, *_ = received.fields

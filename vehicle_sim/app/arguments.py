@@ -8,27 +8,30 @@ from pathlib import Path
 from gcs.app.arguments import SEED, SPEED, VEHICLES, Parser, Version, whole_number
 from gcs.app.logs import add_log_arguments
 
-BASE_PORT = 14540
+BASE_PORT = 14580
+SDK_PORT = 14540
 GROUND_PORT = 14550
 
 _DESCRIPTION = """\
 Launches the swarm: a world with one payload on rigid links, and quadrotors that carry it, each of which
 speaks MAVLink like a PX4 autopilot on a UDP port of its own.
 
-Vehicle i has the system id i, listens on port BASE + i - 1 and, in real time, also offers itself to a ground
-station on port 14550 of this machine. Every vehicle relays the payload's navigation unit as component 25.
-Vehicles whose set-points stop brake and hold, then land."""
+Vehicle i has the system id i and listens on port 14580 + i - 1 (--base-port, --host). As PX4 does, it sends in real
+time all its streams, from the start and for ever, to port 14540 + i - 1, where SDKs listen (--sdk-port), and to port
+14550, where ground stations listen for all vehicles (--ground-port), of this machine or another (--ground-host).
+Whoever sends MAVLink to 14580 and on is answered there, and gets the streams until it has been silent for 10 s. The
+payload's navigation unit is a system of its own, with id 100: every vehicle forwards its messages to whoever calls in
+and to its SDK, vehicle 1 to the ground stations. Vehicles whose set-points stop brake and hold, then land."""
 
 _EPILOG = """\
 On standard output, line by line: the clock's address (lockstep only), every vehicle's, and "ready".
 
 Examples:
-  vehicle-sim                                    four vehicles on ports 14540 .. 14543, in real time
+  vehicle-sim                                    four vehicles on ports 14580 .. 14583, in real time
   vehicle-sim --vehicles 6 --speed 2             six, twice as fast
   vehicle-sim --mission missions/figure_eight.toml --run-dir runs/by-hand
                                                  the mission's home, obstacles, seed and system; truth.csv
-  gcs fly missions/figure_eight.toml --realtime --connect udp://127.0.0.1:14540 udp://127.0.0.1:14541 \
-          udp://127.0.0.1:14542 udp://127.0.0.1:14543
+  gcs fly missions/figure_eight.toml --realtime --connect
                                                  in another terminal: fly it
 
 Exit status: 0 ended by SIGTERM or with the process that started it, 2 unusable input, with the reason on standard
@@ -48,11 +51,17 @@ def parse(argv: list[str] | None) -> argparse.Namespace:
         help="seed of all sensor noise (default: the mission's, else 1)")  # fmt: skip
     add("--run-dir", type=Path, metavar="D",
         help="folder for truth.csv, obstacles.csv, manifest.json; made if absent, refused if not empty")  # fmt: skip
-    add("--host", default="127.0.0.1", metavar="H", help="address to listen on (default: %(default)s)")
+    add("--host", default=None, metavar="H",
+        help="address to listen on (default: 127.0.0.1; with a --ground-host elsewhere 0.0.0.0)")  # fmt: skip
     add("--base-port", type=_whole(0, 65535), default=BASE_PORT, metavar="P",
         help="port of vehicle 1; 0: any that are free (default: %(default)s)")  # fmt: skip
+    add("--ground-host", default=None, metavar="H",
+        help="machine to which the streams go in real time (default: 127.0.0.1)")  # fmt: skip
+    add("--sdk-port", type=_whole(0, 65535), default=None, metavar="P",
+        help="port there to which vehicle 1 sends its streams, the others to those that follow, whatever --base-port "
+        f"is; 0: nowhere (default: {SDK_PORT})")  # fmt: skip
     add("--ground-port", type=_whole(0, 65535), default=None, metavar="P",
-        help=f"where vehicles offer themselves in real time; 0: nowhere (default: {GROUND_PORT})")  # fmt: skip
+        help=f"port there to which all vehicles send their streams; 0: nowhere (default: {GROUND_PORT})")  # fmt: skip
     pace = parser.add_mutually_exclusive_group()
     pace.add_argument("--realtime", action="store_true", help="on this machine's clock (the default)")
     pace.add_argument(
@@ -72,8 +81,13 @@ def parse(argv: list[str] | None) -> argparse.Namespace:
         options.quiet += 1
     if options.lockstep and options.speed is not None:
         parser.error("--speed: lockstep has no speed of its own, it is as fast as it can be")
-    if options.lockstep and options.ground_port:
-        parser.error("--ground-port: in lockstep the vehicles do not offer themselves")
+    if options.lockstep:
+        for name, value in (
+            ("--ground-host", options.ground_host), ("--sdk-port", options.sdk_port),
+            ("--ground-port", options.ground_port),
+        ):  # fmt: skip
+            if value:
+                parser.error(f"{name}: in lockstep nothing is sent to ports of clients, only to who calls in")
     return options
 
 

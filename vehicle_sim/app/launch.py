@@ -11,14 +11,14 @@ from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
 from gcs.config import SystemConfig, read_system
-from gcs.mavlink.address import Address
 from gcs.mission.faults import check_faults_of
 from gcs.mission.model import Mission
 from gcs.mission.read import read_mission
 from gcs.numerics import differences
 from gcs.record.incomplete import INCOMPLETE, IncompleteRecords, in_one_line
 from gcs.record.run_folder import NewRunFolder, UnwritableFile, check_run_folder, write_manifest
-from vehicle_sim.app.arguments import GROUND_PORT
+from vehicle_sim.app.arguments import BASE_PORT
+from vehicle_sim.app.client_ports import ClientPorts
 from vehicle_sim.app.ending import Ending
 from vehicle_sim.app.lockstep import LockstepDriver
 from vehicle_sim.app.realtime import RealTimeDriver
@@ -57,6 +57,7 @@ def _run(options: Namespace, arguments: list[str], started: contextlib.ExitStack
     if not options.with_parent and options.run_dir is not None:
         check_run_folder(options.run_dir)
     mission, config = _read(options)
+    ports = ClientPorts.of(options, config.team.vehicles)
     seed = options.seed if options.seed is not None else DEFAULT_SEED if mission is None else mission.seed
     if options.gui:
         check_display()
@@ -77,13 +78,14 @@ def _run(options: Namespace, arguments: list[str], started: contextlib.ExitStack
                 seed=seed,
                 home=None if mission is None else mission.home,
                 obstacles=() if mission is None else mission.obstacles,
-                ground_address=_ground_address(options),
+                ground_address=ports.ground,
+                sdk_address=ports.sdk,
                 faults=injector,
                 gui=options.gui,
             )
         )
     sockets = started.enter_context(
-        SwarmSockets(options.host, options.base_port, len(swarm.vehicles), options.lockstep)
+        SwarmSockets(ports.listening_host, options.base_port, len(swarm.vehicles), options.lockstep)
     )
     if options.run_dir is not None:
         truth = _truth_log(options, arguments, seed, mission, config)
@@ -115,12 +117,6 @@ def _read(options: Namespace) -> tuple[Mission | None, SystemConfig]:
         mission = dataclasses.replace(mission, system=config)
         check_faults_of(mission)
     return mission, config
-
-
-def _ground_address(options: Namespace) -> Address | None:
-    """Return the address at which the vehicles offer themselves."""
-    port = GROUND_PORT if options.ground_port is None else options.ground_port
-    return None if options.lockstep or port == 0 else ("127.0.0.1", port)
 
 
 def _truth_log(
@@ -163,7 +159,9 @@ def _announce(sockets: SwarmSockets, options: Namespace) -> None:
     for line in lines:
         print(line, flush=True)
     if not options.with_parent:
-        hint = f"gcs fly MISSION --realtime --connect {' '.join(url(endpoint) for endpoint in sockets.vehicles)}"
+        default = sockets.vehicles[0].getsockname() == ("127.0.0.1", BASE_PORT)
+        addresses = "" if default else "".join(f" {url(endpoint)}" for endpoint in sockets.vehicles)
+        hint = f"gcs fly MISSION --realtime --connect{addresses}"
         if options.lockstep:
             hint = "lockstep: waiting for a ground station at the clock"
         print(f"({hint}; Ctrl-C ends)", flush=True)

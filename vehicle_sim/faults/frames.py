@@ -15,6 +15,7 @@ class Frame(NamedTuple):
     start: int
     end: int
     checksum: int
+    system: int
     component: int
     message_id: int
     stamp: bytes
@@ -24,9 +25,10 @@ def frames(datagram: bytes) -> Iterator[Frame]:
     """Yield the frames in order; bytes before, between and behind them are skipped."""
     for start, end in spans(datagram):
         if datagram[start] == V2:
-            component, body = datagram[start + 6], start + 10
+            system, component, body = datagram[start + 5], datagram[start + 6], start + 10
             number = int.from_bytes(datagram[start + 7 : body], "little")
         else:
-            component, number, body = datagram[start + 4], datagram[start + 5], start + 6
+            system, component, number = datagram[start + 3 : start + 6]
+            body = start + 6
         length = datagram[start + 1]
-        yield Frame(start, end, body + length, component, number, datagram[body : body + min(length, 4)])
+        yield Frame(start, end, body + length, system, component, number, datagram[body : body + min(length, 4)])

@@ -57,13 +57,13 @@ class LowRate(MessageFilter):
 
     def __init__(self, fault: ActiveFault, generator: np.random.Generator) -> None:
         super().__init__(fault, generator)
-        self._streams: dict[tuple[int, int], tuple[bytes, float, bool]] = {}
+        self._streams: dict[tuple[int, int, int], tuple[bytes, float, bool]] = {}
 
     def keeps(self, frame: Frame) -> bool:
         """Keep a message by a credit that grows with every new stamp of its stream."""
         if frame.message_id not in _STREAMED:
             return True
-        key = frame.component, frame.message_id
+        key = frame.system, frame.component, frame.message_id
         stamp, credit, kept = self._streams.get(key, (None, 1.0 - self.fault.settings.share, False))
         if frame.stamp != stamp:
             credit += self.fault.settings.share

@@ -5,13 +5,13 @@ from collections.abc import Callable
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
-from gcs.config.vehicle_settings import VehicleLinkSettings
 from gcs.mavlink import px4
 from vehicle_sim.autopilot.answer import ACCEPTED, Answer
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.mavlink.control_owner import ControlOwner, Sender
-from vehicle_sim.mavlink.dispatcher import Dispatcher, Request
+from vehicle_sim.mavlink.dispatcher import Command, Dispatcher, Request
 from vehicle_sim.mavlink.peer import Peer
+from vehicle_sim.mavlink.stream_requests import StreamRequests, whole
 from vehicle_sim.mavlink.telemetry import Telemetry
 
 #: Requests of information, or about the sender's own link: every ground may send them.
@@ -24,16 +24,13 @@ _HARMLESS = (
 _DENIED: int = mavlink.MAV_RESULT_DENIED
 _UNSUPPORTED: int = mavlink.MAV_RESULT_UNSUPPORTED
 
-Command = mavlink.MAVLink_command_long_message | mavlink.MAVLink_command_int_message
-
 
 class CommandServer:
     """COMMAND_LONG, COMMAND_INT and SET_MODE."""
 
     def __init__(
-        self, autopilot: Autopilot, owner: ControlOwner, telemetry: Telemetry, settings: VehicleLinkSettings
+        self, autopilot: Autopilot, owner: ControlOwner, telemetry: Telemetry, streams: StreamRequests
     ) -> None:
-        self._interval_min = settings.interval_min
         self._autopilot = autopilot
         self._owner = owner
         self._telemetry = telemetry
@@ -43,8 +40,8 @@ class CommandServer:
             mavlink.MAV_CMD_NAV_LAND: self._land,
             mavlink.MAV_CMD_NAV_TAKEOFF: self._take_off,
             mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH: self._return,
-            mavlink.MAV_CMD_REQUEST_MESSAGE: self._request_message,
-            mavlink.MAV_CMD_SET_MESSAGE_INTERVAL: self._set_message_interval,
+            mavlink.MAV_CMD_REQUEST_MESSAGE: streams.request_message,
+            mavlink.MAV_CMD_SET_MESSAGE_INTERVAL: streams.set_message_interval,
             mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES: self._request_capabilities,
         }
 
@@ -90,8 +87,8 @@ class CommandServer:
         return Answer(_DENIED, f"Arming denied: param1 {message.param1} is neither 0 nor 1")
 
     def _do_set_mode(self, message: Command, request: Request) -> Answer:
-        base_mode, main = _whole(message.param1), _whole(message.param2)
-        sub = 0 if math.isnan(message.param3) else _whole(message.param3)
+        base_mode, main = whole(message.param1), whole(message.param2)
+        sub = 0 if math.isnan(message.param3) else whole(message.param3)
         if base_mode is None or main is None or sub is None:
             return Answer(_DENIED, "Mode denied: parameters are not whole numbers")
         if not base_mode & mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED:
@@ -109,33 +106,6 @@ class CommandServer:
     def _return(self, message: Command, request: Request) -> Answer:
         return self._autopilot.enter_mode(px4.MODE_RETURN, request.now)
 
-    def _request_message(self, message: Command, request: Request) -> Answer:
-        wanted = _whole(message.param1, 1 << 24)
-        if wanted is None or not self._telemetry.knows(px4.AUTOPILOT_COMPONENT, wanted):
-            return Answer(_UNSUPPORTED)
-        built = self._telemetry.build(request.now, px4.AUTOPILOT_COMPONENT, wanted)
-        if not built:
-            return Answer(mavlink.MAV_RESULT_TEMPORARILY_REJECTED)
-        request.peer.reply_packed(*built)
-        return ACCEPTED
-
-    def _set_message_interval(self, message: Command, request: Request) -> Answer:
-        wanted = _whole(message.param1, 1 << 24)
-        if wanted is None or not self._telemetry.knows(px4.AUTOPILOT_COMPONENT, wanted):
-            return Answer(_UNSUPPORTED)
-        if self._owner.is_stranger_at_its_address(request.sender, request.now):
-            return Answer(_DENIED, "Interval denied: another ground station flies by this link")
-        microseconds = message.param2
-        if microseconds == -1.0:
-            request.peer.set_interval(wanted, math.inf)
-        elif microseconds == 0.0:
-            request.peer.set_interval(wanted, 0.0)
-        elif self._interval_min * 1e6 <= microseconds <= 3.6e9:
-            request.peer.set_interval(wanted, microseconds * 1e-6)
-        else:
-            return Answer(_DENIED)
-        return ACCEPTED
-
     def _request_capabilities(self, message: Command, request: Request) -> Answer:
         version = mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION
         request.peer.reply_packed(*self._telemetry.build(request.now, px4.AUTOPILOT_COMPONENT, version))
@@ -146,8 +116,3 @@ def _explain(answer: Answer, peer: Peer) -> None:
     """Send the reason of an answer, if it has one, as a text."""
     if answer.text:
         peer.send_statustext(answer.text)
-
-
-def _whole(value: float, limit: int = 256) -> int | None:
-    """Return a whole number from 0 to below the limit; None for any other parameter (NaN, 2.5, -1)."""
-    return int(value) if 0.0 <= value < limit and value == int(value) else None

@@ -4,11 +4,15 @@ from collections.abc import Callable
 from operator import attrgetter
 from typing import Any, NamedTuple, TypeVar
 
+import pymavlink.dialects.v20.ardupilotmega as mavlink
+
 from gcs.mavlink.messages import Message, Received
 from vehicle_sim.mavlink.control_owner import Sender
 from vehicle_sim.mavlink.peer import Peer
 
 M = TypeVar("M", bound=Message)
+
+Command = mavlink.MAVLink_command_long_message | mavlink.MAVLink_command_int_message
 
 
 class Request(NamedTuple):

@@ -94,36 +94,37 @@ class Peer:
     """One address, with its own streams and its own sequence numbers, so that gaps show losses on its link only."""
 
     def __init__(
-        self, address: Address, system_id: int, intervals: dict[tuple[int, int], float], settings: VehicleLinkSettings
+        self,
+        address: Address,
+        system_id: int,
+        intervals: dict[tuple[int, int], float],
+        settings: VehicleLinkSettings,
+        with_payload: bool = True,
     ) -> None:
-        """``intervals`` as :func:`default_intervals` gives them."""
+        """``intervals`` as :func:`default_intervals` gives them; all streams start at once.
+
+        Without ``with_payload`` those of the payload unit start only on request: another vehicle sends them there.
+        """
         self.address = address
         self.heard_at = -math.inf
         self.next_due = -math.inf
         self._settings = settings
-        self._codecs = {component: Codec(system_id, component) for component in (_AUTOPILOT, _PAYLOAD)}
+        self._codecs = {
+            _AUTOPILOT: Codec(system_id, _AUTOPILOT),
+            _PAYLOAD: Codec(px4.PAYLOAD_UNIT_SYSTEM, _PAYLOAD),
+        }
         self._replies: list[bytes] = []
         self._defaults = intervals
-        self._streams: list[Stream] = []
+        self._streams = [
+            Stream(*key, interval) for key, interval in intervals.items() if with_payload or key[0] != _PAYLOAD
+        ]
 
-    @property
-    def is_streaming(self) -> bool:
-        """Return True if it gets everything; one that never answered gets heartbeats only."""
-        return len(self._streams) > 1
+    def set_interval(self, message_id: int, interval: float, component: int = _AUTOPILOT) -> None:
+        """Set the interval (s) of a message on this link; 0 restores the default, infinity stops it.
 
-    def start_streams(self) -> None:
-        """Start all streams at their default rates."""
-        self._streams = [Stream(*key, interval) for key, interval in self._defaults.items()]
-        self.next_due = -math.inf
-
-    def offer(self) -> None:
-        """Send heartbeats only, to an address that has not answered."""
-        self._streams = [Stream(_AUTOPILOT, _HEARTBEAT, self._defaults[_AUTOPILOT, _HEARTBEAT])]
-        self.next_due = -math.inf
-
-    def set_interval(self, message_id: int, interval: float) -> None:
-        """Set the interval (s) of an autopilot message on this link; 0 restores the default, infinity stops it."""
-        key = _AUTOPILOT, message_id
+        ``component`` of the vehicle's autopilot or of the payload unit.
+        """
+        key = component, message_id
         if interval == 0.0:
             interval = self._defaults.get(key, math.inf)
         self._streams = [stream for stream in self._streams if stream.key != key]
@@ -132,20 +133,20 @@ class Peer:
         self.next_due = -math.inf
 
     def repeat(self, *message_ids: int) -> None:
-        """Send these messages at once, and repeatedly, because a datagram may be lost: their content has changed."""
+        """Send these messages of the autopilot at once, and repeatedly: their content has changed, one may be lost."""
         for stream in self._streams:
-            if stream.key[1] in message_ids:
-                stream.due, stream.repeats = -math.inf, self._settings.repeats if self.is_streaming else 0
+            if stream.key[0] == _AUTOPILOT and stream.key[1] in message_ids:
+                stream.due, stream.repeats = -math.inf, self._settings.repeats
         self.next_due = -math.inf
 
-    def reply(self, *messages: Message) -> None:
-        """Send messages of the autopilot with the next datagrams."""
-        self.reply_packed(*packed(*messages))
+    def reply(self, *messages: Message, component: int = _AUTOPILOT) -> None:
+        """Send messages of the autopilot or of the payload unit with the next datagrams."""
+        self.reply_packed(*packed(*messages), component=component)
 
-    def reply_packed(self, *messages: Packed) -> None:
-        """Send messages of the autopilot with the next datagrams, as :meth:`reply` does."""
+    def reply_packed(self, *messages: Packed, component: int = _AUTOPILOT) -> None:
+        """Send messages with the next datagrams, as :meth:`reply` does."""
         if len(self._replies) < self._settings.replies_max:
-            self._replies += [self._codecs[_AUTOPILOT].frame(message) for message in messages]
+            self._replies += [self._codecs[component].frame(message) for message in messages]
             self.next_due = -math.inf
 
     def send_statustext(self, text: str, severity: int = mavlink.MAV_SEVERITY_WARNING) -> None:

@@ -1,7 +1,7 @@
-"""The peers of a vehicle: added when they send valid MAVLink, removed after a timeout."""
+"""The peers of a vehicle: added when they send valid MAVLink, removed after a timeout; clients' ports stay."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 
 from gcs.config.vehicle_settings import VehicleLinkSettings
 from gcs.mavlink.address import Address
@@ -9,20 +9,22 @@ from vehicle_sim.mavlink.peer import TIME_TOLERANCE, Peer
 from vehicle_sim.mavlink.telemetry import Telemetry
 from vehicle_sim.mavlink.telemetry_sample import TelemetrySample
 
+NewPeer = Callable[[Address, bool], Peer]
+"""Makes the peer of an address, with the payload unit's streams or without."""
+
 
 class Peers:
-    """Every address that has sent valid MAVLink lately, up to a bounded number, and the ground to offer itself to."""
+    """Every address that has sent valid MAVLink lately, up to a bounded number, beside the ports of clients.
 
-    def __init__(
-        self, new_peer: Callable[[Address], Peer], ground_address: Address | None, settings: VehicleLinkSettings
-    ) -> None:
-        """``new_peer`` makes the peer of an address; ``ground_address``: where the vehicle offers itself."""
+    A client's port gets the streams from the start and for ever, whether anybody answers there or not.
+    """
+
+    def __init__(self, new_peer: NewPeer, clients: Mapping[Address, bool], settings: VehicleLinkSettings) -> None:
+        """``clients``: the ports of clients, and whether the payload unit's messages go there, too."""
         self._new_peer = new_peer
-        self._ground_address = ground_address
         self._settings = settings
-        self._peers: dict[Address, Peer] = {}
-        if ground_address is not None:
-            self._add(ground_address).offer()
+        self._clients = frozenset(clients)
+        self._peers = {address: new_peer(address, with_payload) for address, with_payload in clients.items()}
 
     def __iter__(self) -> Iterator[Peer]:
         return iter(self._peers.values())
@@ -32,13 +34,16 @@ class Peers:
         peer = self._peers.get(address)
         if peer is None:
             self._remove_silent(now)
-            if len(self._peers) >= self._settings.peers_max + (self._ground_address is not None):
+            if len(self._peers) >= self._settings.peers_max + len(self._clients):
                 return None
-            peer = self._add(address)
-        if not peer.is_streaming:
-            peer.start_streams()
+            peer = self._peers[address] = self._new_peer(address, True)
         peer.heard_at = now
         return peer
+
+    def is_listener(self, address: Address) -> bool:
+        """Return True for the port of a client that has never sent anything."""
+        peer = self._peers.get(address)
+        return peer is not None and peer.heard_at == -math.inf
 
     def datagrams_to_send(self, telemetry: Telemetry, now: float) -> list[tuple[bytes, Address]]:
         """Return all that is due at ``now`` (s), each with its address."""
@@ -48,11 +53,10 @@ class Peers:
             return out
         sample = TelemetrySample(telemetry, now)
         for peer in [peer for peer in self._peers.values() if peer.next_due <= latest]:
-            if self._is_silent(peer, now):
-                self._remove_silent(now)
-                if peer.address not in self._peers:
-                    continue
-            out += [(datagram, peer.address) for datagram in peer.datagrams(sample, now)]
+            if self._is_gone(peer, now):
+                del self._peers[peer.address]
+            else:
+                out += [(datagram, peer.address) for datagram in peer.datagrams(sample, now)]
         return out
 
     @property
@@ -70,22 +74,14 @@ class Peers:
             peer.repeat(*message_ids)
 
     def send_statustext(self, text: str) -> None:
-        """Send a text to all that get the streams."""
+        """Send a text to all."""
         for peer in self._peers.values():
-            if peer.is_streaming:
-                peer.send_statustext(text)
+            peer.send_statustext(text)
 
-    def _add(self, address: Address) -> Peer:
-        peer = self._peers[address] = self._new_peer(address)
-        return peer
-
-    def _is_silent(self, peer: Peer, now: float) -> bool:
-        return peer.is_streaming and now - peer.heard_at > self._settings.peer_timeout
+    def _is_gone(self, peer: Peer, now: float) -> bool:
+        return now - peer.heard_at > self._settings.peer_timeout and peer.address not in self._clients
 
     def _remove_silent(self, now: float) -> None:
         for address, peer in tuple(self._peers.items()):
-            if self._is_silent(peer, now):
-                if address == self._ground_address:
-                    peer.offer()
-                else:
-                    del self._peers[address]
+            if self._is_gone(peer, now):
+                del self._peers[address]

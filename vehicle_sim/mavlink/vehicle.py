@@ -1,7 +1,8 @@
 """One vehicle on the wire: bytes in, bytes out, and the autopilot behind them. No socket, no clock."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 
@@ -19,10 +20,12 @@ from vehicle_sim.mavlink.commands import CommandServer
 from vehicle_sim.mavlink.control_owner import ControlOwner
 from vehicle_sim.mavlink.dispatcher import Dispatcher, Request
 from vehicle_sim.mavlink.link_services import LinkServices
+from vehicle_sim.mavlink.other_components import OtherComponents
 from vehicle_sim.mavlink.parameter_server import ParameterServer
 from vehicle_sim.mavlink.peer import Peer, default_intervals
 from vehicle_sim.mavlink.peers import Peers
 from vehicle_sim.mavlink.setpoint_server import SetpointServer
+from vehicle_sim.mavlink.stream_requests import StreamRequests
 from vehicle_sim.mavlink.telemetry import Telemetry
 from vehicle_sim.world.range_sensor import RangeSample
 from vehicle_sim.world.sensors import Measurement, ReportedState
@@ -31,10 +34,11 @@ from vehicle_sim.world.sensors import Measurement, ReportedState
 class Vehicle:
     """A quadrotor that speaks MAVLink like a PX4 autopilot.
 
-    It answers every address that sends it valid MAVLink, up to a bounded number, and offers itself with heartbeats to
-    ``ground_address``. A driver calls, at any time,
-    :meth:`receive` with every datagram, :meth:`datagrams_to_send` after it and whenever :meth:`next_timer` is due.
-    Its autopilot takes its steps with the team.
+    It answers every address that sends it valid MAVLink, up to a bounded number, and sends all streams to the ports of
+    ``clients`` from the start and for ever. It forwards the messages of the payload unit, which is a system of its own.
+
+    A driver calls, at any time, :meth:`receive` with every datagram, :meth:`datagrams_to_send` after it and whenever
+    :meth:`next_timer` is due. Its autopilot takes its steps with the team.
     """
 
     def __init__(
@@ -45,7 +49,7 @@ class Vehicle:
         onboard_rate: float = 250.0,
         telemetry_rate: float = 50.0,
         home: Home = DEFAULT_HOME,
-        ground_address: Address | None = None,
+        clients: Mapping[Address, bool] = MappingProxyType({}),
         boot_time: float = 0.0,
         clock: Callable[[float], float] = float,
         autopilot: AutopilotSettings = AutopilotSettings(),
@@ -54,6 +58,7 @@ class Vehicle:
     ) -> None:
         """``system_id`` 1 .. 255; rates in Hz; ``boot_time`` (s) is the zero of every ``time_boot_ms``.
 
+        ``clients``: ports of clients, and whether the payload unit's messages go there, too.
         ``clock`` is what its clock shows at a time; ``arrays`` as in :class:`.Autopilot`.
         """
         intervals = default_intervals(link.intervals, 1.0 / telemetry_rate)
@@ -62,7 +67,14 @@ class Vehicle:
         self.autopilot = Autopilot(airframe, self.parameters, autopilot, arrays)
         self.telemetry = Telemetry(system_id, self.autopilot, home, boot_time, clock)
         self._decoder = Codec(system_id, px4.AUTOPILOT_COMPONENT)
-        self._peers = Peers(lambda address: Peer(address, system_id, intervals, link), ground_address, link)
+        self._peers = Peers(
+            lambda address, with_payload: Peer(address, system_id, intervals, link, with_payload), clients, link
+        )
+        self._own = (
+            (system_id, px4.AUTOPILOT_COMPONENT),
+            (px4.PAYLOAD_UNIT_SYSTEM, px4.PAYLOAD_UNIT_COMPONENT),
+        )
+        """System and component of all that it sends."""
         self._sent_changes = 0
         self._latest = -math.inf
         owner = ControlOwner(self.autopilot, link)
@@ -71,7 +83,12 @@ class Vehicle:
         # A further protocol (missions, ...) registers its messages here.
         self._setpoints.register(self._dispatcher)
         LinkServices(clock).register(self._dispatcher)
-        CommandServer(self.autopilot, owner, self.telemetry, link).register(self._dispatcher)
+        streams, of_payload_unit = (
+            StreamRequests(component, self.telemetry, owner, link)
+            for component in (px4.AUTOPILOT_COMPONENT, px4.PAYLOAD_UNIT_COMPONENT)
+        )
+        CommandServer(self.autopilot, owner, self.telemetry, streams).register(self._dispatcher)
+        self._other_components = OtherComponents(system_id, of_payload_unit)
         ParameterServer(self.parameters, owner).register(self._dispatcher)
 
     @property
@@ -106,19 +123,20 @@ class Vehicle:
             self._latest = now
         peer = request = None
         for received in self._decoder.decode(datagram):
-            system = received.system
-            if system in (BROADCAST, self.system_id):
+            system, component = received.system, received.component
+            if system == BROADCAST or (system, component) in self._own:
                 continue  # nobody, or its own messages coming back
             if peer is None:
                 peer = self._peers.receive_from(sender, now)
                 if peer is None:
                     return
                 self.autopilot.ground_message_received(now)
+            if request is None or request.component != component or request.system != system:
+                request = Request((sender, system), component, peer, now)
             if received.is_for(self.system_id, px4.AUTOPILOT_COMPONENT):
-                component = received.component
-                if request is None or request.component != component or request.system != system:
-                    request = Request((sender, system), component, peer, now)
                 self._dispatcher.dispatch(received, request)
+            else:
+                self._other_components.handle(received, request)
 
     def datagrams_to_send(self, now: float) -> list[tuple[bytes, Address]]:
         """Return all that is due at ``now`` (s), each with its address."""
@@ -127,6 +145,10 @@ class Vehicle:
         if self.autopilot.changes != self._sent_changes or self.autopilot.state.notices:
             self.send_changes()
         return self._peers.datagrams_to_send(self.telemetry, now)
+
+    def is_listener(self, address: Address) -> bool:
+        """Return True for the port of a client that has never sent anything."""
+        return self._peers.is_listener(address)
 
     def next_timer(self) -> float | None:
         """Return when :meth:`datagrams_to_send` has something to do (s; in the past: at once), None: never."""

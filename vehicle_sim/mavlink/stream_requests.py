@@ -1,0 +1,66 @@
+"""Requests of one message or of its stream, to the vehicle's autopilot or to the payload unit."""
+
+import math
+
+import pymavlink.dialects.v20.ardupilotmega as mavlink
+
+from gcs.config.vehicle_settings import VehicleLinkSettings
+from vehicle_sim.autopilot.answer import ACCEPTED, Answer
+from vehicle_sim.mavlink.control_owner import ControlOwner
+from vehicle_sim.mavlink.dispatcher import Command, Request
+from vehicle_sim.mavlink.telemetry import Telemetry
+
+_DENIED: int = mavlink.MAV_RESULT_DENIED
+_UNSUPPORTED: int = mavlink.MAV_RESULT_UNSUPPORTED
+
+
+class StreamRequests:
+    """MAV_CMD_REQUEST_MESSAGE and MAV_CMD_SET_MESSAGE_INTERVAL for the messages of one component."""
+
+    def __init__(
+        self, component: int, telemetry: Telemetry, owner: ControlOwner, settings: VehicleLinkSettings
+    ) -> None:
+        self._component = component
+        self._telemetry = telemetry
+        self._owner = owner
+        self._interval_min = settings.interval_min
+
+    def request_message(self, message: Command, request: Request) -> Answer:
+        """Send a message once."""
+        wanted = self._wanted(message)
+        if wanted is None:
+            return Answer(_UNSUPPORTED)
+        built = self._telemetry.build(request.now, self._component, wanted)
+        if not built:
+            return Answer(mavlink.MAV_RESULT_TEMPORARILY_REJECTED)
+        request.peer.reply_packed(*built, component=self._component)
+        return ACCEPTED
+
+    def set_message_interval(self, message: Command, request: Request) -> Answer:
+        """Start, stop or restore the stream of a message on the sender's link."""
+        wanted = self._wanted(message)
+        if wanted is None:
+            return Answer(_UNSUPPORTED)
+        if self._owner.is_stranger_at_its_address(request.sender, request.now):
+            return Answer(_DENIED, "Interval denied: another ground station flies by this link")
+        microseconds = message.param2
+        if microseconds == -1.0:
+            interval = math.inf
+        elif microseconds == 0.0:
+            interval = 0.0
+        elif self._interval_min * 1e6 <= microseconds <= 3.6e9:
+            interval = microseconds * 1e-6
+        else:
+            return Answer(_DENIED)
+        request.peer.set_interval(wanted, interval, self._component)
+        return ACCEPTED
+
+    def _wanted(self, message: Command) -> int | None:
+        """Return the message id that a command names; None: there is no such message."""
+        wanted = whole(message.param1, 1 << 24)
+        return wanted if wanted is not None and self._telemetry.knows(self._component, wanted) else None
+
+
+def whole(value: float, limit: int = 256) -> int | None:
+    """Return a whole number from 0 to below the limit; None for any other parameter (NaN, 2.5, -1)."""
+    return int(value) if 0.0 <= value < limit and value == int(value) else None
