@@ -55,7 +55,7 @@ hold = 1.0
 
 
 def address_of(system_id):
-    return ("127.0.0.1", 14539 + system_id)
+    return ("127.0.0.1", 14579 + system_id)
 
 
 def system_file(folder, **changes):
@@ -140,7 +140,7 @@ class InProcessFlight:
             received = [(datagram, address_of(i)) for i, datagram, address in telemetry if address == GROUND]
             station.receive_all(received, self.now)
             for datagram, address in station.datagrams_to_send(self.now):
-                swarm.receive(address[1] - 14539, datagram, GROUND, self.now)
+                swarm.receive(address[1] - 14579, datagram, GROUND, self.now)
             on_exchange(self)
             due = [t for t in (swarm.next_timer(), station.next_timer()) if t is not None]
             self.now = max(min(due), self.now)

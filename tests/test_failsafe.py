@@ -18,6 +18,7 @@ from gcs.flight.failsafe_state import FailsafeState
 from gcs.flight.listing import listing
 from gcs.flight.phase import Phase
 from gcs.flight.plan_monitor import PlanMonitor
+from gcs.mavlink.vehicle_link import AddressConflict
 from vehicle_sim.swarm import Swarm
 
 DOCS = Path(__file__).parents[1] / "docs"
@@ -33,7 +34,7 @@ def link(number, *, age=0.0, attitude_age=0.0, latency=0.0, armed=True, offboard
     return SimpleNamespace(
         system_id=number, telemetry_received_at=100.0 - age,
         complete_telemetry_received_at=100.0 - max(age, attitude_age), received_at=100.0 - age,
-        clock=clock, status=status,
+        clock=clock, status=status, address=("10.0.0.7", number), conflict=AddressConflict(),
     )  # fmt: skip
 
 

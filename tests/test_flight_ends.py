@@ -139,7 +139,13 @@ def test_unreachable_vehicles_are_refused_with_their_address(tmp_path):
 @pytest.mark.parametrize(
     ("options", "reason"),
     [
-        (("--connect", "udp://127.0.0.1:1", "--vehicles", "4"), "4 does not agree with 1"),
+        (("--connect", "udp://127.0.0.1:1", "udp://127.0.0.1:2", "--vehicles", "4"), "4 does not agree with 2"),
+        (("--connect", "udp://127.0.0.1:1"), "a router's, in real time only; add --realtime"),
+        (("--realtime", "--connect", "udp://10.0.0.7:14541"), "14580 and on, as PX4's do"),
+        (("--realtime", "--connect", "udp://10.0.0.7:14541"), "use --connect udp://10.0.0.7:14581"),
+        (("--connect", "udp://127.0.0.1:14540", "udp://127.0.0.1:14541"), "use --connect udp://127.0.0.1:14580"),
+        (("--connect", "udp://127.0.0.1:2", "udp://127.0.0.1:3", "udp://127.0.0.1:4"), "127.0.0.1:1; for one in real"),
+        (("--connect", "udp://127.0.0.1:2", "udp://127.0.0.1:3", "udp://127.0.0.1:4"), "add --realtime"),
         (("--connect", "udp://127.0.0.1:1", "udp://127.0.0.1:2"), "2"),
         (("--connect", "udp://127.0.0.1:1", "udp://127.0.0.1:1", "udp://127.0.0.1:2"), "named twice"),
         (("--connect", "udpin://127.0.0.1:14550"), "--realtime"),
@@ -174,10 +180,16 @@ class Cut(FaultInjector):
         return () if self.telemetry and vehicle == self.vehicle and now >= self.at else leaving
 
 
+def named(system_id):
+    """The address of a vehicle in a message."""
+    host, port = address_of(system_id)
+    return f"{host}:{port}"
+
+
 def test_vehicle_that_never_answers_is_refused(tmp_path):
     with InProcessFlight(short_figure(tmp_path), tmp_path / "run", faults=Cut(3, 0.0)) as flight:
         flight.fly()
-        assert flight.flight.reason == "vehicle 3 does not answer at 127.0.0.1:14542"
+        assert flight.flight.reason == f"3 of 4 vehicles connected: vehicle 3 does not answer at {named(3)}"
         assert not flight.flight.completed
         assert flight.swarm.at_rest
 
@@ -186,7 +198,10 @@ def test_vehicle_at_the_address_of_another_is_refused(tmp_path):
     addresses = [address_of(system_id) for system_id in (2, 1, 3, 4)]
     with InProcessFlight(short_figure(tmp_path), tmp_path / "run", addresses=addresses) as flight:
         flight.fly()
-        assert flight.flight.reason == "vehicle 1 does not answer at 127.0.0.1:14541: vehicle 2 does"
+        assert flight.flight.reason == (
+            f"2 of 4 vehicles connected: vehicle 1 does not answer at {named(2)}: vehicle 2 does; "
+            f"vehicle 2 does not answer at {named(1)}: vehicle 1 does"
+        )
 
 
 def test_vehicle_that_refuses_to_arm_disarms_all(tmp_path):

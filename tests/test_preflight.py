@@ -55,7 +55,8 @@ def test_what_has_not_come_for_the_timeout_is_named_with_its_vehicle(links, fiel
     setattr(links[1], field, NOW - 0.99 * TIMEOUT)
     assert connected(links) == ""
     setattr(links[1], field, NOW - 1.01 * TIMEOUT)
-    assert connected(links) == f"vehicle 7 {text}"
+    silent = "1 of 2 vehicles connected: " if field == "received_at" else ""
+    assert connected(links) == f"{silent}vehicle 7 {text}"
 
 
 def test_parameters_and_readiness_that_are_not_known_are_named(links):
@@ -74,9 +75,34 @@ def test_first_vehicle_that_lacks_something_is_named_by_what_lacks_first(links):
     assert connected(links) == "vehicle 4 sends no attitude and position"
     links[0].received_at = 0.0
     links[0].conflict.other_system_id = 9
-    assert connected(links) == "vehicle 4 does not answer at 10.0.0.4:14580: vehicle 9 does"
+    one = "1 of 2 vehicles connected: "
+    assert connected(links) == one + "vehicle 4 does not answer at 10.0.0.4:14580: vehicle 9 does"
     links[0].address = None
-    assert connected(links) == "vehicle 4 has not called in"
+    assert connected(links) == one + "vehicle 4 has not called in"
+
+
+def test_all_vehicles_that_are_missing_are_counted_and_named_before_what_others_lack(links):
+    links[0].status.prearm_ok = None
+    links[1].received_at = 0.0
+    assert connected(links) == "1 of 2 vehicles connected: vehicle 7 does not answer at 10.0.0.7:14581"
+    links[0].received_at = 0.0
+    assert connected(links) == (
+        "0 of 2 vehicles connected: vehicle 4 does not answer at 10.0.0.4:14580; "
+        "vehicle 7 does not answer at 10.0.0.7:14581"
+    )
+
+
+def test_vehicle_that_is_heard_without_the_payload_unit_is_requested_to_forward_it(links):
+    links[0].payload_received_at = 0.0
+    connected(links)
+    requests = [message for link in links for message in link.requests.due(NOW)]
+    assert {(m.get_type(), m.target_system, m.command, m.param2) for m in requests} == {("COMMAND_LONG", 100, 511, 0.0)}
+    assert {m.param1 for m in requests} == {31.0, 32.0} and len(requests) == 2
+    connected(links)
+    assert links[0].requests.due(NOW + 0.1) == []
+    assert len(links[0].requests.due(NOW + 0.6)) == 2
+    links[0].payload_received_at = NOW
+    assert connected(links) == "" and links[0].requests.due(NOW + 2.0) == []
 
 
 def test_parameters_are_requested_from_all_and_the_time_of_the_first_attempt_is_kept(links):

@@ -82,7 +82,7 @@ def test_check_imports_only_what_the_mission_needs(mission: str, needed: set[str
         ("missions/system.toml", ()),
         ("missions/figure_eight.toml", ("--config", "missions/figure_eight.toml")),
         ("missions/figure_eight.toml", ("--connect", "udp://127.0.0.1")),
-        ("missions/figure_eight.toml", ("--connect", "udp://127.0.0.1:14540", "--vehicles", "4")),
+        ("missions/figure_eight.toml", ("--connect", "udp://127.0.0.1:14540")),
     ],
 )
 def test_a_flight_with_unusable_input_imports_no_more_than_check_and_leaves_nothing(

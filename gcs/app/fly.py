@@ -18,10 +18,10 @@ from gcs.app.logs import LOG
 from gcs.drivers.connection import Connection, LockstepConnection
 from gcs.drivers.forked_program import ForkedProgram
 from gcs.drivers.interrupt import Interrupt
-from gcs.drivers.lockstep import run_in_lockstep
+from gcs.drivers.lockstep import is_refused, run_in_lockstep
 from gcs.drivers.realtime import run_in_real_time
 from gcs.drivers.simulator import PROGRAM, Simulator
-from gcs.errors import GcsError
+from gcs.errors import GcsError, UnusableInput
 from gcs.flight import stack
 from gcs.flight.alarms import AlarmLog
 from gcs.flight.compute_times import ComputeTimes
@@ -93,6 +93,7 @@ def fly(
 
     Raises :class:`UnusableInput` before anything is started, and :class:`GcsError` when no world could be started.
     """
+    _check_clock(options)
     with Interrupt() as interrupt, ExitStack() as resources:
         folder = resources.enter_context(NewRunFolder(mission.name, options.run_dir))
         run_dir, started = folder.path, datetime.now(UTC)
@@ -101,14 +102,14 @@ def fly(
         )
         if others := differences():
             LOG.warning(others)
-        if vehicle_sim is None and not options.connect:
+        if vehicle_sim is None and options.connect is None:
             vehicle_sim = resources.enter_context(ForkedProgram(PROGRAM))
-        connection = resources.enter_context(closing(Connection(_local_address(options.connect))))
+        connection = resources.enter_context(closing(Connection(_local_address(options.urls))))
         simulator = None
         if vehicle_sim is not None:
             arguments = _simulator_arguments(options, mission, run_dir)
             simulator = resources.enter_context(Simulator(vehicle_sim, arguments, mission.system.drivers))
-        addresses = _addresses(options, mission) if simulator is None else simulator.vehicles
+        addresses = options.addresses(mission.system.team.vehicles) if simulator is None else [*simulator.vehicles]
         recorder = resources.enter_context(FlightRecorder(run_dir, started.timestamp()))
         station = ground_station(mission, addresses, recorder, options.controller)
         log = FlightLog(station)
@@ -133,7 +134,10 @@ def fly(
             else:
                 clock = _clock_address(options, simulator)
                 in_lockstep = resources.enter_context(closing(LockstepConnection(connection, clock)))
-                run_in_lockstep(station, in_lockstep, clock, interrupt, settings, progress=update, end_reason=ended)
+                hint = "" if simulator is not None else "; for a swarm in real time add --realtime"
+                run_in_lockstep(
+                    station, in_lockstep, clock, interrupt, settings, progress=update, end_reason=ended, hint=hint
+                )
         except KeyboardInterrupt:
             flight = station.flight
             reason = "interrupted twice: the vehicles land autonomously"
@@ -224,11 +228,16 @@ def ground_station(
     return GroundStation(flight, recorder)
 
 
-def _addresses(options: FlyOptions, mission: Mission) -> Sequence[Address | None]:
-    """Return the addresses of a running swarm; an address is None until the vehicle calls in."""
-    if options.listens:
-        return [None] * mission.system.team.vehicles
-    return [url.address for url in options.connect]
+def _check_clock(options: FlyOptions) -> None:
+    """Raise :class:`UnusableInput` where no world in lockstep can be joined, because there is none."""
+    if options.connect is None or options.realtime:
+        return
+    host, port = clock = options.clock_address()
+    if is_refused(clock):
+        raise UnusableInput(
+            f"--connect: no swarm in lockstep at udp://{host}:{port}; for one in real time add --realtime "
+            "(vehicle-sim without --lockstep)"
+        )
 
 
 def _simulator_arguments(options: FlyOptions, mission: Mission, run_dir: Path) -> list[str]:
@@ -246,8 +255,7 @@ def _clock_address(options: FlyOptions, simulator: Simulator | None) -> Address:
         if simulator.clock_address is None:
             raise GcsError("vehicle-sim has not printed the address of its clock")
         return simulator.clock_address
-    first = min(options.connect, key=lambda url: url.port)
-    return first.host, first.port - 1
+    return options.clock_address()
 
 
 def _local_address(urls: Sequence[ConnectionUrl]) -> Address:

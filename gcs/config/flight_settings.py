@@ -11,6 +11,9 @@ class FailsafeSettings(SettingsTable):
     """Thresholds of the conditions in :mod:`gcs.flight.failsafe`."""
 
     connect_timeout: float = setting(10.0, "s", "until every vehicle has sent all that a flight needs", gt=0.0)
+    duplicate_id_window: float = setting(
+        2.0, "s", "in which one system id is heard from two addresses: two HEARTBEATs of each", gt=0.0
+    )
     telemetry_timeout: float = setting(
         0.46, "s", "age at which telemetry is lost, and set-point loss of the vehicles (COM_OF_LOSS_T)", ge=0.1, le=60.0
     )

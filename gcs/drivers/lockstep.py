@@ -1,6 +1,7 @@
 """Lockstep: the world's clock is the ground's clock (see :mod:`gcs.mavlink.lockstep`)."""
 
 import math
+import socket
 from collections.abc import Callable
 
 from gcs.drivers.connection import LockstepConnection
@@ -10,6 +11,8 @@ from gcs.flight.failsafe import Failsafe
 from gcs.flight.ground_station import GroundStation
 from gcs.mavlink.address import Address
 from gcs.mavlink.lockstep import Done, Tick, decode_tick
+
+_REFUSAL_TIME = 0.2  # s of wall time in which a closed port is reported
 
 
 def run_in_lockstep(
@@ -21,10 +24,11 @@ def run_in_lockstep(
     *,
     progress: Callable[[], None] = lambda: None,
     end_reason: Callable[[], str | None] = lambda: None,
+    hint: str = "",
 ) -> None:
     """Run ``station`` until its flight has ended, one exchange with the world at a time.
 
-    ``end_reason`` returns why the world has ended, None while it runs.
+    ``end_reason`` returns why the world has ended, None while it runs; ``hint`` what to do where none answers.
     """
     join = Done(0, None).encode()
     connection.send(join, clock_address)
@@ -40,6 +44,8 @@ def run_in_lockstep(
             reason = end_reason()
             if reason is None and waited >= settings.tick_timeout:
                 reason = f"the simulated world does not answer for {settings.tick_timeout:g} s"
+                if not joined:
+                    reason += hint
             if reason is not None:
                 station.raise_failsafe(now, Failsafe.SIMULATION_LOST, reason)
                 break
@@ -65,6 +71,22 @@ def run_in_lockstep(
         connection.send(Done(tick.serial, next_us, station.ended).encode(), clock_address)
     if joined:
         connection.send(Done(0, None, leaving=True).encode(), clock_address)
+
+
+def is_refused(clock_address: Address) -> bool:
+    """Return True if it is certain that no world in lockstep can be joined at ``clock_address``: the port is closed.
+
+    The machine answers for a closed port; one that is far away may not.
+    """
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.settimeout(_REFUSAL_TIME)
+        try:
+            probe.connect(clock_address)
+            probe.send(Done(0, None, leaving=True).encode())  # changes nothing, and is not answered
+            probe.recv(1)
+        except OSError as error:
+            return not isinstance(error, TimeoutError)
+    return False
 
 
 def _next_tick(

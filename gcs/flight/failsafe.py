@@ -29,6 +29,20 @@ def _connect_timeout(system: System, moment: Moment) -> Trigger | None:
     return Trigger(system.preflight.missing) if late else None
 
 
+def _duplicate_system_id(system: System, moment: Moment) -> Trigger | None:
+    if moment.phase not in (Phase.CONNECT, Phase.CHECK):
+        return None
+    since = moment.now - system.settings.duplicate_id_window
+    for i, link in enumerate(system.team.links):
+        first, second = link.address, link.conflict.second_address
+        if first and second and min(link.received_at, link.conflict.second_address_at) >= since:
+            places = f"{first[0]}:{first[1]} and from {second[0]}:{second[1]}"
+            return Trigger(
+                f"system id {link.system_id} is heard from {places}: every vehicle needs one of its own", (i,)
+            )
+    return None
+
+
 def _parameter_mismatch(system: System, moment: Moment) -> Trigger | None:
     p, tolerance = system.team.parameters, system.settings.parameter_tolerance
     expected = {
@@ -237,6 +251,9 @@ class Failsafe(AlarmCode):
     CONNECT_TIMEOUT = (Check.CONNECT, _connect_timeout, Reaction.REFUSE,
         "check the vehicle's power, address and system id",
         "a vehicle has not sent all that a flight needs within {connect_timeout:g} s")
+    DUPLICATE_SYSTEM_ID = (Check.STEP, _duplicate_system_id, Reaction.REFUSE,
+        "give every vehicle a system id of its own, or end the second swarm",
+        "before arming, one system id is heard from two addresses within {duplicate_id_window:g} s")
     PARAMETER_MISMATCH = (Check.PREFLIGHT, _parameter_mismatch, Reaction.REFUSE,
         "correct the system file or the vehicle",
         "a parameter of a vehicle differs from the system file by more than {parameter_tolerance}, relative")

@@ -32,7 +32,7 @@ class Preflight:
         self.check_start = math.nan
         """Time at which all had connected (s, team)."""
         self.missing = ""
-        """Data that the first incomplete vehicle lacks; empty: all are complete."""
+        """Vehicles that have not connected, else the data that the first incomplete one lacks; empty: none."""
         self._positions: dict[int, list[Array]] = {source: [] for source in (PAYLOAD, *range(len(team.links)))}
 
     def connect(self, now: float) -> bool:
@@ -40,11 +40,21 @@ class Preflight:
         # Team time jumps with the first telemetry: only the ground's clock measures the timeout.
         if math.isnan(self.connect_start):
             self.connect_start = now
-        self.missing = ""
+        timeout = self._settings.failsafe.telemetry_timeout
+        silent, incomplete = [], []
         for link in self._team.links:
             link.requests.want_parameters(NEEDED_PARAMETERS)
-            if not self.missing and (missing := self._missing(link, now)):
-                self.missing = f"vehicle {link.system_id} {missing}"
+            if now - link.received_at > timeout:
+                silent.append(f"vehicle {link.system_id} {_silence(link)}")
+            elif missing := _missing(link, now, timeout):
+                incomplete.append(f"vehicle {link.system_id} {missing}")
+                if now - link.payload_received_at > timeout:
+                    link.requests.want_payload_unit()
+        if silent:
+            team = len(self._team.links)
+            self.missing = f"{team - len(silent)} of {team} vehicles connected: {'; '.join(silent)}"
+        else:
+            self.missing = incomplete[0] if incomplete else ""
         return not self.missing
 
     def add(self, measurement: Measurement) -> None:
@@ -73,17 +83,21 @@ class Preflight:
         """Positions of the vehicles (N, 3)."""
         return np.array([np.mean(samples, axis=0) for source, samples in self._positions.items() if source != PAYLOAD])
 
-    def _missing(self, link: VehicleLink, now: float) -> str:
-        timeout = self._settings.failsafe.telemetry_timeout
-        if now - link.received_at > timeout:
-            if link.address is None:
-                return "has not called in"
-            other = "" if link.conflict.other_system_id is None else f": vehicle {link.conflict.other_system_id} does"
-            return f"does not answer at {link.address[0]}:{link.address[1]}{other}"
-        if now - link.complete_telemetry_received_at > timeout:
-            return "sends no attitude and position"
-        if now - link.payload_received_at > timeout:
-            return "relays no payload navigation data"
-        if absent := [name for name in NEEDED_PARAMETERS if name not in link.status.parameters]:
-            return "does not send " + ", ".join(absent)
-        return "has not reported whether it is ready" if link.status.prearm_ok is None else ""
+
+def _silence(link: VehicleLink) -> str:
+    """Return how a vehicle is missing from which nothing has come."""
+    if link.address is None:
+        return "has not called in"
+    other = "" if link.conflict.other_system_id is None else f": vehicle {link.conflict.other_system_id} does"
+    return f"does not answer at {link.address[0]}:{link.address[1]}{other}"
+
+
+def _missing(link: VehicleLink, now: float, timeout: float) -> str:
+    """Return what a flight needs and a vehicle has not sent; empty: nothing. ``timeout`` (s) for telemetry."""
+    if now - link.complete_telemetry_received_at > timeout:
+        return "sends no attitude and position"
+    if now - link.payload_received_at > timeout:
+        return "relays no payload navigation data"
+    if absent := [name for name in NEEDED_PARAMETERS if name not in link.status.parameters]:
+        return "does not send " + ", ".join(absent)
+    return "has not reported whether it is ready" if link.status.prearm_ok is None else ""

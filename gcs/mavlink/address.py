@@ -7,6 +7,15 @@ from gcs.errors import UnusableInput
 
 Address = tuple[str, int]
 
+# PX4's ports; of those that follow one another the first vehicle's.
+VEHICLE_PORT = 14580
+"""Where a vehicle listens, the next one on the port that follows."""
+SDK_PORT = 14540
+"""Where an SDK listens for one vehicle, on the port that follows for the next one."""
+GROUND_PORT = 14550
+"""Where a ground station listens for all vehicles."""
+THIS_MACHINE = "127.0.0.1"
+
 _URL = re.compile(r"^(?P<scheme>udp|udpout|udpin):(?://)?(?P<host>[^:/\s]+):(?P<port>\d{1,5})/?$")
 
 
@@ -32,5 +41,5 @@ def parse_url(text: str) -> ConnectionUrl:
     match = _URL.match(text)
     if match is None or not 1 <= int(match["port"]) <= 65535:
         raise UnusableInput(f"--connect {text}: expected udp://HOST:PORT, udpout://HOST:PORT or udpin://HOST:PORT")
-    host = "127.0.0.1" if match["host"] == "localhost" else match["host"]
+    host = THIS_MACHINE if match["host"] == "localhost" else match["host"]
     return ConnectionUrl(host, int(match["port"]), match["scheme"] == "udpin")

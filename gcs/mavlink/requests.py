@@ -38,6 +38,16 @@ class Command:
         return entry.name if entry else str(self.number)
 
 
+def _payload_unit_stream(message_id: int) -> Message:
+    """Return the request of a stream of the payload unit at its default rate."""
+    unit, command = (px4.PAYLOAD_UNIT_SYSTEM, px4.PAYLOAD_UNIT_COMPONENT), mavlink.MAV_CMD_SET_MESSAGE_INTERVAL
+    return mavlink.MAVLink_command_long_message(*unit, command, 0, message_id, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+_PAYLOAD_UNIT_ATTITUDE = _payload_unit_stream(mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION)
+_PAYLOAD_UNIT_POSITION = _payload_unit_stream(mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED)
+
+
 class Requests:
     """Commands and parameter reads of one vehicle. Times are the ground's (s)."""
 
@@ -46,6 +56,12 @@ class Requests:
         self._system_id, self._parameters, self._settings = system_id, parameters, settings
         self._pending: dict[int, Command] = {}
         self._wanted: dict[str, float] = {}
+        self._payload_unit_wanted = False
+        self._payload_unit_due = -math.inf
+
+    def want_payload_unit(self) -> None:
+        """Request that the vehicle forwards the payload unit's telemetry here: another one may do it in its place."""
+        self._payload_unit_wanted = True
 
     def want_parameters(self, names: tuple[str, ...]) -> None:
         """Request parameters until they are known."""
@@ -62,6 +78,9 @@ class Requests:
     def due(self, now: float) -> list[Message]:
         """Return the requests that are to be sent at ``now``."""
         messages: list[Message] = []
+        if self._payload_unit_wanted and now >= self._payload_unit_due:
+            self._payload_unit_wanted, self._payload_unit_due = False, now + self._settings.retry_interval
+            messages += [_PAYLOAD_UNIT_ATTITUDE, _PAYLOAD_UNIT_POSITION]
         if not (self._wanted or self._pending):
             return messages
         target = self._system_id, px4.AUTOPILOT_COMPONENT

@@ -7,10 +7,7 @@ from pathlib import Path
 
 from gcs.app.arguments import SEED, SPEED, VEHICLES, Parser, Version, whole_number
 from gcs.app.logs import add_log_arguments
-
-BASE_PORT = 14580
-SDK_PORT = 14540
-GROUND_PORT = 14550
+from gcs.mavlink.address import GROUND_PORT, SDK_PORT, VEHICLE_PORT
 
 _DESCRIPTION = """\
 Launches the swarm: a world with one payload on rigid links, and quadrotors that carry it, each of which
@@ -53,7 +50,7 @@ def parse(argv: list[str] | None) -> argparse.Namespace:
         help="folder for truth.csv, obstacles.csv, manifest.json; made if absent, refused if not empty")  # fmt: skip
     add("--host", default=None, metavar="H",
         help="address to listen on (default: 127.0.0.1; with a --ground-host elsewhere 0.0.0.0)")  # fmt: skip
-    add("--base-port", type=_whole(0, 65535), default=BASE_PORT, metavar="P",
+    add("--base-port", type=_whole(0, 65535), default=VEHICLE_PORT, metavar="P",
         help="port of vehicle 1; 0: any that are free (default: %(default)s)")  # fmt: skip
     add("--ground-host", default=None, metavar="H",
         help="machine to which the streams go in real time (default: 127.0.0.1)")  # fmt: skip

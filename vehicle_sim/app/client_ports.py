@@ -7,10 +7,7 @@ from argparse import Namespace
 from typing import NamedTuple
 
 from gcs.errors import UnusableInput
-from gcs.mavlink.address import Address
-from vehicle_sim.app.arguments import GROUND_PORT, SDK_PORT
-
-_THIS_MACHINE = "127.0.0.1"
+from gcs.mavlink.address import GROUND_PORT, SDK_PORT, THIS_MACHINE, Address
 
 
 class ClientPorts(NamedTuple):
@@ -26,14 +23,14 @@ class ClientPorts(NamedTuple):
     def of(cls, options: Namespace, vehicles: int) -> ClientPorts:
         """Return what the options say for a number of vehicles. Raises :class:`UnusableInput`."""
         if options.lockstep:
-            return cls(options.host or _THIS_MACHINE, None, None)
+            return cls(options.host or THIS_MACHINE, None, None)
         sdk_port = SDK_PORT if options.sdk_port is None else options.sdk_port
         ground_port = GROUND_PORT if options.ground_port is None else options.ground_port
         if sdk_port + vehicles - 1 > 65535:
             raise UnusableInput(f"--sdk-port {sdk_port}: port {sdk_port + vehicles - 1} of vehicle {vehicles} is none")
-        there = _resolved(options.ground_host or _THIS_MACHINE)
+        there = _resolved(options.ground_host or THIS_MACHINE)
         is_here = there.startswith("127.")
-        host = options.host or (_THIS_MACHINE if is_here else "0.0.0.0")
+        host = options.host or (THIS_MACHINE if is_here else "0.0.0.0")
         if not is_here and _resolved(host, "--host").startswith("127."):
             raise UnusableInput(
                 f"--host {host}: from there nothing can be sent to --ground-host {options.ground_host}; "

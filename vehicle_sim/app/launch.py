@@ -11,13 +11,13 @@ from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
 from gcs.config import SystemConfig, read_system
+from gcs.mavlink.address import THIS_MACHINE, VEHICLE_PORT
 from gcs.mission.faults import check_faults_of
 from gcs.mission.model import Mission
 from gcs.mission.read import read_mission
 from gcs.numerics import differences
 from gcs.record.incomplete import INCOMPLETE, IncompleteRecords, in_one_line
 from gcs.record.run_folder import NewRunFolder, UnwritableFile, check_run_folder, write_manifest
-from vehicle_sim.app.arguments import BASE_PORT
 from vehicle_sim.app.client_ports import ClientPorts
 from vehicle_sim.app.ending import Ending
 from vehicle_sim.app.lockstep import LockstepDriver
@@ -159,7 +159,7 @@ def _announce(sockets: SwarmSockets, options: Namespace) -> None:
     for line in lines:
         print(line, flush=True)
     if not options.with_parent:
-        default = sockets.vehicles[0].getsockname() == ("127.0.0.1", BASE_PORT)
+        default = sockets.vehicles[0].getsockname() == (THIS_MACHINE, VEHICLE_PORT)
         addresses = "" if default else "".join(f" {url(endpoint)}" for endpoint in sockets.vehicles)
         hint = f"gcs fly MISSION --realtime --connect{addresses}"
         if options.lockstep:

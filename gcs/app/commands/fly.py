@@ -8,6 +8,7 @@ from pathlib import Path
 from gcs.app.arguments import CONTROLLERS, SEED, SPEED, VEHICLES
 from gcs.app.imports import importing
 from gcs.app.logs import LOG
+from gcs.mavlink.address import GROUND_PORT, THIS_MACHINE, VEHICLE_PORT, parse_url
 
 DESCRIPTION = """\
 Flies a mission: a QGroundControl .plan, a QGC WPL 110 file, or the project's .toml.
@@ -16,8 +17,7 @@ Without --connect it starts a simulated swarm (vehicle-sim) for itself, in locks
 With --connect it flies a swarm that runs already:
 
   vehicle-sim --mission missions/figure_eight.toml
-  gcs fly missions/figure_eight.toml --realtime --connect \\
-      udp://127.0.0.1:14540 udp://127.0.0.1:14541 udp://127.0.0.1:14542 udp://127.0.0.1:14543
+  gcs fly missions/figure_eight.toml --realtime --connect
 
 Ctrl-C, SIGTERM and a closed terminal land the vehicles and close the records; a second Ctrl-C or
 SIGTERM ends the ground station, and the vehicles land by their own failsafe.
@@ -40,9 +40,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--vehicles", type=VEHICLES, metavar="N", help="number of vehicles in place of the system file's")
     add("--seed", type=SEED, metavar="S", help="seed of the noise in place of the mission's")
     add("--run-dir", type=Path, metavar="D", help="run folder (default: runs/<mission>-<number>)")
-    add("--connect", action="extend", nargs="+", default=[], metavar="URL",
-        help="a running swarm: udp://HOST:PORT of every vehicle, in the order of their system ids, "
-        "or udpin://HOST:PORT to which the vehicles send (vehicle-sim: udpin://127.0.0.1:14550)",
+    add("--connect", action="extend", nargs="*", default=None, metavar="URL",
+        help="a running swarm: udp://HOST:PORT of every vehicle, in the order of their system ids (default: "
+        f"udp://{THIS_MACHINE}:{VEHICLE_PORT} and on); a single one of a router to all of them; or udpin://HOST:PORT "
+        f"to which the vehicles send (vehicle-sim: udpin://{THIS_MACHINE}:{GROUND_PORT})",
     )  # fmt: skip
     add("--json", action="store_true", help="print the summary as JSON instead of a table")
     add("--no-pictures", action="store_true", help="draw none; gcs report does it later")
@@ -53,7 +54,6 @@ def run(arguments: argparse.Namespace) -> int:
     """Run the command, and return its exit status."""
     with importing():
         from gcs.app.fly_options import FlyOptions, prepare
-        from gcs.mavlink.address import parse_url
 
     options = FlyOptions(
         mission=arguments.mission,
@@ -64,7 +64,7 @@ def run(arguments: argparse.Namespace) -> int:
         realtime=arguments.realtime,
         speed=arguments.speed,
         controller=arguments.controller,
-        connect=tuple(parse_url(url) for url in arguments.connect),
+        connect=None if arguments.connect is None else tuple(parse_url(url) for url in arguments.connect),
     )
     mission = prepare(options)
     # Only now: what cannot be flown is said at once.
@@ -83,7 +83,7 @@ def run(arguments: argparse.Namespace) -> int:
     console = Console(stderr=arguments.json, highlight=False)
     with ExitStack() as started:
         # Before there are threads: those of the progress line and of the parent's end.
-        vehicle_sim = None if options.connect else started.enter_context(ForkedProgram(PROGRAM))
+        vehicle_sim = None if options.connect is not None else started.enter_context(ForkedProgram(PROGRAM))
         if arguments.with_parent:
             end_with_parent()
         progress = started.enter_context(FlightProgress(console))
@@ -106,7 +106,7 @@ def run(arguments: argparse.Namespace) -> int:
 
         for note in fault_notes(result.run_dir):
             LOG.warning("note: %s", note)
-    if mission.faults and options.connect:
+    if mission.faults and options.connect is not None:
         LOG.warning("note: faults come from the simulator: start it with vehicle-sim --mission %s", options.mission)
     if result.reason:
         LOG.error("%s%s", BROKEN_OFF, result.reason)
