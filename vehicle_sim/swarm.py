@@ -150,8 +150,9 @@ class Swarm:
                 vehicle.receive(arrived, source, now)
             leaving = vehicle.datagrams_to_send(now)
             # Who only listens takes nothing from the link to the ground, and has no part in its faults.
-            out += [(i, *datagram) for datagram in leaving if vehicle.is_listener(datagram[1])]
-            leaving = [datagram for datagram in leaving if not vehicle.is_listener(datagram[1])]
+            if listeners := vehicle.listeners:
+                out += [(i, *datagram) for datagram in leaving if datagram[1] in listeners]
+                leaving = [datagram for datagram in leaving if datagram[1] not in listeners]
             out += [(i, *datagram) for datagram in faults.from_vehicle(i, leaving, now)]
         return out
 

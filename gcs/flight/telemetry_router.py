@@ -111,8 +111,9 @@ class TelemetryRouter:
             if group:
                 link = self._links[index]
                 link.handle(group, now)
-                for other in self._at[sender]:
-                    other.payload_received_at = max(other.payload_received_at, link.payload_received_at)
+                if len(sharing := self._at[sender]) > 1:
+                    for other in sharing:
+                        other.payload_received_at = max(other.payload_received_at, link.payload_received_at)
                 stamped = [received for received in group if received.layout.message_id in _STAMPED]
                 if stamped and link.clock.known:
                     self._route(stamped, index, now, routed)

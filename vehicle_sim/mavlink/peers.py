@@ -24,6 +24,8 @@ class Peers:
         self._new_peer = new_peer
         self._settings = settings
         self._clients = frozenset(clients)
+        self.listeners = set(clients)
+        """Ports of clients from which nothing has come yet."""
         self._peers = {address: new_peer(address, with_payload) for address, with_payload in clients.items()}
 
     def __iter__(self) -> Iterator[Peer]:
@@ -38,12 +40,8 @@ class Peers:
                 return None
             peer = self._peers[address] = self._new_peer(address, True)
         peer.heard_at = now
+        self.listeners.discard(address)
         return peer
-
-    def is_listener(self, address: Address) -> bool:
-        """Return True for the port of a client that has never sent anything."""
-        peer = self._peers.get(address)
-        return peer is not None and peer.heard_at == -math.inf
 
     def datagrams_to_send(self, telemetry: Telemetry, now: float) -> list[tuple[bytes, Address]]:
         """Return all that is due at ``now`` (s), each with its address."""

@@ -1,7 +1,7 @@
 """One vehicle on the wire: bytes in, bytes out, and the autopilot behind them. No socket, no clock."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Set
 from types import MappingProxyType
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
@@ -146,9 +146,10 @@ class Vehicle:
             self.send_changes()
         return self._peers.datagrams_to_send(self.telemetry, now)
 
-    def is_listener(self, address: Address) -> bool:
-        """Return True for the port of a client that has never sent anything."""
-        return self._peers.is_listener(address)
+    @property
+    def listeners(self) -> Set[Address]:
+        """Ports of clients from which nothing has come yet."""
+        return self._peers.listeners
 
     def next_timer(self) -> float | None:
         """Return when :meth:`datagrams_to_send` has something to do (s; in the past: at once), None: never."""
