@@ -40,6 +40,6 @@ def flights(folder, text=CAMPAIGN):
 SUMMARY = {
     "completed": True, "outcome": "completed", "contacts": 0, "clearance_min_m": None, "uav_separation_min_m": 0.9,
     "payload_tilt_max_deg": {"roll": 1.0, "pitch": 2.5, "yaw": None}, "duration_s": 20.0,
-    "position_rmse_m": {"total": 0.02}, "limits": {"position_rmse": [0.02, 0.03, True]},
+    "position_rmse_m": {"total": 0.02}, "limits": {"position_rmse": {"value": 0.02, "limit": 0.03, "held": True}},
 }  # fmt: skip
-OUTSIDE = {"limits": {"position_rmse": [0.2, 0.03, False]}}
+OUTSIDE = {"limits": {"position_rmse": {"value": 0.2, "limit": 0.03, "held": False}}}

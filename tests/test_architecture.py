@@ -39,7 +39,8 @@ ALLOWED = {
     "gcs.mavlink": "idc_controller.estimation idc_controller.perception",
     "gcs.mission": "gcs.config gcs.faults idc_controller.geometry idc_controller.perception",
     "gcs.record": (
-        "gcs.config gcs.flight gcs.mavlink idc_controller.control idc_controller.geometry idc_controller.perception"
+        "gcs.config gcs.flight gcs.mavlink gcs.mission idc_controller.control idc_controller.geometry "
+        "idc_controller.perception"
     ),
     "gcs.reproduce": (
         "gcs.campaign gcs.config gcs.flight gcs.record idc_controller.estimation idc_controller.geometry "

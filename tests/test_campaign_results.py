@@ -10,11 +10,12 @@ from small_campaign import OUTSIDE, SUMMARY, campaign_file
 
 from gcs.campaign.engine import Campaign
 from gcs.campaign.faults.campaign_file import read_campaign
-from gcs.campaign.faults.judgement import COLUMNS, NOT_FLOWN, VERDICTS, first_start, stop_time, team_stop
+from gcs.campaign.faults.judgement import COLUMNS, first_start, is_safe, meets, outcome, stop_time, team_stop
 from gcs.campaign.faults.plans import FaultFlights
 from gcs.campaign.faults.rates import interval, rates_of
 from gcs.campaign.faults.report import draw_matrix, report
 from gcs.campaign.process_pool import FlownProcess
+from gcs.record.outcome import Outcome
 
 
 def results(tmp_path, within, outside=0, **figures):
@@ -36,7 +37,7 @@ def test_rates_have_wilson_intervals(tmp_path):
 
 def test_csv_and_parquet_agree(tmp_path):
     made = results(tmp_path, 2, 1)
-    made.append(dataclasses.replace(made[0], clearance_min_m=0.25, contacts=None, outcome=NOT_FLOWN, level=2))
+    made.append(dataclasses.replace(made[0], clearance_min_m=0.25, contacts=None, outcome=Outcome.FAILED, level=2))
     _, [table, parquet, rates, _] = report("a test", made, tmp_path)
     frame = pandas.read_parquet(parquet)
     assert tuple(frame.columns) == COLUMNS and len(frame) == 4
@@ -50,10 +51,36 @@ def test_csv_and_parquet_agree(tmp_path):
 
 def test_report_covers_all_outcomes(tmp_path, pictures):
     [result] = results(tmp_path, 1)
-    made = [dataclasses.replace(result, outcome=o, level=i % 3 + 1, notes="x") for i, o in enumerate(VERDICTS)]
+    made = [dataclasses.replace(result, outcome=o, level=i % 3 + 1, notes="x") for i, o in enumerate(Outcome)]
+    made.append(dataclasses.replace(result, within_limits=False))
     draw_matrix("a test", made, tmp_path)
-    assert set(VERDICTS) <= set(pictures["matrix.png"])
+    shown = {*Outcome, "within limits", "outside limits"} - {Outcome.COMPLETED}
+    assert shown <= set(pictures["matrix.png"])
     report("a test", made, tmp_path)
+
+
+def test_flight_without_a_summary_has_failed():
+    assert outcome(FlownProcess(-9, {}, "no memory", 1.0)) is Outcome.FAILED
+
+
+@pytest.mark.parametrize(
+    ("changes", "safe"),
+    [
+        ({"outcome": "interrupted"}, True),
+        ({"outcome": "aborted"}, True),
+        ({"outcome": "lost"}, False),
+        ({"outcome": "completed", "contacts": 1}, False),
+        ({"outcome": "failed"}, False),  # nothing is known of it
+        # Beside its goal, but set down; and fallen over.
+        ({"outcome": "failed", "landed": True, "end_tilt_deg": 0.3, "touchdown_mps": 0.4, "failures": "arrival"}, True),
+        ({"outcome": "failed", "landed": True, "end_tilt_deg": 80.0, "touchdown_mps": 0.4}, False),
+    ],
+)
+def test_safe_is_what_was_set_down_without_contact(tmp_path, changes, safe):
+    [made] = results(tmp_path, 1)
+    flown = dataclasses.replace(made, **{"within_limits": False, "landed": None, **changes})
+    assert is_safe(flown) == safe
+    assert meets("safe", flown) == safe and not meets("within limits", flown)
 
 
 def test_team_stop_counts_from_first_fault_of_case(tmp_path):

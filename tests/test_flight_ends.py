@@ -62,7 +62,7 @@ def test_ctrl_c_in_flight_lands_and_closes_the_records(tmp_path, number):
     assert code == 130
     assert "flight broken off: interrupted" in errors
     summary = check_records_closed(gcs.folder)
-    assert summary["outcome"] == "aborted"
+    assert (summary["outcome"], summary["reason"]) == ("interrupted", "interrupted")
     assert summary["contacts"] == 0
     assert max(summary["payload_tilt_max_deg"].values()) < 5.0
     check_on_the_ground(gcs.folder)
@@ -90,7 +90,7 @@ def test_killed_simulation_ends_the_flight_with_its_reason(tmp_path):
     assert code == 1
     assert "vehicle-sim was killed by signal 9" in errors
     summary = json.loads((gcs.folder / "summary.json").read_text())
-    assert not summary["completed"]
+    assert summary["outcome"] == "lost" and "vehicle-sim was killed by signal 9" in summary["reason"]
     assert {"HEARTBEAT", "SET_ATTITUDE_TARGET", "LOCAL_POSITION_NED"} <= kinds_in_log(gcs.folder)
 
 

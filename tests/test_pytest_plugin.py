@@ -23,7 +23,11 @@ pytestmark = pytest.mark.slow
 pytest_plugins = ["pytester", "gcs.campaign.pytest_plugin"]
 
 ROOT = Path(__file__).parents[1]
-SUMMARY = {"outcome": "completed", "contacts": 0, "limits": {"position_rmse": [0.02, 0.03, True]}}
+SUMMARY = {
+    "outcome": "completed",
+    "contacts": 0,
+    "limits": {"position_rmse": {"value": 0.02, "limit": 0.03, "held": True}},
+}
 
 
 @pytest.fixture
@@ -59,7 +63,7 @@ def test_failed_test_keeps_its_flight(pytester, hop):
     result = pytester.runpytest_inprocess("-p", "gcs.campaign.pytest_plugin", "--fault-runs", "kept")
     result.assert_outcomes(failed=1)
     result.stdout.fnmatch_lines(
-        ["*flights with faults*", "*seed 2: outside limits (position_rmse*", "  run folder kept/*"]
+        ["*flights with faults*", "*seed 2: completed, outside its limits (position_rmse*", "  run folder kept/*"]
     )
     [replay] = [line.split() for line in result.outlines if line.startswith("  gcs fly ")]
     assert replay[2].startswith("kept/test_flies-") and replay[2].endswith("1-hop-seed2.toml")

@@ -110,25 +110,29 @@ def test_run_of_another_version_is_read_with_the_default_sizes(tmp_path, system)
 
 
 @pytest.mark.parametrize(
-    ("rows", "landed", "completed", "outcome"),
+    ("rows", "landed", "completed", "outcome", "held"),
     [
-        (flight(), True, True, "completed"),
-        (flight(), False, False, "aborted"),  # beyond the telemetry of the ground
-        (flight(speed=1.5), True, False, "failed"),
-        (flight(roll=80.0, floor=-0.58), True, True, "failed"),
+        (flight(), True, True, "completed", True),
+        (flight(), False, False, "aborted", True),  # beyond the telemetry of the ground
+        (flight()[:120], False, False, "lost", False),  # cut off in the air
+        (flight(north=3.4), True, True, "failed", True),  # beside its landing place
+        (flight(speed=1.5), True, False, "failed", False),
+        (flight(roll=80.0, floor=-0.58), True, True, "failed", False),
     ],
 )
-def test_landing_outcome_follows_from_truth(tmp_path, rows, landed, completed, outcome):
+def test_landing_outcome_follows_from_truth(tmp_path, rows, landed, completed, outcome, held):
     system_file(tmp_path)
-    path = tmp_path / "hop.toml"
-    path.write_text(HOP + "\n[limits]\ntouchdown_speed = 0.9\n")
+    path = tmp_path / "aside.toml"
+    there = HOP.replace("[0.0, 0.0, -0.8]", "[3.0, 0.0, -1.9]") + "return_home = false\n"
+    path.write_text(there + "\n[limits]\ntouchdown_speed = 0.9\n")
     run = write_flight(tmp_path / "run", rows)
     failsafes = SimpleNamespace(time=1.0, interrupted=False, alarms=AlarmLog())
     flown = SimpleNamespace(completed=completed, landed=landed, takeoff_time=0.0, reason="", failsafes=failsafes)
     station = SimpleNamespace(flight=flown)
     summary = flight_result(run, read_mission(path), station, 9.0, 1.0).summary
     assert (summary["outcome"], summary["completed"]) == (outcome, outcome == "completed")
-    assert summary["limits"]["touchdown_speed"][2] == (outcome != "failed")
+    assert bool(summary["reason"]) == (outcome != "completed")
+    assert summary["limits"]["touchdown_speed"]["held"] == held
 
 
 def test_stop_times_of_vehicles_are_reported(tmp_path):

@@ -14,7 +14,7 @@ from gcs.errors import UnusableInput
 from gcs.record import figures
 from gcs.record import summary as summaries
 from gcs.record.run_data import read_run
-from gcs.record.run_folder import open_run_folder, write_json, write_manifest
+from gcs.record.run_folder import FORMAT, open_run_folder, write_json, write_manifest
 from gcs.record.summary import within_limits, write_summary
 from gcs.record.summary_table import summary_table
 from gcs.record.tables import ESTIMATE_COLUMNS, REFERENCE_COLUMNS, STEP_COLUMNS, STEP_PART_COLUMNS, TableWriter
@@ -34,6 +34,10 @@ PNG = b"\x89PNG\r\n\x1a\n"
 
 def summarise(folder: Path, **options) -> dict:
     return summaries.summarise(read_run(folder), **options)
+
+
+def entry(value: float | None, limit: float, held: bool) -> dict:
+    return {"value": value, "limit": limit, "held": held}
 
 
 def report(folder: Path) -> list[Path]:
@@ -91,8 +95,10 @@ def run(tmp_path) -> Path:
 def test_summary_agrees_with_values_computed_by_hand(run) -> None:
     summary = summarise(run, **FLOWN, limits={"settle": 2.0})
     assert summary == {
+        "format": FORMAT,
         "completed": True,
         "outcome": "completed",
+        "reason": "",
         "source": "truth",
         "duration_s": 10.0,
         "real_time_factor": 5.5,
@@ -146,7 +152,7 @@ def test_error_counts_from_settle_on_and_within_the_reference_only(tmp_path) -> 
     assert unsettled["position_rmse_m"]["total"] == pytest.approx(expected, abs=1e-6)
     nothing_left = summarise(folder, **FLOWN, limits={"settle": 6.5, "position_rmse": 1.0})
     assert nothing_left["position_rmse_m"] == {"x": None, "y": None, "z": None, "total": None}
-    assert nothing_left["limits"]["position_rmse"] == [None, 1.0, False]
+    assert nothing_left["limits"]["position_rmse"] == entry(None, 1.0, False)
 
 
 def test_summary_lists_violated_limits(run) -> None:
@@ -154,15 +160,15 @@ def test_summary_lists_violated_limits(run) -> None:
     assert summarise(run, **FLOWN, limits=dict.fromkeys(limits))["limits"] == {}
     summary = summarise(run, **FLOWN, limits={"settle": 2.0, **limits})
     assert summary["limits"] == {
-        "position_rmse": [0.05, 0.06, True],
-        "payload_tilt_deg": [3.0, 2.9, False],
-        "clearance": [None, 0.3, True],
-        "uav_separation": [0.75, 0.7, True],
+        "position_rmse": entry(0.05, 0.06, True),
+        "payload_tilt_deg": entry(3.0, 2.9, False),
+        "clearance": entry(None, 0.3, True),
+        "uav_separation": entry(0.75, 0.7, True),
     }
     assert not within_limits(summary)
     assert within_limits(summarise(run, **FLOWN, limits={"settle": 2.0, "position_rmse": 0.06}))
     # A mission with obstacles of which the records know nothing does not hold its clearance.
-    assert summarise(run, **FLOWN, limits=limits, obstacles=True)["limits"]["clearance"] == [None, 0.3, False]
+    assert summarise(run, **FLOWN, limits=limits, obstacles=True)["limits"]["clearance"] == entry(None, 0.3, False)
     with pytest.raises(ValueError, match="limit 'tilt'"):
         summarise(run, **FLOWN, limits={"tilt": 1.0})
     with pytest.raises(ValueError, match="outcome 'fine'"):
@@ -175,7 +181,7 @@ def test_clearance_is_taken_to_the_true_surface(tmp_path) -> None:
     # Last row: the front right UAV stands at (10.5, 0.53, -6.21), its rim 0.3 m ahead; the surface at 13.5.
     summary = summarise(folder, **FLOWN, limits={"clearance": 2.8})
     assert summary["clearance_min_m"] == pytest.approx(13.5 - 10.8, abs=1e-3)
-    assert summary["limits"]["clearance"][2] is False
+    assert summary["limits"]["clearance"]["held"] is False
 
 
 @pytest.mark.parametrize("payload", [{}, {"payload": {"size": [1.0, 1.0, 0.5]}}])
@@ -249,7 +255,7 @@ def test_summary_is_strict_json(run) -> None:
     assert path.name == "summary.json"
     content = json.loads(path.read_text(), parse_constant=pytest.fail)
     assert content["real_time_factor"] is None
-    assert content["limits"] == {"clearance": [None, 0.3, True]}
+    assert content["limits"] == {"clearance": entry(None, 0.3, True)}
 
 
 def printed(summary, folder, pictures=()) -> str:

@@ -33,14 +33,16 @@ from gcs.flight.ground_station import GroundStation, Recorder
 from gcs.flight.team import Team
 from gcs.mavlink.address import Address, ConnectionUrl
 from gcs.mavlink.vehicle_link import VehicleLink
-from gcs.mission.model import Mission
+from gcs.mission.model import Limits, Mission
+from gcs.mission.targets import targets_of
 from gcs.numerics import differences
 from gcs.record.incomplete import Incomplete, read_line
-from gcs.record.landing import is_set_down
+from gcs.record.outcome import Outcome
 from gcs.record.recorder import FlightRecorder
 from gcs.record.run_data import SUMMARY, TRUTH, RunData, read_run
 from gcs.record.run_folder import NewRunFolder, UnwritableFile, write_manifest
 from gcs.record.summary import summarise, within_limits, write_summary
+from gcs.record.verdict import GroundReport, verdict
 from idc_controller.guidance.progress import Guidance
 from idc_controller.paper.printed_filter import PrintedFilter
 from idc_controller.safety.filter_protocol import NoObstacles, SafetyFilter
@@ -53,6 +55,7 @@ class FlightResult:
     records: RunData
     mission: Mission
     reason: str
+    """Why it was not completed; empty: it was."""
     interrupted: bool
     flown: bool
     """True if take-off had begun."""
@@ -164,39 +167,39 @@ def flight_result(
     ``incomplete``: the records that end before.
     """
     flight = station.flight
-    limits = dataclasses.asdict(mission.limits) if mission.limits is not None else None
+    limits = dataclasses.asdict(mission.limits or Limits())
     begun = not math.isnan(flight.takeoff_time)
     duration = last_time - flight.takeoff_time if begun else 0.0
     records = read_run(run_dir)
+    interrupted = flight.failsafes.interrupted
+    ground = GroundReport(begun, flight.completed, flight.landed, interrupted, flight.reason)
+    truth_ends = all(file.name != TRUTH for file in incomplete)
+    targets = targets_of(mission) if flight.completed and truth_ends else None
+    ended = verdict(records, ground, targets, limits["arrival"], landing_on_record=truth_ends)
     summary = summarise(
         records,
-        completed=flight.completed,
-        outcome="completed" if flight.completed else "aborted" if flight.landed or not begun else "failed",
+        completed=ended.outcome is Outcome.COMPLETED,
+        outcome=ended.outcome,
+        reason=ended.reason,
+        arrival=ended.arrival,
         duration_s=duration,
         real_time_factor=duration / wall if wall > 0.0 else None,
         limits=limits,
-        obstacles=bool(mission.obstacles),
+        obstacles=bool(mission.obstacles) or mission.boundary is not None,
     )
     # By the clock of the records, as it may be before take-off.
     summary["broken_off_s"] = None if math.isnan(flight.failsafes.time) else round(flight.failsafes.time, 6)
     summary["alarms"] = len(flight.failsafes.alarms.alarms)
     if incomplete:
         summary["incomplete_records"] = {file.name: file.end for file in incomplete}
-    if any(file.name == TRUTH for file in incomplete):
+    if not truth_ends:
         summary["landing"] = None  # it is not on record
-    # The ground may have lost its link to the vehicles, or be wrong about them: the truth decides.
-    if begun and (landing := summary["landing"]) is not None:
-        down = is_set_down(landing)
-        outcome = "failed" if not down else "completed" if flight.completed else "aborted"
-        summary |= {"outcome": outcome, "completed": outcome == "completed"}
-    if summary["contacts"]:
-        summary |= {"outcome": "collided", "completed": False}
     try:
         write_summary(run_dir, summary)
     except UnwritableFile as error:
         incomplete = (*incomplete, Incomplete(SUMMARY, None, error.cause.strerror or str(error.cause)))
     records = records.with_summary(summary)
-    return FlightResult(records, mission, flight.reason, flight.failsafes.interrupted, begun, incomplete)
+    return FlightResult(records, mission, ended.reason, interrupted, begun, incomplete)
 
 
 def ground_station(

@@ -34,7 +34,9 @@ class FlownProcess:
 
     @property
     def reason(self) -> str:
-        """Reason why the flight was aborted or not flown; else empty."""
+        """Reason why the flight was not completed or not flown; else empty."""
+        if "reason" in self.summary:
+            return str(self.summary["reason"])
         lines = [line for line in self.messages.strip().splitlines() if line.strip()]
         for line in lines:
             if line.startswith(BROKEN_OFF):

@@ -10,6 +10,7 @@ from typing import Any
 
 from gcs.campaign.folder import read_object
 from gcs.campaign.process_pool import FlownProcess
+from gcs.record.run_folder import FORMAT
 
 
 @dataclass(frozen=True)
@@ -31,6 +32,8 @@ class Result:
     run_dir: str = ""
     """Empty where it was discarded."""
     replay: str = ""
+
+    format: int = FORMAT
 
     # From the summary of the flight.
     clearance_min_m: float | None = None
@@ -126,7 +129,8 @@ def read_result(path: Path, columns: Collection[str], optional: Collection[str] 
     if not path.exists():
         return None
     content = read_object(path)
-    if not set(columns) - set(optional) <= content.keys() <= set(columns):
+    is_whole = set(columns) - set(optional) <= content.keys() <= set(columns)
+    if not is_whole or content["format"] != FORMAT:
         return None
     return Result(**content)
 

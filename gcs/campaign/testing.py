@@ -8,7 +8,7 @@ from typing import Any, overload
 
 from gcs.campaign.engine import replay_command
 from gcs.campaign.faults.base_mission import read_base
-from gcs.campaign.faults.judgement import limits_not_held, verdict
+from gcs.campaign.faults.judgement import outcome
 from gcs.campaign.flight_worker import FlightWorker
 from gcs.campaign.folder import plain, write_text
 from gcs.campaign.process_pool import FlownProcess, fly_process
@@ -16,6 +16,8 @@ from gcs.errors import GcsError
 from gcs.faults import KINDS
 from gcs.mission.model import Fault, Limits
 from gcs.mission.read import read_mission
+from gcs.record.outcome import Outcome
+from gcs.record.summary import limits_not_held
 
 AnyFault = Fault | Mapping[str, Any] | Any
 """A :class:`Fault`, the keys of a ``[[fault]]`` table, or the parameters of a kind (``gcs.faults.link.PacketLoss``)."""
@@ -51,15 +53,15 @@ class FlownWithFaults:
     summary: dict[str, Any]
     run_dir: Path
     replay: str
-    outcome: str
-    """One of :data:`gcs.campaign.faults.judgement.VERDICTS`."""
+    outcome: Outcome
+    """How it ended, as ``summary.json`` says."""
     reason: str
-    """Reason of an abort; else empty."""
+    """Why it was not completed; empty: it was."""
 
     @property
     def within_limits(self) -> bool:
         """True if the flight was completed within its limits."""
-        return self.outcome == "within limits"
+        return self.outcome is Outcome.COMPLETED and not self.failures
 
     @property
     def failures(self) -> list[str]:
@@ -67,14 +69,11 @@ class FlownWithFaults:
         return limits_not_held(self.summary)
 
     def __repr__(self) -> str:
-        why = "; ".join(
-            [
-                f"{name} {self.summary['limits'][name][0]} not {self.summary['limits'][name][1]}"
-                for name in self.failures
-            ]
-            + [part for part in [self.reason] if part]
-        )
-        return f"<flight of seed {self.seed}: {self.outcome}{f' ({why})' if why else ''}>"
+        limits = self.summary["limits"]
+        missed = [f"{name} {limits[name]['value']} (limit {limits[name]['limit']})" for name in self.failures]
+        how = f"{self.outcome}, outside its limits" if missed else self.outcome
+        why = "; ".join(part for part in (*missed, self.reason) if part)
+        return f"<flight of seed {self.seed}: {how}{f' ({why})' if why else ''}>"
 
 
 class FaultFlights:
@@ -143,7 +142,7 @@ class FaultFlights:
         if not process.summary:
             self.log.append(f"seed {seed}: not flown\n  {replay}")
             raise GcsError(f"{self._shown(path)}: not flown: {process.reason}")
-        flown = FlownWithFaults(seed, process.summary, run_dir, replay, verdict(process), process.reason)
+        flown = FlownWithFaults(seed, process.summary, run_dir, replay, outcome(process), process.reason)
         self.log.append(f"{flown}\n  run folder {self._shown(run_dir)}\n  {replay}")
         return flown
 

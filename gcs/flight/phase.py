@@ -23,6 +23,5 @@ class Phase(Enum):
 
 
 IN_AIR = frozenset({Phase.CLIMB, Phase.FLY, Phase.HOLD, Phase.LAND})
-CLEAR_OF_GROUND = frozenset({Phase.FLY, Phase.HOLD})
 CONTROLLED = IN_AIR | {Phase.SPOOL_UP, Phase.SPOOL_DOWN}
 """Phases in which the estimator and the controller run."""

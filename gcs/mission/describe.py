@@ -161,6 +161,7 @@ def _limits(limits: Limits | None) -> Iterable[str]:
         ("clearance", limits.clearance, "m"),
         ("separation of the UAVs", limits.uav_separation, "m"),
         ("touchdown speed", limits.touchdown_speed, "m/s"),
+        ("arrival at waypoints and landing", limits.arrival, "m"),
     ):
         if limit is not None:
             yield f"limit: {name} {limit:g} {unit}"

@@ -82,7 +82,10 @@ class Fault:
 @strict
 @dataclass(frozen=True)
 class Limits:
-    """Limits of the flight (m, s, deg, m/s); None: no limit."""
+    """Limits of the flight (m, s, deg, m/s); None: no limit.
+
+    ``arrival`` holds for every flight: what it has not come as near to, waypoints and landing, it has not reached.
+    """
 
     position_rmse: Positive | None = None
     settle: NotNegative = 10.0
@@ -90,6 +93,7 @@ class Limits:
     clearance: NotNegative | None = None
     uav_separation: NotNegative | None = None
     touchdown_speed: Positive | None = None
+    arrival: Positive = 0.3
 
 
 @dataclass(frozen=True)

@@ -134,14 +134,15 @@ def draw_thrust(run: RunData) -> Figure:
 
 def draw_separation(run: RunData) -> Figure:
     """Return the separation of the UAVs, and the clearance to each obstacle, over time."""
-    title = "UAV separation and clearance" if run.obstacles else "UAV separation"
-    figure, axes = _rows(run, title, 2 if run.obstacles else 1, height=6.4 if run.obstacles else 4.2)
+    barriers = run.barriers
+    title = "UAV separation and clearance" if barriers else "UAV separation"
+    figure, axes = _rows(run, title, 2 if barriers else 1, height=6.4 if barriers else 4.2)
     if run.number_of_uavs > 1:
         axes[0].plot(run.time, run.uav_separation(), color=FLOWN, lw=1.4, label="nearest two UAVs")
     axes[0].set_ylabel("between centres (m)")
     _draw_floor(axes[0], _limit(run, "uav_separation"))
-    if run.obstacles:
-        for i, (obstacle, clearance) in enumerate(zip(run.obstacles, run.clearance.T, strict=True)):
+    if barriers:
+        for i, (obstacle, clearance) in enumerate(zip(barriers, run.clearance.T, strict=True)):
             axes[1].plot(run.time, clearance, color=SERIES[i % len(SERIES)], lw=1.4, label=obstacle.name)
         axes[1].set_ylabel("hull to obstacle (m)")
         _draw_floor(axes[1], _limit(run, "clearance"))
@@ -211,4 +212,4 @@ def _flown(run: RunData) -> str:
 
 def _limit(run: RunData, name: str) -> float | None:
     entry = (run.summary.get("limits") or {}).get(name)
-    return float(entry[1]) if entry else None
+    return float(entry["limit"]) if entry else None

@@ -7,7 +7,7 @@ import numpy as np
 
 from gcs.record.clearance_kernels import clearance
 from gcs.record.run_data import RunData
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Mask
 from idc_controller.rotations import rotation_from_quaternion
 
 UPRIGHT_DEG = 15.0
@@ -74,6 +74,24 @@ def is_set_down(landing: Mapping[str, Any]) -> bool:
 def onsets(touching_pairs: Array) -> int:
     """Return how often a pair began to touch; a lasting touch counts once."""
     return int(np.clip(np.diff(touching_pairs, prepend=0.0), 0.0, None).sum())
+
+
+def in_air(run: RunData) -> slice:
+    """Return the rows from lift-off to touch-down; of a payload that never lifts off, those with thrust."""
+    height = _height(run, rotation_from_quaternion(run.payload_quaternion))
+    airborne, touching = np.flatnonzero(height > _AIRBORNE), height <= _TOUCHING
+    if not len(airborne):
+        powered = np.flatnonzero(np.any(run.thrust > 0.0, axis=1))
+        return slice(powered[0], powered[-1] + 1) if len(powered) else slice(0)
+    before, after = np.flatnonzero(touching[: airborne[0]]), np.flatnonzero(touching[airborne[-1] :])
+    begin = before[-1] if len(before) else 0
+    end = airborne[-1] + after[0] + 1 if len(after) else len(run.time)
+    return slice(int(begin), int(end))
+
+
+def is_clear_of_ground(run: RunData, height: float) -> Mask:
+    """Return when the payload is more than ``height`` (m) above ground and pad (T,)."""
+    return np.asarray(_height(run, rotation_from_quaternion(run.payload_quaternion)) > height)
 
 
 def _height(run: RunData, rotation: Array) -> Array:

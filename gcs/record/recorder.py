@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gcs.flight.phase import CLEAR_OF_GROUND
+from gcs.flight.phase import IN_AIR
 from gcs.record.incomplete import IncompleteRecords
 from gcs.record.obstacle_recorder import ObstacleRecorder
 from gcs.record.tables import (
@@ -77,7 +77,7 @@ class FlightRecorder:
         self._estimate.write_numbers(
             [float(estimate.time), *x[0:3], *attitude, *x[3:6], *x[9:12], *estimate.force.tolist()]
         )
-        if flight.phase in CLEAR_OF_GROUND:
+        if flight.phase in IN_AIR:
             self._write_plan(estimate.time, decision)
 
     def _write_plan(self, time: float, decision: Decision) -> None:

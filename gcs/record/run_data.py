@@ -16,6 +16,7 @@ import numpy as np
 from gcs.config.system import SystemConfig
 from gcs.config.tables import PadSettings
 from gcs.errors import UnusableInput
+from gcs.mission.fence import boundary_walls
 from gcs.record.clearance import ObstacleTrack, clearance_over_time
 from gcs.record.obstacle_shapes import read_shape
 from gcs.record.run_folder import MANIFEST
@@ -74,10 +75,12 @@ class RunData:
             return np.empty((0, 3))
         return np.column_stack([self.reference[name] for name in REFERENCE_COLUMNS[1:4]])
 
-    def setting(self, table: str, key: str) -> Any:
-        """Return the value of a key of the system file, by the manifest; where that has none, its default."""
-        value = ((self.manifest.get("system") or {}).get(table) or {}).get(key)
-        return getattr(getattr(SystemConfig(), table), key) if value is None else value
+    def setting(self, *path: str) -> Any:
+        """Return the value at a path of the system file, by the manifest; where that has none, its default."""
+        value, default = self.manifest.get("system"), SystemConfig()
+        for key in path:
+            value, default = value.get(key) if isinstance(value, Mapping) else None, getattr(default, key)
+        return default if value is None else value
 
     @property
     def payload(self) -> PayloadHull:
@@ -96,6 +99,11 @@ class RunData:
             else found
         )
 
+    @property
+    def kept_clearance(self) -> float:
+        """What plans keep from obstacles (m): the margin, and what is allowed for the payload's deviation from them."""
+        return float(self.setting("avoidance", "margin") + self.setting("safety", "planner", "tracking"))
+
     def uav_separation(self) -> Array:
         """Return the smallest distance between the centres of two UAVs (T,) (m)."""
         first, second = np.triu_indices(self.number_of_uavs, k=1)
@@ -109,14 +117,29 @@ class RunData:
         return other
 
     @cached_property
+    def fence(self) -> tuple[ObstacleTrack, ...]:
+        """The edges of the area that must not be left, as walls on its outer side."""
+        boundary = (self.manifest.get("mission") or {}).get("boundary") or ()
+        walls = boundary_walls(tuple((north, east) for north, east in boundary)) if boundary else ()
+        return tuple(
+            ObstacleTrack(f"the fence ({wall.name})", wall.shape, np.tile(wall.position, (len(self.time), 1)))
+            for wall in walls
+        )
+
+    @property
+    def barriers(self) -> tuple[ObstacleTrack, ...]:
+        """All that the formation keeps clear of: the obstacles, then the fence."""
+        return (*self.obstacles, *self.fence)
+
+    @cached_property
     def clearance(self) -> Array:
-        """Distance from the formation to each obstacle (T, number of obstacles) (m), NaN where unknown."""
+        """Distance from the formation to each of the barriers (T, number of them) (m), NaN where unknown."""
         return clearance_over_time(
             self.payload_position,
             self.payload_quaternion,
             self.uav_position,
             self.uav_quaternion,
-            self.obstacles,
+            self.barriers,
             self.payload.vertices,
             self.setting("uav", "disc_radius"),
         )

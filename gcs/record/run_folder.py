@@ -22,6 +22,8 @@ from gcs.errors import UnusableInput
 from gcs.numerics import numerics
 
 MANIFEST = "manifest.json"
+FORMAT = 2
+"""Version of the format of ``manifest.json``, ``summary.json`` and tables of results; before it was written: 1."""
 _DISTRIBUTION = "cooplift"
 
 
@@ -161,6 +163,7 @@ def write_manifest(
     Raises :class:`UnwritableFile`.
     """
     content = {
+        "format": FORMAT,
         "command": list(command),
         "seed": seed,
         "start": start,

@@ -1,4 +1,4 @@
-"""Safety figures of a flight: tracking errors against the bounds in the margins, slacks, detours."""
+"""Safety figures of a flight: what the guarantee assumes, and where a flight went beyond it; detours."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from gcs.record.landing import is_clear_of_ground
 from gcs.record.run_data import RunData, position_error
 from gcs.record.tables import PLAN_COLUMNS, read_table
 from idc_controller.arrays import Array
@@ -19,7 +20,7 @@ def safety_figures(run: RunData) -> dict[str, Any] | None:
     """Return the ``safety`` entry of the summary; None where nothing was planned.
 
     Tracking errors are those of the true state (of the estimate where there is no truth) against the plan in force,
-    away from take-off and landing; UAVs against their positions by the plan's links (m).
+    while the payload is clear of the ground; UAVs against their positions by the plan's links (m).
     """
     path = Path(run.folder) / "plan.csv"
     if not path.exists():
@@ -33,13 +34,14 @@ def safety_figures(run: RunData) -> dict[str, Any] | None:
     k = np.clip(np.searchsorted(time, run.time[inside]) - 1, 0, len(time) - 2)
     steady = time[k + 1] - time[k] < 0.2
     rows = np.flatnonzero(inside)[steady]
+    rows = rows[is_clear_of_ground(run, run.setting("flight", "takeoff_landing", "clear_height"))[rows]]
 
     def planned(axes: str) -> Any:
         return np.column_stack([np.interp(run.time[rows], time, plan[name]) for name in axes.split()])
 
     position, acceleration = planned("x_m y_m z_m"), planned("ax_mps2 ay_mps2 az_mps2")
     payload = np.linalg.norm(run.payload_position[rows] - position, axis=1)
-    uav = None
+    uav = np.empty(0)
     if run.number_of_uavs and len(rows):
         hover = run.uav_position[0] - run.payload_position[0]
         q = np.array([0.0, 0.0, GRAVITY]) - acceleration
@@ -47,18 +49,33 @@ def safety_figures(run: RunData) -> dict[str, Any] | None:
         # From its place in hover a UAV moves with its link's upper end.
         shift = run.setting("team", "link_length") * (np.array([0.0, 0.0, 1.0]) - q)
         expected = position[:, None] + hover + shift[:, None]
-        uav = float(np.linalg.norm(run.uav_position[rows] - expected, axis=2).max())
-    clearance = run.setting("avoidance", "margin") + (_bound(plan["payload_bound_m"]) or 0.0)
+        uav = np.linalg.norm(run.uav_position[rows] - expected, axis=2).max(axis=1)
+    payload_bound, uav_bound = _bound(plan["payload_bound_m"]), _bound(plan["uav_bound_m"])
+    margin = run.setting("avoidance", "margin")
+    exceeded = {
+        "slack": _exceeded(time, plan["slack_m"], margin),
+        "payload_deviation": _exceeded(run.time[rows], payload, payload_bound),
+        "uav_deviation": _exceeded(run.time[rows], uav, uav_bound),
+    }
     return {
         "payload_tracking_max_m": float(payload.max()) if len(rows) else None,
-        "payload_tracking_bound_m": _bound(plan["payload_bound_m"]),
-        "uav_tracking_max_m": uav,
-        "uav_tracking_bound_m": _bound(plan["uav_bound_m"]),
+        "payload_tracking_bound_m": payload_bound,
+        "uav_tracking_max_m": float(uav.max()) if len(uav) else None,
+        "uav_tracking_bound_m": uav_bound,
         "slack_max_m": float(plan["slack_m"].max()),
-        "way_back_max_s": max((after for _, after in return_times(run, clearance)), default=None),
+        "way_back_max_s": max((after for _, after in return_times(run, margin + (payload_bound or 0.0))), default=None),
         "detours": int(plan["detours"].max()),
         "clock_rate_min": float(plan["clock_rate"].min()),
+        "exceeded": {name: entry for name, entry in exceeded.items() if entry is not None},
     }
+
+
+def _exceeded(time: Array, values: Array, limit: float | None) -> dict[str, float] | None:
+    """Return the largest of ``values`` with the ``limit`` (m) that it exceeds, and its time (s); None: none does."""
+    if limit is None or not len(values) or not (values > limit).any():
+        return None
+    k = int(np.argmax(values))
+    return {"value": float(values[k]), "limit": limit, "time_s": float(time[k])}
 
 
 def _bound(values: Any) -> float | None:

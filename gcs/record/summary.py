@@ -6,15 +6,16 @@ from typing import Any
 
 import numpy as np
 
-from gcs.record.landing import landing_figures, onsets
+from gcs.record.arrival import Arrival
+from gcs.record.landing import in_air, landing_figures, onsets
+from gcs.record.outcome import Outcome
 from gcs.record.run_data import SUMMARY, RunData, Table, position_error
-from gcs.record.run_folder import write_json
+from gcs.record.run_folder import FORMAT, write_json
 from gcs.record.safety import safety_figures
 from idc_controller.arrays import Array
 from idc_controller.rotations import euler_from_quaternion
 
-OUTCOMES = ("completed", "aborted", "collided", "failed")
-LIMITS = ("position_rmse", "payload_tilt_deg", "clearance", "uav_separation", "touchdown_speed")
+LIMITS = ("position_rmse", "payload_tilt_deg", "clearance", "uav_separation", "touchdown_speed", "arrival")
 DEFAULT_SETTLE = 10.0  # s
 STEP_PARTS = {
     "telemetry": "telemetry_ms", "estimation": "estimator_ms", "perception": "perception_ms",
@@ -34,26 +35,31 @@ def summarise(
     real_time_factor: float | None,
     limits: Mapping[str, float | None] | None = None,
     obstacles: bool | None = None,
+    reason: str = "",
+    arrival: Arrival | None = None,
 ) -> dict[str, Any]:
     """Return the content of ``summary.json``, from the truth on record or, where there is none, the estimate.
 
-    The caller says how the flight ended. ``limits`` is the mission's table of that name: ``settle`` (s) and
-    any of :data:`LIMITS` (m, deg, m/s), None for no limit. A limit is held when its figure is known and within it, a
-    clearance also when there is no obstacle (``obstacles`` says whether the mission has any; None: as on record).
-    Figures that the records do not contain are None. Raises ``ValueError`` for an unknown outcome or limit.
+    The caller says how the flight ended (an :class:`Outcome`) and why, and where it arrived (None: it did not come to
+    its end). ``limits`` is the mission's table of that name: ``settle`` (s) and any of :data:`LIMITS` (m, deg, m/s),
+    None for no limit. A limit is held when its figure is known and within it, a clearance also when there is nothing to
+    keep clear of (``obstacles`` says whether the mission has any; None: as on record). Figures that the records do not
+    contain are None. Raises ``ValueError`` for an unknown outcome or limit.
     """
-    if outcome not in OUTCOMES:
-        raise ValueError(f"outcome {outcome!r} is none of {OUTCOMES}")
+    if outcome not in list(Outcome):
+        raise ValueError(f"outcome {outcome!r} is none of {', '.join(Outcome)}")
     bounds = {name: float(limit) for name, limit in (limits or {}).items() if limit is not None}
     settle = bounds.pop("settle", DEFAULT_SETTLE)
+    if arrival is None:
+        bounds.pop("arrival", None)
     for name in bounds:
         if name not in LIMITS:
             raise ValueError(f"limit {name!r} is none of {LIMITS}")
     rmse = position_rmse(run, settle)
     tilt = payload_tilt_max(run)
-    clearance = _least(run.clearance) if run.obstacles and run.number_of_uavs else None
+    clearance = _least(run.clearance[in_air(run)]) if run.barriers and run.number_of_uavs else None
     separation = _least(run.uav_separation()) if run.number_of_uavs > 1 else None
-    has_obstacles = bool(run.obstacles) if obstacles is None else obstacles
+    has_barriers = bool(run.barriers) or bool(obstacles)
     landing = landing_figures(run)
     figures = {
         "position_rmse": rmse["total"],
@@ -61,11 +67,14 @@ def summarise(
         "clearance": clearance,
         "uav_separation": separation,
         "touchdown_speed": None if landing is None else landing["speed_mps"],
+        "arrival": None if arrival is None else arrival.largest,
     }
     summary: dict[str, Any] = _rounded(
         {
+            "format": FORMAT,
             "completed": completed,
-            "outcome": outcome,
+            "outcome": str(outcome),
+            "reason": reason,
             "source": run.source,
             "duration_s": duration_s,
             "real_time_factor": real_time_factor,
@@ -80,7 +89,11 @@ def summarise(
             "solver": _solver(run.steps),
             "safety": safety_figures(run),
             "limits": {
-                name: [figures[name], limit, _held(name, figures[name], limit, has_obstacles)]
+                name: {
+                    "value": figures[name],
+                    "limit": limit,
+                    "held": _held(name, figures[name], limit, has_barriers),
+                }
                 for name, limit in bounds.items()
             },
         }
@@ -95,7 +108,12 @@ def write_summary(run_dir: Path | str, summary: Mapping[str, Any]) -> Path:
 
 def within_limits(summary: Mapping[str, Any]) -> bool:
     """Return whether every limit of a summary was held."""
-    return all(held for _, _, held in summary["limits"].values())
+    return not limits_not_held(summary)
+
+
+def limits_not_held(summary: Mapping[str, Any]) -> list[str]:
+    """Return the names of the limits of a summary that were not held."""
+    return [name for name, limit in summary.get("limits", {}).items() if not limit["held"]]
 
 
 def position_rmse(run: RunData, settle: float) -> dict[str, float | None]:
@@ -169,9 +187,9 @@ def _least(values: Array) -> float | None:
     return float(np.min(values)) if values.size else None
 
 
-def _held(name: str, figure: float | None, limit: float, obstacles: bool) -> bool:
+def _held(name: str, figure: float | None, limit: float, barriers: bool) -> bool:
     if figure is None:
-        return name == "clearance" and not obstacles
+        return name == "clearance" and not barriers
     return figure >= limit if name in ("clearance", "uav_separation") else figure <= limit
 
 

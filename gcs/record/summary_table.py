@@ -9,7 +9,10 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-_COLOUR_OF_OUTCOME = {"completed": "green", "aborted": "yellow", "collided": "red", "failed": "red"}
+from gcs.record.outcome import Outcome
+from gcs.record.summary import within_limits
+
+_COLOUR_OF_OUTCOME = {Outcome.COMPLETED: "green", Outcome.INTERRUPTED: "yellow", Outcome.ABORTED: "yellow"}
 
 
 def summary_table(summary: Mapping[str, Any], run_dir: Path | str, pictures: Sequence[Path] = ()) -> RenderableType:
@@ -18,7 +21,6 @@ def summary_table(summary: Mapping[str, Any], run_dir: Path | str, pictures: Seq
     rmse, tilt = summary["position_rmse_m"], summary["payload_tilt_max_deg"]
     steps, solver = summary["step_time_ms"], summary["solver"]
     outcome = summary["outcome"]
-    held = all(limit[2] for limit in limits.values())
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column("figure")
@@ -30,9 +32,8 @@ def summary_table(summary: Mapping[str, Any], run_dir: Path | str, pictures: Seq
         if limit not in limits:
             table.add_row(title, value)
             return
-        _, bound, kept = limits[limit]
-        verdict = Text("held", style="green") if kept else Text("NOT HELD", style="bold red")
-        table.add_row(title, value, f"{sign} {bound:g} {unit}", verdict)
+        verdict = Text("held", style="green") if limits[limit]["held"] else Text("NOT HELD", style="bold red")
+        table.add_row(title, value, f"{sign} {limits[limit]['limit']:g} {unit}", verdict)
 
     row("position error, RMS", _number(rmse["total"], 3, "m"), "position_rmse", "<=", "m")
     if rmse["total"] is not None:
@@ -42,9 +43,11 @@ def summary_table(summary: Mapping[str, Any], run_dir: Path | str, pictures: Seq
     row("payload angle, largest", _number(largest, 1, "deg"), "payload_tilt_deg", "<=", "deg")
     angles = " / ".join(_number(tilt[axis], 1) for axis in ("roll", "pitch", "yaw"))
     row("  roll / pitch / yaw", f"{angles} deg")
-    if summary["clearance_min_m"] is not None or not limits.get("clearance", [0, 0, True])[2]:
-        row("clearance to obstacles", _number(summary["clearance_min_m"], 3, "m"), "clearance", ">=", "m")
+    if summary["clearance_min_m"] is not None or not limits.get("clearance", {"held": True})["held"]:
+        row("clearance to obstacles and fence", _number(summary["clearance_min_m"], 3, "m"), "clearance", ">=", "m")
     row("UAVs apart", _number(summary["uav_separation_min_m"], 3, "m"), "uav_separation", ">=", "m")
+    if "arrival" in limits:
+        row("from waypoints and landing, largest", _number(limits["arrival"]["value"], 3, "m"), "arrival", "<=", "m")
     row("contacts", "-" if summary["contacts"] is None else str(summary["contacts"]))
     step_times = " / ".join(_number(steps[name], 1) for name in ("p50", "p99", "max"))
     row("control step, median / p99 / max", f"{step_times} ms")
@@ -64,12 +67,14 @@ def summary_table(summary: Mapping[str, Any], run_dir: Path | str, pictures: Seq
     if solver["infeasible_steps"]:
         row("steps without a feasible solution", str(solver["infeasible_steps"]))
 
-    title = Text.assemble(("Flight ", "bold"), (outcome, f"bold {_COLOUR_OF_OUTCOME.get(outcome, 'white')}"))
+    title = Text.assemble(("Flight ", "bold"), (outcome, f"bold {_COLOUR_OF_OUTCOME.get(outcome, 'red')}"))
     if limits:
-        verdict = ("within its limits", "green") if held else ("OUTSIDE its limits", "bold red")
+        held = ("within its limits", "green") if within_limits(summary) else ("OUTSIDE its limits", "bold red")
         if "incomplete_records" in summary:
-            verdict = ("limits not judged, the records are incomplete", "yellow")
-        title.append(", ").append(*verdict)
+            held = ("limits not judged, the records are incomplete", "yellow")
+        title.append(", ").append(*held)
+    if exceeded := void_guarantee(safety):
+        title.append(f", but {exceeded}", "bold red")
     title.append(f": {_number(summary['duration_s'], 1, 's')}")
     if summary["real_time_factor"] is not None:
         title.append(f", {_number(summary['real_time_factor'], 1)} times real time")
@@ -80,6 +85,17 @@ def summary_table(summary: Mapping[str, Any], run_dir: Path | str, pictures: Seq
     if pictures:
         shown.append(Text("Pictures  " + "  ".join(path.name for path in pictures)))
     return Group(*shown)
+
+
+def void_guarantee(safety: Mapping[str, Any] | None) -> str:
+    """Return in words why the safety guarantee did not hold all the time; empty: it did, or is not known."""
+    named = {"slack": ("slack", "margin"), "payload_deviation": ("payload off the plan", "bound"),
+             "uav_deviation": ("UAVs off the plan", "bound")}  # fmt: skip
+    parts = [
+        f"{named[name][0]} {entry['value']:.2f} m ({named[name][1]} {entry['limit']:.2f} m) at {entry['time_s']:.1f} s"
+        for name, entry in ((safety or {}).get("exceeded") or {}).items()
+    ]
+    return f"the safety guarantee was void: {', '.join(parts)}" if parts else ""
 
 
 def _number(value: float | None, digits: int, unit: str = "") -> str:

@@ -21,8 +21,9 @@ With --connect it flies a swarm that runs already:
 
 Ctrl-C, SIGTERM and a closed terminal land the vehicles and close the records; a second Ctrl-C or
 SIGTERM ends the ground station, and the vehicles land by their own failsafe.
-Exit status: 0 done and within limits; 1 flown but outside limits, or aborted safely; 2 unusable input or
-option, nothing started; 3 flown, but the records are incomplete; 130 interrupted, vehicles landed.
+Exit status: 0 done (every waypoint and the landing reached) and within limits; 1 flown but outside limits
+or not arrived, or aborted safely; 2 unusable input or option, nothing started; 3 flown, but the records
+are incomplete; 130 interrupted, vehicles landed.
 """
 
 
@@ -99,7 +100,7 @@ def run(arguments: argparse.Namespace) -> int:
             LOG.warning("note: no pictures: %s", error)
     if arguments.json:
         print(json.dumps({"run_dir": str(result.run_dir), **result.summary}, indent=2))
-    else:
+    elif result.flown:
         console.print(summary_table(result.summary, result.run_dir, pictures))
     if mission.faults:
         from gcs.faults.record import fault_notes
@@ -109,7 +110,8 @@ def run(arguments: argparse.Namespace) -> int:
     if mission.faults and options.connect is not None:
         LOG.warning("note: faults come from the simulator: start it with vehicle-sim --mission %s", options.mission)
     if result.reason:
-        LOG.error("%s%s", BROKEN_OFF, result.reason)
+        broken_off = result.summary["broken_off_s"] is not None
+        LOG.error("%s%s", BROKEN_OFF if broken_off else f"flight {result.summary['outcome']}: ", result.reason)
     if result.incomplete:
         LOG.error("%s; the figures are of what there is", in_one_line(result.incomplete))
     return result.exit_code

@@ -11,13 +11,11 @@ from gcs.campaign.result import Result
 from gcs.errors import UnusableInput
 from gcs.faults import KINDS
 from gcs.faults.record import FAULTS_FILE, fault_notes
+from gcs.record.landing import is_set_down
 from gcs.record.modes import stops_after
+from gcs.record.outcome import Outcome
+from gcs.record.summary import limits_not_held
 from gcs.record.tables import ALARMS, read_text_table
-
-WITHIN, OUTSIDE, ABORTED, COLLIDED, FAILED, NOT_FLOWN = VERDICTS = (
-    "within limits", "outside limits", "aborted", "collided", "failed", "not flown",
-)  # fmt: skip
-"""Verdicts on a flight, from good to bad; ``aborted``: set down safely before the mission was done."""
 
 WITHIN_LIMITS, SAFE = REQUIREMENTS = ("within limits", "safe")
 """Conditions of a pass: completed within its limits; or set down safely in any phase, with its limits held."""
@@ -26,7 +24,7 @@ COLUMNS = (
     "number", "name", "fault", "kind", "level", "severity", "mission", "seed", "outcome", "passed", "within_limits",
     "failures", "reason", "exit_code", "clearance_min_m", "tilt_max_deg", "uav_separation_min_m", "contacts", "landed",
     "touchdown_mps", "end_tilt_deg", "position_rmse_m", "duration_s", "stop_s", "team_stop_s", "team_spread_s",
-    "detected_s", "detected_as", "false_alarms", "notes", "wall_s", "run_dir", "replay",
+    "detected_s", "detected_as", "false_alarms", "notes", "wall_s", "run_dir", "replay", "format",
 )  # fmt: skip
 
 
@@ -49,7 +47,7 @@ def judge(count: int, flown: FlownProcess, run_dir: Path) -> dict[str, Any]:
     last, spread = team_stop(run_dir, begin) if stop is not None else (None, None)
     detected = detection(run_dir, begin)
     return {
-        "outcome": verdict(flown),
+        "outcome": outcome(flown).value,
         "within_limits": flown.exit_code == 0,
         "failures": " ".join(limits_not_held(flown.summary)),
         "stop_s": stop,
@@ -62,27 +60,27 @@ def judge(count: int, flown: FlownProcess, run_dir: Path) -> dict[str, Any]:
     }
 
 
-def verdict(flown: FlownProcess) -> str:
-    """Return one of :data:`VERDICTS`."""
-    outcome = str(flown.summary.get("outcome") or NOT_FLOWN)
-    if outcome != "completed":
-        return outcome
-    return WITHIN if flown.exit_code == 0 else OUTSIDE
+def outcome(flown: FlownProcess) -> Outcome:
+    """Return how a flight ended; one without a summary has failed."""
+    return Outcome(flown.summary.get("outcome") or Outcome.FAILED)
 
 
 def is_safe(result: Result) -> bool:
-    """Return whether the payload was set down without contact, in any phase."""
-    return result.outcome in (WITHIN, OUTSIDE, ABORTED) and not result.contacts
+    """Return whether the payload was set down without contact, in any phase and wherever."""
+    if result.contacts or result.outcome in (Outcome.COLLIDED, Outcome.LOST):
+        return False
+    if result.outcome != Outcome.FAILED:
+        return True
+    figures = (result.landed, result.end_tilt_deg, result.touchdown_mps, 0)
+    keys = ("on_ground", "tilt_deg", "speed_mps", "contacts_before")
+    return result.end_tilt_deg is not None and is_set_down(dict(zip(keys, figures, strict=True)))
 
 
 def meets(requirement: str, result: Result) -> bool:
     """Return whether a flight passes by one of :data:`REQUIREMENTS`."""
-    return result.within_limits if requirement == WITHIN_LIMITS else is_safe(result) and not result.failures
-
-
-def limits_not_held(summary: Mapping[str, Any]) -> list[str]:
-    """Return the names of the limits that were not held."""
-    return [name for name, (_, _, held) in summary.get("limits", {}).items() if not held]
+    if requirement == WITHIN_LIMITS:
+        return result.within_limits
+    return is_safe(result) and not set(result.failures.split()) - {"arrival"}
 
 
 def first_start(run_dir: Path, count: int | None = None) -> float | None:

@@ -10,17 +10,20 @@ from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from gcs.campaign.faults.judgement import ABORTED, COLLIDED, COLUMNS, FAILED, NOT_FLOWN, OUTSIDE, VERDICTS, WITHIN
+from gcs.campaign.faults.judgement import COLUMNS
 from gcs.campaign.faults.rates import CONFIDENCE, Rates, rates_of, write_rates
 from gcs.campaign.result import Result
 from gcs.campaign.tables import extreme, text_table, write_csv, write_parquet
 from gcs.record.figures import save_picture
+from gcs.record.outcome import Outcome
 
 MATRIX = "matrix.png"
-COLOURS = {
+WITHIN, OUTSIDE = "within limits", "outside limits"
+"""How the matrix shows a completed flight."""
+COLOURS: dict[str, str] = {
     # Distinct for colour-blind readers, too.
-    WITHIN: "#009E73", OUTSIDE: "#F0E442", ABORTED: "#56B4E9", COLLIDED: "#D55E00", FAILED: "#882255",
-    NOT_FLOWN: "#BBBBBB",
+    WITHIN: "#009E73", OUTSIDE: "#F0E442", Outcome.INTERRUPTED: "#BBBBBB", Outcome.ABORTED: "#56B4E9",
+    Outcome.FAILED: "#882255", Outcome.LOST: "#0072B2", Outcome.COLLIDED: "#D55E00",
 }  # fmt: skip
 _WIDTH, _HEIGHT = 1.7, 0.55  # in, of a cell
 
@@ -79,6 +82,13 @@ def _share(rate: float, low: float, high: float) -> str:
     return f"{100 * rate:.0f} % ({100 * low:.0f} to {100 * high:.0f})"
 
 
+def shown_as(result: Result) -> str:
+    """Return the key of :data:`COLOURS` by which the matrix shows a flight."""
+    if result.outcome != Outcome.COMPLETED:
+        return result.outcome
+    return WITHIN if result.within_limits else OUTSIDE
+
+
 def draw_matrix(name: str, results: Sequence[Result], folder: Path) -> Path:
     """Draw a matrix of faults and severities, with the share of each outcome in each cell."""
     faults = list(dict.fromkeys(result.fault for result in results))
@@ -89,8 +99,8 @@ def draw_matrix(name: str, results: Sequence[Result], folder: Path) -> Path:
     for result in results:
         cells.setdefault((faults.index(result.fault), result.level), []).append(result)
     for (row, level), cell in cells.items():
-        left, counts = level - 0.48, Counter(result.outcome for result in cell)
-        for outcome in VERDICTS:
+        left, counts = level - 0.48, Counter(shown_as(result) for result in cell)
+        for outcome in COLOURS:
             width = 0.96 * counts[outcome] / len(cell)
             ax.add_patch(Rectangle((left, row - 0.45), width, 0.9, facecolor=COLOURS[outcome], linewidth=0.0))
             left += width
@@ -106,7 +116,7 @@ def draw_matrix(name: str, results: Sequence[Result], folder: Path) -> Path:
     ax.spines[:].set_visible(False)
     ax.tick_params(length=0)
     ax.set_title(name, fontsize=10)
-    outcomes = [outcome for outcome in VERDICTS if any(result.outcome == outcome for result in results)]
+    outcomes = [outcome for outcome in COLOURS if any(shown_as(result) == outcome for result in results)]
     figure.legend(
         handles=[Patch(facecolor=COLOURS[outcome], label=outcome) for outcome in outcomes],
         loc="outside lower center", ncols=min(len(outcomes), 3) or 1, frameon=False, fontsize=8,

@@ -18,6 +18,7 @@ from gcs.config import SystemConfig
 from gcs.errors import GcsError
 from gcs.mission.model import Limits
 from gcs.mission.read import read_mission
+from gcs.record.outcome import Outcome
 from gcs.record.run_data import read_run
 
 AT_GOAL = 0.5
@@ -32,7 +33,7 @@ COLUMNS = (
     "number", "name", "kind", "passed", "failures", "outcome", "reason", "exit_code", "clearance_min_m",
     "tilt_max_deg", "uav_separation_min_m", "contacts", "arrival_s", "nominal_arrival_s", "delay_s", "goal_error_m",
     "duration_s", "step_time_p50_ms", "step_time_p99_ms", "infeasible_steps", "real_time_factor", "wall_s", "replay",
-    "position_rmse_m", "slack_max_m", "passage", "gap_m", "gap_named_m",
+    "position_rmse_m", "slack_max_m", "passage", "gap_m", "gap_named_m", "format",
 )  # fmt: skip
 OPTIONAL = ("position_rmse_m", "slack_max_m", "passage", "gap_m", "gap_named_m")
 """Columns that results of earlier versions lack."""
@@ -65,9 +66,9 @@ def judge(
     arrived, goal_error = _arrival(run_dir, schedule) if summary else (None, None)
     figures = summary_columns(flown, run_dir)
     clearance, tilt = figures["clearance_min_m"], figures["tilt_max_deg"]
-    separation, outcome = figures["uav_separation_min_m"], summary.get("outcome", "failed")
+    separation, outcome = figures["uav_separation_min_m"], summary.get("outcome", Outcome.FAILED.value)
     named = named_gap(flown.reason)
-    may_end = passage is not None and passage.verdict != "passable" and outcome == "aborted"
+    may_end = passage is not None and passage.verdict != "passable" and outcome == Outcome.ABORTED
     failures = {
         outcome: not summary.get("completed") and not may_end,
         "gap": may_end and not names_the_gap(passage, flown.reason),

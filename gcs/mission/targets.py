@@ -1,0 +1,55 @@
+"""What a mission asks the payload to reach: its waypoints in order, and the place where it lands."""
+
+import re
+from dataclasses import dataclass
+
+from gcs.mission.model import Mission
+from gcs.mission.route import Circle, FlyTo, HoldForever, Land, Position, Route, TakeOff
+
+_NUMBER = re.compile(r"(?:item|row|point) (\d+(?:\.\d+)?)")
+
+
+@dataclass(frozen=True)
+class Target:
+    """A place (NED, m) that the payload is to reach, by the name and number that the mission file gives it."""
+
+    name: str
+    position: Position
+    is_climb: bool = False
+    """The top of the climb, of which the height counts alone: the payload rises from where it stands."""
+
+
+@dataclass(frozen=True)
+class Targets:
+    """Waypoints in the order of flight, and the landing (north, east) (m); None: where the payload took off."""
+
+    waypoints: tuple[Target, ...] = ()
+    landing: tuple[float, float] | None = None
+
+
+def targets_of(mission: Mission) -> Targets:
+    """Return what a mission asks the payload to reach. Only for one that has come to its end: others may have none."""
+    if not isinstance(mission.reference, Route):
+        top = (0.0, 0.0, -mission.reference.altitude)
+        return Targets((Target("the curve's altitude", top, is_climb=True),))
+    legs = mission.reference.legs()
+    landing = None
+    waypoints = []
+    here: Position = (0.0, 0.0, 0.0)
+    for leg in legs:
+        if isinstance(leg, Land):
+            landing = leg.position[:2]
+            continue
+        here = leg.end(here) if isinstance(leg, Circle) else leg.position
+        waypoints.append(Target(_name(leg), here, isinstance(leg, TakeOff)))
+    return Targets(tuple(waypoints), landing)
+
+
+def _name(leg: TakeOff | FlyTo | Circle | HoldForever) -> str:
+    found = _NUMBER.search(leg.source)
+    if isinstance(leg, TakeOff):
+        return f"take-off altitude ({found[0] if found else leg.source})"
+    if leg.source == "end of mission":
+        return "place above the landing"
+    name = f"waypoint {found[1]}" if found else f"waypoint ({leg.source})"
+    return f"end of the circle about {name}" if isinstance(leg, Circle) else name
