@@ -17,6 +17,7 @@ from gcs.mavlink.vehicle_link import VehicleLink
 from idc_controller.estimation.estimate import Estimate, InnovationRecord
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
 from idc_controller.model.linear import LinearModel
+from idc_controller.safety.filter_protocol import SafetyReport
 
 SYSTEM = SystemConfig()
 MODEL = LinearModel(SYSTEM.parameters())
@@ -38,6 +39,7 @@ class Monitored:
         self.log, self.id_check = AlarmLog(), SystemIdCheck(N)
         self.detectors = detectors(self.flight, DEFAULTS.monitor)
         self.random, self.steps = np.random.default_rng(7), 0
+        self.safety = SafetyReport()
 
     def step(
         self,
@@ -62,7 +64,9 @@ class Monitored:
             now, np.zeros(size), np.array(force), np.zeros((N, 3)), 0.0, np.eye(3), lambda: np.eye(size + 2 * N + 4),
             (innovations,),
         )  # fmt: skip
-        record = SimpleNamespace(estimate=estimate)
+        # On its plan: a level payload at rest below the vehicles.
+        decision = SimpleNamespace(safety=self.safety, flat=SimpleNamespace(payload=np.zeros((5, 1, 3))))
+        record = SimpleNamespace(estimate=estimate, decision=decision)
         step = MonitorStep(
             now, now, self.flight, self.id_check, self.log, record, in_air, NAMES, clear=clear, steady=steady
         )

@@ -15,6 +15,7 @@ from gcs.flight.condition import Check, Moment, Reaction, System, Trigger
 from gcs.flight.detectors import MonitorAlarm
 from gcs.flight.failsafe import Failsafe
 from gcs.flight.failsafe_state import FailsafeState
+from gcs.flight.guarantee import GuaranteeAlarm
 from gcs.flight.listing import listing
 from gcs.flight.phase import Phase
 from gcs.flight.plan_monitor import PlanMonitor
@@ -55,7 +56,7 @@ def test_page_is_made_from_the_tables():
 
 
 def test_codes_are_unique():
-    codes = [row.code for row in (*Failsafe, *MonitorAlarm)]
+    codes = [row.code for row in (*Failsafe, *MonitorAlarm, *GuaranteeAlarm)]
     assert len(codes) == len(set(codes))
     assert all(row.condition is not None for row in Failsafe if row.check is not Check.EVENT)
 

@@ -23,7 +23,8 @@ class Severity(IntEnum):
 class AlarmCode(Enum):
     """Base of the enums of alarms: each member has a severity, what to do about it, and what it means.
 
-    Members are declared where the alarm is detected: :mod:`gcs.flight.detectors`, :mod:`gcs.flight.failsafe`.
+    Members are declared where the alarm is detected: :mod:`gcs.flight.detectors`, :mod:`gcs.flight.guarantee`,
+    :mod:`gcs.flight.failsafe`.
     """
 
     def __init__(self, severity: Severity, action: str, meaning: str) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 from gcs.config.flight_settings import MonitorSettings
 from gcs.flight.alarms import Severity
 from gcs.flight.flight import Flight
+from gcs.flight.guarantee import Guarantee
 from gcs.flight.monitor_step import Detector, MonitorStep, Scope, ScopedAlarm
 from gcs.flight.sliding_window import EventCounter, SlidingRange
 from idc_controller.estimation.health.chi_squared import upper_quantile
@@ -282,6 +283,7 @@ def detectors(flight: Flight, settings: MonitorSettings) -> tuple[Detector, ...]
         _ModelMismatch(settings, innovations),
         _MessageEvents(settings, number_of_uavs),
         _obstacles,
+        Guarantee(flight),
     )
 
 

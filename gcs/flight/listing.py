@@ -6,6 +6,7 @@ from gcs.config.flight_settings import DEFAULTS, FlightSettings
 from gcs.flight.condition import Reaction
 from gcs.flight.detectors import MonitorAlarm
 from gcs.flight.failsafe import Failsafe
+from gcs.flight.guarantee import GuaranteeAlarm
 
 
 def listing(settings: FlightSettings = DEFAULTS) -> str:
@@ -19,7 +20,7 @@ def listing(settings: FlightSettings = DEFAULTS) -> str:
     alarms = "\n".join(
         f"| `{row.code}` | {row.meaning.format(**asdict(settings.monitor))} | {row.scope.value} "
         f"| {row.severity.name.lower()} | {row.action} |"
-        for row in MonitorAlarm
+        for row in (*MonitorAlarm, *GuaranteeAlarm)
     )
     return f"""# Failsafes and alarms
 
@@ -42,8 +43,9 @@ one. Before arming every reaction but `END_CONTROL` is `REFUSE`, and until the c
 
 ## Alarms
 
-What the detectors in `gcs/flight/detectors.py` find changes nothing by itself. With the failsafes they are the codes of
-`alarms.csv` in the run folder; severities are those of MAV_SEVERITY. "Clear of the ground" is 0.3 m above it.
+What the detectors in `gcs/flight/detectors.py` and `guarantee.py` find changes nothing by itself. With the failsafes
+they are the codes of `alarms.csv` in the run folder; severities are those of MAV_SEVERITY. "Clear of the ground" is
+0.3 m above it.
 
 | code | meaning | evaluated | severity | what to do |
 |---|---|---|---|---|

@@ -67,14 +67,16 @@ def arrival(run: RunData, targets: Targets, tolerance: float) -> Arrival:
 def closest_in_order(path: Array, targets: Sequence[Target], tolerance: float) -> tuple[Indices, Array]:
     """Return the rows (n,) at which ``path`` (T, 3) is closest to each target, in their order, and how close (n,) (m).
 
-    Distances are those to the straight lines between rows. The first passage in order counts where all targets are
-    passed within ``tolerance``; otherwise the passages in order whose distances have the least sum.
+    Distances are those to the straight lines between rows. Where all targets are passed within ``tolerance`` in their
+    order, each counts between its first such passage and its last; otherwise the passages in order whose distances have
+    the least sum.
     """
-    if (passed := _passages(path, targets, tolerance)) is not None:
-        ends = [*(passed[1:] + 1).tolist(), len(path)][: len(passed)]
+    if (first := _passages(path, targets, tolerance)) is not None:
+        back = _passages(path[::-1], targets[::-1], tolerance)
+        last = max(len(path) - 2, 0) - (first[:0] if back is None else back[::-1])
         rows, distances = [], []
-        for target, begin, end in zip(targets, passed.tolist(), ends, strict=True):
-            away = _distances(path[begin : end + 1], target)
+        for target, begin, end in zip(targets, first.tolist(), last.tolist(), strict=True):
+            away = _distances(path[begin : end + 2], target)
             rows.append(begin + int(np.argmin(away)))
             distances.append(float(away.min()))
         return np.array(rows, dtype=np.int64), np.array(distances)

@@ -1,0 +1,63 @@
+"""Alarms of the safety guarantee: the plan that is flown, and what flies it, against what the margins allow for."""
+
+import numpy as np
+
+from gcs.flight.alarms import Severity
+from gcs.flight.control_loop import StepRecord
+from gcs.flight.flight import Flight
+from gcs.flight.monitor_step import MonitorStep, Scope, ScopedAlarm
+from idc_controller.arrays import Array
+
+
+class GuaranteeAlarm(ScopedAlarm):
+    """Alarms of :class:`Guarantee`. They compare the estimate with bounds: their false-alarm rate is the estimate's."""
+
+    # fmt: off
+    SAFETY_GUARANTEE_VOID = (Scope.IN_AIR, Severity.WARNING, "check the clearance; fly slower",
+        "the plan that is flown misses the barrier to an obstacle by more than the margin (`avoidance.margin`)")
+    PLAN_DEVIATION_EXCEEDED = (Scope.CLEAR_OF_GROUND, Severity.WARNING, "check the clearance; check for wind",
+        "payload or a UAV is farther from the plan, by the estimate, than the margins allow for "
+        "(`safety.planner.tracking`, `uav_tracking`)")
+    # fmt: on
+
+
+class Guarantee:
+    """The detector of both."""
+
+    def __init__(self, flight: Flight) -> None:
+        self._margin = flight.mission.system.avoidance.margin
+        self._parameters = flight.mission.system.parameters()
+        self._vehicles = flight.control.estimator.measurement_model.vehicles
+
+    def __call__(self, step: MonitorStep) -> None:
+        """Raise the alarms of one control step."""
+        if step.record is None or not step.in_air:
+            return
+        safety = step.record.decision.safety
+        if safety.slack > self._margin:
+            text = f"slack {safety.slack:.2f} m (margin {self._margin:.2f} m)"
+            step.raise_alarm(safety.nearest or "team", GuaranteeAlarm.SAFETY_GUARANTEE_VOID, text)
+        if safety.payload_bound is None or safety.uav_bound is None:
+            return
+        payload, uavs = self.deviations(step.record)
+        if payload > safety.payload_bound:
+            text = f"{payload:.2f} m off the plan (bound {safety.payload_bound:.2f} m)"
+            step.raise_alarm("payload", GuaranteeAlarm.PLAN_DEVIATION_EXCEEDED, text)
+        for i in np.flatnonzero(uavs > safety.uav_bound).tolist():
+            text = f"{uavs[i]:.2f} m off the plan (bound {safety.uav_bound:.2f} m)"
+            step.raise_alarm(step.name(i), GuaranteeAlarm.PLAN_DEVIATION_EXCEEDED, text)
+
+    def deviations(self, record: StepRecord) -> tuple[float, Array]:
+        """Return how far payload and UAVs (N,) (m) are from the plan, by the estimate.
+
+        The plan is that of the safety filter: a level payload, links along the thrust that its acceleration takes.
+        """
+        p, estimate = self._parameters, record.estimate
+        position, _, acceleration = record.decision.flat.payload[:3, 0]
+        link = np.array([0.0, 0.0, p.g]) - acceleration
+        expected = position + p.p - np.outer(p.l, link / np.linalg.norm(link))
+        found = self._vehicles(estimate.time, estimate.x).values[:, :3]
+        return (
+            float(np.linalg.norm(estimate.x[:3] - position)),
+            np.asarray(np.linalg.norm(found - expected, axis=1)),
+        )
