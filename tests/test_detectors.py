@@ -1,9 +1,12 @@
 """Detectors of the flight monitor: alarms raised of the innovations, of the estimator's health and of the links."""
 
+import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from clock_scene import TimedLink, constant, random_latency
 
 from gcs.config import SystemConfig
 from gcs.config.flight_settings import DEFAULTS
@@ -12,6 +15,7 @@ from gcs.flight.alarms import AlarmLog
 from gcs.flight.detectors import LinkTiming, MonitorAlarm, detectors
 from gcs.flight.monitor_step import MonitorStep
 from gcs.mavlink import px4
+from gcs.mavlink.clock import RemoteClock
 from gcs.mavlink.id_check import SystemIdCheck
 from gcs.mavlink.vehicle_link import VehicleLink
 from idc_controller.estimation.estimate import Estimate, InnovationRecord
@@ -168,44 +172,61 @@ LATENCY, JITTER = DEFAULTS.monitor.latency_periods * PERIOD, DEFAULTS.monitor.ji
 CLOCK = DEFAULTS.monitor.clock_error
 
 
-def timing_alarms(*clocks, spacing=1.0, in_air=True):
-    """Alarms of the second of two links, whose latency, jitter and offset (s) are ``clocks`` in turn."""
-    log, good = AlarmLog(), SimpleNamespace(delay=0.0, spread=0.0, offset=-3.0)
-    detector = LinkTiming(DEFAULTS.monitor, PERIOD, 2)
-    for k, (delay, spread, offset) in enumerate(clocks):
-        links = [SimpleNamespace(clock=c) for c in (good, SimpleNamespace(delay=delay, spread=spread, offset=offset))]
-        flight = SimpleNamespace(system=SimpleNamespace(team=SimpleNamespace(links=links)))
-        now = 100.0 + spacing * k
-        detector(MonitorStep(now, now, flight, None, log, None, in_air, NAMES, clear=in_air, steady=True))
-    assert {alarm.source for alarm in log.alarms} <= {"vehicle 2"}
-    return [(alarm.code, alarm.text) for alarm in log.alarms]
+def timing_alarms(out=0.0, back=0.0, step=0.0, in_air=True, until=12.0):
+    """Alarms, with the first text of each, of a link of constant latencies (s); the clock steps by ``step`` at 10 s."""
+    timed = TimedLink(lambda t: 7.0 + t + (step if t >= 10.0 else 0.0), constant(out), constant(back))
+    timed.run(until, in_air_from=0.0 if in_air else math.inf)
+    return {alarm.code: alarm.text for alarm in reversed(timed.log.alarms)}
 
 
-def test_latency_and_jitter_of_a_link_beyond_their_limits_raise_an_alarm():
-    latency = (MonitorAlarm.LINK_LATENCY, "link latency is 30 ms (limit 25 ms)")
-    jitter = (MonitorAlarm.LINK_JITTER, "link latency varies by 20 ms (limit 12.5 ms)")
-    assert timing_alarms((0.99 * LATENCY, 0.99 * JITTER, 5.0)) == []
-    assert timing_alarms((0.030, 0.0, 5.0)) == [latency]
-    assert timing_alarms((0.0, 0.020, 5.0)) == [jitter]
-    assert timing_alarms((0.030, 0.020, 5.0)) == [latency]  # which explains the jitter
-    assert timing_alarms((0.030, 0.0, 5.0), in_air=False) == []
-    assert [code for code, _ in timing_alarms((1.01 * LATENCY, 0.0, 5.0))] == [MonitorAlarm.LINK_LATENCY]
-    assert [code for code, _ in timing_alarms((0.0, 1.01 * JITTER, 5.0))] == [MonitorAlarm.LINK_JITTER]
+def test_latency_of_a_link_beyond_its_limit_raises_an_alarm():
+    expected = {MonitorAlarm.LINK_LATENCY: "link latency is 30 ms (limit 25 ms)"}
+    assert timing_alarms(0.03, 0.03) == timing_alarms(0.06, 0.0) == expected
+    assert timing_alarms(1.01 * LATENCY, 1.01 * LATENCY).keys() == expected.keys()
+    assert timing_alarms(0.99 * LATENCY, 0.99 * LATENCY) == timing_alarms(0.03, 0.03, in_air=False) == {}
 
 
-def test_clock_that_moves_beyond_its_limit_within_the_window_raises_an_alarm():
-    window = DEFAULTS.monitor.clock_window
-    moved = [(MonitorAlarm.CLOCK_ERROR, f"clock moved by 20 ms in {window:g} s")]
-    for sign in (1.0, -1.0):
-        assert timing_alarms((0.0, 0.0, 7.0), (0.0, 0.0, 7.0 + 0.99 * sign * CLOCK)) == []
-        assert timing_alarms((0.0, 0.0, 7.0), (0.0, 0.0, 7.0 + sign * 0.020)) == moved
-    apart = [(0.0, 0.0, 7.0), (0.0, 0.0, 7.0), (0.0, 0.0, 7.020)]
-    assert timing_alarms(*apart, spacing=0.99 * window) == moved
-    # A slow drift is none.
-    drift = [(0.0, 0.0, 7.0 + 0.006 * k) for k in range(5)]
-    assert timing_alarms(*drift, spacing=0.9 * window) == []
-    # A link whose latency varies tells no time.
-    assert [code for code, _ in timing_alarms((0.0, 0.02, 7.0), (0.0, 0.02, 7.5))] == [MonitorAlarm.LINK_JITTER]
+@pytest.mark.parametrize("latency", [0.0, 0.06])
+@pytest.mark.parametrize("spread", [0.0, 0.06])
+@pytest.mark.parametrize("step", [0.0, 0.5])
+def test_alarms_of_latency_jitter_and_clock_do_not_hide_each_other(latency, spread, step):
+    timed = TimedLink(
+        lambda t: 7.0 + t + (step if t >= 10.0 else 0.0),
+        random_latency(1, spread, latency), random_latency(2, spread, latency),
+    )  # fmt: skip
+    raised = {code for code, _ in timed.run(14.0)}
+    assert (MonitorAlarm.LINK_LATENCY in raised) == (latency + 0.5 * spread > LATENCY)
+    assert (MonitorAlarm.LINK_JITTER in raised) == (spread > 0.0)
+    assert (MonitorAlarm.CLOCK_ERROR in raised) == (step > 0.0)
+
+
+def test_jitter_of_a_link_beyond_its_limit_raises_an_alarm():
+    clock, good = RemoteClock(), RemoteClock()
+    for k in range(10):
+        clock.add_answer(clock.request(0.1 * k), 0.1 * k + (0.041 if k % 2 else 0.001))
+        good.add_answer(good.request(0.1 * k), 0.1 * k + (0.025 if k % 2 else 0.001))
+    log, detector = AlarmLog(), LinkTiming(DEFAULTS.monitor, PERIOD, 2)
+    links = [SimpleNamespace(clock=good), SimpleNamespace(clock=clock)]
+    flight = SimpleNamespace(system=SimpleNamespace(team=SimpleNamespace(links=links)))
+    detector(MonitorStep(2.0, 2.0, flight, None, log, None, True, NAMES, clear=True, steady=True))
+    expected = ("vehicle 2", MonitorAlarm.LINK_JITTER, "link latency varies by 20 ms (limit 12.5 ms)")
+    assert [(alarm.source, alarm.code, alarm.text) for alarm in log.alarms] == [expected]
+
+
+def test_clock_that_moves_beyond_its_limit_raises_an_alarm_in_the_air():
+    assert timing_alarms(step=0.02) == {MonitorAlarm.CLOCK_ERROR: "clock moved ahead by 20 ms or more"}
+    assert timing_alarms(step=-0.02) == {MonitorAlarm.CLOCK_ERROR: "clock was set back by 20 ms or more"}
+    for step in (0.9 * CLOCK, -0.9 * CLOCK):
+        assert timing_alarms(step=step) == {}
+    assert timing_alarms(step=0.02, in_air=False) == {}
+
+
+def test_movement_of_a_clock_is_reported_for_its_window():
+    timed = TimedLink(lambda t: 7.0 + t + (0.5 if t >= 10.0 else 0.0))
+    timed.log = AlarmLog(settings=replace(DEFAULTS.monitor, hold_time=-math.inf))  # every step that raises it counts
+    times = [time for _, time in timed.run(20.0)]
+    assert times[0] == pytest.approx(10.0, abs=0.06)
+    assert times[-1] == pytest.approx(10.0 + DEFAULTS.monitor.clock_window, abs=0.06)
 
 
 def test_telemetry_of_a_vehicle_that_paused_between_two_steps_raises_an_alarm_in_the_air():

@@ -61,8 +61,14 @@ class MonitorSettings(SettingsTable):
     setpoint_window: float = setting(5.0, "s", "the same for set-points: after the first loss copies are sent", gt=0.0)
     latency_periods: float = setting(0.5, "", "one-way link latency that is an alarm, in control periods", gt=0.0)
     jitter_periods: float = setting(0.25, "", "its variation that is an alarm, in control periods", gt=0.0)
-    clock_error: float = setting(0.01, "s", "change of a clock offset in its window: 20 times a bad quartz", gt=0.0)
-    clock_window: float = setting(5.0, "s", "in which the clock offsets are compared", gt=0.0)
+    clock_error: float = setting(
+        0.01, "s", "movement of a clock in its window that no latency explains: 20 times a bad quartz", gt=0.0
+    )
+    clock_window: float = setting(5.0, "s", "in which the bounds of a clock's offset are compared", gt=0.0)
+    clock_segment: float = setting(1.0, "s", "of TIMESYNC exchanges that are compared with an earlier one", gt=0.0)
+    clock_exchanges: int = setting(
+        5, "", "in both segments at least: random latencies order them by chance once in C(10, 5) squared", ge=1
+    )
     manoeuvre_tilt: float = setting(
         0.1, "rad", "change of tilt set-points in one step, beyond the attitude loop's linear model", gt=0.0
     )

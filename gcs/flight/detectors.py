@@ -9,10 +9,12 @@ import numpy as np
 
 from gcs.config.flight_settings import MonitorSettings
 from gcs.flight.alarms import Severity
+from gcs.flight.clock_movement import ClockMovement
 from gcs.flight.flight import Flight
 from gcs.flight.guarantee import Guarantee
 from gcs.flight.monitor_step import Detector, MonitorStep, Scope, ScopedAlarm
-from gcs.flight.sliding_window import EventCounter, SlidingRange
+from gcs.flight.sliding_window import EventCounter
+from gcs.mavlink.clock import RemoteClock
 from idc_controller.estimation.health.chi_squared import upper_quantile
 from idc_controller.estimation.health.innovation_monitor import Finding, InnovationMonitor
 from idc_controller.estimation.health.innovation_monitor_kernels import normalised_square
@@ -37,7 +39,9 @@ class MonitorAlarm(ScopedAlarm):
     LINK_JITTER = (Scope.IN_AIR, Severity.WARNING, "check the MAVLink link for congestion",
         "their latency varies by more than {jitter_periods} control periods")
     CLOCK_ERROR = (Scope.IN_AIR, Severity.WARNING, "check its clock",
-        "a vehicle's clock has moved by more than {clock_error} s within {clock_window:g} s")
+        "a vehicle's clock has moved by more than {clock_error} s within {clock_window:g} s, and no latency explains "
+        "it: stamps step back, or datagrams seem to arrive before they are sent, or both bounds of the offset by the "
+        "`TIMESYNC` exchanges of {clock_segment:g} s are displaced in one direction")
     MESSAGES_LOST = (Scope.IN_AIR, Severity.WARNING, "check the MAVLink link",
         "sequence numbers are missing, {event_count} times in {event_window:g} s")
     MESSAGES_REORDERED = (Scope.IN_AIR, Severity.WARNING, "check the MAVLink link",
@@ -106,29 +110,38 @@ class _TelemetryTimeout:
 
 
 class LinkTiming:
-    """Latency, jitter and clock of each vehicle's link."""
+    """Latency, jitter and clock of each vehicle's link, each by a test of its own."""
 
     def __init__(self, settings: MonitorSettings, control_period: float, number_of_uavs: int) -> None:
         self._settings = settings
         self._latency = settings.latency_periods * control_period
         self._jitter = settings.jitter_periods * control_period
-        self._offsets = [SlidingRange(settings.clock_window) for _ in range(number_of_uavs)]
+        self._movements = [ClockMovement(settings) for _ in range(number_of_uavs)]
+        self._set_back = [0.0] * number_of_uavs
 
     def __call__(self, step: MonitorStep) -> None:
-        """Raise the alarms of one control step."""
-        s = self._settings
-        for link, name, offsets in zip(step.links, step.names, self._offsets, strict=False):
-            clock = link.clock
-            moved, delay, spread = offsets.add(step.now, clock.offset), clock.delay, clock.spread
+        """Raise the alarms of one control step; call it before take-off as well, so that nothing waits for it."""
+        for i, (link, name) in enumerate(zip(step.links, step.names, strict=False)):
+            delay, spread = link.clock.delay, link.clock.spread
             if delay > self._latency:
                 text = f"link latency is {delay * 1e3:.0f} ms (limit {self._latency * 1e3:.0f} ms)"
                 step.raise_alarm(name, MonitorAlarm.LINK_LATENCY, text)
-            elif spread > self._jitter:
+            if spread > self._jitter:
                 text = f"link latency varies by {spread * 1e3:.0f} ms (limit {self._jitter * 1e3:.1f} ms)"
                 step.raise_alarm(name, MonitorAlarm.LINK_JITTER, text)
-            elif moved > s.clock_error:
-                text = f"clock moved by {moved * 1e3:.0f} ms in {s.clock_window:g} s"
+            moved = self._moved(i, link.clock, step.now)
+            if abs(moved) > self._settings.clock_error:
+                text = f"clock {'moved ahead' if moved > 0.0 else 'was set back'} by {abs(moved) * 1e3:.0f} ms or more"
                 step.raise_alarm(name, MonitorAlarm.CLOCK_ERROR, text)
+
+    def _moved(self, i: int, clock: RemoteClock, now: float) -> float:
+        """Return by how much (s) the clock of vehicle ``i`` has moved for certain, the most that a test says."""
+        movement = self._movements[i]
+        movement.add(clock.bounds.take())
+        # A stamp that is earlier than one sent before.
+        set_back, self._set_back[i] = clock.set_back - self._set_back[i], clock.set_back
+        certain = [-set_back] if clock.bounds.known else []
+        return max([movement.contradiction(now), movement.displacement(now), *certain], key=abs)
 
 
 class _MessageEvents:

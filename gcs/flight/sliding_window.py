@@ -1,5 +1,6 @@
-"""Sliding windows over the last seconds: counts of events, range of a quantity."""
+"""Sliding windows over the last seconds: counts of events, the greatest value of a quantity."""
 
+import math
 from collections import defaultdict, deque
 from collections.abc import Hashable
 from typing import Generic, TypeVar
@@ -30,24 +31,23 @@ class EventCounter(Generic[Key]):
         return found
 
 
-class SlidingRange:
-    """Range of a quantity over the last seconds; its times must never step back."""
+class SlidingMaximum:
+    """Greatest value of the last seconds; times must never step back."""
 
     def __init__(self, window: float) -> None:
         """``window``: its length (s)."""
         self._window = window
-        # Values that a later one has not exceeded, and not undercut: the first is the greatest, and the least.
         self._falling: deque[tuple[float, float]] = deque()
-        self._rising: deque[tuple[float, float]] = deque()
+        """Values that no later one has reached: the first is the greatest."""
 
-    def add(self, time: float, value: float) -> float:
-        """Add the value at ``time`` (s); return the greatest value of the window less the least."""
+    def add(self, time: float, value: float) -> None:
+        """Add a value at ``time`` (s)."""
         while self._falling and self._falling[-1][1] <= value:
             self._falling.pop()
-        while self._rising and self._rising[-1][1] >= value:
-            self._rising.pop()
-        for extremes in (self._falling, self._rising):
-            extremes.append((time, value))
-            while time - extremes[0][0] > self._window:
-                extremes.popleft()
-        return self._falling[0][1] - self._rising[0][1]
+        self._falling.append((time, value))
+
+    def at(self, time: float) -> tuple[float, float]:
+        """Return the time (s) and the value of the greatest in the window before ``time`` (s); of none -inf."""
+        while self._falling and time - self._falling[0][0] > self._window:
+            self._falling.popleft()
+        return self._falling[0] if self._falling else (-math.inf, -math.inf)

@@ -163,7 +163,7 @@ class TelemetryRouter:
             now_stamp = scan_stamp(received) if message_id == SCAN_END else received.time_boot_ms
             if now_stamp != stamp:
                 stamp = now_stamp
-                time = whole_ms(stamp * 1e-3 - offset + team_offset)
+                time = whole_ms(link.clock.bounds.unwrapped(stamp * 1e-3) - offset + team_offset)
             if message_id == _SETPOINT:
                 # Its stamp is that of the moment at which it began to act.
                 until = min(max(time, latest), self._clock.time(now))

@@ -3,9 +3,11 @@
 import math
 from bisect import bisect_right
 from collections import deque
+from operator import itemgetter
 from statistics import median
 from typing import NamedTuple
 
+from gcs.mavlink.clock_bounds import ClockBounds
 from gcs.mavlink.settings import ClockSettings
 
 
@@ -40,15 +42,17 @@ class RemoteClock:
         self.delay = 0.0
         """Link latency (s): half of the median round trip."""
         self._requests: deque[int] = deque(maxlen=settings.open_requests)
-        self._round_trips: list[float] = []
-        self._arrivals: list[float] = []
+        self._round_trips: list[tuple[float, float]] = []
+        """Arrival and round trip of the last answers."""
         self._trips = _RoundTrips()
+        self.bounds = ClockBounds(settings.bounds, settings.reboot)
 
     def add_stamp(self, boot_time: float, arrival: float, in_order: bool = False) -> None:
         """Take the stamp ``boot_time`` (s, vehicle) of telemetry that arrived at ``arrival`` (s, ground).
 
         ``in_order``: it was sent after all that came before.
         """
+        boot_time = self.bounds.unwrapped(boot_time)
         lead, before = boot_time - arrival, self._lead
         if in_order and boot_time < self._newest - self._settings.set_back:
             self.set_back += self._lead - lead
@@ -66,26 +70,31 @@ class RemoteClock:
         self.lag = self._lead - lead
         if abs(self._lead - before) > self._settings.jump:
             self.jumped_at = arrival
+        self.bounds.add_stamp(boot_time, arrival)
 
     def request(self, now: float) -> int:
         """Return ``ts1`` (ns) of a TIMESYNC request that goes out at ``now`` (s, ground)."""
         self._requests.append(round(now * 1e9))
         return self._requests[-1]
 
-    def add_answer(self, ts1: int, arrival: float) -> None:
+    def add_answer(self, ts1: int, arrival: float, tc1: int | None = None) -> None:
         """Take the TIMESYNC answer to ``ts1`` (ns) that came at ``arrival`` (s, ground).
 
+        ``tc1``: what the vehicle's clock read (ns); None: of no interest.
         Counted once, and only if it is of a :meth:`request`: others may send some from the ground's address, too.
         """
         if ts1 in self._requests:
             self._requests.remove(ts1)
-            self._round_trips.append(max(arrival - ts1 * 1e-9, 0.0))
-            self._arrivals.append(arrival)
-            del self._round_trips[: -self._settings.round_trips], self._arrivals[: -self._settings.round_trips]
-            trips, recent = sorted(self._round_trips), self._round_trips[-self._settings.recent_round_trips :]
+            sent = ts1 * 1e-9
+            self._round_trips.append((arrival, max(arrival - sent, 0.0)))
+            del self._round_trips[: -self._settings.round_trips]
+            newest = [trip for _, trip in self._round_trips]
+            trips, recent = sorted(newest), newest[-self._settings.recent_round_trips :]
             spread = trips[3 * (len(trips) - 1) // 4] - trips[0]
             self._trips = _RoundTrips(trips[0], spread, max(recent))
             self.delay = median(trips) / 2.0
+            if tc1 is not None:
+                self.bounds.add_answer(tc1 * 1e-9, sent, arrival, self._lead)
 
     @property
     def known(self) -> bool:
@@ -113,5 +122,5 @@ class RemoteClock:
         Shows a growing latency sooner than :attr:`delay`. After an interruption all answers come simultaneously, the
         last of them soon after its request.
         """
-        before = bisect_right(self._arrivals, now - duration)
-        return min(self._round_trips[before - 1 :]) / 2.0 if before else 0.0
+        before = bisect_right(self._round_trips, now - duration, key=itemgetter(0))
+        return min(trip for _, trip in self._round_trips[before - 1 :]) / 2.0 if before else 0.0

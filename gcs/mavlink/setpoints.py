@@ -9,6 +9,7 @@ import pymavlink.dialects.v20.ardupilotmega as mavlink
 
 from gcs.mavlink import px4
 from gcs.mavlink.clock import RemoteClock
+from gcs.mavlink.clock_bounds import STAMP_WRAP
 from gcs.mavlink.layout import LAYOUTS, Packed
 from gcs.mavlink.settings import LinkSettings
 from idc_controller.estimation.setpoint_history import Confirmation
@@ -30,7 +31,7 @@ def attitude_target(
     system_id: int, boot_time: float, direction: Sequence[float], thrust: float, thrust_max: float
 ) -> Packed:
     """Return SET_ATTITUDE_TARGET for vehicle ``system_id`` at its ``boot_time`` (s): thrust (N) along ``direction``."""
-    time_boot_ms = max(round(boot_time * 1000.0), 0) & 0xFFFFFFFF
+    time_boot_ms = round(boot_time * 1000.0) & 0xFFFFFFFF
     share = max(0.0, min(1.0, thrust / thrust_max))
     return _SET_ATTITUDE_TARGET.pack(
         time_boot_ms, *attitude_of_direction(direction), *_NO_RATES, share,
@@ -45,7 +46,8 @@ def stop_plan_message(boot_time: float, duration: float, control_points: Sequenc
     """
     x, y, z = zip(*control_points, strict=True)
     points = len(x)
-    time_usec = max(round(boot_time * 1e6), 0)
+    # A clock that was set back to before its zero reads as its stamps of 32 bits of ms do.
+    time_usec = round((boot_time if boot_time >= 0.0 else boot_time + STAMP_WRAP) * 1e6)
     return _STOP_PLAN.pack(time_usec, *x, *y, *z, *[duration] * points, *[0.0] * points, points)
 
 

@@ -16,6 +16,7 @@ class ClockSettings(SettingsTable):
     )
     recent_round_trips: int = setting(4, "", "round trips whose longest bounds the latency", ge=1)
     open_requests: int = setting(100, "", "TIMESYNC requests that may still be answered", ge=1)
+    bounds: int = setting(1000, "", "bounds of the offset kept until they are looked at, once a control step", ge=1)
     set_back: float = setting(0.005, "s", "a later stamp that is earlier by more: the clock was set back", gt=0.0)
     jump: float = setting(0.02, "s", "change of the offset at once that is no drift", gt=0.0)
     reboot: float = setting(1.0, "s", "a boot time that falls behind by more is of another boot", gt=0.0)

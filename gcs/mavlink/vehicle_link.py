@@ -149,7 +149,7 @@ class VehicleLink:
             if message_id == _TIMESYNC:
                 tc1, ts1, *_ = received.fields
                 if tc1:
-                    self.clock.add_answer(ts1, now)
+                    self.clock.add_answer(ts1, now, tc1)
             elif message_id not in _NOT_READ:
                 self._handle_message(received.message, component)
 
