@@ -13,6 +13,8 @@ from gcs.mavlink.vehicle_link import VehicleLink
 
 TELEMETRY, TIMESYNC, CONTROL = 0.04, 0.1, 0.05
 """Periods (s)."""
+TELEMETRY_SIZE, ANSWER_SIZE = 215, 24
+"""Sizes of datagrams (bytes)."""
 
 
 def none(_):
@@ -28,6 +30,7 @@ class TimedLink:
         lost: whether the TIMESYNC answer to a request of a time (s) is lost.
         stamp: the stamp (s) of telemetry by what the clock reads (s).
         timesync_from: time (s) of the first TIMESYNC request.
+        rate: what the link from the vehicle passes (bytes/s) in the air, from 5 s on.
     """
 
     def __init__(
@@ -38,12 +41,13 @@ class TimedLink:
         lost=lambda t: False,
         stamp=lambda reading: reading,
         timesync_from=0.0,
+        rate=math.inf,
     ):
         self.link = VehicleLink(1, None)
         self.log = AlarmLog()
         self.detector = LinkTiming(DEFAULTS.monitor, CONTROL, 1)
         self.clock, self.out, self.back, self.lost, self.stamp = clock, out, back, lost, stamp
-        self.timesync_from = timesync_from
+        self.timesync_from, self.rate = timesync_from, rate
 
     def run(self, until, in_air_from=0.0):
         """Run to ``until`` (s); return the alarms, each as code and time (s)."""
@@ -58,7 +62,8 @@ class TimedLink:
             if not self.lost(at):
                 sent.append((asked_last, at))
         for at, request in sorted(sent, key=lambda item: item[0]):
-            arrived_last = max(arrived_last, at + self.back(at))
+            size = TELEMETRY_SIZE if request is None else ANSWER_SIZE
+            arrived_last = max(arrived_last, at + self.back(at)) + (size / self.rate if at >= 5.0 else 0.0)
             events.append((arrived_last, at, request))
         steps = [(CONTROL * k, None, None) for k in range(1, round(until / CONTROL))]
         requests = [(self.timesync_from + TIMESYNC * k, None, True) for k in range(round(until / TIMESYNC))]
@@ -69,9 +74,11 @@ class TimedLink:
             elif request is not None:
                 reading = self.clock(at)
                 self.link.clock.add_answer(asked[round(request, 6)], now, round(reading * 1e9))
+                self.link.clock.queue.add(ANSWER_SIZE, self.link.clock.bounds.sent, now)
             elif at is not None:
                 stamp = round(self.stamp(self.clock(at)) * 1e3) % 2**32
                 self.link.clock.add_stamp(stamp * 1e-3, now, in_order=True)
+                self.link.clock.queue.add(TELEMETRY_SIZE, self.link.clock.bounds.sent, now)
             else:
                 self._step(now, now >= in_air_from)
         return [(alarm.code, alarm.time) for alarm in self.log.alarms]

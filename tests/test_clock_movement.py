@@ -1,6 +1,7 @@
 """A clock that moves is told from a link whose latency changes, whatever else is wrong with the link."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -186,6 +187,32 @@ def test_opposite_changes_of_both_ways_that_leave_the_round_trip_are_a_displacem
     out, back = stepped(10.0, 0.06, 0.11), stepped(10.0, 0.06, 0.01)
     assert clock_errors(TimedLink(out=out, back=back).run(15.0)) != []
     assert clock_errors(TimedLink(out=out, back=back).run(9.9)) == []
+
+
+@pytest.mark.parametrize("rate", [5400.0, 6500.0, 9000.0, 11520.0])
+@pytest.mark.parametrize("latency", [0.0, 0.06])
+def test_congestion_is_named_as_such_and_is_no_error_of_the_clock(rate, latency):
+    link = TimedLink(lambda t: 20.0 + t, constant(latency), constant(latency), rate=rate)
+    alarms = link.run(12.0)
+    assert clock_errors(alarms) == []
+    named = [time for code, time in alarms if code is MonitorAlarm.LINK_CONGESTION]
+    assert 5.0 < named[0] <= 8.0
+    [text] = {alarm.text for alarm in link.log.alarms if alarm.time == named[0] and "kB/s" in alarm.text}
+    named_rate = float(re.search(r"a link of ([\d.]+) kB/s", text)[1])
+    assert named_rate == pytest.approx(rate / 1e3, rel=0.05)
+
+
+def test_congestion_does_not_hide_a_step_of_the_clock():
+    assert 10.0 <= clock_errors(TimedLink(step_of(0.3), rate=11520.0).run(12.0))[0] <= 10.2
+
+
+@pytest.mark.parametrize("rate", [0.02, -0.02])
+def test_drift_of_a_clock_and_jitter_are_no_congestion(rate):
+    drifting = TimedLink(lambda t: 50.0 + (1.0 + rate) * t)
+    assert MonitorAlarm.LINK_CONGESTION not in codes(drifting.run(20.0))
+    for seed in range(4):
+        link = TimedLink(out=random_latency(seed, 0.05), back=random_latency(seed + 50, 0.05))
+        assert MonitorAlarm.LINK_CONGESTION not in codes(link.run(30.0))
 
 
 def exchanges(movement, start, offset, number=10):

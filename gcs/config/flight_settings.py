@@ -69,6 +69,16 @@ class MonitorSettings(SettingsTable):
     clock_exchanges: int = setting(
         5, "", "in both segments at least: random latencies order them by chance once in C(10, 5) squared", ge=1
     )
+    queue_explained: float = setting(
+        0.85,
+        "",
+        "share of the latencies' variance that is a queue's: a step of the latency has 0.75 in common with one; of "
+        "latencies at random, of 30 datagrams once in 1e10",
+        gt=0.0,
+        lt=1.0,
+    )
+    queue_datagrams: int = setting(30, "", "whose latencies are compared at least", ge=10)
+    queue_interval: float = setting(0.5, "s", "between two such comparisons, which cost 1 ms", gt=0.0)
     manoeuvre_tilt: float = setting(
         0.1, "rad", "change of tilt set-points in one step, beyond the attitude loop's linear model", gt=0.0
     )

@@ -3,6 +3,7 @@
 To add one, add its code to :class:`MonitorAlarm` and a detector to :func:`detectors`.
 """
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -38,6 +39,9 @@ class MonitorAlarm(ScopedAlarm):
         "datagrams usually take more than {latency_periods} control periods one way (`TIMESYNC`)")
     LINK_JITTER = (Scope.IN_AIR, Severity.WARNING, "check the MAVLink link for congestion",
         "their latency varies by more than {jitter_periods} control periods")
+    LINK_CONGESTION = (Scope.IN_AIR, Severity.WARNING, "reduce its message rates, or use a link of a higher rate",
+        "datagrams usually come more than {jitter_periods} control periods after the least latency, and a queue before "
+        "a link of limited rate explains {queue_explained:.0%} of how their latency varies")
     CLOCK_ERROR = (Scope.IN_AIR, Severity.WARNING, "check its clock",
         "a vehicle's clock has moved by more than {clock_error} s within {clock_window:g} s, and no latency explains "
         "it: stamps step back, or datagrams seem to arrive before they are sent, or both bounds of the offset by the "
@@ -118,6 +122,8 @@ class LinkTiming:
         self._jitter = settings.jitter_periods * control_period
         self._movements = [ClockMovement(settings) for _ in range(number_of_uavs)]
         self._set_back = [0.0] * number_of_uavs
+        self._queues: list[tuple[float, str]] = [(-math.inf, "")] * number_of_uavs
+        """When each link's was looked at last, and what it said."""
 
     def __call__(self, step: MonitorStep) -> None:
         """Raise the alarms of one control step; call it before take-off as well, so that nothing waits for it."""
@@ -129,10 +135,29 @@ class LinkTiming:
             if spread > self._jitter:
                 text = f"link latency varies by {spread * 1e3:.0f} ms (limit {self._jitter * 1e3:.1f} ms)"
                 step.raise_alarm(name, MonitorAlarm.LINK_JITTER, text)
+            if text := self._congestion(i, link.clock, step.now):
+                step.raise_alarm(name, MonitorAlarm.LINK_CONGESTION, text)
             moved = self._moved(i, link.clock, step.now)
             if abs(moved) > self._settings.clock_error:
                 text = f"clock {'moved ahead' if moved > 0.0 else 'was set back'} by {abs(moved) * 1e3:.0f} ms or more"
                 step.raise_alarm(name, MonitorAlarm.CLOCK_ERROR, text)
+
+    def _congestion(self, i: int, clock: RemoteClock, now: float) -> str:
+        """Return how the datagrams of vehicle ``i`` queue; empty: they do not."""
+        s, queue, (looked_at, text) = self._settings, clock.queue, self._queues[i]
+        # A clock that drifts delays stamps, too, but no round trip.
+        if clock.round_trip_excess <= self._jitter or len(queue) < s.queue_datagrams or queue.wait <= self._jitter:
+            text = ""
+        elif now - looked_at < s.queue_interval:
+            return text
+        else:
+            fit = queue.fit()
+            looked_at, text = now, ""
+            if fit.explained > s.queue_explained:
+                link = f"a link of {fit.rate * 1e-3:.1f} kB/s, of which {min(fit.load / fit.rate, 1.0):.0%} are used"
+                text = f"datagrams come {queue.wait * 1e3:.0f} ms late over {link}"
+        self._queues[i] = looked_at, text
+        return text
 
     def _moved(self, i: int, clock: RemoteClock, now: float) -> float:
         """Return by how much (s) the clock of vehicle ``i`` has moved for certain, the most that a test says."""

@@ -78,7 +78,7 @@ class TelemetryRouter:
                 self._unread = unread
                 if (link := self._link_at(sender)) is not None:
                     link.statistics.damaged += 1
-            if self._take(messages, sender, now, routed):
+            if self._take(messages, len(datagram), sender, now, routed):
                 known.append(datagram)
         self.refused += len(datagrams) - len(known)
         if routed.samples:
@@ -87,8 +87,8 @@ class TelemetryRouter:
             self._confirm_setpoint(*report)
         return known
 
-    def _take(self, messages: Sequence[Received], sender: Address, now: float, routed: _Routed) -> bool:
-        """Take the messages of a datagram; return whether it is from a vehicle of this flight."""
+    def _take(self, messages: Sequence[Received], size: int, sender: Address, now: float, routed: _Routed) -> bool:
+        """Take the messages of a datagram of ``size`` bytes; return whether it is from a vehicle of this flight."""
         groups: dict[int, list[Received]] = {}
         system = index = None
         for received in messages:
@@ -110,7 +110,7 @@ class TelemetryRouter:
         for index, group in groups.items():
             if group:
                 link = self._links[index]
-                link.handle(group, now)
+                link.handle(group, now, size)
                 if len(sharing := self._at[sender]) > 1:
                     for other in sharing:
                         other.payload_received_at = max(other.payload_received_at, link.payload_received_at)

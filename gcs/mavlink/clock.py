@@ -8,12 +8,14 @@ from statistics import median
 from typing import NamedTuple
 
 from gcs.mavlink.clock_bounds import ClockBounds
+from gcs.mavlink.link_queue import LinkQueue
 from gcs.mavlink.settings import ClockSettings
 
 
 class _RoundTrips(NamedTuple):
     """The last round trips (s)."""
 
+    median: float = 0.0
     shortest: float = 0.0
     spread: float = 0.0
     """Upper quartile less the shortest."""
@@ -39,13 +41,12 @@ class RemoteClock:
         """Time of its offset's last step (s, ground): it was set, or datagrams come otherwise than before."""
         self.lag = 0.0
         """Delay (s) of the last stamp beyond the least delay of the last second."""
-        self.delay = 0.0
-        """Link latency (s): half of the median round trip."""
         self._requests: deque[int] = deque(maxlen=settings.open_requests)
         self._round_trips: list[tuple[float, float]] = []
         """Arrival and round trip of the last answers."""
         self._trips = _RoundTrips()
         self.bounds = ClockBounds(settings.bounds, settings.reboot)
+        self.queue = LinkQueue(settings.queue_window)
 
     def add_stamp(self, boot_time: float, arrival: float, in_order: bool = False) -> None:
         """Take the stamp ``boot_time`` (s, vehicle) of telemetry that arrived at ``arrival`` (s, ground).
@@ -54,10 +55,10 @@ class RemoteClock:
         """
         boot_time = self.bounds.unwrapped(boot_time)
         lead, before = boot_time - arrival, self._lead
-        if in_order and boot_time < self._newest - self._settings.set_back:
+        was_set_back = in_order and boot_time < self._newest - self._settings.set_back
+        if was_set_back:
             self.set_back += self._lead - lead
-            self._leads.clear()
-        elif lead < self._lead - self._settings.reboot:
+        if began_anew := was_set_back or lead < self._lead - self._settings.reboot:
             self._leads.clear()
         if in_order:
             self._newest = boot_time
@@ -70,6 +71,8 @@ class RemoteClock:
         self.lag = self._lead - lead
         if abs(self._lead - before) > self._settings.jump:
             self.jumped_at = arrival
+        if began_anew or self._lead - before > self._settings.jump:
+            self.queue.clear()
         self.bounds.add_stamp(boot_time, arrival)
 
     def request(self, now: float) -> int:
@@ -91,8 +94,7 @@ class RemoteClock:
             newest = [trip for _, trip in self._round_trips]
             trips, recent = sorted(newest), newest[-self._settings.recent_round_trips :]
             spread = trips[3 * (len(trips) - 1) // 4] - trips[0]
-            self._trips = _RoundTrips(trips[0], spread, max(recent))
-            self.delay = median(trips) / 2.0
+            self._trips = _RoundTrips(median(trips), trips[0], spread, max(recent))
             if tc1 is not None:
                 self.bounds.add_answer(tc1 * 1e-9, sent, arrival, self._lead)
 
@@ -107,6 +109,11 @@ class RemoteClock:
         return self._lead + self._trips.shortest / 2.0 if self._leads else 0.0
 
     @property
+    def delay(self) -> float:
+        """Link latency (s): half of the median round trip."""
+        return self._trips.median / 2.0
+
+    @property
     def spread(self) -> float:
         """Variation of the latency (s), apart from the worst quarter of the round trips."""
         return self._trips.spread / 2.0
@@ -115,6 +122,11 @@ class RemoteClock:
     def round_trip_max(self) -> float:
         """The longest of the last few round trips (s): no latency is longer."""
         return self._trips.longest
+
+    @property
+    def round_trip_excess(self) -> float:
+        """The longest of the last few round trips (s) beyond the shortest; 0: none is known."""
+        return self._trips.longest - self._trips.shortest if self._round_trips else 0.0
 
     def least_delay(self, duration: float, now: float) -> float:
         """Return the latency (s) that no datagram has undercut for ``duration`` (s) until ``now``; 0: not known yet.

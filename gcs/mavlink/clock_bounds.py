@@ -31,6 +31,8 @@ class ClockBounds:
         self._bounds: deque[OffsetBounds] = deque(maxlen=kept)
         self._last: float | None = None
         self._zero: float | None = None
+        self.sent = math.nan
+        """Vehicle time (s) at which the last stamp or answer was sent."""
 
     @property
     def known(self) -> bool:
@@ -45,7 +47,7 @@ class ClockBounds:
 
     def add_stamp(self, boot_time: float, arrival: float) -> None:
         """Take an unwrapped stamp (s, vehicle) that arrived at ``arrival`` (s, ground)."""
-        self._last = boot_time
+        self._last = self.sent = boot_time
         if self.known:
             self._bounds.append(OffsetBounds(arrival, boot_time - arrival, math.inf))
 
@@ -62,6 +64,7 @@ class ClockBounds:
             apart = boot_time - arrival - reached
             self._zero = apart if abs(apart) > self._epoch else 0.0
         boot_time -= self._zero
+        self.sent = boot_time
         self._bounds.append(OffsetBounds(arrival, boot_time - arrival, max(boot_time - sent, reached)))
 
     def take(self) -> list[OffsetBounds]:

@@ -115,8 +115,8 @@ class VehicleLink:
         """Time of its last attitude or of its last position, the earlier of the two."""
         return min(self.attitude_received_at, self.position_received_at)
 
-    def handle(self, messages: Sequence[Received], now: float) -> None:
-        """Take messages of this vehicle and of the payload unit, and runs of them, that came in one datagram."""
+    def handle(self, messages: Sequence[Received], now: float, size: int = 0) -> None:
+        """Take messages of this vehicle and of the payload unit, and runs of them, in one datagram of ``size`` bytes."""
         last_stamp = None
         for received in messages:
             layout, _, run, system, component, sequence, _, _, stamp = received
@@ -152,6 +152,8 @@ class VehicleLink:
                     self.clock.add_answer(ts1, now, tc1)
             elif message_id not in _NOT_READ:
                 self._handle_message(received.message, component)
+        # Without a stamp of its own it counts as sent with the datagram before.
+        self.clock.queue.add(size, self.clock.bounds.sent, now)
 
     def _handle_message(self, message: Message, component: int) -> None:
         if component == _AUTOPILOT and isinstance(message, mavlink.MAVLink_heartbeat_message):
