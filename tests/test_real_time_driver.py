@@ -104,3 +104,9 @@ def test_end_of_the_simulated_world_is_raised_with_its_reason():
     wire, station = Wire(), Station(3, 0.05)
     run(wire, station, speed=2.0, end_reason=lambda: "it crashed" if wire.clock > 1000.03 else None)
     assert station.failsafes == [(pytest.approx(0.1), Failsafe.SIMULATION_LOST, "it crashed")]
+
+
+def test_datagrams_arrive_no_earlier_than_they_are_read():
+    wire, station = Wire(arriving=[(b"a", VEHICLE)], work=0.03), Station(2, 0.05)
+    run(wire, station)
+    assert station.received == [(b"a", VEHICLE, pytest.approx(0.03))]

@@ -12,26 +12,31 @@ LOG = logging.getLogger("gcs")
 
 
 class FlightLog:
-    """Log of what has changed since the last exchange; times are the team's (s)."""
+    """Log of what has changed since the last exchange; times (s) begin with the ground's."""
 
     def __init__(self, station: GroundStation) -> None:
         self._station = station
         self._phase: Phase | None = None
         self._links = [_LinkLog(link) for link in station.links]
         self._alarms = 0
+        self._uptime = 0.0
 
     def update(self) -> None:
         """Write what has changed."""
         flight = self._station.flight
         if flight.phase is not self._phase:
             self._phase = flight.phase
-            LOG.info("%.2f s: phase %s", flight.time, self._phase.value)
+            LOG.info("%.2f s: phase %s", flight.elapsed, self._phase.value)
+        uptime = flight.system.preflight.uptime
+        if uptime != self._uptime:
+            self._uptime = uptime
+            LOG.info("vehicle 1 has been up for %.0f s: records count from there", uptime)
         for alarm in flight.failsafes.alarms.alarms[self._alarms :]:
             self._alarms += 1
             text = alarm.text and f" ({alarm.text})"
-            LOG.warning("%.2f s: %s: %s%s", alarm.time, alarm.source, alarm.code.code, text)
+            LOG.warning("%.2f s: %s: %s%s", alarm.time - uptime, alarm.source, alarm.code.code, text)
         for link in self._links:
-            link.update(flight.time)
+            link.update(flight.elapsed)
 
 
 class _LinkLog:

@@ -40,7 +40,7 @@ class FlightProgress:
         if changed:
             self._phase = flight.phase
             if not self._at_terminal:
-                self._console.print(f"{flight.time:8.2f} s  {flight.phase.value}")
+                self._console.print(f"{flight.elapsed:8.2f} s  {flight.phase.value}")
         second = math.floor(time) if flown else -1
         if self._at_terminal and (changed or second != self._second):
             self._second = second

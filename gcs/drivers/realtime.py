@@ -34,7 +34,9 @@ def run_in_real_time(
             station.raise_failsafe(now, Failsafe.INTERRUPTED, "interrupted")
         if (reason := end_reason()) is not None:
             station.raise_failsafe(now, Failsafe.SIMULATION_LOST, reason)
-        station.receive_all([*connection.receive()], now)
+        received = [*connection.receive()]
+        # Nothing may seem to arrive before it was sent, also where this process had to wait since it read the clock.
+        station.receive_all(received, (clock() - start) * speed)
         for datagram, address in station.datagrams_to_send(now):
             connection.send(datagram, address)
         station.sent()

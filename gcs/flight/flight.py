@@ -80,6 +80,11 @@ class Flight:
         return self.failsafes.reason
 
     @property
+    def elapsed(self) -> float:
+        """Time of the last control step without the seconds for which the vehicles had been up: of what is printed."""
+        return self.time - self.system.preflight.uptime
+
+    @property
     def expected_end(self) -> float:
         """The end of the mission trajectory (s); inf while that is not known."""
         return self.mission_trajectory.trajectory.end if self.mission_trajectory is not None else math.inf
@@ -204,6 +209,7 @@ class Flight:
 
     def _connect(self, time: float, now: float) -> None:
         preflight = self.system.preflight
+        preflight.uptime = max(float(math.floor(time - now)), 0.0)
         if preflight.connect(now):
             preflight.check_start = time
             self.phase = Phase.CHECK

@@ -31,6 +31,8 @@ class Preflight:
         """Time of the first attempt to connect (s, ground)."""
         self.check_start = math.nan
         """Time at which all had connected (s, team)."""
+        self.uptime = 0.0
+        """Whole seconds for which the first vehicle had been up when the ground began: team time counts them."""
         self.missing = ""
         """Vehicles that have not connected, else the data that the first incomplete one lacks; empty: none."""
         self._positions: dict[int, list[Array]] = {source: [] for source in (PAYLOAD, *range(len(team.links)))}
