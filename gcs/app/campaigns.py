@@ -38,6 +38,7 @@ def run_campaign(generator: PlanGenerator, out: Path, arguments: argparse.Namesp
     except KeyboardInterrupt:
         interrupted = True
     results = campaign.results
+    problems = generator.problems(results)
     if results:
         try:
             parts, files = generator.report(results, out)
@@ -45,9 +46,11 @@ def run_campaign(generator: PlanGenerator, out: Path, arguments: argparse.Namesp
             raise UnwritableRecord(f"{error}: the flights are kept; start the command again for its report") from None
         first = headline(results, generator.what, generator.passed_means)
         console.print(Group(first, *parts, *failed_flights(results)))
+        for problem in problems:
+            console.print(problem, style="red", markup=False)
         console.print(f"Results   {'  '.join(map(str, files))}", markup=False)
     if interrupted:
         left = len(campaign.plans) - len(results)
         LOG.error("interrupted with %d flights to go: start the command again to resume", left)
         return ExitStatus.INTERRUPTED
-    return ExitStatus.DONE if all(result.passed for result in results) else ExitStatus.OUTSIDE_LIMITS
+    return ExitStatus.OUTSIDE_LIMITS if problems or not all(r.passed for r in results) else ExitStatus.DONE

@@ -69,6 +69,10 @@ class PlanGenerator(ABC):
         """Return whether a flight passed."""
         return not result.failures
 
+    def problems(self, results: Sequence[Result]) -> list[str]:
+        """Return what all flights together fall short of, a line each."""
+        return []
+
     @abstractmethod
     def report(self, results: Sequence[Result], out: Path) -> tuple[list[RenderableType], list[Path]]:
         """Write tables and pictures; return what is to be printed, and the files."""

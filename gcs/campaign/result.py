@@ -81,6 +81,11 @@ class Result:
     detected_s: float | None = None
     detected_as: str = ""
     false_alarms: int | None = None
+    true_source: str = ""
+    isolation: str = ""
+    """Whether alarms name the true source (see `gcs.campaign.faults.sources`)."""
+    named_source: str = ""
+    """What the first alarms name in its place."""
     notes: str = ""
     """Faults that never came or disturbed nothing."""
 

@@ -116,7 +116,7 @@ class VehicleLink:
         return min(self.attitude_received_at, self.position_received_at)
 
     def handle(self, messages: Sequence[Received], now: float, size: int = 0) -> None:
-        """Take messages of this vehicle and of the payload unit, and runs of them, in one datagram of ``size`` bytes."""
+        """Take messages of this vehicle and of the payload unit, runs too, of one datagram of ``size`` bytes."""
         last_stamp = None
         for received in messages:
             layout, _, run, system, component, sequence, _, _, stamp = received

@@ -11,6 +11,7 @@ from pydantic import Field, TypeAdapter
 
 from gcs.campaign.faults.base_mission import BaseMission, read_base
 from gcs.campaign.faults.cases import CLEAN, Case, SweptFault, label
+from gcs.campaign.faults.detection_table import DetectionRow, case_name
 from gcs.config import UnusableFile
 from gcs.config.toml_file import TomlFile, read_toml
 from gcs.config.validate import Key, NotNegative, strict
@@ -60,6 +61,7 @@ class CampaignTables:
     campaign: CampaignTable
     fault: Annotated[tuple[SweptTable, ...], Field(max_length=1000)] = ()
     limits: Limits | None = field(default=None)
+    row: Annotated[tuple[DetectionRow, ...], Field(max_length=1000)] = ()
 
 
 @dataclass(frozen=True)
@@ -73,6 +75,7 @@ class CampaignFile:
     limits: Limits | None
     controller: str
     require: str
+    rows: tuple[DetectionRow, ...]
 
 
 @cache
@@ -99,6 +102,7 @@ def read_campaign(path: Path) -> CampaignFile:
     problems = [*_disagreements(file, tables)]
     cases, bad = _cases(file, tables)
     problems += bad
+    problems += _row_problems(file, tables.row, cases)
     missions, bad = _missions(file, tables.campaign.missions)
     problems += bad
     for base in missions.values():
@@ -108,7 +112,9 @@ def read_campaign(path: Path) -> CampaignFile:
     if tables.campaign.clean:
         cases = (Case(CLEAN, 1, "", ()), *cases)
     table = tables.campaign
-    return CampaignFile(table.name, missions, _seeds(table), cases, tables.limits, table.controller, table.require)
+    return CampaignFile(
+        table.name, missions, _seeds(table), cases, tables.limits, table.controller, table.require, tables.row
+    )
 
 
 def _seeds(table: CampaignTable) -> tuple[int, ...]:
@@ -159,6 +165,17 @@ def _fault_problems(file: TomlFile, cases: tuple[Case, ...], base: BaseMission) 
         for swept in case.faults:
             for key, reason in fault_problems(swept.fault, base.system):
                 yield file.problem(("fault", swept.table, key), reason)
+
+
+def _row_problems(file: TomlFile, rows: tuple[DetectionRow, ...], cases: tuple[Case, ...]) -> Iterator[str]:
+    """Names in the rows of the table of detection that are of no case, or appear twice."""
+    names = {name for case in cases for name in (case.name, case_name(case.name, case.severity))}
+    count = Counter(name for row in rows for name in row.faults)
+    for i, row in enumerate(rows):
+        for j, name in enumerate(row.faults):
+            if name not in names or count[name] > 1:
+                reason = f"'{name}' appears {count[name]} times" if name in names else f"there is no fault '{name}'"
+                yield file.problem(("row", i, "faults", j), reason)
 
 
 def _cases(file: TomlFile, tables: CampaignTables) -> tuple[tuple[Case, ...], list[str]]:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from gcs.campaign.faults.sources import FaultSource, sources_of
 from gcs.mission.model import Fault
 
 CLEAN = "no fault"
@@ -38,6 +39,11 @@ class Case:
     def kind(self) -> str:
         """The kind of fault; of several, all of them."""
         return " + ".join(dict.fromkeys(swept.fault.kind for swept in self.faults))
+
+    @property
+    def sources(self) -> tuple[FaultSource, ...]:
+        """What the faults act on."""
+        return sources_of([swept.fault for swept in self.faults])
 
     def faults_for(self, seed: int) -> tuple[Fault, ...]:
         """Return the faults with the starts of a seed, which are the same at every severity."""

@@ -2,10 +2,12 @@
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from gcs.campaign.faults.cases import Case
+from gcs.campaign.faults.sources import AlarmRow, Isolation, isolation
 from gcs.campaign.process_pool import FlownProcess
 from gcs.campaign.result import Result
 from gcs.errors import UnusableInput
@@ -24,7 +26,8 @@ COLUMNS = (
     "number", "name", "fault", "kind", "level", "severity", "mission", "seed", "outcome", "passed", "within_limits",
     "failures", "reason", "exit_code", "clearance_min_m", "tilt_max_deg", "uav_separation_min_m", "contacts", "landed",
     "touchdown_mps", "end_tilt_deg", "position_rmse_m", "duration_s", "stop_s", "team_stop_s", "team_spread_s",
-    "detected_s", "detected_as", "false_alarms", "notes", "wall_s", "run_dir", "replay", "format",
+    "detected_s", "detected_as", "false_alarms", "true_source", "isolation", "named_source", "notes", "wall_s",
+    "run_dir", "replay", "format",
 )  # fmt: skip
 
 
@@ -32,20 +35,26 @@ COLUMNS = (
 class Detection:
     """Time (s) from the start of the case's first fault to the first alarm since, and that alarm; None: no alarm.
 
-    ``false``: number of alarms before the flight's first fault.
+    ``false``: number of alarms before the flight's first fault. ``alarms``: all since the start of the case's.
     """
 
     after: float | None
     alarm: str
     false: int | None
+    alarms: tuple[AlarmRow, ...] = field(default=(), compare=False)
 
 
-def judge(count: int, flown: FlownProcess, run_dir: Path) -> dict[str, Any]:
-    """Return the columns of a flight whose last ``count`` faults are those of its case."""
-    begin = first_start(run_dir, count)
+def judge(case: Case, flown: FlownProcess, run_dir: Path) -> dict[str, Any]:
+    """Return the columns of a flight whose last faults are those of its case."""
+    begin = first_start(run_dir, len(case.faults))
     stop = stop_time(flown.summary, begin)
     last, spread = team_stop(run_dir, begin) if stop is not None else (None, None)
     detected = detection(run_dir, begin)
+    isolated = (
+        isolation(case.sources, detected.alarms)
+        if begin is not None and detected.false is not None
+        else Isolation("", "")
+    )
     return {
         "outcome": outcome(flown).value,
         "within_limits": flown.exit_code == 0,
@@ -56,6 +65,8 @@ def judge(count: int, flown: FlownProcess, run_dir: Path) -> dict[str, Any]:
         "detected_s": detected.after,
         "detected_as": detected.alarm,
         "false_alarms": detected.false,
+        "isolation": isolated.verdict,
+        "named_source": isolated.named,
         "notes": "; ".join(fault_notes(run_dir)),
     }
 
@@ -119,12 +130,13 @@ def detection(run_dir: Path, begin: float | None) -> Detection:
     try:
         alarms = read_text_table(run_dir / ALARMS)
         times = [float(time) for time in alarms["time_s"]]
+        rows = list(zip(times, alarms["source"], alarms["code"], strict=True))
     except (UnusableInput, ValueError, KeyError):
         return Detection(None, "", None)
     first = first_start(run_dir)
     false = sum(first is None or time < first for time in times)
-    since = [i for i, time in enumerate(times) if begin is not None and time >= begin]
-    if begin is None or not since:
+    since = () if begin is None else tuple(AlarmRow(round(t - begin, 3), *names) for t, *names in rows if t >= begin)
+    if not since:
         return Detection(None, "", false)
-    i = min(since, key=times.__getitem__)
-    return Detection(round(times[i] - begin, 3), f"{alarms['code'][i]}, {alarms['source'][i]}", false)
+    at_first = min(since, key=lambda alarm: alarm.after)
+    return Detection(at_first.after, f"{at_first.code}, {at_first.source}", false, since)

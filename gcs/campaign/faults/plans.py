@@ -9,6 +9,7 @@ from rich.console import RenderableType
 
 from gcs.campaign.engine import FlightPlan, PlanGenerator
 from gcs.campaign.faults.campaign_file import CampaignFile
+from gcs.campaign.faults.detection_table import Detections, detections
 from gcs.campaign.faults.judgement import COLUMNS, WITHIN_LIMITS, judge, meets
 from gcs.campaign.folder import digest, plain
 from gcs.campaign.result import Result
@@ -61,9 +62,9 @@ class FaultFlights(PlanGenerator):
                 name,
                 path,
                 ("--controller", file.controller),
-                partial(judge, len(case.faults)),
+                partial(judge, case),
                 {"fault": case.name, "kind": case.kind, "level": case.level, "severity": case.severity,
-                 "mission": mission, "seed": seed},
+                 "mission": mission, "seed": seed, "true_source": ", ".join(map(str, case.sources))},
                 {path: text, **{folder / file_name: content for file_name, content in base.files.items()}},
             )  # fmt: skip
 
@@ -75,4 +76,12 @@ class FaultFlights(PlanGenerator):
         """Write ``results.csv``, ``results.parquet``, ``rates.csv`` and the matrix."""
         from gcs.campaign.faults.report import report  # matplotlib takes long to import
 
-        return report(self.file.name, results, out)
+        return report(self.file.name, results, out, self.detections(results))
+
+    def detections(self, results: Sequence[Result]) -> list[Detections]:
+        """Return the rows of the table of detection."""
+        return detections(self.file.rows, results)
+
+    def problems(self, results: Sequence[Result]) -> list[str]:
+        """Return the limits of the table of detection that are not held."""
+        return [problem for row in self.detections(results) for problem in row.problems]

@@ -10,6 +10,8 @@ from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from gcs.campaign.faults.detection_table import Detections, write_detections
+from gcs.campaign.faults.false_alarms import false_alarms, write_false_alarms
 from gcs.campaign.faults.judgement import COLUMNS
 from gcs.campaign.faults.rates import CONFIDENCE, Rates, rates_of, write_rates
 from gcs.campaign.result import Result
@@ -28,15 +30,21 @@ COLOURS: dict[str, str] = {
 _WIDTH, _HEIGHT = 1.7, 0.55  # in, of a cell
 
 
-def report(name: str, results: Sequence[Result], out: Path) -> tuple[list[RenderableType], list[Path]]:
+def report(
+    name: str, results: Sequence[Result], out: Path, rows: Sequence[Detections] = ()
+) -> tuple[list[RenderableType], list[Path]]:
     """Write the tables and the matrix; return the rates by fault and severity, and the files."""
-    rates = rates_of(results)
+    rates, clear = rates_of(results), false_alarms(results)
     files = [
         write_csv(out / "results.csv", COLUMNS, [result.row(COLUMNS) for result in results]),
         write_parquet(out / "results.parquet", COLUMNS, results),
         write_rates(out / "rates.csv", rates),
         draw_matrix(name, results, out),
     ]
+    if rows:
+        files.append(write_detections(out / "detection.csv", rows))
+    if clear:
+        files.append(write_false_alarms(out / "false_alarms.csv", clear))
     parts: list[RenderableType] = [_rates_table(rates, results)]
     parts.append(Text(f"Rates with their {100 * CONFIDENCE:.0f} % intervals (Wilson); safe: set down without contact."))
     if false := sum(result.false_alarms or 0 for result in results):

@@ -1,0 +1,130 @@
+"""The table of detection: fault x source, with the delay of the first alarm, and the limits that it is held to."""
+
+import statistics
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from typing import Annotated
+
+from pydantic import Field
+
+from gcs.campaign.faults.sources import ISOLATIONS, NONE
+from gcs.campaign.result import Result
+from gcs.campaign.tables import write_csv
+from gcs.config.validate import Positive, strict
+from gcs.mission.model import Name
+
+
+@strict
+@dataclass(frozen=True)
+class DetectionRow:
+    """``[[row]]`` of a campaign: the cases of a row, and the limits (s) of their delays; with one, all are detected.
+
+    A case is named by its fault, which stands for all of its severities, or as ``fault: severity``.
+    """
+
+    name: Name
+    faults: Annotated[tuple[Name, ...], Field(min_length=1, max_length=1000)]
+    median: Positive | None = None
+    worst: Positive | None = None
+
+
+@dataclass(frozen=True)
+class Detections:
+    """The flights of a row. Delays (s) are from the start of the fault to the first alarm."""
+
+    fault: str
+    true_source: str
+    flights: int
+    right: int
+    ambiguous: int
+    wrong: int
+    none: int
+    named_wrongly: str
+    first_alarms: str
+    median_s: float | None
+    worst_s: float | None
+    median_limit_s: float | None
+    worst_limit_s: float | None
+
+    @property
+    def problems(self) -> Iterator[str]:
+        """The limits that are not held, compared as they are printed."""
+        limits = (("median", self.median_s, self.median_limit_s), ("worst", self.worst_s, self.worst_limit_s))
+        if self.none and any(limit is not None for _, _, limit in limits):
+            yield f"{self.fault}: {self.none} of {self.flights} not detected"
+        for name, delay, limit in limits:
+            if delay is not None and limit is not None and float(seconds(delay)) > limit:
+                yield f"{self.fault}: detected within {seconds(delay)} s ({name}; limit {seconds(limit)} s)"
+
+
+def case_name(fault: str, severity: str) -> str:
+    """Return the name of a case at one severity."""
+    return f"{fault}: {severity}" if severity else fault
+
+
+def detections(rows: Sequence[DetectionRow], results: Sequence[Result]) -> list[Detections]:
+    """Return the rows that were flown; each fault that no row names, at the severities that none does, is its own."""
+    named = {name: row for row in rows for name in row.faults}
+    flown: dict[DetectionRow, list[Result]] = {row: [] for row in rows}
+    for result in results:
+        if not result.isolation:
+            continue
+        row = named.get(case_name(result.fault, result.severity)) or named.get(result.fault)
+        flown.setdefault(row or DetectionRow(result.fault, (result.fault,)), []).append(result)
+    return [_row(row, group) for row, group in flown.items() if group]
+
+
+def _row(row: DetectionRow, group: Sequence[Result]) -> Detections:
+    count = Counter(result.isolation for result in group)
+    delays = [result.detected_s for result in group if result.detected_s is not None]
+    right, ambiguous, wrong, none = (count[verdict] for verdict in ISOLATIONS)
+    return Detections(
+        fault=row.name,
+        true_source="; ".join(dict.fromkeys(result.true_source for result in group)),
+        flights=len(group),
+        right=right,
+        ambiguous=ambiguous,
+        wrong=wrong,
+        none=none,
+        named_wrongly="; ".join(dict.fromkeys(result.named_source for result in group if result.named_source)),
+        first_alarms=_codes(group),
+        median_s=statistics.median(delays) if delays else None,
+        worst_s=max(delays, default=None),
+        median_limit_s=row.median,
+        worst_limit_s=row.worst,
+    )
+
+
+def _codes(group: Sequence[Result]) -> str:
+    """Return the codes of the first alarms, the most frequent first."""
+    found = Counter(result.detected_as.split(",")[0] for result in group if result.isolation != NONE)
+    return ", ".join(code for code, _ in found.most_common())
+
+
+def seconds(time: float) -> str:
+    """Return a time (s) to two digits."""
+    return f"{time:#.2g}".rstrip(".")
+
+
+def write_detections(path: Path, rows: Sequence[Detections]) -> Path:
+    """Write a row for each. Raises :class:`gcs.errors.UnusableInput` where it cannot."""
+    cells = [{name: "" if value is None else value for name, value in asdict(row).items()} for row in rows]
+    return write_csv(path, [field.name for field in fields(Detections)], cells)
+
+
+def detections_markdown(rows: Sequence[Detections]) -> str:
+    """Return the rows as a table in Markdown."""
+    lines = [
+        "| fault | true source | flights | right | ambiguous | wrong | none | first alarm | median | worst "
+        "| named in its place |",
+        "|---|---|---|---|---|---|---|---|---|---|---|",
+    ]
+    for row in rows:
+        codes = ", ".join(f"`{code}`" for code in row.first_alarms.split(", ") if code)
+        delays = ["" if delay is None else f"{seconds(delay)} s" for delay in (row.median_s, row.worst_s)]
+        counts = [str(n or "") for n in (row.right, row.ambiguous, row.wrong, row.none)]
+        cells = [row.fault, row.true_source, str(row.flights), *counts, codes, *delays, row.named_wrongly]
+        lines.append(f"| {' | '.join(cells)} |")
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,82 @@
+"""False alarms per flight hour, of flights without a fault."""
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+
+from scipy.stats import chi2
+
+from gcs.campaign.faults.cases import CLEAN
+from gcs.campaign.result import Result
+from gcs.campaign.tables import write_csv
+
+CONFIDENCE = 0.95
+ALL = "all"
+
+
+@dataclass(frozen=True)
+class FalseAlarms:
+    """The flights of one mission without a fault: ``alarms`` in ``flights_with_alarms`` of them.
+
+    ``per_hour_bound``: upper bound of the rate at :data:`CONFIDENCE`.
+    """
+
+    mission: str
+    flights: int
+    hours: float
+    alarms: int
+    flights_with_alarms: int
+    per_hour: float
+    per_hour_bound: float
+    not_counted: int
+    """Flights without a record of their alarms, or of their duration."""
+
+
+def false_alarms(results: Sequence[Result]) -> list[FalseAlarms]:
+    """Return a row for each mission that was flown without a fault, then one of all of them."""
+    groups: dict[str, list[Result]] = {}
+    for result in results:
+        if result.fault == CLEAN:
+            groups.setdefault(result.mission, []).append(result)
+    if len(groups) > 1:
+        groups[ALL] = [result for group in groups.values() for result in group]
+    return [_row(mission, group) for mission, group in groups.items()]
+
+
+def _row(mission: str, group: Sequence[Result]) -> FalseAlarms:
+    known = [(r.duration_s, r.false_alarms) for r in group if r.duration_s and r.false_alarms is not None]
+    hours = sum(duration for duration, _ in known) / 3600.0
+    alarms = sum(number for _, number in known)
+    rate = alarms / hours if hours else 0.0
+    with_alarms = sum(number > 0 for _, number in known)
+    bound = upper_bound(alarms, hours)
+    return FalseAlarms(mission, len(known), hours, alarms, with_alarms, rate, bound, len(group) - len(known))
+
+
+def upper_bound(events: int, exposure: float) -> float:
+    """Return the exact upper bound of a Poisson rate, at :data:`CONFIDENCE`, after ``events`` in ``exposure``."""
+    return float(chi2.ppf(CONFIDENCE, 2 * (events + 1)) / 2.0 / exposure) if exposure > 0.0 else float("inf")
+
+
+def write_false_alarms(path: Path, rows: Sequence[FalseAlarms]) -> Path:
+    """Write a row for each mission. Raises :class:`gcs.errors.UnusableInput` where it cannot."""
+    cells = [
+        {name: f"{value:.4f}" if isinstance(value, float) else value for name, value in asdict(row).items()}
+        for row in rows
+    ]
+    return write_csv(path, [field.name for field in fields(FalseAlarms)], cells)
+
+
+def false_alarms_markdown(rows: Sequence[FalseAlarms]) -> str:
+    """Return the rows as a table in Markdown."""
+    bound = f"upper {CONFIDENCE:.0%} bound".replace("%", " %")
+    lines = [
+        f"| flights without a fault | flights | hours | false alarms | in flights | per hour | {bound} |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    for row in rows:
+        lines.append(
+            f"| {row.mission} | {row.flights} | {row.hours:.3f} | {row.alarms} | {row.flights_with_alarms} "
+            f"| {row.per_hour:.1f} | {row.per_hour_bound:.1f} |"
+        )
+    return "\n".join(lines) + "\n"
