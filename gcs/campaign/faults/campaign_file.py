@@ -12,6 +12,8 @@ from pydantic import Field, TypeAdapter
 from gcs.campaign.faults.base_mission import BaseMission, read_base
 from gcs.campaign.faults.cases import CLEAN, Case, SweptFault, label
 from gcs.campaign.faults.detection_table import DetectionRow, case_name
+from gcs.campaign.faults.drawn_mission import DrawnMission, ScenarioTable
+from gcs.campaign.scenarios.field import FIELD
 from gcs.config import UnusableFile
 from gcs.config.toml_file import TomlFile, read_toml
 from gcs.config.validate import Key, NotNegative, strict
@@ -62,6 +64,7 @@ class CampaignTables:
     fault: Annotated[tuple[SweptTable, ...], Field(max_length=1000)] = ()
     limits: Limits | None = field(default=None)
     row: Annotated[tuple[DetectionRow, ...], Field(max_length=1000)] = ()
+    scenario: Annotated[tuple[ScenarioTable, ...], Field(max_length=1000)] = ()
 
 
 @dataclass(frozen=True)
@@ -103,7 +106,7 @@ def read_campaign(path: Path) -> CampaignFile:
     cases, bad = _cases(file, tables)
     problems += bad
     problems += _row_problems(file, tables.row, cases)
-    missions, bad = _missions(file, tables.campaign.missions)
+    missions, bad = _missions(file, tables)
     problems += bad
     for base in missions.values():
         problems += _fault_problems(file, cases, base)
@@ -142,10 +145,11 @@ def _disagreements(file: TomlFile, tables: CampaignTables) -> Iterator[str]:
         yield file.problem(("campaign", "clean"), f"a fault is named '{CLEAN}', as the flights without are")
 
 
-def _missions(file: TomlFile, entries: tuple[str, ...]) -> tuple[dict[str, BaseMission], list[str]]:
-    """Missions go by the stem of their file; by all of it where two have the same."""
+def _missions(file: TomlFile, tables: CampaignTables) -> tuple[dict[str, BaseMission], list[str]]:
+    """Missions go by the stem of their file; by all of it where two have the same. Scenarios have names."""
+    entries = tables.campaign.missions
     problems: list[str] = []
-    missions = {}
+    missions: dict[str, BaseMission] = {}
     stems = Counter(Path(entry).stem for entry in entries)
     for i, entry in enumerate(entries):
         path = file.path.parent / entry
@@ -156,6 +160,13 @@ def _missions(file: TomlFile, entries: tuple[str, ...]) -> tuple[dict[str, BaseM
             missions[Path(entry).stem if stems[Path(entry).stem] == 1 else entry] = read_base(path)
         except UnusableFile as error:
             problems += error.reasons
+    for i, table in enumerate(tables.scenario):
+        if table.name in missions:
+            problems.append(file.problem(("scenario", i, "name"), f"another mission is named '{table.name}'"))
+        for key in ("obstacles", "known"):
+            if (getattr(table, key) is None) == (table.kind == FIELD):
+                problems.append(file.problem(("scenario", i, key), f"goes with kind '{FIELD}', which needs it"))
+        missions[table.name] = DrawnMission.of(table)
     return missions, problems
 
 

@@ -104,8 +104,8 @@ def _codes(group: Sequence[Result]) -> str:
 
 
 def seconds(time: float) -> str:
-    """Return a time (s) to two digits."""
-    return f"{time:#.2g}".rstrip(".")
+    """Return a time (s) to two digits, and to no more than 0.01 s."""
+    return f"{time:.{2 if time < 0.995 else 1 if time < 9.95 else 0}f}"
 
 
 def write_detections(path: Path, rows: Sequence[Detections]) -> Path:

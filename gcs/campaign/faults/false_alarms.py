@@ -75,8 +75,9 @@ def false_alarms_markdown(rows: Sequence[FalseAlarms]) -> str:
         "|---|---|---|---|---|---|---|",
     ]
     for row in rows:
+        flights = str(row.flights) + (f" ({row.not_counted} without a record)" if row.not_counted else "")
         lines.append(
-            f"| {row.mission} | {row.flights} | {row.hours:.3f} | {row.alarms} | {row.flights_with_alarms} "
+            f"| {row.mission} | {flights} | {row.hours:.3f} | {row.alarms} | {row.flights_with_alarms} "
             f"| {row.per_hour:.1f} | {row.per_hour_bound:.1f} |"
         )
     return "\n".join(lines) + "\n"

@@ -9,6 +9,7 @@ from rich.console import RenderableType
 
 from gcs.campaign.engine import FlightPlan, PlanGenerator
 from gcs.campaign.faults.campaign_file import CampaignFile
+from gcs.campaign.faults.cases import CLEAN
 from gcs.campaign.faults.detection_table import Detections, detections
 from gcs.campaign.faults.judgement import COLUMNS, WITHIN_LIMITS, judge, meets
 from gcs.campaign.folder import digest, plain
@@ -83,5 +84,9 @@ class FaultFlights(PlanGenerator):
         return detections(self.file.rows, results)
 
     def problems(self, results: Sequence[Result]) -> list[str]:
-        """Return the limits of the table of detection that are not held."""
-        return [problem for row in self.detections(results) for problem in row.problems]
+        """Return the limits of the table of detection that are not held, and what it lacks."""
+        problems = [problem for row in self.detections(results) for problem in row.problems]
+        lacking = [result for result in results if result.fault != CLEAN and not result.isolation]
+        if self.file.rows and lacking:
+            problems.append(f"{len(lacking)} flights without a record of their faults: {lacking[0].name}, ...")
+        return problems

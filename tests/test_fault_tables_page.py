@@ -1,0 +1,190 @@
+"""The tables of docs/faults.md: their missions, and the command that writes them."""
+
+import json
+import math
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from small_campaign import CAMPAIGN, SUMMARY, campaign_file
+
+from gcs.campaign import engine
+from gcs.campaign.faults import tables_page
+from gcs.campaign.faults.campaign_file import read_campaign
+from gcs.campaign.faults.detection_table import case_name
+from gcs.campaign.faults.plans import FaultFlights
+from gcs.campaign.faults.tables_page import DETECTION, FALSE_ALARMS, main, renewed
+from gcs.campaign.process_pool import FlownProcess
+from gcs.campaign.scenarios import field as fields
+from gcs.campaign.scenarios.field import field
+from gcs.campaign.scenarios.schedule import Schedule
+from gcs.config import UnusableFile, read_system
+from gcs.errors import GcsError, UnusableInput
+from gcs.mission.model import Mission
+from gcs.mission.read import read_mission
+from idc_controller.geometry.formation import BoundingCylinder
+from idc_controller.geometry.free_space import FreeSpace
+
+ROOT = Path(__file__).parents[1]
+SCENARIOS = """
+[[scenario]]
+name = "30 obstacles, known"
+kind = "field"
+obstacles = 30
+known = true
+
+[[scenario]]
+name = "forest"
+kind = "forest"
+"""
+CLEAN = f"""
+[campaign]
+name = "no faults"
+missions = ["short_figure.toml"]
+seeds = [3, 7]
+clean = true
+{SCENARIOS}"""
+
+
+@pytest.mark.parametrize("known", [True, False])
+def test_field_keeps_clear_of_the_path(known):
+    system = read_system(None)
+    obstacles = field(5, 200, known, system)
+    assert len(obstacles) == 200 and {o.known for o in obstacles} == {known}
+    assert [o.shape.kind for o in obstacles[:4]] == ["sphere", "pole", "sphere", "pole"]
+    path = Schedule(Mission("", Path(), 1, system, fields.FIGURE)).positions
+    space = FreeSpace([(o.shape, o.position) for o in obstacles], BoundingCylinder.of(system.parameters()), 0, 0, 100)
+    assert space.clearance(path).min() > fields.CLEARANCE - 0.01
+    places = np.array([o.position[:2] for o in obstacles])
+    radii = np.array([o.shape.radius for o in obstacles])
+    gaps = np.linalg.norm(places[:, None] - places, axis=2) - radii[:, None] - radii
+    np.fill_diagonal(gaps, math.inf)
+    assert gaps.min() >= fields.APART
+
+
+def test_field_is_drawn_from_its_seed_and_the_same_on_the_map_or_not():
+    system = read_system(None)
+    first, other = field(1, 20, True, system), field(2, 20, True, system)
+    assert [o.position for o in first] != [o.position for o in other]
+    assert [o.position for o in first] == [o.position for o in field(1, 20, False, system)]
+
+
+def test_field_without_place_for_its_obstacles_is_refused():
+    with pytest.raises(GcsError, match="500 obstacles: no place for more than"):
+        field(1, 500, True, read_system(None))
+
+
+def test_scenarios_of_a_campaign_are_drawn_for_each_seed(tmp_path):
+    file = read_campaign(campaign_file(tmp_path, CLEAN))
+    assert list(file.missions) == ["short_figure", "30 obstacles, known", "forest"]
+    missions = {}
+    for plan in FaultFlights(file).plans(tmp_path / "out"):
+        if plan.labels["mission"] != "short_figure":
+            plan.mission.parent.mkdir(parents=True, exist_ok=True)
+            plan.mission.write_text(plan.files[plan.mission])
+            missions[plan.labels["mission"], plan.labels["seed"]] = read_mission(plan.mission)
+    known = [missions["30 obstacles, known", seed] for seed in (3, 7)]
+    assert [len(m.obstacles) for m in known] == [30, 30] and known[0].seed == 3 and known[0].limits.clearance == 1.0
+    assert known[0].obstacles != known[1].obstacles
+    assert missions["forest", 3].obstacles != missions["forest", 7].obstacles
+
+
+def test_scenario_is_flown_with_the_faults_of_the_campaign(tmp_path):
+    text = CAMPAIGN + SCENARIOS.split("\n\n")[0]
+    loss = list(FaultFlights(read_campaign(campaign_file(tmp_path, text))).plans(tmp_path))[2]
+    mission = tomllib.loads(loss.files[loss.mission])
+    assert len(mission["obstacle"]) == 30 and mission["fault"][0]["kind"] == "packet_loss"
+
+
+@pytest.mark.parametrize(
+    ("replaced", "by", "reason"),
+    [
+        ("known = true", "", "known: goes with kind 'field', which needs it"),
+        ('kind = "forest"', 'kind = "forest"\nobstacles = 3', "obstacles: goes with kind 'field', which needs it"),
+        ('name = "forest"', 'name = "short_figure"', "another mission is named 'short_figure'"),
+        ("obstacles = 30", "obstacles = 301", "obstacles"),
+        ('kind = "forest"', 'kind = "wood"', "kind"),
+    ],
+)
+def test_wrong_scenario_is_refused(tmp_path, replaced, by, reason):
+    with pytest.raises(UnusableFile, match=reason):
+        read_campaign(campaign_file(tmp_path, CLEAN.replace(replaced, by)))
+
+
+def test_every_case_of_the_detection_campaign_is_in_a_row():
+    file = read_campaign(ROOT / "missions" / "detection.toml")
+    named = {name for row in file.rows for name in row.faults}
+    assert all({case.name, case_name(case.name, case.severity)} & named for case in file.cases)
+
+
+def test_false_alarms_are_flown_with_0_to_200_obstacles_known_and_detected():
+    file = read_campaign(ROOT / "missions" / "false_alarms.toml")
+    assert [case.name for case in file.cases] == ["no fault"]
+    for count in (10, 50, 100, 200):
+        assert {f"{count} obstacles, known", f"{count} obstacles, detected"} <= file.missions.keys()
+
+
+PAGE = f"""# Faults
+
+<!-- {DETECTION} -->
+old
+<!-- end of {DETECTION} -->
+
+<!-- {FALSE_ALARMS} -->
+<!-- end of {FALSE_ALARMS} -->
+The end.
+"""
+
+
+@pytest.fixture
+def flown(monkeypatch):
+    """Nothing is flown: 10 s into a fault an alarm is raised, without one none, and in the forest a false one."""
+    names = []
+
+    def fly(mission, options, run_dir, worker):
+        names.append(mission.stem)
+        run_dir.mkdir()
+        has_fault = "no-fault" not in mission.stem
+        rows = ["time_s,source,code,severity,text"]
+        rows += ["18.0,vehicle 3,messages_lost,warning,x"] if has_fault else []
+        rows += ["2.0,vehicle 1,innovation_bias,warning,x"] if "forest" in mission.stem else []
+        (run_dir / "alarms.csv").write_text("\n".join([*rows, ""]))
+        faults = [{"number": 1, "kind": "packet_loss", "line": 1, "start": 5.0, "seen": 1, "disturbed": 1,
+                   "occurrences": 1, "activations": [[5.0, None]]}]  # fmt: skip
+        record = {"take_off_s": 3.0, "end_s": 20.0, "faults": faults if has_fault else []}
+        (run_dir / "faults.json").write_text(json.dumps(record))
+        return FlownProcess(0, SUMMARY | {"duration_s": 36.0}, "", 1.0)
+
+    monkeypatch.setattr(engine, "fly_process", fly)
+    return names
+
+
+def made(folder, text):
+    (folder / "page.md").write_text(PAGE)
+    (folder / "clean.toml").write_text(CLEAN)
+    paths = [str(path) for path in (folder / "page.md", campaign_file(folder, text), folder / "clean.toml")]
+    code = main([*paths, "--out", str(folder / "runs"), "--jobs", "2"])
+    return code, (folder / "page.md").read_text()
+
+
+def test_command_writes_both_tables_and_flies_what_is_missing(tmp_path, flown, monkeypatch):
+    monkeypatch.setattr(tables_page, "commit_of", lambda folder: "commit 0123abc")
+    row = '[[row]]\nname = "all of them"\nfaults = ["slow", "loss"]\nmedian = 10.0\nworst = 10.0\n'
+    code, page = made(tmp_path, CAMPAIGN + row)
+    assert code == 0 and len(flown) == 12
+    assert page.startswith("# Faults\n") and page.endswith("The end.\n") and "old" not in page
+    assert page.count("at commit 0123abc:\n\n| f") == 2
+    assert "| all of them | link of all vehicles | 6 | 6 |  |  |  | `messages_lost` | 10 s | 10 s |  |" in page
+    assert "| forest | 2 | 0.020 | 2 | 2 | 100.0 | 314.8 |" in page
+    assert "| all | 6 | 0.060 | 2 | 2 | 33.3 | 104.9 |" in page
+    assert made(tmp_path, CAMPAIGN + row) == (0, page) and len(flown) == 12
+    # Later than the limit of its row.
+    code, page = made(tmp_path, CAMPAIGN + row.replace("worst = 10.0", "worst = 9.9"))
+    assert code == 1 and len(flown) == 12 and "| all of them |" in page
+
+
+def test_page_without_a_place_for_a_table_is_refused():
+    assert renewed(PAGE, DETECTION, "new\n").count("new") == 1
+    with pytest.raises(UnusableInput, match="no place for the table of detection"):
+        renewed(PAGE.replace("<!-- end of table of d", "<!-- end of table of ca"), DETECTION, "new\n")
