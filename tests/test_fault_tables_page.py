@@ -53,7 +53,7 @@ def test_field_keeps_clear_of_the_path(known):
     obstacles = field(5, 200, known, system)
     assert len(obstacles) == 200 and {o.known for o in obstacles} == {known}
     assert [o.shape.kind for o in obstacles[:4]] == ["sphere", "pole", "sphere", "pole"]
-    path = Schedule(Mission("", Path(), 1, system, fields.FIGURE)).positions
+    path = Schedule(Mission("", Path(), 1, system, fields.figure(30.0))).positions
     space = FreeSpace([(o.shape, o.position) for o in obstacles], BoundingCylinder.of(system.parameters()), 0, 0, 100)
     assert space.clearance(path).min() > fields.CLEARANCE - 0.01
     places = np.array([o.position[:2] for o in obstacles])
@@ -91,17 +91,20 @@ def test_scenarios_of_a_campaign_are_drawn_for_each_seed(tmp_path):
 
 
 def test_scenario_is_flown_with_the_faults_of_the_campaign(tmp_path):
-    text = CAMPAIGN + SCENARIOS.split("\n\n")[0]
-    loss = list(FaultFlights(read_campaign(campaign_file(tmp_path, text))).plans(tmp_path))[2]
-    mission = tomllib.loads(loss.files[loss.mission])
+    text = CAMPAIGN + SCENARIOS.split("\n\n")[0] + "\nduration = 40.0\nseed_count = 1\n"
+    plans = list(FaultFlights(read_campaign(campaign_file(tmp_path, text))).plans(tmp_path))
+    assert [plan.labels["seed"] for plan in plans] == 3 * [3, 7, 3]
+    mission = tomllib.loads(plans[2].files[plans[2].mission])
+    assert mission["reference"]["duration"] == 40.0
     assert len(mission["obstacle"]) == 30 and mission["fault"][0]["kind"] == "packet_loss"
 
 
 @pytest.mark.parametrize(
     ("replaced", "by", "reason"),
     [
-        ("known = true", "", "known: goes with kind 'field', which needs it"),
-        ('kind = "forest"', 'kind = "forest"\nobstacles = 3', "obstacles: goes with kind 'field', which needs it"),
+        ("obstacles = 30", "", "kind 'field' needs a number of obstacles"),
+        ('kind = "forest"', 'kind = "forest"\nobstacles = 3', "obstacles: is of kind 'field' only"),
+        ('kind = "forest"', 'kind = "forest"\nknown = false', "known: is of kind 'field' only"),
         ('name = "forest"', 'name = "short_figure"', "another mission is named 'short_figure'"),
         ("obstacles = 30", "obstacles = 301", "obstacles"),
         ('kind = "forest"', 'kind = "wood"', "kind"),

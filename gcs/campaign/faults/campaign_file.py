@@ -163,9 +163,11 @@ def _missions(file: TomlFile, tables: CampaignTables) -> tuple[dict[str, BaseMis
     for i, table in enumerate(tables.scenario):
         if table.name in missions:
             problems.append(file.problem(("scenario", i, "name"), f"another mission is named '{table.name}'"))
-        for key in ("obstacles", "known"):
-            if (getattr(table, key) is None) == (table.kind == FIELD):
-                problems.append(file.problem(("scenario", i, key), f"goes with kind '{FIELD}', which needs it"))
+        for key in ("obstacles", "known", "duration"):
+            if table.kind != FIELD and getattr(table, key) is not None:
+                problems.append(file.problem(("scenario", i, key), f"is of kind '{FIELD}' only"))
+            elif table.kind == FIELD and getattr(table, key) is None and key == "obstacles":
+                problems.append(file.problem(("scenario", i), f"kind '{FIELD}' needs a number of obstacles"))
         missions[table.name] = DrawnMission.of(table)
     return missions, problems
 

@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from gcs.campaign.faults.base_mission import BaseMission
-from gcs.campaign.scenarios.field import FIELD, MOST, field_text
+from gcs.campaign.scenarios.field import FIELD, LAP, MOST, field_text
 from gcs.campaign.scenarios.generator import KINDS, generate
 from gcs.config import read_system
 from gcs.config.validate import strict
@@ -19,18 +19,23 @@ from gcs.mission.model import Fault, Limits, Name
 @strict
 @dataclass(frozen=True)
 class ScenarioTable:
-    """``[[scenario]]``: a mission of one of :data:`KINDS`, or a field of ``obstacles``, all ``known`` or none."""
+    """``[[scenario]]``: a mission of one of :data:`KINDS`, or a field of ``obstacles``, all ``known`` or none.
+
+    ``duration`` (s) is that of the figure eight in a field; ``seed_count``: flown with so many of the campaign's seeds.
+    """
 
     name: Name
     kind: Literal[FIELD, *KINDS]  # type: ignore[valid-type]
-    obstacles: Annotated[int, Field(ge=1, le=MOST)] | None = None
+    obstacles: Annotated[int, Field(ge=0, le=MOST)] | None = None
     known: bool | None = None
+    duration: Annotated[float, Field(gt=0.0, le=3000.0)] | None = None
+    seed_count: Annotated[int, Field(ge=1)] | None = None
 
     def text(self, seed: int) -> str:
         """Return the mission of a seed: of those that are drawn the first that can be passed."""
         system = read_system(None)
         if self.kind == FIELD:
-            return field_text(seed, self.obstacles or 0, bool(self.known), system)
+            return field_text(seed, self.obstacles or 0, bool(self.known), self.duration or LAP, system)
         for number in range(1, 100):
             scenario = generate(seed, number, self.kind, system)
             if scenario.passage is None or scenario.passage.verdict == "passable":
@@ -43,6 +48,11 @@ class DrawnMission(BaseMission):
     """A mission that is drawn for each seed."""
 
     table: ScenarioTable
+
+    @property
+    def seed_count(self) -> int | None:
+        """The number of a campaign's seeds that it is flown with."""
+        return self.table.seed_count
 
     @classmethod
     def of(cls, table: ScenarioTable) -> "DrawnMission":

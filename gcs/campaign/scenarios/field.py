@@ -17,7 +17,10 @@ from idc_controller.geometry.shape import Shape
 from idc_controller.geometry.sphere import Sphere
 
 FIELD = "field"
-FIGURE = Lissajous((6.0, 3.0), 0.5, 3.0, 20.0)
+AMPLITUDE, ANGULAR_FREQUENCY, ALTITUDE = (6.0, 3.0), 0.5, 3.0
+"""Of the figure eight (m, rad/s, m)."""
+LAP = 2.0 * math.pi / ANGULAR_FREQUENCY
+"""s, in which it is flown once."""
 AREA = (14.0, 11.0)
 """Half edges north and east (m)."""
 CLEARANCE = 1.6
@@ -33,13 +36,18 @@ MOST_REJECTED = 300
 """Places in succession at which an obstacle cannot stand."""
 
 
+def figure(duration: float) -> Lissajous:
+    """Return the figure eight, flown for ``duration`` (s)."""
+    return Lissajous(AMPLITUDE, ANGULAR_FREQUENCY, ALTITUDE, duration)
+
+
 def field(seed: int, count: int, known: bool, system: SystemConfig) -> list[Obstacle]:
-    """Return ``count`` obstacles about :data:`FIGURE`, spheres and poles in turn, all on the map or none.
+    """Return ``count`` obstacles about the figure eight, spheres and poles in turn, all on the map or none.
 
     Raises :class:`GcsError` where there is no place for as many.
     """
     random = np.random.default_rng([seed, count])
-    path = Schedule(Mission("", Path(), 1, system, FIGURE)).positions[::10]
+    path = Schedule(Mission("", Path(), 1, system, figure(LAP))).positions[::10]
     formation = BoundingCylinder.of(system.parameters())
     obstacles: list[Obstacle] = []
     taken = np.empty((0, 3))  # north, east, radius
@@ -72,6 +80,6 @@ def _uniform(random: np.random.Generator, low: float, high: float) -> float:
     return round(float(random.uniform(low, high)), 3)
 
 
-def field_text(seed: int, count: int, known: bool, system: SystemConfig) -> str:
-    """Return the mission file of a field."""
-    return mission_text(FIELD, seed, FIGURE, field(seed, count, known, system), Limits(clearance=1.0))
+def field_text(seed: int, count: int, known: bool, duration: float, system: SystemConfig) -> str:
+    """Return the mission file of a field, past which the figure eight is flown for ``duration`` (s)."""
+    return mission_text(FIELD, seed, figure(duration), field(seed, count, known, system), Limits(clearance=1.0))
