@@ -38,7 +38,7 @@ def test_rates_have_wilson_intervals(tmp_path):
 def test_csv_and_parquet_agree(tmp_path):
     made = results(tmp_path, 2, 1)
     made.append(dataclasses.replace(made[0], clearance_min_m=0.25, contacts=None, outcome=Outcome.FAILED, level=2))
-    _, [table, parquet, rates, _] = report("a test", made, tmp_path)
+    _, [table, parquet, rates, *_] = report("a test", made, tmp_path)
     frame = pandas.read_parquet(parquet)
     assert tuple(frame.columns) == COLUMNS and len(frame) == 4
     assert frame["clearance_min_m"].isna().tolist() == [True, True, True, False]

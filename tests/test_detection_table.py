@@ -11,6 +11,7 @@ from gcs.campaign.faults.campaign_file import read_campaign
 from gcs.campaign.faults.cases import CLEAN
 from gcs.campaign.faults.detection_table import DetectionRow, detections, detections_markdown, seconds
 from gcs.campaign.faults.false_alarms import false_alarms, false_alarms_markdown, upper_bound
+from gcs.campaign.faults.judgement import clean_time
 from gcs.campaign.faults.plans import FaultFlights
 from gcs.campaign.faults.sources import (
     AMBIGUOUS,
@@ -154,6 +155,7 @@ def test_campaign_judges_alarms_since_the_fault(tmp_path):
     result = campaign.result_of(plan, FlownProcess(0, SUMMARY, "", 1.0))
     assert (result.true_source, result.isolation, result.named_source) == ("link of vehicle 2", RIGHT, "")
     assert (result.detected_s, result.detected_as, result.false_alarms) == (0.25, "messages_lost, vehicle 2", 1)
+    assert result.clean_s == 8.0
     # Without a record it is not known.
     result = campaign.result_of(other, FlownProcess(1, {}, "", 1.0))
     assert (result.true_source, result.isolation) == ("link of vehicle 2", "")
@@ -252,19 +254,25 @@ def test_upper_bound_without_exposure_is_infinite():
 
 def test_false_alarms_per_hour_by_mission():
     results = [
-        Result(fault=CLEAN, mission="hover", duration_s=1800.0, false_alarms=0),
-        Result(fault=CLEAN, mission="hover", duration_s=900.0, false_alarms=0),
-        Result(fault=CLEAN, mission="forest", duration_s=900.0, false_alarms=5),
-        Result(fault=CLEAN, mission="forest", duration_s=None, false_alarms=None),
-        Result(fault="bias", mission="hover", duration_s=900.0, false_alarms=1),
+        Result(fault="bias", mission="hover", duration_s=2000.0, clean_s=450.0, false_alarms=1),
+        Result(fault=CLEAN, mission="hover", clean_s=1800.0, false_alarms=0),
+        Result(fault=CLEAN, mission="hover", clean_s=900.0, false_alarms=0),
+        Result(fault=CLEAN, mission="forest", clean_s=450.0, false_alarms=4),
+        Result(fault=CLEAN, mission="forest", clean_s=None, false_alarms=None),
     ]
-    hover, forest, both = false_alarms(results)
+    hover, forest, until, all_of_them = false_alarms(results)
     assert (hover.mission, hover.flights, hover.hours, hover.alarms, hover.per_hour) == ("hover", 2, 0.75, 0, 0.0)
     assert hover.per_hour_bound == pytest.approx(2.9957 / 0.75, rel=1e-4)  # ln 20
-    assert (forest.alarms, forest.flights_with_alarms, forest.per_hour, forest.not_counted) == (5, 1, 20.0, 1)
-    assert (both.flights, both.hours, both.alarms, both.per_hour) == (3, 1.0, 5, 5.0)
-    lines = false_alarms_markdown([hover, forest, both]).splitlines()
-    assert lines[2] == "| hover | 2 | 0.750 | 0 | 0 | 0.0 | 4.0 |" and lines[4].startswith(
-        "| all | 3 (1 without a record) | 1.000 | 5 | 1 |"
-    )
-    assert "upper 95 % bound" in lines[0]
+    assert (forest.alarms, forest.flights_with_alarms, forest.per_hour, forest.not_counted) == (4, 1, 32.0, 1)
+    assert (until.mission, until.hours, until.alarms) == ("hover, until the fault", 0.125, 1)
+    assert (all_of_them.flights, all_of_them.hours, all_of_them.alarms, all_of_them.per_hour) == (4, 1.0, 5, 5.0)
+    lines = false_alarms_markdown([hover, all_of_them]).splitlines()
+    assert "upper 95 % bound" in lines[0] and lines[2] == "| hover | 2 | 0.750 | 0 | 0 | 0.0 | 4.0 |"
+    assert lines[3].startswith("| all | 4 (1 without a record) | 1.000 | 5 | 2 |")
+
+
+@pytest.mark.parametrize(
+    ("duration", "first", "time"), [(30.0, 12.3456, 12.346), (30.0, None, 30.0), (10.0, 12.0, 10.0), (None, 12.0, None)]
+)
+def test_clean_time_ends_with_the_first_fault(duration, first, time):
+    assert clean_time({} if duration is None else {"duration_s": duration}, first) == time

@@ -81,6 +81,8 @@ class Result:
     detected_s: float | None = None
     detected_as: str = ""
     false_alarms: int | None = None
+    clean_s: float | None = None
+    """Time before any fault, in which those were raised; without a fault that of the flight."""
     true_source: str = ""
     isolation: str = ""
     """Whether alarms name the true source (see `gcs.campaign.faults.sources`)."""

@@ -1,4 +1,4 @@
-"""False alarms per flight hour, of flights without a fault."""
+"""False alarms per flight hour: of flights without a fault, and of others until their first."""
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, fields
@@ -16,7 +16,7 @@ ALL = "all"
 
 @dataclass(frozen=True)
 class FalseAlarms:
-    """The flights of one mission without a fault: ``alarms`` in ``flights_with_alarms`` of them.
+    """Flights of one mission: before any fault ``alarms`` in ``flights_with_alarms`` of them, in ``hours``.
 
     ``per_hour_bound``: upper bound of the rate at :data:`CONFIDENCE`.
     """
@@ -29,23 +29,23 @@ class FalseAlarms:
     per_hour: float
     per_hour_bound: float
     not_counted: int
-    """Flights without a record of their alarms, or of their duration."""
+    """Flights without a record of their alarms or of their duration."""
 
 
 def false_alarms(results: Sequence[Result]) -> list[FalseAlarms]:
-    """Return a row for each mission that was flown without a fault, then one of all of them."""
+    """Return a row for each mission, flown without a fault or until the first, then one of all of them."""
     groups: dict[str, list[Result]] = {}
-    for result in results:
-        if result.fault == CLEAN:
-            groups.setdefault(result.mission, []).append(result)
+    for result in sorted(results, key=lambda result: result.fault != CLEAN):
+        what = result.mission if result.fault == CLEAN else f"{result.mission}, until the fault"
+        groups.setdefault(what, []).append(result)
     if len(groups) > 1:
         groups[ALL] = [result for group in groups.values() for result in group]
     return [_row(mission, group) for mission, group in groups.items()]
 
 
 def _row(mission: str, group: Sequence[Result]) -> FalseAlarms:
-    known = [(r.duration_s, r.false_alarms) for r in group if r.duration_s and r.false_alarms is not None]
-    hours = sum(duration for duration, _ in known) / 3600.0
+    known = [(r.clean_s, r.false_alarms) for r in group if r.clean_s is not None and r.false_alarms is not None]
+    hours = sum(time for time, _ in known) / 3600.0
     alarms = sum(number for _, number in known)
     rate = alarms / hours if hours else 0.0
     with_alarms = sum(number > 0 for _, number in known)
@@ -71,7 +71,7 @@ def false_alarms_markdown(rows: Sequence[FalseAlarms]) -> str:
     """Return the rows as a table in Markdown."""
     bound = f"upper {CONFIDENCE:.0%} bound".replace("%", " %")
     lines = [
-        f"| flights without a fault | flights | hours | false alarms | in flights | per hour | {bound} |",
+        f"| without a fault | flights | hours | false alarms | in flights | per hour | {bound} |",
         "|---|---|---|---|---|---|---|",
     ]
     for row in rows:

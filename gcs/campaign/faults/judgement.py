@@ -26,8 +26,8 @@ COLUMNS = (
     "number", "name", "fault", "kind", "level", "severity", "mission", "seed", "outcome", "passed", "within_limits",
     "failures", "reason", "exit_code", "clearance_min_m", "tilt_max_deg", "uav_separation_min_m", "contacts", "landed",
     "touchdown_mps", "end_tilt_deg", "position_rmse_m", "duration_s", "stop_s", "team_stop_s", "team_spread_s",
-    "detected_s", "detected_as", "false_alarms", "true_source", "isolation", "named_source", "notes", "wall_s",
-    "run_dir", "replay", "format",
+    "detected_s", "detected_as", "false_alarms", "clean_s", "true_source", "isolation", "named_source", "notes",
+    "wall_s", "run_dir", "replay", "format",
 )  # fmt: skip
 
 
@@ -65,6 +65,7 @@ def judge(case: Case, flown: FlownProcess, run_dir: Path) -> dict[str, Any]:
         "detected_s": detected.after,
         "detected_as": detected.alarm,
         "false_alarms": detected.false,
+        "clean_s": clean_time(flown.summary, first_start(run_dir)),
         "isolation": isolated.verdict,
         "named_source": isolated.named,
         "notes": "; ".join(fault_notes(run_dir)),
@@ -109,6 +110,12 @@ def first_start(run_dir: Path, count: int | None = None) -> float | None:
         return float(record["take_off_s"] + min(fault["activations"][0][0] for fault in faults if fault["activations"]))
     except (OSError, ValueError, KeyError, TypeError, IndexError):
         return None
+
+
+def clean_time(summary: Mapping[str, Any], first: float | None) -> float | None:
+    """Return the time until ``first``, the :func:`first_start` of a flight, or until its end if none started (s)."""
+    duration = summary.get("duration_s")
+    return duration if duration is None or first is None else round(min(first, duration), 3)
 
 
 def stop_time(summary: Mapping[str, Any], begin: float | None) -> float | None:

@@ -43,7 +43,7 @@ def report(
     ]
     if rows:
         files.append(write_detections(out / "detection.csv", rows))
-    if clear:
+    if any(result.clean_s is not None for result in results):
         files.append(write_false_alarms(out / "false_alarms.csv", clear))
     parts: list[RenderableType] = [_rates_table(rates, results)]
     parts.append(Text(f"Rates with their {100 * CONFIDENCE:.0f} % intervals (Wilson); safe: set down without contact."))

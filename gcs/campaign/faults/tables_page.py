@@ -59,7 +59,8 @@ def main(arguments: Sequence[str]) -> int:
             results += campaign.results
             problems += flights.problems(campaign.results)
             flights.report(campaign.results, out)
-        command = " ".join(["python -m gcs.campaign.faults.tables_page", *map(str, (options.page, *options.campaigns))])
+        files = " ".join(map(_shown, (options.page, *options.campaigns)))
+        command = f"python -m gcs.campaign.faults.tables_page {files}"
         page = renewed(page, DETECTION, made_by(command, commit, detections_markdown(rows)))
         page = renewed(page, FALSE_ALARMS, made_by(command, commit, false_alarms_markdown(false_alarms(results))))
         options.page.write_text(page, encoding="utf-8")
@@ -86,6 +87,12 @@ def renewed(page: str, name: str, text: str) -> str:
 def made_by(command: str, commit: str, table: str) -> str:
     """Return a table below the command that made it."""
     return f"\nMade by `{command}` at {commit}:\n\n{table}\n"
+
+
+def _shown(path: Path) -> str:
+    """Return a file as it is named in the project's folder: the page has no path of a machine."""
+    here = Path.cwd()
+    return str(path.absolute().relative_to(here)) if path.absolute().is_relative_to(here) else path.name
 
 
 def commit_of(folder: Path) -> str:
