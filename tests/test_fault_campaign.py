@@ -190,6 +190,7 @@ def test_campaign_killed_twice_completes_without_flying_twice(tmp_path):
     assert "6 of 6 flights within their limits" in again.stdout
     frame = pandas.read_parquet(out / "results.parquet")
     assert frame["number"].tolist() == [1, 2, 3, 4, 5, 6] and (frame["notes"] == "").all()
+    assert (frame["true_source"] == "link of all vehicles").all() and (frame["isolation"] == "right").all()
     reported += [line.partition(":")[0] for line in again.stdout.splitlines() if line.startswith("loss-")]
     # One that had ended when the campaign was killed, but had not been reported yet, is not reported later.
     assert len(reported) == len(set(reported)) >= 4 and set(reported) <= set(frame["name"])

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from small_campaign import CAMPAIGN, SUMMARY, campaign_file
 
+from gcs.app import cli
 from gcs.campaign import engine
 from gcs.campaign.faults import tables_page
 from gcs.campaign.faults.campaign_file import read_campaign
@@ -186,6 +187,21 @@ def test_command_writes_both_tables_and_flies_what_is_missing(tmp_path, flown, m
     # Later than the limit of its row.
     code, page = made(tmp_path, CAMPAIGN + row.replace("worst = 10.0", "worst = 9.9"))
     assert code == 1 and len(flown) == 12 and "| all of them |" in page
+
+
+def test_campaign_fails_by_a_row_beyond_its_limit(tmp_path, flown, capsys):
+    row = '[[row]]\nname = "slow link"\nfaults = ["slow"]\nworst = 9.9\n'
+    command = ["faults", str(campaign_file(tmp_path, CAMPAIGN + row)), "--out", str(tmp_path / "out")]
+    assert cli.main(command) == 1
+    said = capsys.readouterr().out
+    assert "6 of 6 flights within their limits" in said
+    assert "slow link: detected within 10 s (worst; limit 9.9 s)" in said
+    campaign_file(tmp_path, CAMPAIGN + row.replace("9.9", "10.0"))
+    assert cli.main(command) == 0 and len(flown) == 6
+    [header, *rows] = (tmp_path / "out" / "detection.csv").read_text().splitlines()
+    assert header.startswith("fault,true_source,flights,right,") and [r.split(",")[0] for r in rows] == [
+        "slow link", "loss",
+    ]  # fmt: skip
 
 
 def test_page_without_a_place_for_a_table_is_refused():

@@ -30,6 +30,7 @@ NAMED_PARTS: dict[str, tuple[str, ...]] = {
     "range_sensor_displaced": (RANGE_SENSOR,),
     "link_latency": (LINK,),
     "link_jitter": (LINK,),
+    "link_congestion": (LINK,),
     "clock_error": (CLOCK,),
     "messages_lost": (LINK,),
     "messages_reordered": (LINK,),
@@ -48,8 +49,10 @@ NAMED_PARTS: dict[str, tuple[str, ...]] = {
     "covariance_reset": (FORCE,),
     "disturbance_force": (FORCE,),
     "process_noise": (FORCE,),
+    "plan_deviation_exceeded": (FORCE,),
     "vehicle_map_offset": (NAVIGATION, RANGE_SENSOR),
     # failsafes
+    "duplicate_system_id": (SYSTEM_ID,),
     "states_unknown": (NAVIGATION,),
     "all_telemetry_lost": (LINK,),
     "telemetry_lost": (LINK,),
