@@ -155,7 +155,7 @@ def test_campaign_judges_alarms_since_the_fault(tmp_path):
     result = campaign.result_of(plan, FlownProcess(0, SUMMARY, "", 1.0))
     assert (result.true_source, result.isolation, result.named_source) == ("link of vehicle 2", RIGHT, "")
     assert (result.detected_s, result.detected_as, result.false_alarms) == (0.25, "messages_lost, vehicle 2", 1)
-    assert result.clean_s == 8.0
+    assert (result.clean_s, result.false_codes) == (8.0, "clock_error")
     # Without a record it is not known.
     result = campaign.result_of(other, FlownProcess(1, {}, "", 1.0))
     assert (result.true_source, result.isolation) == ("link of vehicle 2", "")
@@ -254,10 +254,10 @@ def test_upper_bound_without_exposure_is_infinite():
 
 def test_false_alarms_per_hour_by_mission():
     results = [
-        Result(fault="bias", mission="hover", duration_s=2000.0, clean_s=450.0, false_alarms=1),
+        Result(fault="bias", mission="hover", duration_s=2000.0, clean_s=450.0, false_alarms=1, false_codes="a"),
         Result(fault=CLEAN, mission="hover", clean_s=1800.0, false_alarms=0),
         Result(fault=CLEAN, mission="hover", clean_s=900.0, false_alarms=0),
-        Result(fault=CLEAN, mission="forest", clean_s=450.0, false_alarms=4),
+        Result(fault=CLEAN, mission="forest", clean_s=450.0, false_alarms=4, false_codes="a b b b"),
         Result(fault=CLEAN, mission="forest", clean_s=None, false_alarms=None),
     ]
     hover, forest, until, all_of_them = false_alarms(results)
@@ -267,8 +267,8 @@ def test_false_alarms_per_hour_by_mission():
     assert (until.mission, until.hours, until.alarms) == ("hover, until the fault", 0.125, 1)
     assert (all_of_them.flights, all_of_them.hours, all_of_them.alarms, all_of_them.per_hour) == (4, 1.0, 5, 5.0)
     lines = false_alarms_markdown([hover, all_of_them]).splitlines()
-    assert "upper 95 % bound" in lines[0] and lines[2] == "| hover | 2 | 0.750 | 0 | 0 | 0.0 | 4.0 |"
-    assert lines[3].startswith("| all | 4 (1 without a record) | 1.000 | 5 | 2 |")
+    assert "upper 95 % bound" in lines[0] and lines[2] == "| hover | 2 | 0.750 | 0 | 0 | 0.0 | 4.0 |  |"
+    assert lines[3] == "| all | 4 (1 without a record) | 1.000 | 5 | 2 | 5.0 | 10.5 | 3 b, 2 a |"
 
 
 @pytest.mark.parametrize(

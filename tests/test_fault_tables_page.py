@@ -180,9 +180,9 @@ def test_command_writes_both_tables_and_flies_what_is_missing(tmp_path, flown, m
     assert page.startswith("# Faults\n") and page.endswith("The end.\n") and "old" not in page
     assert page.count("page.md campaign.toml clean.toml` at commit 0123abc:\n\n| ") == 2
     assert "| all of them | link of all vehicles | 6 | 6 |  |  |  | `messages_lost` | 10 s | 10 s |  |" in page
-    assert "| forest | 2 | 0.020 | 2 | 2 | 100.0 | 314.8 |" in page
-    assert "| short_figure, until the fault | 6 | 0.013 | 0 | 0 | 0.0 | 224.7 |" in page  # 8 s each
-    assert "| all | 12 | 0.073 | 2 | 2 | 27.3 | 85.9 |" in page
+    assert "| forest | 2 | 0.020 | 2 | 2 | 100.0 | 314.8 | 2 innovation_bias |" in page
+    assert "| short_figure, until the fault | 6 | 0.013 | 0 | 0 | 0.0 | 224.7 |  |" in page  # 8 s each
+    assert "| all | 12 | 0.073 | 2 | 2 | 27.3 | 85.9 | 2 innovation_bias |" in page
     assert made(tmp_path, CAMPAIGN + row) == (0, page) and len(flown) == 12
     # Later than the limit of its row.
     code, page = made(tmp_path, CAMPAIGN + row.replace("worst = 10.0", "worst = 9.9"))

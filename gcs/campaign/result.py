@@ -81,6 +81,7 @@ class Result:
     detected_s: float | None = None
     detected_as: str = ""
     false_alarms: int | None = None
+    false_codes: str = ""
     clean_s: float | None = None
     """Time before any fault, in which those were raised; without a fault that of the flight."""
     true_source: str = ""

@@ -1,5 +1,6 @@
 """False alarms per flight hour: of flights without a fault, and of others until their first."""
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
@@ -26,6 +27,7 @@ class FalseAlarms:
     hours: float
     alarms: int
     flights_with_alarms: int
+    codes: str
     per_hour: float
     per_hour_bound: float
     not_counted: int
@@ -50,7 +52,9 @@ def _row(mission: str, group: Sequence[Result]) -> FalseAlarms:
     rate = alarms / hours if hours else 0.0
     with_alarms = sum(number > 0 for _, number in known)
     bound = upper_bound(alarms, hours)
-    return FalseAlarms(mission, len(known), hours, alarms, with_alarms, rate, bound, len(group) - len(known))
+    codes = Counter(code for result in group for code in result.false_codes.split())
+    named = ", ".join(f"{number} {code}" for code, number in codes.most_common())
+    return FalseAlarms(mission, len(known), hours, alarms, with_alarms, named, rate, bound, len(group) - len(known))
 
 
 def upper_bound(events: int, exposure: float) -> float:
@@ -71,13 +75,13 @@ def false_alarms_markdown(rows: Sequence[FalseAlarms]) -> str:
     """Return the rows as a table in Markdown."""
     bound = f"upper {CONFIDENCE:.0%} bound".replace("%", " %")
     lines = [
-        f"| without a fault | flights | hours | false alarms | in flights | per hour | {bound} |",
-        "|---|---|---|---|---|---|---|",
+        f"| without a fault | flights | hours | false alarms | in flights | per hour | {bound} | codes |",
+        "|---|---|---|---|---|---|---|---|",
     ]
     for row in rows:
         flights = str(row.flights) + (f" ({row.not_counted} without a record)" if row.not_counted else "")
         lines.append(
             f"| {row.mission} | {flights} | {row.hours:.3f} | {row.alarms} | {row.flights_with_alarms} "
-            f"| {row.per_hour:.1f} | {row.per_hour_bound:.1f} |"
+            f"| {row.per_hour:.1f} | {row.per_hour_bound:.1f} | {row.codes} |"
         )
     return "\n".join(lines) + "\n"

@@ -26,8 +26,8 @@ COLUMNS = (
     "number", "name", "fault", "kind", "level", "severity", "mission", "seed", "outcome", "passed", "within_limits",
     "failures", "reason", "exit_code", "clearance_min_m", "tilt_max_deg", "uav_separation_min_m", "contacts", "landed",
     "touchdown_mps", "end_tilt_deg", "position_rmse_m", "duration_s", "stop_s", "team_stop_s", "team_spread_s",
-    "detected_s", "detected_as", "false_alarms", "clean_s", "true_source", "isolation", "named_source", "notes",
-    "wall_s", "run_dir", "replay", "format",
+    "detected_s", "detected_as", "false_alarms", "false_codes", "clean_s", "true_source", "isolation", "named_source",
+    "notes", "wall_s", "run_dir", "replay", "format",
 )  # fmt: skip
 
 
@@ -35,12 +35,14 @@ COLUMNS = (
 class Detection:
     """Time (s) from the start of the case's first fault to the first alarm since, and that alarm; None: no alarm.
 
-    ``false``: number of alarms before the flight's first fault. ``alarms``: all since the start of the case's.
+    ``false``: number of alarms before the flight's first fault, with their codes. ``alarms``: all since the start of
+    the case's.
     """
 
     after: float | None
     alarm: str
     false: int | None
+    false_codes: str = field(default="", compare=False)
     alarms: tuple[AlarmRow, ...] = field(default=(), compare=False)
 
 
@@ -65,6 +67,7 @@ def judge(case: Case, flown: FlownProcess, run_dir: Path) -> dict[str, Any]:
         "detected_s": detected.after,
         "detected_as": detected.alarm,
         "false_alarms": detected.false,
+        "false_codes": detected.false_codes,
         "clean_s": clean_time(flown.summary, first_start(run_dir)),
         "isolation": isolated.verdict,
         "named_source": isolated.named,
@@ -137,13 +140,14 @@ def detection(run_dir: Path, begin: float | None) -> Detection:
     try:
         alarms = read_text_table(run_dir / ALARMS)
         times = [float(time) for time in alarms["time_s"]]
-        rows = list(zip(times, alarms["source"], alarms["code"], strict=True))
+        rows = [*zip(times, alarms["source"], alarms["code"], strict=True)]
     except (UnusableInput, ValueError, KeyError):
         return Detection(None, "", None)
     first = first_start(run_dir)
-    false = sum(first is None or time < first for time in times)
+    codes = [code for time, _, code in rows if first is None or time < first]
+    false = len(codes), " ".join(codes)
     since = () if begin is None else tuple(AlarmRow(round(t - begin, 3), *names) for t, *names in rows if t >= begin)
     if not since:
-        return Detection(None, "", false)
+        return Detection(None, "", *false)
     at_first = min(since, key=lambda alarm: alarm.after)
-    return Detection(at_first.after, f"{at_first.code}, {at_first.source}", false, since)
+    return Detection(at_first.after, f"{at_first.code}, {at_first.source}", *false, since)
