@@ -1,7 +1,7 @@
 # The first command on a fresh clone may be any of these; the first one installs into .venv.
 
 MISSION ?= missions/figure_eight_spheres.toml
-# The commit that benchmark-check compares with.
+# The commit that golden and benchmark-check compare with, and the flights of golden (default: all).
 BASE ?= HEAD~1
 # The OpenBLAS kernels of test-numerics, and the tests that it runs.
 KERNELS ?= Sandybridge Nehalem
@@ -17,7 +17,7 @@ export OPENBLAS_NUM_THREADS := 1
 unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: help install fly test test-fast test-lowest test-numerics mutants golden golden-renew
-.PHONY: benchmark benchmark-parts benchmark-campaign benchmark-check docs clean
+.PHONY: anew benchmark benchmark-parts benchmark-campaign benchmark-check docs clean
 
 help:
 	@echo "make fly          fly $(MISSION) with a simulated swarm (MISSION=... for another one)"
@@ -26,8 +26,8 @@ help:
 	@echo "make test-lowest  some tests and a flight with the lowest versions that pyproject.toml allows"
 	@echo "make test-numerics  tests of linear algebra and a flight with other OpenBLAS kernels (KERNELS='$(KERNELS)')"
 	@echo "make mutants      see whether the fast tests notice changes of the flight path (MUTANTS='--number 60 --seed 1')"
-	@echo "make golden       compare short flights, to the byte, with tests/golden/checksums.json"
-	@echo "make golden-renew write these checksums anew"
+	@echo "make golden       compare short flights, to the byte, with those of the commit BASE ($(BASE)) and with checksums"
+	@echo "make golden-renew write the checksums anew"
 	@echo "make benchmark    the speed of flights relative to gym-pybullet-drones; adds to the history"
 	@echo "make benchmark-check  compare the CPU cost of flights with that of the commit BASE ($(BASE))"
 	@echo "make benchmark-campaign  throughput of parallel flights against a single one's"
@@ -67,7 +67,7 @@ mutants: $(COMPILED)
 	$(VENV)/bin/python tests/mutation/mutants.py $(MUTANTS)
 
 golden: $(COMPILED)
-	$(VENV)/bin/python tests/golden/golden.py
+	$(VENV)/bin/python tests/golden/golden.py --base $(BASE) $(FLIGHTS)
 
 golden-renew: $(COMPILED)
 	$(VENV)/bin/python tests/golden/golden.py --renew
@@ -93,10 +93,23 @@ docs: $(INSTALLED)
 
 install: $(COMPILED)
 
+# A PYTHON that is named is the one, or none is: another .venv than its own is made anew.
+PYTHONS := $(or $(PYTHON),python3.11 python3 python3.12 python3.13 python)
+USABLE := import sys, venv, ensurepip; sys.version_info >= (3, 11) or sys.exit(1); print(sys.base_prefix, sys.version)
+ifdef PYTHON
+NAMED := $(shell $(PYTHON) -c '$(USABLE)' 2>/dev/null)
+ifeq ($(NAMED),)
+$(error PYTHON=$(PYTHON) is no Python 3.11 or newer with venv)
+endif
+ifneq ($(NAMED),$(shell $(VENV)/bin/python -c '$(USABLE)' 2>/dev/null))
+ANEW := anew
+endif
+endif
+
 # Without build isolation nothing is fetched that constraints.txt does not name.
-$(INSTALLED): pyproject.toml constraints.txt
-	@for python in $(PYTHON) python3.11 python3 python3.12 python3.13 python; do \
-		if $$python -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; then \
+$(INSTALLED): pyproject.toml constraints.txt $(ANEW)
+	@for python in $(PYTHONS); do \
+		if $$python -c '$(USABLE)' >/dev/null 2>&1; then \
 			echo "Installing into $(VENV) with $$($$python --version) (once, two to three minutes)"; \
 			exec $$python -m venv --clear $(VENV); \
 		fi; \
@@ -112,6 +125,8 @@ $(INSTALLED): pyproject.toml constraints.txt
 $(COMPILED): $(INSTALLED) $(shell find $(PACKAGES) -name '*.py')
 	@$(VENV)/bin/python -m vehicle_sim.app.compile_kernels
 	@touch $@
+
+anew:
 
 clean:
 	rm -rf $(VENV) build *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis
