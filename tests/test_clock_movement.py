@@ -12,6 +12,7 @@ from gcs.flight.clock_movement import ClockMovement
 from gcs.flight.detectors import MonitorAlarm
 from gcs.mavlink.clock import RemoteClock
 from gcs.mavlink.clock_bounds import OffsetBounds
+from gcs.mavlink.settings import ClockSettings
 
 LIMIT = DEFAULTS.monitor.clock_error
 WRAP = 2**32 * 1e-3
@@ -240,13 +241,14 @@ def test_contradiction_is_signed_and_ends_with_the_window():
         assert movement.contradiction(2.0 + DEFAULTS.monitor.clock_window) == 0.0
 
 
-def test_bounds_are_handed_over_once_and_from_the_first_answer_on():
+def test_bounds_are_handed_over_once_and_only_when_timesync_has_been_heard():
     clock = RemoteClock()
-    clock.add_stamp(14.0, 0.0, in_order=True)
-    assert clock.bounds.take() == [] and not clock.bounds.known
-    clock.add_answer(clock.request(0.1), 0.14, 14_120_000_000)
-    clock.add_stamp(14.16, 0.18, in_order=True)
+    for k in range(ClockSettings.round_trips):
+        clock.add_stamp(14.0 + 0.1 * k, 0.02 + 0.1 * k, in_order=True)
+        assert clock.bounds.take() == [] and not clock.bounds.known
+        clock.add_answer(clock.request(0.1 * k), 0.1 * k + 0.04, round(1e9 * (14.02 + 0.1 * k)))
+    clock.add_stamp(15.0, 1.02, in_order=True)
     answer, stamp = clock.bounds.take()
-    assert answer == pytest.approx(OffsetBounds(0.14, 13.98, 14.02))
-    assert stamp == pytest.approx(OffsetBounds(0.18, 13.98, math.inf))
+    assert answer == pytest.approx(OffsetBounds(0.94, 13.98, 14.02))
+    assert stamp == pytest.approx(OffsetBounds(1.02, 13.98, math.inf))
     assert clock.bounds.take() == []

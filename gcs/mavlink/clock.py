@@ -95,8 +95,8 @@ class RemoteClock:
             trips, recent = sorted(newest), newest[-self._settings.recent_round_trips :]
             spread = trips[3 * (len(trips) - 1) // 4] - trips[0]
             self._trips = _RoundTrips(median(trips), trips[0], spread, max(recent))
-            if tc1 is not None:
-                self.bounds.add_answer(tc1 * 1e-9, sent, arrival, self._lead)
+            if tc1 is not None and len(trips) == self._settings.round_trips:
+                self.bounds.add_answer(tc1 * 1e-9, sent, arrival, self._lead + self.spread)
 
     @property
     def known(self) -> bool:

@@ -19,7 +19,7 @@ class OffsetBounds(NamedTuple):
 
 
 class ClockBounds:
-    """Bounds by all datagrams from the first TIMESYNC answer on: before, nothing bounds the offset from above.
+    """Bounds by all datagrams, from when TIMESYNC has been heard: before, nothing bounds the offset from above.
 
     Stamps of 32 bits of ms begin anew after 49.7 days, and a clock that is set back to before its zero reads as many
     days: both are taken for the time nearest to the last stamp, which is no step, and a small one.
@@ -54,8 +54,9 @@ class ClockBounds:
     def add_answer(self, time: float, sent: float, arrival: float, reached: float) -> None:
         """Take a TIMESYNC answer of vehicle ``time`` (s) to the request of ``sent``, that came at ``arrival`` (s).
 
-        ``reached``: the greatest offset (s) by the stamps of late. A vehicle that could not compute for a while reads
-        late, which no latency shows: its clock is set back only once all stamps of late say so.
+        ``reached``: the greatest offset (s) by the stamps of late, and how much the latency varies. A vehicle that
+        cannot compute for a while reads late, which no latency shows: its clock is set back only once all stamps of
+        late say so, by more than they vary.
         """
         if self._last is None:
             return
