@@ -2,6 +2,7 @@
 
 import json
 import math
+import subprocess
 import tomllib
 from pathlib import Path
 
@@ -15,7 +16,7 @@ from gcs.campaign.faults import tables_page
 from gcs.campaign.faults.campaign_file import read_campaign
 from gcs.campaign.faults.detection_table import case_name
 from gcs.campaign.faults.plans import FaultFlights
-from gcs.campaign.faults.tables_page import DETECTION, FALSE_ALARMS, main, renewed
+from gcs.campaign.faults.tables_page import DETECTION, FALSE_ALARMS, commit_of, main, renewed
 from gcs.campaign.process_pool import FlownProcess
 from gcs.campaign.scenarios import field as fields
 from gcs.campaign.scenarios.field import field
@@ -202,6 +203,31 @@ def test_campaign_fails_by_a_row_beyond_its_limit(tmp_path, flown, capsys):
     assert header.startswith("fault,true_source,flights,right,") and [r.split(",")[0] for r in rows] == [
         "slow link", "loss",
     ]  # fmt: skip
+
+
+def test_commit_is_the_last_that_changed_what_is_flown(tmp_path):
+    def git(*arguments):
+        identity = ("-c", "user.name=x", "-c", "user.email=x@x", "-c", "commit.gpgsign=false")
+        command = ["git", *identity, *arguments]
+        return subprocess.run(command, cwd=tmp_path, check=True, capture_output=True, text=True).stdout.strip()
+
+    missions = tmp_path / "missions"
+    missions.mkdir()
+    assert commit_of(missions) == "an unknown commit"
+    git("init", "-q")
+    for name in ("missions/hop.toml", "page.md"):
+        (tmp_path / name).write_text("1\n")
+        git("add", name)
+        git("commit", "-q", "-m", name)
+    flown = git("log", "-1", "--format=%h", "HEAD~1")
+    assert commit_of(missions) == f"commit {flown}"
+    (tmp_path / "page.md").write_text("2\n")
+    assert commit_of(missions) == f"commit {flown}"
+    changed = set()
+    for text in ("2\n", "3\n"):
+        (missions / "hop.toml").write_text(text)
+        changed.add(commit_of(missions))
+    assert len(changed) == 2 and all(name.startswith(f"commit {flown} with changes ") for name in changed)
 
 
 def test_page_without_a_place_for_a_table_is_refused():
