@@ -77,6 +77,7 @@ def test_warm_flights_record_what_a_cold_flight_records(hop, tmp_path):
         first, second = (fly_process(hop, (), tmp_path / name, worker) for name in ("first", "second"))
     code, summary = gcs_fly(hop, tmp_path / "cold", "--no-pictures")
     assert (first.exit_code, second.exit_code, code) == (0, 0, 0)
+    assert summary.pop("run_dir") == str(tmp_path / "cold")
     assert {key: first.summary[key] for key in summary if key not in TIMES} == {
         key: summary[key] for key in summary if key not in TIMES
     }

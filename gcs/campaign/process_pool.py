@@ -61,7 +61,9 @@ def fly_process(mission: Path, options: Sequence[str], run_dir: Path, worker: Fl
     remove_folder(run_dir)
     if draft.exists():
         draft.replace(run_dir)
-    return FlownProcess(exit_code, _object(output), messages, time.monotonic() - begin)
+    summary = _object(output)
+    summary.pop("run_dir", None)  # the draft's
+    return FlownProcess(exit_code, summary, messages, time.monotonic() - begin)
 
 
 def end_with_parent() -> None:
