@@ -81,6 +81,8 @@ class System:
     plan: PlanMonitor
     obstacle_map: ObstacleMap | None = None
     settings: FailsafeSettings = DEFAULTS.failsafe
+    kept_clearance: float = 0.6
+    """What plans keep from obstacles (m): the margin, and the bound on the payload's deviation from its plan."""
 
 
 class Moment(NamedTuple):

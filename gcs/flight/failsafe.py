@@ -14,6 +14,9 @@ from gcs.flight.condition import Check, Condition, Moment, Reaction, System, Tri
 from gcs.flight.phase import Phase
 from gcs.mavlink import px4
 from gcs.mavlink.vehicle_link import VehicleLink
+from idc_controller.arrays import Array
+from idc_controller.geometry.formation import Formation
+from idc_controller.safety.obstruction import Obstruction, obstruction
 
 
 def _first_vehicle(system: System, problem: Callable[[VehicleLink], str]) -> Trigger | None:
@@ -92,6 +95,21 @@ def _misplaced(system: System, moment: Moment) -> Trigger | None:
             name = f"vehicle {system.team.links[i].system_id}"
             return Trigger(f"{name} stands {distance:.1f} m from its place over the payload (limit {limit:g} m)", (i,))
     return None
+
+
+def _obstructed(system: System, moment: Moment) -> Trigger | None:
+    preflight = system.preflight
+    if not (preflight.has_positions and preflight.is_settled(moment.time)):
+        return None
+    found = _obstruction(system, moment.time, preflight.payload, 0.0)
+    return None if found is None else Trigger(f"on the pad, {found.lacking(0.0)}", source=found.name)
+
+
+def _obstruction(system: System, time: float, place: Array, within: float) -> Obstruction | None:
+    """Return what is nearer than ``within`` (m) to the formation at rest at ``place`` (3,), by the obstacle map."""
+    if system.obstacle_map is None:
+        return None
+    return obstruction(Formation(system.team.parameters), system.obstacle_map, time, place, within)
 
 
 def _sequence_failed(phase: Phase) -> Condition:
@@ -206,11 +224,30 @@ def _overturned(system: System, moment: Moment) -> Trigger | None:
     return Trigger("its own unit reports it overturned", source="payload") if system.plan.is_overturned else None
 
 
+def _climb_stalled(system: System, moment: Moment) -> Trigger | None:
+    if moment.phase is not Phase.CLIMB or moment.estimate is None or system.payload.is_clear(moment.estimate):
+        return None
+    below, limit = system.plan.below_plan(moment.estimate.x[2]), system.kept_clearance
+    if not below > limit:
+        return None
+    reason = f"the payload does not rise: it is {below:.1f} m below its plan (limit {limit:g} m)"
+    return Trigger(reason, source="payload")
+
+
 def _descent_stalled(system: System, moment: Moment) -> Trigger | None:
     if moment.estimate is None or moment.descent is None:
         return None
-    stalled = system.payload.is_descent_stalled(*moment.descent, moment.estimate)
-    return Trigger("the payload does not descend", source="payload") if stalled else None
+    if not system.payload.is_descent_stalled(*moment.descent, moment.estimate):
+        return None
+    _, descent = moment.descent
+    below = descent.position(descent.end)
+    landed = np.array([below[0], below[1], -system.team.parameters.payload.below])
+    keep = system.kept_clearance
+    found = _obstruction(system, moment.time, landed, keep)
+    return Trigger(
+        "the payload does not descend" + (f": at the landing place, {found.lacking(keep)}" if found else ""),
+        source="payload",
+    )
 
 
 def _names(links: Iterable[VehicleLink]) -> str:
@@ -265,6 +302,8 @@ class Failsafe(AlarmCode):
         "a vehicle or the payload unit has sent no position within {connect_timeout:g} s")
     MISPLACED = (Check.PREFLIGHT, _misplaced, Reaction.REFUSE, "place it, or check its position",
         "a vehicle is more than {placement_tolerance} m from its place over the payload")
+    OBSTRUCTED = (Check.PREFLIGHT, _obstructed, Reaction.REFUSE, "clear the pad",
+        "an obstacle of the map, or one that the range sensors see, reaches into the formation on the pad")
     ARMING_FAILED = (Check.COMMAND, _sequence_failed(Phase.ARM), Reaction.DISARM, "act on its STATUSTEXT",
         "a vehicle refuses OFFBOARD or arming, or all are not armed within {arm_timeout:g} s")
     DISARMING_FAILED = (Check.COMMAND, _sequence_failed(Phase.DISARM), Reaction.END_CONTROL,
@@ -304,6 +343,8 @@ class Failsafe(AlarmCode):
         "half of the vehicles have been more than {deviation_limit} m off the plan for {deviation_time} s")
     OVERTURNED = (Check.IN_AIR, _overturned, Reaction.AUTONOMOUS_LANDING, "locate the vehicles; stay clear",
         "the payload's own unit reports a tilt beyond {tilt_limit:.2f} rad, and a vehicle is off its place")
+    CLIMB_STALLED = (Check.ESTIMATE, _climb_stalled, Reaction.BRAKE_AND_LAND, "check the load, and what holds it",
+        "the payload is still on the ground, below its plan by more than the margin and the bound on its deviation")
     DESCENT_STALLED = (Check.ESTIMATE, _descent_stalled, Reaction.AUTONOMOUS_LANDING, "check wind, load and positions",
         "the payload is still high {descent_timeout:g} s after the planned end of its descent")
     # fmt: on

@@ -44,7 +44,7 @@ class Flight:
         plan = PlanMonitor(control.controller.parameters.number_of_uavs, settings.failsafe)
         self.system = System(
             team, control.estimator, control.controller.guidance, payload, preflight, plan, obstacle_map,
-            settings.failsafe,
+            settings.failsafe, mission.system.avoidance.margin + mission.system.safety.planner.tracking,
         )  # fmt: skip
         """The objects that the conditions of failsafes are evaluated on."""
         self.failsafes = FailsafeState(self.system, alarms)
@@ -253,7 +253,8 @@ class Flight:
             self.control.send(record, effective, leaves)
             places = self.control.estimator.measurement_model.vehicles(time, record.decision.flat.x[0])
             contradicted = self.control.estimator.health.uav_positions_isolated
-            self.system.plan.compare(estimate.time, places.values[:, :3], contradicted)
+            planned_down = float(record.decision.flat.payload[0, 0, 2])
+            self.system.plan.compare(estimate.time, places.values[:, :3], contradicted, planned_down)
         self._advance(time, estimate, share)
         return Setpoints(record.decision.directions, record.decision.thrusts * share), record
 

@@ -26,6 +26,7 @@ class PlanMonitor:
         self._off_since = math.inf
         self.deviations = np.zeros(number_of_uavs)
         """Distance of each vehicle's reported position from its place in the plan (N,) (m), nan: not known."""
+        self._payload_down = math.nan
 
     def add(self, measurement: Measurement) -> None:
         """Take telemetry as it was sent."""
@@ -39,12 +40,19 @@ class PlanMonitor:
             tilt = math.acos(min(max(1.0 - 2.0 * (x * x + y * y), -1.0), 1.0))
             self._overturned = self._overturned + 1 if tilt > self._settings.tilt_limit else 0
 
-    def compare(self, time: float, places: Array, contradicted: bool = False) -> None:
+    def below_plan(self, down: float) -> float:
+        """Return how far a payload at ``down`` (m) is below its place in the last plan (m); nan: there is none."""
+        return float(down - self._payload_down)
+
+    def compare(self, time: float, places: Array, contradicted: bool = False, payload_down: float = math.nan) -> None:
         """Take the vehicles' ``places`` in the plan (N, 3) (NED, m) at ``time`` (s); once a control step.
+
+        ``payload_down``: of the payload in it (m).
 
         ``contradicted``: the vehicles' positions do not follow from their velocities, while the payload's do. They say
         nothing of the plan then; those of a wreck follow from them.
         """
+        self._payload_down = payload_down
         for i, (position, place) in enumerate(zip(self._positions, places, strict=True)):
             self.deviations[i] = math.nan
             if (

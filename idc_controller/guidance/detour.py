@@ -111,7 +111,8 @@ def _refused(space: FreeSpace, place: Array, what: str, names: Sequence[str]) ->
         clearance = space.clearance(place[None])[0]
         nearest = int(np.argmin(clearance))
         if clearance[nearest] <= 0.0:
-            return f"the formation at the {what} would meet {names[nearest]}"
+            lacking = f"{space.margin - clearance[nearest]:.2f} m are missing for the margin"
+            return f"the formation at the {what} would meet {names[nearest]}: {lacking}"
         if clearance[nearest] < space.margin - 1e-6:
             return (
                 f"the formation at the {what} would be {clearance[nearest]:.2f} m from {names[nearest]}, "

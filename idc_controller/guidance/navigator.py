@@ -216,7 +216,9 @@ class Navigator:
             if (clearance < -TOUCHING).any():
                 north, east, down = waypoint
                 place = f"{north:.1f} m north, {east:.1f} m east, {-down:.1f} m high"
-                return _NoPath(f"{names[fixed[int(np.argmax(clearance < -TOUCHING))]]} stands at the waypoint {place}")
+                least = int(np.argmin(clearance))
+                lacking = f"{keep - clearance[least]:.2f} m are missing for the margin"
+                return _NoPath(f"{names[fixed[least]]} stands at the waypoint {place}: {lacking}")
         goals = (
             [int(free[0]), int(free[min(round(s.goal_spare / s.sample), len(free) - 1)])]
             if len(free)

@@ -1,5 +1,6 @@
 """Lockstep: the swarm and one ground station share a virtual clock; see :mod:`gcs.mavlink.lockstep`."""
 
+import math
 import time
 from collections.abc import Iterator
 
@@ -109,12 +110,16 @@ class LockstepDriver:
             return
 
     def _answer(self, ground: Address) -> Done | None:
-        """Return the ground's answer to the last tick; None when there is none in time, or the end comes."""
+        """Return the ground's answer to the last tick; None when there is none in time, or the end comes.
+
+        The ground that started this process has all the time it needs: its end is noticed at once.
+        """
         ending = self._ending
-        deadline = time.monotonic() + self._answer_time
-        left = self._answer_time
+        answer_time = math.inf if ending.has_parent else self._answer_time
+        deadline = time.monotonic() + answer_time
+        left = answer_time
         while left > 0.0 and not ending.requested and not ending.parent_gone:
-            ending.wait([self._clock], left)
+            ending.wait([self._clock], min(left, self._answer_time))
             for done in self._from_ground(ground):
                 if done.serial == self._serial or done.leaving:
                     return done
