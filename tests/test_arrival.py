@@ -166,6 +166,18 @@ def test_flight_cut_off_in_the_air_is_lost(tmp_path):
     assert result.reason.endswith("the records end at 3.3 s; vehicle-sim was killed")
 
 
+def test_obstacle_that_the_ground_calls_by_a_number_is_identified(tmp_path):
+    mission = mission_in(tmp_path, [[8.0, 0.0, -4.0]])
+    poles = [Obstacle("far", Pole(0.3, 12.0), (0.0, 9.0, -6.0)), Obstacle("mast", Pole(0.3, 12.0), (0.0, 2.0, -6.0))]
+    reason = "the path is blocked by piece 7"
+    result = fly(tmp_path / "a", mission, straight((8.0, 0.0)), obstacles=poles, reason=reason)
+    # Broken off after 1 s, above the pad.
+    assert result.reason == f"{reason} (nearest then: mast, 0.90 m from the formation)"
+    assert result.summary["outcome"] == "aborted"
+    result = fly(tmp_path / "b", mission, straight((8.0, 0.0)), obstacles=poles, reason="the path is blocked by mast")
+    assert result.reason == "the path is blocked by mast"
+
+
 def test_contact_names_what_was_touched(tmp_path):
     mission = mission_in(tmp_path, [[8.0, 0.0, -4.0]])
     pole = Obstacle("mast", Pole(0.3, 12.0), (9.1, 0.0, -6.0))

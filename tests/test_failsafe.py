@@ -1,10 +1,12 @@
 """The failsafe table: complete, documented, and the more severe reaction wins."""
 
 import math
+import re
 from contextlib import closing
 from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from gcs.config import read_system
@@ -17,9 +19,13 @@ from gcs.flight.failsafe import Failsafe
 from gcs.flight.failsafe_state import FailsafeState
 from gcs.flight.guarantee import GuaranteeAlarm
 from gcs.flight.listing import listing
+from gcs.flight.payload_monitor import PayloadMonitor
 from gcs.flight.phase import Phase
 from gcs.flight.plan_monitor import PlanMonitor
 from gcs.mavlink.vehicle_link import AddressConflict
+from idc_controller.geometry.sphere import Sphere
+from idc_controller.perception.standing_obstacles import MapObstacle, StandingObstacles
+from idc_controller.trajectory.trajectory import RestTrajectory
 from vehicle_sim.swarm import Swarm
 
 DOCS = Path(__file__).parents[1] / "docs"
@@ -169,3 +175,53 @@ def test_set_point_loss_of_the_vehicles_follows_the_telemetry_timeout(tmp_path):
     with closing(Swarm(config, seed=1)) as swarm:
         assert [vehicle.parameters["COM_OF_LOSS_T"] for vehicle in swarm.vehicles] == pytest.approx([0.6] * 4)
     assert "telemetry_timeout" in SETTINGS.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("phase", "height", "below", "stalled"),
+    [
+        (Phase.CLIMB, 0.05, 0.61, True),
+        (Phase.CLIMB, 0.05, 0.59, False),
+        (Phase.CLIMB, 0.5, 0.61, False),  # it has risen
+        (Phase.LAND, 0.05, 0.61, False),
+    ],
+)
+def test_climb_that_does_not_rise_is_ended_when_its_plan_has_risen(phase, height, below, stalled):
+    config = read_system()
+    payload = PayloadMonitor(config.parameters(), config.flight)
+    estimate = SimpleNamespace(x=np.zeros(60))
+    estimate.x[2] = -config.parameters().payload.below - height
+    plan = PlanMonitor(4)
+    team = SimpleNamespace(links=[], parameters=config.parameters())
+    system = System(team, None, None, payload, None, plan, None, config.flight.failsafe, 0.6)
+    moment = Moment(phase, 50.0, 100.0, estimate=estimate)
+    assert Failsafe.CLIMB_STALLED.condition(system, moment) is None  # no plan yet
+    plan.compare(50.0, np.zeros((4, 3)), payload_down=estimate.x[2] - below)
+    trigger = Failsafe.CLIMB_STALLED.condition(system, moment)
+    assert (trigger is not None) == stalled
+    if trigger is not None:
+        assert trigger.reason == "the payload does not rise: it is 0.6 m below its plan (limit 0.6 m)"
+
+
+def test_obstacle_over_the_landing_place_is_named_with_the_missing_metres():
+    config = read_system()
+    parameters = config.parameters()
+    payload = PayloadMonitor(parameters, config.flight)
+    estimate = SimpleNamespace(x=np.zeros(60))
+    estimate.x[2] = -3.0
+    rest = RestTrajectory(np.array([4.0, 0.0, -parameters.payload.below]), 20.0)
+    ball = MapObstacle("ball", Sphere(0.5), np.array([4.0, 1.6, -2.0]))
+    on_map = SimpleNamespace(predict=lambda times: StandingObstacles([ball]).predict(len(times), None))
+    team = SimpleNamespace(links=[], parameters=parameters)
+    system = System(team, None, None, payload, None, PlanMonitor(4), on_map, config.flight.failsafe, 0.6)
+    moment = Moment(Phase.LAND, 50.0, 100.0, estimate=estimate, descent=(50.0, rest))
+    reason = Failsafe.DESCENT_STALLED.condition(system, moment).reason
+    found = re.fullmatch(
+        r"the payload does not descend: at the landing place, "
+        r"ball is (0\.\d\d) m from the formation there, (0\.\d\d) m are missing",
+        reason,
+    )
+    assert found and float(found[1]) + float(found[2]) == pytest.approx(0.6, abs=0.011)
+    assert float(found[1]) == pytest.approx(1.6 - 0.5 - 0.65, abs=0.1)
+    system = System(team, None, None, payload, None, PlanMonitor(4), None, config.flight.failsafe, 0.6)
+    assert Failsafe.DESCENT_STALLED.condition(system, moment).reason == "the payload does not descend"

@@ -15,6 +15,8 @@ from gcs.flight.phase import Phase
 from gcs.flight.preflight import Preflight
 from gcs.mavlink import px4
 from idc_controller.estimation.measurements import PAYLOAD, Position
+from idc_controller.geometry.pole import Pole
+from idc_controller.perception.standing_obstacles import MapObstacle, StandingObstacles
 
 PARAMETERS = read_system().parameters()
 PAD = np.array([3.0, -2.0, -0.3])
@@ -30,7 +32,7 @@ EXPECTED = {
 }  # fmt: skip
 
 
-def checked(time, armed=(), failing=(), places=PLACES, silent=(), begin=BEGIN, **parameters):
+def checked(time, armed=(), failing=(), places=PLACES, silent=(), begin=BEGIN, poles=(), **parameters):
     """(Failsafe, trigger) of a team on the pad, or None."""
     statuses = [
         SimpleNamespace(
@@ -48,7 +50,11 @@ def checked(time, armed=(), failing=(), places=PLACES, silent=(), begin=BEGIN, *
     for source, place in ((PAYLOAD, PAD), *enumerate(places)):
         if source not in silent:
             preflight.add(Position(begin, source, place, np.zeros(3)))
-    failsafes = FailsafeState(System(team, None, None, None, preflight, None), AlarmLog())
+    standing = StandingObstacles(
+        [MapObstacle(f"pole {r:g}", Pole(r, 6.0), np.array([x, y, -3.0])) for x, y, r in poles]
+    )
+    on_map = SimpleNamespace(predict=lambda times: standing.predict(len(times), None))
+    failsafes = FailsafeState(System(team, None, None, None, preflight, None, on_map), AlarmLog())
     return failsafes.evaluate(Check.PREFLIGHT, Moment(Phase.CHECK, time, 0.0))
 
 
@@ -95,3 +101,16 @@ def test_vehicle_out_of_its_place_is_refused_once_settled(share, is_refused, dir
         assert (found[0], found[1].vehicles) == (Failsafe.MISPLACED, (1,))
         expected = f"vehicle 2 stands {share * LIMIT:.1f} m from its place over the payload (limit {LIMIT:g} m)"
         assert found[1].reason == expected
+
+
+@pytest.mark.parametrize(("gap", "is_refused"), [(0.05, False), (-0.05, True), (-0.6, True)])
+def test_obstacle_that_reaches_into_the_formation_is_refused_and_named(gap, is_refused):
+    """The discs reach 0.8 m ahead of the payload; farther away stands another pole, which is in nobody's way."""
+    poles = [(PAD[0] + 0.8 + 0.3 + gap, PAD[1] + 0.5, 0.3), (PAD[0] + 4.0, PAD[1], 0.5)]
+    assert checked(SETTLED - 0.01, poles=poles) is None
+    found = checked(SETTLED, poles=poles)
+    assert (found and found[0]) is (Failsafe.OBSTRUCTED if is_refused else None)
+    if found is not None:
+        assert found[1].source == "pole 0.3"
+        assert found[1].reason.startswith("on the pad, pole 0.3 reaches ")
+        assert found[1].reason.endswith(" m into the formation there")

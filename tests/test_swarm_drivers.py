@@ -1,6 +1,7 @@
 """The drivers: lockstep over real sockets, real time on a clock of the test's own."""
 
 import contextlib
+import select
 import socket
 import threading
 
@@ -143,6 +144,33 @@ def test_ground_that_stops_answering_times_out(lockstep):
     assert second.now > first.now + 6.0
     first.close()
     second.close()
+
+
+@pytest.mark.parametrize("has_parent", [False, True])
+def test_ground_that_started_the_simulation_has_all_the_time_it_needs(has_parent):
+    """On a busy machine a step may take longer than a ground of its own may be silent."""
+
+    class Slow:
+        """An end that never comes; the ground answers when it has been waited for five times."""
+
+        requested = parent_gone = False
+        waits = 0
+
+        def wait(self, sockets, timeout):
+            self.waits += 1
+            if self.waits == 5:
+                ground.sendto(Done(0, None).encode(), sockets[0].getsockname())
+                select.select(sockets, (), (), PATIENCE)
+
+    ending = Slow()
+    ending.has_parent = has_parent
+    with contextlib.ExitStack() as opened:
+        swarm = opened.enter_context(Swarm(CONFIG, seed=1))
+        sockets = opened.enter_context(SwarmSockets("127.0.0.1", 0, 4, with_clock=True))
+        ground = opened.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
+        ground.bind(("127.0.0.1", 0))
+        answer = LockstepDriver(swarm, sockets, ending, answer_time=0.0)._answer(ground.getsockname())
+    assert (answer is not None) == has_parent
 
 
 def test_only_the_joined_ground_advances_lockstep_time(lockstep):

@@ -172,7 +172,8 @@ def flight_result(
     duration = last_time - flight.takeoff_time if begun else 0.0
     records = read_run(run_dir)
     interrupted = flight.failsafes.interrupted
-    ground = GroundReport(begun, flight.completed, flight.landed, interrupted, flight.reason)
+    ended_at = flight.failsafes.time
+    ground = GroundReport(begun, flight.completed, flight.landed, interrupted, flight.reason, ended_at)
     truth_ends = all(file.name != TRUTH for file in incomplete)
     targets = targets_of(mission) if flight.completed and truth_ends else None
     ended = verdict(records, ground, targets, limits["arrival"], landing_on_record=truth_ends)

@@ -67,7 +67,9 @@ def summary_table(summary: Mapping[str, Any], run_dir: Path | str, pictures: Seq
     if solver["infeasible_steps"]:
         row("steps without a feasible solution", str(solver["infeasible_steps"]))
 
-    title = Text.assemble(("Flight ", "bold"), (outcome, f"bold {_COLOUR_OF_OUTCOME.get(outcome, 'red')}"))
+    # One line, however narrow the terminal.
+    title = Text(no_wrap=True, overflow="ignore").append("Flight ", "bold")
+    title.append(outcome, f"bold {_COLOUR_OF_OUTCOME.get(outcome, 'red')}")
     if limits:
         held = ("within its limits", "green") if within_limits(summary) else ("OUTSIDE its limits", "bold red")
         if "incomplete_records" in summary:

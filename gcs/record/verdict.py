@@ -1,5 +1,7 @@
 """The verdict on a flight: its outcome and the reason for it, by the truth where there is one, else by the ground."""
 
+import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import combinations
@@ -13,6 +15,8 @@ from gcs.record.landing import TOUCHDOWN_SPEED, UPRIGHT_DEG, is_set_down, landin
 from gcs.record.outcome import Outcome, outcome_of
 from gcs.record.run_data import RunData
 
+_SEEN = re.compile(r"\b(?:piece|track) \d")
+"""Names that the ground gives to what its sensors see."""
 _NEAR = 0.05
 """m, within which bodies count as those that touched: they are pushed apart by the next row."""
 
@@ -30,6 +34,8 @@ class GroundReport:
     interrupted: bool
     reason: str
     """Why it was ended early; empty: it was not."""
+    ended_at: float = math.nan
+    """When it was ended early (s, the clock of the tables)."""
 
 
 @dataclass(frozen=True)
@@ -69,8 +75,19 @@ def verdict(
             first = f"the vehicles are not known to be on the ground: the records end at {_end(run)}"
         case Outcome.FAILED:
             first = _not_set_down(landing)
-    reason = "; ".join(part for part in (first, ground.reason, missed) if part)
+    early = ground.reason + _identified(run, ground)
+    reason = "; ".join(part for part in (first, early, missed) if part)
     return Verdict(outcome, "" if outcome is Outcome.COMPLETED else reason or "ended early", arrived)
+
+
+def _identified(run: RunData, ground: GroundReport) -> str:
+    """Return which obstacle it was that the ground's reason calls by a number of its own, as far as the truth tells."""
+    if not _SEEN.search(ground.reason) or not run.obstacles or not run.number_of_uavs:
+        return ""
+    row = min(int(np.searchsorted(run.time, ground.ended_at)), len(run.time) - 1)
+    clearance = np.nan_to_num(run.clearance[row, : len(run.obstacles)], nan=np.inf)
+    nearest = int(np.argmin(clearance))
+    return f" (nearest then: {run.obstacles[nearest].name}, {clearance[nearest]:.2f} m from the formation)"
 
 
 def contact(run: RunData) -> str:
