@@ -17,7 +17,14 @@ from gcs.record.run_data import read_run
 from gcs.record.run_folder import FORMAT, open_run_folder, write_json, write_manifest
 from gcs.record.summary import within_limits, write_summary
 from gcs.record.summary_table import summary_table
-from gcs.record.tables import ESTIMATE_COLUMNS, REFERENCE_COLUMNS, STEP_COLUMNS, STEP_PART_COLUMNS, TableWriter
+from gcs.record.tables import (
+    ESTIMATE_COLUMNS,
+    PLAN_COLUMNS,
+    REFERENCE_COLUMNS,
+    STEP_COLUMNS,
+    STEP_PART_COLUMNS,
+    TableWriter,
+)
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
@@ -273,6 +280,40 @@ def test_table_lists_limits_and_folder_of_records(run) -> None:
     assert rows["payload angle, largest"][-7:] == ["3.0", "deg", "<=", "2.9", "deg", "NOT", "HELD"]
     assert "top_view.png" in text
     assert "run" in text
+
+
+def write_plan(folder: Path, slack: float, off: float) -> None:
+    """A plan 0.05 s apart that the payload is ``off`` (m) beside of, with one step of ``slack`` (m) at 5 s."""
+    with TableWriter(folder / "plan.csv", PLAN_COLUMNS) as table:
+        for k in range(201):
+            time = k / 20.0
+            table.write([time, time, 0.03 - off, -4.96, 0, 0, 0, slack * (k == 100), 0, 1, 0, 0.1, 0.12, 1, 9, 0])
+
+
+def test_void_guarantee_stands_in_the_first_line_and_does_not_change_the_outcome(run) -> None:
+    write_plan(run, slack=1.371, off=0.05)
+    summary = summarise(run, **FLOWN)
+    assert summary["safety"]["exceeded"]["slack"] == {"value": 1.371, "limit": 0.5, "time_s": 5.0}
+    assert "payload_deviation" not in summary["safety"]["exceeded"]
+    expected = "Flight completed, but the safety guarantee was void: slack 1.37 m (margin 0.50 m) at 5.0 s"
+    assert printed(summary, run).splitlines()[0].startswith(expected)
+    (run / "plan.csv").unlink()
+    write_plan(run, slack=0.49, off=0.19)
+    summary = summarise(run, **FLOWN)
+    assert summary["safety"]["exceeded"]["payload_deviation"]["value"] == pytest.approx(0.19, abs=1e-3)
+    assert "slack" not in summary["safety"]["exceeded"] and summary["completed"]
+    assert "payload off the plan 0.19 m (bound 0.10 m)" in printed(summary, run).splitlines()[0]
+
+
+def test_deviation_counts_only_clear_of_the_ground(tmp_path) -> None:
+    folder = open_run_folder("pad", tmp_path / "run")
+    with TruthLog(folder, 4) as log:
+        for k in range(101):
+            # On the pad until 8 s, 0.5 m below its plan, then 0.05 m.
+            position = np.array([k / 10.0, 0.03, -0.3 if k < 80 else -4.91])
+            write_state(log, world_state(k / 10.0, position, LEVEL, position + CORNERS, [1.0] * 4), 0)
+    write_plan(folder, slack=0.0, off=0.0)
+    assert summarise(folder, **FLOWN)["safety"]["payload_tracking_max_m"] == pytest.approx(0.05, abs=1e-3)
 
 
 # --- truth log ----------------------------------------------------------------------------------------------------
