@@ -43,6 +43,11 @@ NOT_FLOWN = [
     ("fly {hop} --controller pid", "--controller: invalid choice: 'pid'"),
     ("fly {hop} --config none.toml", "none.toml: cannot be read"),
     ("fly {hop} --config {hop}", "this is a mission, no system file"),
+    ("fly {hop} --config heavy.toml", "heavy.toml: line 2: payload.mass: hover needs 7609.6 N of one UAV"),
+    ("fly {hop} --config thin.toml", "thin.toml: line 2: payload.inertia: [1.0, 1.0, 9.0]: no rigid body has"),
+    ("fly thin.toml", "this is a system file, no mission"),
+    ("fly digits.plan", "not valid JSON: a number has too many digits"),
+    ("fly digits.toml", "not valid TOML: a number has too many digits"),
     ("fly {hop} --sped 3", "did you mean --speed?"),
     ("fly {hop} --real", "did you mean --realtime?"),
     ("fly {hop} --json=yes", "--json: ignored explicit argument 'yes'"),
@@ -80,12 +85,14 @@ NOT_FLOWN = [
     ("courses --out full", "full: is neither empty nor the folder of a campaign: name another with --out"),
     ("study", "the following arguments are required: NAME"),
     ("study none", "invalid choice: 'none'"),
+    ("study margin --quick --seeds 3", "both say how many"),
     ("study margin --seeds 0", "--seeds: '0'"),
     ("study margin --missions none", "none/figure_eight_spheres.toml: cannot be read"),
     ("study margin --out empty.toml", "empty.toml: is a file"),
     ("reproduce --out full --quick", "full: the folder is not empty: name another with --out"),
     ("reproduce --quick --out empty.toml", "empty.toml: is a file"),
     ("reproduce --missions none", "none/pole_course.toml: cannot be read"),
+    ("reproduce --quick --missions .", "--quick flies no missions"),
     ("reproduce --jobs -1", "--jobs: "),
 ]
 
@@ -96,6 +103,10 @@ def somewhere_else(tmp_path, monkeypatch):
     (tmp_path / "full").mkdir()
     (tmp_path / "full" / "something").touch()
     (tmp_path / "empty.toml").touch()
+    (tmp_path / "heavy.toml").write_text("[payload]\nmass = 3100\n")
+    (tmp_path / "thin.toml").write_text("[payload]\ninertia = [1.0, 1.0, 9.0]\n")
+    (tmp_path / "digits.plan").write_text('{"a": ' + "9" * 5000 + "}")
+    (tmp_path / "digits.toml").write_text("a = " + "9" * 5000 + "\n")
     for name, mission in ("campaign.toml", "none.toml"), ("good.toml", HOP):
         text = f'[campaign]\nname = "a"\nmissions = ["{mission}"]\nseed_count = 1\nclean = true\n'
         (tmp_path / name).write_text(text)

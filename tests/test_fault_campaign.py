@@ -200,3 +200,14 @@ def test_campaign_killed_twice_completes_without_flying_twice(tmp_path):
     assert names == set(frame["name"]) and all(
         json.loads((Path(d) / "faults.json").read_text()) for d in frame["run_dir"]
     )
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+def test_signal_ends_the_command_with_the_results_so_far(tmp_path, flown, monkeypatch, capsys, number):
+    def signalled(campaign, console):
+        campaign.fly(nothing, lambda result: os.kill(os.getpid(), number))
+
+    monkeypatch.setattr("gcs.app.campaigns.fly_with_progress", signalled)
+    assert main(["faults", str(campaign_file(tmp_path)), "--out", str(tmp_path / "out"), "--jobs", "1"]) == 130
+    assert "interrupted with 5 flights to go" in capsys.readouterr().err
+    assert len([*(tmp_path / "out" / "results").glob("*.json")]) == 1

@@ -128,7 +128,7 @@ def test_command_fills_a_folder(tmp_path, monkeypatch, capsys):
 def test_folder_that_is_not_empty_is_refused(tmp_path, capsys):
     (tmp_path / "kept").write_text("mine", encoding="utf-8")
     assert main(["reproduce", "--quick", "--out", str(tmp_path)]) == 2
-    assert capsys.readouterr().err.strip() == f"{tmp_path}: the folder is not empty"
+    assert capsys.readouterr().err.strip() == f"{tmp_path}: the folder is not empty: name another with --out"
     assert [path.name for path in tmp_path.iterdir()] == ["kept"]
     assert main(["reproduce", "--quick", "--out", str(tmp_path / "kept")]) == 2
     assert "is a file" in capsys.readouterr().err

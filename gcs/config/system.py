@@ -211,6 +211,10 @@ def _disagreements(config: SystemConfig, file: TomlFile) -> list[str]:
     if config.payload.mesh is not None:
         given = file.data["payload"]
         found += [(("payload", key), "follows from mesh: leave it out") for key in ("size", "inertia") if key in given]
+    for table, inertia in ("payload", config.payload.inertia), ("uav", config.uav.inertia):
+        if inertia is not None and 2.0 * max(inertia) > sum(inertia) * (1.0 + 1e-9):
+            reason = f"{list(inertia)}: no rigid body has a moment larger than the sum of the two others"
+            found.append(((table, "inertia"), reason))
     if config.range_sensor.range_min >= config.range_sensor.range:
         reason = f"{config.range_sensor.range_min} m is not below range, {config.range_sensor.range} m"
         found.append((("range_sensor", "range_min"), reason))

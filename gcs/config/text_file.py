@@ -8,6 +8,14 @@ SIZE_LIMIT = 8_000_000
 """Bytes. The longest missions that ground stations write are a few hundred kilobytes."""
 
 
+def why_unparsed(error: ValueError | RecursionError) -> str:
+    """Return why a parser has refused a text, without Python's advice to programmers."""
+    if isinstance(error, RecursionError):
+        return "nested too deeply"
+    text = str(getattr(error, "msg", error))
+    return "a number has too many digits" if "integer string conversion" in text else text
+
+
 def read_text(path: Path) -> str:
     """Return the text of a UTF-8 file, with or without a byte order mark. Line ends as in the file.
 

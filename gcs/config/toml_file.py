@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from gcs.config.text_file import read_text
+from gcs.config.text_file import read_text, why_unparsed
 from gcs.config.validate import Key, Suggestions, T, UnusableFile, Validator, dotted, validated
 
 _HEADER = re.compile(r"^\s*(\[\[?)\s*([^\[\]]+?)\s*\]\]?\s*(#.*)?$")
@@ -64,7 +64,7 @@ def read_toml(path: Path) -> TomlFile:
             raise UnusableFile([f"{path}: nested too deeply"]) from error
         at = re.search(r"^(.*) \(at (?:line (\d+), column \d+|end of document)\)$", str(error), re.DOTALL)
         line = (at[2] or len(text.splitlines())) if at else 1
-        raise UnusableFile([f"{path}: line {line}: not valid TOML: {at[1] if at else error}"]) from error
+        raise UnusableFile([f"{path}: line {line}: not valid TOML: {at[1] if at else why_unparsed(error)}"]) from error
     return TomlFile(path, data, _lines_of_keys(text))
 
 

@@ -13,6 +13,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, TypeAdapter
 
+from gcs.config.text_file import why_unparsed
 from gcs.config.validate import Key, UnusableFile, dotted, validated
 from gcs.mission.fence import Corners, Fence, circle_corners, encloses_area, excluded_circle, excluded_polygon
 from gcs.mission.items import ITEM_LIMIT, PARAM_NAMES, FileHome, ItemError, MissionItem, WaypointFile
@@ -161,11 +162,9 @@ def read_plan(path: Path, text: str) -> WaypointFile:
 def _parse(path: Path, text: str) -> Any:
     try:
         document = json.loads(text)
-    except json.JSONDecodeError as error:
-        raise UnusableFile([f"{path}: line {error.lineno}: not valid JSON: {error.msg}"]) from error
     except (ValueError, RecursionError) as error:
-        reason = "nested too deeply" if isinstance(error, RecursionError) else str(error)
-        raise UnusableFile([f"{path}: not valid JSON: {reason}"]) from error
+        line = f"line {error.lineno}: " if isinstance(error, json.JSONDecodeError) else ""
+        raise UnusableFile([f"{path}: {line}not valid JSON: {why_unparsed(error)}"]) from error
     if not isinstance(document, dict):
         raise UnusableFile([f"{path}: not a plan: no JSON object"])
     return document

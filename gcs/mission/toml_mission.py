@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -65,7 +65,7 @@ class MissionFile:
 
 _OTHER_FILES = {
     "campaign": "this is a campaign, no mission: gcs faults flies it",
-    "uav": "this is a system file, no mission: it goes with --config",
+    **{table.name: "this is a system file, no mission: it goes with --config" for table in fields(SystemConfig)},
 }
 
 
@@ -82,7 +82,7 @@ def read_mission_file(path: Path) -> tuple[TomlFile, MissionFile]:
     file = read_toml(path)
     data, faults = file.data, file.data.get("fault")
     for table, use in _OTHER_FILES.items():
-        if table in data and "mission" not in data:
+        if table in data and "mission" not in data and "reference" not in data:
             raise UnusableFile([file.problem((table,), use)])
     if isinstance(faults, list):
         data = {**data, "fault": [fault_data(file, i, fault) for i, fault in enumerate(faults)]}

@@ -51,17 +51,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--jobs", type=number_of_jobs, default=None, metavar="J", help="at a time (default: auto, the cores)"
     )
     parser.add_argument(
-        "--missions", type=Path, default=Path("missions"), metavar="DIR",
+        "--missions", type=Path, metavar="DIR",
         help="folder of the mission files that are flown (default: missions)",
     )  # fmt: skip
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command, and return its exit status."""
-    chosen, out = plan(arguments.quick), arguments.out
+    if arguments.quick and arguments.missions is not None:
+        raise UnusableInput("gcs reproduce: --quick flies no missions: leave --missions out")
+    chosen, out, missions = plan(arguments.quick), arguments.out, arguments.missions or Path("missions")
     # All that can be wrong is looked for before anything is written.
     for mission, _ in chosen.flights.values():
-        read_mission(arguments.missions / mission)
+        read_mission(missions / mission)
     check_writable(out)
     if out.exists() and any(out.iterdir()):
         raise UnusableInput(f"{out}: the folder is not empty: name another with --out")
@@ -70,7 +72,7 @@ def run(arguments: argparse.Namespace) -> int:
     begin = time.monotonic()
     try:
         with _Progress(console, chosen) as progress:
-            results = work.run(chosen, arguments.missions, out, arguments.jobs, progress.done)
+            results = work.run(chosen, missions, out, arguments.jobs, progress.done)
             found = rounded(numbers(chosen, results))
             write_numbers(out / "numbers.json", found)
             (out / "paper.md").write_text(paper_text(found), encoding="utf-8")

@@ -8,6 +8,7 @@ from gcs.app.arguments import whole_number
 from gcs.app.campaigns import add_campaign_arguments, run_campaign
 from gcs.campaign.studies.plans import StudyFlights
 from gcs.campaign.studies.study import STUDIES
+from gcs.errors import UnusableInput
 
 DESCRIPTION = """\
 Flies the same missions again with one parameter changed at a time, and reports what depends on it:
@@ -37,5 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command, and return its exit status."""
+    if arguments.quick and arguments.seeds is not None:
+        raise UnusableInput(f"gcs study: --quick and --seeds {arguments.seeds} both say how many: leave one out")
     flights = StudyFlights(STUDIES[arguments.name], arguments.seeds, arguments.quick, arguments.missions)
     return run_campaign(flights, arguments.out or Path("runs/studies"), arguments)

@@ -14,7 +14,7 @@ from gcs.campaign.suites.course import MOST_OBSTACLES, Course, checked_passage
 from gcs.campaign.toml_text import mission_text
 from gcs.config import SystemConfig
 from gcs.config.tables import Vector
-from gcs.config.text_file import read_text
+from gcs.config.text_file import read_text, why_unparsed
 from gcs.config.validate import Key, Positive, UnusableFile, dotted, strict, validated
 from gcs.mission.items import FARTHEST, ITEM_LIMIT
 from gcs.mission.model import Mission, Name, Obstacle
@@ -80,8 +80,7 @@ def _read(path: Path, number: int, text: str, adapter: TypeAdapter[_Line]) -> _L
     try:
         data = json.loads(text)
     except (ValueError, RecursionError) as error:
-        reason = "nested too deeply" if isinstance(error, RecursionError) else getattr(error, "msg", str(error))
-        raise UnusableFile([f"{path}: line {number}: not valid JSON: {reason}"]) from error
+        raise UnusableFile([f"{path}: line {number}: not valid JSON: {why_unparsed(error)}"]) from error
     if not isinstance(data, dict):
         raise UnusableFile([f"{path}: line {number}: must be a JSON object"])
     return validated(adapter, data, lambda key, reason: _problem(path, number, key, reason))
