@@ -231,6 +231,24 @@ def test_campaign_ends_with_3_when_a_result_cannot_be_written(tmp_path, monkeypa
     assert not [*(tmp_path / "out" / "results").iterdir()]
 
 
+def test_campaign_prints_what_it_has_when_its_report_cannot_be_written(tmp_path, monkeypatch, capsys):
+    def fly_process(mission, options, run_dir, worker):
+        run_dir.mkdir(parents=True)
+        return FlownProcess(0, SUMMARY, "", 1.0)
+
+    def full(*_):
+        raise FULL
+
+    monkeypatch.setattr("gcs.campaign.engine.fly_process", fly_process)
+    monkeypatch.setattr("gcs.campaign.faults.plans.FaultFlights.report", full)
+    path = campaign_file(tmp_path)
+    code = gcs.app.cli.main(["faults", str(path), "--out", str(tmp_path / "out"), "--jobs", "1"])
+    assert code == ExitStatus.INCOMPLETE
+    output = capsys.readouterr()
+    assert "6 of 6 flights within their limits" in output.out
+    assert "out: cannot be written: No space left on device: the flights are kept" in output.err
+
+
 def test_flight_with_incomplete_records_passes_no_campaign(tmp_path, monkeypatch, capsys):
     def fly_process(mission, options, run_dir, worker):
         run_dir.mkdir(parents=True)

@@ -1,6 +1,7 @@
 """Commands that fly campaigns: their common arguments, the run, and the report that is printed."""
 
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
 
 from rich.console import Console, Group
@@ -10,8 +11,9 @@ from gcs.app.exit_status import ExitStatus
 from gcs.app.logs import LOG
 from gcs.campaign.engine import KEEP, Campaign, PlanGenerator
 from gcs.campaign.progress import fly_with_progress
+from gcs.campaign.result import Result
 from gcs.campaign.tables import failed_flights, headline
-from gcs.errors import UnusableInput, UnwritableRecord
+from gcs.errors import UnusableInput
 
 WIDTH = 150
 """Characters of a line where standard output is no terminal."""
@@ -39,18 +41,31 @@ def run_campaign(generator: PlanGenerator, out: Path, arguments: argparse.Namesp
         interrupted = True
     results = campaign.results
     problems = generator.problems(results)
-    if results:
-        try:
-            parts, files = generator.report(results, out)
-        except (OSError, UnusableInput) as error:
-            raise UnwritableRecord(f"{error}: the flights are kept; start the command again for its report") from None
-        first = headline(results, generator.what, generator.passed_means)
-        console.print(Group(first, *parts, *failed_flights(results)))
-        for problem in problems:
-            console.print(problem, style="red", markup=False)
-        console.print(f"Results   {'  '.join(map(str, files))}", markup=False)
+    reported = not results or _report(generator, results, problems, out, console)
     if interrupted:
         left = len(campaign.plans) - len(results)
         LOG.error("interrupted with %d flights to go: start the command again to resume", left)
         return ExitStatus.INTERRUPTED
-    return ExitStatus.OUTSIDE_LIMITS if problems or not all(r.passed for r in results) else ExitStatus.DONE
+    if not reported:
+        return ExitStatus.INCOMPLETE
+    return ExitStatus.OUTSIDE_LIMITS if problems or not all(result.passed for result in results) else ExitStatus.DONE
+
+
+def _report(
+    generator: PlanGenerator, results: Sequence[Result], problems: Sequence[str], out: Path, console: Console
+) -> bool:
+    """Write and print the report; return whether it could be written."""
+    first, failed = headline(results, generator.what, generator.passed_means), failed_flights(results)
+    try:
+        parts, files = generator.report(results, out)
+    except (OSError, UnusableInput) as error:
+        console.print(Group(first, *failed))
+        full = isinstance(error, OSError)
+        reason = f"{error.filename or out}: cannot be written: {error.strerror}" if full else str(error)
+        LOG.error("%s: the flights are kept; start the command again for its report", reason)
+        return False
+    console.print(Group(first, *parts, *failed))
+    for problem in problems:
+        console.print(problem, style="red", markup=False)
+    console.print(f"Results   {'  '.join(map(str, files))}", markup=False)
+    return True

@@ -184,8 +184,8 @@ def _cause(config: SystemConfig, file: TomlFile) -> Key:
             default = getattr(getattr(SystemConfig(), table.name), key)
             if not isinstance(default, int | float):
                 continue
-            changed = replace(getattr(config, table.name), **{key: default})
             with suppress(ParameterError):
+                changed = replace(getattr(config, table.name), **{key: default})
                 replace(config, **{table.name: changed}).true_parameters()
                 return table.name, key
     return ("team",)
