@@ -31,7 +31,7 @@ FLOWN = ("gcs", "idc_controller", "vehicle_sim", "missions", "pyproject.toml")
 def main(arguments: Sequence[str]) -> int:
     """Fly what has not been flown yet, and write the tables; return 1 if a row is not within its limits, 2 for no page.
 
-    Flights are kept by commit.
+    Flights are kept by commit; what was interrupted (130) goes on when started again.
     """
     parser = argparse.ArgumentParser(description="Write the tables of detection and of false alarms into a page.")
     parser.add_argument("page", type=Path, metavar="PAGE")
@@ -64,6 +64,8 @@ def main(arguments: Sequence[str]) -> int:
         page = renewed(page, DETECTION, made_by(command, commit, detections_markdown(rows)))
         page = renewed(page, FALSE_ALARMS, made_by(command, commit, false_alarms_markdown(false_alarms(results))))
         options.page.write_text(page, encoding="utf-8")
+    except KeyboardInterrupt:
+        return 130
     except (GcsError, OSError) as error:
         console.print(str(error), style="red", markup=False)
         return 2
