@@ -155,7 +155,7 @@ def test_campaign_judges_alarms_since_the_fault(tmp_path):
     result = campaign.result_of(plan, FlownProcess(0, SUMMARY, "", 1.0))
     assert (result.true_source, result.isolation, result.named_source) == ("link of vehicle 2", RIGHT, "")
     assert (result.detected_s, result.detected_as, result.false_alarms) == (0.25, "messages_lost, vehicle 2", 1)
-    assert (result.clean_s, result.false_codes) == (8.0, "clock_error")
+    assert (result.clean_s, result.false_codes) == (8.0, "clock_error")  # of 20 s, which end at 20 s
     # Without a record it is not known.
     result = campaign.result_of(other, FlownProcess(1, {}, "", 1.0))
     assert (result.true_source, result.isolation) == ("link of vehicle 2", "")
@@ -271,8 +271,8 @@ def test_false_alarms_per_hour_by_mission():
     assert lines[3] == "| all | 4 (1 without a record) | 1.000 | 5 | 2 | 5.0 | 10.5 | 3 b, 2 a |"
 
 
-@pytest.mark.parametrize(
-    ("duration", "first", "time"), [(30.0, 12.3456, 12.346), (30.0, None, 30.0), (10.0, 12.0, 10.0), (None, 12.0, None)]
-)
-def test_clean_time_ends_with_the_first_fault(duration, first, time):
-    assert clean_time({} if duration is None else {"duration_s": duration}, first) == time
+def test_clean_time_ends_with_the_first_fault(tmp_path):
+    assert clean_time(16.0, tmp_path) == 16.0  # no fault
+    write_records(tmp_path / "run")  # from 4 s, the fault at 8 s, to 20 s
+    assert clean_time(16.0, tmp_path / "run") == 4.0
+    assert clean_time(None, tmp_path / "run") is None

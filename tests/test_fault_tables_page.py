@@ -157,7 +157,7 @@ def flown(monkeypatch):
         (run_dir / "alarms.csv").write_text("\n".join([*rows, ""]))
         faults = [{"number": 1, "kind": "packet_loss", "line": 1, "start": 5.0, "seen": 1, "disturbed": 1,
                    "occurrences": 1, "activations": [[5.0, None]]}]  # fmt: skip
-        record = {"take_off_s": 3.0, "end_s": 20.0, "faults": faults if has_fault else []}
+        record = {"take_off_s": 3.0, "end_s": 36.0, "faults": faults if has_fault else []}
         (run_dir / "faults.json").write_text(json.dumps(record))
         return FlownProcess(0, SUMMARY | {"duration_s": 36.0}, "", 1.0)
 

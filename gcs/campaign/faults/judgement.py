@@ -68,7 +68,7 @@ def judge(case: Case, flown: FlownProcess, run_dir: Path) -> dict[str, Any]:
         "detected_as": detected.alarm,
         "false_alarms": detected.false,
         "false_codes": detected.false_codes,
-        "clean_s": clean_time(flown.summary, first_start(run_dir)),
+        "clean_s": clean_time(flown.summary.get("duration_s"), run_dir),
         "isolation": isolated.verdict,
         "named_source": isolated.named,
         "notes": "; ".join(fault_notes(run_dir)),
@@ -115,10 +115,13 @@ def first_start(run_dir: Path, count: int | None = None) -> float | None:
         return None
 
 
-def clean_time(summary: Mapping[str, Any], first: float | None) -> float | None:
-    """Return the time until ``first``, the :func:`first_start` of a flight, or until its end if none started (s)."""
-    duration = summary.get("duration_s")
-    return duration if duration is None or first is None else round(min(first, duration), 3)
+def clean_time(duration: float | None, run_dir: Path) -> float | None:
+    """Return how much of a flight's ``duration`` is before its :func:`first_start` (s); all, if no fault started."""
+    first = first_start(run_dir)
+    if duration is None or first is None:
+        return duration
+    record = json.loads((run_dir / FAULTS_FILE).read_text(encoding="utf-8"))
+    return round(max(0.0, duration - (float(record["end_s"]) - first)), 3)
 
 
 def stop_time(summary: Mapping[str, Any], begin: float | None) -> float | None:
