@@ -60,8 +60,9 @@ def _report(
         parts, files = generator.report(results, out)
     except (OSError, UnusableInput) as error:
         console.print(Group(first, *failed))
-        full = isinstance(error, OSError)
-        reason = f"{error.filename or out}: cannot be written: {error.strerror}" if full else str(error)
+        reason = str(error)
+        if isinstance(error, OSError):
+            reason = f"{error.filename or out}: cannot be written: {error.strerror}"
         LOG.error("%s: the flights are kept; start the command again for its report", reason)
         return False
     console.print(Group(first, *parts, *failed))
