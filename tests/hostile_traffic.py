@@ -63,10 +63,11 @@ class HostileTraffic:
 
     ``genuine``: what one sender has sent lately from ``address``, to be imitated; from there comes only what has no
     right checksum. ``foreign``: (address, system) of the systems that send the rest; several may share an address.
-    ``hostile``: messages to choose from. ``target_system``: whom all that is addressed is for.
+    ``hostile``: messages to choose from. ``target_system``: whom all that is addressed is for. ``credible``: (address,
+    system) by which others speak rightly: from there no whole frame of that system comes.
     """
 
-    def __init__(self, seed, genuine, address, foreign, hostile, target_system):
+    def __init__(self, seed, genuine, address, foreign, hostile, target_system, credible=()):
         self._random = random.Random(seed)
         self._genuine = genuine
         self._address = address
@@ -74,6 +75,7 @@ class HostileTraffic:
         self._elsewhere = [other for other, _ in foreign if other != address]
         self._hostile = hostile
         self._target_system = target_system
+        self._credible = frozenset(credible)
         self._writers = {system: mavlink.MAVLink(None, system, 1) for _, system in foreign}
         self._reader = Codec(254, 1)
         self._kinds = tuple(mavlink.mavlink_map.values())
@@ -139,9 +141,12 @@ class HostileTraffic:
 
     def _from_anybody(self, data):
         """From the one who is imitated, as a damaged link would deliver it, unless some of it is still whole."""
-        if self._random.random() < 0.5 and not self._reader.decode(data):
+        whole = {received.system for received in self._reader.decode(data)}
+        if self._random.random() < 0.5 and not whole:
             return data, self._address
-        return data, self._random.choice(self._elsewhere)
+        return data, self._random.choice(
+            [other for other in self._elsewhere if not any((other, system) in self._credible for system in whole)]
+        )
 
 
 def _frames(datagram):

@@ -46,8 +46,9 @@ class Storm:
             seed, self.traffic.to_it, GROUND, AGAINST_VEHICLE, hostile_to_vehicle(VEHICLE), VEHICLE
         )
         self._to_ground = HostileTraffic(
-            seed + 1, self.traffic.from_it, address_of(VEHICLE), AGAINST_GROUND, hostile_to_ground(), GROUND_SYSTEM
-        )
+            seed + 1, self.traffic.from_it, address_of(VEHICLE), AGAINST_GROUND, hostile_to_ground(), GROUND_SYSTEM,
+            [(address_of(2), px4.PAYLOAD_UNIT_SYSTEM)],
+        )  # fmt: skip
         self._last = -1.0
 
     def __call__(self, in_process):
