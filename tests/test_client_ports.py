@@ -6,6 +6,8 @@ import pytest
 from gcs.config import read_system
 from gcs.mavlink import px4
 from gcs.mavlink.codec import Codec
+from vehicle_sim.app.arguments import parse
+from vehicle_sim.app.client_ports import ClientPorts
 from vehicle_sim.faults.fault_injector import FaultInjector
 from vehicle_sim.swarm import Swarm
 
@@ -90,3 +92,32 @@ def test_link_faults_act_on_who_calls_in_and_take_nothing_from_who_listens():
         swarm.receive(1, HEARTBEAT, caller, 0.0)
         heard.run(0.5)
     assert set(heard.messages) == {STATIONS}
+
+
+@pytest.mark.parametrize(
+    ("options", "host", "sdk", "ground"),
+    [
+        ("", "127.0.0.1", SDK, STATIONS),
+        ("--base-port 24580", "127.0.0.1", SDK, STATIONS),
+        ("--base-port 0 --sdk-port 0", "127.0.0.1", None, STATIONS),
+        ("--sdk-port 15540 --ground-port 0", "127.0.0.1", ("127.0.0.1", 15540), None),
+        ("--ground-host 192.0.2.7", "0.0.0.0", ("192.0.2.7", 14540), ("192.0.2.7", 14550)),
+        ("--ground-host 192.0.2.7 --base-port 14540", "0.0.0.0", ("192.0.2.7", 14540), ("192.0.2.7", 14550)),
+        ("--ground-host 192.0.2.7 --host 192.0.2.1", "192.0.2.1", ("192.0.2.7", 14540), ("192.0.2.7", 14550)),
+        ("--ground-host localhost --host 0.0.0.0", "0.0.0.0", SDK, STATIONS),
+        ("--lockstep", "127.0.0.1", None, None),
+        ("--lockstep --ground-port 0 --host 0.0.0.0", "0.0.0.0", None, None),
+    ],
+)
+def test_ports_are_px4s_unless_options_say_otherwise_and_none_in_lockstep(options, host, sdk, ground):
+    assert ClientPorts.of(parse(options.split()), 4) == (host, sdk, ground)
+
+
+@pytest.mark.parametrize("vehicles", [10, 15])
+def test_port_of_ground_stations_gets_the_payload_unit_once_where_it_is_an_sdks_too(vehicles):
+    with Swarm(CONFIG.with_vehicles(vehicles), seed=1, ground_address=STATIONS, sdk_address=SDK) as swarm:
+        heard = Listening(swarm)
+        heard.run(0.1)
+    assert {i for i, _ in heard.of_unit(STATIONS)} == {1}
+    sent = [m.time_boot_ms for i, m in heard.messages[STATIONS] if i == vehicles and m.get_type() == "ATTITUDE"]
+    assert sent and len(set(sent)) == len(sent)
