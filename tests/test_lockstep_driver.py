@@ -7,7 +7,7 @@ import pytest
 from scripted_station import VEHICLE, ScriptedStation
 
 from gcs.drivers.connection import Connection, LockstepConnection
-from gcs.drivers.lockstep import run_in_lockstep
+from gcs.drivers.lockstep import is_refused, run_in_lockstep
 from gcs.drivers.settings import DriverSettings
 from gcs.flight.failsafe import Failsafe
 from gcs.mavlink.lockstep import Done, Tick, decode_done
@@ -132,3 +132,11 @@ def test_tick_alone_ends_a_wait_and_comes_behind_the_datagrams_of_the_vehicles()
             sent_by_vehicle = [(data, vehicle.socket.getsockname()) for data in (b"telemetry", b"more")]
             assert list(connection.receive()) == [*sent_by_vehicle, (b"tick", clock_address)]
             assert not connection.wait(0.0) and list(connection.receive()) == []
+
+
+def test_closed_port_of_a_clock_is_refused_and_an_open_one_is_not():
+    with closing(Connection()) as world:
+        clock_address = world.socket.getsockname()
+        assert not is_refused(clock_address)
+        assert [decode_done(datagram) for datagram, _ in world.receive()] == [Done(0, None, leaving=True)]
+    assert is_refused(clock_address)

@@ -30,6 +30,13 @@ OPTIONS = [
     "sdk-port",
 ]
 
+STREAMED = {
+    mavlink.MAVLINK_MSG_ID_HEARTBEAT, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED, mavlink.MAVLINK_MSG_ID_SYS_STATUS,
+    mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT, mavlink.MAVLINK_MSG_ID_ATTITUDE,
+    mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE, mavlink.MAVLINK_MSG_ID_HOME_POSITION,
+}  # fmt: skip
+OF_PAYLOAD = {mavlink.MAVLINK_MSG_ID_HEARTBEAT, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED}
+
 MISSION = """\
 [mission]
 name = "an obstacle"
@@ -158,7 +165,7 @@ def test_signal_ends_simulation_with_closed_records(tmp_path, number, status, pa
 
 
 @pytest.mark.slow
-def test_vehicles_send_to_the_ground_port_and_name_their_endpoints():
+def test_vehicles_stream_to_the_ground_port_from_the_start_without_an_answer():
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as ground:
         ground.bind(("127.0.0.1", 0))
         ground.settimeout(PATIENCE)
@@ -176,11 +183,14 @@ def test_vehicles_send_to_the_ground_port_and_name_their_endpoints():
         )
         with process(*arguments) as (running, _, vehicles):
             codec = Codec(255, mavlink.MAV_COMP_ID_MISSIONPLANNER)
-            received = {}
-            while len(received) < 3:
+            kinds, senders = {i: set() for i in (1, 2, 3, 100)}, set()
+            while not all((OF_PAYLOAD if i == 100 else STREAMED) <= found for i, found in kinds.items()):
                 datagram, sender = ground.recvfrom(65535)
-                received[sender] = codec.decode(datagram)[0].system
-            assert received == {address: i for i, address in enumerate(vehicles, start=1)}
+                for received in codec.decode(datagram):
+                    kinds[received.system].add(received.message_id)
+                    senders.add((received.system, sender))
+            addresses = {(i, address) for i, address in enumerate(vehicles, start=1)}
+            assert senders == addresses | {(100, vehicles[0])}
             running.send_signal(signal.SIGTERM)
             assert running.wait(PATIENCE) == 0
 
