@@ -22,9 +22,11 @@ from small_campaign import SUMMARY, campaign_file
 from test_record_landing import flight, write_flight
 
 import gcs.app.cli
+import vehicle_sim.app.cli
 from gcs.app.exit_status import ExitStatus
 from gcs.app.fly import flight_result
 from gcs.campaign.process_pool import FlownProcess
+from gcs.drivers.simulator import Simulator
 from gcs.flight.alarms import AlarmLog
 from gcs.mission.read import read_mission
 from gcs.record.append_file import AppendOnlyFile
@@ -215,6 +217,35 @@ def test_line_says_which_records_end_when_and_why():
     )
     assert [read_line(file.line() + "\n") for file in found] == found
     assert read_line("ready\n") is None
+
+
+def test_flight_whose_manifest_cannot_be_written_is_refused(tmp_path, monkeypatch, capsys):
+    def refuse(*_):
+        raise AssertionError("something is started")
+
+    monkeypatch.setattr(Simulator, "__init__", refuse)
+    with no_new_content("manifest.json*"):
+        assert gcs.app.cli.main(["fly", str(MISSIONS / "hop.toml"), "--run-dir", str(tmp_path / "run")]) == 2
+        assert vehicle_sim.app.cli.main(["--base-port", "0", "--run-dir", str(tmp_path / "run")]) == 2
+    assert capsys.readouterr().err.count(f"manifest.json: cannot be written: {REASON}\n") == 2
+    assert not [*tmp_path.iterdir()]
+
+
+def test_simulator_exits_with_3_when_its_records_are_incomplete(tmp_path, small_disk, monkeypatch, capsys):
+    class Driver:
+        def __init__(self, swarm, *_):
+            self._swarm = swarm
+
+        def run(self):
+            small_disk.free = 2000
+            self._swarm.advance_to(1.0)
+
+    small_disk.free = 10_000
+    monkeypatch.setattr("vehicle_sim.app.launch.RealTimeDriver", Driver)
+    arguments = ["--base-port", "0", "--ground-port", "0", "--run-dir", str(tmp_path / "run")]
+    assert vehicle_sim.app.cli.main(arguments) == ExitStatus.INCOMPLETE
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("records incomplete: truth.csv ends at 0.") and line.endswith(f"({REASON})")
 
 
 def test_campaign_ends_with_3_when_a_result_cannot_be_written(tmp_path, monkeypatch, capsys):
