@@ -96,6 +96,13 @@ def test_constant_latency_is_no_queue():
     assert queue.fit().explained == 0.0
 
 
+@pytest.mark.parametrize("stall", [0.1, 0.4, 1.0])
+def test_datagrams_held_up_and_released_at_once_are_no_queue_of_the_traffic(stall):
+    for seed in range(5):
+        fit = queue_of(delayed(traffic(seed), lambda t: max(4.5 + stall - t, 0.0) if t >= 4.5 else 0.0)).fit()
+        assert fit.explained < EXPLAINED or fit.load < DEFAULTS.monitor.queue_load * fit.rate
+
+
 def test_load_is_what_has_come():
     assert queue_of(delayed(traffic(), lambda t: 0.0)).fit().load == pytest.approx(6500.0, rel=0.1)
 

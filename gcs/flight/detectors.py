@@ -41,7 +41,8 @@ class MonitorAlarm(ScopedAlarm):
         "their latency varies by more than {jitter_periods} control periods")
     LINK_CONGESTION = (Scope.IN_AIR, Severity.WARNING, "reduce its message rates, or use a link of a higher rate",
         "datagrams usually come more than {jitter_periods} control periods after the least latency, and a queue before "
-        "a link of limited rate explains {queue_explained:.0%} of how their latency varies")
+        "a link of limited rate, which they use by {queue_load:.0%} or more, explains how their latency varies by "
+        "{queue_explained:.0%}")
     CLOCK_ERROR = (Scope.IN_AIR, Severity.WARNING, "check its clock",
         "a vehicle's clock has moved by more than {clock_error} s within {clock_window:g} s, and no latency explains "
         "it: stamps step back, or datagrams seem to arrive before they are sent, or both bounds of the offset by the "
@@ -153,7 +154,7 @@ class LinkTiming:
         else:
             fit = queue.fit()
             looked_at, text = now, ""
-            if fit.explained > s.queue_explained:
+            if fit.explained > s.queue_explained and fit.load > s.queue_load * fit.rate:
                 link = f"a link of {fit.rate * 1e-3:.1f} kB/s, of which {min(fit.load / fit.rate, 1.0):.0%} are used"
                 text = f"datagrams come {queue.wait * 1e3:.0f} ms late over {link}"
         self._queues[i] = looked_at, text

@@ -25,7 +25,7 @@ class QueueFit(NamedTuple):
     load: float
     """What has come (bytes/s)."""
     explained: float
-    """Share of the variance of the latencies: 1 all, 0 or less none."""
+    """Share of how the latencies differ from one datagram to the next: 1 all, 0 or less none."""
 
 
 class LinkQueue:
@@ -66,21 +66,23 @@ class LinkQueue:
     def fit(self) -> QueueFit:
         """Return the queue that explains the latencies best, of a link that passes one datagram after the other.
 
-        A datagram leaves once those before it have, and takes its size over the link's rate.
+        A datagram leaves once those before it have, and takes its size over the link's rate. From one datagram to the
+        next, because latencies that grow or shrink for any reason do so as those of some queue do.
         """
         arrivals, sent, sizes = np.array(self._datagrams).T
         latencies = arrivals - sent
-        beyond_least = latencies.min() - self._least
-        latencies = latencies - latencies.min()
-        variance = float(latencies.var())
-        load = float(sizes.sum() / self._window)
+        differences = np.diff(latencies)
+        variance, load = float(np.square(differences).mean()), float(sizes.sum() / self._window)
         if variance < _RESOLUTION**2:
             return QueueFit(math.inf, load, 0.0)
         best, rate = math.inf, math.inf
-        for backlog in {float(latencies[0]), float(latencies[0] + beyond_least)}:
+        # Before the first there was no queue when all began, or when the least of these was sent.
+        for backlog in {float(latencies[0] - least) for least in (self._least, latencies.min())}:
 
             def unexplained(log_rate: float, backlog: float = backlog) -> float:
-                return float((latencies - _waits(sent, sizes, math.exp(log_rate), backlog)).var())
+                rate = math.exp(log_rate)
+                waits = _waits(sent, sizes, rate, min(backlog, load * self._window / rate))
+                return float(np.square(differences - np.diff(waits)).mean())
 
             found, log_rate = _least(unexplained)
             if found < best:
