@@ -4,10 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from estimator_scene import HOVER, INTERVAL, LAYOUT, REFERENCE, all_samples, run, sample, samples_of, started
+from estimator_scene import HOVER, INTERVAL, LAYOUT, MODEL, REFERENCE, P, all_samples, run, sample, samples_of, started
 
+from idc_controller.estimation.estimator import Estimator
 from idc_controller.estimation.measurements import PAYLOAD, Position
 from idc_controller.estimation.settings import EstimatorSettings
+from idc_controller.trajectory.flatness import Load
+from idc_controller.trajectory.reference import Reference
 
 
 def test_estimate_is_independent_of_order_of_arrival():
@@ -75,6 +78,40 @@ def test_process_noise_of_each_part_widens_its_covariance_by_its_density(noise, 
         estimator = started(replace(EstimatorSettings(), process=process))
         variances.append(np.diag(estimator.estimate(time, REFERENCE).covariance)[getattr(LAYOUT, part)])
     assert variances[1] - variances[0] == pytest.approx(2.0**2 * time, rel=0.15)
+
+
+class Planned:
+    """A plan whose snap (m/s4) is linear between knots 0.1 s apart: its kinks are within the flat map's stencil."""
+
+    KNOTS = np.array([0.0, 6.0, -6.0, 6.0, -6.0, 6.0, -6.0, 6.0, 0.0, 0.0])
+
+    def derivatives(self, times, order=4):
+        fine = np.arange(0.0, 0.9, 1e-4)
+        columns = [np.interp(fine, 0.1 * np.arange(10), self.KNOTS)]
+        for _ in range(4):
+            columns.append(np.append(0.0, np.cumsum((columns[-1][1:] + columns[-1][:-1]) * 0.5e-4)))
+        result = np.zeros((order + 1, len(times), 3))
+        for o in range(order + 1):
+            result[o, :, 0] = np.interp(times - 1.0, fine, columns[4 - o])
+        result[0] += HOVER
+        return result
+
+
+@pytest.mark.parametrize("begin", [1.1, 1.13, 1.25])
+def test_attitudes_and_thrusts_follow_from_setpoints_whatever_kinks_the_plan_has(begin):
+    reference = Reference(P, Planned(), Load(P.m_0, np.zeros(3)))
+    # As the controller takes them: those of the reference in the middle of the 0.05 s for which they are held.
+    u = reference.at(begin + 0.025 + 0.05 * np.arange(6)).u
+    x = reference.at(np.array([begin])).x[0]
+    estimator = Estimator(MODEL)
+    estimator.start(begin, x)
+    for k, setpoints in enumerate(u):
+        estimator.setpoints.add(begin + 0.05 * k, setpoints)
+        A, B, _ = MODEL.discretised(50_000)
+        x = A @ x + B @ setpoints
+    estimated = estimator.estimate(begin + 0.3, reference).x
+    for part in (LAYOUT.n, LAYOUT.n_dot, LAYOUT.n_acc, LAYOUT.f):
+        assert estimated[part] == pytest.approx(x[part], abs=1e-9)
 
 
 def test_estimate_is_predicted_without_measurements_and_recovers():

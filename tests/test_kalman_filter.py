@@ -17,7 +17,7 @@ from idc_controller.estimation.health.chi_squared import lower_quantile, upper_q
 from idc_controller.estimation.kalman_filter import Innovation, SparseRows, StructuredKalmanFilter
 from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
 from idc_controller.estimation.process_model import ProcessModel
-from idc_controller.estimation.propagation_kernels import about_reference, are_finite
+from idc_controller.estimation.propagation_kernels import about_reference, are_finite, defect
 from idc_controller.estimation.settings import ProcessNoiseSettings
 from idc_controller.estimation.update_kernels import gated, mean_products
 from idc_controller.model.linear import LinearModel
@@ -282,6 +282,20 @@ def test_state_and_setpoints_of_reference_between_times_equal_plain_numpy(vehicl
     assert (x[:, process.force] == links.on_payload).all()
     assert (x[:, process.uav_force] == links.on_uavs[..., :2].reshape(3, -1)).all()
     assert (x[:, process.mass] == 0.25).all()
+
+
+@pytest.mark.parametrize("vehicles", [3, 4])
+def test_defect_of_attitudes_and_thrusts_equals_that_of_the_dense_model(vehicles):
+    model = LinearModel(read_system(MISSIONS / "system.toml").with_vehicles(vehicles).parameters())
+    process, layout = ProcessModel(model, ProcessNoiseSettings()), model.layout
+    rng = np.random.default_rng(4)
+    before, after, u = rng.normal(size=process.size), rng.normal(size=process.size), rng.normal(size=layout.inputs)
+    transition = process.transition(37_000)
+    found = defect(before, after, u, *transition.sparse, transition.B, layout.n.start, layout.size)
+    rows = slice(layout.n.start, layout.size)
+    expected = (transition.F(np.zeros(3)) @ before + transition.B @ u - after)[rows]
+    assert found[rows] == pytest.approx(expected, rel=1e-12, abs=1e-12)
+    assert not found[: layout.n.start].any() and not found[layout.size :].any()
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf])

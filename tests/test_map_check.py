@@ -4,13 +4,29 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from obstacle_scene import HERE, NOISE, Scene, hand_over, map_of, moving_tracks, outside, pole, sphere, wall
+from obstacle_scene import (
+    HERE,
+    NOISE,
+    Scene,
+    box,
+    hand_over,
+    map_of,
+    moving_tracks,
+    outside,
+    pole,
+    sphere,
+    wall,
+)
 
+from gcs.config import RangeSensorConfig
+from gcs.flight.stack import sensor_rays
+from gcs.mission.known_obstacles import known_obstacles
 from gcs.mission.model import Obstacle
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
 from idc_controller.perception import map_check
+from idc_controller.perception.standing_obstacles import StandingObstacles
 from idc_controller.perception.surfaces.flat import FlatSurface
 
 EVERYONE = frozenset(range(4))
@@ -144,3 +160,130 @@ def test_poor_fit_weighs_less_in_an_offset_and_a_good_one_no_more_than_its_noise
     assert offsets_of(0.01) == offsets_of(1.0) != offsets_of(1.2)
     assert offsets_of(1.0).keys() == {1}
     assert offsets_of(1e4) == {}
+
+
+def field(seed, count, kinds=("sphere", "pole"), known_share=1.0):
+    """Obstacles of several kinds on either side of the path of :func:`along`, and those of them on the map."""
+    rng = np.random.default_rng([seed, count, 23])
+    path = np.array([along(t) for t in np.arange(0.0, 13.0, 0.1)])[:, :2]
+    known, true = [], []
+    while len(true) < count:
+        kind, place = kinds[len(true) % len(kinds)], rng.uniform([-14.0, -11.0], [14.0, 11.0])
+        if np.hypot(*(path - place).T).min() < (3.5 if kind == "wall" else 2.3):
+            continue
+        name = f"{kind} {len(true)}"
+        if kind == "sphere":
+            body = sphere((*place, rng.uniform(-5.5, -1.7)), rng.uniform(0.24, 0.5), name)
+        elif kind == "pole":
+            body = pole(place, rng.uniform(0.2, 0.5), 8.0, name)
+        elif kind == "wall":
+            body = wall((*place, -3.0), (0.3, rng.uniform(1.0, 3.0), 6.0), rng.uniform(0.0, np.pi), name)
+        else:
+            body = box((*place, rng.uniform(-4.0, -1.0)), rng.uniform(0.4, 1.6, 3), rng.uniform(0.0, np.pi), name)
+        true.append(body)
+        if rng.random() < known_share:
+            known.append(Obstacle(name, tuple(body.position_in_world), body.shape, True))
+    return known, true
+
+
+def along(t):
+    return np.array([6.0 * np.sin(0.5 * t), -3.0 * np.sin(t), -4.2])
+
+
+def fly(known, true, until, seed, off=lambda t, uav: np.zeros(3)):
+    """Yields time and map, every control step, on the way along the path; ``off``: see :func:`look`."""
+    m, scene = map_of(*known, rays=sensor_rays(RangeSensorConfig())), Scene(seed, sensor=RangeSensorConfig())
+    for k in range(round(until * 20)):
+        t = k / 20
+        for found in scene.look(t, along(t), true) if k % 2 == 0 else ():
+            pose = found.position + off(t, found.uav), found.quaternion
+            hand_over(m.placement, t, found.uav, pose, found.sample.points)
+        m.update(t)
+        yield t, m
+
+
+@pytest.mark.parametrize(
+    ("seed", "count", "kinds", "known_share"),
+    [
+        (1, 10, ("sphere", "pole"), 1.0),
+        (2, 50, ("sphere", "pole"), 1.0),
+        (5, 50, ("wall", "box", "sphere", "pole"), 1.0),
+        (3, 100, ("sphere", "pole"), 1.0),
+        pytest.param(7, 50, ("sphere", "pole"), 0.5, marks=pytest.mark.slow),
+        pytest.param(4, 200, ("sphere", "pole"), 1.0, marks=pytest.mark.slow),
+        pytest.param(8, 100, ("wall", "box", "sphere", "pole"), 0.5, marks=pytest.mark.slow),
+    ],
+)
+def test_map_that_is_right_has_no_offset_however_many_obstacles_it_has(seed, count, kinds, known_share):
+    known, true = field(seed, count, kinds, known_share)
+    assert not set().union(*(m.map_offsets for _, m in fly(known, true, 12.0, seed)))
+
+
+@pytest.mark.parametrize("count", [10, 100])
+@pytest.mark.parametrize("vehicles", [{1}, EVERYONE])
+def test_offset_is_detected_among_many_obstacles(count, vehicles):
+    known, true = field(2, count)
+    first = {}
+    for t, m in fly(known, true, 5.0, 2, lambda t, uav: np.full(3, 0.5 * (uav in vehicles and t >= 4.0))):
+        for uav in m.map_offsets:
+            first.setdefault(uav, t)
+    assert first.keys() == set(vehicles)
+    assert 4.3 < max(first.values()) < 4.6
+    for offset in m.map_offsets.values():
+        assert offset[:2] == pytest.approx([0.5, 0.5], abs=0.1)
+
+
+def two_spheres(t, moved):
+    """Two spheres of the map; from 2 s on the one stands ``moved`` (m) beside its place."""
+    return [sphere((5.0, moved * (t >= 2.0), -6.0), name="a"), sphere((-5.0, 0.0, -6.0), name="b")]
+
+
+def test_obstacle_that_is_moved_is_no_offset_of_the_vehicles_that_detect_another_in_its_place():
+    known = [Obstacle(name, place, Sphere(0.5), True) for name, place in (("a", (5.0, 0, -6)), ("b", (-5.0, 0, -6)))]
+    m, scene = map_of(*known), Scene(3)
+    for k in range(120):
+        t = k / 20
+        if k % 2 == 0:
+            scene.feed(m, t, HERE, two_spheres(t, 0.6))
+        m.update(t)
+        assert not m.map_offsets, t
+    assert outside(m, t, np.array([[5.0, 0.1, -6.0]]), "piece")[0] < 0.1  # where it stands now
+
+
+def test_unknown_obstacle_beside_one_of_the_map_is_no_offset():
+    """Near enough for its returns to be of one cluster with those of the other, which it hides from some."""
+    known = [Obstacle("a", (5.0, 0.0, -7.5), Pole(0.2, 15.0), True)]
+    true = [pole((5.0, 0.0)), box((4.4, 0.7, -5.0), (0.5, 0.5, 10.0), name="unknown")]
+    m, scene = map_of(*known), Scene(4)
+    for k in range(240):
+        t = k / 20
+        centre = np.array([1.5, 4.0 * np.cos(0.5 * t + 3.0), -6.0])
+        if k % 2 == 0:
+            scene.feed(m, t, centre, true)
+        m.update(t)
+        assert not m.map_offsets, t
+
+
+def test_limit_of_an_area_is_nothing_that_can_be_detected():
+    places = (("a", (5.0, 0.0, -6.0)), ("b", (5.0, 3.0, -6.0)), ("limit", (5.0, -1.0, -6.0)))
+    known = known_obstacles([Obstacle(name, place, Sphere(0.5), True) for name, place in places])
+    standing = StandingObstacles([o._replace(is_body=o.name != "limit") for o in known])
+    found = standing.next_to(np.array([[4.4, 0.0, -6.0], [4.4, -1.0, -6.0], [4.4, 2.0, -6.0]]), HERE)
+    assert found.distance == pytest.approx([0.1, 0.1, np.hypot(0.6, 1.0) - 0.5])
+    assert found.body.tolist() == [0, 0, 1]
+    assert found.body_distance == pytest.approx([0.1, np.hypot(0.6, 1.0) - 0.5, np.hypot(0.6, 1.0) - 0.5])
+    assert found.others == pytest.approx([np.hypot(0.6, 3.0) - 0.5, np.hypot(0.6, 4.0) - 0.5, np.hypot(0.6, 2.0) - 0.5])
+
+
+def test_return_that_two_obstacles_may_have_produced_is_no_evidence():
+    """Two poles 0.9 m apart: whatever is detected of one is within reach of both, so that an offset is not found."""
+    places = {"a": (5.0, 0.0), "b": (5.0, 0.9)}
+    known = [Obstacle(name, (*place, -7.5), Pole(0.2, 15.0), True) for name, place in places.items()]
+    m, scene, off = map_of(*known), Scene(6), np.array([0.5, 0.0, 0.0])
+    for k in range(120):
+        t = k / 20
+        for found in scene.look(t, HERE, [pole(place, name=name) for name, place in places.items()]) if k % 2 else ():
+            pose = found.position + off * (t >= 2.0), found.quaternion
+            hand_over(m.placement, t, found.uav, pose, found.sample.points)
+        m.update(t)
+        assert not m.map_offsets, t

@@ -9,7 +9,7 @@ import numpy as np
 from idc_controller.arrays import Array, Indices
 from idc_controller.estimation.kalman_filter import Innovation, StructuredKalmanFilter
 from idc_controller.estimation.process_model import ProcessModel
-from idc_controller.estimation.propagation_kernels import about_reference, are_finite
+from idc_controller.estimation.propagation_kernels import about_reference, are_finite, defect
 from idc_controller.estimation.setpoint_history import SetpointHistory
 from idc_controller.trajectory.reference import Reference
 
@@ -31,6 +31,7 @@ class PropagationInterval:
         reference: Reference,
     ) -> None:
         """``start``, ``moments`` of the measurements in between, and ``end`` (s)."""
+        self._process = process
         times = sorted([start, *moments, end])
         for switch in setpoints.switches(start + _SAME, end - _SAME):
             after = bisect_left(times, switch)
@@ -60,6 +61,19 @@ class PropagationInterval:
         """Return the set-points in force less the reference's (3 N,) from time ``k`` to the next."""
         u = self.setpoints[k].u
         return np.zeros(self.u.shape[1]) if u is None else u - self.u[k]
+
+    def defect(self, k: int) -> Array:
+        """Return what the attitudes and thrusts of the reference lack to follow from its set-points (n,).
+
+        From time ``k`` to the next. Their derivatives come from differences over the stencil: where a plan's snap has
+        kinks, which is at every new plan, the reference is no solution of the attitude loop and of the motors. These
+        are linear in themselves, so with the defect their states follow from the set-points alone.
+        """
+        transition, layout = self._process.transition(self.durations[k]), self._process.layout
+        return defect(
+            self.nominal[k], self.nominal[k + 1], self.u[k], *transition.sparse, transition.B,
+            layout.n.start, layout.size,
+        )  # fmt: skip
 
 
 class ErrorStateFilter:
@@ -97,13 +111,14 @@ class ErrorStateFilter:
             self.process.transition(duration), interval.force_of_mass[k], interval.input(k),
             self.process.noise(duration, force_scale), _NONE if change is None else change, probability,
         )  # fmt: skip
+        self._kf.x = self._kf.x + interval.defect(k)
 
     def state_ahead(self, interval: PropagationInterval, k: int) -> Array:
         """Return the absolute state (n,) at the end of the interval from that at time ``k``, which remains."""
         x = self._kf.x
         for later in range(k, len(interval.times) - 1):
             transition = self.process.transition(interval.durations[later])
-            x = transition.state(x, interval.force_of_mass[later], interval.input(later))
+            x = transition.state(x, interval.force_of_mass[later], interval.input(later)) + interval.defect(later)
         return np.asarray(x + self._nominal[-1])
 
     @property

@@ -125,6 +125,32 @@ def add_variances(P: Array, first: int, uavs: Indices, variance: float) -> None:
             P[state, state] += variance
 
 
+@kernel(f"float64[::1]({_VECTOR}, {_VECTOR}, {_VECTOR}, {_COLUMNS}, {_MATRIX}, {_MATRIX}, int64, int64)")
+def defect(
+    before: Array, after: Array, u: Array, columns: Indices, coefficients: Array, B: Array, first: int, end: int
+) -> Array:
+    """Return by how much the states ``first`` to ``end`` of a reference miss the model's after an interval (n,).
+
+    That is F x_k + B u_k - x_k+1 in these states, which only depend on each other and on the input; 0 in all others.
+
+    Args:
+        before, after: reference at the interval's ends (n,).
+        u: its set-points (3 N,).
+        columns, coefficients, B: see :func:`propagated`.
+        first, end: range of the states.
+    """
+    d = len(before) - len(columns)
+    result = np.zeros(len(before))
+    for state in range(first, end):
+        total = -after[state]
+        for a in range(columns.shape[1]):
+            total += coefficients[state - d, a] * before[columns[state - d, a]]
+        for c in range(len(u)):
+            total += B[state, c] * u[c]
+        result[state] = total
+    return result
+
+
 @kernel(f"boolean({_VECTOR}, {_MATRIX})")
 def are_finite(x: Array, P: Array) -> bool:
     """Return whether state (n,) and covariance (n, n) are numbers."""

@@ -108,6 +108,16 @@ class Segmentation:
         """Return the clusters of those returns of a scan that ``rows`` (n,) names."""
         return self._segmented(scan, rows)[1]
 
+    def of_bodies(self, scan: PlacedScan, rows: Mask, bodies: Indices) -> list[tuple[Cluster, int]]:
+        """Return the clusters of the returns ``rows`` (n,) that are of one body each, with its number.
+
+        ``bodies``: numbers of the returns' bodies (n,).
+        """
+        order, clusters = self._segmented(scan, rows)
+        ordered = bodies[rows][order]
+        parts = [(cluster, ordered[cluster.part]) for cluster in clusters]
+        return [(cluster, int(of[0])) for cluster, of in parts if (of == of[0]).all()]
+
     def _segmented(self, scan: PlacedScan, rows: Mask) -> tuple[Indices, list[Cluster]]:
         points = scan.returns[rows]
         if not len(points):

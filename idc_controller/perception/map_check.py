@@ -1,39 +1,61 @@
-"""Map check: offsets of the detected standing obstacles from their places on the map, vehicle by vehicle."""
+"""Map check: offsets of the detected standing obstacles from their places on the map, vehicle by vehicle.
+
+An obstacle is compared by returns that nothing else can have produced: with an offset of any size that is looked for,
+they are of no other obstacle of the map and of no track. An offset is a vehicle's, not an obstacle's: it displaces all
+that the vehicle detects. So the one that fits an obstacle counts only if of those that the vehicle detects together
+more are likelier with it than are in their places. What has stood near them before is no evidence.
+"""
 
 import math
-from collections.abc import Collection, Sequence
+from collections import defaultdict, deque
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
-from idc_controller.arrays import Array
-from idc_controller.geometry.obstacles import Bodies, PointGroups
+from idc_controller.arrays import Array, Mask
+from idc_controller.estimation.health.chi_squared import upper_quantile
+from idc_controller.geometry.obstacles import Bodies
 from idc_controller.geometry.shape import Shape
 from idc_controller.perception.clusters import Cluster
 from idc_controller.perception.obstacle_filter import surface_of
 from idc_controller.perception.settings import MapCheckSettings, PerceptionSettings, SurfaceSettings
+from idc_controller.perception.standing_obstacles import NextObstacles
 from idc_controller.perception.surfaces.points import SurfacePoints
+
+_OUTLIER = 9.0
+"""Normalised square of a distance from which on a point is no more evidence: it is of something else."""
+
+_Pair = tuple[int, int]
+"""A vehicle (0 .. N-1), and the number of an obstacle."""
 
 
 class _Offset:
     """Offset of a vehicle's points from one obstacle, without a break: a Kalman filter, axis by axis."""
 
     def __init__(self, time: float, settings: MapCheckSettings, surfaces: SurfaceSettings) -> None:
-        self.time, self._settings, self._surfaces = time, settings, surfaces
+        self.time = self.begin = time
+        """Times of the last scan, and of the first that disagreed with the map."""
+        self._settings, self._surfaces = settings, surfaces
         self.mean = np.zeros(3)
         self.agreements = 0
         """Scans in a row, up to the last one, that agree with the map."""
+        self.since = math.inf
+        """Time from which on it has been one."""
         self._variance = np.full(3, settings.initial_sigma**2)
         self._scatter = 0.0  # variance of the points beyond their sensor's (m2)
-        self._detected_since = math.inf
 
     @property
     def is_detected(self) -> bool:
         """Return whether there is an offset, and has been for long enough."""
-        return self.time - self._detected_since >= self._settings.duration
+        return self.time - self.since >= self._settings.duration
 
-    def update(self, points: SurfacePoints, shape: Shape, centre: Array) -> None:
-        """Take one scan of the obstacle, which the map has at ``centre`` (3,)."""
+    def update(self, points: SurfacePoints, shape: Shape, centre: Array, limit: float) -> None:
+        """Take one scan of the obstacle, which the map has at ``centre`` (3,).
+
+        ``limit``: square sum of the normalised offset that noise alone does not exceed.
+        """
         s = self._settings
         surface = surface_of(shape.kind, shape, self._surfaces)
         points = replace(points, scatter=self._scatter)
@@ -47,9 +69,19 @@ class _Offset:
         self._variance = (1.0 - gain) * self._variance
         self._scatter = max(self._scatter + s.smoothing * fit.unexplained, 0.0)
         self.time = points.time
-        deviation = math.sqrt(float(np.sum(self.mean**2 / self._variance)))
-        is_off = deviation > s.sigmas and float(np.linalg.norm(self.mean)) > s.offset_min + math.sqrt(self._scatter)
-        self._detected_since = min(self._detected_since, self.time) if is_off else math.inf
+        square = float(np.sum(self.mean**2 / self._variance))
+        is_off = square > limit and float(np.linalg.norm(self.mean)) > s.offset_min + math.sqrt(self._scatter)
+        self.since = min(self.since, self.time) if is_off else math.inf
+
+
+class _Found(NamedTuple):
+    """What a vehicle detected of an obstacle in one scan."""
+
+    points: SurfacePoints
+    mean: float
+    """Mean distance of the points from the obstacle's surface (m)."""
+    sigma: float
+    """Standard deviation of a point (m)."""
 
 
 class MapCheck:
@@ -62,6 +94,7 @@ class MapCheck:
         self,
         standing: Sequence[tuple[str, Shape, Array]],
         view_range: float,
+        is_standing: Callable[[Array, float], Mask],
         settings: PerceptionSettings,
     ) -> None:
         """Start without offsets.
@@ -69,90 +102,121 @@ class MapCheck:
         Args:
             standing: name, shape and centre (3,) (NED, m) of the obstacles on the map.
             view_range: within which they are certainly detected (m).
+            is_standing: says of points (n, 3) whether something unknown has stood there since a time (s).
             settings: of perception.
         """
         self._bodies = Bodies([shape for _, shape, _ in standing])
         self._centres = np.array([centre for *_, centre in standing]).reshape(-1, 3)
         self._standing, self._view_range, self._gate = standing, view_range, settings.association.remembered_gate
+        self._is_standing, self._settling = is_standing, settings.standing_map.settling_time
+        voxel = settings.standing_map.voxel
+        steps = voxel * np.arange(-(self._gate // voxel), self._gate // voxel + 1.0)
+        grid = np.stack(np.meshgrid(steps, steps, steps), axis=-1).reshape(-1, 3)
+        self._about = grid[np.linalg.norm(grid, axis=1) <= self._gate]
+        """Places (G, 3) (m) about a point that an offset may have moved there."""
         self._settings, self._surfaces = settings.map_check, settings.tracking.surfaces
-        self._agreements: dict[tuple[int, int], int] = {}
-        self._offsets: dict[tuple[int, int], _Offset] = {}
-
-    def compare(self, clusters: Sequence[Cluster], standing: Sequence[int | None], distances: Array) -> None:
-        """Take one frame.
-
-        An obstacle in a vehicle's field of view that is not detected in its place is taken to be what is nearest.
-
-        Args:
-            clusters: as the vehicles placed them.
-            standing: the standing obstacle that each belongs to (None: none).
-            distances: mean distances (clusters, standing obstacles) (m), once their vehicles' offsets are removed.
-        """
-        if not self._standing:
-            return
-        detected = {
-            (cluster.uav, number): row
-            for row, (cluster, number) in enumerate(zip(clusters, standing, strict=True))
-            if number is not None
-        }
-        taken = set(detected.values())
-        nearest, least = distances.argmin(axis=1).tolist(), distances.min(axis=1)
-        order = np.argsort(least)
-        for row in order[least[order] <= self._gate].tolist():
-            if row not in taken:
-                detected.setdefault((clusters[row].uav, nearest[row]), row)
-        if not detected:
-            return
-        numbers, rows = [number for _, number in detected], list(detected.values())
-        origins = np.array([clusters[row].scan.origins[clusters[row].part.start or 0] for row in rows])
-        from_sensors = np.abs(self._bodies.from_own_offsets(numbers, origins - self._centres[numbers])).tolist()
-        means, sigmas = distances[rows, numbers].tolist(), _sigmas([clusters[row] for row in rows])
-        offset_uavs = self.offsets.keys()
-        for number, row, from_sensor, mean, sigma in zip(numbers, rows, from_sensors, means, sigmas, strict=True):
-            if from_sensor <= self._view_range:
-                self._detected(clusters[row], number, None if clusters[row].uav in offset_uavs else mean, sigma)
-
-    def _detected(self, cluster: Cluster, number: int, mean: float | None, sigma: float) -> None:
-        """Take a cluster of an obstacle by its ``mean`` distance from that (m), None: not known yet.
-
-        ``sigma``: standard deviation of its points (m).
-        """
-        pair, s = (cluster.uav, number), self._settings
-        _, shape, centre = self._standing[number]
-        if mean is None:
-            mean = float(Bodies([shape]).mean_distances(PointGroups.of([cluster.points]), centre[None])[0, 0])
-        agrees, offset = mean < s.agreement_sigmas * sigma, self._offsets.get(pair)
-        points = cluster.surface_points
-        if agrees:
-            self._agreements[pair] = self._agreements.get(pair, 0) + 1
-        elif offset is None and self._agreements.get(pair, 0) >= s.agreements:
-            offset = self._offsets[pair] = _Offset(points.time, s, self._surfaces)
-        if offset is not None:
-            # A few points may agree by chance: they count, but do not end an offset by themselves.
-            offset.agreements = offset.agreements + 1 if agrees else 0
-            offset.update(points, shape, centre)
-            if offset.agreements >= s.agreements:
-                del self._offsets[pair]
-
-    @property
-    def offsets(self) -> dict[int, Array]:
+        self._agreements: dict[_Pair, int] = {}
+        self._offsets: dict[_Pair, _Offset] = {}
+        self._latest: dict[_Pair, deque[SurfacePoints]] = defaultdict(deque)
+        """Last scans of each obstacle, not older than an offset must last."""
+        self.offsets: dict[int, Array] = {}
         """Detected offset (3,) (NED, m) of what each vehicle (0 .. N-1) detects from the map."""
-        latest: dict[int, _Offset] = {}
+
+    def told_apart(self, next_to: NextObstacles) -> Mask:
+        """Return which returns (n,) are of one obstacle of the map only, whatever offset they have."""
+        return (next_to.body_distance <= self._gate) & (next_to.others > self._gate)
+
+    def compare(self, detected: Sequence[tuple[Cluster, int]]) -> None:
+        """Take one frame: clusters as the vehicles placed them, each with the number of the obstacle that it is of.
+
+        Of several clusters of one obstacle, the one nearest to its place is taken.
+        """
+        found = self._found(detected)
+        if not found:
+            return
+        for pair, of_pair in found.items():
+            self._take(pair, of_pair)
+        by_uav: dict[int, list[_Offset]] = defaultdict(list)
         for (uav, _), offset in self._offsets.items():
-            if offset.is_detected and (uav not in latest or offset.time > latest[uav].time):
-                latest[uav] = offset
-        return {uav: offset.mean for uav, offset in latest.items()}
+            if offset.is_detected:
+                by_uav[uav].append(offset)
+        self.offsets = {
+            uav: mean for uav, of_uav in by_uav.items() if (mean := self._likeliest(uav, of_uav)) is not None
+        }
 
     def all_offset(self, uavs: Collection[int]) -> bool:
         """Return whether there are ``uavs``, and all of them have an offset."""
         return bool(uavs) and self.offsets.keys() >= set(uavs)
 
+    def _found(self, detected: Sequence[tuple[Cluster, int]]) -> dict[_Pair, _Found]:
+        """Return what was found of each obstacle in a vehicle's field of view."""
+        if not detected:
+            return {}
+        clusters, numbers = [cluster for cluster, _ in detected], [number for _, number in detected]
+        parts = [cluster.surface_points for cluster in clusters]
+        sizes = np.array([len(part.points) for part in parts])
+        starts, of_points = np.cumsum(sizes) - sizes, np.repeat(numbers, sizes)
+        points, origins = np.concatenate([part.points for part in parts]), np.array([part.origins[0] for part in parts])
+        distances = np.abs(self._bodies.from_own_offsets(of_points.tolist(), points - self._centres[of_points]))
+        means = (np.add.reduceat(distances, starts) / sizes).tolist()
+        from_sensors = np.abs(self._bodies.from_own_offsets(numbers, origins - self._centres[numbers])).tolist()
+        found: dict[_Pair, _Found] = {}
+        for cluster, number, part, mean, from_sensor in zip(clusters, numbers, parts, means, from_sensors, strict=True):
+            pair = cluster.uav, number
+            if from_sensor <= self._view_range and (pair not in found or mean < found[pair].mean):
+                sigma = math.sqrt(part.noise**2 + float(np.mean(part.pose_variance)))
+                found[pair] = _Found(part, mean, sigma)
+        return found
 
-def _sigmas(clusters: Sequence[Cluster]) -> list[float]:
-    """Return the standard deviation of the points of each cluster, by range noise and pose (m)."""
-    variances = [cluster.pose_variance for cluster in clusters]
-    sizes = np.array([len(values) for values in variances])
-    of_poses = np.add.reduceat(np.concatenate(variances), np.cumsum(sizes) - sizes) / sizes
-    of_ranges = np.array([cluster.scan.noise for cluster in clusters]) ** 2
-    sigmas: list[float] = np.sqrt(of_ranges + of_poses).tolist()
-    return sigmas
+    def _take(self, pair: _Pair, found: _Found) -> None:
+        """Take what a vehicle ``found`` of an obstacle."""
+        s, (_, shape, centre) = self._settings, self._standing[pair[1]]
+        agrees, offset = found.mean < s.agreement_sigmas * found.sigma, self._offsets.get(pair)
+        if agrees:
+            self._agreements[pair] = self._agreements.get(pair, 0) + 1
+        if self._agreements.get(pair, 0) < s.agreements:
+            return
+        latest = self._latest[pair]
+        latest.append(found.points)
+        while latest[0].time < found.points.time - s.duration:
+            latest.popleft()
+        if offset is None and not agrees:
+            offset = self._offsets[pair] = _Offset(found.points.time, s, self._surfaces)
+        if offset is not None:
+            # A few points may agree by chance: they count, but do not end an offset by themselves.
+            offset.agreements = offset.agreements + 1 if agrees else 0
+            # Bonferroni: one of as many comparisons exceeds its limit by noise with the probability of all of them.
+            limit = float(upper_quantile(s.false_alarm / len(self._agreements), 3))
+            offset.update(found.points, shape, centre, limit)
+            if offset.agreements >= s.agreements:
+                del self._offsets[pair]
+
+    def _likeliest(self, uav: int, offsets: list[_Offset]) -> Array | None:
+        """Return which of the ``offsets`` (3,) (m) explains best what a vehicle detects; None: it has none."""
+        latest = max(scans[-1].time for (of, _), scans in self._latest.items() if of == uav)
+        best, most = None, 0.0
+        for offset in offsets:
+            begin = max(offset.since, latest - self._settings.duration)
+            votes = 0.0
+            for (of, number), scans in self._latest.items():
+                if of == uav and scans[-1].time >= begin:
+                    gain = sum(self._gain(number, points, offset) for points in scans if points.time >= begin)
+                    votes += float(np.sign(gain))
+            if votes > most:
+                best, most = offset.mean, votes
+        return best
+
+    def _gain(self, number: int, points: SurfacePoints, offset: _Offset) -> float:
+        """Return by how much points of an obstacle are likelier with an ``offset`` than in its place (nats)."""
+        away = points.points - self._centres[number]
+        body = Bodies([self._standing[number][1]])
+        distances = body.from_offsets(np.stack([away, away - offset.mean]).reshape(1, -1, 3))
+        squares = distances.reshape(2, -1) ** 2 / (points.noise**2 + points.pose_variance)
+        in_place, moved = np.minimum(squares, _OUTLIER)
+        # What is out of place is so with any offset; what is in its place contradicts one that moves it away.
+        gains = 0.5 * (in_place - np.where(in_place < _OUTLIER, moved, 0.0))
+        # What an offset of any vehicle has put there is no body.
+        begin = min([offset.begin, *(other.begin for (_, of), other in self._offsets.items() if of == number)])
+        about = (points.points[:, None] + self._about).reshape(-1, 3)
+        of_others = self._is_standing(about, begin - self._settling)
+        return float(gains[~of_others.reshape(len(gains), -1).any(axis=1)].sum())

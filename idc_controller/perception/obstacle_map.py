@@ -19,7 +19,11 @@ from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.range_sensors import SensorModel
 from idc_controller.perception.scan_placement import ScanPlacement, SensorRays
 from idc_controller.perception.settings import PerceptionSettings
-from idc_controller.perception.standing_obstacles import MapObstacle, SeenObstacles, StandingObstacles
+from idc_controller.perception.standing_obstacles import (
+    MapObstacle,
+    SeenObstacles,
+    StandingObstacles,
+)
 from idc_controller.perception.track import Track
 from idc_controller.perception.track_list import TrackList
 
@@ -70,7 +74,7 @@ class ObstacleMap:
             2.0 * s.tracking.surfaces.radius_max,
         )
         self._rays = rays
-        self._check = MapCheck(self._standing.obstacles, self._view_range, s)
+        self._check = MapCheck(self._standing.obstacles, self._view_range, self.seen.map.is_standing, s)
         self._sigmas = math.sqrt(float(upper_quantile(s.standing_map.false_alarm, 3)))
         self._time = -math.inf
         self._deleted: list[str] = []
@@ -178,11 +182,13 @@ class ObstacleMap:
         # With their offset removed, they are used only if there are no others.
         excluded = frozenset() if self.map_offset_detected else frozenset(offsets)
         placed: list[Cluster] = []
+        on_map: list[tuple[Cluster, int]] = []
         candidates: set[int] = set()
         usable: list[PlacedScan] = []
         for scan in frame:
             corrected = shifted(scan, -offsets[scan.uav]) if scan.uav in offsets else scan
-            known, of_tracks, unexplained, is_new = self._classified(corrected)
+            next_to = self._standing.next_to(corrected.returns, corrected.origin)
+            known, (of_tracks, near_tracks), unexplained, is_new = self._classified(corrected, next_to.distance)
             before = frame[0].time - self._settings.scans.simultaneous
             explained = self.seen.map.is_standing(corrected.returns, before)
             rows = of_tracks | unexplained | is_new
@@ -190,36 +196,42 @@ class ObstacleMap:
             candidates |= seen
             # Whole, also where only a part of what is offset lies within the gate.
             placed += [*clusters, *self._segmentation.clusters(scan, known[1] & ~of_tracks)]
+            told_apart = self._check.told_apart(next_to) & ~near_tracks
+            on_map += self._segmentation.of_bodies(scan, told_apart, next_to.body)
             if scan.uav not in excluded:
                 self.seen.map.add(corrected, known[0] | of_tracks)
                 usable.append(corrected)
         if placed:
             self._associate(placed, offsets, usable, candidates)
+        self._check.compare(on_map)
 
-    def _classified(self, scan: PlacedScan) -> tuple[tuple[Mask, Mask], Mask, Mask, Mask]:
-        """Return which returns of a scan (n,) belong to what.
+    def _classified(self, scan: PlacedScan, distance: Array) -> tuple[tuple[Mask, Mask], tuple[Mask, Mask], Mask, Mask]:
+        """Return which returns of a scan (n,), at a ``distance`` (n,) (m) from the map, belong to what.
 
-        Those on standing obstacles of the map, and those near them; those on tracks that move; those that nothing
-        standing explains; those of what has not been seen to stand for long.
+        Those on standing obstacles of the map, and those near them; those on tracks that move, and those that an offset
+        may have moved away from any track; those that nothing standing explains; those of what has not been seen to
+        stand for long.
         """
         s, sigma = self._settings.association, self._sigmas * return_sigma(scan)
-        distance = self._standing.distance(scan.returns, scan.origin)
         known = distance <= np.maximum(s.map_gate, sigma)
-        of_tracks = np.zeros(len(known), dtype=bool)
-        moving = [track for track in self.tracks if track.is_obstacle and not track.is_static]
-        if moving and len(known):
-            centres = np.array([track.expected(scan.time)[0] for track in moving])
-            to_tracks = Bodies([track.shape for track in moving]).distance(scan.returns, centres)
-            of_tracks = (to_tracks <= np.maximum(s.track_gate, sigma)).any(axis=0) & ~known
+        of_tracks = near_tracks = np.zeros(len(known), dtype=bool)
+        tracks = [track for track in self.tracks if track.is_obstacle]
+        if tracks and len(known):
+            centres = np.array([track.expected(scan.time)[0] for track in tracks])
+            to_tracks = Bodies([track.shape for track in tracks]).distance(scan.returns, centres)
+            moves = np.array([not track.is_static for track in tracks])
+            of_tracks = (to_tracks[moves] <= np.maximum(s.track_gate, sigma)).any(axis=0) & ~known
+            reach = np.array([s.undetected_gate if track.filter is None else s.remembered_gate for track in tracks])
+            near_tracks = np.asarray((to_tracks <= reach[:, None]).any(axis=0))
         unexplained = self.seen.map.unexplained(scan) & ~known
         observed = scan.time - self._settings.standing_map.settling_time
         is_new = ~known & ~self.seen.map.is_standing(scan.returns, observed)
-        return (known, distance <= s.remembered_gate), of_tracks, unexplained, is_new
+        return (known, distance <= s.remembered_gate), (of_tracks, near_tracks), unexplained, is_new
 
     def _associate(
         self, placed: list[Cluster], offsets: dict[int, Array], usable: list[PlacedScan], candidates: set[int]
     ) -> None:
-        """Update map check and tracks by the clusters of a frame.
+        """Update tracks by the clusters of a frame.
 
         Args:
             placed: where the vehicles' poses place them.
@@ -234,9 +246,6 @@ class ObstacleMap:
         distances, gates = self._distances(clusters, time)
         bodies = associate(clusters, distances, gates)
         n = len(self.tracks)
-        on_map = [None if body is None or body < n else body - n for body in bodies]
-        self._check.compare(placed, on_map, distances[:, n:])
-
         bodies = [body if c.uav in uavs else None for c, body in zip(clusters, bodies, strict=True)]
         assigned: dict[int, list[Cluster]] = defaultdict(list)
         unassigned: list[Cluster] = []

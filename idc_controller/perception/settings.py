@@ -76,7 +76,9 @@ class MapCheckSettings(SettingsTable):
     """Detection of an offset of the obstacles from their places on the map."""
 
     offset_min: float = setting(0.2, "m", "offset from which on detections contradict the map", gt=0.0)
-    sigmas: float = setting(6.0, "", "and in its standard deviations", gt=0.0)
+    false_alarm: float = setting(
+        1e-6, "", "probability per scan that noise alone is an offset, of all obstacles and vehicles", gt=0.0, lt=1.0
+    )
     duration: float = setting(0.4, "s", "for which it must last: the time until a wrong pose is isolated", ge=0.0)
     agreement_sigmas: float = setting(1.25, "", "mean distance of a scan that agrees, in standard deviations", gt=0.0)
     agreements: int = setting(5, "", "such scans before an offset of the obstacle can be detected", ge=1)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Indices
 from idc_controller.geometry.obstacles import Bodies, PredictedObstacle, Region
 from idc_controller.geometry.shape import Shape
 from idc_controller.perception.convex_pieces import ConvexPieces
@@ -24,6 +24,21 @@ class MapObstacle(NamedTuple):
     centre: Array
     """Centre in the world (3,) (NED, m); of a moving obstacle, the mean of its motion."""
     moves: bool = False
+    is_body: bool = True
+    """Whether there is a body that range sensors can detect: the limit of an area is none."""
+
+
+class NextObstacles(NamedTuple):
+    """Standing obstacles of the map about n points. Distances from surfaces, m."""
+
+    distance: Array
+    """From the next one (n,)."""
+    body: Indices
+    """Number of the next one that can be detected (n,)."""
+    body_distance: Array
+    """From that (n,)."""
+    others: Array
+    """From the next of all others that can be detected (n,)."""
 
 
 class StandingObstacles:
@@ -35,6 +50,7 @@ class StandingObstacles:
         self.bodies = Bodies([o.shape for o in known])
         self.centres = np.array([o.centre for o in known]).reshape(-1, 3)
         self._reach = np.array([o.shape.horizontal_reach for o in known])
+        self._is_body = np.array([o.is_body for o in known], dtype=bool)
         self._predicted: dict[int, list[PredictedObstacle]] = {}
 
     def predict(self, count: int, region: Region | None) -> list[PredictedObstacle]:
@@ -50,9 +66,10 @@ class StandingObstacles:
         near = np.hypot(apart[:, 0], apart[:, 1]) <= region.radius + self._reach
         return [predicted[i] for i in np.flatnonzero(near).tolist()]
 
-    def distance(self, points: Array, origin: Array) -> Array:
-        """Return the distance (n,) (m) of points (n, 3), seen from ``origin`` (3,), from the next surface."""
-        none = np.full(len(points), math.inf)
+    def next_to(self, points: Array, origin: Array) -> NextObstacles:
+        """Return those next to points (n, 3), seen from ``origin`` (3,); none within 2 m may count as none at all."""
+        far = np.full(len(points), math.inf)
+        none = NextObstacles(far, np.full(len(points), -1), far, far)
         if not len(points) or not self.names:
             return none
         farthest = float(np.hypot(*(points[:, :2] - origin[:2]).T).max())
@@ -61,7 +78,15 @@ class StandingObstacles:
         if not len(near):
             return none
         shapes = [self.bodies.shapes[i] for i in near.tolist()]
-        return np.asarray(np.abs(Bodies(shapes).distance(points, self.centres[near])).min(axis=0))
+        distance = np.abs(Bodies(shapes).distance(points, self.centres[near]))
+        next_of_all, bodies = distance.min(axis=0), near[self._is_body[near]]
+        if not len(bodies):
+            return none._replace(distance=next_of_all)
+        if len(bodies) < len(near):
+            distance = distance[self._is_body[near]]
+        next_body = distance.argmin(axis=0)
+        others = np.partition(distance, 1, axis=0)[1] if len(bodies) > 1 else far
+        return NextObstacles(next_of_all, bodies[next_body], distance[next_body, np.arange(len(points))], others)
 
 
 class SeenObstacles:
