@@ -83,7 +83,8 @@ class MonitorAlarm(ScopedAlarm):
     PROCESS_NOISE = (Scope.CLEAR_OF_GROUND, Severity.WARNING, "check for gusts",
         "forces change so quickly that the process noise is at its largest")
     VEHICLE_MAP_OFFSET = (Scope.ALWAYS, Severity.WARNING, "check its position and range sensor",
-        "a vehicle detects a standing obstacle of the map more than 0.2 m from where it was, for 0.4 s")
+        "a vehicle detects a standing obstacle of the map more than 0.2 m from where it was for 0.4 s, "
+        "and more obstacles out of their places than in them")
     TRACK_LOST = (Scope.ALWAYS, Severity.NOTICE, "none",
         "a tracked obstacle was not detected for 1 s although a vehicle is near")
     # fmt: on

@@ -19,11 +19,7 @@ from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.range_sensors import SensorModel
 from idc_controller.perception.scan_placement import ScanPlacement, SensorRays
 from idc_controller.perception.settings import PerceptionSettings
-from idc_controller.perception.standing_obstacles import (
-    MapObstacle,
-    SeenObstacles,
-    StandingObstacles,
-)
+from idc_controller.perception.standing_obstacles import MapObstacle, SeenObstacles, StandingObstacles
 from idc_controller.perception.track import Track
 from idc_controller.perception.track_list import TrackList
 

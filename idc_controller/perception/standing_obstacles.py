@@ -67,7 +67,7 @@ class StandingObstacles:
         return [predicted[i] for i in np.flatnonzero(near).tolist()]
 
     def next_to(self, points: Array, origin: Array) -> NextObstacles:
-        """Return those next to points (n, 3), seen from ``origin`` (3,); none within 2 m may count as none at all."""
+        """Return those next to points (n, 3), seen from ``origin`` (3,); those beyond 2 m may be left out."""
         far = np.full(len(points), math.inf)
         none = NextObstacles(far, np.full(len(points), -1), far, far)
         if not len(points) or not self.names:
