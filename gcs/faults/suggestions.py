@@ -25,6 +25,7 @@ _DIRECTIONS = {
 }  # fmt: skip
 
 
+@cache
 def kind_meant(name: str) -> str | None:
     """Return the kind that an unknown ``name`` most probably means; None: no kind is like it."""
     return _meant(name, {**{alias: kind.name for kind in KINDS.values() for alias in kind.aliases}, **_selves(KINDS)})
