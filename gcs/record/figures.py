@@ -1,6 +1,6 @@
 """Pictures of a run folder: what ``gcs report`` draws, and every flight at its end."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -212,4 +212,7 @@ def _flown(run: RunData) -> str:
 
 def _limit(run: RunData, name: str) -> float | None:
     entry = (run.summary.get("limits") or {}).get(name)
-    return float(entry["limit"]) if entry else None
+    if not entry:
+        return None
+    # A list in records of format 1.
+    return float(entry["limit"] if isinstance(entry, Mapping) else entry[1])
