@@ -72,7 +72,7 @@ class MonitorSettings(SettingsTable):
     queue_explained: float = setting(
         0.85,
         "",
-        "share of the differences of latencies that are a queue's: of latencies at random, of 30 datagrams once in 1e6",
+        "share of the differences of latencies that are a queue's: of latencies at random, of 30 datagrams once in 1e5",
         gt=0.0,
         lt=1.0,
     )
@@ -80,7 +80,7 @@ class MonitorSettings(SettingsTable):
         0.25, "", "share of a link's rate below which its queue holds up nothing: for a sixth of its own time", gt=0.0
     )
     queue_datagrams: int = setting(30, "", "whose latencies are compared at least", ge=10)
-    queue_interval: float = setting(0.5, "s", "between two such comparisons, which cost 2 ms", gt=0.0)
+    queue_interval: float = setting(0.25, "s", "between two such comparisons, which cost 2 ms", gt=0.0)
     manoeuvre_tilt: float = setting(
         0.1, "rad", "change of tilt set-points in one step, beyond the attitude loop's linear model", gt=0.0
     )

@@ -15,7 +15,7 @@ class ClockSettings(SettingsTable):
         4, "", "such slices kept: few, because a simulated world that stalled does not catch up", ge=1
     )
     recent_round_trips: int = setting(4, "", "round trips whose longest bounds the latency", ge=1)
-    queue_window: float = setting(2.0, "s", "of datagrams whose latencies are compared with those of a queue", gt=0.0)
+    queue_window: float = setting(1.25, "s", "of datagrams whose latencies are compared with those of a queue", gt=0.0)
     open_requests: int = setting(100, "", "TIMESYNC requests that may still be answered", ge=1)
     bounds: int = setting(1000, "", "bounds of the offset kept until they are looked at, once a control step", ge=1)
     set_back: float = setting(0.005, "s", "a later stamp that is earlier by more: the clock was set back", gt=0.0)
