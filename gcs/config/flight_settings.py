@@ -77,7 +77,10 @@ class MonitorSettings(SettingsTable):
         lt=1.0,
     )
     queue_load: float = setting(
-        0.25, "", "share of a link's rate below which its queue holds up nothing: for a sixth of its own time", gt=0.0
+        0.25,
+        "",
+        "share of the link's rate that is used at least: below, datagrams wait for a sixth of their own time (M/D/1)",
+        gt=0.0,
     )
     queue_datagrams: int = setting(30, "", "whose latencies are compared at least", ge=10)
     queue_interval: float = setting(0.25, "s", "between two such comparisons, which cost 2 ms", gt=0.0)
