@@ -93,9 +93,9 @@ def test_scenarios_of_a_campaign_are_drawn_for_each_seed(tmp_path):
 
 
 def test_scenario_is_flown_with_the_faults_of_the_campaign(tmp_path):
-    text = CAMPAIGN + SCENARIOS.split("\n\n")[0] + "\nduration = 40.0\nseed_count = 1\n"
+    text = CAMPAIGN + SCENARIOS.split("\n\n")[0] + "\nduration = 40.0\n"
     plans = list(FaultFlights(read_campaign(campaign_file(tmp_path, text))).plans(tmp_path))
-    assert [plan.labels["seed"] for plan in plans] == 3 * [3, 7, 3]
+    assert [plan.labels["seed"] for plan in plans] == 3 * [3, 7, 3, 7]
     mission = tomllib.loads(plans[2].files[plans[2].mission])
     assert mission["reference"]["duration"] == 40.0
     assert len(mission["obstacle"]) == 30 and mission["fault"][0]["kind"] == "packet_loss"

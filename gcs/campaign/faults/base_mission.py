@@ -29,11 +29,6 @@ class BaseMission:
     tables: Mapping[str, Any]
     files: Mapping[str, str]
 
-    @property
-    def seed_count(self) -> int | None:
-        """The number of a campaign's seeds that it is flown with; None: all."""
-        return None
-
     def text(
         self,
         name: str,

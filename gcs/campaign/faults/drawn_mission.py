@@ -21,7 +21,7 @@ from gcs.mission.model import Fault, Limits, Name
 class ScenarioTable:
     """``[[scenario]]``: a mission of one of :data:`KINDS`, or a field of ``obstacles``, all ``known`` or none.
 
-    ``duration`` (s) is that of the figure eight in a field; ``seed_count``: flown with so many of the campaign's seeds.
+    ``duration`` (s) is that of the figure eight in a field.
     """
 
     name: Name
@@ -29,7 +29,6 @@ class ScenarioTable:
     obstacles: Annotated[int, Field(ge=0, le=MOST)] | None = None
     known: bool | None = None
     duration: Annotated[float, Field(gt=0.0, le=3000.0)] | None = None
-    seed_count: Annotated[int, Field(ge=1)] | None = None
 
     def text(self, seed: int) -> str:
         """Return the mission of a seed: of those that are drawn the first that can be passed."""
@@ -48,11 +47,6 @@ class DrawnMission(BaseMission):
     """A mission that is drawn for each seed."""
 
     table: ScenarioTable
-
-    @property
-    def seed_count(self) -> int | None:
-        """The number of a campaign's seeds that it is flown with."""
-        return self.table.seed_count
 
     @classmethod
     def of(cls, table: ScenarioTable) -> "DrawnMission":

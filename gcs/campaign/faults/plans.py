@@ -36,7 +36,7 @@ class FaultFlights(PlanGenerator):
     def __init__(self, file: CampaignFile) -> None:
         """Raises :class:`UnusableInput` for too many flights."""
         self.file = file
-        count = len(file.cases) * sum(len(file.seeds[: base.seed_count]) for base in file.missions.values())
+        count = len(file.cases) * len(file.missions) * len(file.seeds)
         if count > MAX_FLIGHTS:
             raise UnusableInput(f"{count} flights are more than {MAX_FLIGHTS}: list fewer faults, missions or seeds")
         if file.require != WITHIN_LIMITS:
@@ -50,13 +50,9 @@ class FaultFlights(PlanGenerator):
     def plans(self, out: Path) -> Iterator[FlightPlan]:
         """Yield all flights, by case, then mission, then seed."""
         file, folder = self.file, out / "missions"
-        flights = [
-            (case, mission, base, seed)
-            for case in file.cases
-            for mission, base in file.missions.items()
-            for seed in file.seeds[: base.seed_count]
-        ]
-        for number, (case, mission, base, seed) in enumerate(flights, start=1):
+        flights = [(case, mission, seed) for case in file.cases for mission in file.missions for seed in file.seeds]
+        for number, (case, mission, seed) in enumerate(flights, start=1):
+            base = file.missions[mission]
             title = " ".join(part for part in (mission, case.name, case.severity) if part)
             text = base.text(title, seed, case.faults_for(seed), file.limits)
             name = plain(" ".join([case.name, case.severity, Path(mission).stem, f"seed{seed}"]))
