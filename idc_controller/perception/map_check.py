@@ -7,7 +7,6 @@ more are likelier with it than are in their places. What has stood near them bef
 """
 
 import math
-from collections import defaultdict, deque
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from typing import NamedTuple
@@ -19,16 +18,11 @@ from idc_controller.estimation.health.chi_squared import upper_quantile
 from idc_controller.geometry.obstacles import Bodies
 from idc_controller.geometry.shape import Shape
 from idc_controller.perception.clusters import Cluster
+from idc_controller.perception.map_evidence import MapEvidence, Pair
 from idc_controller.perception.obstacle_filter import surface_of
 from idc_controller.perception.settings import MapCheckSettings, PerceptionSettings, SurfaceSettings
 from idc_controller.perception.standing_obstacles import NextObstacles
 from idc_controller.perception.surfaces.points import SurfacePoints
-
-_OUTLIER = 9.0
-"""Normalised square of a distance from which on a point is no more evidence: it is of something else."""
-
-_Pair = tuple[int, int]
-"""A vehicle (0 .. N-1), and the number of an obstacle."""
 
 
 class _Offset:
@@ -108,17 +102,10 @@ class MapCheck:
         self._bodies = Bodies([shape for _, shape, _ in standing])
         self._centres = np.array([centre for *_, centre in standing]).reshape(-1, 3)
         self._standing, self._view_range, self._gate = standing, view_range, settings.association.remembered_gate
-        self._is_standing, self._settling = is_standing, settings.standing_map.settling_time
-        voxel = settings.standing_map.voxel
-        steps = voxel * np.arange(-(self._gate // voxel), self._gate // voxel + 1.0)
-        grid = np.stack(np.meshgrid(steps, steps, steps), axis=-1).reshape(-1, 3)
-        self._about = grid[np.linalg.norm(grid, axis=1) <= self._gate]
-        """Places (G, 3) (m) about a point that an offset may have moved there."""
+        self._evidence = MapEvidence(standing, is_standing, settings)
         self._settings, self._surfaces = settings.map_check, settings.tracking.surfaces
-        self._agreements: dict[_Pair, int] = {}
-        self._offsets: dict[_Pair, _Offset] = {}
-        self._latest: dict[_Pair, deque[SurfacePoints]] = defaultdict(deque)
-        """Last scans of each obstacle, not older than an offset must last."""
+        self._agreements: dict[Pair, int] = {}
+        self._offsets: dict[Pair, _Offset] = {}
         self.offsets: dict[int, Array] = {}
         """Detected offset (3,) (NED, m) of what each vehicle (0 .. N-1) detects from the map."""
 
@@ -136,19 +123,14 @@ class MapCheck:
             return
         for pair, of_pair in found.items():
             self._take(pair, of_pair)
-        by_uav: dict[int, list[_Offset]] = defaultdict(list)
-        for (uav, _), offset in self._offsets.items():
-            if offset.is_detected:
-                by_uav[uav].append(offset)
-        self.offsets = {
-            uav: mean for uav, of_uav in by_uav.items() if (mean := self._likeliest(uav, of_uav)) is not None
-        }
+        uavs = dict.fromkeys(uav for (uav, _), offset in self._offsets.items() if offset.is_detected)
+        self.offsets = {uav: offset for uav in uavs if (offset := self._likeliest(uav)) is not None}
 
     def all_offset(self, uavs: Collection[int]) -> bool:
         """Return whether there are ``uavs``, and all of them have an offset."""
         return bool(uavs) and self.offsets.keys() >= set(uavs)
 
-    def _found(self, detected: Sequence[tuple[Cluster, int]]) -> dict[_Pair, _Found]:
+    def _found(self, detected: Sequence[tuple[Cluster, int]]) -> dict[Pair, _Found]:
         """Return what was found of each obstacle in a vehicle's field of view."""
         if not detected:
             return {}
@@ -160,7 +142,7 @@ class MapCheck:
         distances = np.abs(self._bodies.from_own_offsets(of_points.tolist(), points - self._centres[of_points]))
         means = (np.add.reduceat(distances, starts) / sizes).tolist()
         from_sensors = np.abs(self._bodies.from_own_offsets(numbers, origins - self._centres[numbers])).tolist()
-        found: dict[_Pair, _Found] = {}
+        found: dict[Pair, _Found] = {}
         for cluster, number, part, mean, from_sensor in zip(clusters, numbers, parts, means, from_sensors, strict=True):
             pair = cluster.uav, number
             if from_sensor <= self._view_range and (pair not in found or mean < found[pair].mean):
@@ -168,7 +150,7 @@ class MapCheck:
                 found[pair] = _Found(part, mean, sigma)
         return found
 
-    def _take(self, pair: _Pair, found: _Found) -> None:
+    def _take(self, pair: Pair, found: _Found) -> None:
         """Take what a vehicle ``found`` of an obstacle."""
         s, (_, shape, centre) = self._settings, self._standing[pair[1]]
         agrees, offset = found.mean < s.agreement_sigmas * found.sigma, self._offsets.get(pair)
@@ -176,10 +158,7 @@ class MapCheck:
             self._agreements[pair] = self._agreements.get(pair, 0) + 1
         if self._agreements.get(pair, 0) < s.agreements:
             return
-        latest = self._latest[pair]
-        latest.append(found.points)
-        while latest[0].time < found.points.time - s.duration:
-            latest.popleft()
+        self._evidence.add(pair, found.points)
         if offset is None and not agrees:
             offset = self._offsets[pair] = _Offset(found.points.time, s, self._surfaces)
         if offset is not None:
@@ -191,32 +170,16 @@ class MapCheck:
             if offset.agreements >= s.agreements:
                 del self._offsets[pair]
 
-    def _likeliest(self, uav: int, offsets: list[_Offset]) -> Array | None:
-        """Return which of the ``offsets`` (3,) (m) explains best what a vehicle detects; None: it has none."""
-        latest = max(scans[-1].time for (of, _), scans in self._latest.items() if of == uav)
+    def _likeliest(self, uav: int) -> Array | None:
+        """Return the detected offset (3,) (m) that explains best what a vehicle detects; None: it has none."""
+        # What an offset of any vehicle has put there is no body that has stood there.
+        begins: dict[int, float] = {}
+        for (_, number), offset in self._offsets.items():
+            begins[number] = min(begins.get(number, math.inf), offset.begin)
         best, most = None, 0.0
-        for offset in offsets:
-            begin = max(offset.since, latest - self._settings.duration)
-            votes = 0.0
-            for (of, number), scans in self._latest.items():
-                if of == uav and scans[-1].time >= begin:
-                    gain = sum(self._gain(number, points, offset) for points in scans if points.time >= begin)
-                    votes += float(np.sign(gain))
-            if votes > most:
-                best, most = offset.mean, votes
+        for (of, _), offset in self._offsets.items():
+            if of == uav and offset.is_detected:
+                votes = self._evidence.votes(uav, offset.mean, offset.since, begins)
+                if votes > most:
+                    best, most = offset.mean, votes
         return best
-
-    def _gain(self, number: int, points: SurfacePoints, offset: _Offset) -> float:
-        """Return by how much points of an obstacle are likelier with an ``offset`` than in its place (nats)."""
-        away = points.points - self._centres[number]
-        body = Bodies([self._standing[number][1]])
-        distances = body.from_offsets(np.stack([away, away - offset.mean]).reshape(1, -1, 3))
-        squares = distances.reshape(2, -1) ** 2 / (points.noise**2 + points.pose_variance)
-        in_place, moved = np.minimum(squares, _OUTLIER)
-        # What is out of place is so with any offset; what is in its place contradicts one that moves it away.
-        gains = 0.5 * (in_place - np.where(in_place < _OUTLIER, moved, 0.0))
-        # What an offset of any vehicle has put there is no body.
-        begin = min([offset.begin, *(other.begin for (_, of), other in self._offsets.items() if of == number)])
-        about = (points.points[:, None] + self._about).reshape(-1, 3)
-        of_others = self._is_standing(about, begin - self._settling)
-        return float(gains[~of_others.reshape(len(gains), -1).any(axis=1)].sum())
