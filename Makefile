@@ -17,7 +17,7 @@ export OPENBLAS_NUM_THREADS := 1
 unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: help install fly test test-fast test-lowest test-numerics mutants golden golden-renew
-.PHONY: anew benchmark benchmark-parts benchmark-campaign benchmark-check docs clean
+.PHONY: fault-tables anew benchmark benchmark-parts benchmark-campaign benchmark-check docs clean
 
 help:
 	@echo "make fly          fly $(MISSION) with a simulated swarm (MISSION=... for another one)"
@@ -28,6 +28,7 @@ help:
 	@echo "make mutants      see whether the fast tests notice changes of the flight path (MUTANTS='--number 60 --seed 1')"
 	@echo "make golden       compare short flights, to the byte, with those of the commit BASE ($(BASE)) and with checksums"
 	@echo "make golden-renew write the checksums anew"
+	@echo "make fault-tables fly and write the tables of detection and of false alarms (about 22 min of CPU)"
 	@echo "make benchmark    the speed of flights relative to gym-pybullet-drones; adds to the history"
 	@echo "make benchmark-check  compare the CPU cost of flights with that of the commit BASE ($(BASE))"
 	@echo "make benchmark-campaign  throughput of parallel flights against a single one's"
@@ -71,6 +72,9 @@ golden: $(COMPILED)
 
 golden-renew: $(COMPILED)
 	$(VENV)/bin/python tests/golden/golden.py --renew
+
+fault-tables: $(COMPILED)
+	$(VENV)/bin/python -m gcs.campaign.faults.tables_page docs/faults.md missions/detection.toml missions/false_alarms.toml
 
 # OPTIONS: --quick, --long, --rounds N. ANCHOR_PYTHON: a Python with gym-pybullet-drones, else an equal loop is flown.
 benchmark: $(COMPILED)
