@@ -54,7 +54,10 @@ NOT_FLOWN = [
     ("fly {hop} {hop}", "unrecognized arguments: "),
     ("fly {hop} --log-file none/log", "none/log: cannot be written: No such file"),
     ("fly {hop} --connect 14540", "--connect 14540: expected udp://HOST:PORT"),
-    ("fly {hop} --realtime --connect udp://127.0.0.1:9", "1 of the team's vehicles, which are 3 or more"),
+    (
+        "fly {hop} --realtime --connect udp://127.0.0.1:8 udp://127.0.0.1:9",
+        "2 of the team's vehicles, which are 3 or more",
+    ),
     ("check", "the following arguments are required: MISSION"),
     ("check none.plan", "none.plan: cannot be read"),
     ("check {hop} --vehicles 2", "--vehicles: '2'"),
