@@ -28,9 +28,9 @@ from idc_controller.perception.surfaces.points import SurfacePoints
 class _Offset:
     """Offset of a vehicle's points from one obstacle, without a break: a Kalman filter, axis by axis."""
 
-    def __init__(self, time: float, settings: MapCheckSettings, surfaces: SurfaceSettings) -> None:
-        self.time = self.begin = time
-        """Times of the last scan, and of the first that disagreed with the map."""
+    def __init__(self, time: float, agreed: float, settings: MapCheckSettings, surfaces: SurfaceSettings) -> None:
+        self.time, self.agreed = time, agreed
+        """Times of the last scan, and of the last before the offset that agreed with the map."""
         self._settings, self._surfaces = settings, surfaces
         self.mean = np.zeros(3)
         self.agreements = 0
@@ -105,6 +105,8 @@ class MapCheck:
         self._evidence = MapEvidence(standing, is_standing, settings)
         self._settings, self._surfaces = settings.map_check, settings.tracking.surfaces
         self._agreements: dict[Pair, int] = {}
+        self._agreed: dict[Pair, float] = {}
+        """Time of the last agreement."""
         self._offsets: dict[Pair, _Offset] = {}
         self.offsets: dict[int, Array] = {}
         """Detected offset (3,) (NED, m) of what each vehicle (0 .. N-1) detects from the map."""
@@ -156,11 +158,12 @@ class MapCheck:
         agrees, offset = found.mean < s.agreement_sigmas * found.sigma, self._offsets.get(pair)
         if agrees:
             self._agreements[pair] = self._agreements.get(pair, 0) + 1
+            self._agreed[pair] = found.points.time
         if self._agreements.get(pair, 0) < s.agreements:
             return
         self._evidence.add(pair, found.points)
         if offset is None and not agrees:
-            offset = self._offsets[pair] = _Offset(found.points.time, s, self._surfaces)
+            offset = self._offsets[pair] = _Offset(found.points.time, self._agreed[pair], s, self._surfaces)
         if offset is not None:
             # A few points may agree by chance: they count, but do not end an offset by themselves.
             offset.agreements = offset.agreements + 1 if agrees else 0
@@ -173,13 +176,13 @@ class MapCheck:
     def _likeliest(self, uav: int) -> Array | None:
         """Return the detected offset (3,) (m) that explains best what a vehicle detects; None: it has none."""
         # What an offset of any vehicle has put there is no body that has stood there.
-        begins: dict[int, float] = {}
+        agreed: dict[int, float] = {}
         for (_, number), offset in self._offsets.items():
-            begins[number] = min(begins.get(number, math.inf), offset.begin)
+            agreed[number] = min(agreed.get(number, math.inf), offset.agreed)
         best, most = None, 0.0
         for (of, _), offset in self._offsets.items():
             if of == uav and offset.is_detected:
-                votes = self._evidence.votes(uav, offset.mean, offset.since, begins)
+                votes = self._evidence.votes(uav, offset.mean, offset.since, agreed)
                 if votes > most:
                     best, most = offset.mean, votes
         return best

@@ -46,20 +46,20 @@ class MapEvidence:
         while latest[0].time < points.time - self._duration:
             latest.popleft()
 
-    def votes(self, uav: int, offset: Array, since: float, begins: Mapping[int, float]) -> float:
+    def votes(self, uav: int, offset: Array, since: float, agreed: Mapping[int, float]) -> float:
         """Return how many more obstacles are likelier with an ``offset`` (3,) of a vehicle than in their places.
 
         Args:
             uav: the vehicle.
             offset: NED.
             since: time since which there has been that offset.
-            begins: of obstacles that disagree with the map, when they began to.
+            agreed: of obstacles that disagree with the map, when they agreed last.
         """
         of_uav = self._latest[uav]
         since = max(since, max(scans[-1].time for scans in of_uav.values()) - self._duration)
-        first, votes = min(begins.values(), default=math.inf), 0.0
+        first, votes = min(agreed.values(), default=math.inf), 0.0
         for number, scans in of_uav.items():
-            begin = begins.get(number, first) - self._settling
+            begin = agreed.get(number, first) - self._settling
             votes += float(
                 np.sign(sum(self._gain(number, points, offset, begin) for points in scans if points.time >= since))
             )
