@@ -262,3 +262,13 @@ def test_records_without_truth_are_judged_by_the_estimate(tmp_path):
     flown = SimpleNamespace(completed=True, landed=True, takeoff_time=0.0, reason="", failsafes=failsafes)
     result = flight_result(folder, mission, SimpleNamespace(flight=flown), 9.0, 1.0)
     assert result.summary["source"] == "estimate" and result.reason.startswith("waypoint 1 missed by 0.50 m")
+
+
+def test_passage_at_the_tolerance_itself_counts_in_both_directions():
+    rng = np.random.default_rng(1)
+    for _ in range(300):
+        path = np.cumsum(rng.normal(size=(30, 3)), axis=0)
+        target = Target("waypoint", tuple(rng.normal(size=3)))
+        [row], [away] = closest_in_order(path, [target], 0.0)
+        [_], [again] = closest_in_order(path, [target], away)
+        assert 0 <= row < len(path) - 1 and again <= away

@@ -28,7 +28,7 @@ NOT_FLOWN = [
     ("fly {hop} --vehicles 2", "--vehicles: '2' is not a whole number from 3"),
     ("fly {hop} --vehicles 99", "99 vehicles: vehicle-sim simulates 15 at most: see --vehicles"),
     ("fly {hop} --vehicles four", "--vehicles: 'four' is not a whole number"),
-    ("fly {hop} --vehicles 255", "--vehicles: '255' is not a whole number from 3 to 254"),
+    ("fly {hop} --vehicles 100", "--vehicles: '100' is not a whole number from 3 to 99"),
     ("fly {hop} --seed -1", "--seed: '-1' is not a whole number from 0"),
     ("fly {hop} --seed 1.5", "--seed: '1.5'"),
     ("fly {hop} --seed 9223372036854775808", "--seed: '9223372036854775808'"),

@@ -89,5 +89,9 @@ def test_links_that_lean_as_the_plan_accelerates_are_on_it():
     ],
 )  # fmt: skip
 def test_void_guarantee_in_words(exceeded, text):
-    assert void_guarantee({"exceeded": exceeded}) == text
-    assert void_guarantee(None) == ""
+    summary = {"safety": {"exceeded": exceeded}, "clearance_min_m": 0.4}
+    assert void_guarantee(summary) == text
+    # Without anything to keep clear of there is no guarantee that could be void.
+    without = text if "slack" in text else text.removeprefix("the safety guarantee was void: ")
+    assert void_guarantee({**summary, "clearance_min_m": None}) == without
+    assert void_guarantee({"safety": None, "clearance_min_m": 0.4}) == ""

@@ -113,6 +113,13 @@ def test_output_that_cannot_be_written_is_lost_without_an_error(target, monkeypa
     assert said == ("standard output cannot be written: No space left on device\n" if target == "/dev/full" else "")
 
 
+def test_stream_that_was_closed_before_the_start_stays_closed(monkeypatch):
+    monkeypatch.setattr(sys, "stderr", None)
+    with output_that_may_end("stdout", "stderr"):
+        print("lost", file=sys.stderr)  # goes nowhere, or to standard output
+    assert sys.stderr is None
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("pace", ["--lockstep", "--realtime"])
 def test_closed_terminal_ends_the_simulator(pace, tmp_path):

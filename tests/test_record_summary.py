@@ -16,7 +16,7 @@ from gcs.record import summary as summaries
 from gcs.record.run_data import read_run
 from gcs.record.run_folder import FORMAT, open_run_folder, write_json, write_manifest
 from gcs.record.summary import within_limits, write_summary
-from gcs.record.summary_table import summary_table
+from gcs.record.summary_table import print_summary
 from gcs.record.tables import (
     ESTIMATE_COLUMNS,
     PLAN_COLUMNS,
@@ -266,8 +266,8 @@ def test_summary_is_strict_json(run) -> None:
 
 
 def printed(summary, folder, pictures=()) -> str:
-    console = Console(width=100, record=True, file=open("/dev/null", "w"))  # noqa: PTH123, SIM115
-    console.print(summary_table(summary, folder, pictures))
+    console = Console(width=80, record=True, file=open("/dev/null", "w"))  # noqa: PTH123, SIM115
+    print_summary(console, summary, folder, pictures)
     return console.export_text()
 
 

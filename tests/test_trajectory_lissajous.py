@@ -112,5 +112,5 @@ def test_trajectory_refuses_invalid_arguments(bad):
 
 
 def test_limit_that_the_curve_exceeds_at_the_full_rate_is_named():
-    with pytest.raises(TrajectoryError, match=r"^the curve at 0.5 rad/s reaches a speed of 4\.\d+, the limit is 2$"):
+    with pytest.raises(TrajectoryError, match=r"^the curve at 0.5 rad/s needs speed 4\.\d+, the limit is 2$"):
         LissajousTrajectory(CURVE, 0.5, 10.0, Limits(2.0, 3.6, 5.0, 6.0))

@@ -133,3 +133,14 @@ def test_random_messages_of_foreign_system_neither_raise_nor_change_state(flying
     assert vehicle.autopilot.armed and vehicle.parameters["COM_OF_LOSS_T"] == pytest.approx(
         VehicleFailsafeSettings.setpoint_loss
     )
+
+
+def test_companion_with_the_vehicles_own_system_id_is_answered_and_is_no_ground(flying: Bench) -> None:
+    heard = flying.vehicle.autopilot.state.link_time
+    flying.run(0.5)
+    heartbeat = mavlink.MAVLink_heartbeat_message(18, 8, 0, 0, 4, 3)
+    flying.send(heartbeat, STRANGER, system=1, component=191)
+    assert flying.vehicle.autopilot.state.link_time <= heard + 0.5 < flying.now
+    assert flying.request(command(512, 148), STRANGER, system=1, component=191)
+    flying.send(heartbeat, STRANGER, system=254, component=190)
+    assert flying.vehicle.autopilot.state.link_time == flying.now

@@ -84,8 +84,8 @@ def number(text: str, least: float, most: float) -> float:
 
 VEHICLES_MIN = 3
 """Fewer vehicles cannot hold a payload level."""
-VEHICLES = partial(whole_number, least=VEHICLES_MIN, most=254)
-"""Number of vehicles; system ids end at 254."""
+VEHICLES = partial(whole_number, least=VEHICLES_MIN, most=99)
+"""Number of vehicles; system id 100 is the payload unit's."""
 SEED = partial(whole_number, least=0, most=2**63 - 1)
 """Seed of a generator of random numbers."""
 SPEED = partial(number, least=0.001, most=1000.0)

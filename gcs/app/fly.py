@@ -30,6 +30,7 @@ from gcs.flight.control_loop import ControlLoop
 from gcs.flight.failsafe import Failsafe
 from gcs.flight.flight import Flight
 from gcs.flight.ground_station import GroundStation, Recorder
+from gcs.flight.mission_trajectory import check_curve
 from gcs.flight.team import Team
 from gcs.mavlink.address import Address, ConnectionUrl
 from gcs.mavlink.vehicle_link import VehicleLink
@@ -96,6 +97,7 @@ def fly(
 
     Raises :class:`UnusableInput` before anything is started, and :class:`GcsError` when no world could be started.
     """
+    check_curve(mission)
     _check_clock(options)
     with Interrupt() as interrupt, ExitStack() as resources:
         folder = resources.enter_context(NewRunFolder(mission.name, options.run_dir))

@@ -14,7 +14,8 @@ _NOBODY_READS = (errno.EPIPE, errno.EIO)
 @contextlib.contextmanager
 def output_that_may_end(*names: str) -> Iterator[None]:
     """While the block runs, what cannot be written to the streams ``names`` of :mod:`sys` is lost, without an error."""
-    streams = {name: getattr(sys, name) for name in names}
+    # A program that was started with a stream closed has None in its place.
+    streams = {name: stream for name in names if (stream := getattr(sys, name)) is not None}
     for name, stream in streams.items():
         setattr(sys, name, cast(TextIO, _OutputThatMayEnd(stream)))
     try:

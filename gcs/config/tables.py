@@ -72,7 +72,7 @@ class UavConfig(SettingsTable):
 class TeamConfig(SettingsTable):
     """The number of UAVs, and the attachment of their links to the payload."""
 
-    vehicles: int = setting(4, "", "number of UAVs; vehicle-sim simulates up to 15", ge=3, le=254)
+    vehicles: int = setting(4, "", "number of UAVs; vehicle-sim simulates up to 15", ge=3, le=99)
     spacing: float = setting(
         1.0, "m", "distance between neighbouring attachment points: the side of their regular polygon", gt=0.0
     )

@@ -1,6 +1,7 @@
 """Connection URLs: where a vehicle listens, or where the ground listens for vehicles."""
 
 import re
+import socket
 from dataclasses import dataclass
 
 from gcs.errors import UnusableInput
@@ -41,5 +42,13 @@ def parse_url(text: str) -> ConnectionUrl:
     match = _URL.match(text)
     if match is None or not 1 <= int(match["port"]) <= 65535:
         raise UnusableInput(f"--connect {text}: expected udp://HOST:PORT, udpout://HOST:PORT or udpin://HOST:PORT")
-    host = THIS_MACHINE if match["host"] == "localhost" else match["host"]
+    host = resolved(match["host"], f"--connect {text}")
     return ConnectionUrl(host, int(match["port"]), match["scheme"] == "udpin")
+
+
+def resolved(host: str, option: str) -> str:
+    """Return the IPv4 address of a machine, looked up once. Raises :class:`UnusableInput` that names ``option``."""
+    try:
+        return socket.gethostbyname(host)
+    except (OSError, UnicodeError) as error:
+        raise UnusableInput(f"{option}: {getattr(error, 'strerror', None) or error}") from None

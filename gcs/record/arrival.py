@@ -73,7 +73,8 @@ def closest_in_order(path: Array, targets: Sequence[Target], tolerance: float) -
     """
     if (first := _passages(path, targets, tolerance)) is not None:
         back = _passages(path[::-1], targets[::-1], tolerance)
-        last = max(len(path) - 2, 0) - (first[:0] if back is None else back[::-1])
+        # Backwards, rounding can decide otherwise at the tolerance: then each counts to the end.
+        last = max(len(path) - 2, 0) - (np.zeros_like(first) if back is None else back[::-1])
         rows, distances = [], []
         for target, begin, end in zip(targets, first.tolist(), last.tolist(), strict=True):
             away = _distances(path[begin : end + 2], target)

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from rich import box
-from rich.console import Group, RenderableType
+from rich.console import Console, Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
@@ -15,13 +15,35 @@ from gcs.record.summary import within_limits
 _COLOUR_OF_OUTCOME = {Outcome.COMPLETED: "green", Outcome.INTERRUPTED: "yellow", Outcome.ABORTED: "yellow"}
 
 
-def summary_table(summary: Mapping[str, Any], run_dir: Path | str, pictures: Sequence[Path] = ()) -> RenderableType:
-    """Return what ``gcs fly`` prints at the end: each figure, its limit, and the folder of the records."""
+def print_summary(
+    console: Console, summary: Mapping[str, Any], run_dir: Path | str, pictures: Sequence[Path] = ()
+) -> None:
+    """Print what ``gcs fly`` prints at the end: the result in one line, each figure with its limit, the folder."""
+    console.print(_result(summary), soft_wrap=True)  # whole, however narrow the terminal
+    console.print(_figures(summary, run_dir, pictures))
+
+
+def _result(summary: Mapping[str, Any]) -> Text:
+    outcome, held = summary["outcome"], True
+    title = Text("").append("Flight ", "bold").append(outcome, f"bold {_COLOUR_OF_OUTCOME.get(outcome, 'red')}")
+    if summary["limits"]:
+        held = within_limits(summary)
+        verdict = ("within its limits", "green") if held else ("OUTSIDE its limits", "bold red")
+        if "incomplete_records" in summary:
+            verdict = ("limits not judged, the records are incomplete", "yellow")
+        title.append(", ").append(*verdict)
+    if exceeded := void_guarantee(summary):
+        title.append(f", {'but' if held else 'and'} {exceeded}", "bold red")
+    title.append(f": {_number(summary['duration_s'], 1, 's')}")
+    if summary["real_time_factor"] is not None:
+        title.append(f", {_number(summary['real_time_factor'], 1)} times real time")
+    return title
+
+
+def _figures(summary: Mapping[str, Any], run_dir: Path | str, pictures: Sequence[Path]) -> RenderableType:
     limits = summary["limits"]
     rmse, tilt = summary["position_rmse_m"], summary["payload_tilt_max_deg"]
     steps, solver = summary["step_time_ms"], summary["solver"]
-    outcome = summary["outcome"]
-
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column("figure")
     table.add_column("flown", justify="right")
@@ -67,20 +89,7 @@ def summary_table(summary: Mapping[str, Any], run_dir: Path | str, pictures: Seq
     if solver["infeasible_steps"]:
         row("steps without a feasible solution", str(solver["infeasible_steps"]))
 
-    # One line, however narrow the terminal.
-    title = Text(no_wrap=True, overflow="ignore").append("Flight ", "bold")
-    title.append(outcome, f"bold {_COLOUR_OF_OUTCOME.get(outcome, 'red')}")
-    if limits:
-        held = ("within its limits", "green") if within_limits(summary) else ("OUTSIDE its limits", "bold red")
-        if "incomplete_records" in summary:
-            held = ("limits not judged, the records are incomplete", "yellow")
-        title.append(", ").append(*held)
-    if exceeded := void_guarantee(safety):
-        title.append(f", but {exceeded}", "bold red")
-    title.append(f": {_number(summary['duration_s'], 1, 's')}")
-    if summary["real_time_factor"] is not None:
-        title.append(f", {_number(summary['real_time_factor'], 1)} times real time")
-    shown: list[RenderableType] = [title, table]
+    shown: list[RenderableType] = [table]
     if summary["source"] == "estimate":
         shown.append(Text("The swarm kept no truth here: figures are the ground's own estimate.", "yellow"))
     shown.append(Text(f"Records   {run_dir}"))
@@ -89,15 +98,21 @@ def summary_table(summary: Mapping[str, Any], run_dir: Path | str, pictures: Seq
     return Group(*shown)
 
 
-def void_guarantee(safety: Mapping[str, Any] | None) -> str:
-    """Return in words why the safety guarantee did not hold all the time; empty: it did, or is not known."""
+def void_guarantee(summary: Mapping[str, Any]) -> str:
+    """Return in words why the safety guarantee did not hold all the time; empty: it did, or is not known.
+
+    Where there was nothing to keep clear of, it is the plan that was left.
+    """
+    exceeded = (summary["safety"] or {}).get("exceeded") or {}
     named = {"slack": ("slack", "margin"), "payload_deviation": ("payload off the plan", "bound"),
              "uav_deviation": ("UAVs off the plan", "bound")}  # fmt: skip
     parts = [
         f"{named[name][0]} {entry['value']:.2f} m ({named[name][1]} {entry['limit']:.2f} m) at {entry['time_s']:.1f} s"
-        for name, entry in ((safety or {}).get("exceeded") or {}).items()
+        for name, entry in exceeded.items()
     ]
-    return f"the safety guarantee was void: {', '.join(parts)}" if parts else ""
+    is_void = "slack" in exceeded or summary["clearance_min_m"] is not None
+    void = "the safety guarantee was void: " if is_void else ""
+    return f"{void}{', '.join(parts)}" if parts else ""
 
 
 def _number(value: float | None, digits: int, unit: str = "") -> str:

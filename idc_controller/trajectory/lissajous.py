@@ -94,7 +94,7 @@ class LissajousTrajectory(Trajectory):
         rate = positive(angular_frequency, "angular frequency")
         duration = positive(duration, "duration")
         start = finite(start, "start")
-        _check_full_rate(curve, rate, limits)
+        check_full_rate(curve, rate, limits)
         # A little gentler at first, so that it can always stop while it gathers speed.
         up, phase = _shortest_ramp(curve, _gentler(curve, rate, limits), 0.0, 0.0, rate)
         down, _ = _shortest_ramp(curve, limits, phase + rate * duration, rate, 0.0)
@@ -192,12 +192,11 @@ def _gentler(curve: LissajousCurve, rate: float, limits: Limits) -> Limits:
     return replace(limits, **dict(zip(vars(limits), gentler.tolist(), strict=False)))
 
 
-def _check_full_rate(curve: LissajousCurve, rate: float, limits: Limits) -> None:
+def check_full_rate(curve: LissajousCurve, rate: float, limits: Limits) -> None:
+    """Raise :class:`TrajectoryError` for a curve whose derivatives at ``rate`` (rad/s) exceed limits."""
     for (name, limit), largest in zip(vars(limits).items(), _largest(curve, rate), strict=False):
         if largest > limit * (1.0 - 1e-3):
-            raise TrajectoryError(
-                f"the curve at {rate:g} rad/s reaches a {name} of {largest:.3g}, the limit is {limit:g}"
-            )
+            raise TrajectoryError(f"the curve at {rate:g} rad/s needs {name} {largest:.3g}, the limit is {limit:g}")
 
 
 def _shortest_ramp(

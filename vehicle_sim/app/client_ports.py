@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import socket
 from argparse import Namespace
 from typing import NamedTuple
 
 from gcs.errors import UnusableInput
-from gcs.mavlink.address import GROUND_PORT, SDK_PORT, THIS_MACHINE, Address
+from gcs.mavlink.address import GROUND_PORT, SDK_PORT, THIS_MACHINE, Address, resolved
 
 
 class ClientPorts(NamedTuple):
@@ -28,10 +27,10 @@ class ClientPorts(NamedTuple):
         ground_port = GROUND_PORT if options.ground_port is None else options.ground_port
         if sdk_port + vehicles - 1 > 65535:
             raise UnusableInput(f"--sdk-port {sdk_port}: port {sdk_port + vehicles - 1} of vehicle {vehicles} is none")
-        there = _resolved(options.ground_host or THIS_MACHINE)
+        there = resolved(options.ground_host or THIS_MACHINE, f"--ground-host {options.ground_host}")
         is_here = there.startswith("127.")
         host = options.host or (THIS_MACHINE if is_here else "0.0.0.0")
-        if not is_here and _resolved(host, "--host").startswith("127."):
+        if not is_here and resolved(host, f"--host {host}").startswith("127."):
             raise UnusableInput(
                 f"--host {host}: from there nothing can be sent to --ground-host {options.ground_host}; "
                 "name an address of this machine in that network, or 0.0.0.0"
@@ -44,11 +43,3 @@ class ClientPorts(NamedTuple):
                 "choose another, or other ones of --sdk-port and --ground-port (0: nowhere)"
             )
         return cls(host, (there, sdk_port) if sdk_port else None, (there, ground_port) if ground_port else None)
-
-
-def _resolved(host: str, option: str = "--ground-host") -> str:
-    """Return the IPv4 address of a machine: a name is looked up once, not with every datagram."""
-    try:
-        return socket.gethostbyname(host)
-    except (OSError, UnicodeError) as error:
-        raise UnusableInput(f"{option} {host}: {getattr(error, 'strerror', None) or error}") from None

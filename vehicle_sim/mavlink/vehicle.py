@@ -122,6 +122,7 @@ class Vehicle:
         if now > self._latest:
             self._latest = now
         peer = request = None
+        is_ground = False
         for received in self._decoder.decode(datagram):
             system, component = received.system, received.component
             if system == BROADCAST or (system, component) in self._own:
@@ -130,6 +131,8 @@ class Vehicle:
                 peer = self._peers.receive_from(sender, now)
                 if peer is None:
                     return
+            if not is_ground and system != self.system_id:  # a companion of its own is none
+                is_ground = True
                 self.autopilot.ground_message_received(now)
             if request is None or request.component != component or request.system != system:
                 request = Request((sender, system), component, peer, now)

@@ -26,7 +26,7 @@ Every scenario is a mission file that `gcs fly` repeats. A campaign that was int
 A scenario is passed without contact, with 0.3 m of clearance, payload angles up to 6 deg, arrival at the goal, and the
 UAV separation that follows from the system file (0.75 m by default). Where the standing obstacles leave no way for the
 formation, it is passed if the flight is broken off and its reason names the narrowest gap, within 0.3 m. Exit status:
-0 all passed; 1 not all; 2 unusable input; 130 interrupted, results kept.
+0 all passed; 1 not all; 2 unusable input; 3 results cannot be written; 130 interrupted, results kept.
 """
 
 COUNT, FASTEST, SPEED = 200, 2.0, 2.5

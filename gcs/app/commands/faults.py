@@ -21,7 +21,8 @@ Flies a campaign of faults: faults x severities x missions x seeds, in parallel,
 
 Every flight is a mission file that `gcs fly` repeats. A campaign that was interrupted resumes when started again; one
 whose file has grown flies what is new. Writes results.csv and results.parquet (a row a flight), rates.csv, matrix.png.
-Exit status: 0 all passed (by default: within their limits); 1 not all; 2 unusable input; 130 interrupted, results kept.
+Exit status: 0 all passed (by default: within their limits); 1 not all; 2 unusable input; 3 results cannot be written;
+130 interrupted, results kept.
 """
 
 

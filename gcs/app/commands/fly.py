@@ -79,7 +79,7 @@ def run(arguments: argparse.Namespace) -> int:
         from gcs.drivers.simulator import PROGRAM
         from gcs.errors import UnusableInput
         from gcs.record.incomplete import in_one_line
-        from gcs.record.summary_table import summary_table
+        from gcs.record.summary_table import print_summary
     # With --json standard output is the summary and nothing else.
     console = Console(stderr=arguments.json, highlight=False)
     with ExitStack() as started:
@@ -101,7 +101,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print(json.dumps({"run_dir": str(result.run_dir), **result.summary}, indent=2))
     elif result.flown:
-        console.print(summary_table(result.summary, result.run_dir, pictures))
+        print_summary(console, result.summary, result.run_dir, pictures)
     if mission.faults:
         from gcs.faults.record import fault_notes
 

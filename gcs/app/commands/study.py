@@ -20,8 +20,8 @@ Flies the same missions again with one parameter changed at a time, and reports 
 
 Writes NAME.csv (a row a flight) and NAME.png, and prints a table and the command that repeats each flight outside its
 limits. A study that was interrupted resumes when started again, and studies in one folder share their flights: after a
-change of the program name another folder. Exit status: 0 all within their limits; 1 not all; 2 unusable input; 130
-interrupted.
+change of the program name another folder. Exit status: 0 all within their limits; 1 not all; 2 unusable input; 3
+results cannot be written; 130 interrupted.
 """.format(studies="\n".join(f"  {study.name:<12} {study.about}" for study in STUDIES.values()))
 
 
