@@ -33,7 +33,7 @@ class Joining(InProcessFlight):
             received = [(datagram, address_of(i)) for i, datagram, address in telemetry if address == GROUND]
             station.receive_all(received, ground)
             for datagram, address in station.datagrams_to_send(ground):
-                swarm.receive(address[1] - 14539, datagram, GROUND, self.now)
+                swarm.receive(address[1] - 14579, datagram, GROUND, self.now)
             on_exchange(self)
             if airborne is None and self.flight.phase in IN_AIR:
                 airborne = self.now
