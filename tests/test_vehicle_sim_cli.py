@@ -75,7 +75,7 @@ def somewhere_else(tmp_path, monkeypatch):
         ("--vehicles 2", "--vehicles: '2' is not a whole number from 3"),
         ("--vehicles four", "--vehicles: 'four' is not a whole number"),
         ("--vehicles 16", "16 vehicles: the physics engine is wrong beyond 15"),
-        ("--vehicles 200", "200 vehicles"),
+        ("--vehicles 200", "--vehicles: '200' is not a whole number from 3 to 99"),
         ("--mission none.toml", "none.toml: cannot be read"),
         ("--mission odd.toml", "odd.toml: line 17: obstacle[1].colour: unknown key"),
         ("--config bad.toml", "payload.mass: "),
