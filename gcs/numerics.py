@@ -43,9 +43,13 @@ def choose_kernels(environment: MutableMapping[str, str] = os.environ) -> None:
     A processor without AVX2 and FMA keeps the libraries' own choice: code that it lacks would end the program.
     """
     environment.update(_THREADS)
-    if environment.get(UNPINNED) != "unpinned" and processor_features() >= _NEEDED:
+    if not _is_unpinned(environment) and processor_features() >= _NEEDED:
         environment.pop(_NUMPY_DISABLE, None)
         environment.update(_KERNELS)
+
+
+def _is_unpinned(environment: Mapping[str, str]) -> bool:
+    return environment.get(UNPINNED) == "unpinned"
 
 
 @cache
@@ -90,6 +94,6 @@ def differences() -> str:
     others = [name for name in found if name.startswith(_BLAS_OF) and found[name] != _BLAS]
     others += ["numpy"] if not {*found.get("numpy", "").split()} <= _NUMPY_LOOPS else []
     others += ["proxsuite"] if found.get("proxsuite", "avx2").removeprefix("proxsuite_pywrap_") != "avx2" else []
-    cause = f"{UNPINNED} is set" if UNPINNED in os.environ else "it was loaded before"
+    cause = f"{UNPINNED}=unpinned" if _is_unpinned(os.environ) else "it was loaded before"
     texts = [f"{name} uses {found[name]}" for name in others]
     return f"{', '.join(texts)} ({cause}): {_NOT_PINNED}" if others else ""
