@@ -45,7 +45,7 @@ NO_SOURCE = {
     "track_lost", "interrupted", "interrupted_twice", "simulation_lost", "connect_timeout", "parameter_mismatch",
     "already_armed", "prearm_check_failed", "position_unknown", "misplaced", "arming_failed", "disarming_failed",
     "landing_unconfirmed", "disarmed_in_flight", "data_link_lost", "no_path", "payload_control_lost", "off_plan",
-    "overturned", "climb_stalled", "descent_stalled", "obstructed", "safety_guarantee_void",
+    "overturned", "impact", "climb_stalled", "descent_stalled", "obstructed", "safety_guarantee_void",
 }  # fmt: skip
 
 

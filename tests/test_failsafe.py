@@ -18,6 +18,7 @@ from gcs.flight.detectors import MonitorAlarm
 from gcs.flight.failsafe import Failsafe
 from gcs.flight.failsafe_state import FailsafeState
 from gcs.flight.guarantee import GuaranteeAlarm
+from gcs.flight.impact_monitor import ImpactMonitor
 from gcs.flight.listing import listing
 from gcs.flight.payload_monitor import PayloadMonitor
 from gcs.flight.phase import Phase
@@ -48,7 +49,13 @@ def link(number, *, age=0.0, attitude_age=0.0, latency=0.0, armed=True, offboard
 def state(*links, lost=()):
     estimator = SimpleNamespace(health=SimpleNamespace(isolation=SimpleNamespace(uavs_without_position=lost)))
     system = System(
-        SimpleNamespace(links=links), estimator, SimpleNamespace(blocked=lambda time: ""), None, None, PlanMonitor(4)
+        SimpleNamespace(links=links),
+        estimator,
+        SimpleNamespace(blocked=lambda time: ""),
+        None,
+        None,
+        PlanMonitor(4),
+        None,
     )
     return FailsafeState(system, AlarmLog())
 
@@ -193,7 +200,7 @@ def test_climb_that_does_not_rise_is_ended_when_its_plan_has_risen(phase, height
     estimate.x[2] = -config.parameters().payload.below - height
     plan = PlanMonitor(4)
     team = SimpleNamespace(links=[], parameters=config.parameters())
-    system = System(team, None, None, payload, None, plan, None, config.flight.failsafe, 0.6)
+    system = System(team, None, None, payload, None, plan, None, None, config.flight.failsafe, 0.6)
     moment = Moment(phase, 50.0, 100.0, estimate=estimate)
     assert Failsafe.CLIMB_STALLED.condition(system, moment) is None  # no plan yet
     plan.compare(50.0, np.zeros((4, 3)), payload_down=estimate.x[2] - below)
@@ -213,7 +220,7 @@ def test_obstacle_over_the_landing_place_is_named_with_the_missing_metres():
     ball = MapObstacle("ball", Sphere(0.5), np.array([4.0, 1.6, -2.0]))
     on_map = SimpleNamespace(predict=lambda times: StandingObstacles([ball]).predict(len(times), None))
     team = SimpleNamespace(links=[], parameters=parameters)
-    system = System(team, None, None, payload, None, PlanMonitor(4), on_map, config.flight.failsafe, 0.6)
+    system = System(team, None, None, payload, None, PlanMonitor(4), None, on_map, config.flight.failsafe, 0.6)
     moment = Moment(Phase.LAND, 50.0, 100.0, estimate=estimate, descent=(50.0, rest))
     reason = Failsafe.DESCENT_STALLED.condition(system, moment).reason
     found = re.fullmatch(
@@ -223,5 +230,36 @@ def test_obstacle_over_the_landing_place_is_named_with_the_missing_metres():
     )
     assert found and float(found[1]) + float(found[2]) == pytest.approx(0.6, abs=0.011)
     assert float(found[1]) == pytest.approx(1.6 - 0.5 - 0.65, abs=0.1)
-    system = System(team, None, None, payload, None, PlanMonitor(4), None, config.flight.failsafe, 0.6)
+    system = System(team, None, None, payload, None, PlanMonitor(4), None, None, config.flight.failsafe, 0.6)
     assert Failsafe.DESCENT_STALLED.condition(system, moment).reason == "the payload does not descend"
+
+
+def impact(height, counts, payload=0, monitor=None):
+    """(trigger of IMPACT, the monitor) at a ``height`` (m), by the counts of the vehicles and of the payload unit."""
+    config = read_system()
+    estimate = SimpleNamespace(x=np.zeros(60))
+    estimate.x[2] = -config.parameters().payload.below - height
+    links = [
+        SimpleNamespace(system_id=i, status=SimpleNamespace(clipping=count, payload_clipping=payload))
+        for i, count in enumerate(counts, start=1)
+    ]
+    team = SimpleNamespace(links=links, parameters=config.parameters())
+    monitor = monitor or ImpactMonitor([])
+    monitor.links = links
+    system = System(team, None, None, PayloadMonitor(config.parameters(), config.flight), None, None, monitor)
+    return Failsafe.IMPACT.condition(system, Moment(Phase.FLY, 50.0, 100.0, estimate=estimate)), monitor
+
+
+def test_accelerometer_that_clips_clear_of_the_ground_is_an_impact():
+    before, monitor = impact(2.0, [0, 3, 0, 0])  # of the flight before
+    assert before is None
+    hit, _ = impact(2.0, [0, 4, 0, 0], monitor=monitor)
+    assert hit.vehicles == (1,) and hit.reason == "an impact: the accelerometer of vehicle 2 clipped"
+    hit, _ = impact(2.0, [0, 3, 0, 0], payload=1, monitor=monitor)
+    assert (hit.vehicles, hit.source) == ((), "payload") and "accelerometer of the payload" in hit.reason
+
+
+def test_touch_down_is_no_impact():
+    _, monitor = impact(2.0, [0, 0, 0, 0])
+    assert impact(0.01, [2, 2, 2, 2], payload=5, monitor=monitor)[0] is None
+    assert impact(2.0, [2, 2, 2, 2], payload=5, monitor=monitor)[0] is None  # lifted again

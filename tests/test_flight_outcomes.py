@@ -73,3 +73,13 @@ def test_take_off_within_an_obstacle_is_refused(tmp_path):
     assert not result.flown and result.exit_code == ExitStatus.OUTSIDE_LIMITS
     assert result.summary["outcome"] == "aborted"
     assert result.reason.startswith("on the pad, mast reaches ")
+
+
+def test_contact_ends_the_flight(tmp_path):
+    """A controller that does not avoid flies into a pole; what is left of the mission is not flown."""
+    mission = mission_in(tmp_path, 1.8, known=True)
+    result = flown(mission, tmp_path / "run", controller="mpc")
+    assert result.exit_code == ExitStatus.OUTSIDE_LIMITS and result.summary["outcome"] == "collided"
+    assert "an impact: the accelerometer of" in result.reason
+    alarms = read_text_table(tmp_path / "run" / ALARMS)
+    assert alarms["code"].count("impact") == 1

@@ -54,7 +54,7 @@ def checked(time, armed=(), failing=(), places=PLACES, silent=(), begin=BEGIN, p
         [MapObstacle(f"pole {r:g}", Pole(r, 6.0), np.array([x, y, -3.0])) for x, y, r in poles]
     )
     on_map = SimpleNamespace(predict=lambda times: standing.predict(len(times), None))
-    failsafes = FailsafeState(System(team, None, None, None, preflight, None, on_map), AlarmLog())
+    failsafes = FailsafeState(System(team, None, None, None, preflight, None, None, on_map), AlarmLog())
     return failsafes.evaluate(Check.PREFLIGHT, Moment(Phase.CHECK, time, 0.0))
 
 

@@ -24,12 +24,15 @@ def test_uav_driven_into_a_sphere_counts_as_contact():
         front_right = uav_positions(parameters, hover_state(parameters, (0, 0, -10.0)))[0]
         world.obstacles.add("ball", Sphere(0.5), front_right + np.array([1.0, 0, 0]))
         assert closest_distance(world, "ball") == pytest.approx(0.2, abs=1e-3)
-        seen = []
+        seen, clipped = [], set()
         lift = parameters.hover_thrust.tolist()
         for _ in range(1000):
             world.step(lift, [(0.0, 0.0, 0.0)] * 4, uav_forces=[(1.0, 0.0, 0.0)] * 4)
             seen.append(world.contacts().pairs)
+            assert seen[-1] or not world.clipped()
+            clipped |= set(world.clipped())
         assert seen[0] == 0
+        assert 1 in clipped  # the accelerometer of the UAV that met it
         assert max(seen) >= 1
         assert not world.touching_ground()
 

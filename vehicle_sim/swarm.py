@@ -175,8 +175,9 @@ class Swarm:
             world.step(thrusts[k], torques[k], *(self._faults.disturb(world, world.time) or ()))
         else:
             world.step(thrusts[k], torques[k])
-        if self._truth is not None and (pairs := world.contacts().pairs) > self._contacts:
-            self._contacts = pairs
+        self._contacts = max(self._contacts, world.contacts().pairs)
+        if exceeded := world.clipped():
+            self._team.clipped(exceeded)
         if self.take_off_time is None and not world.all_cradled:
             self.take_off_time = world.time
             self._faults.took_off(world.time)

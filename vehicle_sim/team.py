@@ -64,6 +64,11 @@ class Team:
             vehicle.report(self._faults.reported_sample(vehicle.system_id, reported))
         return bool(changed)
 
+    def clipped(self, exceeded: Sequence[int]) -> None:
+        """Count, with all who report it, whose accelerometer clipped: 0 the payload's, 1 .. N the vehicles'."""
+        for i, vehicle in enumerate(self.vehicles, start=1):
+            vehicle.count_clipping(own=i in exceeded, payload=0 in exceeded)
+
     def relay(self) -> None:
         """Let the vehicles relay the payload's newest sample; those that a fault disturbs get every one at once."""
         sample = self._payload_sample()

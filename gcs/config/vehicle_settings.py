@@ -137,6 +137,7 @@ class StreamIntervals(SettingsTable):
     home_position: float = setting(2.0, "s", "HOME_POSITION", gt=0.0)
     battery_status: float = setting(2.0, "s", "BATTERY_STATUS", gt=0.0)
     vfr_hud: float = setting(0.5, "s", "VFR_HUD", gt=0.0)
+    vibration: float = setting(10.0, "s", "VIBRATION of the autopilot and of the payload unit", gt=0.0)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -10,6 +10,7 @@ from typing import NamedTuple
 from gcs.config.flight_settings import DEFAULTS, FailsafeSettings
 from gcs.flight.alarms import Severity
 from gcs.flight.command_sequences import CommandSequence
+from gcs.flight.impact_monitor import ImpactMonitor
 from gcs.flight.payload_monitor import PayloadMonitor
 from gcs.flight.phase import Phase
 from gcs.flight.plan_monitor import PlanMonitor
@@ -79,6 +80,7 @@ class System:
     payload: PayloadMonitor
     preflight: Preflight
     plan: PlanMonitor
+    impact: ImpactMonitor
     obstacle_map: ObstacleMap | None = None
     settings: FailsafeSettings = DEFAULTS.failsafe
     kept_clearance: float = 0.6

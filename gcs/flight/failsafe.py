@@ -224,6 +224,19 @@ def _overturned(system: System, moment: Moment) -> Trigger | None:
     return Trigger("its own unit reports it overturned", source="payload") if system.plan.is_overturned else None
 
 
+def _impact(system: System, moment: Moment) -> Trigger | None:
+    if moment.estimate is None:
+        return None
+    hit = system.impact.impacts(clear=system.payload.is_clear(moment.estimate))
+    if not hit:
+        return None
+    links = system.team.links
+    names = ["the payload" if i == len(links) else f"vehicle {links[i].system_id}" for i in hit]
+    vehicles = tuple(i for i in hit if i < len(links))
+    text = f"an impact: the accelerometer of {' and '.join(names)} clipped"
+    return Trigger(text, vehicles, source="team" if vehicles else "payload")
+
+
 def _climb_stalled(system: System, moment: Moment) -> Trigger | None:
     if moment.phase is not Phase.CLIMB or moment.estimate is None or system.payload.is_clear(moment.estimate):
         return None
@@ -343,6 +356,8 @@ class Failsafe(AlarmCode):
         "half of the vehicles have been more than {deviation_limit} m off the plan for {deviation_time} s")
     OVERTURNED = (Check.IN_AIR, _overturned, Reaction.AUTONOMOUS_LANDING, "locate the vehicles; stay clear",
         "the payload's own unit reports a tilt beyond {tilt_limit:.2f} rad, and a vehicle is off its place")
+    IMPACT = (Check.ESTIMATE, _impact, Reaction.BRAKE_AND_LAND, "inspect the vehicles and what was touched",
+        "an accelerometer has exceeded its range since the payload is clear of the ground")
     CLIMB_STALLED = (Check.ESTIMATE, _climb_stalled, Reaction.BRAKE_AND_LAND, "check the load, and what holds it",
         "the payload is still on the ground, below its plan by more than the margin and the bound on its deviation")
     DESCENT_STALLED = (Check.ESTIMATE, _descent_stalled, Reaction.AUTONOMOUS_LANDING, "check wind, load and positions",

@@ -11,6 +11,7 @@ from gcs.flight.condition import Check, Moment, Reaction, System, Trigger
 from gcs.flight.control_loop import ControlLoop, Setpoints, StepRecord
 from gcs.flight.failsafe import Failsafe
 from gcs.flight.failsafe_state import FailsafeState
+from gcs.flight.impact_monitor import ImpactMonitor
 from gcs.flight.mission_trajectory import MissionTrajectory
 from gcs.flight.payload_monitor import PayloadMonitor
 from gcs.flight.phase import CONTROLLED, IN_AIR, Phase
@@ -43,8 +44,8 @@ class Flight:
         payload, preflight = PayloadMonitor(control.controller.parameters, settings), Preflight(team, settings)
         plan = PlanMonitor(control.controller.parameters.number_of_uavs, settings.failsafe)
         self.system = System(
-            team, control.estimator, control.controller.guidance, payload, preflight, plan, obstacle_map,
-            settings.failsafe, mission.system.avoidance.margin + mission.system.safety.planner.tracking,
+            team, control.estimator, control.controller.guidance, payload, preflight, plan, ImpactMonitor(team.links),
+            obstacle_map, settings.failsafe, mission.system.avoidance.margin + mission.system.safety.planner.tracking,
         )  # fmt: skip
         """The objects that the conditions of failsafes are evaluated on."""
         self.failsafes = FailsafeState(self.system, alarms)

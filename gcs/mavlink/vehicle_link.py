@@ -19,6 +19,7 @@ from gcs.mavlink.settings import LinkSettings
 
 _ATTITUDE, _POSITION = mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED
 _NAVIGATION, _TIMESYNC = (_ATTITUDE, _POSITION), mavlink.MAVLINK_MSG_ID_TIMESYNC
+_VIBRATION = mavlink.MAVLINK_MSG_ID_VIBRATION
 _AUTOPILOT = px4.AUTOPILOT_COMPONENT
 _SCAN = frozenset((RETURNS, SCAN_END))
 #: What comes often and holds nothing that is kept here: not read.
@@ -44,6 +45,10 @@ class VehicleStatus:
     landed_state: int = mavlink.MAV_LANDED_STATE_UNDEFINED
     prearm_ok: bool | None = None
     """Result of its prearm checks, from SYS_STATUS; None: not reported yet."""
+    clipping: int = 0
+    """How often its accelerometer has been driven out of its range, from VIBRATION."""
+    payload_clipping: int = 0
+    """How often that of the payload's unit has."""
     obstacle_sensing_valid: bool = True
     """Health of its range sensor, from SYS_STATUS."""
     parameters: dict[str, float] = field(default_factory=dict)
@@ -70,6 +75,8 @@ class VehicleStatus:
                 self.prearm_ok = bool(health & mavlink.MAV_SYS_STATUS_PREARM_CHECK)
             if present & mavlink.MAV_SYS_STATUS_SENSOR_PROXIMITY:
                 self.obstacle_sensing_valid = bool(health & mavlink.MAV_SYS_STATUS_SENSOR_PROXIMITY)
+        elif isinstance(message, mavlink.MAVLink_vibration_message):
+            self.clipping = message.clipping_0
         elif isinstance(message, mavlink.MAVLink_statustext_message):
             self.texts.append(message.text)
 
@@ -124,6 +131,8 @@ class VehicleLink:
             if system != self.system_id:
                 if component == px4.PAYLOAD_UNIT_COMPONENT and message_id in _NAVIGATION:
                     self.payload_received_at = now
+                elif component == px4.PAYLOAD_UNIT_COMPONENT and message_id == _VIBRATION:
+                    *_, self.status.payload_clipping, _, _ = received.fields
                 continue
             self.received_at = now
             if component == _AUTOPILOT:

@@ -46,7 +46,9 @@ def default_intervals(intervals: StreamIntervals, telemetry_interval: float) -> 
         (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_HOME_POSITION): intervals.home_position,
         (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_BATTERY_STATUS): intervals.battery_status,
         (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_VFR_HUD): intervals.vfr_hud,
+        (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_VIBRATION): intervals.vibration,
         (_PAYLOAD, _HEARTBEAT): intervals.heartbeat,
+        (_PAYLOAD, mavlink.MAVLINK_MSG_ID_VIBRATION): intervals.vibration,
         (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION): telemetry_interval,
         (_AUTOPILOT, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED): telemetry_interval,
         (_PAYLOAD, mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION): telemetry_interval,
@@ -132,10 +134,10 @@ class Peer:
             self._streams.append(Stream(*key, interval))
         self.next_due = -math.inf
 
-    def repeat(self, *message_ids: int) -> None:
-        """Send these messages of the autopilot at once, and repeatedly: their content has changed, one may be lost."""
+    def repeat(self, *message_ids: int, component: int = _AUTOPILOT) -> None:
+        """Send these messages at once, and repeatedly: their content has changed, one may be lost."""
         for stream in self._streams:
-            if stream.key[0] == _AUTOPILOT and stream.key[1] in message_ids:
+            if stream.key[0] == component and stream.key[1] in message_ids:
                 stream.due, stream.repeats = -math.inf, self._settings.repeats
         self.next_due = -math.inf
 

@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 
 from gcs.config.vehicle_settings import VehicleLinkSettings
+from gcs.mavlink import px4
 from gcs.mavlink.address import Address
 from vehicle_sim.mavlink.peer import TIME_TOLERANCE, Peer
 from vehicle_sim.mavlink.telemetry import Telemetry
@@ -66,10 +67,10 @@ class Peers:
                 due = peer.next_due
         return due
 
-    def repeat(self, *message_ids: int) -> None:
+    def repeat(self, *message_ids: int, component: int = px4.AUTOPILOT_COMPONENT) -> None:
         """Send these messages to all at once, and repeatedly: their content has changed."""
         for peer in self._peers.values():
-            peer.repeat(*message_ids)
+            peer.repeat(*message_ids, component=component)
 
     def send_statustext(self, text: str) -> None:
         """Send a text to all."""

@@ -53,6 +53,13 @@ class Readings:
             self._payload = pybullet.getBasePositionAndOrientation(self._body, self._client)
         return self._payload
 
+    def velocity_changes(self) -> list[Vector]:
+        """Return by how much the velocities of payload and UAVs (N + 1) changed in the last step (m/s, z up)."""
+        (velocity, _), uavs = self._before
+        now: list[Sequence[float]] = [self._velocity[0], *(uav[6] for uav in self.uavs)]
+        before: list[Sequence[float]] = [velocity, *(uav[6] for uav in uavs)]
+        return [(a - d, b - e, c - f) for (a, b, c), (d, e, f) in zip(now, before, strict=True)]
+
     def states(self) -> Array:
         """Return the true states of payload and UAVs now, (N + 1, 13) as in :mod:`.state_kernels`, to be read only."""
         if self._states is not None:

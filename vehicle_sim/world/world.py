@@ -13,10 +13,11 @@ from gcs.config.tables import WorldConfig
 from idc_controller.arrays import Array
 from idc_controller.parameters import SystemParameters
 from idc_controller.rotations_float import Quaternion, Vector
+from vehicle_sim.world.accelerometers import clipped
 from vehicle_sim.world.contact_detection import ContactDetector
 from vehicle_sim.world.cradles import Cradles
 from vehicle_sim.world.errors import SimulationError
-from vehicle_sim.world.ground import Contacts, Ground
+from vehicle_sim.world.ground import NO_CONTACTS, Contacts, Ground
 from vehicle_sim.world.multibody import check_supported, load_multibody
 from vehicle_sim.world.obstacle_bodies import ObstacleBodies
 from vehicle_sim.world.readings import Readings
@@ -182,6 +183,15 @@ class World:
     def contacts(self) -> Contacts:
         """Return what touches after the last step, computed once a step."""
         return self._contacts.after(self.steps, self.physics_hz)
+
+    def clipped(self) -> Sequence[int]:
+        """Return whose accelerometer exceeded its range in the last step: 0 the payload's, 1 .. N the UAVs'.
+
+        Without contact, thrust and links accelerate nothing by so much.
+        """
+        if self.contacts() is NO_CONTACTS:
+            return ()
+        return clipped(self._readings, self.parameters.g, self.physics_hz)
 
     def touching_ground(self) -> bool:
         """Return True if the payload stands on pad or ground."""
