@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterable
-from itertools import islice
 
 import numpy as np
 from rich.console import Group, RenderableType
@@ -52,7 +51,7 @@ def _route(route: Route, system: SystemConfig) -> list[RenderableType]:
     length = time = 0.0
     count, last = 0, None
     start: Position = (0.0, 0.0, -system.resting_altitude)
-    for leg in _shown_legs(route):
+    for leg in route.first_lap(COUNTED_LEGS):
         count, last = count + 1, leg
         leg_length, leg_time, end = _measure(leg, start, system.motion)
         length, time = length + leg_length, time + leg_time
@@ -71,19 +70,6 @@ def _route(route: Route, system: SystemConfig) -> list[RenderableType]:
         summary = f"and so on until stopped: endless; so far {count} legs, {length:.0f} m, about {time:.0f} s"
     more = [Text(f"... and {count - SHOWN_LEGS} more legs")] if count > SHOWN_LEGS else []
     return [table, *more, Text(summary)]
-
-
-def _shown_legs(route: Route) -> list[Leg]:
-    """Return all legs; of an endless route those before an item is flown for the second time."""
-    legs = list(islice(route.legs(), COUNTED_LEGS))
-    if isinstance(legs[-1], Land | HoldForever):
-        return legs
-    seen = set[str]()
-    for index, leg in enumerate(legs):
-        if leg.source in seen and leg.source != legs[index - 1].source:
-            return legs[:index]
-        seen.add(leg.source)
-    return legs
 
 
 def _action(leg: Leg) -> str:

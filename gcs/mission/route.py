@@ -7,6 +7,7 @@ steps before. :meth:`Route.legs` runs it lazily.
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import islice
 
 Position = tuple[float, float, float]
 
@@ -208,6 +209,18 @@ class Route:
             if flight.ended:
                 return
         yield from flight.fly(Return("end of mission"))
+
+    def first_lap(self, limit: int) -> list[Leg]:
+        """Return up to ``limit`` legs; of an endless route those before an item is flown for the second time."""
+        legs = list(islice(self.legs(), limit))
+        if isinstance(legs[-1], Land | HoldForever):
+            return legs
+        seen = set[str]()
+        for index, leg in enumerate(legs):
+            if leg.source in seen and leg.source != legs[index - 1].source:
+                return legs[:index]
+            seen.add(leg.source)
+        return legs
 
 
 class _Flight:

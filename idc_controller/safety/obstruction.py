@@ -19,7 +19,8 @@ class Obstruction(NamedTuple):
     def lacking(self, keep: float) -> str:
         """Return in words how much nearer it is than ``keep`` (m)."""
         if self.distance <= 0.0:
-            return f"{self.name} reaches {-self.distance:.2f} m into the formation there"
+            missing = f", {keep - self.distance:.2f} m are missing" if keep > 0.0 else ""
+            return f"{self.name} reaches {-self.distance:.2f} m into the formation there{missing}"
         missing = f"{self.distance:.2f} m from the formation there, {keep - self.distance:.2f} m are missing"
         return f"{self.name} is {missing}"
 

@@ -74,12 +74,12 @@ class Telemetry:
         self.reported: ReportedState | None = None
         """Sample that is sent of the vehicle's own state instead of its estimate; None: the estimate."""
         self.payload: Measurement | None = None
-        self.clipping = self.payload_clipping = 0
-        """Physics steps in which the vehicle's and the payload unit's accelerometer exceeded its range."""
+        unit = px4.PAYLOAD_UNIT_COMPONENT
+        self.clipping = {_OWN: 0, unit: 0}
+        """Physics steps in which the accelerometer of the vehicle and of the payload unit exceeded its range."""
         self.scan: RangeSample | None = None
         self._scan_messages: tuple[RangeSample | None, Built, Built] = (None, (), ())
         """The scan that was built last, its returns, and its end."""
-        unit = px4.PAYLOAD_UNIT_COMPONENT
         #: By component and message id.
         self.builders: dict[tuple[int, int], Callable[[float], Built]] = {
             (_OWN, mavlink.MAVLINK_MSG_ID_HEARTBEAT): self._heartbeat,
@@ -95,13 +95,13 @@ class Telemetry:
             (_OWN, mavlink.MAVLINK_MSG_ID_BATTERY_STATUS): self._battery,
             (_OWN, mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET): self._attitude_target,
             (_OWN, mavlink.MAVLINK_MSG_ID_VFR_HUD): self._vfr_hud,
-            (_OWN, mavlink.MAVLINK_MSG_ID_VIBRATION): lambda now: self._vibration(now, self.clipping),
+            (_OWN, mavlink.MAVLINK_MSG_ID_VIBRATION): lambda now: self._vibration(now, _OWN),
             (_OWN, mavlink.MAVLINK_MSG_ID_ODOMETRY): self._odometry,
             (_OWN, mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION): self._autopilot_version,
             (_OWN, mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D): self._scan_returns,
             (_OWN, mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE): self._scan_end,
             (unit, mavlink.MAVLINK_MSG_ID_HEARTBEAT): self._payload_heartbeat,
-            (unit, mavlink.MAVLINK_MSG_ID_VIBRATION): lambda now: self._vibration(now, self.payload_clipping),
+            (unit, mavlink.MAVLINK_MSG_ID_VIBRATION): lambda now: self._vibration(now, unit),
             (unit, mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION): lambda now: self._attitude_of(self.payload),
             (unit, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED): lambda now: self._position_of(self.payload),
         }
@@ -321,10 +321,10 @@ class Telemetry:
 
     # Shared
 
-    def _vibration(self, now: float, clipping: int) -> Built:
+    def _vibration(self, now: float, component: int) -> Built:
         """No vibration is simulated; impacts are, by how often they drove the accelerometer out of its range."""
         stamp = self.time_boot_ms(now) * 1000
-        return packed(mavlink.MAVLink_vibration_message(stamp, 0.0, 0.0, 0.0, clipping, 0, 0))
+        return packed(mavlink.MAVLink_vibration_message(stamp, 0.0, 0.0, 0.0, self.clipping[component], 0, 0))
 
     def _attitude_of(self, measured: Measurement | None) -> Built:
         if measured is None:

@@ -109,10 +109,9 @@ class Vehicle:
 
     def count_clipping(self, *, own: bool, payload: bool) -> None:
         """Count an accelerometer that exceeded its range, the vehicle's own or the payload unit's, and say so."""
-        self.telemetry.clipping += own
-        self.telemetry.payload_clipping += payload
         for exceeded, component in ((own, px4.AUTOPILOT_COMPONENT), (payload, px4.PAYLOAD_UNIT_COMPONENT)):
             if exceeded:
+                self.telemetry.clipping[component] += 1
                 self._peers.repeat(mavlink.MAVLINK_MSG_ID_VIBRATION, component=component)
 
     def take_scan(self, scan: RangeSample | None) -> None:

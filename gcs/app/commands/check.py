@@ -1,6 +1,7 @@
 """``gcs check``: what a mission file says."""
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 
 from gcs.app.arguments import VEHICLES
@@ -28,5 +29,10 @@ def run(arguments: argparse.Namespace) -> int:
         from gcs.mission.describe import describe
 
     mission = read_mission_for(arguments.mission, arguments.config, arguments.vehicles)
+    with importing():
+        from gcs.app.preflight import preflight
+
+    found = preflight(mission)
+    mission = replace(mission, notes=(*mission.notes, *map(str, found.ways), *found.notes))
     Console(highlight=False).print(describe(mission))
     return ExitStatus.DONE

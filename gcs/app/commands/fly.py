@@ -73,6 +73,7 @@ def run(arguments: argparse.Namespace) -> int:
         from rich.console import Console
 
         from gcs.app.fly import fly
+        from gcs.app.preflight import preflight
         from gcs.app.progress import FlightProgress
         from gcs.campaign.process_pool import BROKEN_OFF, end_with_parent
         from gcs.drivers.forked_program import ForkedProgram
@@ -82,6 +83,9 @@ def run(arguments: argparse.Namespace) -> int:
         from gcs.record.summary_table import print_summary
     # With --json standard output is the summary and nothing else.
     console = Console(stderr=arguments.json, highlight=False)
+    found = preflight(mission)
+    for note in (*mission.notes, *map(str, found.ways), *found.notes):
+        LOG.info("note: %s", note)
     with ExitStack() as started:
         # Before there are threads: those of the progress line and of the parent's end.
         vehicle_sim = None if options.connect is not None else started.enter_context(ForkedProgram(PROGRAM))
