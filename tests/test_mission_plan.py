@@ -1,5 +1,6 @@
 """Parts that only a plan has: surveys, fences, rally points."""
 
+import json
 import math
 from pathlib import Path
 
@@ -21,6 +22,7 @@ from mission_files import (
 )
 
 from gcs.mission.fence import Fence
+from gcs.mission.plan import read_plan
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.pole import Pole
 
@@ -91,3 +93,9 @@ def test_line_that_leaves_the_inclusion_area_crosses_the_fence() -> None:
     assert fence.crossings(start, end) == ["the fence's inclusion area"]
     assert fence.crossings(start, (9.0, 8.0, -5.0)) == []
     assert fence.crossings(start, start) == []
+
+
+@pytest.mark.parametrize(("number", "firmware"), [(3, "ardupilot"), (12, "px4"), (0, None), (None, None)])
+def test_plan_names_the_autopilot_it_is_written_for(number: int | None, firmware: str | None) -> None:
+    text = json.dumps(plan(TAKE_OFF, A, mission__firmwareType=number))
+    assert read_plan(Path("x.plan"), text).firmware == firmware

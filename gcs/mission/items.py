@@ -2,10 +2,14 @@
 
 import math
 from dataclasses import dataclass, field
+from typing import Literal
 
 from gcs.mission import geodesy
 from gcs.mission.commands import command_name
 from gcs.mission.fence import Fence
+
+Firmware = Literal["px4", "ardupilot"]
+"""The autopilot that a file is written for, which decides where PX4 and ArduPilot fly an item differently."""
 
 ITEM_LIMIT = 10_000
 FARTHEST = 10_000.0
@@ -74,12 +78,13 @@ class FileHome:
 
 @dataclass(frozen=True)
 class WaypointFile:
-    """Home, items, fence, and notes on what is left out."""
+    """Home, items, fence, notes on what is left out, and the autopilot it is written for (None: not known)."""
 
     home: FileHome
     items: tuple[MissionItem, ...]
     fence: Fence = field(default_factory=Fence)
     notes: tuple[str, ...] = ()
+    firmware: Firmware | None = None
 
 
 def check_latitude_longitude(latitude: float, longitude: float) -> None:

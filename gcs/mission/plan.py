@@ -16,10 +16,12 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, TypeAdapter
 from gcs.config.text_file import why_unparsed
 from gcs.config.validate import Key, UnusableFile, dotted, validated
 from gcs.mission.fence import Corners, Fence, circle_corners, encloses_area, excluded_circle, excluded_polygon
-from gcs.mission.items import ITEM_LIMIT, PARAM_NAMES, FileHome, ItemError, MissionItem, WaypointFile
+from gcs.mission.items import ITEM_LIMIT, PARAM_NAMES, FileHome, Firmware, ItemError, MissionItem, WaypointFile
 from gcs.mission.model import Obstacle
 
 CORNER_LIMIT = 500
+_FIRMWARES: dict[int | None, Firmware] = {3: "ardupilot", 12: "px4"}
+"""MAV_AUTOPILOT of a plan's ``firmwareType``; the others are not known to fly an item in a way of their own."""
 
 
 def _supported(*versions: int) -> AfterValidator:
@@ -86,6 +88,7 @@ _ComplexItem = Annotated[_Survey | _CorridorScan | _StructureScan, Field(discrim
 
 class _Mission(_Object):
     version: Annotated[int, _supported(2)]
+    firmwareType: int | None = None
     plannedHomePosition: Annotated[list[Number], Field(min_length=2, max_length=3)]
     items: list[Annotated[_SimpleItem | _ComplexItem, Field(discriminator="type")]]
 
@@ -156,7 +159,8 @@ def read_plan(path: Path, text: str) -> WaypointFile:
         raise UnusableFile(problems)
     if plan.rallyPoints and plan.rallyPoints.points:
         notes.append(f"rallyPoints: {len(plan.rallyPoints.points)} left out: the payload returns to its pad")
-    return WaypointFile(home, tuple(items), fence, tuple(notes))
+    firmware = _FIRMWARES.get(plan.mission.firmwareType)
+    return WaypointFile(home, tuple(items), fence, tuple(notes), firmware)
 
 
 def _parse(path: Path, text: str) -> Any:
