@@ -48,7 +48,7 @@ INF = (3, 16, 0, 0, 0, 0, "inf", 8.5, 5)
         (wpl(TAKE_OFF, A, home="0 16 0 0 0 0 0 0 0"), "line 2", "gives no place"),
         (wpl(TAKE_OFF, A, home="9 16 0 0 0 0 47 8 0"), "line 2", "frame 9, BODY_OFFSET_NED"),
         (wpl(TAKE_OFF, A, home="0 16 0 0 0 0 91 8 0"), "line 2", "latitude: 91 is outside"),
-        (wpl(TAKE_OFF, A).replace("\t16\t", "\tWP\t", 2), "line 2", "command: 'WP' is not a number"),
+        (wpl(TAKE_OFF, A).replace("\t16\t", "\tWP\t", 1), "line 2", "command: 'WP' is not a number"),
         (wpl(TAKE_OFF, (3, 16, 0)), "line 4", "6 columns, expected 12"),
         (wpl(TAKE_OFF, (3, 16.5, *A[2:])), "line 4", "command: 16.5 is not a whole number"),
         (wpl(TAKE_OFF, INF), "line 4", "latitude: is not finite"),
@@ -70,7 +70,7 @@ INF = (3, 16, 0, 0, 0, 0, "inf", 8.5, 5)
         (wpl(TAKE_OFF, row(16, north=10.0, frame=99)), "line 4", "frame 99, is not supported"),
         (wpl(TAKE_OFF, row(16, north=10.0, frame=2)), "line 4", "has no coordinates"),
         (wpl(TAKE_OFF, A, home=f"3 16 0 0 0 0 {HOME[0]} {HOME[1]} 0").replace("2\t0\t3", "2\t0\t0"), "line 4", "home has no altitude"),
-        (wpl(row(5001, 4, north=1.0), row(5001, 4, north=2.0)), "line 3", "a fence or rally point"),
+        (wpl(row(5001, 4, north=1.0), row(5001, 4, north=2.0)), "rows 1 and 2", "a fence or rally point"),
         (wpl(row(5003, 4, north=1.0)), "line 3", "a fence or rally point"),
         (wpl(row(5100, north=1.0)), "line 3", "a fence or rally point"),
         (wpl(TAKE_OFF, row(31, north=1.0)), "line 4", "navigation by NAV_LOITER_TO_ALT"),
@@ -101,7 +101,7 @@ INF = (3, 16, 0, 0, 0, 0, "inf", 8.5, 5)
         (wpl(row(177, 3, -1), A, RETURN), "", "no waypoint is ever reached"),
         (wpl(row(16, alt=0), RETURN), "line 3", "still on the pad"),
         (wpl(RETURN, A), "line 4", "comes after the landing"),
-        (wpl(TAKE_OFF, A, row(21, alt=0), TAKE_OFF, B), "line 6", "comes after the landing"),
+        (wpl(TAKE_OFF, A, row(21, alt=0), TAKE_OFF, B), "rows 4 and 5", "comes after the landing"),
     ],
 )  # fmt: skip
 def test_wpl_refused(tmp_path: Path, content: str, where: str, reason: str) -> None:

@@ -8,6 +8,7 @@ from gcs.config.text_file import read_text
 from gcs.config.toml_file import TomlFile
 from gcs.config.validate import Key
 from gcs.mission.model import DEFAULT_HOME, Home, Lissajous, Mission
+from gcs.mission.reasons import merged
 from gcs.mission.toml_mission import DEFAULT_SEED, check_with_system, points_route, read_mission_file
 
 _SUFFIXES = {".waypoints": "wpl", ".txt": "wpl", ".plan": "plan", ".json": "plan", ".toml": "toml"}
@@ -54,8 +55,14 @@ def _from_waypoints(path: Path, text: str, system: SystemConfig, speed: float) -
     kind = mission_format(path, text)
     if kind == "toml":
         raise UnusableFile([f"{path}: neither a QGC WPL file nor a QGroundControl plan"])
-    file = read_wpl(path, text) if kind == "wpl" else read_plan(path, text)
-    route, notes = compile_route(path, file, system, speed)
+    try:
+        file = read_wpl(path, text) if kind == "wpl" else read_plan(path, text)
+        route, notes = compile_route(path, file, system, speed)
+    except UnusableFile as error:
+        prefix = f"{path}: "
+        reasons = merged(reason.removeprefix(prefix) for reason in error.reasons)
+        raise UnusableFile([prefix + reason for reason in reasons]) from error
+    notes = merged(notes)
     altitude = file.home.altitude
     if altitude is None:
         altitude = DEFAULT_HOME.altitude
