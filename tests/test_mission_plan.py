@@ -12,6 +12,7 @@ from mission_files import (
     RETURN,
     TAKE_OFF,
     A,
+    B,
     area,
     legs,
     north,
@@ -23,6 +24,7 @@ from mission_files import (
 
 from gcs.mission.fence import Fence
 from gcs.mission.plan import read_plan
+from gcs.mission.route import FlyTo
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.pole import Pole
 
@@ -99,3 +101,33 @@ def test_line_that_leaves_the_inclusion_area_crosses_the_fence() -> None:
 def test_plan_names_the_autopilot_it_is_written_for(number: int | None, firmware: str | None) -> None:
     text = json.dumps(plan(TAKE_OFF, A, mission__firmwareType=number))
     assert read_plan(Path("x.plan"), text).firmware == firmware
+
+
+@pytest.mark.parametrize(
+    ("mission", "flown", "noted"),
+    [
+        ({"hoverSpeed": 2}, 2.0, False),
+        ({"hoverSpeed": 2.5, "vehicleType": 2}, 2.5, False),
+        ({"hoverSpeed": 5, "cruiseSpeed": 15, "vehicleType": 2}, 3.0, True),
+        ({"hoverSpeed": 0.5, "cruiseSpeed": 15, "vehicleType": 1}, 1.5, False),
+        ({"hoverSpeed": 0}, 1.5, False),
+        ({"hoverSpeed": None, "cruiseSpeed": 15}, 1.5, False),
+    ],
+)
+def test_hover_speed_of_plan_is_flown_up_to_the_largest(
+    tmp_path: Path, mission: dict[str, float], flown: float, noted: bool
+) -> None:
+    document = plan(TAKE_OFF, A, RETURN)
+    document["mission"].update(mission)
+    read_mission = read(tmp_path, document)
+    assert {leg.speed for leg in legs(read_mission) if isinstance(leg, FlyTo)} == {flown}
+    assert read_mission.notes == (("hoverSpeed: 5 m/s capped to speed_max, 3 m/s",) if noted else ())
+
+
+def test_speed_of_toml_precedes_hover_speed(tmp_path: Path) -> None:
+    (tmp_path / "route.plan").write_text(json.dumps(plan(TAKE_OFF, A, row(178, 1, 2), A, row(178, 1, -2), B, RETURN,
+                                                         mission__hoverSpeed=2.5)))  # fmt: skip
+    toml = '[mission]\nname = "x"\n[reference]\nkind = "waypoints"\nfile = "route.plan"\n'
+    for text, speed in ((toml, 2.5), (toml + "speed = 0.5\n", 0.5)):
+        flown = [leg.speed for leg in legs(read(tmp_path, text, "mission.toml")) if isinstance(leg, FlyTo)]
+        assert flown == [speed, 2.0, speed, speed]

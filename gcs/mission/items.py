@@ -78,13 +78,17 @@ class FileHome:
 
 @dataclass(frozen=True)
 class WaypointFile:
-    """Home, items, fence, notes on what is left out, and the autopilot it is written for (None: not known)."""
+    """Home, items, fence, notes on what is left out, the autopilot it is written for, and its speed (m/s).
+
+    None: not known, not given.
+    """
 
     home: FileHome
     items: tuple[MissionItem, ...]
     fence: Fence = field(default_factory=Fence)
     notes: tuple[str, ...] = ()
     firmware: Firmware | None = None
+    speed: float | None = None
 
 
 def check_latitude_longitude(latitude: float, longitude: float) -> None:

@@ -20,6 +20,8 @@ from gcs.mission.items import ITEM_LIMIT, PARAM_NAMES, FileHome, Firmware, ItemE
 from gcs.mission.model import Obstacle
 
 CORNER_LIMIT = 500
+FIXED_WING = 1
+"""MAV_TYPE of a plan's ``vehicleType`` for which its ``hoverSpeed`` has no meaning."""
 _FIRMWARES: dict[int | None, Firmware] = {3: "ardupilot", 12: "px4"}
 """MAV_AUTOPILOT of a plan's ``firmwareType``; the others are not known to fly an item in a way of their own."""
 
@@ -89,6 +91,8 @@ _ComplexItem = Annotated[_Survey | _CorridorScan | _StructureScan, Field(discrim
 class _Mission(_Object):
     version: Annotated[int, _supported(2)]
     firmwareType: int | None = None
+    vehicleType: int | None = None
+    hoverSpeed: Number = None
     plannedHomePosition: Annotated[list[Number], Field(min_length=2, max_length=3)]
     items: list[Annotated[_SimpleItem | _ComplexItem, Field(discriminator="type")]]
 
@@ -160,7 +164,9 @@ def read_plan(path: Path, text: str) -> WaypointFile:
     if plan.rallyPoints and plan.rallyPoints.points:
         notes.append(f"rallyPoints: {len(plan.rallyPoints.points)} left out: the payload returns to its pad")
     firmware = _FIRMWARES.get(plan.mission.firmwareType)
-    return WaypointFile(home, tuple(items), fence, tuple(notes), firmware)
+    hover = plan.mission.hoverSpeed or 0.0
+    speed = hover if hover > 0.0 and plan.mission.vehicleType != FIXED_WING else None
+    return WaypointFile(home, tuple(items), fence, tuple(notes), firmware, speed)
 
 
 def _parse(path: Path, text: str) -> Any:

@@ -28,7 +28,7 @@ def read_mission(path: Path | str, config_path: Path | str | None = None) -> Mis
     if mission_format(path, text) == "toml":
         return _from_toml(path, config)
     system = _system(path, None, config)
-    return _from_waypoints(path, text, system, system.motion.speed)
+    return _from_waypoints(path, text, system)
 
 
 def mission_format(path: Path, text: str) -> str:
@@ -45,8 +45,8 @@ def mission_format(path: Path, text: str) -> str:
     raise UnusableFile([f"{path}: not a mission: neither QGC WPL, nor a QGroundControl plan, nor TOML"])
 
 
-def _from_waypoints(path: Path, text: str, system: SystemConfig, speed: float) -> Mission:
-    """Return the mission of a waypoint file, flown at ``speed`` (m/s) where the file names none."""
+def _from_waypoints(path: Path, text: str, system: SystemConfig, speed: float | None = None) -> Mission:
+    """Return the mission of a waypoint file, flown at ``speed`` (m/s), else the file's own, where items name none."""
     # Spent only where there are waypoints.
     from gcs.mission.compile import compile_route
     from gcs.mission.plan import read_plan
@@ -57,12 +57,15 @@ def _from_waypoints(path: Path, text: str, system: SystemConfig, speed: float) -
         raise UnusableFile([f"{path}: neither a QGC WPL file nor a QGroundControl plan"])
     try:
         file = read_wpl(path, text) if kind == "wpl" else read_plan(path, text)
+        capped = tuple[str, ...]()
+        if speed is None:
+            speed, capped = _capped("hoverSpeed", file.speed, system)
         route, notes = compile_route(path, file, system, speed)
     except UnusableFile as error:
         prefix = f"{path}: "
         reasons = merged(reason.removeprefix(prefix) for reason in error.reasons)
         raise UnusableFile([prefix + reason for reason in reasons]) from error
-    notes = merged(notes)
+    notes = (*capped, *merged(notes))
     altitude = file.home.altitude
     if altitude is None:
         altitude = DEFAULT_HOME.altitude
@@ -82,15 +85,12 @@ def _from_toml(path: Path, config: Path | None) -> Mission:
     if isinstance(reference, Lissajous):
         mission = Mission(path.stem, path, DEFAULT_SEED, system, reference)
     else:
-        speed = system.motion.speed if reference.speed is None else reference.speed
-        if speed > system.motion.speed_max:
-            capped = (f"reference.speed: {speed:g} m/s capped to speed_max, {system.motion.speed_max:g} m/s",)
-            speed = system.motion.speed_max
+        speed, capped = _capped("reference.speed", reference.speed, system)
         if reference.file is None:
             mission = Mission(path.stem, path, DEFAULT_SEED, system, points_route(file, reference, speed, system))
         else:
             waypoints = _beside(file, ("reference", "file"), reference.file)
-            mission = _from_waypoints(waypoints, read_text(waypoints), system, speed)
+            mission = _from_waypoints(waypoints, read_text(waypoints), system, reference.speed and speed)
     return replace(
         mission,
         name=table.mission.name,
@@ -101,6 +101,16 @@ def _from_toml(path: Path, config: Path | None) -> Mission:
         limits=table.limits,
         notes=(*capped, *mission.notes),
     )
+
+
+def _capped(name: str, speed: float | None, system: SystemConfig) -> tuple[float, tuple[str, ...]]:
+    """Return the speed that is flown (m/s), the system's own where none is given, and a note where it is capped."""
+    highest = system.motion.speed_max
+    if speed is None:
+        return system.motion.speed, ()
+    if speed > highest:
+        return highest, (f"{name}: {speed:g} m/s capped to speed_max, {highest:g} m/s",)
+    return speed, ()
 
 
 def _beside(file: TomlFile, key: Key, name: str) -> Path:
