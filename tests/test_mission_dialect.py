@@ -6,16 +6,16 @@ import pymap3d
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from pymap3d.haversine import anglesep
-from pymavlink.dialects.v20 import common
+from pymavlink.dialects.v20 import ardupilotmega, common
 
 from gcs.mission.commands import FENCE_AND_RALLY, LAST_NAVIGATION, LEFT_OUT, Command, Frame, command_name, frame_name
 from gcs.mission.geodesy import angle_between, north_east
 
-COMMANDS = common.enums["MAV_CMD"]
+COMMANDS = ardupilotmega.enums["MAV_CMD"]
 latitudes, longitudes = st.floats(-89.0, 89.0), st.floats(-180.0, 180.0)
 
 
-def test_commands_have_the_numbers_of_the_common_dialect() -> None:
+def test_commands_have_the_numbers_of_the_dialects() -> None:
     named = {command.value: command.name for command in Command if command is not Command.CONDITION_GATE} | LEFT_OUT
     assert named == {number: COMMANDS[number].name.removeprefix("MAV_CMD_") for number in named}
     assert LAST_NAVIGATION == common.MAV_CMD_NAV_LAST
@@ -34,6 +34,7 @@ def test_names_of_other_commands_and_frames_come_from_the_dialect() -> None:
     assert command_name(16) == "NAV_WAYPOINT"
     assert command_name(4501) == "CONDITION_GATE"
     assert command_name(208) == "DO_PARACHUTE"
+    assert command_name(42702) == "NAV_SCRIPT_TIME"
     assert command_name(31999) == "command 31999"
     assert frame_name(1) == "frame 1, LOCAL_NED"
     assert frame_name(99) == "frame 99"

@@ -1,4 +1,4 @@
-"""Commands and frames of mission items, by the numbers and names of MAVLink's common dialect.
+"""Commands and frames of mission items, by the numbers and names of MAVLink's common and ArduPilot's dialect.
 
 They stand here because importing the dialect takes longer than reading a mission; a test compares them with it.
 """
@@ -32,7 +32,6 @@ class Command(IntEnum):
     CONDITION_DELAY = 112
     CONDITION_CHANGE_ALT = 113
     CONDITION_DISTANCE = 114
-    CONDITION_YAW = 115
     DO_JUMP = 177
     DO_CHANGE_SPEED = 178
     JUMP_TAG = 600
@@ -59,7 +58,8 @@ AMSL_FRAMES = frozenset({Frame.GLOBAL, Frame.GLOBAL_INT})
 
 LAST_NAVIGATION = 95
 """MAV_CMD_NAV_LAST: the commands up to this number navigate."""
-FENCE_AND_RALLY = frozenset({*range(5000, 5005), 5100})
+RALLY_POINT = 5100
+FENCE_AND_RALLY = frozenset({*range(5000, 5005), RALLY_POINT})
 
 LEFT_OUT = {
     # camera and video
@@ -92,6 +92,7 @@ LEFT_OUT = {
     2503: "VIDEO_STOP_STREAMING",
     2504: "REQUEST_VIDEO_STREAM_INFORMATION",
     2505: "REQUEST_VIDEO_STREAM_STATUS",
+    260: "OBLIQUE_SURVEY",
     # gimbal and region of interest
     204: "DO_MOUNT_CONFIGURE",
     205: "DO_MOUNT_CONTROL",
@@ -104,6 +105,8 @@ LEFT_OUT = {
     196: "DO_SET_ROI_WPNEXT_OFFSET",
     197: "DO_SET_ROI_NONE",
     198: "DO_SET_ROI_SYSID",
+    # heading
+    115: "CONDITION_YAW",
     # other devices on board
     183: "DO_SET_SERVO",
     184: "DO_REPEAT_SERVO",
@@ -111,6 +114,9 @@ LEFT_OUT = {
     182: "DO_REPEAT_RELAY",
     187: "DO_SET_ACTUATOR",
     211: "DO_GRIPPER",
+    216: "DO_SPRAYER",
+    217: "DO_SEND_SCRIPT_MESSAGE",
+    218: "DO_AUX_FUNCTION",
     42600: "DO_WINCH",
     405: "ILLUMINATOR_ON_OFF",
     406: "DO_ILLUMINATOR_CONFIGURE",
@@ -120,18 +126,18 @@ LEFT_OUT = {
     189: "DO_LAND_START",
     188: "DO_RETURN_PATH_START",
 }
-"""Commands that concern devices which these vehicles do not have, or nothing at all."""
+"""Commands that concern devices which these vehicles do not have, the heading, which is kept, or nothing at all."""
 
 _NAMES = {command.value: command.name for command in Command}
 
 
 def command_name(command: int) -> str:
-    """Return ``NAV_WAYPOINT``, or the number where MAVLink's common dialect has no name for it."""
+    """Return ``NAV_WAYPOINT``, or the number where MAVLink's dialects have no name for it."""
     if name := _NAMES.get(command) or LEFT_OUT.get(command):
         return name
-    from pymavlink.dialects.v20 import common
+    from pymavlink.dialects.v20 import ardupilotmega  # the common dialect and ArduPilot's
 
-    entry = common.enums["MAV_CMD"].get(command)
+    entry = ardupilotmega.enums["MAV_CMD"].get(command)
     return entry.name.removeprefix("MAV_CMD_") if entry else f"command {command}"
 
 

@@ -28,17 +28,19 @@ from gcs.mission.route import Climb, Descend, Go, Jump, Place, Return, Route, Sp
 
 LOITER_RADIUS = 5.0
 """m, of loiter turns without a radius."""
+HIGH_CLIMB = 120.0
+"""m above home. Higher, an altitude above mean sea level may be one above another home."""
 
 
 @dataclass
 class _Context:
-    """The file that is compiled, the targets of its jumps, and the notes on it."""
+    """The file that is compiled, the targets of its jumps (indices of items), and the notes on it."""
 
     file: WaypointFile
     system: SystemConfig
     notes: list[str] = field(default_factory=list)
-    index_of_number: dict[int, int] = field(default_factory=dict)
-    index_of_tag: dict[int, int] = field(default_factory=dict)
+    indices_of_number: dict[int, list[int]] = field(default_factory=dict)
+    indices_of_tag: dict[int, list[int]] = field(default_factory=dict)
 
     def note(self, item: MissionItem, text: str) -> None:
         self.notes.append(f"{item.label}: {text}")
@@ -62,6 +64,7 @@ def compile_route(path: Path, file: WaypointFile, system: SystemConfig, speed: f
         steps.append(step)
     if problems:
         raise UnusableFile(problems)
+    _note_climb(file.items, steps, context)
     route = Route(_joined(file.items, steps, context), speed, system.resting_altitude)
     problems, notes = check_flow(route, file.fence)
     if problems:
@@ -70,17 +73,15 @@ def compile_route(path: Path, file: WaypointFile, system: SystemConfig, speed: f
 
 
 def _number_items(items: tuple[MissionItem, ...], context: _Context, path: Path, problems: list[str]) -> None:
-    """Find the targets of jumps: by number and by tag, each of which may appear only once."""
+    """Find the targets of jumps: by number and by tag."""
     for index, item in enumerate(items):
-        kinds = [(context.index_of_number, item.number, "number")]
+        if item.number is not None:
+            context.indices_of_number.setdefault(item.number, []).append(index)
         if item.command == Command.JUMP_TAG:
             try:
-                kinds.append((context.index_of_tag, _whole(item, 0, "tag"), "tag"))
+                context.indices_of_tag.setdefault(_whole(item, 0, "tag"), []).append(index)
             except ItemError as problem:
                 problems.append(f"{path}: {item.label}: {problem}")
-        for table, number, name in kinds:
-            if number is not None and table.setdefault(number, index) != index:
-                problems.append(f"{path}: {item.label}: {name}: {number} appears twice: jumps to it would be ambiguous")
 
 
 def _step(item: MissionItem, context: _Context) -> Step | None:
@@ -96,9 +97,19 @@ def _step(item: MissionItem, context: _Context) -> Step | None:
         return None
     name = command_name(item.command)
     if name.startswith("NAV_") or item.command <= LAST_NAVIGATION:
-        raise ItemError("command", f"navigation by {name} is not supported")
-    name = name.removeprefix("command ")
-    raise ItemError("command", f"{name} is not supported, and leaving it out could change the flight")
+        raise ItemError("command", "navigation that is not supported")
+    raise ItemError("command", "not supported, and leaving it out could change the flight")
+
+
+def _note_climb(items: tuple[MissionItem, ...], steps: list[Step | None], context: _Context) -> None:
+    """Note the climb to the first altitude, if it is above mean sea level and home may have another one than meant."""
+    home = context.file.home.altitude
+    for item, step in zip(items, steps, strict=True):
+        if isinstance(step, Climb | Go | Turn | Stay) and (climb := step.place.altitude) is not None:
+            if item.frame in AMSL_FRAMES and home is not None and (home == 0.0 or climb > HIGH_CLIMB):
+                reason = f"{home + climb:g} m above mean sea level, and home at {home:g} m"
+                context.note(item, f"altitude: {reason}: climbs {climb:g} m")
+            return
 
 
 def _joined(items: tuple[MissionItem, ...], steps: list[Step | None], context: _Context) -> tuple[Step, ...]:
@@ -110,7 +121,11 @@ def _joined(items: tuple[MissionItem, ...], steps: list[Step | None], context: _
         if step is None:
             continue
         joined.append(step)
-        if not item.autocontinue and isinstance(step, Climb | Go | Turn | Wait):
+        if item.autocontinue or not isinstance(step, Climb | Go | Turn | Wait):
+            continue
+        if context.file.firmware == "ardupilot":
+            context.note(item, "autocontinue is off: flown on all the same, as ArduPilot does")
+        else:
             context.note(item, "autocontinue is off: holds there until stopped")
             joined.append(Stay(item.label, Place()))
     return tuple(
@@ -131,6 +146,9 @@ def _place(item: MissionItem, context: _Context) -> Place:
         return Place()
     if item.frame == Frame.MISSION:
         raise ItemError("frame", f"{frame_name(item.frame)}, has no coordinates")
+    if altitude == 0.0 and context.file.firmware == "ardupilot":
+        context.note(item, "altitude 0: keeps the altitude, as ArduPilot does")
+        altitude = None
     if altitude is not None:
         altitude = _above_home(item, altitude, context)
         if altitude < 0.0:
@@ -209,19 +227,30 @@ def _land(item: MissionItem, context: _Context) -> Step:
     altitude = item.params[6]
     if altitude and item.frame != Frame.MISSION:
         height = _above_home(item, altitude, context)
-        if height < -0.5:
-            raise ItemError("altitude", f"below ground: {-height:.6g} m lower than home")
-        if height > 0.5:
+        if abs(height) > 0.5:
             context.note(item, f"altitude {altitude:g} m left out: the ground is flat, and the payload lands on it")
     return Descend(item.label, _place(replace(item, params=(*item.params[:6], None)), context))
 
 
 def _take_off(item: MissionItem, context: _Context) -> Step:
     _note_heading(item, context)
-    place = _place(item, context)
-    if place.altitude is None:
+    altitude, resting = item.params[6], context.system.resting_altitude
+    if altitude is None:
         raise ItemError("altitude", "not given: a take-off needs one")
-    return Climb(item.label, place)
+    lowest = resting + context.system.guidance.navigator.ground_clearance
+    if 0.0 <= _above_home(item, altitude, context) < lowest:
+        reason = (
+            f"on the pad the payload's centre is at {resting:g} m, and guidance.navigator.ground_clearance above it"
+        )
+        context.note(item, f"altitude {altitude:g} m raised to {lowest:g} m above home: {reason}")
+        item = replace(item, frame=Frame.GLOBAL_RELATIVE_ALT, params=(*item.params[:6], lowest))
+    return Climb(item.label, _place(item, context))
+
+
+def _loiter_to_altitude(item: MissionItem, context: _Context) -> Step:
+    if item.params[1]:
+        context.note(item, f"radius {item.params[1]:g} m left out: flown straight to the place at its altitude")
+    return Go(item.label, _place(item, context))
 
 
 def _delay(item: MissionItem, context: _Context) -> Step:
@@ -251,18 +280,21 @@ def _change_speed(item: MissionItem, context: _Context) -> Step | None:
     return Speed(item.label, speed)
 
 
-def _jump(item: MissionItem, index_of: dict[int, int], name: str, context: _Context) -> Step | None:
+def _jump(item: MissionItem, indices_of: dict[int, list[int]], name: str, context: _Context) -> Step | None:
     target = _whole(item, 0, name)
     repeats = _whole(item, 1, "repeats")
     if repeats < -1:
         raise ItemError("param 2 (repeats)", f"{repeats} is neither a number of times nor -1, endless")
-    if target not in index_of:
-        reason = "is home, not an item" if target == 0 and name == "target" else "there is no such item"
-        raise ItemError(f"param 1 ({name})", f"{target}: {reason}")
+    targets = indices_of.get(target, [])
+    if len(targets) != 1:
+        is_home = target == 0 and name == "target"
+        absent = "is home, not an item" if is_home else "there is no such item"
+        reason = f"there are {len(targets)} such items" if targets else absent
+        raise ItemError(f"param 1 ({name})", f"{target:g}: {reason}")
     if repeats == 0:
         context.note(item, "repeats 0 times: the jump is not taken")
         return None
-    return Jump(item.label, index_of[target], None if repeats == -1 else repeats)
+    return Jump(item.label, targets[0], None if repeats == -1 else repeats)
 
 
 _COMMANDS: dict[int, Callable[[MissionItem, _Context], Step | None]] = {
@@ -272,13 +304,14 @@ _COMMANDS: dict[int, Callable[[MissionItem, _Context], Step | None]] = {
     Command.NAV_LOITER_UNLIM: _loiter_unlimited,
     Command.NAV_LOITER_TURNS: _loiter_turns,
     Command.NAV_LOITER_TIME: _go,
+    Command.NAV_LOITER_TO_ALT: _loiter_to_altitude,
     Command.NAV_RETURN_TO_LAUNCH: lambda item, context: Return(item.label),
     Command.NAV_LAND: _land,
     Command.NAV_TAKEOFF: _take_off,
     Command.NAV_DELAY: _delay,
     Command.CONDITION_DELAY: _delay,
     Command.DO_CHANGE_SPEED: _change_speed,
-    Command.DO_JUMP: lambda item, context: _jump(item, context.index_of_number, "target", context),
+    Command.DO_JUMP: lambda item, context: _jump(item, context.indices_of_number, "target", context),
     Command.JUMP_TAG: lambda item, context: None,
-    Command.DO_JUMP_TAG: lambda item, context: _jump(item, context.index_of_tag, "tag", context),
+    Command.DO_JUMP_TAG: lambda item, context: _jump(item, context.indices_of_tag, "tag", context),
 }

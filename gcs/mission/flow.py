@@ -40,8 +40,9 @@ def check_flow(route: Route, fence: Fence) -> tuple[list[str], list[str]]:
     if (jump := _loop_without_waypoint(steps)) is not None:
         return [f"{jump.source}: target: a loop without a waypoint in it would never end"], []
     flown = _reached(steps, through_landing=False)
-    if problems := _flown_after_landing(steps, flown):
-        return problems, []
+    after = sorted(_reached(steps, through_landing=True) - flown)
+    if (again := next((steps[i] for i in after if isinstance(steps[i], Climb)), None)) is not None:
+        return [f"{again.source}: command: lands and takes off again: not flown yet"], []
     if not any(isinstance(step, Climb | Go | Turn | Stay) for i, step in enumerate(steps) if i in flown):
         return ["mission: no waypoint is ever reached"], []
     try:
@@ -85,22 +86,15 @@ def _loop_without_waypoint(steps: tuple[Step, ...]) -> Jump | None:
     return None
 
 
-def _flown_after_landing(steps: tuple[Step, ...], flown: set[int]) -> list[str]:
-    after = sorted(_reached(steps, through_landing=True) - flown)
-    return [
-        f"{steps[i].source}: command: comes after the landing: a second take-off is not supported"
-        for i in after
-        if isinstance(steps[i], Climb | Go | Turn | Stay)
-        or (isinstance(step := steps[i], Descend) and step.place.horizontal is not None)
-    ]
-
-
 def _notes(route: Route, flown: set[int], legs: list[Leg]) -> Iterator[str]:
     steps = route.steps
-    never = [step.source for i, step in enumerate(steps) if i not in flown]
-    if never:
-        which = never[0] if len(never) == 1 else f"{len(never)} items, from {never[0]} to {never[-1]}"
-        yield f"{which}: never reached"
+    reached = {steps[i].source for i in flown}
+    yield from (
+        f"{source}: never reached" for source in dict.fromkeys(s.source for s in steps) if source not in reached
+    )
+    for i in sorted(flown):
+        if isinstance(jump := steps[i], Jump) and jump.repeats is None and jump.target < i:
+            yield f"{jump.source}: repeats the items from {steps[jump.target].source} on until stopped"
     if isinstance(legs[0], TakeOff):
         first = next(step for step in steps if step.source == legs[0].source)
         if not isinstance(first, Climb):

@@ -1,11 +1,12 @@
 """A waypoint file before it is compiled into a route: home, items and fence, whichever format they come from."""
 
 import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
 from gcs.mission import geodesy
-from gcs.mission.commands import command_name
+from gcs.mission.commands import FENCE_AND_RALLY, LEFT_OUT, RALLY_POINT, Command, command_name
 from gcs.mission.fence import Fence
 
 Firmware = Literal["px4", "ardupilot"]
@@ -14,6 +15,7 @@ Firmware = Literal["px4", "ardupilot"]
 ITEM_LIMIT = 10_000
 FARTHEST = 10_000.0
 """m from home. Beyond it the file's home is wrong, or the world no longer flat."""
+_COMMANDS = frozenset(Command)
 PARAM_NAMES = ("param 1", "param 2", "param 3", "param 4", "latitude", "longitude", "altitude")
 
 
@@ -37,6 +39,11 @@ class MissionItem:
     command: int
     params: tuple[float | None, ...]
     autocontinue: bool = True
+
+    @property
+    def has_position(self) -> bool:
+        """Whether latitude and longitude are given; 0, 0 stands for none."""
+        return None not in self.params[4:6] and self.params[4:6] != (0.0, 0.0)
 
     @property
     def label(self) -> str:
@@ -89,6 +96,21 @@ class WaypointFile:
     notes: tuple[str, ...] = ()
     firmware: Firmware | None = None
     speed: float | None = None
+
+
+def nothing_to_fly(items: Sequence[MissionItem]) -> str | None:
+    """Return the reason why a file with these items is no mission; None if it is one."""
+    if all(item.command in LEFT_OUT for item in items):
+        return "nothing to fly: there is no waypoint"
+    if all(item.command in FENCE_AND_RALLY for item in items):
+        what = "rally points" if all(item.command == RALLY_POINT for item in items) else "a fence"
+        return f"{what}, not a mission: nothing to fly"
+    return None
+
+
+def first_position(items: Iterable[MissionItem]) -> MissionItem | None:
+    """Return the first item that is flown to a latitude and longitude of its own."""
+    return next((item for item in items if item.command in _COMMANDS and item.has_position), None)
 
 
 def check_latitude_longitude(latitude: float, longitude: float) -> None:

@@ -11,12 +11,22 @@ from itertools import islice
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, TypeAdapter
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, TypeAdapter
 
 from gcs.config.text_file import why_unparsed
-from gcs.config.validate import Key, UnusableFile, dotted, validated
+from gcs.config.validate import Key, UnusableFile, dotted, shown, validated
 from gcs.mission.fence import Corners, Fence, circle_corners, encloses_area, excluded_circle, excluded_polygon
-from gcs.mission.items import ITEM_LIMIT, PARAM_NAMES, FileHome, Firmware, ItemError, MissionItem, WaypointFile
+from gcs.mission.items import (
+    ITEM_LIMIT,
+    PARAM_NAMES,
+    FileHome,
+    Firmware,
+    ItemError,
+    MissionItem,
+    WaypointFile,
+    first_position,
+    nothing_to_fly,
+)
 from gcs.mission.model import Obstacle
 
 CORNER_LIMIT = 500
@@ -43,7 +53,7 @@ def _finite(value: float | None) -> float | None:
 
 
 Number = Annotated[float | None, AfterValidator(_finite)]
-Natural = Annotated[int, Field(ge=0)]
+Natural = Annotated[int, Field(ge=0, lt=2**32)]
 Place = Annotated[list[float], Field(min_length=2, max_length=3)]
 
 
@@ -115,14 +125,27 @@ class _FencePolygon(_FencePart):
     polygon: Annotated[list[Place], Field(min_length=3, max_length=CORNER_LIMIT)]
 
 
+def _is_filled(section: Any) -> bool:
+    return isinstance(section, dict) and any(value for value in section.values() if isinstance(value, list))
+
+
+def _unless_empty(section: Any) -> Any:
+    """Return a fence or rally points to be read; None where they are empty, whatever their version."""
+    if not isinstance(section, dict):
+        return section
+    if not _is_filled(section):
+        return None
+    if section.get("version") != 2:
+        raise ValueError(f"version {shown(section.get('version'))} is not supported, only 2")
+    return section
+
+
 class _GeoFence(_Object):
-    version: Annotated[int, _supported(2)]
     circles: list[_FenceCircle] = []
     polygons: list[_FencePolygon] = []
 
 
 class _RallyPoints(_Object):
-    version: Annotated[int, _supported(2)]
     points: list[Any] = []
 
 
@@ -130,8 +153,8 @@ class _Plan(_Object):
     fileType: Literal["Plan"]
     version: Annotated[int, _supported(1)]
     mission: _Mission
-    geoFence: _GeoFence | None = None
-    rallyPoints: _RallyPoints | None = None
+    geoFence: Annotated[_GeoFence | None, BeforeValidator(_unless_empty)] = None
+    rallyPoints: Annotated[_RallyPoints | None, BeforeValidator(_unless_empty)] = None
 
 
 def read_plan(path: Path, text: str) -> WaypointFile:
@@ -146,14 +169,16 @@ def read_plan(path: Path, text: str) -> WaypointFile:
     plan = validated(TypeAdapter(_Plan), _parse(path, text), problem)
     items = list(islice(_simple_items(plan.mission), ITEM_LIMIT + 1))
     problems = []
-    if not items:
-        problems.append(problem(("mission", "items"), "there is no waypoint"))
+    if reason := nothing_to_fly(items):
+        raise UnusableFile([problem(("mission", "items"), reason)])
     if len(items) > ITEM_LIMIT:
         problems.append(problem(("mission", "items"), f"more than {ITEM_LIMIT} items"))
     fence, notes = Fence(), []
     try:
         home = _home(*plan.mission.plannedHomePosition)
     except ItemError as error:
+        if first_position(items) is None:
+            raise UnusableFile([problem(("mission", "items"), "nothing to fly: no item gives a place")]) from error
         raise UnusableFile([*problems, problem(("mission", "plannedHomePosition"), str(error))]) from error
     try:
         fence = _fence(plan.geoFence, home) if plan.geoFence else fence
@@ -163,6 +188,9 @@ def read_plan(path: Path, text: str) -> WaypointFile:
         raise UnusableFile(problems)
     if plan.rallyPoints and plan.rallyPoints.points:
         notes.append(f"rallyPoints: {len(plan.rallyPoints.points)} left out: the payload returns to its pad")
+    numbers = [item.number for item in items if item.number is not None]
+    if len(set(numbers)) < len(numbers):
+        notes.append("doJumpId: some appear twice: the items are flown in the order of the file")
     firmware = _FIRMWARES.get(plan.mission.firmwareType)
     hover = plan.mission.hoverSpeed or 0.0
     speed = hover if hover > 0.0 and plan.mission.vehicleType != FIXED_WING else None
@@ -177,6 +205,12 @@ def _parse(path: Path, text: str) -> Any:
         raise UnusableFile([f"{path}: {line}not valid JSON: {why_unparsed(error)}"]) from error
     if not isinstance(document, dict):
         raise UnusableFile([f"{path}: not a plan: no JSON object"])
+    if "complexItems" in document or "MAV_AUTOPILOT" in document:
+        reason = "an old .mission file of QGroundControl: open it there and save it as .plan"
+        raise UnusableFile([f"{path}: {reason}"])
+    mission = document.get("mission")
+    if _is_filled(document.get("geoFence")) and not (isinstance(mission, dict) and mission.get("items")):
+        raise UnusableFile([f"{path}: a fence, not a mission: nothing to fly"])
     return document
 
 
