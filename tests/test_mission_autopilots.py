@@ -141,10 +141,10 @@ OLD = '{"MAV_AUTOPILOT": 12, "complexItems": [], "items": [], "plannedHomePositi
 @pytest.mark.parametrize(
     ("content", "reason"),
     [
-        (rows((0, TAKE_OFF), (1, row(203)), (2, RETURN)), ": nothing to fly: no row gives a place, and none gives home"),
+        (rows((0, TAKE_OFF), (1, row(203, north=9.0)), (2, RETURN)), ": home: no row gives a place"),
         (rows((0, ABSOLUTE), (1, row(203)), (2, row(200))), ": nothing to fly: there is no waypoint"),
         (rows((0, row(22, north=0.0, alt=15.0, frame=5)), (1, row(16, north=9.0, alt=15.0, frame=5))), ": rows 0 and 1 (NAV_TAKEOFF, NAV_WAYPOINT): altitude: is above mean sea level, but home has no altitude"),
-        (plan(row(203), row(178, 1, 2), mission__plannedHomePosition=[0, 0, 0]), ": mission.items: nothing to fly: no item gives a place"),
+        (plan(row(203), row(178, 1, 2), mission__plannedHomePosition=[0, 0, 0]), ": mission.items: nothing to fly: there is no waypoint"),
         (plan(row(203), row(2000)), ": mission.items: nothing to fly: there is no waypoint"),
         (wpl(row(5001, 3, north=1.0), row(5001, 3, north=5.0), row(5001, 3, north=9.0)), ": a fence, not a mission: nothing to fly"),
         (rows((0, row(5003, 9, north=1.0)), (1, row(5004, 9, north=1.0))), ": a fence, not a mission: nothing to fly"),

@@ -43,7 +43,7 @@ INF = (3, 16, 0, 0, 0, 0, "inf", 8.5, 5)
         ("0 1 0 16 0 0 0 0 47 8 488 1\n", "line 1", "expected 'QGC WPL 110'"),
         (wpl(), "", "there is no waypoint"),
         (wpl(RETURN), "", "there is no waypoint"),
-        (wpl(TAKE_OFF, RETURN, home="0 16 0 0 0 0 0 0 0"), "", "no row gives a place"),
+        (wpl(TAKE_OFF, RETURN, home="0 16 0 0 0 0 0 0 0"), "", "home: no row gives a place"),
         (wpl(TAKE_OFF, A, home="9 16 0 0 0 0 47 8 0"), "line 2", "frame 9, BODY_OFFSET_NED"),
         (wpl(TAKE_OFF, A, home="0 16 0 0 0 0 91 8 0"), "line 2", "latitude: 91 is outside"),
         (wpl(TAKE_OFF, A).replace("\t16\t", "\tWP\t", 1), "line 2", "command: 'WP' is not a number"),

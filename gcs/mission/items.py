@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from gcs.mission import geodesy
-from gcs.mission.commands import FENCE_AND_RALLY, LEFT_OUT, RALLY_POINT, Command, command_name
+from gcs.mission.commands import FENCE_AND_RALLY, LAST_NAVIGATION, LEFT_OUT, RALLY_POINT, Command, command_name
 from gcs.mission.fence import Fence
 
 Firmware = Literal["px4", "ardupilot"]
@@ -100,11 +100,12 @@ class WaypointFile:
 
 def nothing_to_fly(items: Sequence[MissionItem]) -> str | None:
     """Return the reason why a file with these items is no mission; None if it is one."""
-    if all(item.command in LEFT_OUT for item in items):
-        return "nothing to fly: there is no waypoint"
-    if all(item.command in FENCE_AND_RALLY for item in items):
-        what = "rally points" if all(item.command == RALLY_POINT for item in items) else "a fence"
+    commands = {item.command for item in items} - LEFT_OUT.keys()
+    if commands and commands <= FENCE_AND_RALLY:
+        what = "rally points" if commands == {RALLY_POINT} else "a fence"
         return f"{what}, not a mission: nothing to fly"
+    if not any(command <= LAST_NAVIGATION or command == Command.CONDITION_GATE for command in commands):
+        return "nothing to fly: there is no waypoint"
     return None
 
 

@@ -24,7 +24,6 @@ from gcs.mission.items import (
     ItemError,
     MissionItem,
     WaypointFile,
-    first_position,
     nothing_to_fly,
 )
 from gcs.mission.model import Obstacle
@@ -177,8 +176,6 @@ def read_plan(path: Path, text: str) -> WaypointFile:
     try:
         home = _home(*plan.mission.plannedHomePosition)
     except ItemError as error:
-        if first_position(items) is None:
-            raise UnusableFile([problem(("mission", "items"), "nothing to fly: no item gives a place")]) from error
         raise UnusableFile([*problems, problem(("mission", "plannedHomePosition"), str(error))]) from error
     try:
         fence = _fence(plan.geoFence, home) if plan.geoFence else fence

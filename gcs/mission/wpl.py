@@ -56,7 +56,7 @@ def read_wpl(path: Path, text: str) -> WaypointFile:
         raise UnusableFile([f"{path}: {reason}"])
     row = first if has_home and first.has_position else first_position(flown)
     if row is None:
-        raise UnusableFile([f"{path}: nothing to fly: no row gives a place, and none gives home"])
+        raise UnusableFile([f"{path}: home: no row gives a place"])
     if row is not first or not has_home:
         why = "row 0 gives no place" if has_home else "no home row, the first row is an item, as in PX4's files"
         notes.append(f"home: {why}: on the ground below {row.label}")
