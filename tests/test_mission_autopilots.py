@@ -151,6 +151,7 @@ OLD = '{"MAV_AUTOPILOT": 12, "complexItems": [], "items": [], "plannedHomePositi
         (plan(**FENCE), ": a fence, not a mission: nothing to fly"),
         (plan(mission=None, geoFence__circles=[CIRCLE]), ": a fence, not a mission: nothing to fly"),
         (wpl(row(5100, north=1.0)), ": rally points, not a mission: nothing to fly"),
+        (plan(TAKE_OFF, A, fileType="Mission"), ": an old .mission file of QGroundControl"),
         (OLD, ": an old .mission file of QGroundControl: open it there and save it as .plan"),
         (plan(TAKE_OFF, A, geoFence={"polygon": [[1, 2]], "version": 1}), ": geoFence: version 1 is not supported, only 2"),
         (plan(TAKE_OFF, A, geoFence={"circles": [CIRCLE]}), ": geoFence: version null is not supported, only 2"),

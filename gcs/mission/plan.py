@@ -202,7 +202,7 @@ def _parse(path: Path, text: str) -> Any:
         raise UnusableFile([f"{path}: {line}not valid JSON: {why_unparsed(error)}"]) from error
     if not isinstance(document, dict):
         raise UnusableFile([f"{path}: not a plan: no JSON object"])
-    if "complexItems" in document or "MAV_AUTOPILOT" in document:
+    if document.get("fileType") == "Mission" or "complexItems" in document or "MAV_AUTOPILOT" in document:
         reason = "an old .mission file of QGroundControl: open it there and save it as .plan"
         raise UnusableFile([f"{path}: {reason}"])
     mission = document.get("mission")
