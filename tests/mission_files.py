@@ -129,6 +129,13 @@ def area(half: float, **changes: Any) -> dict[str, Any]:
     return {"polygon": polygon, "inclusion": False, "version": 1, **changes}
 
 
+def polygon(*corners: tuple[float, float], inclusion: bool = True) -> dict[str, Any]:
+    """A part of a fence, by its corners in metres north and east of home."""
+    to_lon = 1 / (DEGREE * math.cos(math.radians(HOME[0])))
+    places = [[HOME[0] + north / DEGREE, HOME[1] + east * to_lon] for north, east in corners]
+    return {"polygon": places, "inclusion": inclusion, "version": 1}
+
+
 TOML = """
 [mission]
 name = "two spheres"

@@ -117,7 +117,7 @@ def test_obstacle_and_fence_in_the_way_of_a_waypoint_are_named(tmp_path):
     assert result.reason == f"{missed}; 1 more missed"
 
     fenced = mission_in(tmp_path, [[8.0, 0.0, -4.0]])
-    object.__setattr__(fenced, "boundary", ((-5.0, -5.0), (-5.0, 5.0), (8.04, 5.0), (8.04, -5.0)))
+    object.__setattr__(fenced, "boundary", (((-5.0, -5.0), (-5.0, 5.0), (8.04, 5.0), (8.04, -5.0)),))
     result = fly(tmp_path / "fence", fenced, straight((6.93, 0.0)))
     assert result.reason.startswith(
         "waypoint 1 missed by 1.07 m: the fence (boundary edge 3) is in the way of the formation there"

@@ -58,7 +58,7 @@ def test_fence_of_plan_is_read(tmp_path: Path) -> None:
     assert box.position[2] == -box.shape.size[2] / 2
     assert len(edges) == 3
     assert all(isinstance(e.shape, Wall) and math.dist(e.position[:2], (30.0, 0.0)) < 5.2 for e in edges)
-    assert mission.boundary is not None and mission.boundary[0] == pytest.approx((100.0, 70.0), abs=0.5)
+    assert mission.boundary[0][0] == pytest.approx((100.0, 70.0), abs=0.5)
 
 
 def test_legs_across_the_fence_are_noted(tmp_path: Path) -> None:
@@ -89,7 +89,7 @@ def test_rally_points_are_noted_as_unsupported(tmp_path: Path) -> None:
 
 def test_line_that_leaves_the_inclusion_area_crosses_the_fence() -> None:
     notched = ((0.0, 0.0), (0.0, 10.0), (10.0, 10.0), (10.0, 0.0), (5.0, 5.0))
-    fence = Fence(boundary=notched)
+    fence = Fence(boundary=(notched,))
     start, end = (9.0, 2.0, -5.0), (1.0, 2.0, -5.0)
     assert fence.violation(start) is None and fence.violation(end) is None
     assert fence.crossings(start, end) == ["the fence's inclusion area"]

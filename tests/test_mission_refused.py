@@ -26,6 +26,7 @@ from mission_files import (
 from gcs.config import UnusableFile
 from gcs.mission.read import read_mission
 
+BEYOND = [[HOME[0] + 0.001, HOME[1] + 0.002], [HOME[0] + 0.001, HOME[1] + 0.003], [HOME[0] + 0.002, HOME[1] + 0.002]]
 INF = (3, 16, 0, 0, 0, 0, "inf", 8.5, 5)
 
 
@@ -150,7 +151,8 @@ def item_with(**changes: Any) -> dict[str, Any]:
         (plan(TAKE_OFF, A, geoFence__polygons=[area(5, polygon=[[47, 8]])]), "geoFence", "needs at least 3, has 1"),
         (plan(TAKE_OFF, A, geoFence__polygons=[area(0)]), "geoFence", "has no area"),
         (plan(TAKE_OFF, A, geoFence__polygons=[area(9, inclusion=True)]), "geoFence", "home is outside"),
-        (plan(TAKE_OFF, A, geoFence__polygons=[area(70, inclusion=True), area(80, inclusion=True)]), "geoFence", "at most one"),
+        (plan(TAKE_OFF, A, mission__firmwareType=3, geoFence__polygons=[area(70, inclusion=True), area(5, polygon=BEYOND, inclusion=True)]),
+         "geoFence", "the 2 areas have nothing in common"),
         (plan(TAKE_OFF, row(16, north=110.0), geoFence__polygons=[area(70, inclusion=True)]), "item 2", "outside the fence"),
         (plan(TAKE_OFF, row(16, north=31.0), geoFence__circles=[CIRCLE]), "item 2", "inside fence circle 1"),
         (plan(TAKE_OFF, row(18, 1, 0, 10, north=20.0), geoFence__circles=[CIRCLE]), "item 2", "inside fence circle 1"),

@@ -208,7 +208,7 @@ def test_world_without_ticks_is_lost_after_the_time_of_the_file(tmp_path):
 
 def test_returns_have_the_noise_of_the_range_sensor_and_of_the_poses():
     config = system(range_sensor={"noise": 0.07}, sensors={"position": 0.03, "attitude_deg": 1.0})
-    placement = stack.obstacle_map(SimpleNamespace(system=config, obstacles=(), boundary=None)).placement
+    placement = stack.obstacle_map(SimpleNamespace(system=config, obstacles=(), boundary=())).placement
     on_ray = 5.0 * stack.sensor_rays(config.range_sensor).pattern.directions(0)[:1]
     hand_over(placement, 0.0, 0, ([0.0, 0.0, -5.0], [1.0, 0.0, 0.0, 0.0]), on_ray)
     [scan] = placement.scans(0.0)

@@ -188,7 +188,7 @@ def flight_result(
         duration_s=duration,
         real_time_factor=duration / wall if wall > 0.0 else None,
         limits=limits,
-        obstacles=bool(mission.obstacles) or mission.boundary is not None,
+        obstacles=bool(mission.obstacles or mission.boundary),
     )
     # By the clock of the records, as it may be before take-off.
     summary["broken_off_s"] = None if math.isnan(flight.failsafes.time) else round(flight.failsafes.time, 6)
@@ -222,12 +222,12 @@ def ground_station(
     guidance: Guidance | None = None
     if controller == "idc":
         safety = stack.avoidance(config, model, obstacle_map)
-        guidance = stack.guidance(config, model, obstacle_map, obstacle_map)
+        guidance = stack.guidance(config, model, obstacle_map, obstacle_map, mission.area)
     elif controller == "paper":
         safety = PrintedFilter(model, obstacle_map, config.avoidance.margin)
     control = ControlLoop(
         stack.estimator(config, model), stack.controller(config, model, safety, stopwatch, guidance),
-        ComputeTimes(stopwatch), brake=stack.resting_place(config, model, obstacle_map),
+        ComputeTimes(stopwatch), brake=stack.resting_place(config, model, obstacle_map, mission.area),
     )  # fmt: skip
     alarms = AlarmLog(recorder.alarm, config.flight.monitor)
     flight = Flight(mission, Team(links, model.parameters), control, alarms, obstacle_map)

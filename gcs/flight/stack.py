@@ -13,6 +13,7 @@ from idc_controller.control.controller import IntegratedDecisionController
 from idc_controller.control.mpc import ModelPredictiveController
 from idc_controller.estimation.estimator import Estimator
 from idc_controller.estimation.measurements import MeasurementNoise
+from idc_controller.geometry.flight_area import FlightArea
 from idc_controller.geometry.formation import BoundingCylinder
 from idc_controller.geometry.obstacles import ObstacleSource
 from idc_controller.guidance.navigator import Navigator
@@ -83,9 +84,13 @@ def avoidance(config: SystemConfig, model: LinearModel, obstacles: ObstacleSourc
 
 
 def guidance(
-    config: SystemConfig, model: LinearModel, obstacles: ObstacleSource, sight: Sight | None = None
+    config: SystemConfig,
+    model: LinearModel,
+    obstacles: ObstacleSource,
+    sight: Sight | None = None,
+    area: FlightArea | None = None,
 ) -> AdaptiveGuidance:
-    """Return the guidance that waits for the payload, and leads round ``obstacles``.
+    """Return the guidance that waits for the payload, and leads round ``obstacles`` within ``area`` (None: everywhere).
 
     ``sight``: what range sensors have seen, to limit the speed by; None: no range sensors.
     """
@@ -96,7 +101,7 @@ def guidance(
         margin=config.avoidance.margin,
         detour=config.guidance.detour,
     )
-    navigator = Navigator(model.parameters, settings, obstacles, stages)
+    navigator = Navigator(model.parameters, settings, obstacles, stages, area)
     weight = model.parameters.m_0 * model.parameters.g
     by_sight = None if sight is None else speed_by_sight(config, model, sight)
     return AdaptiveGuidance(navigator, config.guidance.progress, stages, weight, by_sight)
@@ -114,10 +119,12 @@ def speed_by_sight(config: SystemConfig, model: LinearModel, sight: Sight) -> Sp
     return SpeedBySight(sight, settings, formation, view)
 
 
-def resting_place(config: SystemConfig, model: LinearModel, obstacles: ObstacleSource) -> RestingPlace:
-    """Return the choice of where a team without set-points comes to rest, clear of ``obstacles``."""
+def resting_place(
+    config: SystemConfig, model: LinearModel, obstacles: ObstacleSource, area: FlightArea | None = None
+) -> RestingPlace:
+    """Return the choice of where a team without set-points comes to rest, clear of ``obstacles`` and in ``area``."""
     settings = replace(config.guidance.resting_place, margin=config.avoidance.margin)
-    return RestingPlace(model.parameters, obstacles, settings, config.braking())
+    return RestingPlace(model.parameters, obstacles, settings, config.braking(), area)
 
 
 def motion_limits(config: SystemConfig) -> Limits:

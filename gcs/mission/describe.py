@@ -116,7 +116,8 @@ def _surroundings(mission: Mission) -> Iterable[str]:
         hidden = "" if obstacle.known else ", not on the map"
         yield f"{shape.kind} '{obstacle.name}' at [{place}], {shape.dimensions}{hidden}{moving}"
     if mission.boundary:
-        yield f"boundary of {len(mission.boundary)} corners"
+        rings = f" in {len(mission.boundary)} rings" if len(mission.boundary) > 1 else ""
+        yield f"boundary of {sum(map(len, mission.boundary))} corners{rings}"
     for fault in mission.faults:
         yield _fault(fault)
 

@@ -1,63 +1,93 @@
-"""Geofence: exclusion circles are poles, exclusion polygons walls, an inclusion area is the boundary."""
+"""Geofence: exclusion circles are poles, exclusion polygons walls, inclusion areas have a boundary."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from gcs.mission.model import Obstacle
 from gcs.mission.route import Position
 from idc_controller.geometry.box import Wall
+from idc_controller.geometry.flight_area import FlightArea, Ring
 from idc_controller.geometry.pole import Pole
-from idc_controller.geometry.shape import Shape
+from idc_controller.geometry.shape import PlanView, Shape
+
+if TYPE_CHECKING:
+    import shapely  # takes long to import, spent only where there is a fence
 
 Point = tuple[float, float]
-Corners = tuple[Point, ...]
 
 FENCE_HEIGHT = 150.0
 """m. A fence has no top; this is above what regulations let fly."""
 WALL_THICKNESS = 0.2
 CIRCLE_CORNERS = 32
+_SNAP = 1e-3
+"""m, within which edges of several inclusion areas are the same."""
+
+
+class Exclusion(NamedTuple):
+    """An area that must not be entered: its name, its plan view about home, and the bodies that stand in its place."""
+
+    name: str
+    view: PlanView
+    obstacles: tuple[Obstacle, ...]
 
 
 @dataclass(frozen=True)
 class Fence:
-    """A geofence in m about home: what it excludes, and the corners of the area that must not be left."""
+    """A geofence in m about home: rings about the area that must not be left (none: no limit), and exclusions."""
 
-    obstacles: tuple[Obstacle, ...] = ()
-    boundary: Corners | None = None
+    boundary: tuple[Ring, ...] = ()
+    exclusions: tuple[Exclusion, ...] = ()
+
+    @property
+    def obstacles(self) -> tuple[Obstacle, ...]:
+        """The bodies in place of what is excluded."""
+        return tuple(obstacle for exclusion in self.exclusions for obstacle in exclusion.obstacles)
+
+    @property
+    def excluded(self) -> tuple[Ring, ...]:
+        """The corners of the excluded polygons: circles are solid poles."""
+        return tuple(_corners(e.view.core.exterior) for e in self.exclusions if e.view.radius == 0.0)
+
+    @cached_property
+    def included(self) -> FlightArea:
+        """The area that must not be left."""
+        return FlightArea(self.boundary)
 
     def violation(self, place: Position) -> str | None:
         """Return the reason why a place must not be flown to; None if it may."""
         reason = None
-        if self.boundary is not None and not _covers(self.boundary, place):
+        if self.boundary and not self.included.contains(np.array([place]))[0]:
             reason = "outside the fence's inclusion area"
-        for obstacle in self.obstacles:
-            if -place[2] <= _top(obstacle) and obstacle.shape.plan_view.contains(_from_centre(place, obstacle)):
-                reason = f"inside {obstacle.name}, which the fence excludes"
+        for exclusion in self.exclusions:
+            if exclusion.view.contains(place[:2]):
+                reason = f"inside {exclusion.name}, which the fence excludes"
         return reason
 
     def crossings(self, start: Position, end: Position) -> list[str]:
         """Return the names of the parts that a straight line from ``start`` to ``end`` crosses."""
         crossed = []
-        if self.boundary is not None and start[:2] != end[:2] and _crosses(self.boundary, start, end):
-            crossed.append("the fence's inclusion area")
-        low = min(-start[2], -end[2])
-        for obstacle in self.obstacles:
-            here, there = (_from_centre(place, obstacle) for place in (start, end))
-            if low < _top(obstacle) and obstacle.shape.plan_view.is_crossed(here, there):
-                crossed.append(obstacle.name)
-        return crossed
+        if self.boundary and start[:2] != end[:2]:
+            import shapely
+
+            line = shapely.LineString([start[:2], end[:2]])
+            if self.included.within(line).length < line.length - 1e-6:
+                crossed.append("the fence's inclusion area")
+        return crossed + [e.name for e in self.exclusions if e.view.is_crossed(start[:2], end[:2])]
 
 
-def circle_corners(centre: Point, radius: float) -> Corners:
+def circle_corners(centre: Point, radius: float) -> Ring:
     """Return corners on a circle: the polygon lies inside it."""
     angles = np.arange(CIRCLE_CORNERS) * (2.0 * math.pi / CIRCLE_CORNERS)
     return tuple((centre[0] + radius * math.cos(a), centre[1] + radius * math.sin(a)) for a in angles)
 
 
-def encloses_area(polygon: Corners) -> bool:
+def encloses_area(polygon: Ring) -> bool:
     """Return whether a polygon does not cross itself, and has an area."""
     import shapely  # takes long to import, spent only where there is a fence
 
@@ -65,31 +95,58 @@ def encloses_area(polygon: Corners) -> bool:
     return bool(area.is_valid and area.area >= 1e-3)
 
 
-def excluded_circle(name: str, centre: Point, radius: float) -> Obstacle:
-    """Return the pole in place of an exclusion circle."""
-    return _standing(name, centre, Pole(radius, FENCE_HEIGHT))
+def boundary_of(areas: Sequence[Ring], *, common: bool) -> tuple[Ring, ...]:
+    """Return the rings about what inclusion areas (one or more) have in ``common``, else about all of them together.
+
+    The ring about a single area has its own corners. There are none where areas have nothing in common.
+    """
+    import shapely
+
+    whole = shapely.Polygon(areas[0])
+    for area in areas[1:]:
+        join = shapely.intersection if common else shapely.union
+        whole = join(whole, shapely.Polygon(area), grid_size=_SNAP)
+    parts = [part for part in shapely.get_parts(whole) if part.geom_type == "Polygon"]
+    rings = [_corners(ring) for part in parts for ring in (part.exterior, *part.interiors)]
+    return tuple(ring for ring in rings if encloses_area(ring))
 
 
-def excluded_polygon(name: str, polygon: Corners) -> list[Obstacle]:
-    """Return one wall for a rectangle; for any other polygon one along each edge, on its inner side."""
+def excluded_circle(name: str, centre: Point, radius: float) -> Exclusion:
+    """Return an exclusion circle, a pole in its place."""
+    import shapely
+
+    pole = _standing(name, centre, Pole(radius, FENCE_HEIGHT))
+    return Exclusion(name, PlanView(shapely.Point(centre), radius), (pole,))
+
+
+def excluded_polygon(name: str, polygon: Ring) -> Exclusion:
+    """Return an exclusion polygon: one wall for a rectangle; else one along each edge, on its inner side."""
+    import shapely
+
     if (rectangle := _rectangle(polygon)) is not None:
         centre, size, yaw = rectangle
-        return [_standing(name, centre, Wall((*size, FENCE_HEIGHT), yaw))]
-    return _walls_along(name, polygon, inside=True)
+        walls = [_standing(name, centre, Wall((*size, FENCE_HEIGHT), yaw))]
+    else:
+        walls = _walls_along(f"{name} edge {{}}", polygon, inside=True)
+    return Exclusion(name, PlanView(shapely.Polygon(polygon), 0.0), tuple(walls))
 
 
-def boundary_walls(polygon: Corners) -> list[Obstacle]:
-    """Return one wall along each edge of an area that must not be left, on its outer side."""
-    return _walls_along("boundary", polygon, inside=False)
+def boundary_walls(boundary: Sequence[Ring]) -> list[Obstacle]:
+    """Return one wall along each edge of a boundary, on the side that must not be entered."""
+    area, walls, first = FlightArea(tuple(boundary)), list[Obstacle](), 1
+    for ring in boundary:
+        walls += _walls_along("the fence (boundary edge {})", ring, inside=area.is_hole(ring), first=first)
+        first += len(ring)
+    return walls
 
 
-def _walls_along(name: str, polygon: Corners, *, inside: bool) -> list[Obstacle]:
-    """Return one wall along each edge of a polygon, on its inner or its outer side."""
+def _walls_along(name: str, polygon: Ring, *, inside: bool, first: int = 1) -> list[Obstacle]:
+    """Return one wall along each edge of a polygon, on its inner or its outer side, its number in its ``name``."""
     import shapely
 
     inward = 1.0 if shapely.LinearRing(polygon).is_ccw == inside else -1.0
     walls = []
-    for number, (a, b) in enumerate(pairwise((*polygon, polygon[0])), start=1):
+    for number, (a, b) in enumerate(pairwise((*polygon, polygon[0])), start=first):
         length = math.dist(a, b)
         if length < 1e-6:
             continue
@@ -97,7 +154,7 @@ def _walls_along(name: str, polygon: Corners, *, inside: bool) -> list[Obstacle]
         offset = inward * WALL_THICKNESS / 2.0
         centre = ((a[0] + b[0]) / 2.0 - along[1] * offset, (a[1] + b[1]) / 2.0 + along[0] * offset)
         wall = Wall((length, WALL_THICKNESS, FENCE_HEIGHT), math.atan2(along[1], along[0]))
-        walls.append(_standing(f"{name} edge {number}", centre, wall))
+        walls.append(_standing(name.format(number), centre, wall))
     return walls
 
 
@@ -106,7 +163,7 @@ def _standing(name: str, place: Point, shape: Shape) -> Obstacle:
     return Obstacle(name, (*place, -FENCE_HEIGHT / 2.0), shape)
 
 
-def _rectangle(polygon: Corners) -> tuple[Point, Point, float] | None:
+def _rectangle(polygon: Ring) -> tuple[Point, Point, float] | None:
     """Return centre, edge lengths and heading (rad) of a rectangle (within 5 cm); None for another polygon."""
     if len(polygon) != 4:
         return None
@@ -119,24 +176,6 @@ def _rectangle(polygon: Corners) -> tuple[Point, Point, float] | None:
     return (float(centre[0]), float(centre[1])), (x, y), heading
 
 
-def _covers(area: Corners, place: Position) -> bool:
-    """Return whether a place is above an area."""
-    import shapely  # takes long to import, spent only where there is a fence
-
-    return bool(shapely.Polygon(area).covers(shapely.Point(place[:2])))
-
-
-def _crosses(area: Corners, start: Position, end: Position) -> bool:
-    """Return whether the straight line from ``start`` to ``end`` leaves or enters an area."""
-    import shapely
-
-    return bool(shapely.LineString([start[:2], end[:2]]).crosses(shapely.Polygon(area)))
-
-
-def _from_centre(place: Position, obstacle: Obstacle) -> Point:
-    return place[0] - obstacle.position[0], place[1] - obstacle.position[1]
-
-
-def _top(obstacle: Obstacle) -> float:
-    """Return the altitude of its top (m)."""
-    return obstacle.shape.half_height - obstacle.position[2]
+def _corners(ring: "shapely.LinearRing") -> Ring:
+    """Return the corners of a ring, none of them twice."""
+    return tuple((north, east) for north, east in list(ring.coords)[:-1])

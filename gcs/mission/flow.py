@@ -105,7 +105,7 @@ def _notes(route: Route, flown: set[int], legs: list[Leg]) -> Iterator[str]:
 
 def _outside_fence(legs: list[Leg], fence: Fence) -> Iterator[str]:
     """Yield what is wrong with legs that end outside the boundary or inside an excluded area; each item once."""
-    if fence.boundary is not None and Fence(boundary=fence.boundary).violation((0.0, 0.0, 0.0)):
+    if Fence(fence.boundary).violation((0.0, 0.0, 0.0)):
         yield "geoFence: inclusion: home is outside of it"
     sources = set[str]()
     for leg in legs:

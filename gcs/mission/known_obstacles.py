@@ -11,8 +11,8 @@ from idc_controller.perception.standing_obstacles import MapObstacle
 
 def map_of(mission: Mission) -> list[MapObstacle]:
     """Return the obstacles that a mission marks as known, and the walls of its fence."""
-    fence = boundary_walls(mission.boundary) if mission.boundary is not None else ()
-    return [*known_obstacles(mission.obstacles), *(o._replace(is_body=False) for o in known_obstacles(fence))]
+    edges = (edge._replace(is_body=False) for edge in known_obstacles(boundary_walls(mission.boundary)))
+    return [*known_obstacles(mission.obstacles), *edges]
 
 
 def known_obstacles(obstacles: Iterable[Obstacle]) -> list[MapObstacle]:

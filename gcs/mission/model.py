@@ -11,6 +11,7 @@ from gcs.config.system import SystemConfig
 from gcs.config.validate import NotNegative, Positive, strict
 from gcs.mission.motion import AnyMotion
 from gcs.mission.route import Route
+from idc_controller.geometry.flight_area import FlightArea, Ring
 from idc_controller.geometry.shape import Shape
 
 Name = Annotated[str, Field(min_length=1, max_length=200)]
@@ -100,8 +101,9 @@ class Limits:
 class Mission:
     """A mission as it will be flown.
 
-    ``boundary``: corners (north, east) in m of the area that must not be left, None: no boundary. ``notes``: what
-    of the file is left out, capped or added, one line each. Positions are NED in m from home's ground point.
+    ``boundary``: rings about the area that must not be left, none: no boundary. ``excluded``: polygons that must not be
+    entered, besides their ``obstacles``. ``notes``: what of the file is left out, capped or added, one line each.
+    Positions are NED in m from home's ground point.
     """
 
     name: str
@@ -111,7 +113,13 @@ class Mission:
     reference: Lissajous | Route
     home: Home = DEFAULT_HOME
     obstacles: tuple[Obstacle, ...] = ()
-    boundary: tuple[tuple[float, float], ...] | None = None
+    boundary: tuple[Ring, ...] = ()
+    excluded: tuple[Ring, ...] = ()
     faults: tuple[Fault, ...] = ()
     limits: Limits | None = None
     notes: tuple[str, ...] = ()
+
+    @property
+    def area(self) -> FlightArea | None:
+        """Return the area that a fence leaves to the flight; None: there is no fence."""
+        return FlightArea(self.boundary, self.excluded) if self.boundary or self.excluded else None

@@ -15,7 +15,15 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Fie
 
 from gcs.config.text_file import why_unparsed
 from gcs.config.validate import Key, UnusableFile, dotted, shown, validated
-from gcs.mission.fence import Corners, Fence, circle_corners, encloses_area, excluded_circle, excluded_polygon
+from gcs.mission.fence import (
+    Exclusion,
+    Fence,
+    boundary_of,
+    circle_corners,
+    encloses_area,
+    excluded_circle,
+    excluded_polygon,
+)
 from gcs.mission.items import (
     ITEM_LIMIT,
     PARAM_NAMES,
@@ -26,7 +34,7 @@ from gcs.mission.items import (
     WaypointFile,
     nothing_to_fly,
 )
-from gcs.mission.model import Obstacle
+from idc_controller.geometry.flight_area import Ring
 
 CORNER_LIMIT = 500
 FIXED_WING = 1
@@ -173,12 +181,13 @@ def read_plan(path: Path, text: str) -> WaypointFile:
     if len(items) > ITEM_LIMIT:
         problems.append(problem(("mission", "items"), f"more than {ITEM_LIMIT} items"))
     fence, notes = Fence(), []
+    firmware = _FIRMWARES.get(plan.mission.firmwareType)
     try:
         home = _home(*plan.mission.plannedHomePosition)
     except ItemError as error:
         raise UnusableFile([*problems, problem(("mission", "plannedHomePosition"), str(error))]) from error
     try:
-        fence = _fence(plan.geoFence, home) if plan.geoFence else fence
+        fence = _fence(plan.geoFence, home, firmware) if plan.geoFence else fence
     except ItemError as error:
         problems.append(f"{path}: geoFence: {error}")
     if problems:
@@ -188,7 +197,6 @@ def read_plan(path: Path, text: str) -> WaypointFile:
     numbers = [item.number for item in items if item.number is not None]
     if len(set(numbers)) < len(numbers):
         notes.append("doJumpId: some appear twice: the items are flown in the order of the file")
-    firmware = _FIRMWARES.get(plan.mission.firmwareType)
     hover = plan.mission.hoverSpeed or 0.0
     speed = hover if hover > 0.0 and plan.mission.vehicleType != FIXED_WING else None
     return WaypointFile(home, tuple(items), fence, tuple(notes), firmware, speed)
@@ -231,29 +239,31 @@ def _item(where: str, raw: _SimpleItem) -> MissionItem:
     return MissionItem(where, raw.doJumpId, raw.frame, raw.command, tuple(raw.params), raw.autoContinue)
 
 
-def _fence(section: _GeoFence, home: FileHome) -> Fence:
-    obstacles: list[Obstacle] = []
-    boundaries: list[Corners] = []
+def _fence(section: _GeoFence, home: FileHome, firmware: Firmware | None) -> Fence:
+    """Return the fence: of several inclusion areas, ArduPilot's ``firmware`` takes what is common, any other all."""
+    included: list[Ring] = []
+    excluded: list[Exclusion] = []
     for number, circle in enumerate(section.circles, start=1):
         (centre,) = _places(f"circles[{number}].center", [circle.circle.center], home)
         if circle.inclusion:
-            boundaries.append(circle_corners(centre, circle.circle.radius))
+            included.append(circle_corners(centre, circle.circle.radius))
         else:
-            obstacles.append(excluded_circle(f"fence circle {number}", centre, circle.circle.radius))
+            excluded.append(excluded_circle(f"fence circle {number}", centre, circle.circle.radius))
     for number, polygon in enumerate(section.polygons, start=1):
         corners = _places(f"polygons[{number}].polygon", polygon.polygon, home)
         if not encloses_area(corners):
             raise ItemError(f"polygons[{number}].polygon", "has no area, or crosses itself")
         if polygon.inclusion:
-            boundaries.append(corners)
+            included.append(corners)
         else:
-            obstacles.extend(excluded_polygon(f"fence polygon {number}", corners))
-    if len(boundaries) > 1:
-        raise ItemError("inclusion", f"{len(boundaries)} areas: at most one boundary is supported")
-    return Fence(tuple(obstacles), boundaries[0] if boundaries else None)
+            excluded.append(excluded_polygon(f"fence polygon {number}", corners))
+    boundary = boundary_of(included, common=firmware == "ardupilot") if included else ()
+    if included and not boundary:
+        raise ItemError("inclusion", f"the {len(included)} areas have nothing in common")
+    return Fence(boundary, tuple(excluded))
 
 
-def _places(where: str, corners: list[Place], home: FileHome) -> Corners:
+def _places(where: str, corners: list[Place], home: FileHome) -> Ring:
     try:
         return tuple(home.north_east(*corner[:2]) for corner in corners)
     except ItemError as error:

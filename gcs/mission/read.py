@@ -71,8 +71,10 @@ def _from_waypoints(path: Path, text: str, system: SystemConfig, speed: float | 
         altitude = DEFAULT_HOME.altitude
         notes += (f"home: altitude not given: {altitude:g} m above mean sea level",)
     home = Home(file.home.latitude, file.home.longitude, altitude)
-    obstacles, boundary = file.fence.obstacles, file.fence.boundary
-    return Mission(path.stem, path, DEFAULT_SEED, system, route, home, obstacles, boundary, notes=notes)
+    fence = file.fence
+    return Mission(
+        path.stem, path, DEFAULT_SEED, system, route, home, fence.obstacles, fence.boundary, fence.excluded, notes=notes
+    )  # fmt: skip
 
 
 def _from_toml(path: Path, config: Path | None) -> Mission:

@@ -120,10 +120,11 @@ class RunData:
     def fence(self) -> tuple[ObstacleTrack, ...]:
         """The edges of the area that must not be left, as walls on its outer side."""
         boundary = (self.manifest.get("mission") or {}).get("boundary") or ()
-        walls = boundary_walls(tuple((north, east) for north, east in boundary)) if boundary else ()
+        if boundary and np.ndim(boundary[0]) == 1:  # of an older run, a single ring
+            boundary = [boundary]
         return tuple(
-            ObstacleTrack(f"the fence ({wall.name})", wall.shape, np.tile(wall.position, (len(self.time), 1)))
-            for wall in walls
+            ObstacleTrack(wall.name, wall.shape, np.tile(wall.position, (len(self.time), 1)))
+            for wall in boundary_walls(boundary)
         )
 
     @property

@@ -1,4 +1,4 @@
-"""Free space of the whole formation: its upright bounds against obstacles and altitudes.
+"""Free space of the whole formation: its upright bounds against obstacles, altitudes and the area of a fence.
 
 The bounds, a rounded rectangle in plan view, move with the payload's centre and are not turned. The obstacles, by their
 upright bounds (a box turned about the vertical, rounded), have closed forms of distance to them, or of a lower bound of
@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 from idc_controller.arrays import Array, Mask
 from idc_controller.errors import TrajectoryError
 from idc_controller.geometry import free_space_kernels as kernels
+from idc_controller.geometry.flight_area import FlightArea
 from idc_controller.geometry.formation import BoundingCylinder
 from idc_controller.geometry.obstacles import PredictedObstacle
 from idc_controller.geometry.shape import Shape
@@ -26,7 +27,7 @@ TOUCHING = 1e-6
 
 
 class FreeSpace:
-    """Clearance of the formation at places of the payload's centre, (P, 3) NED (m), between obstacles and altitudes.
+    """Clearance of the formation at places of the payload's centre, (P, 3) NED (m), in free space.
 
     Args:
         obstacles: (shape, centre (3,)) of each.
@@ -34,6 +35,7 @@ class FreeSpace:
         margin: m, the least distance to keep between formation and obstacles.
         lowest, highest: altitudes between which the payload's centre may be (m, up).
         growth: m, by how much each obstacle is to be taken larger; None: not at all.
+        area: that must not be left, its edges among the obstacles; None: everywhere.
 
     Raises:
         TrajectoryError: what is given has no meaning.
@@ -47,12 +49,14 @@ class FreeSpace:
         lowest: float,
         highest: float,
         growth: ArrayLike | None = None,
+        area: FlightArea | None = None,
     ) -> None:
         if not (math.isfinite(margin) and margin >= 0.0):
             raise TrajectoryError(f"the margin must be zero or more metres, not {margin}")
         if not lowest < highest:
             raise TrajectoryError(f"the highest altitude, {highest:g} m, is not above the lowest, {lowest:g} m")
         self.formation, self.margin, self.lowest, self.highest = formation, margin, lowest, highest
+        self.area = area
         self.centres = np.array([centre for _, centre in obstacles], dtype=float).reshape(len(obstacles), 3)
         self.growth = np.zeros(len(obstacles)) if growth is None else np.array(growth, dtype=float)
         if self.growth.shape != (len(obstacles),) or not np.isfinite(self.centres).all():
@@ -81,12 +85,16 @@ class FreeSpace:
         free = np.broadcast_to(altitude, (len(north), len(east), len(down))).copy()
         keep = self.margin + extra + self.growth - TOUCHING
         around = self.lateral_reach - self.growth + self.formation.radius + keep
+        if self.area is not None:
+            level = np.stack(np.meshgrid(north, east, indexing="ij"), axis=-1)
+            free &= self.area.contains(level.reshape(-1, 2)).reshape(len(north), len(east), 1)
         kernels.bar_lattice(free, north, east, down, keep, around, self.centres, self._bodies.sizes, self._row)
         return free
 
     def within_bounds(self, places: Array) -> Mask:
-        """Return whether the altitude is within its bounds at each place (P,)."""
-        return np.asarray((-places[:, 2] >= self.lowest - TOUCHING) & (-places[:, 2] <= self.highest + TOUCHING))
+        """Return whether the altitude is within its bounds, and the place in the area, at each place (P,)."""
+        within = (-places[:, 2] >= self.lowest - TOUCHING) & (-places[:, 2] <= self.highest + TOUCHING)
+        return np.asarray(within if self.area is None else within & self.area.contains(places))
 
     def are_free_segments(self, starts: Array, ends: Array) -> Mask:
         """Return whether the margin and the bounds are kept on the segments from ``starts`` to ``ends`` (E, 3)."""

@@ -2,12 +2,13 @@
 
 A shortest path on a grid chooses the side (over, left, right, between), from all there are; visibility then
 straightens it to few waypoints. The grid's edges are proven, not sampled: the distance to a convex body is convex
-along an edge, so ends that keep r = sqrt(margin^2 + (edge/2)^2) keep the margin in between.
+along an edge, so ends that keep r = sqrt(margin^2 + (edge/2)^2) keep the margin in between. A fence's edges are such
+bodies, so between ends in its area the area is not left.
 """
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +17,7 @@ from scipy.sparse.csgraph import dijkstra
 
 from idc_controller.arrays import Array
 from idc_controller.errors import TrajectoryError
+from idc_controller.geometry.flight_area import FlightArea
 from idc_controller.geometry.formation import BoundingCylinder
 from idc_controller.geometry.free_space import FreeSpace, first_conflict
 from idc_controller.geometry.shape import Shape
@@ -61,6 +63,7 @@ def find_detour(
     lowest: float = 0.5,
     highest: float = 15.0,
     growth: ArrayLike | None = None,
+    area: FlightArea | None = None,
     region: tuple[ArrayLike, ArrayLike] | None = None,
     names: Sequence[str] | None = None,
     settings: DetourSettings = DetourSettings(),
@@ -75,28 +78,34 @@ def find_detour(
         obstacles, growth: (shape, centre (3,)) and by how much each is taken larger (m); moving ones as they
             are, or will be, at one moment.
         lowest, highest: altitudes of the payload's centre (m, up).
-        region: two opposite corners (3,) of the box to search; None: one chosen about start, goal and obstacles.
+        area: that must not be left, its edges among the obstacles; None: everywhere.
+        region: two opposite corners (3,) of the box to search; None: one chosen about start, goal and obstacles,
+            and where there is no path in that, one as wide as the fence.
         names: the obstacles' names, for the reason.
 
     Raises:
         TrajectoryError: what is given has no meaning.
     """
     begin, end = point(start, "start"), point(goal, "goal")
-    space = FreeSpace(obstacles, formation, margin, lowest, highest, growth)
+    space = FreeSpace(obstacles, formation, margin, lowest, highest, growth, area)
     called = list(names) if names is not None else [f"{s.kind} {i}" for i, (s, _) in enumerate(obstacles, start=1)]
     if (reason := _refused(space, end, "goal", called)) is not None:
         return Detour(None, reason)
     if free_segments_from(space, begin, end[None])[0]:
         return Detour(np.array([begin, end]))
-    box = search_region(space, begin, end, settings) if region is None else _box(region, space)
+    boxes = [search_region(space, begin, end, settings) if region is None else _box(region, space)]
+    if region is None and area is not None:
+        whole = whole_region(space, begin, end, settings)
+        boxes += [whole] if not np.array_equal(whole, boxes[0]) else []
     spacing, fine = settings.spacing, settings.fine_spacing
-    coarser = max(1.0, (float(np.prod((box[1] - box[0]) / spacing + 1.0)) / settings.nodes_max) ** (1.0 / 3.0))
     reason = ""
-    for horizontal in (spacing, fine):
-        grid = _Grid(space, box, coarser * np.array([horizontal, horizontal, spacing]), begin, end)
-        nodes, reason = grid.path(settings.leave_within)
-        if nodes is not None:
-            return Detour(straightened(space, nodes, settings))
+    for box in boxes:
+        coarser = max(1.0, (float(np.prod((box[1] - box[0]) / spacing + 1.0)) / settings.nodes_max) ** (1.0 / 3.0))
+        for horizontal in (spacing, fine):
+            grid = _Grid(space, box, coarser * np.array([horizontal, horizontal, spacing]), begin, end)
+            nodes, reason = grid.path(settings.leave_within)
+            if nodes is not None:
+                return Detour(straightened(space, nodes, settings))
     if not space.is_free(begin[None])[0]:
         reason = (_refused(space, begin, "start", called) or reason) + ", and no path leads out of there"
     return Detour(None, reason)
@@ -107,6 +116,8 @@ def _refused(space: FreeSpace, place: Array, what: str, names: Sequence[str]) ->
     altitude = -place[2]
     if not space.lowest - 1e-6 <= altitude <= space.highest + 1e-6:
         return f"the {what}, {altitude:.2f} m high, is not within {space.lowest:g} to {space.highest:g} m"
+    if space.area is not None and not space.area.contains(place[None])[0]:
+        return f"the formation at the {what} would be outside the fence"
     if len(space.centres):
         clearance = space.clearance(place[None])[0]
         nearest = int(np.argmin(clearance))
@@ -145,6 +156,13 @@ def search_region(space: FreeSpace, start: Array, goal: Array, settings: DetourS
         tops = space.vertical_reach - space.centres[:, 2]
         top = max(top, float(tops.max()) + space.margin + space.formation.below + 1.0)
     return np.array([*low, -min(top, space.highest)]), np.array([*high, -space.lowest])
+
+
+def whole_region(space: FreeSpace, start: Array, goal: Array, settings: DetourSettings) -> Box:
+    """Return :func:`search_region`, but in a fence as wide as that: the way within it may lead farther round."""
+    if space.area is not None:
+        settings = replace(settings, region_max=math.inf)
+    return search_region(space, start, goal, settings)
 
 
 def _box(region: tuple[ArrayLike, ArrayLike], space: FreeSpace) -> Box:

@@ -19,10 +19,11 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from idc_controller.arrays import Array
+from idc_controller.geometry.flight_area import FlightArea
 from idc_controller.geometry.formation import BoundingCylinder
 from idc_controller.geometry.free_space import FreeSpace
 from idc_controller.geometry.shape import Shape
-from idc_controller.guidance.detour import search_region
+from idc_controller.guidance.detour import whole_region
 from idc_controller.guidance.settings import DetourSettings
 
 WIDEST = 2.0
@@ -70,6 +71,7 @@ def narrowest_gap(
     lowest: float,
     highest: float,
     growth: ArrayLike | None = None,
+    area: FlightArea | None = None,
     names: Sequence[str] | None = None,
     settings: DetourSettings = DetourSettings(),
 ) -> Gap | None:
@@ -81,11 +83,13 @@ def narrowest_gap(
     Args:
         obstacles, growth: (shape, centre (3,)) and by how much each is taken larger (m).
         lowest, highest: altitudes of the payload's centre (m, up).
+        area: that must not be left, its edges among the obstacles; None: everywhere.
         names: the obstacles' names, for the gap.
         settings: of the search for detours, whose region bounds the paths.
     """
     begin, end = np.asarray(start, dtype=float), np.asarray(goal, dtype=float)
-    bodies = _Bodies(obstacles, growth, FreeSpace(obstacles, formation, margin, lowest, highest), begin, end, settings)
+    space = FreeSpace(obstacles, formation, margin, lowest, highest, area=area)
+    bodies = _Bodies(obstacles, growth, space, begin, end, settings)
     if bodies.joins(WIDEST):
         return None
     low, high = -formation.radius + 1e-3, WIDEST
@@ -122,8 +126,10 @@ class _Bodies:
         half = np.array([shape.half_height for shape, _ in obstacles], dtype=float) + more
         self._top, self._bottom = half - centres[:, 2], -half - centres[:, 2]
         self._is_round = np.array([shape.round_axes == (1.0, 1.0, 1.0) for shape, _ in obstacles], dtype=bool)
-        low, high = search_region(space, start, goal, settings)
+        low, high = whole_region(space, start, goal, settings)
         self._region = shapely.box(*low[:2], *high[:2])
+        if space.area is not None:
+            self._region = space.area.within(self._region)
 
     def joins(self, clearance: float) -> bool:
         """Return whether a path from start to goal has this ``clearance`` (m)."""
@@ -173,7 +179,8 @@ class _Bodies:
                     line = shapely.shortest_line(core, self._cores[j])
                     whole = max(line.length, 1e-9)
                     middle = line.interpolate((self._radii[i] + distance / 2.0) / whole, normalized=True)
-                    found.append((sum(side.distance(middle) for side in sides), (i, j), middle, distance))
+                    if self._region.intersects(middle):  # else it leads outside an area
+                        found.append((sum(side.distance(middle) for side in sides), (i, j), middle, distance))
         best = min(found, key=lambda each: each[:2], default=None)
         if best is None or best[0] > width + 1.0:
             return None

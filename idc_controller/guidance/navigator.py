@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from idc_controller.arrays import Array
+from idc_controller.geometry.flight_area import FlightArea
 from idc_controller.geometry.formation import BoundingCylinder
 from idc_controller.geometry.free_space import TOUCHING, FreeSpace
 from idc_controller.geometry.obstacles import ObstacleSource, PredictedObstacle
@@ -22,6 +23,9 @@ from idc_controller.trajectory.flatness import PayloadTrajectory
 from idc_controller.trajectory.paths import Leg
 from idc_controller.trajectory.trajectory import Trajectory
 from idc_controller.trajectory.waypoints import WaypointTrajectory
+
+_WITHIN_FENCE = 10.0
+"""Times as far as else is looked ahead where a fence bars all of that."""
 
 
 class HoldUp:
@@ -92,15 +96,18 @@ class Navigator:
     """Chooses between mission and detour, and how the progress goes on where they meet."""
 
     def __init__(
-        self, parameters: SystemParameters, settings: NavigatorSettings, obstacles: ObstacleSource, stages: Array
+        self,
+        parameters: SystemParameters,
+        settings: NavigatorSettings,
+        obstacles: ObstacleSource,
+        stages: Array,
+        area: FlightArea | None = None,
     ) -> None:
-        """Args: the ``stages`` (K + 1,) (s) over which obstacles are predicted."""
-        self.formation = BoundingCylinder.of(parameters, settings.link_tilt)
-        self.settings, self.obstacles = settings, obstacles
-        at_rest = BoundingCylinder.of(parameters)
+        """Args: the ``stages`` (K + 1,) (s) over which obstacles are predicted; the ``area`` that must not be left."""
+        self.settings, self.obstacles, self._area = settings, obstacles, area
+        tilted, at_rest = BoundingCylinder.of(parameters, settings.link_tilt), BoundingCylinder.of(parameters)
         self.clearances = (
-            (self.formation, settings.margin + settings.spare), (self.formation, settings.margin),
-            (at_rest, settings.margin),
+            (tilted, settings.margin + settings.spare), (tilted, settings.margin), (at_rest, settings.margin),
         )  # fmt: skip
         """Formations and their clearances (m) on detours, in the order in which they are tried."""
         self._usable = len(self.clearances)
@@ -115,6 +122,11 @@ class Navigator:
         self._resume = 0.0
         self.detours = 0
         """Detours taken so far."""
+
+    @property
+    def formation(self) -> BoundingCylinder:
+        """Bounds of the formation on a detour."""
+        return self.clearances[0][0]
 
     def followed(self, mission: Trajectory) -> Trajectory:
         """Return the mission or the detour."""
@@ -194,16 +206,21 @@ class Navigator:
     ) -> tuple[Array, float] | _NoPath:
         """Return a detour with a clearance ``keep`` (m) of the ``formation``, or why there is none."""
         s = self.settings
-        ahead = progress + np.arange(0.0, s.look_ahead, s.sample)
-        path = mission.derivatives(ahead, 0)[0]
         bodies = [(o.shape, o.positions[0]) for o in obstacles]
         growth = [float(o.growth[0]) for o in obstacles]
         names = [o.name for o in obstacles]
-        highest = float(-path[:, 2].min()) + s.climb
-        space = FreeSpace(bodies, formation, keep, self.lowest, highest, growth=growth)
-        conflicts = np.asarray(np.any(space.clearance(path) < keep - TOUCHING, axis=1))
-        begin = int(np.argmax(conflicts)) if conflicts.any() else 0
-        free = np.flatnonzero(~conflicts[begin:]) + begin
+        for look_ahead in (s.look_ahead,) if self._area is None else (s.look_ahead, _WITHIN_FENCE * s.look_ahead):
+            ahead = progress + np.arange(0.0, look_ahead, s.sample)
+            path = mission.derivatives(ahead, 0)[0]
+            highest = float(-path[:, 2].min()) + s.climb
+            space = FreeSpace(bodies, formation, keep, self.lowest, highest, growth=growth, area=self._area)
+            conflicts = np.asarray(np.any(space.clearance(path) < keep - TOUCHING, axis=1))
+            if self._area is not None:
+                conflicts |= ~self._area.contains(path)
+            begin = int(np.argmax(conflicts)) if conflicts.any() else 0
+            free = np.flatnonzero(~conflicts[begin:]) + begin
+            if len(free):
+                break
         until = ahead[int(free[0])] if len(free) else ahead[-1]
         fixed = [
             i
@@ -224,10 +241,14 @@ class Navigator:
             if len(free)
             else [len(path) - 1]
         )
+        if self._area is not None and len(passed := mission.waypoints(ahead[goals[0]], ahead[goals[-1]])):
+            # From rest shortly before a waypoint the payload would lag behind the mission there, and cut its corner.
+            away = np.linalg.norm(path[goals[0] : goals[-1] + 1] - passed[0], axis=1)
+            goals = [goals[0] + int(np.argmin(away)), *goals]
         for goal in goals:
             detour = find_detour(
                 bodies, position, path[goal], formation, keep, lowest=self.lowest, highest=highest,
-                growth=growth, names=names, settings=s.detour,
+                growth=growth, area=self._area, names=names, settings=s.detour,
             )  # fmt: skip
             if detour.waypoints is not None:
                 return detour.waypoints, float(ahead[goal])
@@ -252,7 +273,7 @@ class Navigator:
         for bodies, growth in ((estimates, None), (covers, [float(o.growth[0]) for o in obstacles])):
             gap = narrowest_gap(
                 bodies, position, goal, self.formation, keep, lowest=self.lowest, highest=highest, growth=growth,
-                names=[o.name for o in obstacles], settings=self.settings.detour,
+                area=self._area, names=[o.name for o in obstacles], settings=self.settings.detour,
             )  # fmt: skip
             # Where estimates leave a way, what they do not know closes it.
             if gap is not None and (gap.clearance < keep or growth is not None):

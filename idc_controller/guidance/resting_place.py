@@ -14,6 +14,7 @@ import numpy as np
 from scipy.interpolate import BPoly
 
 from idc_controller.arrays import Array, Indices
+from idc_controller.geometry.flight_area import FlightArea
 from idc_controller.geometry.obstacles import Bodies, ObstacleSource, PredictedObstacle, Region
 from idc_controller.geometry.shape import Shape
 from idc_controller.guidance.resting_place_kernels import least_distances
@@ -40,8 +41,10 @@ class RestingPlace:
         obstacles: ObstacleSource,
         settings: RestingPlaceSettings = RestingPlaceSettings(),
         braking: BrakingSettings = BrakingSettings(),
+        area: FlightArea | None = None,
     ) -> None:
-        self.settings, self._obstacles = settings, obstacles
+        """``area``: that must not be left, its edges among the ``obstacles``; None: everywhere."""
+        self.settings, self._obstacles, self._area = settings, obstacles, area
         self._braking = braking
         beside = np.hypot(parameters.p[:, 0], parameters.p[:, 1]) + parameters.disc_radius
         self._radius = float(max(beside.max(), parameters.payload.horizontal_reach))
@@ -88,12 +91,14 @@ class RestingPlace:
         """Return the least distance (m) of the formation's upright hull on its path to rest, and down from there.
 
         For the choices of the indices ``which`` (C,); those beyond the clearance that is asked for are not
-        distinguished.
+        distinguished. Minus infinity for those that end outside the area.
         """
         durations = self._choices.shares[which] * usual_duration
         control = control_points(state[None], durations, self._choices.asides[which])
         limit = self._radius + self.settings.clearance + _ROUNDING
         least = near.least_distances(control, durations, self._elapsed, self._axis, limit)
+        if self._area is not None:
+            least[~self._area.contains(control[:, -1])] = -math.inf
         return least - self._radius
 
 

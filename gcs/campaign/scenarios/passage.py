@@ -11,6 +11,7 @@ from gcs.config import SystemConfig
 from gcs.mission.fence import boundary_walls
 from gcs.mission.model import Mission, Obstacle
 from gcs.mission.route import FlyTo, Land, Route, TakeOff
+from idc_controller.geometry.flight_area import FlightArea
 from idc_controller.geometry.formation import BoundingCylinder, Formation
 from idc_controller.guidance.detour import find_detour
 from idc_controller.guidance.narrowest_gap import Gap, narrowest_gap
@@ -54,16 +55,18 @@ class Passages:
         angles = np.radians(np.arange(0.0, 180.0, 1.0))
         self._half_width = float(np.ptp(hull @ np.array([np.cos(angles), np.sin(angles)]), axis=0).min()) / 2.0
 
-    def between(self, places: Sequence[Place], obstacles: Sequence[Obstacle]) -> Passage:
-        """Return the passage from each of ``places`` (NED, m) to the next, past the ``obstacles`` that stand."""
+    def between(
+        self, places: Sequence[Place], obstacles: Sequence[Obstacle], area: FlightArea | None = None
+    ) -> Passage:
+        """Return the passage from each of ``places`` (NED, m) to the next, in ``area``, past what stands."""
         bodies = [(o.shape, o.position) for o in obstacles if o.motion is None]
         names = [o.name for o in obstacles if o.motion is None]
         highest = max(-down for _, _, down in places) + self._climb
         narrowest: Gap | None = None
         for begin, end in pairwise(places):
             gap = narrowest_gap(
-                bodies, begin, end, self.formation, self._keep, lowest=self._lowest, highest=highest, names=names,
-                settings=self._system.guidance.detour,
+                bodies, begin, end, self.formation, self._keep, lowest=self._lowest, highest=highest, area=area,
+                names=names, settings=self._system.guidance.detour,
             )  # fmt: skip
             if gap is not None and (narrowest is None or gap.clearance < narrowest.clearance):
                 narrowest = gap
@@ -114,5 +117,5 @@ def passage_of(mission: Mission) -> Passage | None:
     places = places_of(mission)
     if len(places) < 2:
         return None
-    fence = boundary_walls(mission.boundary) if mission.boundary is not None else ()
-    return Passages(mission.system).between(places, (*mission.obstacles, *fence))
+    obstacles = (*mission.obstacles, *boundary_walls(mission.boundary))
+    return Passages(mission.system).between(places, obstacles, mission.area)
