@@ -123,12 +123,12 @@ class Avoidance:
         return trajectory
 
 
-def avoidance(obstacles, n=4, margin=0.5, speed=1.5, by_sight=None, **settings):
+def avoidance(obstacles, n=4, margin=0.5, speed=1.5, by_sight=None, area=None, **settings):
     parameters, scene = system(n), Scene(obstacles)
     safety = AvoidanceFilter(parameters, PlannerSettings(margin=margin, **settings), scene)
     stages = safety.settings.chain.times
     navigation = NavigatorSettings(limits=Limits(speed, 1.5, 2.0, 6.0), margin=margin)
-    navigator = Navigator(parameters, navigation, scene, stages)
+    navigator = Navigator(parameters, navigation, scene, stages, area)
     guidance = AdaptiveGuidance(navigator, ProgressSettings(), stages, parameters.m_0 * parameters.g, by_sight)
     return Avoidance(safety, guidance)
 

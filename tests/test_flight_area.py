@@ -3,16 +3,19 @@
 import math
 from itertools import pairwise
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import shapely
+from avoidance_scene import avoidance, fly
 from mission_files import RETURN, TAKE_OFF, A, plan, polygon, read, refusal, row
 from paper_system import system
 from standing_obstacles import StandingObstacles
 
 from gcs.config import read_system
 from gcs.mission.fence import Exclusion, boundary_of, boundary_walls, excluded_polygon
+from gcs.record.run_data import RunData
 from idc_controller.geometry.flight_area import FlightArea
 from idc_controller.geometry.free_space import BoundingCylinder
 from idc_controller.guidance.detour import find_detour
@@ -20,7 +23,7 @@ from idc_controller.guidance.narrowest_gap import narrowest_gap
 from idc_controller.guidance.navigator import Navigator
 from idc_controller.guidance.resting_place import RestingPlace
 from idc_controller.guidance.settings import NavigatorSettings
-from idc_controller.trajectory.paths import Leg
+from idc_controller.trajectory.paths import Circle, Leg
 from idc_controller.trajectory.settings import Limits
 from idc_controller.trajectory.stop_plan import Braking
 from idc_controller.trajectory.trajectory import RestTrajectory
@@ -195,3 +198,24 @@ def test_team_without_set_points_comes_to_rest_inside_the_area(beyond):
     obstacles, area = fence((((-9.0, -9.0), (-9.0, 9.0), (edge, 9.0), (edge, -9.0)),))
     chosen = RestingPlace(read_system().parameters(), StandingObstacles(obstacles), area=area)(0.0, state)
     assert area.contains(chosen.path(state)(chosen.duration(state[1]))[None])[0]
+
+
+@pytest.mark.parametrize("edge", [-4.0, -1.5], ids=["along", "over"])
+def test_circle_along_and_over_an_edge_is_flown_inside(edge):
+    obstacles, area = fence((((edge, -5.0), (edge, 17.0), (12.0, 17.0), (12.0, -5.0)),))
+    walls = [(name, shape, lambda t, place=place: np.tile(place, (len(t), 1)), 0.0) for name, shape, place in obstacles]
+    legs = [Leg(np.array([2.0, 3.0, -5.0]), 1.5), Circle([0.0, 6.0, -5.0], 3.0, 1.0, 1.0), Leg([3.0, 0.0, -5.0], 1.5)]
+    mission = WaypointTrajectory([3.0, 0.0, -5.0], legs, Limits(1.5, 1.5, 2.0, 6.0))
+    flown = fly(avoidance(walls, margin=MARGIN, area=area), mission, 90.0)
+    assert math.isfinite(flown.ends_at), flown.avoidance.guidance.navigator.hold_up.reason
+    assert area.contains(flown.path[0]).all()
+    assert min(flown.clearance(every=10).values()) > 0.4
+    assert flown.path[0, -1] == pytest.approx([3.0, 0.0, -5.0], abs=0.1)
+
+
+@pytest.mark.parametrize("boundary", [[list(map(list, SQUARE))], list(map(list, SQUARE))], ids=["rings", "older run"])
+def test_fence_of_a_run_has_the_walls_of_every_ring(boundary):
+    run = SimpleNamespace(manifest={"mission": {"boundary": boundary}}, time=np.zeros(3))
+    tracks = RunData.fence.func(run)
+    assert [track.name for track in tracks] == [wall.name for wall in boundary_walls((SQUARE,))]
+    assert all(track.position.shape == (3, 3) for track in tracks)
