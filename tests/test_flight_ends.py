@@ -2,7 +2,9 @@
 
 import contextlib
 import json
+import math
 import os
+import re
 import signal
 import socket
 
@@ -180,6 +182,24 @@ class Cut(FaultInjector):
         return () if self.telemetry and vehicle == self.vehicle and now >= self.at else leaving
 
 
+class Radio(FaultInjector):
+    """A link of a vehicle to the ground that passes ``rate`` bytes/s, from the beginning."""
+
+    def __init__(self, vehicle, rate):
+        super().__init__()
+        self.vehicle, self.rate, self.free_at, self.waiting = vehicle, rate, 0.0, []
+
+    def from_vehicle(self, vehicle, leaving, now):
+        if vehicle != self.vehicle:
+            return leaving
+        for datagram, address in leaving:
+            self.free_at = max(self.free_at, now) + len(datagram) / self.rate
+            self.waiting.append((self.free_at, datagram, address))
+        passed = [(datagram, address) for at, datagram, address in self.waiting if at <= now]
+        self.waiting = [each for each in self.waiting if each[0] > now]
+        return passed
+
+
 def named(system_id):
     """The address of a vehicle in a message."""
     host, port = address_of(system_id)
@@ -202,6 +222,14 @@ def test_vehicle_at_the_address_of_another_is_refused(tmp_path):
             f"2 of 4 vehicles connected: vehicle 1 does not answer at {named(2)}: vehicle 2 does; "
             f"vehicle 2 does not answer at {named(1)}: vehicle 1 does"
         )
+
+
+def test_link_that_is_too_slow_is_measured_on_the_ground(tmp_path):
+    with InProcessFlight(short_figure(tmp_path), tmp_path / "run", faults=Radio(2, 2500.0)) as flight:
+        flight.fly()
+    assert flight.flight.phase.value == "ended" and math.isnan(flight.flight.takeoff_time)
+    late = r"link latency to vehicle 2 is \d+ ms \(limit 110 ms\): its link carries (.*) kB/s, less than .* needs"
+    assert float(re.fullmatch(late, flight.flight.reason)[1]) == pytest.approx(2.5, rel=0.1)
 
 
 def test_vehicle_that_refuses_to_arm_disarms_all(tmp_path):

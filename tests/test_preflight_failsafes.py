@@ -14,6 +14,7 @@ from gcs.flight.failsafe_state import FailsafeState
 from gcs.flight.phase import Phase
 from gcs.flight.preflight import Preflight
 from gcs.mavlink import px4
+from gcs.mavlink.link_queue import LinkQueue
 from idc_controller.estimation.measurements import PAYLOAD, Position
 from idc_controller.geometry.pole import Pole
 from idc_controller.perception.standing_obstacles import MapObstacle, StandingObstacles
@@ -43,7 +44,8 @@ def checked(time, armed=(), failing=(), places=PLACES, silent=(), begin=BEGIN, p
         )
         for i in range(len(places))
     ]
-    links = [SimpleNamespace(system_id=i + 1, status=status) for i, status in enumerate(statuses)]
+    clock = SimpleNamespace(queue=LinkQueue(1.0), round_trip_excess=0.0, delay=0.0, round_trip_max=0.0)
+    links = [SimpleNamespace(system_id=i + 1, status=status, clock=clock) for i, status in enumerate(statuses)]
     team = SimpleNamespace(links=links, parameters=PARAMETERS)
     preflight = Preflight(team)
     preflight.check_start = begin

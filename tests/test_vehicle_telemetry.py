@@ -34,6 +34,7 @@ def test_ports_of_clients_get_all_streams_from_the_start_and_for_ever_without_an
     needed = {
         "HEARTBEAT", "SYS_STATUS", "EXTENDED_SYS_STATE", "ATTITUDE", "ATTITUDE_QUATERNION", "LOCAL_POSITION_NED",
         "GLOBAL_POSITION_INT", "GPS_RAW_INT", "HOME_POSITION", "BATTERY_STATUS", "VFR_HUD", "ATTITUDE_TARGET",
+        "VIBRATION",
     }  # fmt: skip
     for address in (GROUND, STRANGER):
         assert {m.get_type() for m in bench.inbox[address] if m.get_srcSystem() == 1} == needed

@@ -97,6 +97,16 @@ def _misplaced(system: System, moment: Moment) -> Trigger | None:
     return None
 
 
+def _link_unfit(system: System, moment: Moment) -> Trigger | None:
+    if not system.preflight.is_settled(moment.time) or (late := _link_latency_exceeded(system, moment)) is None:
+        return None
+    link = system.team.links[late.vehicles[0]]
+    if not system.preflight.queues(link):
+        return late
+    rate = link.clock.queue.fit().rate * 1e-3
+    return Trigger(f"{late.reason}: its link carries {rate:.1f} kB/s, less than its telemetry needs", late.vehicles)
+
+
 def _obstructed(system: System, moment: Moment) -> Trigger | None:
     preflight = system.preflight
     if not (preflight.has_positions and preflight.is_settled(moment.time)):
@@ -315,6 +325,8 @@ class Failsafe(AlarmCode):
         "a vehicle or the payload unit has sent no position within {connect_timeout:g} s")
     MISPLACED = (Check.PREFLIGHT, _misplaced, Reaction.REFUSE, "place it, or check its position",
         "a vehicle is more than {placement_tolerance} m from its place over the payload")
+    LINK_UNFIT = (Check.PREFLIGHT, _link_unfit, Reaction.REFUSE, "reduce its message rates, or use a faster link",
+        "before arming, datagrams of one vehicle usually take more than {latency_limit} s one way")
     OBSTRUCTED = (Check.PREFLIGHT, _obstructed, Reaction.REFUSE, "clear the pad",
         "an obstacle of the map, or one that the range sensors see, reaches into the formation on the pad")
     ARMING_FAILED = (Check.COMMAND, _sequence_failed(Phase.ARM), Reaction.DISARM, "act on its STATUSTEXT",

@@ -12,7 +12,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gcs.config import SystemConfig
 from gcs.mission.known_obstacles import map_of
 from gcs.mission.model import Limits, Mission
 from gcs.mission.route import Circle, HoldForever, Land, Leg, Position, Route, TakeOff
@@ -82,7 +81,8 @@ class _Place(NamedTuple):
 class _Surroundings:
     """What stands about the formation."""
 
-    def __init__(self, config: SystemConfig, standing: Sequence[PredictedObstacle]) -> None:
+    def __init__(self, mission: Mission, standing: Sequence[PredictedObstacle]) -> None:
+        config, self.area = mission.system, mission.area
         parameters, settings = config.parameters(), config.guidance.navigator
         self.margin = config.avoidance.margin
         self.formation = Formation(parameters)
@@ -99,7 +99,7 @@ class _Surroundings:
 
     def space(self, formation: BoundingCylinder, margin: float) -> FreeSpace:
         """Return the free space of a ``formation`` at any altitude."""
-        return FreeSpace(self.bodies, formation, margin, -_HIGHEST, _HIGHEST)
+        return FreeSpace(self.bodies, formation, margin, -_HIGHEST, _HIGHEST, area=self.area)
 
     def obstruction(self, place: Array) -> Obstruction | None:
         """Return what is nearest to the formation at rest at ``place`` (3,), if nearer than the margin."""
@@ -124,7 +124,7 @@ class _Check:
 
     def __init__(self, mission: Mission, standing: Sequence[PredictedObstacle], found: Feasibility) -> None:
         self._mission, self._found = mission, found
-        self._surroundings = _Surroundings(mission.system, standing)
+        self._surroundings = _Surroundings(mission, standing)
         self._resting = -mission.system.resting_altitude
 
     def run(self) -> None:
@@ -194,8 +194,8 @@ class _Check:
         )  # fmt: skip
         for formation, keep in tried:
             detour = find_detour(
-                around.bodies, start, goal, formation, keep, lowest=lowest, highest=highest, names=around.names,
-                settings=system.guidance.detour,
+                around.bodies, start, goal, formation, keep, lowest=lowest, highest=highest, area=around.area,
+                names=around.names, settings=system.guidance.detour,
             )  # fmt: skip
             if detour.waypoints is not None:
                 self._found.ways.append(Way(there.source, obstacle, straight, detour.length))

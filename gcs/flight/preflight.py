@@ -20,6 +20,10 @@ NEEDED_PARAMETERS = (
     px4.PARAM_SETPOINT_LOSS,
     px4.PARAM_LAND_DELAY,
 )
+_QUEUE_WAIT = 0.02
+"""s for which datagrams usually wait, at least, on a link that is measured."""
+_MEASURED = 15
+"""Datagrams by which its rate is measured."""
 
 
 class Preflight:
@@ -67,8 +71,17 @@ class Preflight:
             del samples[: -self._settings.takeoff_landing.position_samples]
 
     def is_settled(self, time: float) -> bool:
-        """Return whether telemetry has been averaged for long enough at team ``time`` (s)."""
-        return time - self.check_start >= self._settings.takeoff_landing.settle_time
+        """Return whether telemetry has been averaged, and links measured, for long enough at team ``time`` (s)."""
+        checked = time - self.check_start
+        if not checked >= self._settings.takeoff_landing.settle_time:
+            return False
+        few = any(self.queues(link) and len(link.clock.queue) < _MEASURED for link in self._team.links)
+        return not few or checked > self._settings.failsafe.connect_timeout
+
+    def queues(self, link: VehicleLink) -> bool:
+        """Return whether datagrams of a vehicle wait for each other, as on a link that hardly carries them."""
+        # A clock that drifts delays stamps, too, but no round trip.
+        return min(link.clock.queue.wait, link.clock.round_trip_excess) > _QUEUE_WAIT
 
     @property
     def has_positions(self) -> bool:

@@ -57,6 +57,7 @@ NAMED_PARTS: dict[str, tuple[str, ...]] = {
     "all_telemetry_lost": (LINK,),
     "telemetry_lost": (LINK,),
     "link_latency_exceeded": (LINK,),
+    "link_unfit": (LINK,),
     "offboard_left": (LINK,),
     "telemetry_incomplete": (NAVIGATION,),
     "obstacle_sensing_lost": (RANGE_SENSOR,),
