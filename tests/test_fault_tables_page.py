@@ -25,7 +25,7 @@ from gcs.config import UnusableFile, read_system
 from gcs.errors import GcsError, UnusableInput
 from gcs.mission.model import Mission
 from gcs.mission.read import read_mission
-from idc_controller.geometry.formation import BoundingCylinder
+from idc_controller.geometry.bounding_cylinder import BoundingCylinder
 from idc_controller.geometry.free_space import FreeSpace
 
 ROOT = Path(__file__).parents[1]

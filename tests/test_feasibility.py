@@ -1,5 +1,7 @@
 """Feasibility of a mission: places that are not free, legs without a way, and what is led round."""
 
+import re
+
 import pytest
 
 from gcs.app.preflight import preflight
@@ -78,18 +80,18 @@ def test_missing_metres_are_those_for_the_margin(tmp_path):
 
 def test_obstacle_that_is_not_on_the_map_is_not_looked_at(tmp_path):
     found = checked(tmp_path, pole(0.2, 0.1, known=False) + pole(4.0, 0.0, known=False).replace("mast", "mast 2"))
-    assert (found.ways, found.notes) == ([], [])
+    assert (found.ways, found.notes) == ((), ())
 
 
 def test_what_is_led_round_is_a_note_with_the_length_of_the_way(tmp_path):
     (way,) = checked(tmp_path, pole(4.0, 0.5)).ways
-    assert (way.source, way.obstacle) == ("point 2", "mast")
-    assert 8.05 < way.length < 9.0 and way.straight == pytest.approx(8.0, abs=0.01)
-    assert str(way).startswith("point 2: mast is in the way: the safety filter or a detour leads round it, ")
+    led = "point 2: mast is in the way: the safety filter or a detour leads round it, (.*) m in place of 8.0 m"
+    assert 8.05 < float(re.fullmatch(led, way)[1]) < 9.0
 
 
 def test_way_back_is_looked_at_too(tmp_path):
-    assert [way.source for way in checked(tmp_path, pole(4.0, 0.5), back="true").ways] == ["point 2", "end of mission"]
+    ways = checked(tmp_path, pole(4.0, 0.5), back="true").ways
+    assert [way.split(":")[0] for way in ways] == ["point 2", "end of mission"]
 
 
 @pytest.mark.parametrize(("gap", "passes"), [(2.6, True), (1.2, False)])
@@ -98,7 +100,7 @@ def test_gap_is_passed_where_the_formation_fits(tmp_path, gap, passes):
     middle = gap / 2.0 + side / 2.0
     walls = wall(4, middle, 90, side) + wall(4, -middle, 90, side)
     if passes:
-        assert checked(tmp_path, walls).problems == []
+        assert checked(tmp_path, walls).notes == ()
     else:
         with pytest.raises(UnusableInput, match="there is no way from the pad to the waypoint"):
             checked(tmp_path, walls)
@@ -112,4 +114,4 @@ def test_near_waypoint_that_may_be_missed_is_a_note(tmp_path):
 
 def test_curve_past_an_obstacle_is_a_note(tmp_path):
     found = preflight(read_mission("missions/figure_eight_spheres.toml"))
-    assert found.notes == ["the curve: static is in the way: the safety filter or a detour leads round it"]
+    assert found.notes == ("the curve: static is in the way: the safety filter or a detour leads round it",)

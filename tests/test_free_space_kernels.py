@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.ndimage import label
 
+from idc_controller.geometry.bounding_cylinder import BoundingCylinder
 from idc_controller.geometry.box import Box, Wall
 from idc_controller.geometry.capsule import Capsule
-from idc_controller.geometry.formation import BoundingCylinder
 from idc_controller.geometry.free_space import TOUCHING, FreeSpace
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere

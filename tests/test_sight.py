@@ -7,7 +7,7 @@ import pytest
 from avoidance_scene import STEP, avoidance, estimate_at, straight
 from paper_system import system
 
-from idc_controller.geometry.formation import BoundingCylinder
+from idc_controller.geometry.bounding_cylinder import BoundingCylinder
 from idc_controller.guidance.settings import SightSettings
 from idc_controller.guidance.sight import SensorView, SpeedBySight
 from idc_controller.perception.placed_scan import PlacedScan

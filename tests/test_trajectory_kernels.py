@@ -7,7 +7,8 @@ from scipy.interpolate import BSpline, PPoly
 from idc_controller.safety.safe_trajectory import Piece, SafeTrajectory
 from idc_controller.safety.settings import PlannerSettings
 from idc_controller.trajectory import trajectory_kernels as kernels
-from idc_controller.trajectory.lissajous import LissajousCurve, LissajousTrajectory
+from idc_controller.trajectory.lissajous import LissajousTrajectory
+from idc_controller.trajectory.lissajous_curve import LissajousCurve
 from idc_controller.trajectory.scaled import ScaledReference
 from idc_controller.trajectory.settings import Limits
 from idc_controller.trajectory.spline import DEGREE, SUPPORT, evaluate

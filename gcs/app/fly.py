@@ -27,10 +27,10 @@ from gcs.flight.alarms import AlarmLog
 from gcs.flight.compute_times import ComputeTimes
 from gcs.flight.condition import Trigger
 from gcs.flight.control_loop import ControlLoop
+from gcs.flight.curve_limits import check_curve
 from gcs.flight.failsafe import Failsafe
 from gcs.flight.flight import Flight
 from gcs.flight.ground_station import GroundStation, Recorder
-from gcs.flight.mission_trajectory import check_curve
 from gcs.flight.team import Team
 from gcs.mavlink.address import Address, ConnectionUrl
 from gcs.mavlink.vehicle_link import VehicleLink

@@ -1,15 +1,31 @@
 """Preflight check of a mission, the same for ``gcs check`` and ``gcs fly``: can it be flown as it is written?"""
 
+from dataclasses import dataclass
+
 from gcs.config.validate import UnusableFile
-from gcs.flight.feasibility import Feasibility, feasibility
-from gcs.flight.mission_trajectory import check_curve
+from gcs.flight.curve_limits import check_curve
 from gcs.mission.model import Mission
+from gcs.mission.route_clearance import is_clear, standing_obstacles
 
 
-def preflight(mission: Mission) -> Feasibility:
+@dataclass(frozen=True)
+class Preflight:
+    """What there is to say of a mission that can be flown."""
+
+    ways: tuple[str, ...] = ()
+    """Legs that lead round what is on the map, with the length of the way."""
+    notes: tuple[str, ...] = ()
+
+
+def preflight(mission: Mission) -> Preflight:
     """Return what is in the way of ``mission``. Raises :class:`UnusableInput` if it cannot be flown."""
     check_curve(mission)
-    found = feasibility(mission)
+    standing = standing_obstacles(mission)
+    if is_clear(mission, standing):
+        return Preflight()
+    from gcs.flight.feasibility import feasibility  # takes long to import, spent only where something is near
+
+    found = feasibility(mission, standing)
     if found.problems:
         raise UnusableFile([f"{mission.path}: {problem}" for problem in found.problems])
-    return found
+    return Preflight(tuple(map(str, found.ways)), tuple(found.notes))

@@ -5,30 +5,29 @@ map, and faults. What the safety filter or a detour leads round is a note; a pla
 leg without any way, are problems.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from gcs.mission.known_obstacles import map_of
-from gcs.mission.model import Limits, Mission
+from gcs.mission.model import Limits, Mission, Obstacle
 from gcs.mission.route import Circle, HoldForever, Land, Leg, Position, Route, TakeOff
+from gcs.mission.route_clearance import TRIED_LEGS, circle_places, curve_places, free_space, keeps_margin
 from idc_controller.arrays import Array
-from idc_controller.geometry.formation import BoundingCylinder, Formation
+from idc_controller.geometry.bounding_cylinder import BoundingCylinder
 from idc_controller.geometry.free_space import FreeSpace
-from idc_controller.geometry.obstacles import PredictedObstacle
-from idc_controller.guidance.detour import find_detour
-from idc_controller.safety.obstruction import Obstruction
-from idc_controller.safety.separation import PredictedObstacles, separations
 
-TRIED_LEGS = 2000
-"""So many legs are looked at: a mission of more repeats itself."""
+if TYPE_CHECKING:
+    from idc_controller.geometry.obstacles import PredictedObstacle, Region
+    from idc_controller.parameters import SystemParameters
+    from idc_controller.safety.obstruction import Obstruction
+
 _SPACING = 0.1
 """m between places on a curve that are looked at."""
-_HIGHEST = 1e5
-"""m, above all that is flown."""
 _SHORT = 0.3
 """m of the margin that a plan may lack where there is no other way: what lacks more is never flown."""
 
@@ -61,12 +60,10 @@ class Feasibility:
     problems: list[str] = field(default_factory=list)
 
 
-def feasibility(mission: Mission) -> Feasibility:
-    """Return whether ``mission`` can be flown, as far as that is known before the flight."""
+def feasibility(mission: Mission, standing: Sequence[Obstacle]) -> Feasibility:
+    """Return whether ``mission`` can be flown past what is ``standing``, as far as that is known before the flight."""
     found = Feasibility()
-    standing = [PredictedObstacle(o.name, o.shape, o.centre[None], np.zeros(1)) for o in map_of(mission) if not o.moves]
-    if standing:
-        _Check(mission, standing, found).run()
+    _Check(mission, standing, found).run()
     return found
 
 
@@ -79,50 +76,70 @@ class _Place(NamedTuple):
 
 
 class _Surroundings:
-    """What stands about the formation."""
+    """What stands about the formation. Compiled code and solvers are loaded only where something is near."""
 
-    def __init__(self, mission: Mission, standing: Sequence[PredictedObstacle]) -> None:
-        config, self.area = mission.system, mission.area
-        parameters, settings = config.parameters(), config.guidance.navigator
-        self.margin = config.avoidance.margin
-        self.formation = Formation(parameters)
-        self.at_rest = BoundingCylinder.of(parameters)
-        self.moving = BoundingCylinder.of(parameters, settings.link_tilt)
-        hull = self.formation.hull_points(np.zeros((1, 3)))[0, :, :2]
-        headings = np.radians(np.arange(0.0, 180.0, 1.0))
-        width = float(np.ptp(hull @ np.array([np.cos(headings), np.sin(headings)]), axis=0).min())
-        self.narrow = BoundingCylinder(width / 2.0, self.at_rest.above, self.at_rest.below)
-        """The formation at its narrowest, whichever way it is passed by."""
-        self.predicted = PredictedObstacles(standing)
-        self.bodies = [(o.shape, o.positions[0]) for o in standing]
-        self.names = [o.name for o in standing]
+    def __init__(self, mission: Mission, standing: Sequence[Obstacle]) -> None:
+        self._mission, self._standing = mission, standing
+        self._space = free_space(mission, standing)
+        self.margin = self._space.margin
 
-    def space(self, formation: BoundingCylinder, margin: float) -> FreeSpace:
-        """Return the free space of a ``formation`` at any altitude."""
-        return FreeSpace(self.bodies, formation, margin, -_HIGHEST, _HIGHEST, area=self.area)
+    def predict(self, times: Array, region: Region | None = None) -> list[PredictedObstacle]:
+        """Return all that stands, as an :class:`ObstacleSource` does."""
+        from idc_controller.geometry.obstacles import PredictedObstacle
+
+        still = np.zeros(len(times))
+        return [PredictedObstacle(o.name, o.shape, np.tile(o.position, (len(times), 1)), still) for o in self._standing]
 
     def obstruction(self, place: Array) -> Obstruction | None:
         """Return what is nearest to the formation at rest at ``place`` (3,), if nearer than the margin."""
-        if (self.space(self.at_rest, self.margin).clearance(place[None]) >= self.margin).all():
+        if not self.in_the_way(place[None]):
             return None
-        near = separations(self.formation, place[None], np.zeros((1, 3)), self.predicted, self.margin)
-        found = [Obstruction(each.obstacle.name, float(each.distance[0])) for each in near]
-        return min((each for each in found if each.distance < self.margin), key=lambda o: o.distance, default=None)
+        from idc_controller.geometry.formation import Formation
+        from idc_controller.safety.obstruction import obstruction
+
+        return obstruction(Formation(self._mission.system.parameters()), self, 0.0, place, self.margin)
 
     def is_free_straight(self, start: Array, goal: Array) -> bool:
         """Return whether the formation keeps the margin on the straight line from ``start`` to ``goal`` (3,)."""
-        return bool(self.space(self.at_rest, self.margin).are_free_segments(start[None], goal[None])[0])
+        return keeps_margin(self._space, start[None], goal[None])
 
     def in_the_way(self, places: Array) -> list[str]:
         """Return the names of what is nearer than the margin at any of ``places`` (P, 3), the nearest first."""
-        clearance = self.space(self.at_rest, self.margin).clearance(places).min(axis=0)
-        return [self.names[j] for j in np.argsort(clearance).tolist() if clearance[j] < self.margin]
+        clearance = self._space.clearance(places).min(axis=0)
+        return [self._standing[j].name for j in np.argsort(clearance).tolist() if clearance[j] < self.margin]
+
+    def way(self, start: Array, goal: Array) -> float:
+        """Return the length (m) of a way round what stands from ``start`` to ``goal`` (3,); inf: there is none."""
+        from idc_controller.guidance.detour import find_detour
+
+        system = self._mission.system
+        parameters, settings = system.parameters(), system.guidance.navigator
+        at_rest = BoundingCylinder.of(parameters)
+        moving = BoundingCylinder.of(parameters, settings.link_tilt)
+        # Only this one leaves no way for certain: the formation at its narrowest, whichever way it is passed by.
+        narrow = BoundingCylinder(_half_width(parameters), at_rest.above, at_rest.below)
+        bodies = [(obstacle.shape, obstacle.position) for obstacle in self._standing]
+        ends = FreeSpace(bodies, narrow, 0.0, -1.0, 1.0).clearance(np.array([start, goal])).min()
+        tried = (
+            (moving, self.margin + settings.spare), (moving, self.margin), (at_rest, self.margin),
+            (narrow, max(min(self.margin - _SHORT, float(ends)), 0.0)),
+        )  # fmt: skip
+        highest = max(-start[2], -goal[2]) + settings.climb
+        lowest = min(moving.below + settings.ground_clearance, -start[2], -goal[2])
+        for formation, keep in tried:
+            detour = find_detour(
+                bodies, start, goal, formation, keep, lowest=lowest, highest=highest, area=self._mission.area,
+                settings=system.guidance.detour,
+            )  # fmt: skip
+            if detour.waypoints is not None:
+                return detour.length
+        return math.inf
 
 
 class _Check:
     """The check of one mission."""
 
-    def __init__(self, mission: Mission, standing: Sequence[PredictedObstacle], found: Feasibility) -> None:
+    def __init__(self, mission: Mission, standing: Sequence[Obstacle], found: Feasibility) -> None:
         self._mission, self._found = mission, found
         self._surroundings = _Surroundings(mission, standing)
         self._resting = -mission.system.resting_altitude
@@ -139,7 +156,7 @@ class _Check:
         if isinstance(self._mission.reference, Route):
             self._route(pad, self._mission.reference)
         else:
-            self._curve()
+            self._pass("the curve", curve_places(self._mission.reference))
 
     def _route(self, pad: _Place, route: Route) -> None:
         here, legs = pad, route.first_lap(TRIED_LEGS)
@@ -153,7 +170,7 @@ class _Check:
                     here = _Place(here.name, there.source, there.position)
                 continue
             if isinstance(leg, Circle):
-                self._circle(leg, here.position)
+                self._pass(leg.source, circle_places(leg, here.position))
             if not self._is_free(there, kept_at=here.position):
                 continue
             if not isinstance(leg, Circle):
@@ -178,55 +195,31 @@ class _Check:
 
     def _leg(self, here: _Place, there: _Place) -> None:
         """Look for a way from ``here`` to ``there``."""
-        around, system = self._surroundings, self._mission.system
         start, goal = here.position, there.position
-        if around.is_free_straight(start, goal):
+        if self._surroundings.is_free_straight(start, goal):
             return
-        straight, settings = math.dist(start, goal), system.guidance.navigator
-        obstacle = around.in_the_way(np.linspace(start, goal, 2 + int(straight / _SPACING)))[0]
-        highest = max(-start[2], -goal[2]) + settings.climb
-        lowest = min(around.moving.below + settings.ground_clearance, -start[2], -goal[2])
-        ends = around.space(around.narrow, 0.0).clearance(np.array([start, goal])).min()
-        # Only the last of them is certain to leave no way: the formation at its narrowest, however it turns.
-        tried = (
-            (around.moving, around.margin + settings.spare), (around.moving, around.margin),
-            (around.at_rest, around.margin), (around.narrow, max(min(around.margin - _SHORT, float(ends)), 0.0)),
-        )  # fmt: skip
-        for formation, keep in tried:
-            detour = find_detour(
-                around.bodies, start, goal, formation, keep, lowest=lowest, highest=highest, area=around.area,
-                names=around.names, settings=system.guidance.detour,
-            )  # fmt: skip
-            if detour.waypoints is not None:
-                self._found.ways.append(Way(there.source, obstacle, straight, detour.length))
-                return
-        self._found.problems.append(
-            f"{there.source}: there is no way from {here.name} to {there.name}: it is blocked by {obstacle}"
-        )
-
-    def _circle(self, circle: Circle, start: Array) -> None:
-        angle = math.atan2(start[1] - circle.centre[1], start[0] - circle.centre[0])
-        turn = min(circle.turns, 1.0) * math.tau * (1.0 if circle.clockwise else -1.0)
-        angles = angle + np.linspace(0.0, turn, 2 + int(abs(turn) * circle.radius / _SPACING))
-        north, east, down = circle.centre
-        places = np.stack(
-            [north + circle.radius * np.cos(angles), east + circle.radius * np.sin(angles), np.full(len(angles), down)],
-            axis=1,
-        )
-        self._pass(circle.source, places)
-
-    def _curve(self) -> None:
-        figure = self._mission.reference
-        assert not isinstance(figure, Route)
-        a, b = figure.amplitude
-        phase = np.linspace(0.0, math.tau, 2 + int(math.tau * max(a, 2.0 * b) / _SPACING))
-        down = np.full(len(phase), -figure.altitude)
-        self._pass("the curve", np.stack([a * np.sin(phase), -b * np.sin(2.0 * phase), down], axis=1))
+        straight = math.dist(start, goal)
+        along = np.linspace(start, goal, 2 + int(straight / _SPACING))
+        obstacle = next(iter(self._surroundings.in_the_way(along)), "the fence")
+        if math.isfinite(length := self._surroundings.way(start, goal)):
+            self._found.ways.append(Way(there.source, obstacle, straight, length))
+        else:
+            reason = f"there is no way from {here.name} to {there.name}: it is blocked by {obstacle}"
+            self._found.problems.append(f"{there.source}: {reason}")
 
     def _pass(self, source: str, places: Array) -> None:
         """Note what is nearer to a curve than the margin."""
         for name in self._surroundings.in_the_way(places):
             self._found.notes.append(f"{source}: {name} is in the way: the safety filter or a detour leads round it")
+
+
+def _half_width(parameters: SystemParameters) -> float:
+    """Return half of the least width of payload and discs in plan view (m)."""
+    headings = np.radians(np.arange(0.0, 360.0, 1.0))
+    directions = np.array([np.cos(headings), np.sin(headings)])
+    discs = (parameters.p[:, :2] @ directions).max(axis=0) + parameters.disc_radius
+    extent = np.maximum(discs, (parameters.payload.vertices[:, :2] @ directions).max(axis=0))
+    return float((extent + np.roll(extent, 180)).min()) / 2.0
 
 
 def _end(leg: Leg, start: Array) -> _Place:

@@ -5,32 +5,16 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from gcs.config.tables import MotionConfig
-from gcs.errors import UnusableInput
+from gcs.flight.curve_limits import curve_limits
 from gcs.mission.model import Lissajous, Mission
 from gcs.mission.route import Circle, FlyTo, HoldForever, Land, Leg, Speed, TakeOff
 from idc_controller.arrays import Array
-from idc_controller.errors import TrajectoryError
 from idc_controller.trajectory import paths
-from idc_controller.trajectory.lissajous import LissajousCurve, LissajousTrajectory, check_full_rate
+from idc_controller.trajectory.lissajous import LissajousTrajectory
+from idc_controller.trajectory.lissajous_curve import LissajousCurve
 from idc_controller.trajectory.settings import Limits
 from idc_controller.trajectory.trajectory import Trajectory
 from idc_controller.trajectory.waypoints import WaypointTrajectory
-
-
-def check_curve(mission: Mission) -> None:
-    """Raise :class:`UnusableInput` for a figure eight that is faster than the limits of its curve."""
-    figure = mission.reference
-    if isinstance(figure, Lissajous):
-        curve = LissajousCurve(figure.amplitude, down=-figure.altitude)
-        try:
-            check_full_rate(curve, figure.angular_frequency, _curve_limits(mission.system.motion))
-        except TrajectoryError as error:
-            raise UnusableInput(f"{mission.path}: table [reference]: angular_frequency: {error}") from None
-
-
-def _curve_limits(motion: MotionConfig) -> Limits:
-    return Limits(motion.curve_speed, motion.curve_acceleration, motion.curve_jerk, motion.curve_snap)
 
 
 class MissionTrajectory:
@@ -118,7 +102,7 @@ class MissionTrajectory:
         begin = curve.by_phase(np.zeros(1), 0)[0][0]
         limits = self._limits(self._motion.speed)
         there = WaypointTrajectory(here, [paths.Leg(begin, self._motion.speed)], limits, start=time)
-        along_curve = _curve_limits(self._motion)
+        along_curve = curve_limits(self._motion)
         along = there.then(
             lambda t, _: LissajousTrajectory(curve, figure.angular_frequency, figure.duration, along_curve, start=t)
         )

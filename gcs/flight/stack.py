@@ -13,8 +13,8 @@ from idc_controller.control.controller import IntegratedDecisionController
 from idc_controller.control.mpc import ModelPredictiveController
 from idc_controller.estimation.estimator import Estimator
 from idc_controller.estimation.measurements import MeasurementNoise
+from idc_controller.geometry.bounding_cylinder import BoundingCylinder
 from idc_controller.geometry.flight_area import FlightArea
-from idc_controller.geometry.formation import BoundingCylinder
 from idc_controller.geometry.obstacles import ObstacleSource
 from idc_controller.guidance.navigator import Navigator
 from idc_controller.guidance.progress import AdaptiveGuidance, Guidance

@@ -10,17 +10,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from idc_controller.arrays import Array, Mask
 from idc_controller.errors import TrajectoryError
-from idc_controller.geometry import free_space_kernels as kernels
+from idc_controller.geometry.bounding_cylinder import BoundingCylinder
 from idc_controller.geometry.flight_area import FlightArea
-from idc_controller.geometry.formation import BoundingCylinder
-from idc_controller.geometry.obstacles import PredictedObstacle
 from idc_controller.geometry.shape import Shape
+
+if TYPE_CHECKING:
+    from idc_controller.geometry.obstacles import PredictedObstacle
 
 TOUCHING = 1e-6
 """m; a place that keeps the margin to within this keeps it."""
@@ -81,6 +83,8 @@ class FreeSpace:
 
     def free_lattice(self, north: Array, east: Array, down: Array, extra: float) -> Mask:
         """:meth:`is_free` at every combination of coordinates (X,), (Y,), (Z,) -> (X, Y, Z)."""
+        from idc_controller.geometry.free_space_kernels import bar_lattice  # compiled code takes long to load
+
         altitude = (-down >= self.lowest - TOUCHING) & (-down <= self.highest + TOUCHING)
         free = np.broadcast_to(altitude, (len(north), len(east), len(down))).copy()
         keep = self.margin + extra + self.growth - TOUCHING
@@ -88,7 +92,7 @@ class FreeSpace:
         if self.area is not None:
             level = np.stack(np.meshgrid(north, east, indexing="ij"), axis=-1)
             free &= self.area.contains(level.reshape(-1, 2)).reshape(len(north), len(east), 1)
-        kernels.bar_lattice(free, north, east, down, keep, around, self.centres, self._bodies.sizes, self._row)
+        bar_lattice(free, north, east, down, keep, around, self.centres, self._bodies.sizes, self._row)
         return free
 
     def within_bounds(self, places: Array) -> Mask:
@@ -106,7 +110,9 @@ class FreeSpace:
         """Return whether the clearance is ``least`` (M,) or more on the segments ``starts`` to ``ends`` (E, 3)."""
         if not (len(self.centres) and len(starts)):
             return np.ones(len(starts), dtype=bool)
-        return kernels.keep_away(
+        from idc_controller.geometry.free_space_kernels import keep_away
+
+        return keep_away(
             np.ascontiguousarray(starts), np.ascontiguousarray(ends), least, self.centres, self.growth,
             self._bodies.sizes, self._row,
         )  # fmt: skip

@@ -17,8 +17,8 @@ from scipy.sparse.csgraph import dijkstra
 
 from idc_controller.arrays import Array
 from idc_controller.errors import TrajectoryError
+from idc_controller.geometry.bounding_cylinder import BoundingCylinder
 from idc_controller.geometry.flight_area import FlightArea
-from idc_controller.geometry.formation import BoundingCylinder
 from idc_controller.geometry.free_space import FreeSpace, first_conflict
 from idc_controller.geometry.shape import Shape
 from idc_controller.guidance.detour_kernels import connected, lattice_graph

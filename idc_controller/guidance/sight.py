@@ -11,7 +11,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from idc_controller.arrays import Array, Indices, Mask
-from idc_controller.geometry.formation import BoundingCylinder
+from idc_controller.geometry.bounding_cylinder import BoundingCylinder
 from idc_controller.guidance.settings import SightSettings
 from idc_controller.trajectory.flatness import PayloadTrajectory
 from idc_controller.trajectory.scaled import ScaledReference

@@ -5,7 +5,7 @@ follow exactly by the chain rule: the trajectory never leaves the curve.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -14,6 +14,7 @@ from scipy.interpolate import BPoly, PPoly
 
 from idc_controller.arrays import Array
 from idc_controller.errors import TrajectoryError
+from idc_controller.trajectory.lissajous_curve import LissajousCurve, check_full_rate, largest_derivatives
 from idc_controller.trajectory.settings import Limits
 from idc_controller.trajectory.trajectory import Times, Trajectory, finite, positive
 from idc_controller.trajectory.trajectory_kernels import figure_eight, figure_eight_at
@@ -27,44 +28,6 @@ _FEW = 16
 """Every so many of the times at which limits are checked, first: the others only where these keep them."""
 _RAMP = np.array([70.0, -315.0, 540.0, -420.0, 126.0]) / [10.0, 9.0, 8.0, 7.0, 6.0]
 """Integral of the polynomial from 0 to 1 whose four derivatives are zero at both ends: its powers 10 to 6."""
-
-
-@dataclass(frozen=True)
-class LissajousCurve:
-    """x = a_x sin(phase), y = -a_y sin(2 phase), z = down; with a_y = a_x / 2 the paper's figure eight.
-
-    ``amplitude`` (2,) m; ``down`` m (NED, so minus the altitude); ``centre`` (2,) m, north and east.
-
-    Raises:
-        TrajectoryError: not finite, or an amplitude is negative, or both are zero.
-    """
-
-    amplitude: tuple[float, float]
-    down: float
-    centre: tuple[float, float] = (0.0, 0.0)
-
-    def __post_init__(self) -> None:
-        if len(self.amplitude) != 2 or not np.isfinite(self.amplitude).all() or min(self.amplitude) < 0.0:
-            raise TrajectoryError(f"amplitude must be two numbers, none negative, not {self.amplitude}")
-        if max(self.amplitude) == 0.0:
-            raise TrajectoryError("one amplitude at least must be positive")
-        finite(self.down, "down")
-        if len(self.centre) != 2 or not np.isfinite(self.centre).all():
-            raise TrajectoryError(f"centre must be two finite numbers, not {self.centre}")
-
-    def as_array(self) -> Array:
-        """Return the amplitudes, the centre and down (5,) (m)."""
-        return np.array([*self.amplitude, *self.centre, self.down])
-
-    def by_phase(self, phase: Array, order: int) -> list[Array]:
-        """The curve and its derivatives by phase (rad) up to ``order``, each (K, 3), m / rad^d."""
-        result = []
-        for d in range(order + 1):
-            x = self.amplitude[0] * np.sin(phase + d * np.pi / 2.0)
-            y = -self.amplitude[1] * 2.0**d * np.sin(2.0 * phase + d * np.pi / 2.0)
-            result.append(np.column_stack([x, y, np.zeros_like(x)]))
-        result[0] += [*self.centre, self.down]
-        return result
 
 
 class LissajousTrajectory(Trajectory):
@@ -179,24 +142,11 @@ def _phase(knots: Array, rates: Sequence[float], first: float) -> PPoly:
     return PPoly(coefficients, knots)
 
 
-def _largest(curve: LissajousCurve, rate: float) -> Array:
-    """Largest norms (4,) of speed to snap at the full rate."""
-    r = np.array(curve.by_phase(np.linspace(0.0, 2.0 * np.pi, 721), 4)[1:])
-    return np.asarray(np.linalg.norm(r, axis=2).max(axis=1) * rate ** np.arange(1, 5))
-
-
 def _gentler(curve: LissajousCurve, rate: float, limits: Limits) -> Limits:
     """Limits halfway between what the curve needs anyway and what is allowed, but not below 85 %."""
     allowed = limits.as_array()[:4]
-    gentler = np.maximum(0.5 * (allowed + _largest(curve, rate)), 0.85 * allowed)
+    gentler = np.maximum(0.5 * (allowed + largest_derivatives(curve, rate)), 0.85 * allowed)
     return replace(limits, **dict(zip(vars(limits), gentler.tolist(), strict=False)))
-
-
-def check_full_rate(curve: LissajousCurve, rate: float, limits: Limits) -> None:
-    """Raise :class:`TrajectoryError` for a curve whose derivatives at ``rate`` (rad/s) exceed limits."""
-    for (name, limit), largest in zip(vars(limits).items(), _largest(curve, rate), strict=False):
-        if largest > limit * (1.0 - 1e-3):
-            raise TrajectoryError(f"the curve at {rate:g} rad/s needs {name} {largest:.3g}, the limit is {limit:g}")
 
 
 def _shortest_ramp(

@@ -33,6 +33,6 @@ def run(arguments: argparse.Namespace) -> int:
         from gcs.app.preflight import preflight
 
     found = preflight(mission)
-    mission = replace(mission, notes=(*mission.notes, *map(str, found.ways), *found.notes))
+    mission = replace(mission, notes=(*mission.notes, *found.ways, *found.notes))
     Console(highlight=False).print(describe(mission))
     return ExitStatus.DONE

@@ -84,7 +84,7 @@ def run(arguments: argparse.Namespace) -> int:
     # With --json standard output is the summary and nothing else.
     console = Console(stderr=arguments.json, highlight=False)
     found = preflight(mission)
-    for note in (*mission.notes, *map(str, found.ways), *found.notes):
+    for note in (*mission.notes, *found.ways, *found.notes):
         LOG.info("note: %s", note)
     with ExitStack() as started:
         # Before there are threads: those of the progress line and of the parent's end.

@@ -10,7 +10,7 @@ from gcs.campaign.toml_text import mission_text
 from gcs.config import SystemConfig
 from gcs.errors import GcsError
 from gcs.mission.model import Limits, Lissajous, Mission, Obstacle
-from idc_controller.geometry.formation import BoundingCylinder
+from idc_controller.geometry.bounding_cylinder import BoundingCylinder
 from idc_controller.geometry.free_space import FreeSpace
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.shape import Shape

@@ -8,7 +8,7 @@ import numpy as np
 from gcs.campaign.scenarios.passage import Passage, passage_of
 from gcs.campaign.scenarios.schedule import Schedule
 from gcs.mission.model import Mission, Obstacle
-from idc_controller.geometry.formation import BoundingCylinder
+from idc_controller.geometry.bounding_cylinder import BoundingCylinder
 from idc_controller.geometry.free_space import FreeSpace
 
 MOST_OBSTACLES = 1000
