@@ -1,10 +1,15 @@
 """Feasibility of a mission: places that are not free, legs without a way, and what is led round."""
 
+import json
 import re
+from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
+from gcs.app.cli import main
 from gcs.app.preflight import preflight
+from gcs.campaign.scenarios.generator import KINDS, generate
 from gcs.errors import UnusableInput
 from gcs.mission.read import read_mission
 
@@ -115,3 +120,87 @@ def test_near_waypoint_that_may_be_missed_is_a_note(tmp_path):
 def test_curve_past_an_obstacle_is_a_note(tmp_path):
     found = preflight(read_mission("missions/figure_eight_spheres.toml"))
     assert found.notes == ("the curve: static is in the way: the safety filter or a detour leads round it",)
+
+
+MISSIONS = [
+    path
+    for path in sorted(Path("missions").iterdir())
+    if path.suffix in (".plan", ".waypoints") or (path.suffix == ".toml" and "\n[mission]" in path.read_text())
+]
+
+
+@pytest.mark.parametrize("mission", MISSIONS, ids=lambda path: path.name)
+def test_every_mission_of_the_repository_is_accepted(mission):
+    preflight(read_mission(mission))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", range(20))
+def test_course_is_refused_where_it_cannot_be_passed_alone(tmp_path, number):
+    scenario = generate(3601, number, KINDS[number % len(KINDS)])
+    path = tmp_path / "course.toml"
+    path.write_text(scenario.text)
+    mission = read_mission(path)
+    known = replace(mission, obstacles=tuple(replace(obstacle, known=True) for obstacle in mission.obstacles))
+    if scenario.passage is not None and scenario.passage.verdict == "impassable":
+        with pytest.raises(UnusableInput, match="there is no way from"):
+            preflight(known)
+    else:
+        preflight(known)
+
+
+@pytest.mark.parametrize(
+    ("points", "note"),
+    [
+        ("[[0.0, 0.0, -5000.0]]", "point 1: 5000 m above home: most rules let fly up to 120 m"),
+        ("[[0.0, 0.0, -5.0], [900.0, 0.0, -5.0]]", "point 2: 900 m from home: beyond about 500 m it is out of sight"),
+        ("[[47.39774, 8.54559, -5.0], [47.39776, 8.54561, -5.0]]", "all waypoints lie within 1 cm of each other"),
+        ("[[47.0, 8.0, -5.0], [47.0, 9.0, -5.0]]", None),
+        ("[[0.0, 0.0, -120.0], [499.0, 0.0, -5.0]]", None),
+    ],
+    ids=["altitude", "distance", "degrees", "far but apart", "limits"],
+)
+def test_what_no_team_flies_is_a_note(tmp_path, points, note):
+    notes = checked(tmp_path, "", points).notes
+    assert [text[: len(note or "")] for text in notes[:1]] == ([] if note is None else [note])
+
+
+def test_long_hold_is_a_note(tmp_path):
+    path = tmp_path / "mission.toml"
+    path.write_text(MISSION.format(points="[[0.0, 0.0, -4.0]]", back="true") + "hold = 1e12\n")
+    (note,) = preflight(read_mission(path)).notes
+    assert note.endswith("a charge lasts less than 30 min with a load")
+
+
+@pytest.fixture
+def printed(capsys):
+    def run(*arguments):
+        status = main(["check", *map(str, arguments)])
+        return status, capsys.readouterr().out
+
+    return run
+
+
+def test_json_has_legs_notes_and_reasons(tmp_path, printed):
+    status, out = printed("missions/fenced_delivery.plan", "--json")
+    found = json.loads(out)
+    assert (status, found["accepted"], found["reasons"], found["end"]) == (0, True, [], "landing")
+    assert [leg["action"] for leg in found["legs"]] == ["take off", "fly to", "fly to", "fly to, hold 3 s", "land"]
+    assert found["legs"][1] | {"time": 0} == {
+        "number": 2, "action": "fly to", "north": pytest.approx(24.0, abs=0.01), "east": pytest.approx(0.0, abs=0.01),
+        "altitude": 5.0, "speed": 1.5, "length": pytest.approx(24.0, abs=0.01), "time": 0,
+        "source": "item 3 (NAV_WAYPOINT)",
+    }  # fmt: skip
+    assert len(found["notes"]) == 2 and found["length_m"] == pytest.approx(67.5, abs=0.5)
+    (tmp_path / "wrong.toml").write_text("[mission]\n")
+    status, out = printed(tmp_path / "wrong.toml", "--json")
+    assert status == 2 and not json.loads(out)["accepted"] and json.loads(out)["reasons"]
+
+
+def test_nothing_is_cut_at_80_columns(monkeypatch, printed):
+    monkeypatch.setenv("COLUMNS", "80")
+    status, out = printed("missions/fenced_delivery.plan")
+    assert status == 0 and "\N{HORIZONTAL ELLIPSIS}" not in out
+    assert max(map(len, out.splitlines())) <= 80
+    for command in ("NAV_TAKEOFF", "NAV_WAYPOINT", "NAV_LOITER_TIME", "NAV_LAND"):
+        assert command in out

@@ -22,7 +22,7 @@ from mission_files import (
     survey,
 )
 
-from gcs.mission.fence import Fence
+from gcs.app.preflight import preflight
 from gcs.mission.plan import read_plan
 from gcs.mission.route import FlyTo
 from idc_controller.geometry.box import Wall
@@ -64,9 +64,9 @@ def test_fence_of_plan_is_read(tmp_path: Path) -> None:
 def test_legs_across_the_fence_are_noted(tmp_path: Path) -> None:
     behind = row(16, north=60.0)
     for fence in ({"geoFence__circles": [CIRCLE]}, {"geoFence__polygons": [area(5)]}):
-        notes = read(tmp_path, plan(TAKE_OFF, behind, row(177, 2, -1), **fence)).notes
-        assert [n for n in notes if n.startswith("item 2") and "crosses fence" in n]
-        assert not read(tmp_path, plan(TAKE_OFF, A, RETURN, **fence)).notes
+        (way, back) = preflight(read(tmp_path, plan(TAKE_OFF, behind, RETURN, **fence))).ways
+        assert way.startswith("item 2 (NAV_WAYPOINT): fence ") and back.startswith("item 3 ")
+        assert not preflight(read(tmp_path, plan(TAKE_OFF, A, RETURN, **fence))).lines
 
 
 def test_walls_are_inside_their_polygon(tmp_path: Path) -> None:
@@ -85,16 +85,6 @@ def test_walls_are_inside_their_polygon(tmp_path: Path) -> None:
 def test_rally_points_are_noted_as_unsupported(tmp_path: Path) -> None:
     mission = read(tmp_path, plan(TAKE_OFF, A, RETURN, rallyPoints__points=[[47, 8, 1]]))
     assert mission.notes[0].startswith("rallyPoints: 1 left out")
-
-
-def test_line_that_leaves_the_inclusion_area_crosses_the_fence() -> None:
-    notched = ((0.0, 0.0), (0.0, 10.0), (10.0, 10.0), (10.0, 0.0), (5.0, 5.0))
-    fence = Fence(boundary=(notched,))
-    start, end = (9.0, 2.0, -5.0), (1.0, 2.0, -5.0)
-    assert fence.violation(start) is None and fence.violation(end) is None
-    assert fence.crossings(start, end) == ["the fence's inclusion area"]
-    assert fence.crossings(start, (9.0, 8.0, -5.0)) == []
-    assert fence.crossings(start, start) == []
 
 
 @pytest.mark.parametrize(("number", "firmware"), [(3, "ardupilot"), (12, "px4"), (0, None), (None, None)])

@@ -1,20 +1,20 @@
 """Description of a mission for the operator: the output of ``gcs check``."""
 
-import math
 from collections.abc import Iterable
 
 import numpy as np
+from rich.box import SIMPLE_HEAD
 from rich.console import Group, RenderableType
 from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
-from gcs.config import MotionConfig, SystemConfig
+from gcs.config import SystemConfig
+from gcs.mission.flown_legs import End, flown_legs
 from gcs.mission.model import Fault, Limits, Lissajous, Mission
-from gcs.mission.route import Circle, FlyTo, HoldForever, Land, Leg, Position, Route, TakeOff
+from gcs.mission.route import Route
 
 SHOWN_LEGS = 40
-COUNTED_LEGS = 20_000
 
 
 def describe(mission: Mission) -> RenderableType:
@@ -47,65 +47,25 @@ def _lissajous(curve: Lissajous) -> Text:
 
 
 def _route(route: Route, system: SystemConfig) -> list[RenderableType]:
-    table = Table("", "leg", "north", "east", "altitude", "m/s", "length (m)", "time (s)", "from")
-    length = time = 0.0
-    count, last = 0, None
-    start: Position = (0.0, 0.0, -system.resting_altitude)
-    for leg in route.first_lap(COUNTED_LEGS):
-        count, last = count + 1, leg
-        leg_length, leg_time, end = _measure(leg, start, system.motion)
-        length, time = length + leg_length, time + leg_time
-        if count <= SHOWN_LEGS:
-            speed = f"{leg.speed:g}" if isinstance(leg, FlyTo | Circle) else ""
-            place = (f"{end[0]:.2f}", f"{end[1]:.2f}", f"{-end[2]:.2f}")
-            cost = (speed, f"{leg_length:.1f}", f"{leg_time:.0f}")
-            table.add_row(str(count), _action(leg), *place, *cost, escape(leg.source))
-        start = end
+    flight = flown_legs(route, system)
+    table = Table("", "leg", "north", "east", "alt.", "m/s", "m", "s", "from", box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
+    for leg in flight.legs[:SHOWN_LEGS]:
+        speed = "" if leg.speed is None else f"{leg.speed:g}"
+        place = (f"{leg.north:.2f}", f"{leg.east:.2f}", f"{leg.altitude:.2f}")
+        cost = (speed, f"{leg.length:.1f}", f"{leg.time:.0f}")
+        table.add_row(str(leg.number), leg.action, *place, *cost, escape(leg.source))
+    for column in table.columns:
+        column.overflow = "fold"
     for column in table.columns[2:8]:
         column.justify = "right"
-    summary = f"{count} legs, {length:.0f} m, about {time:.0f} s"
-    if isinstance(last, HoldForever):
+    count = len(flight.legs)
+    summary = f"{count} legs, {flight.length:.0f} m, about {flight.time:.0f} s"
+    if flight.end is End.HOLD:
         summary += ", then holds until stopped"
-    elif not isinstance(last, Land):
-        summary = f"and so on until stopped: endless; so far {count} legs, {length:.0f} m, about {time:.0f} s"
-    more = [Text(f"... and {count - SHOWN_LEGS} more legs")] if count > SHOWN_LEGS else []
+    elif flight.end is End.NONE:
+        summary = f"and so on until stopped: endless; so far {summary}"
+    more = [Text(f"... and {count - SHOWN_LEGS} more legs: --json has all")] if count > SHOWN_LEGS else []
     return [table, *more, Text(summary)]
-
-
-def _action(leg: Leg) -> str:
-    match leg:
-        case TakeOff(delay=delay):
-            return f"wait {delay:g} s, take off" if delay else "take off"
-        case FlyTo(hold=hold):
-            return ("spline to" if leg.spline else "fly to") + (f", hold {hold:g} s" if hold else "")
-        case Circle(turns=turns, radius=radius):
-            sense = "clockwise" if leg.clockwise else "counter-clockwise"
-            return f"circle {turns:g} x {radius:g} m {sense}"
-        case HoldForever():
-            return "hold until stopped"
-    return "land"
-
-
-def _measure(leg: Leg, start: Position, motion: MotionConfig) -> tuple[float, float, Position]:
-    """Return length (m), time (s) and end of a leg, as an upper estimate: from rest to rest."""
-    if isinstance(leg, Circle):
-        length = math.tau * leg.radius * leg.turns
-        speed = min(leg.speed, math.sqrt(motion.acceleration * leg.radius))
-        return length, _time(length, speed, motion), leg.end(start)
-    length = math.dist(start, leg.position)
-    if isinstance(leg, FlyTo):
-        vertical = abs(start[2] - leg.position[2])
-        return length, max(_time(length, leg.speed, motion), vertical / motion.climb_speed) + leg.hold, leg.position
-    if isinstance(leg, TakeOff):
-        return length, leg.delay + _time(length, motion.climb_speed, motion), leg.position
-    return length, length / motion.landing_speed if isinstance(leg, Land) else 0.0, leg.position
-
-
-def _time(length: float, speed: float, motion: MotionConfig) -> float:
-    """Return the time from rest to rest at a bounded acceleration (s)."""
-    if length < speed**2 / motion.acceleration:
-        return 2.0 * math.sqrt(length / motion.acceleration)
-    return length / speed + speed / motion.acceleration
 
 
 def _surroundings(mission: Mission) -> Iterable[str]:

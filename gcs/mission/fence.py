@@ -69,17 +69,6 @@ class Fence:
                 reason = f"inside {exclusion.name}, which the fence excludes"
         return reason
 
-    def crossings(self, start: Position, end: Position) -> list[str]:
-        """Return the names of the parts that a straight line from ``start`` to ``end`` crosses."""
-        crossed = []
-        if self.boundary and start[:2] != end[:2]:
-            import shapely
-
-            line = shapely.LineString([start[:2], end[:2]])
-            if self.included.within(line).length < line.length - 1e-6:
-                crossed.append("the fence's inclusion area")
-        return crossed + [e.name for e in self.exclusions if e.view.is_crossed(start[:2], end[:2])]
-
 
 def circle_corners(centre: Point, radius: float) -> Ring:
     """Return corners on a circle: the polygon lies inside it."""

@@ -11,7 +11,6 @@ from gcs.mission.route import (
     Circle,
     Climb,
     Descend,
-    FlyTo,
     Go,
     Jump,
     Land,
@@ -49,7 +48,7 @@ def check_flow(route: Route, fence: Fence) -> tuple[list[str], list[str]]:
         legs = list(islice(route.legs(), TRIED_LEGS))
     except RouteError as error:
         return [f"{error.source}: altitude: {error.reason}"], []
-    return list(_outside_fence(legs, fence)), [*_notes(route, flown, legs), *_segments_across_fence(legs, fence)]
+    return list(_outside_fence(legs, fence)), list(_notes(route, flown, legs))
 
 
 def _next(steps: tuple[Step, ...], index: int, through_landing: bool) -> list[int]:
@@ -123,16 +122,3 @@ def _places(leg: Leg) -> list[Position]:
     north, east, down = leg.centre
     angles = [math.tau * i / 64 for i in range(64)]
     return [(north + leg.radius * math.cos(a), east + leg.radius * math.sin(a), down) for a in angles]
-
-
-def _segments_across_fence(legs: list[Leg], fence: Fence) -> Iterator[str]:
-    """Yield notes on straight segments that cross the fence, though they end on its right side; each item once."""
-    noted = set[tuple[str, str]]()
-    start: Position = (0.0, 0.0, 0.0)
-    for leg in legs:
-        end = leg.end(start) if isinstance(leg, Circle) else leg.position
-        for name in fence.crossings(start, end) if isinstance(leg, FlyTo) else ():
-            if (leg.source, name) not in noted:
-                noted.add((leg.source, name))
-                yield f"{leg.source}: the straight path there crosses {name}"
-        start = end

@@ -92,15 +92,6 @@ class PlanView(NamedTuple):
 
         return bool(self.core.distance(shapely.Point(place)) <= self.radius)
 
-    def is_crossed(self, start: tuple[float, float], end: tuple[float, float]) -> bool:
-        """Return whether the straight line from ``start`` to ``end`` about the centre (m) leads through."""
-        if start == end:
-            return False
-        import shapely
-
-        line = shapely.LineString([start, end])
-        return bool(line.distance(self.core) < self.radius or line.relate_pattern(self.core, "T********"))
-
     def outline(self) -> Array:
         """Return the corners (n, 2) of the outline; a circle is drawn by many."""
         whole = self.core.buffer(self.radius, quad_segs=_CIRCLE_SEGMENTS) if self.radius else self.core

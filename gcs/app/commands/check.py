@@ -1,12 +1,15 @@
 """``gcs check``: what a mission file says."""
 
 import argparse
-from dataclasses import replace
+import dataclasses
+import json
 from pathlib import Path
+from typing import Any
 
 from gcs.app.arguments import VEHICLES
 from gcs.app.exit_status import ExitStatus
 from gcs.app.imports import importing
+from gcs.errors import UnusableInput
 
 DESCRIPTION = "Reads a mission and says what will be flown, or every reason why not, with file and line."
 
@@ -18,6 +21,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--vehicles", type=VEHICLES, metavar="N", help="number of vehicles in place of the system file's"
     )
     parser.add_argument("--config", type=Path, metavar="C", help="system file in place of the mission's")
+    parser.add_argument("--json", action="store_true", help="print legs, notes and reasons as JSON")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -26,13 +30,36 @@ def run(arguments: argparse.Namespace) -> int:
         from rich.console import Console
 
         from gcs.app.fly_options import read_mission_for
+        from gcs.app.preflight import preflight
         from gcs.mission.describe import describe
 
-    mission = read_mission_for(arguments.mission, arguments.config, arguments.vehicles)
-    with importing():
-        from gcs.app.preflight import preflight
-
-    found = preflight(mission)
-    mission = replace(mission, notes=(*mission.notes, *found.ways, *found.notes))
-    Console(highlight=False).print(describe(mission))
+    try:
+        mission = read_mission_for(arguments.mission, arguments.config, arguments.vehicles)
+        found = preflight(mission)
+    except UnusableInput as refused:
+        if arguments.json:
+            print(json.dumps({"mission": str(arguments.mission), "accepted": False, "reasons": refused.reasons}))
+        raise
+    mission = dataclasses.replace(mission, notes=(*mission.notes, *found.lines))
+    if arguments.json:
+        print(json.dumps(_document(mission), indent=2))
+    else:
+        Console(highlight=False).print(describe(mission))
     return ExitStatus.DONE
+
+
+def _document(mission: Any) -> dict[str, Any]:
+    """Return what is flown, for programs."""
+    from gcs.mission.flown_legs import flown_legs
+    from gcs.mission.model import Lissajous
+
+    document = {
+        "mission": str(mission.path), "accepted": True, "reasons": [], "name": mission.name,
+        "vehicles": mission.system.team.vehicles, "seed": mission.seed, "home": dataclasses.asdict(mission.home),
+        "notes": list(mission.notes),
+    }  # fmt: skip
+    if isinstance(mission.reference, Lissajous):
+        return {**document, "curve": dataclasses.asdict(mission.reference)}
+    flight = flown_legs(mission.reference, mission.system)
+    legs = [dataclasses.asdict(leg) for leg in flight.legs]
+    return {**document, "legs": legs, "end": flight.end, "length_m": flight.length, "time_s": flight.time}

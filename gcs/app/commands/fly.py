@@ -83,8 +83,7 @@ def run(arguments: argparse.Namespace) -> int:
         from gcs.record.summary_table import print_summary
     # With --json standard output is the summary and nothing else.
     console = Console(stderr=arguments.json, highlight=False)
-    found = preflight(mission)
-    for note in (*mission.notes, *found.ways, *found.notes):
+    for note in (*mission.notes, *preflight(mission).lines):
         LOG.info("note: %s", note)
     with ExitStack() as started:
         # Before there are threads: those of the progress line and of the parent's end.
