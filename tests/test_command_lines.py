@@ -21,6 +21,8 @@ NOT_FLOWN = [
     ("flie", "invalid choice: 'flie'"),
     ("-v fly {hop}", "-v goes behind the command"),
     ("fly", "the following arguments are required: MISSION"),
+    ("fly --realtime --connect udp://127.0.0.1:14580", "the following arguments are required: MISSION"),
+    ("fly --realtime --connect missions/nothing.toml", "missions/nothing.toml: "),
     ("fly none.toml", "none.toml: cannot be read: No such file"),
     ("fly .", ".: is a folder, not a file"),
     ("fly empty.toml", "empty.toml: the file is empty"),

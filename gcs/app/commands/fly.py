@@ -8,6 +8,7 @@ from pathlib import Path
 from gcs.app.arguments import CONTROLLERS, SEED, SPEED, VEHICLES
 from gcs.app.imports import importing
 from gcs.app.logs import LOG
+from gcs.errors import UnusableInput
 from gcs.mavlink.address import GROUND_PORT, THIS_MACHINE, VEHICLE_PORT, parse_url
 
 DESCRIPTION = """\
@@ -30,7 +31,7 @@ are incomplete; 130 interrupted, vehicles landed.
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
-    add("mission", type=Path, metavar="MISSION", help="mission file")
+    add("mission", nargs="?", metavar="MISSION", help="mission file")
     add("--realtime", action="store_true", help="run on the wall clock instead of in lockstep")
     add("--speed", type=SPEED, metavar="X",
         help="simulated seconds per second of wall time, with --realtime (default: 1)")  # fmt: skip
@@ -56,8 +57,13 @@ def run(arguments: argparse.Namespace) -> int:
     with importing():
         from gcs.app.fly_options import FlyOptions, prepare
 
+    mission_file, connect = arguments.mission, arguments.connect
+    if mission_file is None and connect and "://" not in connect[-1]:
+        *connect, mission_file = connect  # no URL: it only stands behind the option
+    if mission_file is None:
+        raise UnusableInput("gcs fly: the following arguments are required: MISSION")
     options = FlyOptions(
-        mission=arguments.mission,
+        mission=Path(mission_file),
         config=arguments.config,
         vehicles=arguments.vehicles,
         seed=arguments.seed,
@@ -65,7 +71,7 @@ def run(arguments: argparse.Namespace) -> int:
         realtime=arguments.realtime,
         speed=arguments.speed,
         controller=arguments.controller,
-        connect=None if arguments.connect is None else tuple(parse_url(url) for url in arguments.connect),
+        connect=None if connect is None else tuple(parse_url(url) for url in connect),
     )
     mission = prepare(options)
     # Only now: what cannot be flown is said at once.
@@ -78,7 +84,6 @@ def run(arguments: argparse.Namespace) -> int:
         from gcs.campaign.process_pool import BROKEN_OFF, end_with_parent
         from gcs.drivers.forked_program import ForkedProgram
         from gcs.drivers.simulator import PROGRAM
-        from gcs.errors import UnusableInput
         from gcs.record.incomplete import in_one_line
         from gcs.record.summary_table import print_summary
     # With --json standard output is the summary and nothing else.
