@@ -287,7 +287,10 @@ def write_plan(folder: Path, slack: float, off: float) -> None:
     with TableWriter(folder / "plan.csv", PLAN_COLUMNS) as table:
         for k in range(201):
             time = k / 20.0
-            table.write([time, time, 0.03 - off, -4.96, 0, 0, 0, slack * (k == 100), 0, 1, 0, 0.1, 0.12, 1, 9, 0])
+            check = [0.5 - slack * (k == 100), int(not (slack and k == 100)), 1]
+            table.write(
+                [time, time, 0.03 - off, -4.96, 0, 0, 0, slack * (k == 100), 0, 1, 0, 0.1, 0.12, 1, 9, 0, *check]
+            )
 
 
 def test_void_guarantee_stands_in_the_first_line_and_does_not_change_the_outcome(run) -> None:
@@ -295,6 +298,9 @@ def test_void_guarantee_stands_in_the_first_line_and_does_not_change_the_outcome
     summary = summarise(run, **FLOWN)
     assert summary["safety"]["exceeded"]["slack"] == {"value": 1.371, "limit": 0.5, "time_s": 5.0}
     assert "payload_deviation" not in summary["safety"]["exceeded"]
+    assert (summary["safety"]["steps"], summary["safety"]["verified_steps"]) == (201, 200)
+    reason = "at 5.0 s the plan comes within -0.87 m of an obstacle (margin 0.50 m)"
+    assert summary["safety"]["unverified_reason"] == reason
     expected = "Flight completed, but the safety guarantee was void: slack 1.37 m (margin 0.50 m) at 5.0 s"
     assert printed(summary, run).splitlines()[0].startswith(expected)
     (run / "plan.csv").unlink()

@@ -166,22 +166,3 @@ def test_lag_of_a_team_that_is_to_rest_is_its_horizontal_distance_from_there():
         lags.append(avoided.report.lag)
         assert lags[-1] == pytest.approx(np.hypot(*before.derivatives(np.array([time]))[0, 0, :2]), abs=1e-9)
     assert max(lags) > 0.3
-
-
-def test_plan_in_force_goes_on_where_no_other_is_found(monkeypatch):
-    """It is flown to its end, and the report says that there was no solution."""
-    avoided = avoidance([sphere("s", (5.0, 0.3, -5.0))])
-    horizon = avoided.safety.settings.chain.times[-1]
-    made = plans(avoided, straight(16.0), 100)
-    time, _, _, last = next(plan for plan in made if plan[0] > 1.5)
-    assert avoided.report.active and not avoided.report.infeasible
-    monkeypatch.setattr(avoided.safety.planner, "solve", lambda *arguments: None)
-    # The reference may go on at another rate: what is kept is the deviation from it.
-    ahead = time + np.linspace(0.3, 0.95 * horizon, 9)
-    first = avoided.safety._pieces[-1].reference
-    kept = (last.derivatives(ahead) - first.derivatives(ahead))[:3]
-    assert np.abs(kept[0]).max() > 0.05
-    for _ in range(2):
-        time, reference, _, now = next(made)
-        assert avoided.report.infeasible and avoided.report.active and avoided.report.nearest == "s"
-        np.testing.assert_allclose((now.derivatives(ahead) - reference.derivatives(ahead))[:3], kept, atol=1e-6)

@@ -56,7 +56,7 @@ def test_payload_comes_to_rest_where_no_plan_keeps_the_margin(seed):
 
 
 def test_plans_with_slack_alone_lead_into_a_pole(monkeypatch):
-    monkeypatch.setattr(AvoidanceFilter, "_safer", lambda self, plan, *others: (plan, 0))
+    monkeypatch.setattr(AvoidanceFilter, "_safer", lambda self, plan, clearance, *others: (plan, clearance, 0))
     _, clearance = fly_among(dense_poles(5))
     assert clearance < 0.0
 

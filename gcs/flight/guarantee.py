@@ -14,7 +14,8 @@ class GuaranteeAlarm(ScopedAlarm):
 
     # fmt: off
     SAFETY_GUARANTEE_VOID = (Scope.IN_AIR, Severity.WARNING, "check the clearance; fly slower",
-        "the plan that is flown misses the barrier to an obstacle by more than the margin (`avoidance.margin`)")
+        "the plan that is flown misses the barrier to an obstacle by more than the margin (`avoidance.margin`), or no "
+        "QP of the planner has a solution")
     PLAN_DEVIATION_EXCEEDED = (Scope.CLEAR_OF_GROUND, Severity.WARNING, "check the clearance; check for wind",
         "payload or a UAV is farther from the plan, by the estimate, than the margins allow for "
         "(`safety.planner.tracking`, `uav_tracking`)")
@@ -34,6 +35,9 @@ class Guarantee:
         if step.record is None or not step.in_air:
             return
         safety = step.record.decision.safety
+        if safety.infeasible:
+            text = "no QP has a solution: a stop is flown, or the plan before where that keeps farther away"
+            step.raise_alarm(safety.nearest or "team", GuaranteeAlarm.SAFETY_GUARANTEE_VOID, text)
         if safety.slack > self._margin:
             text = f"slack {safety.slack:.2f} m (margin {self._margin:.2f} m)"
             step.raise_alarm(safety.nearest or "team", GuaranteeAlarm.SAFETY_GUARANTEE_VOID, text)

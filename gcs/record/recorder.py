@@ -87,7 +87,8 @@ class FlightRecorder:
         progress = (safety.slack, safety.lag, decision.progress_rate, decision.detours)
         sight = decision.sight
         limit = (min(sight.rate, 1.0), sight.distance, sight.code)
-        self._plan.write_numbers([time, *position, *acceleration, *progress, *bounds, *limit])
+        check = (min(safety.clearance, 1e9), int(safety.verified), int(not safety.infeasible))
+        self._plan.write_numbers([time, *position, *acceleration, *progress, *bounds, *limit, *check])
 
     def compute_times(self, time: float, decision: Decision, parts: Sequence[float]) -> None:
         """Record the compute times (s) of the control step at team ``time`` (s), as :class:`Part` orders them."""

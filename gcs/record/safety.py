@@ -1,5 +1,6 @@
 """Safety figures of a flight: what the guarantee assumes, and where a flight went beyond it; detours."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -65,9 +66,23 @@ def safety_figures(run: RunData) -> dict[str, Any] | None:
         "slack_max_m": float(plan["slack_m"].max()),
         "way_back_max_s": max((after for _, after in return_times(run, margin + (payload_bound or 0.0))), default=None),
         "detours": int(plan["detours"].max()),
+        "steps": len(time),
+        "verified_steps": None if payload_bound is None else int(np.count_nonzero(plan["verified"])),
+        "unverified_reason": None if payload_bound is None else _unverified(plan, margin),
         "clock_rate_min": float(plan["clock_rate"].min()),
         "exceeded": {name: entry for name, entry in exceeded.items() if entry is not None},
     }
+
+
+def _unverified(plan: Mapping[str, Array], margin: float) -> str | None:
+    """Return why the least of the plans that were not verified was not; None: all were."""
+    unverified = np.flatnonzero(plan["verified"] == 0.0)
+    if not len(unverified):
+        return None
+    worst = unverified[np.argmin(plan["plan_clearance_m"][unverified])]
+    clearance, time = float(plan["plan_clearance_m"][worst]), float(plan["time_s"][worst])
+    found = "" if plan["solved"][worst] else "no QP had a solution; "
+    return f"at {time:.1f} s {found}the plan comes within {clearance:.2f} m of an obstacle (margin {margin:.2f} m)"
 
 
 def _exceeded(time: Array, values: Array, limit: float | None) -> dict[str, float] | None:

@@ -84,6 +84,8 @@ def _figures(summary: Mapping[str, Any], run_dir: Path | str, pictures: Sequence
         errors = f"{_number(safety['payload_tracking_max_m'], 3)} / {_number(safety['uav_tracking_max_m'], 3)}"
         row("off the plan, payload / UAVs, largest", f"{errors} m (margins allow {bounds} m)")
         row("barrier missed by at most", _number(safety["slack_max_m"], 3, "m"))
+        share = f"{100.0 * safety['verified_steps'] / safety['steps']:.1f} %"
+        row("steps whose plan keeps the margin, by exact distances", share)
         if safety["way_back_max_s"] is not None:
             row("return to the reference once it was free", _number(safety["way_back_max_s"], 1, "s"))
     if solver["infeasible_steps"]:

@@ -35,7 +35,7 @@ STEP_PART_COLUMNS = (
 # What was tracked, and what the safety filter did, at every control step in the air.
 PLAN_COLUMNS = (
     "time_s", "x_m", "y_m", "z_m", "ax_mps2", "ay_mps2", "az_mps2", "slack_m", "lag_m", "clock_rate", "detours",
-    "payload_bound_m", "uav_bound_m", "sight_rate", "sight_m", "sight_limit",
+    "payload_bound_m", "uav_bound_m", "sight_rate", "sight_m", "sight_limit", "plan_clearance_m", "verified", "solved",
 )  # fmt: skip
 OBSTACLE_COLUMNS = (
     "time_s", "name", "shape", "x_m", "y_m", "z_m", "radius_m", "size_x_m", "size_y_m", "size_z_m", "yaw_rad",

@@ -1,5 +1,6 @@
 """The interface of a safety filter, what it reports, and the filter of a world without obstacles."""
 
+import math
 from typing import NamedTuple, Protocol
 
 from idc_controller.arrays import Array
@@ -18,7 +19,11 @@ class SafetyReport(NamedTuple):
     standing_slack: float = 0.0
     """The same of obstacles that stand (m)."""
     infeasible: bool = False
-    """The QP had no solution and the plan before was kept."""
+    """No QP had a solution: a stop is flown, or the plan before where that keeps farther away."""
+    clearance: float = math.inf
+    """Least distance of the plan from obstacles, less their growth, by exact distances up to the margin (m)."""
+    verified: bool = True
+    """By these the plan keeps the margin."""
     qp_count: int = 0
     """QPs solved."""
     nearest: str = ""

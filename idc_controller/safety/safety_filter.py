@@ -22,6 +22,8 @@ from idc_controller.trajectory.trajectory_kernels import chain as deviation_afte
 
 NEGLIGIBLE = 1e-5
 """A deviation below this, in all derivatives, is none."""
+VERIFIED = 1e-3
+"""m by which a plan may miss the margin, by exact distances, and count as verified: what solvers leave."""
 
 
 class AvoidanceFilter:
@@ -59,11 +61,15 @@ class AvoidanceFilter:
         start = np.zeros((5, 3)) if now is None else now - ahead[:, 0]
         if all(abs(value) < NEGLIGIBLE for value in start.ravel().tolist()):
             start[:] = 0.0
+        planner = self.planner
         off = 0.0 if now is None else math.dist(estimate.x[0:3], now[0])
         obstacles = PredictedObstacles(predicted, self._extra_growth(off))
         plan, nearest, infeasible, qp_count = self._decide(time, start, crackle, ahead, obstacles)
-        if plan is not None and plan.slack > NEGLIGIBLE:
-            plan, count = self._safer(plan, start, crackle, ahead, obstacles)
+        clearance = self._clearance(ahead, plan, obstacles)
+        if not infeasible and (clearance < self.settings.margin - VERIFIED or (plan and plan.slack > NEGLIGIBLE)):
+            plan, clearance, count = self._safer(
+                plan or planner.free(start), clearance, start, crackle, ahead, obstacles
+            )
             qp_count += count
         negligible = plan is None or bool(np.abs(plan.deviation).max() < NEGLIGIBLE)
         deviation = None if negligible or plan is None else plan.deviation
@@ -76,6 +82,8 @@ class AvoidanceFilter:
             slack=plan.slack if plan is not None else 0.0,
             standing_slack=plan.standing_slack if plan is not None else 0.0,
             infeasible=infeasible,
+            clearance=clearance,
+            verified=clearance >= self.settings.margin - VERIFIED,
             qp_count=qp_count,
             nearest=nearest,
             lag=_lag(start, ahead),
@@ -139,28 +147,48 @@ class AvoidanceFilter:
             if other is not None and (best is None or other.cost < share * best.cost - 1e-6):
                 best = other
         if best is None:
-            kept = self._kept(time)
-            return kept if kept is not None else free, nearest.obstacle.name, True, qp_count
+            return self._without_solution(time, start, ahead, obstacles), nearest.obstacle.name, True, qp_count
         return best, nearest.obstacle.name, False, qp_count
 
-    def _safer(
-        self, plan: Plan, start: Array, crackle: Array, ahead: Array, obstacles: PredictedObstacles
-    ) -> tuple[Plan, int]:
-        """Return ``plan`` or, where that comes less near to obstacles, a stop; and the QPs solved."""
-        planner = self.planner
+    def _without_solution(self, time: float, start: Array, ahead: Array, obstacles: PredictedObstacles) -> Plan:
+        """Return what is flown where no QP has a solution: a stop, or the plan in force where that keeps farther away.
+
+        Never the bare reference, which nothing has checked.
+        """
+        rest, begin = self._rest(start, ahead)
+        stop = self.planner.free(begin)
+        stop = replace(stop, deviation=stop.deviation + (rest - ahead).transpose(1, 0, 2))
+        kept = self._kept(time)
+        if kept is None or self._clearance(ahead, stop, obstacles) >= self._clearance(ahead, kept, obstacles):
+            return stop
+        return kept
+
+    def _rest(self, start: Array, ahead: Array) -> tuple[Array, Array]:
+        """Return the rest where motion from now on ends for the least cost (5, K + 1, 3), and the state now about it.
+
+        ``start``: the state now about the reference ``ahead``.
+        """
         now = start + ahead[:, 0]
         rest = np.zeros_like(ahead)
-        rest[0] = planner.nearest_rest(now)
-        begin = now - rest[:, 0]
+        rest[0] = self.planner.nearest_rest(now)
+        return rest, now - rest[:, 0]
+
+    def _safer(
+        self, plan: Plan, clearance: float, start: Array, crackle: Array, ahead: Array, obstacles: PredictedObstacles
+    ) -> tuple[Plan, float, int]:
+        """Return ``plan`` or, where that keeps more than its ``clearance`` (m), a stop; its clearance; QPs solved."""
+        planner = self.planner
+        rest, begin = self._rest(start, ahead)
         stop, count = self._refine(begin, crackle, rest, *_absolute(rest, planner.free(begin)), obstacles, 2)
-        if stop is None or self._clearance(rest, stop, obstacles) <= self._clearance(ahead, plan, obstacles):
-            return plan, count
+        kept = -math.inf if stop is None else self._clearance(rest, stop, obstacles)
+        if stop is None or kept <= clearance:
+            return plan, clearance, count
         # The slack stays that of the plan: by it the progress rests.
         deviation = stop.deviation + (rest - ahead).transpose(1, 0, 2)
-        return replace(plan, deviation=deviation), count
+        return replace(plan, deviation=deviation), kept, count
 
-    def _clearance(self, ahead: Array, plan: Plan, obstacles: PredictedObstacles) -> float:
-        """Return the least clearance (m) of a plan, up to the margin."""
+    def _clearance(self, ahead: Array, plan: Plan | None, obstacles: PredictedObstacles) -> float:
+        """Return the least clearance (m) of a plan, None: the reference itself, up to the margin, exactly."""
         near = self._near(*_absolute(ahead, plan), obstacles)
         return min([self.settings.margin, *(separation.clearance for separation in near)])
 
