@@ -16,13 +16,14 @@ export OPENBLAS_NUM_THREADS := 1
 # Compiled modules are kept: the tests start many programs.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help install fly test test-fast test-lowest test-numerics mutants golden golden-renew
+.PHONY: help install fly test test-fast test-long test-lowest test-numerics mutants golden golden-renew
 .PHONY: fault-tables anew benchmark benchmark-parts benchmark-campaign benchmark-check docs clean
 
 help:
 	@echo "make fly          fly $(MISSION) with a simulated swarm (MISSION=... for another one)"
-	@echo "make test         ruff, mypy and the tests"
+	@echo "make test         ruff, mypy and the tests, without further seeds"
 	@echo "make test-fast    ruff, mypy and the tests that need no flight"
+	@echo "make test-long    the same cases with further seeds and sizes, and longer missions"
 	@echo "make test-lowest  some tests and a flight with the lowest versions that pyproject.toml allows"
 	@echo "make test-numerics  tests of linear algebra and a flight with other OpenBLAS kernels (KERNELS='$(KERNELS)')"
 	@echo "make mutants      see whether the fast tests notice changes of the flight path (MUTANTS='--number 60 --seed 1')"
@@ -44,13 +45,16 @@ test: $(COMPILED)
 	$(VENV)/bin/ruff check
 	$(VENV)/bin/ruff format --check
 	$(VENV)/bin/mypy
-	$(VENV)/bin/python -m pytest --numprocesses auto --dist loadfile --durations 25
+	$(VENV)/bin/python -m pytest --numprocesses auto --dist loadfile -m "not long" --durations 25
 
 test-fast: $(COMPILED)
 	$(VENV)/bin/ruff check
 	$(VENV)/bin/ruff format --check
 	$(VENV)/bin/mypy
-	$(VENV)/bin/python -m pytest --numprocesses auto --dist loadfile -m "not slow" --durations 15
+	$(VENV)/bin/python -m pytest --numprocesses auto --dist loadfile -m "not slow and not long" --durations 15
+
+test-long: $(COMPILED)
+	$(VENV)/bin/python -m pytest --numprocesses auto --dist load -m long --durations 25
 
 # Builds the package as a wheel and flies a mission with the lowest versions that pyproject.toml allows.
 test-lowest: $(INSTALLED)

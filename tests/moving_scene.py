@@ -1,7 +1,9 @@
 """Obstacles that move before the range sensors of a team that hovers, and what the obstacle map says of them."""
 
+import copy
 import math
 from dataclasses import dataclass, field
+from functools import cache
 
 import numpy as np
 from obstacle_scene import HERE, Scene, box, map_of, outside, pole, run, sphere, wall
@@ -43,19 +45,23 @@ SHAPES = {
 }
 
 
-def surface(body):
-    """Return points all over a body's surface (n, 3), of a pole in the field of view only."""
-    rng, shape = np.random.default_rng(1), body.shape
+@cache
+def surface_about_centre(shape):
+    """Return points all over a shape's surface (n, 3), of a pole in the field of view only."""
+    rng = np.random.default_rng(1)
     d = rng.normal(size=(150, 3))
     d /= np.linalg.norm(d, axis=1)[:, None]
     if isinstance(shape, Sphere):
-        points = shape.radius * d
-    elif isinstance(shape, Pole):
+        return shape.radius * d
+    if isinstance(shape, Pole):
         level = shape.radius * d[:, :2] / np.linalg.norm(d[:, :2], axis=1)[:, None]
-        points = np.column_stack([level, rng.uniform(-3.0, 2.0, 150)])
-    else:
-        points = np.sign(d) * np.array(shape.size) / 2.0 @ shape.rotation.T
-    return points + np.array(body.position_in_world)
+        return np.column_stack([level, rng.uniform(-3.0, 2.0, 150)])
+    return np.sign(d) * np.array(shape.size) / 2.0 @ shape.rotation.T
+
+
+def surface(body):
+    """Return points all over a body's surface (n, 3)."""
+    return surface_about_centre(body.shape) + np.array(body.position_in_world)
 
 
 @dataclass
@@ -71,12 +77,21 @@ class Watch:
     obstacle_map: object = None
 
 
-def watch(place, make, seed, until=8.0, each=lambda t, m: None, beside=(BEHIND,), appears=True):
+@cache
+def seen_before(seed, beside):
+    """Return the map, and the scene that it has seen, when a body appears."""
+    m, scene = map_of(), Scene(seed)
+    run(m, lambda t: beside, BEGIN, scene=scene)
+    return m, scene
+
+
+def watch(place, make, seed, until=8.0, each=lambda t, m: None, beside=(BEHIND,), appears=True, until_found=False):
     """Return the :class:`Watch` of a body, ``make(place(t))`` at ``t`` (s) from :data:`BEGIN` on.
 
-    ``appears``: it is not there before.
+    ``appears``: it is not there before; ``until_found``: no longer than until it is found, by half seconds.
     """
-    result, m = Watch(), map_of()
+    result, begin = Watch(), BEGIN if appears else 0.0
+    m, scene = copy.deepcopy(seen_before(seed, beside)) if appears else (map_of(), Scene(seed))
     result.obstacle_map = m
 
     def step(time):
@@ -107,5 +122,8 @@ def watch(place, make, seed, until=8.0, each=lambda t, m: None, beside=(BEHIND,)
         exists = time >= BEGIN or not appears
         return [*beside, make(place(time - BEGIN))] if exists else beside
 
-    run(m, obstacles, BEGIN + until, scene=Scene(seed), each=step)
+    times = np.arange(begin, BEGIN + until, 0.5) if until_found else [begin]
+    for start, end in zip(times, [*times[1:], BEGIN + until], strict=True):
+        if not until_found or result.found == math.inf:
+            run(m, obstacles, end, start, scene, each=step)
     return result

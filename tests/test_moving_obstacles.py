@@ -35,7 +35,7 @@ def test_what_moves_is_found_in_time(mover):
 @pytest.mark.parametrize("seed", [1, 2, 3])
 @pytest.mark.parametrize(("kind", "shape"), EACH)
 def test_what_moves_is_found_in_time_in_other_scenes(kind, shape, seed):
-    check_found_in_time(kind, watch(KINDS[kind], SHAPES[shape], seed).found)
+    check_found_in_time(kind, watch(KINDS[kind], SHAPES[shape], seed, until_found=True).found)
 
 
 #: Where there are pieces left of its way: as many as were measured; there should be none.

@@ -99,7 +99,7 @@ def run_pytest(tree: Path, plugin: object, *arguments: str) -> int:
     sys.dont_write_bytecode = True
     null = os.open(os.devnull, os.O_WRONLY)
     os.dup2(null, 1), os.dup2(null, 2)
-    quiet = ("-q", "-x", "-p", "no:cacheprovider", "-p", "no:xdist", "-m", "not slow", "-o", "addopts=")
+    quiet = ("-q", "-x", "-p", "no:cacheprovider", "-p", "no:xdist", "-m", "not slow and not long", "-o", "addopts=")
     status = pytest.main([*quiet, "--strict-markers", *arguments], plugins=[plugin])
     import gcs
 
