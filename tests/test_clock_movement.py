@@ -91,10 +91,10 @@ def test_latency_that_changes_or_is_not_the_same_both_ways_moves_no_clock(out, b
 
 @pytest.mark.parametrize("spread", [0.01, 0.05, 0.2])
 @pytest.mark.parametrize("least", [0.0, 0.06])
-def test_jitter_moves_no_clock(spread, least):
-    for seed in range(4):
-        link = TimedLink(out=random_latency(seed, spread, least), back=random_latency(seed + 50, spread, least))
-        assert clock_errors(link.run(60.0)) == []
+@pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.long) for seed in (1, 2, 3))])
+def test_jitter_moves_no_clock(seed, spread, least):
+    link = TimedLink(out=random_latency(seed, spread, least), back=random_latency(seed + 50, spread, least))
+    assert clock_errors(link.run(60.0)) == []
 
 
 @pytest.mark.parametrize("seed", range(4))

@@ -154,7 +154,7 @@ def test_pieces_of_an_obstacle_taken_away_go_with_its_points():
     assert flight.gaps() == 0
 
 
-@pytest.mark.parametrize("turn", [0.0, 0.4, math.pi / 4.0])
+@pytest.mark.parametrize("turn", [0.4, *(pytest.param(turn, marks=pytest.mark.long) for turn in (0.0, math.pi / 4.0))])
 def test_width_of_a_door_is_that_between_estimated_bodies(turn):
     width, edges = 3.0, (0.3, 4.0, 9.0)
     across = np.array([-math.sin(turn), math.cos(turn), 0.0])

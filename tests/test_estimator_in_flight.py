@@ -131,7 +131,7 @@ def test_tracking_error_and_covariance_without_noise(tmp_path):
     assert np.sqrt(np.mean(errors**2)) < 0.001
 
 
-@pytest.mark.parametrize("factor", [0.9, 1.1])
+@pytest.mark.parametrize("factor", [1.1, pytest.param(0.9, marks=pytest.mark.long)])
 def test_figure_eight_is_flown_and_estimate_has_no_offset_with_ten_percent_payload_mass_error(tmp_path, factor):
     mission = read_mission(short_figure(tmp_path, duration=8.0))
     world = replace(mission.system, world=replace(mission.system.world, payload_mass_factor=factor))
@@ -147,12 +147,14 @@ def test_figure_eight_is_flown_and_estimate_has_no_offset_with_ten_percent_paylo
     assert np.abs(force[:2]).max() < 0.3
 
 
-@pytest.mark.parametrize("force", [(3.0, 0.0, 0.0), (0.0, 8.0, 0.0)], ids=["3 N", "8 N"])
+@pytest.mark.parametrize(
+    "force", [pytest.param((3.0, 0.0, 0.0), marks=pytest.mark.long), (0.0, 8.0, 0.0)], ids=["3 N", "8 N"]
+)
 def test_disturbance_force_is_estimated_without_offset(tmp_path, force):
-    mission = short_figure(tmp_path, duration=20.0)
+    mission = short_figure(tmp_path, duration=12.0)
     flight = Watched(mission, tmp_path / "run", force=force, from_time=14.0)
     with flight:
-        flight.fly(flight.watch, until=40.0)
+        flight.fly(flight.watch, until=30.0)
         assert flight.flight.phase.value in ("fly", "hold")
         assert not flight.flight.reason
     estimate, truth = flight.compared[-1][1:]

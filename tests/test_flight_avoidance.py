@@ -125,6 +125,7 @@ def test_figure_keeps_clear_of_mapped_sphere_and_of_detected_sphere(tmp_path):
     assert result.summary["position_rmse_m"]["total"] > 0.1
 
 
+@pytest.mark.long
 def test_pole_on_straight_path_is_avoided(tmp_path):
     shape = 'shape = "pole"\nposition = [7.0, 0.0]\nradius = 0.3\nheight = 12.0'
     result = flown(tmp_path, STRAIGHT.format(name="pole", obstacle="mast", shape=shape))
@@ -135,6 +136,7 @@ def test_pole_on_straight_path_is_avoided(tmp_path):
     assert np.abs(truth["payload_y_m"]).max() > 1.0
 
 
+@pytest.mark.long
 def test_blocked_path_ends_in_safe_stop(tmp_path):
     shape = 'shape = "wall"\nposition = [8.0, 60.0, -20.0]\nsize = [0.3, 300.0, 40.0]'
     result = flown(tmp_path, STRAIGHT.format(name="closed", obstacle="the great wall", shape=shape))
@@ -147,7 +149,9 @@ def test_blocked_path_ends_in_safe_stop(tmp_path):
     assert np.abs(truth["payload_vz_mps"][-5:]).max() < 0.02
 
 
-@pytest.mark.parametrize("fault", ['kind = "drift"\nrate = 0.1', 'kind = "stuck"'])
+@pytest.mark.parametrize(
+    "fault", ['kind = "drift"\nrate = 0.1', pytest.param('kind = "stuck"', marks=pytest.mark.long)]
+)
 def test_flight_ends_safely_when_all_range_sensors_fail_alike(tmp_path, fault):
     """Returns that drift lie beside the known rays: they are as impossible as those that repeat to the digit."""
     shape = 'shape = "pole"\nposition = [7.0, 0.0]\nradius = 0.3\nheight = 12.0'
@@ -173,15 +177,19 @@ def test_flight_keeps_clear_of_rock_that_is_not_on_the_map(tmp_path):
     assert result.summary["position_rmse_m"]["total"] > 0.1
 
 
+@pytest.mark.long
 def test_flight_keeps_clear_of_tilted_box_on_the_map_and_of_unknown_moving_capsule(tmp_path):
     result = flown(tmp_path, TILTED)
     assert result.exit_code == ExitStatus.DONE, result.reason
     check_safe(result.summary)
 
 
-def test_l_shaped_payload_is_flown_between_obstacles_within_the_limits_of_the_box(tmp_path):
+@pytest.mark.parametrize("points", [1, pytest.param(3, marks=pytest.mark.long)], ids=["gate", "course"])
+def test_l_shaped_payload_is_flown_between_obstacles_within_the_limits_of_the_box(points, tmp_path):
     """Its centre of mass is 0.1 m off its middle."""
     mission = read_mission(MISSIONS / "l_payload_course.toml")
+    steps = mission.reference.steps
+    mission = replace(mission, reference=replace(mission.reference, steps=(*steps[:points], steps[-1])))
     with InProcessFlight(mission, tmp_path / "run", seed=4, obstacles=mission.obstacles) as flight:
         flight.fly()
         result = flight.result()

@@ -35,8 +35,9 @@ def test_figure_eight_is_flown_within_limits(figure):
     assert (folder / "run" / "position.png").exists()
 
 
+@pytest.mark.long
 def test_truth_repeats_to_the_byte_with_same_seed(figure):
-    """With another seed it does not: tests/test_swarm.py."""
+    """With another seed it does not: tests/test_swarm.py, where a shorter flight repeats as well."""
     folder, mission, _, _ = figure
     assert gcs_fly(mission, folder / "again", "--seed", 7341, "--no-pictures")[0] == 0
     assert (folder / "run" / "truth.csv").read_bytes() == (folder / "again" / "truth.csv").read_bytes()
@@ -49,15 +50,18 @@ def test_short_figure_covers_whole_curve(figure):
     assert np.abs(truth["payload_y_m"]).max() > 2.7
 
 
-@pytest.mark.parametrize("vehicles", [3, 8])  # the fewest, an odd number; and many
+@pytest.mark.parametrize(
+    "vehicles", [3, pytest.param(8, marks=pytest.mark.long)]
+)  # the fewest, an odd number; and many
 def test_figure_eight_is_flown_by_other_team_sizes(tmp_path, vehicles):
-    summary = flown(read_mission(short_figure(tmp_path, duration=8.0, vehicles=vehicles)), tmp_path / "run", seed=11)
+    mission = read_mission(short_figure(tmp_path, duration=4.0, altitude=1.5, vehicles=vehicles))
+    summary = flown(mission, tmp_path / "run", seed=11)
     check_within_limits(summary)
 
 
 def test_figure_eight_is_flown_with_asymmetric_attachments(tmp_path):
     attachments = "[[0.5, 0.45, -0.25], [0.45, -0.5, -0.25], [-0.5, -0.4, -0.25], [-0.4, 0.5, -0.25]]"
-    mission = read_mission(short_figure(tmp_path, duration=8.0, attachments=attachments))
+    mission = read_mission(short_figure(tmp_path, duration=4.0, attachments=attachments))
     assert mission.system.team.attachments is not None
     shares = mission.system.parameters().payload_share
     assert shares.max() - shares.min() > 0.01
@@ -76,7 +80,7 @@ def test_hover_keeps_its_position(tmp_path):
 # Waypoints
 
 
-@pytest.mark.parametrize("name", ["square.waypoints", "delivery.plan"])
+@pytest.mark.parametrize("name", ["delivery.plan", pytest.param("square.waypoints", marks=pytest.mark.long)])
 def test_every_waypoint_is_passed_and_every_hold_held(tmp_path, name):
     mission = read_mission(MISSIONS / name)
     summary = flown(mission, tmp_path / "run", seed=17)
@@ -109,10 +113,10 @@ def test_every_waypoint_is_passed_and_every_hold_held(tmp_path, name):
 
 
 def test_two_programs_with_different_payload_masses_fly_in_lockstep(tmp_path):
-    ground = short_figure(tmp_path, duration=12.0)
+    ground = short_figure(tmp_path, duration=6.0, altitude=1.5)
     heavy = tmp_path / "heavy"
     heavy.mkdir()
-    heavier = short_figure(heavy, duration=12.0, payload_mass_factor="1.1")
+    heavier = short_figure(heavy, duration=6.0, altitude=1.5, payload_mass_factor="1.1")
     swarm = swarm_process(
         "--lockstep", "--mission", heavier, "--run-dir", tmp_path / "world", "--base-port", base_port()
     )

@@ -55,6 +55,7 @@ def check_on_the_ground(folder, height=0.25):
 
 
 @pytest.mark.slow
+@pytest.mark.long  # the second one follows a first one, too; tests/test_interrupt.py
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=["ctrl-c", "sigterm"])
 def test_ctrl_c_in_flight_lands_and_closes_the_records(tmp_path, number):
     gcs = GcsProcess(short_figure(tmp_path, duration=30.0, altitude=1.5), tmp_path / "run")
@@ -262,7 +263,7 @@ def test_vehicle_with_another_parameter_is_refused(tmp_path):
 @pytest.mark.parametrize(
     ("telemetry", "commands", "reason"),
     [
-        (True, True, "sends no telemetry"),
+        pytest.param(True, True, "sends no telemetry", marks=pytest.mark.long),
         (True, False, "sends no telemetry"),
         (False, True, "has left OFFBOARD for AUTO.LOITER (Set-points lost"),
     ],
@@ -354,7 +355,7 @@ def test_touchdown_is_not_detected_high_above_the_ground(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("moment", [13.3, 17.8])
+@pytest.mark.parametrize("moment", [17.8, pytest.param(13.3, marks=pytest.mark.long)])
 def test_vehicles_without_ground_stop_simultaneously_and_set_the_payload_down(tmp_path, moment):
     with InProcessFlight(short_figure(tmp_path, duration=20.0), tmp_path / "run", seed=1201) as flight:
         flight.fly(until=moment)
@@ -364,7 +365,10 @@ def test_vehicles_without_ground_stop_simultaneously_and_set_the_payload_down(tm
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("start", "velocity", "seed"), [(9.0, (0.0, -4.0), 9103), (17.0, (2.83, 2.83), 7)])
+@pytest.mark.parametrize(
+    ("start", "velocity", "seed"),
+    [(9.0, (0.0, -4.0), 9103), pytest.param(17.0, (2.83, 2.83), 7, marks=pytest.mark.long)],
+)
 def test_vehicles_without_ground_set_the_payload_down_in_wind(tmp_path, start, velocity, seed):
     """They have braced the payload against the wind; once it stands they must not be driven over by that."""
     mission = short_figure(tmp_path, duration=20.0)

@@ -79,7 +79,16 @@ def check_flown_within(limits, mission, folder, faults, seed):
     assert result.summary["contacts"] == 0
 
 
-@pytest.mark.parametrize("name", FAULTS)
+#: Of what a flight of :data:`FAULTS` has, the others have the like.
+LONG = {
+    "one link late, velocity unknown, position drifting",
+    "one link's set-points late, rates lost, position stuck",
+    "out of order, position biased, all attitudes stuck",
+    "all velocities biased",
+}
+
+
+@pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.long] * (name in LONG)) for name in FAULTS])
 def test_flight_with_faults_one_after_another_completes_within_limits(name, tmp_path):
     duration = 24.0 if "," in name else 12.0
     mission = short_figure(tmp_path, duration=duration, altitude=2.5 if "climb" in name else 1.5)
@@ -96,6 +105,7 @@ def test_bias_of_attitude_on_board_is_compensated(tmp_path):
     assert run.uav_separation()[run.time > START + 10.0].min() > 0.93
 
 
+@pytest.mark.long
 def test_wind_drag_is_compensated_along_trajectory(tmp_path):
     """After half a minute of estimation the drag of 3 m/s against the payload's own motion costs little."""
     limits = Limits(position_rmse=0.3, settle=15.0, payload_tilt_deg=4.0, uav_separation=0.75)
@@ -112,7 +122,7 @@ def test_growing_link_latency_ends_in_simultaneous_stop(fly_with_faults, tmp_pat
     assert max(summary["payload_tilt_max_deg"].values()) < 15.0
 
 
-@pytest.mark.parametrize("start", [1.3, 1.45, 1.6])
+@pytest.mark.parametrize("start", [1.45, *(pytest.param(start, marks=pytest.mark.long) for start in (1.3, 1.6))])
 def test_vehicles_hold_when_links_are_lost_at_lift_off_in_wind(start, fly_with_faults, tmp_path):
     """Links lean before lift-off: the vehicles hold and do not detect that they are on ground."""
     faults = [

@@ -39,7 +39,7 @@ def test_step_of_a_clock_is_named_beside_the_latency_of_a_slow_link(tmp_path):
     assert alarms[CLOCK].keys() == {"vehicle 3"} and 4.0 <= alarms[CLOCK]["vehicle 3"] <= 4.2
 
 
-@pytest.mark.parametrize("rate", [11520.0, 5760.0])
+@pytest.mark.parametrize("rate", [5760.0, pytest.param(11520.0, marks=pytest.mark.long)])
 def test_radio_of_a_low_rate_is_named_as_congestion_and_no_clock_is_blamed(tmp_path, rate):
     cap = Fault(kind="bandwidth_cap", start=0.0, settings={"rate": rate, "queue": 2048})
     alarms, reason = hop(tmp_path, cap)

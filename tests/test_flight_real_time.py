@@ -86,7 +86,7 @@ def check_flown(flight, folder, rmse):
 
 @pytest.fixture
 def mission(tmp_path):
-    return read_mission(short_figure(tmp_path, duration=6.0, altitude=1.5))
+    return read_mission(short_figure(tmp_path, duration=3.0, altitude=1.5))
 
 
 def test_real_time_flight_is_on_time(mission, tmp_path):

@@ -77,7 +77,7 @@ def state(vehicle):
 
 
 def test_hostile_datagrams_leave_flight_unchanged(tmp_path):
-    mission = short_figure(tmp_path, duration=6.0)
+    mission = short_figure(tmp_path, duration=3.0, altitude=1.5)
     with InProcessFlight(mission, tmp_path / "calm", seed=3) as calm:
         calm.fly()
         check_within_limits(calm.summary())

@@ -121,7 +121,7 @@ def test_stream_that_was_closed_before_the_start_stays_closed(monkeypatch):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("pace", ["--lockstep", "--realtime"])
+@pytest.mark.parametrize("pace", ["--lockstep", pytest.param("--realtime", marks=pytest.mark.long)])
 def test_closed_terminal_ends_the_simulator(pace, tmp_path):
     ground = () if pace == "--lockstep" else ("--ground-port", 0)
     with swarm_process(pace, "--base-port", 0, *ground, "--run-dir", tmp_path / "run") as running:

@@ -30,6 +30,7 @@ from idc_controller.perception.standing_obstacles import StandingObstacles
 from idc_controller.perception.surfaces.flat import FlatSurface
 
 EVERYONE = frozenset(range(4))
+LONG = (pytest.mark.slow, pytest.mark.long)
 UNKNOWN = np.array([0.0, 6.0, -6.0])
 ON_THE_MAP = {
     "sphere": (Obstacle("a", (5.0, 0.0, -6.0), Sphere(0.5), True), sphere((5.0, 0.0, -6.0))),
@@ -99,7 +100,7 @@ def test_offset_of_one_vehicle_is_detected_and_ends():
 
 
 @pytest.mark.parametrize("noise", [1.0, 5.0])
-@pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (1, 2))])
+@pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=LONG) for seed in (1, 2))])
 def test_noise_is_no_offset(noise, seed):
     known, true = ON_THE_MAP["sphere"]
     assert not any(m.map_offsets for _, m in look(known, true, lambda t, uav: np.zeros(3), 20.0, seed, noise))
@@ -206,12 +207,12 @@ def fly(known, true, until, seed, off=lambda t, uav: np.zeros(3)):
     ("seed", "count", "kinds", "known_share"),
     [
         (1, 10, ("sphere", "pole"), 1.0),
-        (2, 50, ("sphere", "pole"), 1.0),
+        pytest.param(2, 50, ("sphere", "pole"), 1.0, marks=pytest.mark.long),
         (5, 50, ("wall", "box", "sphere", "pole"), 1.0),
         (3, 100, ("sphere", "pole"), 1.0),
         pytest.param(7, 50, ("sphere", "pole"), 0.5, marks=pytest.mark.slow),
-        pytest.param(4, 200, ("sphere", "pole"), 1.0, marks=pytest.mark.slow),
-        pytest.param(8, 100, ("wall", "box", "sphere", "pole"), 0.5, marks=pytest.mark.slow),
+        pytest.param(4, 200, ("sphere", "pole"), 1.0, marks=LONG),
+        pytest.param(8, 100, ("wall", "box", "sphere", "pole"), 0.5, marks=LONG),
     ],
 )
 def test_map_that_is_right_has_no_offset_however_many_obstacles_it_has(seed, count, kinds, known_share):
@@ -219,8 +220,15 @@ def test_map_that_is_right_has_no_offset_however_many_obstacles_it_has(seed, cou
     assert not set().union(*(m.map_offsets for _, m in fly(known, true, 12.0, seed)))
 
 
-@pytest.mark.parametrize("count", [10, 100])
-@pytest.mark.parametrize("vehicles", [{1}, EVERYONE])
+@pytest.mark.parametrize(
+    ("vehicles", "count"),
+    [
+        (EVERYONE, 10),
+        ({1}, 100),
+        pytest.param({1}, 10, marks=pytest.mark.long),
+        pytest.param(EVERYONE, 100, marks=pytest.mark.long),
+    ],
+)
 def test_offset_is_detected_among_many_obstacles(count, vehicles):
     known, true = field(2, count)
     first = {}

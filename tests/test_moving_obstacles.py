@@ -10,9 +10,26 @@ FOUND, FOUND_SLOW = 2.5, 4.0
 #: Three standard deviations of a return (m).
 NOISE = 0.18
 EACH = [(kind, shape) for kind in KINDS for shape in SHAPES]
+SEEDS = [0, pytest.param(1, marks=pytest.mark.long)]
 
 
-@pytest.fixture(scope="module", params=EACH, ids="-".join)
+#: Whose tests of the whole flight are long, as the like of another's.
+LONG = {
+    ("constant velocity, 1.5 m/s", "sphere"),
+    ("constant velocity, 3 m/s", "sphere"),
+    ("head-on, 2 m/s", "sphere"),
+    ("slow, 0.5 m/s", "pole"),
+    ("harmonic, 1 rad/s", "pole"),
+    ("harmonic, 2 rad/s", "sphere"),
+    ("circle", "pole"),
+    ("stop and go", "box"),
+}
+
+
+@pytest.fixture(
+    scope="module",
+    params=[pytest.param(each, marks=[pytest.mark.long] * (each in LONG), id="-".join(each)) for each in EACH],
+)
 def mover(request):
     """Kind, shape and figures of a mover: a fixture with parameters, so that tests of one follow each other."""
     kind, shape = request.param
@@ -32,7 +49,7 @@ def test_what_moves_is_found_in_time(mover):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("seed", [2, 3, pytest.param(1, marks=pytest.mark.long)])
 @pytest.mark.parametrize(("kind", "shape"), EACH)
 def test_what_moves_is_found_in_time_in_other_scenes(kind, shape, seed):
     check_found_in_time(kind, watch(KINDS[kind], SHAPES[shape], seed, until_found=True).found)
@@ -131,7 +148,7 @@ def test_mover_that_stops_becomes_standing_without_a_gap_in_coverage():
 
 
 @pytest.mark.parametrize("shape", SHAPES)
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", SEEDS)
 def test_standing_obstacle_that_starts_is_found(shape, seed):
     start = 3.0
     place = lambda t: np.array([6.0, 2.5 - 1.5 * max(t - start, 0.0), -6.0])  # noqa: E731
@@ -141,7 +158,7 @@ def test_standing_obstacle_that_starts_is_found(shape, seed):
     assert next(t for t, count in moving if t > start and count) < start + 2.5
 
 
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("shape", SHAPES)
 def test_mover_along_the_line_of_sight_is_found_though_it_was_never_seen_elsewhere(shape, seed):
     """All of its way was seen occupied before it was seen free: it is found by being seen behind where it was."""
@@ -153,7 +170,7 @@ def test_mover_along_the_line_of_sight_is_found_though_it_was_never_seen_elsewhe
     assert m.found < 3.0
 
 
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("phase", [0.0, 2.0, 3.0, 5.0])
 def test_swinging_sphere_is_found_on_the_way_to_it_though_its_way_was_never_seen_free(phase, seed):
     """At the end of the range a ray of a scan or none hits it: rays through where it was say that it has left."""

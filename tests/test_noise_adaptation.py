@@ -208,6 +208,7 @@ def test_flight_stays_within_limits_with_five_times_noise_on_every_channel(tmp_p
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_flight_completes_in_gusty_wind(tmp_path):
     wind = 'kind = "wind"\nvelocity = [2.0, 2.0, 0.0]\ngust = 0.6\nstart = 5.0'
     with InProcessFlight(with_faults(tmp_path, wind), tmp_path / "run", seed=42) as flight:

@@ -126,7 +126,7 @@ def test_hover_thrust_along_the_rotor_axis_points_up():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("n", [3, 6])
+@pytest.mark.parametrize("n", [pytest.param(3, marks=pytest.mark.long), 6])
 def test_energy_is_conserved_without_thrust(n):
     rng = np.random.default_rng(10 + n)
     parameters = make_parameters(n, rng=rng)

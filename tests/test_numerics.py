@@ -101,6 +101,7 @@ sys.stdout.buffer.write(distances.tobytes())
 
 
 @pytest.mark.slow
+@pytest.mark.long  # part of CI by make test-numerics
 @pytest.mark.numerics
 def test_kernels_of_numba_give_the_same_bytes_for_every_processor(tmp_path):
     def distances(**variables):
@@ -114,6 +115,7 @@ def test_kernels_of_numba_give_the_same_bytes_for_every_processor(tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.long  # part of CI by make test-numerics, with the kernels that make a difference
 @pytest.mark.numerics
 def test_flight_with_other_kernels_differs_by_rounding_only(tmp_path, monkeypatch):
     for name in ("pinned", "unpinned"):

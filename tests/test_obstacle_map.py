@@ -17,7 +17,9 @@ from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.obstacle_bodies import Obstacle as WorldObstacle
 
 SIGMAS = 3.0
-SLOW_SEEDS = [pytest.param(seed, marks=pytest.mark.slow) for seed in range(1, 10)]
+#: Of ten, the one with the least margin in the test of what stands.
+SLOW_SEEDS = [pytest.param(6, marks=pytest.mark.slow)]
+LONG_SEEDS = [pytest.param(seed, marks=(pytest.mark.slow, pytest.mark.long)) for seed in (1, 2, 3, 4, 5, 7, 8, 9)]
 
 
 def hover(t):
@@ -66,7 +68,7 @@ def uncovered(obstacle_map, time, seen):
     return outside(obstacle_map, time, hits, "piece") / sigmas
 
 
-@pytest.mark.parametrize("seed", [0, *SLOW_SEEDS])
+@pytest.mark.parametrize("seed", [0, *SLOW_SEEDS, *LONG_SEEDS])
 @pytest.mark.parametrize(("bodies", "path"), STANDING.values(), ids=STANDING)
 def test_what_stands_is_covered_and_never_moves(bodies, path, seed):
     """All that was hit, at all later times, within three standard deviations of its returns."""

@@ -58,7 +58,12 @@ def test_quoted_numbers_of_model_agree_with_model(quoted):
 
 
 @pytest.mark.parametrize(
-    ("section", "name"), [("tracking", "outputs"), ("mass", "printed_2.7"), ("margin", "printed_1")]
+    ("section", "name"),
+    [
+        ("tracking", "outputs"),
+        pytest.param("mass", "printed_2.7", marks=pytest.mark.long),
+        pytest.param("margin", "printed_1", marks=pytest.mark.long),
+    ],
 )
 def test_quoted_numbers_of_simulations_agree_with_simulations(quoted, section, name):
     case = plan(quick=False).cases[section, name]
@@ -93,9 +98,9 @@ def short_plan(quick):
     kept = {}
     for key, case in whole.cases.items():
         if key[0] in ("tracking", "avoidance"):
-            kept[key] = replace(case, duration=2.0)
-        elif key[1] in ("printed_2.7", "printed_3", "printed_0.25", "printed_0.008_1"):
             kept[key] = replace(case, duration=1.0)
+        elif key[1] in ("printed_2.7", "printed_3", "printed_0.25", "printed_0.008_1"):
+            kept[key] = replace(case, duration=0.5)
     return replace(whole, cases=kept, frames=2)
 
 

@@ -53,7 +53,7 @@ ROUND = {
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ROUND)
+@pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.long] * (n == "pole, slowly")) for n in ROUND])
 def test_blocking_obstacle_is_passed_by_detour(name):
     """No deadlock: the progress rate falls, a detour is found, and the progress rate returns to 1."""
     obstacles, speed = ROUND[name]

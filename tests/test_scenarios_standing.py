@@ -1,6 +1,7 @@
 """Scenarios of boxes, forests, rooms, overhangs, and of what stops and goes: ranges, free ends, and the way."""
 
 import math
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
@@ -33,7 +34,13 @@ from idc_controller.trajectory.waypoints import WaypointTrajectory
 KINDS = ("boxes", "forest", "rooms", "overhang")
 SYSTEM = read_system(None)
 PASSAGES = Passages(SYSTEM)
-SEEDS = range(1, 6)
+SEEDS = [1, 2, *(pytest.param(number, marks=pytest.mark.long) for number in (3, 4, 5))]
+
+
+@cache
+def generated(seed, number, kind):
+    """The scenario that several tests look at."""
+    return generate(seed, number, kind)
 
 
 def read(scenario, folder):
@@ -42,13 +49,14 @@ def read(scenario, folder):
     return read_mission(path)
 
 
-@pytest.fixture(params=[(kind, number) for kind in KINDS for number in SEEDS], ids=lambda p: f"{p[0]}-{p[1]}")
-def course(request, tmp_path):
-    kind, number = request.param
-    scenario = generate(21, number, kind)
+@pytest.fixture
+def course(kind, number, tmp_path):
+    scenario = generated(21, number, kind)
     return scenario, read(scenario, tmp_path)
 
 
+@pytest.mark.parametrize("number", SEEDS)
+@pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.slow
 def test_generated_course_is_a_mission_of_unknown_standing_obstacles(course):
     scenario, mission = course
@@ -59,6 +67,8 @@ def test_generated_course_is_a_mission_of_unknown_standing_obstacles(course):
     assert 1.0 <= mission.reference.speed <= 2.5
 
 
+@pytest.mark.parametrize("number", SEEDS)
+@pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.slow
 def test_generated_course_leaves_pad_waypoints_and_goal_free_and_the_path_not(course):
     _, mission = course
@@ -71,6 +81,8 @@ def test_generated_course_leaves_pad_waypoints_and_goal_free_and_the_path_not(co
     assert FreeSpace(bodies, PASSAGES.formation, 0.0, 0.0, 100.0).clearance(schedule.positions).min() < 1.05
 
 
+@pytest.mark.parametrize("number", SEEDS)
+@pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.slow
 def test_generated_course_has_a_way_or_none_as_it_says(course):
     scenario, mission = course
@@ -212,7 +224,7 @@ def test_waypoint_in_an_obstacle_may_be_named_in_place_of_a_gap():
     ],
 )
 def test_impassable_course_passes_when_broken_off_with_its_narrowest_gap(tmp_path, verdict, outcome, reason, failures):
-    scenario = generate(21, 1, "stop_and_go")
+    scenario = generated(21, 1, "stop_and_go")
     mission = tmp_path / "mission.toml"
     mission.write_text(scenario.text)
     hit = outcome == "collided"
@@ -252,10 +264,10 @@ def test_heading_of_boxes_is_turned_all_round():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("is_height", [False, True])
+@pytest.mark.parametrize("is_height", [pytest.param(False, marks=pytest.mark.long), True])
 def test_ground_that_knows_all_walls_breaks_off_with_the_true_gap(is_height, tmp_path):
     """Guidance and safety filter without a plant, in the first rooms of a seed without a way."""
-    courses = (generate(31, number, "rooms") for number in range(1, 100))
+    courses = (generated(31, number, "rooms") for number in range(1, 100))
     scenario = next(
         each for each in courses if each.passage.verdict == "impassable" and each.passage.gap.is_height == is_height
     )

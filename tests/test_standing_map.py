@@ -1,5 +1,8 @@
 """The standing map over scans with noise: nothing that stands is lost, what is gone is freed, what moves is found."""
 
+from copy import deepcopy
+from functools import cache
+
 import numpy as np
 import pytest
 from range_scene import Box, Pole, Sensor, Sphere
@@ -150,26 +153,37 @@ def test_nothing_is_forgotten_by_time_or_out_of_sight():
     assert np.isin(before, standing.occupied().numbers).all()
 
 
+SEEN = 12.0  # s for which what stands is seen before the sphere moves past
+
+
+@cache
+def seen_standing(drift):
+    """What stands seen with drifting poses: bodies, map, sensor, unexplained returns and all."""
+    bodies = [Sphere((5.0, -2.5, -4.0), 0.5), Box((9.0, 0.0, -4.0), (0.3, 30.0, 8.0))]
+    standing, sensor, false, count = StandingMap(), Sensor(np.random.default_rng(5), ground=0.0), 0, 0
+    for scan, _ in scans(sensor, bodies, (0.0, 0.0, -4.0), 0.0, SEEN, drift=(0.0, drift, 0.0)):
+        unexplained = standing.unexplained(scan)
+        false, count = false + np.sum(unexplained), count + len(unexplained)
+        standing.add(scan)
+    return bodies, standing, sensor, false, count
+
+
 @pytest.mark.parametrize("drift", [0.0, 0.05])
 @pytest.mark.parametrize("speed", [0.5, 1.0, 3.0])
 def test_returns_of_moving_sphere_are_unexplained_and_of_standing_ones_are_not(speed, drift):
     """A sphere beside one that stands, with poses of one vehicle that drift."""
-    begin = 12.0
-    still, wall = Sphere((5.0, -2.5, -4.0), 0.5), Box((9.0, 0.0, -4.0), (0.3, 30.0, 8.0))
-    start = np.array([5.5, -0.8, -4.0]) - np.array([0.0, speed, 0.0]) * begin
+    bodies, standing, sensor, false, count = deepcopy(seen_standing(drift))
+    start = np.array([5.5, -0.8, -4.0]) - np.array([0.0, speed, 0.0]) * SEEN
     moving = Sphere(tuple(start), 0.5, (0.0, speed, 0.0))
-    standing, sensor = StandingMap(), Sensor(np.random.default_rng(5), ground=0.0)
-    first, false, count = None, 0, 0
-    for t0, t1, bodies in ((0.0, begin, [still, wall]), (begin, begin + 3.0, [still, wall, moving])):
-        for scan, hit in scans(sensor, bodies, (0.0, 0.0, -4.0), t0, t1, drift=(0.0, drift, 0.0)):
-            unexplained = standing.unexplained(scan)
-            of_moving = np.abs(moving.at(scan.time).distance(hit)) < 1e-6
-            of_moving &= t0 == begin
-            false += np.sum(unexplained & ~of_moving)
-            count += np.sum(~of_moving)
-            if (unexplained & of_moving).any() and first is None:
-                first = scan.time - begin
-            standing.add(scan)
+    first = None
+    for scan, hit in scans(sensor, [*bodies, moving], (0.0, 0.0, -4.0), SEEN, SEEN + 3.0, drift=(0.0, drift, 0.0)):
+        unexplained = standing.unexplained(scan)
+        of_moving = np.abs(moving.at(scan.time).distance(hit)) < 1e-6
+        false += np.sum(unexplained & ~of_moving)
+        count += np.sum(~of_moving)
+        if (unexplained & of_moving).any() and first is None:
+            first = scan.time - SEEN
+        standing.add(scan)
     assert first is not None and first <= 0.5
     assert count > 10_000
     assert false <= SETTINGS.false_alarm * count

@@ -62,7 +62,7 @@ def hover_modes(parameters):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("n", [3, 6])
+@pytest.mark.parametrize("n", [pytest.param(3, marks=pytest.mark.long), 6])
 def test_hover_modes(n):
     parameters = system(n)
     frequencies, shapes, left = hover_modes(parameters)
@@ -135,7 +135,11 @@ def world_force_law(parameters, seed=0):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("parameters", [system(3), system(6), unequal(), L_PAYLOAD], ids=["3", "6", "unequal", "L"])
+@pytest.mark.parametrize(
+    "parameters",
+    [*(pytest.param(system(n), marks=pytest.mark.long) for n in (3, 6)), unequal(), L_PAYLOAD],
+    ids=["3", "6", "unequal", "L"],
+)
 def test_forced_motion_agrees_with_an_independent_integration(parameters):
     pairs = list(forced(parameters, 1000, 5.0, world_force_law(parameters)))
     path = np.array([world.payload_position_in_world for world, _ in pairs])
