@@ -71,6 +71,7 @@ def test_figure_eight_is_flown_with_asymmetric_attachments(tmp_path):
     assert summary["contacts"] == 0
 
 
+@pytest.mark.long
 def test_hover_keeps_its_position(tmp_path):
     folder = copied_mission(tmp_path, "hover.toml")
     summary = flown(read_mission(folder), tmp_path / "run", seed=5)

@@ -113,6 +113,7 @@ def test_wind_drag_is_compensated_along_trajectory(tmp_path):
     check_flown_within(limits, short_figure(tmp_path, duration=25.0), tmp_path / "run", wind, seed=32)
 
 
+@pytest.mark.long
 def test_growing_link_latency_ends_in_simultaneous_stop(fly_with_faults, tmp_path):
     """A link that carries less than is sent: what was sent last comes later and later."""
     cap = [fault(BandwidthCap(rate=5000.0), start=START, vehicles=[2])]

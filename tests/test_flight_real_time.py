@@ -89,12 +89,13 @@ def mission(tmp_path):
     return read_mission(short_figure(tmp_path, duration=3.0, altitude=1.5))
 
 
+@pytest.mark.long
 def test_real_time_flight_is_on_time(mission, tmp_path):
     flight = fly_in_real_time(mission, tmp_path / "run")
     check_flown(flight, tmp_path / "run", rmse=0.03)
 
 
-@pytest.mark.parametrize(("stalled", "duration"), [(GROUND, 0.4), (WORLD, 0.4)])
+@pytest.mark.parametrize(("stalled", "duration"), [(GROUND, 0.4), pytest.param(WORLD, 0.4, marks=pytest.mark.long)])
 def test_real_time_flight_completes_on_busy_machine(mission, tmp_path, stalled, duration):
     # Without the processor again and again, at moments that fit no other period.
     stalls = [(stalled, 2.0 + 2.37 * i, duration) for i in range(40)]

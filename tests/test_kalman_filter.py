@@ -1,5 +1,6 @@
 """Kalman filter: blocks, one row after the other, sparse rows and compiled kernels against filterpy and plain numpy."""
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -25,6 +26,7 @@ from idc_controller.rotations import euler_from_quaternion, rotation_from_quater
 from idc_controller.trajectory.flatness import Load, flat_reference
 
 N_STATES = 30
+INTERVALS = (1, 800, 20_000, 37_001, 99_999, 300_000)  # us
 
 
 def positive_definite(rng, n):
@@ -93,8 +95,14 @@ def van_loan(process, densities, interval_us, force_scale):
     return big[m:, m:].T @ big[:m, m:]
 
 
-@pytest.mark.parametrize("vehicles", [3, 4, 12])
-@pytest.mark.parametrize("interval_us", [1, 800, 20_000, 37_001, 99_999, 300_000])
+@pytest.mark.parametrize(
+    ("vehicles", "interval_us"),
+    [
+        *itertools.product((3, 4), INTERVALS),
+        (12, INTERVALS[-1]),
+        *(pytest.param(12, interval, marks=pytest.mark.long) for interval in INTERVALS[:-1]),
+    ],
+)
 def test_integrated_process_noise_equals_that_by_a_matrix_exponential(vehicles, interval_us):
     model = LinearModel(read_system(MISSIONS / "system.toml").with_vehicles(vehicles).parameters())
     densities = ProcessNoiseSettings()

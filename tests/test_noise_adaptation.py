@@ -221,6 +221,7 @@ def test_flight_completes_in_gusty_wind(tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_flight_stays_within_limits_with_a_third_of_datagrams_lost(tmp_path):
     mission = with_faults(tmp_path, 'kind = "packet_loss"\nprobability = 0.3\nstart = 0.0')
     with InProcessFlight(mission, tmp_path / "run", seed=43) as flight:

@@ -101,6 +101,7 @@ def test_wide_gap_is_flown_through():
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_blocked_path_ends_in_safe_stop_with_reason():
     flown = fly(avoidance([wall("the wall", 9.0, 0.0, (0.3, 300.0, 40.0))]), straight(14.0), 26.5)
     assert min(flown.clearance().values()) >= MARGIN - TOLERANCE

@@ -140,8 +140,15 @@ def test_help_lists_all_options_and_examples(capfd):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 0)])
-@pytest.mark.parametrize("pace", ["--lockstep", "--realtime"])
+@pytest.mark.parametrize(
+    ("number", "status", "pace"),
+    [
+        (signal.SIGINT, 130, "--lockstep"),
+        (signal.SIGTERM, 0, "--realtime"),
+        pytest.param(signal.SIGTERM, 0, "--lockstep", marks=pytest.mark.long),
+        pytest.param(signal.SIGINT, 130, "--realtime", marks=pytest.mark.long),
+    ],
+)
 def test_signal_ends_simulation_with_closed_records(tmp_path, number, status, pace):
     arguments = ("--mission", "mission.toml", "--base-port", 0, "--run-dir", "run", pace)
     with process(*arguments, *(("--ground-port", 0, "--sdk-port", 0) if pace == "--realtime" else ())) as (
