@@ -135,7 +135,7 @@ def test_every_mission_of_the_repository_is_accepted(mission):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("number", range(20))
+@pytest.mark.parametrize("number", [*range(10), *(pytest.param(n, marks=pytest.mark.long) for n in range(10, 200))])
 def test_course_is_refused_where_it_cannot_be_passed_alone(tmp_path, number):
     scenario = generate(3601, number, KINDS[number % len(KINDS)])
     path = tmp_path / "course.toml"
