@@ -59,9 +59,10 @@ def test_figure_eight_is_flown_by_other_team_sizes(tmp_path, vehicles):
     check_within_limits(summary)
 
 
+@pytest.mark.long
 def test_figure_eight_is_flown_with_asymmetric_attachments(tmp_path):
     attachments = "[[0.5, 0.45, -0.25], [0.45, -0.5, -0.25], [-0.5, -0.4, -0.25], [-0.4, 0.5, -0.25]]"
-    mission = read_mission(short_figure(tmp_path, duration=4.0, attachments=attachments))
+    mission = read_mission(short_figure(tmp_path, duration=8.0, attachments=attachments))
     assert mission.system.team.attachments is not None
     shares = mission.system.parameters().payload_share
     assert shares.max() - shares.min() > 0.01

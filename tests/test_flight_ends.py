@@ -306,6 +306,7 @@ class TelemetryLoss(FaultInjector):
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_descent_is_commanded_when_only_telemetry_is_lost(tmp_path):
     modes = []
 

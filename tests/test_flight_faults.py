@@ -85,6 +85,7 @@ LONG = {
     "one link's set-points late, rates lost, position stuck",
     "out of order, position biased, all attitudes stuck",
     "all velocities biased",
+    "position lost from the climb on",
 }
 
 

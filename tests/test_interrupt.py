@@ -135,7 +135,7 @@ def test_closed_terminal_ends_the_simulator(pace, tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("end", ["terminal", TERMINATE])
+@pytest.mark.parametrize("end", ["terminal", pytest.param(TERMINATE, marks=pytest.mark.long)])
 def test_flight_lands_when_its_terminal_is_closed_or_it_is_to_end(end, tmp_path):
     control, terminal = pty.openpty()
     mission = str(MISSIONS / "hop.toml")

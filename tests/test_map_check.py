@@ -223,10 +223,10 @@ def test_map_that_is_right_has_no_offset_however_many_obstacles_it_has(seed, cou
 @pytest.mark.parametrize(
     ("vehicles", "count"),
     [
-        (EVERYONE, 10),
-        ({1}, 100),
-        pytest.param({1}, 10, marks=pytest.mark.long),
-        pytest.param(EVERYONE, 100, marks=pytest.mark.long),
+        ({1}, 10),
+        (EVERYONE, 100),
+        pytest.param(EVERYONE, 10, marks=pytest.mark.long),
+        pytest.param({1}, 100, marks=pytest.mark.long),
     ],
 )
 def test_offset_is_detected_among_many_obstacles(count, vehicles):

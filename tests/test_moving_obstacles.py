@@ -19,9 +19,12 @@ LONG = {
     ("constant velocity, 3 m/s", "sphere"),
     ("head-on, 2 m/s", "sphere"),
     ("slow, 0.5 m/s", "pole"),
+    ("slow, 0.5 m/s", "sphere"),
     ("harmonic, 1 rad/s", "pole"),
     ("harmonic, 2 rad/s", "sphere"),
     ("circle", "pole"),
+    ("constant velocity, 3 m/s", "box"),
+    ("head-on, 2 m/s", "box"),
     ("stop and go", "box"),
 }
 
@@ -49,7 +52,7 @@ def test_what_moves_is_found_in_time(mover):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", [2, 3, pytest.param(1, marks=pytest.mark.long)])
+@pytest.mark.parametrize("seed", [2, *(pytest.param(seed, marks=pytest.mark.long) for seed in (1, 3))])
 @pytest.mark.parametrize(("kind", "shape"), EACH)
 def test_what_moves_is_found_in_time_in_other_scenes(kind, shape, seed):
     check_found_in_time(kind, watch(KINDS[kind], SHAPES[shape], seed, until_found=True).found)

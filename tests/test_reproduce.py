@@ -60,9 +60,9 @@ def test_quoted_numbers_of_model_agree_with_model(quoted):
 @pytest.mark.parametrize(
     ("section", "name"),
     [
-        ("tracking", "outputs"),
+        pytest.param("tracking", "outputs", marks=pytest.mark.long),
         pytest.param("mass", "printed_2.7", marks=pytest.mark.long),
-        pytest.param("margin", "printed_1", marks=pytest.mark.long),
+        ("margin", "printed_1"),
     ],
 )
 def test_quoted_numbers_of_simulations_agree_with_simulations(quoted, section, name):

@@ -137,7 +137,7 @@ def world_force_law(parameters, seed=0):
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "parameters",
-    [*(pytest.param(system(n), marks=pytest.mark.long) for n in (3, 6)), unequal(), L_PAYLOAD],
+    [*(pytest.param(each, marks=pytest.mark.long) for each in (system(3), system(6), unequal())), L_PAYLOAD],
     ids=["3", "6", "unequal", "L"],
 )
 def test_forced_motion_agrees_with_an_independent_integration(parameters):
