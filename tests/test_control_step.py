@@ -21,6 +21,7 @@ from gcs.mavlink.clock import RemoteClock
 from gcs.mavlink.codec import Codec
 from gcs.mavlink.setpoints import SetpointStream, attitude_target, stop_plan_message
 from gcs.mavlink.settings import LinkSettings
+from gcs.mavlink.vehicle_link import VehicleLink
 from idc_controller.control.controller import IntegratedDecisionController
 from idc_controller.control.load_adaptation import LoadAdaptation
 from idc_controller.control.settings import ControllerSettings
@@ -133,7 +134,8 @@ def test_positions_on_the_pad_are_means_over_last_samples_of_each_source():
 
 
 def test_positions_on_the_pad_are_averaged_for_the_settle_time():
-    preflight = Preflight(SimpleNamespace(links=[None] * 3), DEFAULTS)
+    links = [VehicleLink(i, None) for i in (1, 2, 3)]
+    preflight = Preflight(SimpleNamespace(links=links), DEFAULTS)
     assert not preflight.is_settled(100.0)
     preflight.check_start = 7.0
     duration = DEFAULTS.takeoff_landing.settle_time
