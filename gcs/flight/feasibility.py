@@ -16,7 +16,7 @@ import numpy as np
 
 from gcs.mission.model import Limits, Mission, Obstacle
 from gcs.mission.route import Circle, HoldForever, Land, Leg, Position, Route, TakeOff
-from gcs.mission.route_clearance import TRIED_LEGS, circle_places, curve_places, free_space, keeps_margin
+from gcs.mission.route_clearance import SPACING, TRIED_LEGS, circle_places, curve_places, free_space, keeps_margin
 from idc_controller.arrays import Array
 from idc_controller.geometry.bounding_cylinder import BoundingCylinder
 from idc_controller.geometry.free_space import FreeSpace
@@ -26,10 +26,8 @@ if TYPE_CHECKING:
     from idc_controller.parameters import SystemParameters
     from idc_controller.safety.obstruction import Obstruction
 
-_SPACING = 0.1
-"""m between places on a curve that are looked at."""
 _SHORT = 0.3
-"""m of the margin that a plan may lack where there is no other way: what lacks more is never flown."""
+"""m of the margin that a leg need not keep to be accepted: what the margin bars, a plan with slack may pass."""
 
 
 class Way(NamedTuple):
@@ -199,7 +197,7 @@ class _Check:
         if self._surroundings.is_free_straight(start, goal):
             return
         straight = math.dist(start, goal)
-        along = np.linspace(start, goal, 2 + int(straight / _SPACING))
+        along = np.linspace(start, goal, 2 + int(straight / SPACING))
         obstacle = next(iter(self._surroundings.in_the_way(along)), "the fence")
         if math.isfinite(length := self._surroundings.way(start, goal)):
             self._found.ways.append(Way(there.source, obstacle, straight, length))

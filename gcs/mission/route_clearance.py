@@ -18,7 +18,7 @@ _HIGHEST = 1e5
 """m, above all that is flown."""
 _SHORTEST = 0.02
 """m, half of a segment that is not cut any more."""
-_SPACING = 0.1
+SPACING = 0.1
 """m between the places by which a curve is looked at."""
 
 
@@ -47,10 +47,10 @@ def free_space(mission: Mission, standing: Sequence[Obstacle]) -> FreeSpace:
 def keeps_margin(space: FreeSpace, starts: Array, ends: Array) -> bool:
     """Return whether the formation keeps the margin on all lines from ``starts`` to ``ends`` (E, 3) (NED, m)."""
     while len(starts):
-        middles, halves = (starts + ends) / 2.0, np.linalg.norm(ends - starts, axis=1) / 2.0
+        middles, half_lengths = (starts + ends) / 2.0, np.linalg.norm(ends - starts, axis=1) / 2.0
         # Nowhere does the clearance change faster than the place.
-        near = space.clearance(middles).min(axis=1) < space.margin + halves
-        if (halves[near] < _SHORTEST).any():
+        near = space.clearance(middles).min(axis=1) < space.margin + half_lengths
+        if (half_lengths[near] < _SHORTEST).any():
             return False
         starts, middles, ends = starts[near], middles[near], ends[near]
         starts, ends = np.vstack([starts, middles]), np.vstack([middles, ends])
@@ -61,7 +61,7 @@ def circle_places(circle: Circle, start: Array) -> Array:
     """Return places (P, 3) along a ``circle`` from ``start`` (3,) (NED, m), once round at most."""
     angle = math.atan2(start[1] - circle.centre[1], start[0] - circle.centre[0])
     turn = min(circle.turns, 1.0) * math.tau * (1.0 if circle.clockwise else -1.0)
-    angles = angle + np.linspace(0.0, turn, 2 + int(abs(turn) * circle.radius / _SPACING))
+    angles = angle + np.linspace(0.0, turn, 2 + int(abs(turn) * circle.radius / SPACING))
     north, east, down = circle.centre
     level = [north + circle.radius * np.cos(angles), east + circle.radius * np.sin(angles)]
     return np.stack([*level, np.full(len(angles), down)], axis=1)
@@ -70,7 +70,7 @@ def circle_places(circle: Circle, start: Array) -> Array:
 def curve_places(curve: Lissajous) -> Array:
     """Return places (P, 3) along a curve (NED, m)."""
     a, b = curve.amplitude
-    phase = np.linspace(0.0, math.tau, 2 + int(math.tau * max(a, 2.0 * b) / _SPACING))
+    phase = np.linspace(0.0, math.tau, 2 + int(math.tau * max(a, 2.0 * b) / SPACING))
     return np.stack([a * np.sin(phase), -b * np.sin(2.0 * phase), np.full(len(phase), -curve.altitude)], axis=1)
 
 

@@ -1,15 +1,20 @@
 """``gcs check``: what a mission file says."""
 
+from __future__ import annotations
+
 import argparse
 import dataclasses
 import json
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from gcs.app.arguments import VEHICLES
 from gcs.app.exit_status import ExitStatus
 from gcs.app.imports import importing
 from gcs.errors import UnusableInput
+
+if TYPE_CHECKING:
+    from gcs.mission.model import Mission
 
 DESCRIPTION = "Reads a mission and says what will be flown, or every reason why not, with file and line."
 
@@ -48,7 +53,7 @@ def run(arguments: argparse.Namespace) -> int:
     return ExitStatus.DONE
 
 
-def _document(mission: Any) -> dict[str, Any]:
+def _document(mission: Mission) -> dict[str, Any]:
     """Return what is flown, for programs."""
     from gcs.mission.flown_legs import flown_legs
     from gcs.mission.model import Lissajous
