@@ -10,7 +10,7 @@ from gcs.mission.route_clearance import is_clear, standing_obstacles
 
 
 @dataclass(frozen=True)
-class Preflight:
+class PreflightNotes:
     """What there is to say of a mission that can be flown, one line each."""
 
     ways: tuple[str, ...] = ()
@@ -23,16 +23,16 @@ class Preflight:
         return (*self.ways, *self.notes)
 
 
-def preflight(mission: Mission) -> Preflight:
+def preflight(mission: Mission) -> PreflightNotes:
     """Return what is in the way of ``mission``. Raises :class:`UnusableInput` if it cannot be flown."""
     check_curve(mission)
     notes = implausible(mission)
     standing = standing_obstacles(mission)
     if is_clear(mission, standing):
-        return Preflight(notes=tuple(notes))
+        return PreflightNotes(notes=tuple(notes))
     from gcs.flight.feasibility import feasibility  # takes long to import, spent only where something is near
 
     found = feasibility(mission, standing)
     if found.problems:
         raise UnusableFile([f"{mission.path}: {problem}" for problem in found.problems])
-    return Preflight(tuple(map(str, found.ways)), (*found.notes, *notes))
+    return PreflightNotes(tuple(map(str, found.ways)), (*found.notes, *notes))
