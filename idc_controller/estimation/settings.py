@@ -14,7 +14,7 @@ class ProcessNoiseSettings(SettingsTable):
     payload_acceleration: float = setting(0.003, "m/s2/sqrt(s)", "noise of the payload's acceleration", ge=0.0)
     payload_angular_acceleration: float = setting(0.003, "rad/s2/sqrt(s)", "noise of its angular acceleration", ge=0.0)
     link_acceleration: float = setting(0.0015, "1/s2/sqrt(s)", "noise of the acceleration of link directions", ge=0.0)
-    uav_jerk: float = setting(0.9, "1/s3/sqrt(s)", "noise of the third derivative of a UAV's thrust direction", ge=0.0)
+    uav_jerk: float = setting(0.85, "1/s3/sqrt(s)", "noise of the third derivative of a UAV's thrust direction", ge=0.0)
     thrust: float = setting(0.012, "N/s/sqrt(s)", "noise of the derivative of a UAV's thrust", ge=0.0)
     force: float = setting(0.05, "N/sqrt(s)", "random walk of the disturbance force on the payload", ge=0.0)
     uav_force: float = setting(0.01, "N/sqrt(s)", "random walk of the disturbance force common to the UAVs", ge=0.0)
