@@ -21,8 +21,8 @@ UAV_BOUND = BOUND + SYSTEM.safety.planner.uav_tracking
 NAMES = ("vehicle 1", "vehicle 2", "vehicle 3", "vehicle 4", "payload")
 
 
-def alarms(slack=0.0, off=(0.0, 0.0, 0.0), link=(0.0, 0.0), acceleration=0.0, clear=True, in_air=True, bounded=True):
-    """The alarms of one step: the payload ``off`` its plan (m), the first vehicle's link leaning by ``link``."""
+def alarms(missed=0.0, off=(0.0, 0.0, 0.0), link=(0.0, 0.0), acceleration=0.0, clear=True, in_air=True, bounded=True):
+    """The alarms of one step: a plan that ``missed`` the margin, the payload ``off`` it, a link leaning by ``link``."""
     estimator = stack.estimator(SYSTEM, MODEL)
     flight = SimpleNamespace(mission=SimpleNamespace(system=SYSTEM), control=SimpleNamespace(estimator=estimator))
     x = np.zeros(MODEL.layout.size)
@@ -33,7 +33,9 @@ def alarms(slack=0.0, off=(0.0, 0.0, 0.0), link=(0.0, 0.0), acceleration=0.0, cl
     payload = np.zeros((5, 1, 3))
     payload[2, 0, 0] = acceleration
     bounds = (BOUND, UAV_BOUND) if bounded else (None, None)
-    safety = SafetyReport(slack=slack, nearest="mast", payload_bound=bounds[0], uav_bound=bounds[1])
+    safety = SafetyReport(
+        clearance=MARGIN - missed, verified=not missed, nearest="mast", payload_bound=bounds[0], uav_bound=bounds[1]
+    )
     record = SimpleNamespace(
         estimate=SimpleNamespace(time=0.0, x=x),
         decision=SimpleNamespace(safety=safety, flat=SimpleNamespace(payload=payload)),
@@ -43,11 +45,16 @@ def alarms(slack=0.0, off=(0.0, 0.0, 0.0), link=(0.0, 0.0), acceleration=0.0, cl
     return [(alarm.source, alarm.code, alarm.text) for alarm in log.alarms]
 
 
-def test_slack_beyond_the_margin_is_an_alarm():
-    assert alarms(slack=MARGIN - 0.01) == []
-    text = f"slack {MARGIN + 0.87:.2f} m (margin {MARGIN:.2f} m)"
-    assert alarms(slack=MARGIN + 0.87) == [("mast", GuaranteeAlarm.SAFETY_GUARANTEE_VOID, text)]
-    assert alarms(slack=MARGIN + 0.87, clear=False) and not alarms(slack=MARGIN + 0.87, in_air=False)
+def test_step_that_is_not_verified_is_an_alarm():
+    assert alarms() == []
+    text = f"the plan keeps {MARGIN - 0.01:.2f} m (margin {MARGIN:.2f} m)"
+    assert alarms(missed=0.01) == [("mast", GuaranteeAlarm.PLAN_UNVERIFIED, text)]
+    assert alarms(missed=0.01, clear=False) and not alarms(missed=0.01, in_air=False)
+
+
+def test_plan_into_an_obstacle_voids_the_guarantee():
+    text = f"the plan keeps -0.87 m (margin {MARGIN:.2f} m)"
+    assert alarms(missed=MARGIN + 0.87) == [("mast", GuaranteeAlarm.SAFETY_GUARANTEE_VOID, text)]
 
 
 def test_payload_beyond_its_bound_is_an_alarm():
@@ -77,8 +84,8 @@ def test_links_that_lean_as_the_plan_accelerates_are_on_it():
     [
         ({}, ""),
         (
-            {"slack": {"value": 1.371, "limit": 0.5, "time_s": 12.34}},
-            "the safety guarantee was void: slack 1.37 m (margin 0.50 m) at 12.3 s",
+            {"plan_clearance": {"value": -0.871, "limit": 0.0, "time_s": 12.34}},
+            "the safety guarantee was void: planned clearance -0.87 m (at least 0.00 m) at 12.3 s",
         ),
         (
             {"payload_deviation": {"value": 0.19, "limit": 0.1, "time_s": 8.0},
@@ -92,6 +99,6 @@ def test_void_guarantee_in_words(exceeded, text):
     summary = {"safety": {"exceeded": exceeded}, "clearance_min_m": 0.4}
     assert void_guarantee(summary) == text
     # Without anything to keep clear of there is no guarantee that could be void.
-    without = text if "slack" in text else text.removeprefix("the safety guarantee was void: ")
+    without = text if "planned" in text else text.removeprefix("the safety guarantee was void: ")
     assert void_guarantee({**summary, "clearance_min_m": None}) == without
     assert void_guarantee({"safety": None, "clearance_min_m": 0.4}) == ""

@@ -296,18 +296,20 @@ def write_plan(folder: Path, slack: float, off: float) -> None:
 def test_void_guarantee_stands_in_the_first_line_and_does_not_change_the_outcome(run) -> None:
     write_plan(run, slack=1.371, off=0.05)
     summary = summarise(run, **FLOWN)
-    assert summary["safety"]["exceeded"]["slack"] == {"value": 1.371, "limit": 0.5, "time_s": 5.0}
+    assert summary["safety"]["exceeded"]["plan_clearance"] == {"value": -0.871, "limit": 0.0, "time_s": 5.0}
     assert "payload_deviation" not in summary["safety"]["exceeded"]
     assert (summary["safety"]["steps"], summary["safety"]["verified_steps"]) == (201, 200)
     reason = "at 5.0 s the plan comes within -0.87 m of an obstacle (margin 0.50 m)"
     assert summary["safety"]["unverified_reason"] == reason
-    expected = "Flight completed, but the safety guarantee was void: slack 1.37 m (margin 0.50 m) at 5.0 s"
+    expected = (
+        "Flight completed, but the safety guarantee was void: planned clearance -0.87 m (at least 0.00 m) at 5.0 s"
+    )
     assert printed(summary, run).splitlines()[0].startswith(expected)
     (run / "plan.csv").unlink()
     write_plan(run, slack=0.49, off=0.19)
     summary = summarise(run, **FLOWN)
     assert summary["safety"]["exceeded"]["payload_deviation"]["value"] == pytest.approx(0.19, abs=1e-3)
-    assert "slack" not in summary["safety"]["exceeded"] and summary["completed"]
+    assert "plan_clearance" not in summary["safety"]["exceeded"] and summary["completed"]
     assert "payload off the plan 0.19 m (bound 0.10 m)" in printed(summary, run).splitlines()[0]
 
 

@@ -13,9 +13,12 @@ class GuaranteeAlarm(ScopedAlarm):
     """Alarms of :class:`Guarantee`. They compare the estimate with bounds: their false-alarm rate is the estimate's."""
 
     # fmt: off
+    PLAN_UNVERIFIED = (Scope.IN_AIR, Severity.WARNING, "check the clearance; fly slower",
+        "the plan that is flown comes nearer to an obstacle than the margin (`avoidance.margin`), by exact distances "
+        "over its horizon")
     SAFETY_GUARANTEE_VOID = (Scope.IN_AIR, Severity.WARNING, "check the clearance; fly slower",
-        "the plan that is flown misses the barrier to an obstacle by more than the margin (`avoidance.margin`), or no "
-        "QP of the planner has a solution")
+        "the plan that is flown leads into an obstacle, by exact distances to where it may be, or no QP of the planner "
+        "has a solution")
     PLAN_DEVIATION_EXCEEDED = (Scope.CLEAR_OF_GROUND, Severity.WARNING, "check the clearance; check for wind",
         "payload or a UAV is farther from the plan, by the estimate, than the margins allow for "
         "(`safety.planner.tracking`, `uav_tracking`)")
@@ -23,7 +26,7 @@ class GuaranteeAlarm(ScopedAlarm):
 
 
 class Guarantee:
-    """The detector of both."""
+    """The detector of these."""
 
     def __init__(self, flight: Flight) -> None:
         self._margin = flight.mission.system.avoidance.margin
@@ -38,9 +41,11 @@ class Guarantee:
         if safety.infeasible:
             text = "no QP has a solution: a stop is flown, or the plan before where that keeps farther away"
             step.raise_alarm(safety.nearest or "team", GuaranteeAlarm.SAFETY_GUARANTEE_VOID, text)
-        if safety.slack > self._margin:
-            text = f"slack {safety.slack:.2f} m (margin {self._margin:.2f} m)"
-            step.raise_alarm(safety.nearest or "team", GuaranteeAlarm.SAFETY_GUARANTEE_VOID, text)
+        if not safety.verified:
+            is_void = safety.clearance < 0.0
+            code = GuaranteeAlarm.SAFETY_GUARANTEE_VOID if is_void else GuaranteeAlarm.PLAN_UNVERIFIED
+            text = f"the plan keeps {safety.clearance:.2f} m (margin {self._margin:.2f} m)"
+            step.raise_alarm(safety.nearest or "team", code, text)
         if safety.payload_bound is None or safety.uav_bound is None:
             return
         payload, uavs = self.deviations(step.record)

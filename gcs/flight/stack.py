@@ -19,7 +19,7 @@ from idc_controller.geometry.obstacles import ObstacleSource
 from idc_controller.guidance.navigator import Navigator
 from idc_controller.guidance.progress import AdaptiveGuidance, Guidance
 from idc_controller.guidance.resting_place import RestingPlace
-from idc_controller.guidance.sight import SensorView, Sight, SpeedBySight
+from idc_controller.guidance.sight import SensorView, Sight, SpeedBySight, closing_speed
 from idc_controller.model.linear import LinearModel
 from idc_controller.perception.obstacle_map import ObstacleMap
 from idc_controller.perception.range_sensors import SensorModel
@@ -27,7 +27,9 @@ from idc_controller.perception.ray_pattern import RayPattern
 from idc_controller.perception.scan_placement import SensorRays
 from idc_controller.perception.settings import PerceptionSettings
 from idc_controller.safety.filter_protocol import SafetyFilter
+from idc_controller.safety.give_way import give_way_time
 from idc_controller.safety.safety_filter import AvoidanceFilter
+from idc_controller.safety.settings import PlannerSettings
 from idc_controller.trajectory.settings import Limits
 
 
@@ -74,13 +76,17 @@ def sensor_rays(sensor: RangeSensorConfig) -> SensorRays:
 
 def avoidance(config: SystemConfig, model: LinearModel, obstacles: ObstacleSource) -> AvoidanceFilter:
     """Return the safety filter that keeps ``obstacles`` out of the hull."""
-    planner = replace(
+    return AvoidanceFilter(model.parameters, planner_settings(config), obstacles, config.safety.filter)
+
+
+def planner_settings(config: SystemConfig) -> PlannerSettings:
+    """Return the settings of the safety QP, with those that other tables own."""
+    return replace(
         config.safety.planner,
         limits=motion_limits(config),
         margin=config.avoidance.margin,
         barrier_rates=config.avoidance.barrier_rates,
     )
-    return AvoidanceFilter(model.parameters, planner, obstacles, config.safety.filter)
 
 
 def guidance(
@@ -110,13 +116,38 @@ def guidance(
 def speed_by_sight(config: SystemConfig, model: LinearModel, sight: Sight) -> SpeedBySight:
     """Return the limit of the progress by what range sensors have seen."""
     settings = replace(config.guidance.sight, limits=motion_limits(config), margin=config.avoidance.margin)
-    parameters, sensor = model.parameters, config.range_sensor
+    formation = tilted_formation(config)
+    return SpeedBySight(sight, settings, formation, sensor_view(config), reaction_time(config, formation))
+
+
+def closing_speed_limit(config: SystemConfig) -> float:
+    """Return the speed (m/s), the team's and a moving obstacle's together, that leaves time to give way to it."""
+    formation = tilted_formation(config)
+    return closing_speed(sensor_view(config), formation, reaction_time(config, formation))
+
+
+def sensor_view(config: SystemConfig) -> SensorView:
+    """Return what the range sensors of the vehicles can see."""
+    parameters, sensor = config.parameters(), config.range_sensor
     offsets = parameters.p - np.outer(parameters.l, [0.0, 0.0, 1.0])
-    view = SensorView(
-        offsets, sensor.range, math.radians(sensor.elevation_min_deg), math.radians(sensor.elevation_max_deg)
-    )
-    formation = BoundingCylinder.of(parameters, config.guidance.navigator.link_tilt)
-    return SpeedBySight(sight, settings, formation, view)
+    lowest, highest = math.radians(sensor.elevation_min_deg), math.radians(sensor.elevation_max_deg)
+    return SensorView(offsets, sensor.range, lowest, highest)
+
+
+def tilted_formation(config: SystemConfig) -> BoundingCylinder:
+    """Return the upright bounds of the formation, its links tilted as far as in a detour."""
+    return BoundingCylinder.of(config.parameters(), config.guidance.navigator.link_tilt)
+
+
+def reaction_time(config: SystemConfig, formation: BoundingCylinder) -> float:
+    """Return the time (s) from which on a moving obstacle is in range until the formation has given way to it.
+
+    The sum of its confirmation, of the planning interval, and of :func:`give_way_time` by the width of both, the margin
+    and what the payload may be off its plan.
+    """
+    planner, sight = planner_settings(config), config.guidance.sight
+    aside = formation.radius + sight.mover_radius + planner.margin + planner.tracking
+    return sight.confirmation + planner.stage + give_way_time(planner, aside)
 
 
 def resting_place(

@@ -54,7 +54,7 @@ def safety_figures(run: RunData) -> dict[str, Any] | None:
     payload_bound, uav_bound = _bound(plan["payload_bound_m"]), _bound(plan["uav_bound_m"])
     margin = run.setting("avoidance", "margin")
     exceeded = {
-        "slack": _exceeded(time, plan["slack_m"], margin),
+        "plan_clearance": _fallen_below(time, plan["plan_clearance_m"], 0.0),
         "payload_deviation": _exceeded(run.time[rows], payload, payload_bound),
         "uav_deviation": _exceeded(run.time[rows], uav, uav_bound),
     }
@@ -91,6 +91,12 @@ def _exceeded(time: Array, values: Array, limit: float | None) -> dict[str, floa
         return None
     k = int(np.argmax(values))
     return {"value": float(values[k]), "limit": limit, "time_s": float(time[k])}
+
+
+def _fallen_below(time: Array, values: Array, limit: float) -> dict[str, float] | None:
+    """Return the least of ``values`` with the ``limit`` (m) that it falls below, and its time (s); None: none does."""
+    found = _exceeded(time, -values, -limit)
+    return None if found is None else {"value": -found["value"], "limit": limit, "time_s": found["time_s"]}
 
 
 def _bound(values: Any) -> float | None:

@@ -106,13 +106,14 @@ def void_guarantee(summary: Mapping[str, Any]) -> str:
     Where there was nothing to keep clear of, it is the plan that was left.
     """
     exceeded = (summary["safety"] or {}).get("exceeded") or {}
-    named = {"slack": ("slack", "margin"), "payload_deviation": ("payload off the plan", "bound"),
+    named = {"plan_clearance": ("planned clearance", "at least"),
+             "payload_deviation": ("payload off the plan", "bound"),
              "uav_deviation": ("UAVs off the plan", "bound")}  # fmt: skip
     parts = [
         f"{named[name][0]} {entry['value']:.2f} m ({named[name][1]} {entry['limit']:.2f} m) at {entry['time_s']:.1f} s"
         for name, entry in exceeded.items()
     ]
-    is_void = "slack" in exceeded or summary["clearance_min_m"] is not None
+    is_void = "plan_clearance" in exceeded or summary["clearance_min_m"] is not None
     void = "the safety guarantee was void: " if is_void else ""
     return f"{void}{', '.join(parts)}" if parts else ""
 

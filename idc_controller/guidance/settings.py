@@ -103,8 +103,8 @@ class SightSettings(SettingsTable):
     latency: float = setting(
         0.4, "s", "from a ray until the reference slows down: scan, telemetry, map, progress and set-points", ge=0.0
     )
-    horizon: float = setting(3.2, "s", "of the plan that is compared with what was seen", gt=0.0)
-    samples: int = setting(33, "", "places of the formation within that", ge=2)
+    horizon: float = setting(4.8, "s", "of the plan that is compared with what was seen", gt=0.0)
+    samples: int = setting(49, "", "places of the formation within that", ge=2)
     slowest: float = setting(
         0.2, "", "progress rate at which the way is looked at where the mission is slower or at rest", gt=0.0, le=1.0
     )
@@ -118,8 +118,12 @@ class SightSettings(SettingsTable):
     closing_speed: float = setting(
         0.4, "m/s", "of moving obstacles that may come into sight, for which the own speed leaves time", ge=0.0
     )
-    give_way_time: float = setting(
-        2.0, "s", "that giving way to one takes: the latency, and 2 sqrt(2.2 m / 3.3 m/s2) for a metre's body", gt=0.0
+    mover_radius: float = setting(0.5, "m", "of a moving obstacle to which there is time to give way", ge=0.0)
+    confirmation: float = setting(
+        0.7,
+        "s",
+        "from coming into range until an obstacle is known to move: scans, telemetry, map and evidence of its motion",
+        ge=0.0,
     )
 
     @property

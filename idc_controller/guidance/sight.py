@@ -71,6 +71,16 @@ class SensorView(NamedTuple):
     """Upper end (rad)."""
 
 
+def closing_speed(view: SensorView, formation: BoundingCylinder, reaction: float) -> float:
+    """Return the speed (m/s), the formation's and a moving obstacle's together, that leaves time to give way to it.
+
+    From the edge of the outermost range sensor's range to the ``formation``, with its links tilted, it takes the
+    ``reaction`` (s): from sight of the obstacle to having given way.
+    """
+    beyond = formation.radius - float(np.hypot(view.offsets[:, 0], view.offsets[:, 1]).max())
+    return (view.range - beyond) / reaction
+
+
 class SightLimit(NamedTuple):
     """Largest progress rate by sight, and why."""
 
@@ -94,8 +104,15 @@ class SightLimit(NamedTuple):
 class SpeedBySight:
     """Largest progress rate from step to step, and since when it has been none."""
 
-    def __init__(self, sight: Sight, settings: SightSettings, formation: BoundingCylinder, view: SensorView) -> None:
-        """``formation``: with its links tilted."""
+    def __init__(
+        self,
+        sight: Sight,
+        settings: SightSettings,
+        formation: BoundingCylinder,
+        view: SensorView,
+        reaction: float,
+    ) -> None:
+        """``formation``: with its links tilted; ``reaction``: from sight of an obstacle to having given way (s)."""
         self._sight, self.settings, self._formation, self._view = sight, settings, formation, view
         self._elapsed = np.linspace(0.0, settings.horizon, settings.samples)
         margin = settings.margin
@@ -103,10 +120,9 @@ class SpeedBySight:
         self._heights = np.array([formation.above, 0.5 * (formation.above - formation.below), 0.0])
         self.slow = self.speed_within(0.5 * margin)
         """Speed from which it stops within half of its margin (m/s): beside unseen space it need not be slower."""
-        # From where sensors are ahead of the formation's middle to where it ends.
-        ahead = float(np.hypot(view.offsets[:, 0], view.offsets[:, 1]).max()) - formation.radius
-        self.fastest = (view.range + ahead) / settings.give_way_time - settings.closing_speed
-        """Speed that leaves time to give way to what comes from beyond the range (m/s)."""
+        self._reaction = reaction
+        self.fastest = closing_speed(view, formation, reaction) - settings.closing_speed
+        """Own speed that leaves time to give way to what comes from beyond the range (m/s)."""
 
         self.last = SightLimit()
         """Limit of the last step."""
@@ -176,8 +192,8 @@ class SpeedBySight:
             return SightLimit()
         distance = _length(path[: hidden + 1])
         # Until the speed has followed the progress, the way to what is hidden becomes shorter.
-        since = s.give_way_time + s.latency + 0.5 * s.stopping_delay
-        fastest = max((distance - s.closing_speed * s.give_way_time) / since, self.slow)
+        since = self._reaction + s.latency + 0.5 * s.stopping_delay
+        fastest = max((distance - s.closing_speed * self._reaction) / since, self.slow)
         return self._limit(rate, float(speeds[: hidden + 1].max()), fastest, "hidden", distance)
 
     def _of_unseen(self, rate: float, path: Array, speeds: Array, before: Indices, least: float) -> SightLimit:

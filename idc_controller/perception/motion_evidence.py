@@ -72,6 +72,11 @@ class MotionEvidence:
         self.nats = 0.0
         """Evidence that it does not stand, not below 0."""
 
+    def reset(self) -> None:
+        """Begin anew: without evidence, and without earlier points."""
+        self._frames.clear()
+        self.nats = 0.0
+
     def add(
         self,
         points: SurfacePoints,

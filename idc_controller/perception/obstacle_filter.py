@@ -101,6 +101,16 @@ class ObstacleFilter:
         s, (_, velocity, _) = self.settings, self._imm.state
         return bool(self._imm.weight[0] > s.static_weight and np.linalg.norm(velocity) < s.static_speed)
 
+    @property
+    def may_move(self) -> bool:
+        """Return whether it can be an obstacle that moves.
+
+        Its speed is within the stated one, and it is no wall: no flat face of more than ``mover_face_max`` both ways.
+        """
+        s = self.settings
+        is_wall = self._known is None and isinstance(self.shape, Wall) and min(self.shape.size[1:]) > s.mover_face_max
+        return not is_wall and float(np.linalg.norm(self._imm.state[1])) <= s.mover_speed_max
+
     def is_moving(self, false_alarm: float) -> bool:
         """Return whether noise explains its velocity with less than the stated probability."""
         _, velocity, _ = self._imm.state

@@ -186,6 +186,10 @@ class ObstacleFilterSettings(SettingsTable):
     )
     static_speed: float = setting(0.1, "m/s", "speed below which a track is static", gt=0.0)
     static_weight: float = setting(0.5, "", "weight of the static model above which it is", gt=0.0, lt=1.0)
+    mover_speed_max: float = setting(5.0, "m/s", "speed above which a track is no obstacle that moves", gt=0.0)
+    mover_face_max: float = setting(
+        1.6, "m", "edges of a flat face of which both are longer: that is a wall, and does not move", gt=0.0
+    )
     late_speed: float = setting(0.5, "m/s", "uncertainty of the speed by which late frames are moved", ge=0.0)
     pole_complexity: float = setting(0.4, "", "by which a pole must fit better than a sphere", ge=0.0)
     wall_complexity: float = setting(0.8, "", "by which a wall must fit better than a sphere", ge=0.0)

@@ -97,8 +97,12 @@ class Track:
         else:
             self.filter.update(points)
         self.detections.add(points, len(parts), self.filter.state[0], self.filter.time)
-        if not self.has_moved:
-            s, evidence = self.settings.standing_map, self.detections.evidence
+        s, evidence = self.settings.standing_map, self.detections.evidence
+        if not self.filter.may_move:
+            # Not one body: clusters of several that stand were joined. It takes new evidence to be one.
+            self.has_moved = False
+            evidence.reset()
+        elif not self.has_moved:
             evidence.add(points, explained, scans, s)
             self.has_moved = evidence.nats > -math.log(s.false_alarm) and self.filter.is_moving(s.false_alarm)
         self.is_deleted = False

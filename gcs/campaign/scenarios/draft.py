@@ -16,7 +16,7 @@ from gcs.campaign.scenarios.moving import FLIGHT, MOTIONS, displacement, motion_
 from gcs.campaign.scenarios.schedule import Schedule
 from gcs.config import SystemConfig
 from gcs.mission.model import Lissajous, Mission, Obstacle
-from gcs.mission.motion import AnyMotion
+from gcs.mission.motion import AnyMotion, LinearMotion
 from gcs.mission.route import Route
 from gcs.mission.toml_mission import route_through
 from idc_controller.geometry.box import Wall
@@ -100,6 +100,14 @@ class Draft:
         self.reference = {"points": points, "speed": speed, "return_home": False}
         self._lay(route_through(points, speed, self._system, return_home=False))
 
+    def lay_straight(self, speed: float) -> None:
+        """Lay a straight path of 30 m at a ``speed`` (m/s)."""
+        heading, altitude = self.random.uniform(-math.pi, math.pi), self._uniform(4.0, 6.0)
+        goal = _rounded(np.array([30.0 * math.cos(heading), 30.0 * math.sin(heading), -altitude]))
+        points = [(0.0, 0.0, -altitude), goal]
+        self.reference = {"points": points, "speed": speed, "return_home": False}
+        self._lay(route_through(points, speed, self._system, return_home=False))
+
     def _lay_figure(self) -> None:
         """Lay a lap and a half of a figure eight at up to 2.5 m/s."""
         a, b = self._uniform(6.0, 8.0), self._uniform(2.5, 3.5)
@@ -179,6 +187,15 @@ class Draft:
         self._moving.append((along, where))
         rest = _rounded(where - [0.0, 0.0, up] - then)
         self.obstacles.append(Obstacle(self._name("moving sphere"), rest, shape, known, motion))
+
+    def add_approaching(self, along: float, speed: float) -> None:
+        """Add a sphere that meets the undisturbed payload at ``speed`` (m/s) from any bearing, not on the map."""
+        where, _, time = self._place(along, 0.0)
+        bearing, up = self.random.uniform(-math.pi, math.pi), self.random.uniform(-0.2, 3.0)
+        motion = LinearMotion(_rounded(speed * np.array([math.cos(bearing), math.sin(bearing), 0.0])))
+        [then] = displacement(motion, np.array([time]))
+        self._moving.append((along, where))
+        self.obstacles.append(Obstacle("ball", _rounded(where - [0.0, 0.0, up] - then), Sphere(0.5), False, motion))
 
     def add_stop_and_go(self, along: float) -> None:
         """Add a sphere that stops and goes about where the undisturbed payload passes, not on the map."""

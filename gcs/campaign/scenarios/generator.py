@@ -16,13 +16,14 @@ from gcs.campaign.scenarios.boxes import boxes
 from gcs.campaign.scenarios.draft import Contents, Draft
 from gcs.campaign.scenarios.forest import forest
 from gcs.campaign.scenarios.layout import Layout, Random
-from gcs.campaign.scenarios.moving import STOP_AND_GO_SPEEDS
+from gcs.campaign.scenarios.moving import SLOWEST, STOP_AND_GO_SPEEDS
 from gcs.campaign.scenarios.overhang import overhang
 from gcs.campaign.scenarios.passage import Passage, Passages
 from gcs.campaign.scenarios.rooms import rooms
 from gcs.campaign.toml_text import mission_text
 from gcs.config import SystemConfig, read_system
 from gcs.errors import GcsError
+from gcs.flight.stack import closing_speed_limit
 from gcs.mission.model import Limits, Lissajous, Obstacle
 
 HELD_TO = Limits(clearance=0.3, payload_tilt_deg=6.0)
@@ -44,14 +45,22 @@ class RandomScenario:
 def generate(
     seed: int, number: int, kind: str, config: SystemConfig | None = None, fastest: float = 2.0
 ) -> RandomScenario:
-    """Return scenario ``number`` of ``seed``; obstacles move at up to ``fastest`` (m/s), but what stops and goes.
+    """Return scenario ``number`` of ``seed``; obstacles move at up to ``fastest`` (m/s).
+
+    What stops and goes, and what approaches, has speeds of its own.
 
     ``config`` is the system that flies it; None: the default. The same arguments give the same scenario.
     Raises :class:`GcsError` if no draft can be flown.
     """
     system = read_system(None) if config is None else config
     random = np.random.default_rng([seed, number, KINDS.index(kind)])
-    draw = partial(_lay_out, kind, Passages(system)) if kind in _LAYOUTS else partial(_draft, kind, system, fastest)
+    draw: Callable[[Random], _Drawn | None]
+    if kind == APPROACHING:
+        draw = partial(_approached, system)
+    elif kind in _LAYOUTS:
+        draw = partial(_lay_out, kind, Passages(system))
+    else:
+        draw = partial(_draft, kind, system, fastest)
     name = f"{number:04d}-{kind}"
     for _ in range(MAX_DRAFTS):
         if (drawn := draw(random)) is not None:
@@ -77,6 +86,17 @@ def _draft(kind: str, system: SystemConfig, fastest: float, random: Random) -> _
     return _Drawn(draft.reference, draft.obstacles) if draft.can_be_flown() else None
 
 
+def _approached(system: SystemConfig, random: Random) -> _Drawn | None:
+    """Draw a path that one obstacle meets from any bearing, at 0.7 to 1 times the closing speed that can be met."""
+    closing = closing_speed_limit(system)
+    own = round(random.uniform(OWN_SPEEDS[0], min(OWN_SPEEDS[1], closing - 2.0 * SLOWEST)), 3)
+    obstacle = max(random.uniform(0.7, 1.0) * closing - own, SLOWEST)
+    draft = Draft(random, system, obstacle)
+    draft.lay_straight(own)
+    draft.add_approaching(random.uniform(18.0, 22.0), obstacle)
+    return _Drawn(draft.reference, draft.obstacles) if draft.can_be_flown() else None
+
+
 def _lay_out(kind: str, passages: Passages, random: Random) -> _Drawn | None:
     layout = _LAYOUTS[kind](random, passages)
     if (passage := layout.passage(passages)) is None:
@@ -85,7 +105,9 @@ def _lay_out(kind: str, passages: Passages, random: Random) -> _Drawn | None:
     return _Drawn(reference, layout.obstacles, passage)
 
 
-STOP_AND_GO = "stop_and_go"
+STOP_AND_GO, APPROACHING = "stop_and_go", "approaching"
+OWN_SPEEDS = (1.0, 2.5)
+"""Of the team in scenarios with an approaching obstacle (m/s)."""
 _CONTENTS = {
     "spheres": Contents(0.25, ((1, 4, (Draft.add_sphere,)),)),
     "poles": Contents(0.0, ((1, 4, (Draft.add_poles,)),)),
@@ -100,6 +122,6 @@ _LAYOUTS: dict[str, Callable[[Random, Passages], Layout]] = {
     "rooms": rooms,
     "overhang": overhang,
 }
-KINDS = ("spheres", "poles", "walls", "moving", "mixed", *_LAYOUTS, STOP_AND_GO)
+KINDS = ("spheres", "poles", "walls", "moving", "mixed", *_LAYOUTS, STOP_AND_GO, APPROACHING)
 DEFAULT_KINDS = KINDS[:5]
 """The kinds that are flown where none are named."""
