@@ -121,14 +121,16 @@ class SpeedBySight:
         self.slow = self.speed_within(0.5 * margin)
         """Speed from which it stops within half of its margin (m/s): beside unseen space it need not be slower."""
         self._reaction = reaction
-        self.fastest = closing_speed(view, formation, reaction) - settings.closing_speed
-        """Own speed that leaves time to give way to what comes from beyond the range (m/s)."""
-
         self.last = SightLimit()
         """Limit of the last step."""
         self.is_least = False
         """Whether nothing else limited the progress more in the last step."""
         self._since: float | None = None
+
+    @property
+    def fastest(self) -> float:
+        """Own speed that leaves time to give way to what comes from beyond the range (m/s)."""
+        return closing_speed(self._view, self._formation, self._reaction) - self.settings.closing_speed
 
     def compare(self, time: float, wanted: float, least: float) -> None:
         """Note the rate that is ``wanted`` without it at ``time`` (s); below ``least`` it counts as rest."""
