@@ -52,6 +52,7 @@ class Decision(NamedTuple):
     """The reference from ``time`` on, one stage a period."""
     iterations: int
     infeasible: bool
+    """The QP of the tracker, or all of the safety filter, had no solution."""
     compute_time: ComputeTime
     safety: SafetyReport
     """Outcome of the safety filter's last plan."""
@@ -140,7 +141,7 @@ class IntegratedDecisionController:
             reference=reference,
             flat=stages,
             iterations=output.iterations,
-            infeasible=output.infeasible,
+            infeasible=output.infeasible or (self.safety.report.infeasible and not on_ground),
             compute_time=ComputeTime(planned - begin, tracked - ready),
             safety=self.safety.report,
             progress_rate=self.guidance.rate,

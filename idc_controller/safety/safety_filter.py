@@ -25,6 +25,9 @@ NEGLIGIBLE = 1e-5
 VERIFIED = 1e-3
 """m by which a plan may miss the margin, by exact distances, and count as verified: what solvers leave."""
 
+_ASIDE = np.vstack([np.zeros(3), *(d * np.vstack([np.eye(3), -np.eye(3)]) for d in (1.0, 2.0))])
+"""Places to stop at, from where the motion ends for the least cost, where no QP has a solution (13, 3) (NED, m)."""
+
 
 class AvoidanceFilter:
     """Keeps every obstacle out of the hull; see :class:`~idc_controller.safety.filter_protocol.SafetyFilter`."""
@@ -151,17 +154,19 @@ class AvoidanceFilter:
         return best, nearest.obstacle.name, False, qp_count
 
     def _without_solution(self, time: float, start: Array, ahead: Array, obstacles: PredictedObstacles) -> Plan:
-        """Return what is flown where no QP has a solution: a stop, or the plan in force where that keeps farther away.
+        """Return what is flown where no QP has a solution: of stops here and aside, and the plan in force, the safest.
 
-        Never the bare reference, which nothing has checked.
+        That keeps farthest from all obstacles, up to the margin. Never the bare reference, which nothing has checked.
         """
         rest, begin = self._rest(start, ahead)
-        stop = self.planner.free(begin)
-        stop = replace(stop, deviation=stop.deviation + (rest - ahead).transpose(1, 0, 2))
-        kept = self._kept(time)
-        if kept is None or self._clearance(ahead, stop, obstacles) >= self._clearance(ahead, kept, obstacles):
-            return stop
-        return kept
+        plans = [kept] if (kept := self._kept(time, ahead)) is not None else []
+        for aside in _ASIDE:
+            from_rest = begin.copy()
+            from_rest[0] -= aside
+            stop, moved = self.planner.free(from_rest), rest - ahead
+            moved[0] += aside
+            plans.append(replace(stop, deviation=stop.deviation + moved.transpose(1, 0, 2)))
+        return max(plans, key=lambda plan: self._clearance(ahead, plan, obstacles))
 
     def _rest(self, start: Array, ahead: Array) -> tuple[Array, Array]:
         """Return the rest where motion from now on ends for the least cost (5, K + 1, 3), and the state now about it.
@@ -209,12 +214,13 @@ class AvoidanceFilter:
     def _near(self, position: Array, acceleration: Array, obstacles: PredictedObstacles) -> list[Separation]:
         return separations(self.formation, position, acceleration, obstacles, self.filter_settings.watch)
 
-    def _kept(self, time: float) -> Plan | None:
-        """The plan in force, shifted to now."""
-        if self._plan is None:
+    def _kept(self, time: float, ahead: Array) -> Plan | None:
+        """Return the trajectory in force, as a plan about the reference ``ahead``, that may be another; None: none."""
+        if self._trajectory is None:
             return None
-        states = np.ascontiguousarray(self._shifted(self._plan, time).transpose(1, 0, 2))
-        return Plan(self._plan.knots, states, self._plan.cost, self._plan.slack, self._plan.standing_slack)
+        chain = self.settings.chain
+        states = np.ascontiguousarray((self._trajectory.derivatives(time + chain.times) - ahead).transpose(1, 0, 2))
+        return replace(self.planner.free(states[0]), deviation=states)
 
     def _shifted(self, plan: Plan, time: float) -> Array:
         """States (5, K + 1, 3) of the deviation of the plan in force at the stages from ``time`` (s) on."""
