@@ -96,7 +96,7 @@ class FlightRecorder:
         telemetry, estimation, perception, planning, *others = milliseconds
         self._steps.write_numbers(
             [time, estimation, planning, 1e3 * decision.compute_time.tracker, sum(milliseconds), decision.iterations,
-             int(decision.infeasible), telemetry, perception, *others]
+             int(decision.infeasible or decision.safety.infeasible), telemetry, perception, *others]
         )  # fmt: skip
 
     def obstacles(self, obstacle_map: ObstacleMap, time: float) -> None:

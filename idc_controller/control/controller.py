@@ -52,10 +52,10 @@ class Decision(NamedTuple):
     """The reference from ``time`` on, one stage a period."""
     iterations: int
     infeasible: bool
-    """The QP of the tracker, or all of the safety filter, had no solution."""
+    """The tracker's QP had no solution."""
     compute_time: ComputeTime
     safety: SafetyReport
-    """Outcome of the safety filter's last plan."""
+    """Outcome of the safety filter; on the ground it plans nothing."""
     progress_rate: float
     """Rate of the mission's progress: 1 is its own speed, 0 rest."""
     sight: SightLimit
@@ -141,9 +141,9 @@ class IntegratedDecisionController:
             reference=reference,
             flat=stages,
             iterations=output.iterations,
-            infeasible=output.infeasible or (self.safety.report.infeasible and not on_ground),
+            infeasible=output.infeasible,
             compute_time=ComputeTime(planned - begin, tracked - ready),
-            safety=self.safety.report,
+            safety=SafetyReport() if on_ground else self.safety.report,
             progress_rate=self.guidance.rate,
             sight=self.guidance.sight,
             detours=self.guidance.detours,
