@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcs.flight import stack
-from gcs.reproduce.scene import MARGIN, RADIUS, KnownSpheres, Sphere, configuration, printed_reference
+from gcs.reproduce.scene import MARGIN, RADIUS, ExtrapolatedSpheres, KnownSpheres, Sphere, configuration, printed_reference
 from idc_controller.estimation.estimate import Estimate
 from idc_controller.geometry.formation import Formation
 from idc_controller.guidance.progress import Guidance
@@ -158,8 +158,10 @@ class ProjectControl(Control):
     """The project's controller: set-points of attitude and thrust, an attitude loop on board, rotors with a lag."""
 
     def __init__(
-        self, parameters: SystemParameters, figure: Trajectory, spheres: Sequence[Sphere] = (), margin: float = MARGIN
-    ) -> None:
+        self, parameters: SystemParameters, figure: Trajectory, spheres: Sequence[Sphere] = (), margin: float = MARGIN,
+        extrapolates: bool = False,
+    ) -> None:  # fmt: skip
+        """``extrapolates``: of the spheres only their motion now is known, not where they will be."""
         super().__init__(parameters, figure)
         self._trajectory, config = figure, configuration()
         model = LinearModel(parameters)
@@ -168,7 +170,7 @@ class ProjectControl(Control):
         guidance: Guidance | None = None
         if spheres:
             changed = replace(config, avoidance=replace(config.avoidance, margin=margin))
-            known = KnownSpheres(spheres)
+            known = ExtrapolatedSpheres(spheres) if extrapolates else KnownSpheres(spheres)
             self._safety, guidance = stack.avoidance(changed, model, known), stack.guidance(changed, model, known)
         self._controller = stack.controller(config, model, self._safety, lambda: 0.0, guidance)
         N = parameters.number_of_uavs

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 from gcs.reproduce.controls import PaperVariant
-from gcs.reproduce.simulation import PROJECT, Case
+from gcs.reproduce.simulation import EXTRAPOLATING, PROJECT, Case
 
 PRINTED = PaperVariant("states")
 """The reading of the paper whose simulation does not diverge."""
@@ -36,6 +36,7 @@ def plan(quick: bool) -> Plan:
     }
     cases = {("tracking", name): case for name, case in base.items()}
     avoiding = {name: replace(case, obstacles=True) for name, case in base.items() if name != "outputs"}
+    avoiding["extrapolating"] = replace(avoiding["project"], control=EXTRAPOLATING)
     if not quick:
         avoiding["nonlinear"] = replace(avoiding["printed"], control=replace(PRINTED, acceleration="nonlinear"))
         for poles in POLES:

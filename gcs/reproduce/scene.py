@@ -101,7 +101,7 @@ def two_spheres(meets: float) -> tuple[Sphere, ...]:
 
 
 class KnownSpheres:
-    """The spheres for the safety filter: positions and motions known, as the paper assumes."""
+    """The spheres for the safety filter: where they will be is known."""
 
     def __init__(self, spheres: Sequence[Sphere]) -> None:
         self.spheres = tuple(spheres)
@@ -110,3 +110,17 @@ class KnownSpheres:
         """Return all of them at ``times`` (K,)."""
         none = np.zeros(len(times))
         return [PredictedObstacle(s.name, SphereShape(RADIUS), s.motion(times)[0], none) for s in self.spheres]
+
+
+class ExtrapolatedSpheres(KnownSpheres):
+    """The spheres for the safety filter: position, velocity and acceleration now are known, as the paper assumes."""
+
+    def predict(self, times: Array, region: Region | None = None) -> list[PredictedObstacle]:
+        """Return all of them at ``times`` (K,), with the acceleration that they have at the first of these."""
+        elapsed = (np.asarray(times, dtype=float) - times[0])[:, None]
+        none, found = np.zeros(len(times)), []
+        for s in self.spheres:
+            position, velocity, acceleration = s.motion(times[:1])
+            places = position + elapsed * velocity + 0.5 * elapsed**2 * acceleration
+            found.append(PredictedObstacle(s.name, SphereShape(RADIUS), places, none))
+        return found

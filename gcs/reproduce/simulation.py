@@ -16,7 +16,9 @@ from idc_controller.rotations import euler_from_quaternion
 
 Array = NDArray[np.float64]
 
-PROJECT = "project"
+PROJECT, EXTRAPOLATING = "project", "extrapolating"
+"""This project's controller, told where the spheres will be; told of their motion now only, as the paper's filter is.
+"""
 LOST_TILT, LOST_DISTANCE = 60.0, 60.0
 """deg and m: the payload has tipped over, or flown away."""
 STEPS = 5
@@ -27,7 +29,7 @@ STEPS = 5
 class Case:
     """One simulation.
 
-    ``control`` is a reading of the paper or ``"project"``; ``duration`` (s) of the figure at full rate; ``sigma``
+    ``control`` is a reading of the paper, :data:`PROJECT` or :data:`EXTRAPOLATING`; ``duration`` (s) of the figure at full rate; ``sigma``
     (m/s and rad/s) of noise on the payload's velocity and rates; ``design_mass`` (kg) of the controller's payload
     (None: Table I) and ``plant_mass`` of the plant's (None: the same).
     """
@@ -124,7 +126,7 @@ def simulate(case: Case) -> Flown:
     if isinstance(variant, PaperVariant):
         control = PaperControl(design, variant, None if as_printed else shaped.trajectory, spheres, case.margin)
     else:
-        control = ProjectControl(design, shaped.trajectory, spheres, case.margin)
+        control = ProjectControl(design, shaped.trajectory, spheres, case.margin, variant == EXTRAPOLATING)
     end = case.duration if as_printed else shaped.full_rate + case.duration
 
     plant, rng = Plant(truth), np.random.default_rng(case.seed)
