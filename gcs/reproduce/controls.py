@@ -9,7 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcs.flight import stack
-from gcs.reproduce.scene import MARGIN, RADIUS, ExtrapolatedSpheres, KnownSpheres, Sphere, configuration, printed_reference
+from gcs.reproduce.scene import (
+    MARGIN,
+    RADIUS,
+    ExtrapolatedSpheres,
+    KnownSpheres,
+    Sphere,
+    configuration,
+    printed_reference,
+)
 from idc_controller.estimation.estimate import Estimate
 from idc_controller.geometry.formation import Formation
 from idc_controller.guidance.progress import Guidance

@@ -29,9 +29,9 @@ STEPS = 5
 class Case:
     """One simulation.
 
-    ``control`` is a reading of the paper, :data:`PROJECT` or :data:`EXTRAPOLATING`; ``duration`` (s) of the figure at full rate; ``sigma``
-    (m/s and rad/s) of noise on the payload's velocity and rates; ``design_mass`` (kg) of the controller's payload
-    (None: Table I) and ``plant_mass`` of the plant's (None: the same).
+    ``control`` is a reading of the paper, :data:`PROJECT` or :data:`EXTRAPOLATING`; ``duration`` (s) of the figure at
+    full rate; ``sigma`` (m/s and rad/s) of noise on the payload's velocity and rates; ``design_mass`` (kg) of the
+    controller's payload (None: Table I) and ``plant_mass`` of the plant's (None: the same).
     """
 
     control: PaperVariant | str
