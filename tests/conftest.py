@@ -5,12 +5,17 @@ from __future__ import annotations
 import gc
 from pathlib import Path
 
-import pymavlink.dialects.v20.common as mavlink
 import pytest
 from hypothesis import settings
-from matplotlib.figure import Figure
-from matplotlib.text import Text
-from vehicle_bench import Bench
+
+from gcs.numerics import choose_kernels
+
+choose_kernels()  # before numpy is imported: what runs in this process gives the figures of a flight on any processor
+
+import pymavlink.dialects.v20.common as mavlink  # noqa: E402
+from matplotlib.figure import Figure  # noqa: E402
+from matplotlib.text import Text  # noqa: E402
+from vehicle_bench import Bench  # noqa: E402
 
 # The same examples at every run, however busy the machine is.
 settings.register_profile("repeatable", deadline=None, derandomize=True)
