@@ -285,3 +285,29 @@ def test_filter_is_deterministic():
     tracks = [tracked(MOTIONS["circle"], seed=6, until=3.0)[0] for _ in range(2)]
     for a, b in zip(tracks[0].state, tracks[1].state, strict=True):
         np.testing.assert_array_equal(a, b)
+
+
+def seen_moving(obstacle_at, speed, frames=12):
+    """The filter after ``frames`` of an obstacle that moves east at a ``speed`` (m/s)."""
+    scene, track = dense(3), None
+    for k in range(frames):
+        time = PERIOD * k
+        points = scene.frame(time, [-5.0, 0.0, -6.0], obstacle_at(np.array([0.0, speed * (time - 0.6), -6.0])))
+        if track is None:
+            track = ObstacleFilter(MODELS, points)
+        else:
+            track.update(points)
+    return track
+
+
+@pytest.mark.parametrize(("speed", "moves"), [(3.0, True), (4.0, True), (8.0, False)])
+def test_no_track_moves_faster_than_the_stated_speed(speed, moves):
+    assert seen_moving(lambda place: sphere(place, 0.5), speed).may_move is moves
+
+
+@pytest.mark.parametrize(
+    ("size", "moves"), [((0.3, 1.2, 5.0), True), ((0.3, 5.0, 1.2), True), ((0.3, 5.0, 5.0), False)]
+)
+def test_large_flat_face_is_a_wall_and_does_not_move(size, moves):
+    track = seen_moving(lambda place: wall((0.0, place[1], -6.0), size, 0.0), 1.0)
+    assert track.may_move is moves
