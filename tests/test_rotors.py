@@ -28,7 +28,7 @@ def wrench_of(f_1, f_2, f_3, f_4):
 
 
 def wrench_after(rotors, command):
-    """Mean thrust and torques of one vehicle's rotors over a step."""
+    """Thrust and torques of one vehicle's rotors at the beginning of a step, which is taken."""
     [[thrust]], [[torques]] = rotors.advance(np.array([command], dtype=float))
     return thrust, *torques
 
@@ -85,7 +85,7 @@ def test_yaw_never_costs_roll_or_pitch_and_is_the_largest_that_fits(
         assert min(min(forces), 7.5 - max(forces)) == pytest.approx(0.0, abs=1e-9)
 
 
-def test_rotor_lag_is_exact_at_any_step() -> None:
+def test_rotor_lag_is_exact_at_any_step_and_its_impulse_of_second_order() -> None:
     command = (700.0, 400.0, 900.0, 0.0)
 
     def motion(t: float, state: np.ndarray) -> np.ndarray:
@@ -93,12 +93,18 @@ def test_rotor_lag_is_exact_at_any_step() -> None:
         return np.concatenate([(np.array(command) - speeds) / 0.05, impulse])
 
     exact = solve_ivp(motion, (0.0, 0.08), [600.0] * 4 + [0.0] * 4, rtol=1e-11, atol=1e-11).y[:, -1]
+    errors = []
     for steps in (1, 20, 40):
         rotors = Rotors([GEOMETRY], [0.05], 0.08 / steps)
         rotors.speeds[:] = 600.0
-        impulse = np.sum([wrench_after(rotors, command) for _ in range(steps)], axis=0) * 0.08 / steps
+        wrenches = [wrench_after(rotors, command) for _ in range(steps)]
         assert rotors.speeds[0] == pytest.approx(exact[:4], abs=1e-6)
-        assert impulse == pytest.approx(exact[4:], abs=1e-8)
+        # A wrench acts from half a step before its time to half a step after it.
+        wrenches.append(wrench_after(rotors, command))
+        weights = np.array([0.5, *[1.0] * (steps - 1), 0.5])
+        errors.append(weights @ wrenches * 0.08 / steps - exact[4:])
+    assert np.abs(errors[1]).max() < 1e-3
+    assert np.linalg.norm(errors[1]) / np.linalg.norm(errors[2]) == pytest.approx(4.0, rel=0.01)
 
 
 def test_commands_above_largest_speed_are_clipped() -> None:

@@ -8,7 +8,14 @@ from scipy.spatial.transform import Rotation
 
 from idc_controller.rotations_float import into_body
 from vehicle_sim.world.rotor_kernels import advance_rotors
-from vehicle_sim.world.state_kernels import measure, states_from_engine
+from vehicle_sim.world.state_kernels import (
+    LOAD_COLUMNS,
+    PART_COLUMNS,
+    READING_COLUMNS,
+    STATE_COLUMNS,
+    measure,
+    states_from_engine,
+)
 from vehicle_sim.world.world_state import flipped, product, quaternion_from_engine, upward_axis
 
 RNG = np.random.default_rng(7)
@@ -18,15 +25,15 @@ def quaternions(count):
     return Rotation.random(count, random_state=3).as_quat()
 
 
-def test_states_are_the_readings_in_the_projects_frames_half_a_step_on():
-    readings, before = RNG.normal(size=(5, 13)), RNG.normal(size=(5, 6))
+def test_states_are_the_readings_in_the_projects_frames():
+    readings, parts = RNG.normal(size=(5, READING_COLUMNS)), RNG.random((5, PART_COLUMNS))
     readings[:, 3:7] = quaternions(5)
     payload_in_axes = quaternions(6)[5]
-    states = np.empty((5, 13))
-    states_from_engine(np.hstack([readings, before]), payload_in_axes, states)
-    for i, (now, earlier) in enumerate(zip(readings.tolist(), before.tolist(), strict=True)):
+    states, loads = np.empty((5, STATE_COLUMNS)), np.empty((5, LOAD_COLUMNS))
+    states_from_engine(readings, parts, payload_in_axes, 0.0, states, loads)
+    for i, now in enumerate(readings.tolist()):
         attitude = quaternion_from_engine(product(now[3:7], payload_in_axes.tolist()) if i == 0 else now[3:7])
-        on = [x + 0.5 * (x - a) for x, a in zip(now[7:], earlier, strict=True)]
+        on = [x + 0.5 * (x - a) for x, a in zip(now[7:13], now[13:], strict=True)]
         rates = into_body(attitude, flipped(on[3:]))
         assert states[i].tolist() == [*flipped(now[:3]), *attitude, *flipped(on[:3]), *rates]
 
@@ -46,24 +53,23 @@ def test_samples_are_states_turned_and_shifted_by_the_normals():
 
 
 def test_rotors_of_a_team_advance_as_each_alone():
-    motors = RNG.uniform(0.1, 1.0, (3, 7))
-    motors[:, 6] = 800.0
+    motors = RNG.uniform(0.1, 1.0, (3, 5))
+    motors[:, 4] = 800.0
     commands, speeds = RNG.uniform(0.0, 1000.0, (3, 4)), RNG.uniform(0.0, 1000.0, (3, 4))
     begun, thrusts, torques = speeds.copy(), np.empty((1, 3)), np.empty((1, 3, 3))
     advance_rotors(motors, commands, speeds, thrusts, torques)
     (thrusts,), (torques,) = thrusts, torques
-    for i, (decay, mean_1, mean_2, k_f, lever, per_thrust, top) in enumerate(motors.tolist()):
+    for i, (decay, k_f, lever, per_thrust, top) in enumerate(motors.tolist()):
         c = np.minimum(commands[i], top)
-        d = begun[i] - c
-        f = k_f * (c * (c + mean_1 * d) + mean_2 * d * d)
-        assert speeds[i] == pytest.approx(c + d * decay)
+        f = k_f * begun[i] ** 2
+        assert speeds[i] == pytest.approx(c + (begun[i] - c) * decay)
         assert thrusts[i] == pytest.approx(math.fsum(f))
         roll, pitch, yaw = lever * (f @ [-1, 1, 1, -1]), lever * (f @ [1, -1, 1, -1]), per_thrust * (f @ [1, 1, -1, -1])
         assert torques[i] == pytest.approx([roll, pitch, yaw])
 
 
 def test_rotors_advance_by_several_steps_as_by_each_alone():
-    motors, commands = RNG.uniform(0.1, 1.0, (3, 7)), RNG.uniform(0.0, 1000.0, (3, 4))
+    motors, commands = RNG.uniform(0.1, 1.0, (3, 5)), RNG.uniform(0.0, 1000.0, (3, 4))
     begun = RNG.uniform(0.0, 1000.0, (3, 4))
     speeds, thrusts, torques = begun.copy(), np.empty((5, 3)), np.empty((5, 3, 3))
     advance_rotors(motors, commands, speeds, thrusts, torques)

@@ -8,7 +8,7 @@ import pytest
 from mission_files import MISSIONS
 from nonlinear_motion import hover_inputs, hover_state, rk4_step, uav_positions, uav_velocities
 from paper_system import system
-from world_runs import angle_between, link_lengths, place, run, uav_array, unequal
+from world_runs import angle_between, half_a_step_earlier, link_lengths, place, run, uav_array, unequal
 
 from gcs.config import read_system
 from idc_controller.model.nonlinear import Inputs, accelerations, thrust_forces
@@ -197,22 +197,23 @@ def test_any_state_is_set_read_and_propagated_exactly(n):
     parameters, state = system(n), random_state(n, n)
     rng = np.random.default_rng(100 + n)
     f, tau, F, F_0 = rng.uniform(5, 10, n), rng.normal(size=(n, 3)), rng.normal(size=(n, 3)), rng.normal(size=3)
+    inputs = Inputs(F=F + thrust_forces(state.quaternion, f), tau=tau, F_0=F_0)
     hz = 100_000
+    begun = half_a_step_earlier(parameters, state, inputs, 1.0 / hz)
     with World(parameters, physics_hz=hz) as world:
-        place(world, state)
+        place(world, state, inputs)
         now = world.state()
         np.testing.assert_allclose(now.payload_position_in_world, state.r_0, atol=1e-12)
-        np.testing.assert_allclose(now.payload_velocity_in_world, state.r_0_dot, atol=1e-12)
-        np.testing.assert_allclose(now.payload_rates_in_payload, state.omega_0, atol=1e-12)
+        np.testing.assert_allclose(now.payload_velocity_in_world, begun.r_0_dot, atol=1e-12)
+        np.testing.assert_allclose(now.payload_rates_in_payload, begun.omega_0, atol=1e-12)
         np.testing.assert_allclose(uav_array(now, "position_in_world"), uav_positions(parameters, state), atol=1e-12)
-        np.testing.assert_allclose(uav_array(now, "velocity_in_world"), uav_velocities(parameters, state), atol=1e-12)
-        np.testing.assert_allclose(uav_array(now, "rates_in_body"), state.omega, atol=1e-12)
+        np.testing.assert_allclose(uav_array(now, "velocity_in_world"), uav_velocities(parameters, begun), atol=1e-12)
+        np.testing.assert_allclose(uav_array(now, "rates_in_body"), begun.omega, atol=1e-12)
         for measured, given in zip(uav_array(now, "quaternion"), state.quaternion, strict=True):
             assert angle_between(measured, given) < 1e-5
         world.step(f.tolist(), tau.tolist(), F_0.tolist(), F.tolist())
         after = world.state()
-    inputs = Inputs(F=F + thrust_forces(state.quaternion, f), tau=tau, F_0=F_0)
-    expected = rk4_step(parameters, state, inputs, 1.5 / hz)  # what is placed belongs to half a step earlier
+    expected = rk4_step(parameters, state, inputs, 1.0 / hz)
     tolerance = 0.01 / hz  # of velocities: 0.01 m/s2 of accelerations of some 10 m/s2
     np.testing.assert_allclose(after.payload_velocity_in_world, expected.r_0_dot, atol=tolerance)
     np.testing.assert_allclose(after.payload_rates_in_payload, expected.omega_0, atol=tolerance)
@@ -242,7 +243,7 @@ def test_free_body_keeps_velocity_and_angular_rates():
     hover = hover_state(parameters, (0, 0, -500.0))
     start = replace(hover, r_0_dot=np.array([150.0, 0, 0]), omega=np.tile(spin, (4, 1)))
     with World(parameters) as world:
-        place(world, start)
+        place(world, start, Inputs(F=np.zeros((4, 3)), tau=np.zeros((4, 3))))
         state = run(world, 0.5, [0.0] * 4)
-        assert state.payload_velocity_in_world == pytest.approx((150.0, 0.0, 9.81 * 0.501), abs=1e-6)
+        assert state.payload_velocity_in_world == pytest.approx((150.0, 0.0, 9.81 * 0.5), abs=1e-6)
         np.testing.assert_allclose(uav_array(state, "rates_in_body"), np.tile(spin, (4, 1)), atol=1e-6)

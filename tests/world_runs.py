@@ -8,10 +8,10 @@ import pybullet
 from paper_system import system
 
 from gcs.config.tables import WorldConfig
+from idc_controller.model.nonlinear import accelerations
 from idc_controller.rotations import quaternion_product, rotation_from_quaternion
 from idc_controller.rotations_float import into_body
 from vehicle_sim.world.contact_detection import ContactDetector
-from vehicle_sim.world.readings import Readings
 from vehicle_sim.world.world_state import flipped, quaternion_to_engine
 
 STANDING_ON_PAD = -0.30
@@ -58,11 +58,31 @@ def closest_distance(world, obstacle, within=100.0):
     return min((point[8] for point in points), default=math.inf)
 
 
-def place(world, state):
+def half_a_step_earlier(parameters, state, inputs, step):
+    """Return ``state`` with the velocities that follow from its poses and generalised velocities of half a step ago.
+
+    ``step`` in s. The generalised velocities are the payload's in the world and the joints' in the child's frame: by
+    how much the parts' velocities change while those are constant is not taken back.
+    """
+    half, R_0, R = 0.5 * step, state.R_0, state.R
+    second = accelerations(parameters, state, inputs)
+    payload, links = R_0 @ state.omega_0, state.Omega @ R_0.T
+    products = np.cross(payload, links) + np.cross(links, np.einsum("ijk,ik->ij", R, state.omega))
+    return replace(
+        state, r_0_dot=state.r_0_dot - half * second.r_0_ddot, omega_0=state.omega_0 - half * second.omega_0_dot,
+        Omega=state.Omega - half * second.Omega_dot,
+        omega=state.omega - half * (second.omega_dot - np.einsum("ikj,ik->ij", R, products)),
+    )  # fmt: skip
+
+
+def place(world, state, inputs=None):
     """Put the system into ``state``, cradles open: to begin in flight.
 
-    As the engine integrates, the velocities are those of half a step earlier.
+    The engine begins with generalised velocities of half a step earlier. They follow from those of ``state`` and from
+    the accelerations under ``inputs``, which are to act in the first step; without them nothing accelerates.
     """
+    if inputs is not None:
+        state = half_a_step_earlier(world.parameters, state, inputs, 1.0 / world.physics_hz)
     client, system = world._client, world._system
     R_0 = state.R_0
     payload_quaternion = quaternion_to_engine(state.quaternion_0.tolist())
@@ -93,7 +113,7 @@ def place(world, state):
             system.body, system.uavs[i], _product(_conjugate(link_quaternion), uav_quaternion),
             _rotate_back(uav_quaternion, flipped(uav_rates.tolist())), physicsClientId=client,
         )  # fmt: skip
-    world._readings = Readings(client, system)
+    world._readings.restart()
     world._contacts = ContactDetector(
         world.parameters, WorldConfig(), system, world._ground, world.obstacles, world._readings
     )

@@ -1,39 +1,36 @@
 """What the engine says after each step, and the true states that follow from it."""
 
-import struct
 from collections.abc import Sequence
 
-import numpy as np
 import pybullet
 
 from idc_controller.arrays import Array
+from idc_controller.parameters import SystemParameters
 from idc_controller.rotations_float import Vector
 from vehicle_sim.world.ground import Pose
 from vehicle_sim.world.multibody import Multibody
-from vehicle_sim.world.state_kernels import READING_COLUMNS, STATE_COLUMNS, states_from_engine
-
-Uavs = Sequence[tuple[tuple[float, ...], ...]]
-"""States of the UAVs: position, attitude, four that are not used, velocity, angular velocity."""
-_Velocity = tuple[Vector, Vector]
+from vehicle_sim.world.velocity_correction import Uavs, Velocity, VelocityCorrection
 
 
 class Readings:
     """What the engine gives after a step, in its own frames, and its velocities of the step before."""
 
-    def __init__(self, client: int, system: Multibody) -> None:
+    def __init__(self, client: int, system: Multibody, parameters: SystemParameters, physics_step: float) -> None:
+        """Read the state now; ``physics_step`` in s."""
         self._body, self._links, self._client = system.body, system.uavs, client
-        rows = len(system.uavs) + 1
-        self._payload_in_axes = np.array(system.payload_in_axes)
-        self._rows = np.empty((rows, READING_COLUMNS))
-        # A third of the time that an assignment of lists takes.
-        self._pack = struct.Struct(f"{self._rows.size}d").pack_into
+        self._correction = VelocityCorrection(system, parameters, physics_step)
         self.uavs: Uavs = ()
-        self._velocity: _Velocity = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-        self._before: tuple[_Velocity, Uavs] = self._velocity, self.uavs
+        self._velocity: Velocity = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+        self._before: tuple[Velocity, Uavs] = self._velocity, self.uavs
         self._payload: Pose | None = None
         self._states: Array | None = None
+        self._was_stepped = False
+        self.restart()
+
+    def restart(self) -> None:
+        """Read a state to which no step has led: what accelerates it is unknown, its velocities are as the engine's."""
         self.update()
-        self._before = self._velocity, self.uavs
+        self._before, self._was_stepped = (self._velocity, self.uavs), False
 
     def update(self) -> None:
         """Read the state after a step.
@@ -45,6 +42,7 @@ class Readings:
         self.uavs = pybullet.getLinkStates(self._body, self._links, 1, 1, self._client)
         self._velocity = pybullet.getBaseVelocity(self._body, self._client)
         self._payload = self._states = None
+        self._was_stepped = True
 
     @property
     def payload(self) -> Pose:
@@ -62,15 +60,21 @@ class Readings:
 
     def states(self) -> Array:
         """Return the true states of payload and UAVs now, (N + 1, 13) as in :mod:`.state_kernels`, to be read only."""
-        if self._states is not None:
-            return self._states
-        position, attitude = self.payload
-        (velocity, rates), ((velocity_before, rates_before), uavs_before) = self._velocity, self._before
-        numbers = [*position, *attitude, *velocity, *rates, *velocity_before, *rates_before]
-        for i, (place, turn, _, _, _, _, v, w) in enumerate(self.uavs):
-            _, _, _, _, _, _, v_before, w_before = uavs_before[i]
-            numbers += (*place, *turn, *v, *w, *v_before, *w_before)
-        self._pack(self._rows.data, 0, *numbers)
-        self._states = states = np.empty((len(self._rows), STATE_COLUMNS))
-        states_from_engine(self._rows, self._payload_in_axes, states)
-        return states
+        if self._states is None:
+            self._states = self._correction.evaluate(
+                self.payload, self._velocity, self.uavs, self._before, self._was_stepped
+            )
+        return self._states
+
+    def loads(self) -> Array:
+        """Return the loads on payload and UAVs that the next step lacks, (N + 1, 6) as in :mod:`.state_kernels`.
+
+        They hold while nothing but the links acts on a part by contact; to be used at once.
+        """
+        self.states()
+        return self._correction.loads
+
+    def set_payload_moments(self, moments: Sequence[float]) -> None:
+        """Set the payload's principal moments of inertia (3,) (kg m2), from the next step on."""
+        self._correction.set_payload_moments(moments)
+        self._states = None

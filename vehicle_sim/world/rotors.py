@@ -17,7 +17,7 @@ from vehicle_sim.world.rotor_kernels import advance_rotors
 Four = tuple[float, float, float, float]
 
 Wrenches = tuple[list[list[float]], list[list[list[float]]]]
-"""Thrusts (N) of N vehicles over each of some physics steps, and their body torques (N m, FRD)."""
+"""Thrusts (N) of N vehicles in each of some physics steps, and their body torques (N m, FRD)."""
 
 
 @dataclass(frozen=True)
@@ -56,8 +56,9 @@ class RotorGeometry:
 class Rotors:
     """Rotor speeds of N vehicles that follow their commands with a first-order lag, advanced by the physics step.
 
-    ``advance`` is exact for a command that stays constant over the steps, and gives the mean force and torques over
-    each step, so that neither the lag nor the force depends on the step's length. ``speeds`` (N, 4) in rad/s.
+    The speeds are exact for a command that stays constant over the steps. The wrenches are those at the beginning of
+    each step: the engine, a leapfrog, lets a step's forces act from half a step before its beginning to half a step
+    after it, so that their impulse is of second order in the step, and not early. ``speeds`` (N, 4) in rad/s.
     """
 
     def __init__(
@@ -84,7 +85,7 @@ class Rotors:
         self._thrusts, self._torques = np.zeros((steps, n)), np.zeros((steps, n, 3))
 
     def advance(self, commands: Array) -> Wrenches:
-        """Take the physics steps under the commanded speeds (N, 4) (rad/s), and return their mean wrenches."""
+        """Take the physics steps under the commanded speeds (N, 4) (rad/s), and return the wrenches that begin them."""
         advance_rotors(self._motors, commands, self.speeds, self._thrusts, self._torques)
         return self._thrusts.tolist(), self._torques.tolist()
 
@@ -93,8 +94,6 @@ def _motor(geometry: RotorGeometry, ratio: float) -> tuple[float, ...]:
     """Return the row of one vehicle for :func:`advance_rotors`; ``ratio`` of the physics step to the time constant."""
     return (
         math.exp(-ratio),
-        2.0 * (-math.expm1(-ratio) / ratio),
-        -math.expm1(-2.0 * ratio) / (2.0 * ratio),
         geometry.k_f,
         geometry.lever,
         geometry.torque_to_thrust,

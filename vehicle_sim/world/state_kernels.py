@@ -1,4 +1,4 @@
-"""The true state of payload and UAVs from what the engine gives, and the navigation sensors' samples of it.
+"""The true state of payload and UAVs and the loads that the engine lacks, and the navigation sensors' samples.
 
 A row of a state: position (3) in m, attitude (4) body to world, w first, velocity (3) in m/s, rates (3) in the body
 frame in rad/s; north-east-down. Row 0 is the payload's.
@@ -9,50 +9,100 @@ import math
 from idc_controller import rotations_float
 from idc_controller.arrays import Array
 from idc_controller.compiled import inlined, kernel
+from idc_controller.rotations_float import Quaternion, Vector
 from vehicle_sim.world import world_state
+from vehicle_sim.world.velocity_product_kernels import (
+    Motion,
+    brought_forward,
+    gyroscopic,
+    plus,
+    velocity_products,
+)
 
 #: Columns of a row of a state.
 STATE_COLUMNS = 13
 #: Columns of a row of what the engine gives.
 READING_COLUMNS = 19
+#: Columns of a row of a part's constants.
+PART_COLUMNS = 7
+#: Columns of a row of loads.
+LOAD_COLUMNS = 6
 
 _into_body = inlined(rotations_float.into_body)
 _product = inlined(world_state.product)
 _quaternion_from_engine = inlined(world_state.quaternion_from_engine)
 
 
-@kernel("void(float64[:, ::1], float64[::1], float64[:, ::1])")
-def states_from_engine(readings: Array, payload_in_axes: Array, states: Array) -> None:
-    """Write the true ``states`` (M, 13), velocities to second order in the physics step.
+@inlined
+def _vector(row: Array, k: int) -> Vector:
+    return row[k], row[k + 1], row[k + 2]
 
-    ``readings`` (M, 19) of the engine: position, attitude x first, velocity and angular velocity in its z-up world, and
-    those velocities one step earlier; ``payload_in_axes`` (4,): payload frame to principal axes,
-    x first, in which the engine has the payload's attitude.
 
-    The engine integrates semi-implicitly: its velocities are those of the middles of the steps.
+@inlined
+def _write_state(state: Array, place: Vector, attitude: Quaternion, motion: Motion) -> None:
+    """Write a row of a state; ``attitude`` is in the project's frames, the other two in the engine's."""
+    velocity, rates = motion
+    rates = _into_body(attitude, (rates[0], -rates[1], -rates[2]))
+    for k in range(3):
+        sign = 1.0 if k == 0 else -1.0
+        state[k], state[7 + k], state[10 + k] = sign * place[k], sign * velocity[k], rates[k]
+    for k in range(4):
+        state[3 + k] = attitude[k]
+
+
+@kernel("void(float64[:, ::1], float64[:, ::1], float64[::1], float64, float64[:, ::1], float64[:, ::1])")
+def states_from_engine(
+    readings: Array, parts: Array, payload_in_axes: Array, step: float, states: Array, loads: Array
+) -> None:
+    """Write the true ``states`` (M, 13) of payload and UAVs, and the ``loads`` (M, 6) that the engine lacks.
+
+    States and loads are of second order in the physics step, see :mod:`.velocity_product_kernels`.
+
+    Args:
+        readings: of the engine (M, 19): position, attitude x first, velocity and angular velocity in its z-up world,
+            and those velocities one step earlier.
+        parts: moments of inertia about the axes of the engine's frame of the part (kg m2), mass (kg), and where its
+            link is attached in the payload's principal axes (m) (M, 7).
+        payload_in_axes: payload frame to principal axes, x first, in which the engine has the payload's attitude (4,).
+        step: the physics step (s); zero: no step led here, the velocities are taken as they are.
+        states: is written.
+        loads: is written: force (N) and torque (N m) in the engine's frame of the part.
     """
-    for i in range(readings.shape[0]):
-        r = readings[i]
-        q = (r[3], r[4], r[5], r[6])
-        if i == 0:
-            a = payload_in_axes
-            q = _product(q, (a[0], a[1], a[2], a[3]))
-        attitude = _quaternion_from_engine(q)
-        states[i, 0], states[i, 1], states[i, 2] = r[0], -r[1], -r[2]
-        for k in range(4):
-            states[i, 3 + k] = attitude[k]
-        states[i, 7] = r[7] + 0.5 * (r[7] - r[13])
-        states[i, 8] = -(r[8] + 0.5 * (r[8] - r[14]))
-        states[i, 9] = -(r[9] + 0.5 * (r[9] - r[15]))
-        rates = _into_body(
-            attitude,
-            (
-                r[10] + 0.5 * (r[10] - r[16]),
-                -(r[11] + 0.5 * (r[11] - r[17])),
-                -(r[12] + 0.5 * (r[12] - r[18])),
-            ),
-        )
-        states[i, 10], states[i, 11], states[i, 12] = rates
+    since = 0.5 * step
+    r, part = readings[0], parts[0]
+    axes = (r[6], r[3], r[4], r[5])
+    inverse = (axes[0], -axes[1], -axes[2], -axes[3])
+    place, old = _vector(r, 0), (_vector(r, 7), _vector(r, 10))
+    none = (0.0, 0.0, 0.0)
+    new = brought_forward(old, (_vector(r, 13), _vector(r, 16)), (none, none), since)
+    a = payload_in_axes
+    attitude = _product((r[3], r[4], r[5], r[6]), (a[0], a[1], a[2], a[3]))
+    _write_state(states[0], place, _quaternion_from_engine(attitude), new)
+    moments = _vector(part, 0)
+    torque = plus(
+        gyroscopic(moments, _into_body(axes, old[1])), -1.0, gyroscopic(moments, _into_body(axes, new[1]))
+    )  # fmt: skip
+    for k in range(3):
+        loads[0, k], loads[0, 3 + k] = 0.0, torque[k]
+    for i in range(1, readings.shape[0]):
+        r, part = readings[i], parts[i]
+        q = (r[6], r[3], r[4], r[5])
+        arm = _into_body(inverse, _vector(part, 4))
+        link = plus(plus(_vector(r, 0), -1.0, place), -1.0, arm)
+        uav_old = (_vector(r, 7), _vector(r, 10))
+        products_old = velocity_products(old, uav_old, arm, link, since)
+        uav_new = brought_forward(uav_old, (_vector(r, 13), _vector(r, 16)), products_old, since)
+        _write_state(states[i], _vector(r, 0), _quaternion_from_engine((r[3], r[4], r[5], r[6])), uav_new)
+        products_new = velocity_products(new, uav_new, arm, link, 0.0)
+        moments = _vector(part, 0)
+        linear = _into_body(q, plus(products_old[0], -1.0, products_new[0]))
+        angular = _into_body(q, plus(products_old[1], -1.0, products_new[1]))
+        torque = plus(
+            gyroscopic(moments, _into_body(q, uav_old[1])), -1.0, gyroscopic(moments, _into_body(q, uav_new[1]))
+        )  # fmt: skip
+        for k in range(3):
+            loads[i, k] = part[3] * linear[k]
+            loads[i, 3 + k] = moments[k] * angular[k] + torque[k]
 
 
 @kernel("void(float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1])")

@@ -21,9 +21,11 @@ from vehicle_sim.world.ground import NO_CONTACTS, Contacts, Ground
 from vehicle_sim.world.multibody import check_supported, load_multibody
 from vehicle_sim.world.obstacle_bodies import ObstacleBodies
 from vehicle_sim.world.readings import Readings
+from vehicle_sim.world.state_kernels import LOAD_COLUMNS
 from vehicle_sim.world.world_state import UavState, WorldState, flipped
 
 _ORIGIN = (0.0, 0.0, 0.0)
+_NO_LOAD = [0.0] * LOAD_COLUMNS
 _LINK_FRAME, _WORLD_FRAME = pybullet.LINK_FRAME, pybullet.WORLD_FRAME
 _apply_force, _apply_torque = pybullet.applyExternalForce, pybullet.applyExternalTorque
 _step_simulation = pybullet.stepSimulation
@@ -77,7 +79,7 @@ class World:
         self.obstacles = ObstacleBodies(client)
         weights = [float(m_i) * parameters.g for m_i in parameters.m]
         self._cradles = Cradles(client, self._system.body, self._system.uavs, weights, settings.cradles)
-        self._readings = Readings(client, self._system)
+        self._readings = Readings(client, self._system, parameters, 1.0 / self.physics_hz)
         self.steps = 0
         self._thrusts = (0.0,) * parameters.number_of_uavs
         self._contacts = ContactDetector(
@@ -113,8 +115,9 @@ class World:
         ``payload_force`` (3,) and ``uav_forces`` N triples: external forces at the centres of mass, NED (N); without
         effect while all UAVs are in their cradles. Plain floats are faster than arrays.
 
-        The engine integrates semi-implicitly: inputs sampled at the beginning of a step give positions of second
-        order at its end, with velocities that belong to half a step earlier; :meth:`state` brings those forward.
+        Inputs sampled at the beginning of a step give a motion of second order in the step: the engine integrates as
+        a leapfrog, with velocities at the middles of the steps, which :meth:`state` brings forward. What it computes
+        with velocities half a step old is corrected while nothing touches and no cradle holds.
         """
         client, body, uavs = self._client, self._system.body, self._system.uavs
         if not len(uavs) == len(thrusts) == len(torques):
@@ -122,10 +125,15 @@ class World:
         # The height of a UAV, which is at hand, says mostly that no cradle has anything to do.
         if self._cradles.number_held or self._readings.uavs[0][0][2] <= self._ground.standing_height + self._system.arm:
             self._update_cradles(thrusts)
-        for i, uav in enumerate(uavs):
-            x, y, z = torques[i]
-            _apply_force(body, uav, (0.0, 0.0, thrusts[i]), _ORIGIN, _LINK_FRAME, client)
-            _apply_torque(body, uav, (x, -y, -z), _LINK_FRAME, client)
+        # An impact is no acceleration by which velocities could be brought forward.
+        if self._cradles.number_held == 0 and self.contacts() is NO_CONTACTS:
+            (_, _, _, *torque), *loads = self._readings.loads().tolist()
+            _apply_torque(body, -1, torque, _LINK_FRAME, client)
+        else:
+            loads = [_NO_LOAD] * len(uavs)
+        for uav, thrust, (x, y, z), (f_x, f_y, f_z, t_x, t_y, t_z) in zip(uavs, thrusts, torques, loads, strict=True):
+            _apply_force(body, uav, (f_x, f_y, thrust + f_z), _ORIGIN, _LINK_FRAME, client)
+            _apply_torque(body, uav, (t_x + x, t_y - y, t_z - z), _LINK_FRAME, client)
         if (payload_force is not None or uav_forces is not None) and not self.all_cradled:
             # A payload between held links hangs as much as it stands: wind would swing what the ground should hold.
             self._push(payload_force, uav_forces)
@@ -152,6 +160,7 @@ class World:
         # After the mass: with that alone the engine takes the inertia of the collision shape's box.
         inertia = tuple(share * moment for moment in self._system.payload_moments)
         pybullet.changeDynamics(body, -1, localInertiaDiagonal=inertia, physicsClientId=client)
+        self._readings.set_payload_moments(inertia)
 
     def states(self) -> Array:
         """Return the true states of payload and UAVs after the last step, (N + 1, 13) as in :mod:`.state_kernels`."""

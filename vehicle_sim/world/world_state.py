@@ -8,7 +8,7 @@ The engine's quaternions are x-first. Both stay inside the world modules.
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from idc_controller.rotations_float import Quaternion, Vector
+from idc_controller.rotations_float import Quaternion, Vector, into_body
 
 
 class UavState(NamedTuple):
@@ -65,6 +65,11 @@ def product(a: Sequence[float], b: Sequence[float]) -> Quaternion:
         aw * bz + ax * by - ay * bx + az * bw,
         aw * bw - ax * bx - ay * by - az * bz,
     )
+
+
+def rotated(q: Sequence[float], v: Sequence[float]) -> Vector:
+    """Return ``v`` rotated by an x-first quaternion of the engine."""
+    return into_body((q[3], -q[0], -q[1], -q[2]), (v[0], v[1], v[2]))
 
 
 def upward_axis(q: Sequence[float]) -> Vector:
