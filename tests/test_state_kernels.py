@@ -11,7 +11,6 @@ from vehicle_sim.world.rotor_kernels import advance_rotors
 from vehicle_sim.world.state_kernels import (
     LOAD_COLUMNS,
     PART_COLUMNS,
-    READING_COLUMNS,
     STATE_COLUMNS,
     measure,
     states_from_engine,
@@ -26,14 +25,14 @@ def quaternions(count):
 
 
 def test_states_are_the_readings_in_the_projects_frames():
-    readings, parts = RNG.normal(size=(5, READING_COLUMNS)), RNG.random((5, PART_COLUMNS))
+    readings, before, parts = RNG.normal(size=(5, 13)), RNG.normal(size=(5, 13)), RNG.random((5, PART_COLUMNS))
     readings[:, 3:7] = quaternions(5)
     payload_in_axes = quaternions(6)[5]
     states, loads = np.empty((5, STATE_COLUMNS)), np.empty((5, LOAD_COLUMNS))
-    states_from_engine(readings, parts, payload_in_axes, 0.0, states, loads)
-    for i, now in enumerate(readings.tolist()):
+    states_from_engine(readings, before, parts, payload_in_axes, 0.0, states, loads)
+    for i, (now, earlier) in enumerate(zip(readings.tolist(), before.tolist(), strict=True)):
         attitude = quaternion_from_engine(product(now[3:7], payload_in_axes.tolist()) if i == 0 else now[3:7])
-        on = [x + 0.5 * (x - a) for x, a in zip(now[7:13], now[13:], strict=True)]
+        on = [x + 0.5 * (x - a) for x, a in zip(now[7:], earlier[7:], strict=True)]
         rates = into_body(attitude, flipped(on[3:]))
         assert states[i].tolist() == [*flipped(now[:3]), *attitude, *flipped(on[:3]), *rates]
 

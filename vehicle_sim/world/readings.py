@@ -6,31 +6,31 @@ import pybullet
 
 from idc_controller.arrays import Array
 from idc_controller.parameters import SystemParameters
-from idc_controller.rotations_float import Vector
 from vehicle_sim.world.ground import Pose
 from vehicle_sim.world.multibody import Multibody
-from vehicle_sim.world.velocity_correction import Uavs, Velocity, VelocityCorrection
+from vehicle_sim.world.velocity_correction import Uavs, VelocityCorrection
 
 
 class Readings:
-    """What the engine gives after a step, in its own frames, and its velocities of the step before."""
+    """What the engine gives after a step, in its own frames.
+
+    Attributes:
+        payload: pose of the payload's principal axes.
+        uavs: states of the UAVs.
+    """
 
     def __init__(self, client: int, system: Multibody, parameters: SystemParameters, physics_step: float) -> None:
         """Read the state now; ``physics_step`` in s."""
         self._body, self._links, self._client = system.body, system.uavs, client
-        self._correction = VelocityCorrection(system, parameters, physics_step)
-        self.uavs: Uavs = ()
-        self._velocity: Velocity = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-        self._before: tuple[Velocity, Uavs] = self._velocity, self.uavs
-        self._payload: Pose | None = None
-        self._states: Array | None = None
-        self._was_stepped = False
+        self._physics_step = physics_step
+        self._correction = VelocityCorrection(system, parameters)
         self.restart()
 
     def restart(self) -> None:
         """Read a state to which no step has led: what accelerates it is unknown, its velocities are as the engine's."""
         self.update()
-        self._before, self._was_stepped = (self._velocity, self.uavs), False
+        self.update()
+        self._step = 0.0
 
     def update(self) -> None:
         """Read the state after a step.
@@ -38,32 +38,21 @@ class Readings:
         Forward kinematics is requested: without it links are one step behind the payload, and so are the frames in
         which the engine takes the next forces. Hence after every step, whether the state is read or not.
         """
-        self._before = self._velocity, self.uavs
-        self.uavs = pybullet.getLinkStates(self._body, self._links, 1, 1, self._client)
-        self._velocity = pybullet.getBaseVelocity(self._body, self._client)
-        self._payload = self._states = None
-        self._was_stepped = True
+        body, client = self._body, self._client
+        self.uavs: Uavs = pybullet.getLinkStates(body, self._links, 1, 1, client)
+        self.payload: Pose = pybullet.getBasePositionAndOrientation(body, client)
+        self._correction.take(self.payload, pybullet.getBaseVelocity(body, client), self.uavs)
+        self._states: Array | None = None
+        self._step = self._physics_step
 
-    @property
-    def payload(self) -> Pose:
-        """Pose of the payload's principal axes, read where it is needed."""
-        if self._payload is None:
-            self._payload = pybullet.getBasePositionAndOrientation(self._body, self._client)
-        return self._payload
-
-    def velocity_changes(self) -> list[Vector]:
+    def velocity_changes(self) -> list[list[float]]:
         """Return by how much the velocities of payload and UAVs (N + 1) changed in the last step (m/s, z up)."""
-        (velocity, _), uavs = self._before
-        now: list[Sequence[float]] = [self._velocity[0], *(uav[6] for uav in self.uavs)]
-        before: list[Sequence[float]] = [velocity, *(uav[6] for uav in uavs)]
-        return [(a - d, b - e, c - f) for (a, b, c), (d, e, f) in zip(now, before, strict=True)]
+        return self._correction.velocity_changes()
 
     def states(self) -> Array:
         """Return the true states of payload and UAVs now, (N + 1, 13) as in :mod:`.state_kernels`, to be read only."""
         if self._states is None:
-            self._states = self._correction.evaluate(
-                self.payload, self._velocity, self.uavs, self._before, self._was_stepped
-            )
+            self._states = self._correction.evaluate(self._step)
         return self._states
 
     def loads(self) -> Array:

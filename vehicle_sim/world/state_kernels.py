@@ -22,7 +22,7 @@ from vehicle_sim.world.velocity_product_kernels import (
 #: Columns of a row of a state.
 STATE_COLUMNS = 13
 #: Columns of a row of what the engine gives.
-READING_COLUMNS = 19
+READING_COLUMNS = 13
 #: Columns of a row of a part's constants.
 PART_COLUMNS = 7
 #: Columns of a row of loads.
@@ -50,59 +50,66 @@ def _write_state(state: Array, place: Vector, attitude: Quaternion, motion: Moti
         state[3 + k] = attitude[k]
 
 
-@kernel("void(float64[:, ::1], float64[:, ::1], float64[::1], float64, float64[:, ::1], float64[:, ::1])")
+@inlined
+def _gyroscopic_load(moments: Vector, attitude: Quaternion, old: Motion, new: Motion) -> Vector:
+    """Return by how much w x J w of ``old`` exceeds that of ``new`` (N m), in the body's axes."""
+    torque = gyroscopic(moments, _into_body(attitude, old[1]))
+    return plus(torque, -1.0, gyroscopic(moments, _into_body(attitude, new[1])))
+
+
+@inlined
+def _motion(row: Array) -> Motion:
+    return _vector(row, 7), _vector(row, 10)
+
+
+@kernel(
+    "void(float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[::1], float64, float64[:, ::1], float64[:, ::1])"
+)
 def states_from_engine(
-    readings: Array, parts: Array, payload_in_axes: Array, step: float, states: Array, loads: Array
+    readings: Array, before: Array, parts: Array, payload_in_axes: Array, step: float, states: Array, loads: Array
 ) -> None:
     """Write the true ``states`` (M, 13) of payload and UAVs, and the ``loads`` (M, 6) that the engine lacks.
 
     States and loads are of second order in the physics step, see :mod:`.velocity_product_kernels`.
 
     Args:
-        readings: of the engine (M, 19): position, attitude x first, velocity and angular velocity in its z-up world,
-            and those velocities one step earlier.
-        parts: moments of inertia about the axes of the engine's frame of the part (kg m2), mass (kg), and where its
+        readings: of the engine (M, 13): position, attitude x first, velocity and angular velocity in its z-up world.
+        before: the same one step earlier (M, 13).
+        parts: moments of inertia about the axes of the part's frame in the engine (kg m2), mass (kg), and where its
             link is attached in the payload's principal axes (m) (M, 7).
         payload_in_axes: payload frame to principal axes, x first, in which the engine has the payload's attitude (4,).
         step: the physics step (s); zero: no step led here, the velocities are taken as they are.
         states: is written.
-        loads: is written: force (N) and torque (N m) in the engine's frame of the part.
+        loads: is written: force (N) and torque (N m) in the part's frame in the engine.
     """
     since = 0.5 * step
     r, part = readings[0], parts[0]
     axes = (r[6], r[3], r[4], r[5])
-    inverse = (axes[0], -axes[1], -axes[2], -axes[3])
-    place, old = _vector(r, 0), (_vector(r, 7), _vector(r, 10))
+    to_world = (axes[0], -axes[1], -axes[2], -axes[3])
     none = (0.0, 0.0, 0.0)
-    new = brought_forward(old, (_vector(r, 13), _vector(r, 16)), (none, none), since)
+    place, old = _vector(r, 0), _motion(r)
+    new = brought_forward(old, _motion(before[0]), (none, none), since)
     a = payload_in_axes
     attitude = _product((r[3], r[4], r[5], r[6]), (a[0], a[1], a[2], a[3]))
     _write_state(states[0], place, _quaternion_from_engine(attitude), new)
-    moments = _vector(part, 0)
-    torque = plus(
-        gyroscopic(moments, _into_body(axes, old[1])), -1.0, gyroscopic(moments, _into_body(axes, new[1]))
-    )  # fmt: skip
+    torque = _gyroscopic_load(_vector(part, 0), axes, old, new)
     for k in range(3):
         loads[0, k], loads[0, 3 + k] = 0.0, torque[k]
     for i in range(1, readings.shape[0]):
         r, part = readings[i], parts[i]
-        q = (r[6], r[3], r[4], r[5])
-        arm = _into_body(inverse, _vector(part, 4))
+        q, uav_old = (r[6], r[3], r[4], r[5]), _motion(r)
+        arm = _into_body(to_world, _vector(part, 4))
         link = plus(plus(_vector(r, 0), -1.0, place), -1.0, arm)
-        uav_old = (_vector(r, 7), _vector(r, 10))
-        products_old = velocity_products(old, uav_old, arm, link, since)
-        uav_new = brought_forward(uav_old, (_vector(r, 13), _vector(r, 16)), products_old, since)
+        products = velocity_products(old, uav_old, arm, link, since)
+        uav_new = brought_forward(uav_old, _motion(before[i]), products, since)
         _write_state(states[i], _vector(r, 0), _quaternion_from_engine((r[3], r[4], r[5], r[6])), uav_new)
         products_new = velocity_products(new, uav_new, arm, link, 0.0)
-        moments = _vector(part, 0)
-        linear = _into_body(q, plus(products_old[0], -1.0, products_new[0]))
-        angular = _into_body(q, plus(products_old[1], -1.0, products_new[1]))
-        torque = plus(
-            gyroscopic(moments, _into_body(q, uav_old[1])), -1.0, gyroscopic(moments, _into_body(q, uav_new[1]))
-        )  # fmt: skip
+        linear = _into_body(q, plus(products[0], -1.0, products_new[0]))
+        angular = _into_body(q, plus(products[1], -1.0, products_new[1]))
+        torque = _gyroscopic_load(_vector(part, 0), q, uav_old, uav_new)
         for k in range(3):
             loads[i, k] = part[3] * linear[k]
-            loads[i, 3 + k] = moments[k] * angular[k] + torque[k]
+            loads[i, 3 + k] = part[k] * angular[k] + torque[k]
 
 
 @kernel("void(float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1])")

@@ -21,50 +21,51 @@ from vehicle_sim.world.world_state import flipped, rotated
 
 Uavs = Sequence[tuple[tuple[float, ...], ...]]
 """States of the UAVs: position, attitude, four that are not used, velocity, angular velocity."""
-Velocity = tuple[Vector, Vector]
 
 
 class VelocityCorrection:
-    """Evaluates the engine's velocities, which are half a step older than its poses.
+    """What the engine gave after the last two steps: its velocities are half a step older than its poses.
 
     Attributes:
         loads: on payload and UAVs (N + 1, 6), as :mod:`.state_kernels` writes them, of the last evaluation.
     """
 
-    def __init__(self, system: Multibody, parameters: SystemParameters, physics_step: float) -> None:
-        """Take the constants of the system; ``physics_step`` in s."""
-        self._physics_step = physics_step
+    def __init__(self, system: Multibody, parameters: SystemParameters) -> None:
+        """Take the constants of the system."""
         rows = len(system.uavs) + 1
         self._payload_in_axes = np.array(system.payload_in_axes)
-        self._rows, self._parts = np.empty((rows, READING_COLUMNS)), np.zeros((rows, PART_COLUMNS))
+        self._now, self._before = np.zeros((rows, READING_COLUMNS)), np.zeros((rows, READING_COLUMNS))
+        self._parts = np.zeros((rows, PART_COLUMNS))
         self.set_payload_moments(system.payload_moments)
         for i, (J_i, m_i, p_i) in enumerate(zip(parameters.J, parameters.m, parameters.p, strict=True), start=1):
             self._parts[i] = *np.diag(J_i), m_i, *rotated(system.payload_in_axes, flipped(p_i))
         # A third of the time that an assignment of lists takes.
-        self._pack = struct.Struct(f"{self._rows.size}d").pack_into
+        self._pack = struct.Struct(f"{self._now.size}d").pack_into
         self.loads = np.empty((rows, LOAD_COLUMNS))
 
     def set_payload_moments(self, moments: Sequence[float]) -> None:
         """Set the payload's principal moments of inertia (3,) (kg m2)."""
         self._parts[0, :3] = moments
 
-    def evaluate(
-        self, payload: Pose, velocity: Velocity, uavs: Uavs, before: tuple[Velocity, Uavs], was_stepped: bool
-    ) -> Array:
+    def take(self, payload: Pose, velocity: tuple[Vector, Vector], uavs: Uavs) -> None:
+        """Take what the engine gives after a step: the payload's pose and velocity, and the UAVs'."""
+        self._now, self._before = self._before, self._now
+        position, attitude = payload
+        numbers = [*position, *attitude, *velocity[0], *velocity[1]]
+        for place, turn, _, _, _, _, v, w in uavs:
+            numbers += (*place, *turn, *v, *w)
+        self._pack(self._now.data, 0, *numbers)
+
+    def velocity_changes(self) -> list[list[float]]:
+        """Return by how much the velocities of payload and UAVs (N + 1) changed in the last step (m/s, z up)."""
+        changes: list[list[float]] = (self._now[:, 7:10] - self._before[:, 7:10]).tolist()
+        return changes
+
+    def evaluate(self, step: float) -> Array:
         """Return the true states (N + 1, 13) as in :mod:`.state_kernels`, and write :attr:`loads`.
 
-        ``payload``, its ``velocity`` and ``uavs`` as the engine gives them; ``before``: the velocities one step
-        earlier. Without a step that led here the velocities are taken as they are, and no load is missing.
+        ``step`` (s): the physics step that led here; zero if none did, as in :func:`.states_from_engine`.
         """
-        position, attitude = payload
-        v_0, w_0 = velocity
-        (v_0_before, w_0_before), uavs_before = before
-        numbers = [*position, *attitude, *v_0, *w_0, *v_0_before, *w_0_before]
-        for i, (place, turn, _, _, _, _, v, w) in enumerate(uavs):
-            _, _, _, _, _, _, v_before, w_before = uavs_before[i]
-            numbers += (*place, *turn, *v, *w, *v_before, *w_before)
-        self._pack(self._rows.data, 0, *numbers)
-        states = np.empty((len(self._rows), STATE_COLUMNS))
-        step = self._physics_step if was_stepped else 0.0
-        states_from_engine(self._rows, self._parts, self._payload_in_axes, step, states, self.loads)
+        states = np.empty((len(self._now), STATE_COLUMNS))
+        states_from_engine(self._now, self._before, self._parts, self._payload_in_axes, step, states, self.loads)
         return states
