@@ -11,7 +11,7 @@ import pytest
 from mission_files import MISSIONS
 from nonlinear_motion import hover_state, rk4_step, uav_positions, uav_velocities
 from paper_system import system
-from world_runs import place, uav_array, unequal
+from world_runs import half_a_step_earlier, place, uav_array, unequal
 
 from gcs.config import read_system
 from idc_controller.model.nonlinear import Inputs, thrust_forces
@@ -119,6 +119,21 @@ def test_free_motion_keeps_energy(parameters):
     energies = np.array([energy(parameters, state) for state in states])
     # Of first order: 2 to 10 %.
     assert np.abs(energies / energies[0] - 1.0).max() < 1e-4
+
+
+def test_changed_payload_mass_changes_its_moments_of_inertia_too():
+    exact = large_motion(L_PAYLOAD, 0)
+    now = L_PAYLOAD.with_payload_mass(2.4 * L_PAYLOAD.m_0)
+    with World(L_PAYLOAD, physics_hz=HZ) as world:
+        world.set_payload_mass(now.m_0)
+        place(world, half_a_step_earlier(now, exact, free(now), 1.0 / HZ))
+        for _ in range(2 * HZ):
+            world.step([0.0] * 4, [(0.0, 0.0, 0.0)] * 4)
+        found = world.state()
+    for _ in range(400):
+        exact = rk4_step(now, exact, free(now), 0.005)
+    # With the moments of the old mass in the correction: 0.66.
+    assert max(errors(now, found, exact)) < 0.2
 
 
 GEOMETRY = RotorGeometry(thrust_max=30.0, rotor_speed_max=1000.0, arm_length=0.17, torque_to_thrust=0.016)
