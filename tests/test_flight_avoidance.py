@@ -164,6 +164,7 @@ def test_flight_ends_safely_when_all_range_sensors_fail_alike(tmp_path, fault):
     assert result.summary["landing"]["on_ground"]
 
 
+@pytest.mark.long
 def test_flight_keeps_clear_of_rock_that_is_not_on_the_map(tmp_path):
     mission = read_mission(MISSIONS / "unknown_rock.toml")
     mission = replace(mission, reference=replace(mission.reference, duration=14.0))  # once past the rock
