@@ -19,7 +19,7 @@ LEVEL = (1.0, 0.0, 0.0, 0.0)
 
 @pytest.fixture(scope="module")
 def flown(tmp_path_factory):
-    """Scans between poles for half a minute, and the poles."""
+    """Scans between poles, until one sees the sphere that swings behind them; and what stands."""
     mission, scans, place = read_mission(MISSIONS / "pole_course.toml"), [], ScanPlacement.scans
 
     def recorded(self, *args, **kwargs):
@@ -32,8 +32,8 @@ def flown(tmp_path_factory):
         patch.object(ScanPlacement, "scans", recorded),
         InProcessFlight(mission, folder, obstacles=mission.obstacles) as flight,
     ):
-        flight.fly(until=30.0)
-    return scans, mission.obstacles
+        flight.fly(until=26.0)
+    return scans, [obstacle for obstacle in mission.obstacles if obstacle.motion is None]
 
 
 def test_every_vehicle_scans_at_its_rate_and_all_scans_are_complete(flown):
@@ -41,7 +41,7 @@ def test_every_vehicle_scans_at_its_rate_and_all_scans_are_complete(flown):
     for uav in range(4):
         times = np.array([scan.time for scan in scans if scan.uav == uav])
         np.testing.assert_allclose(np.diff(times), 0.1, atol=0.002)
-        assert len(times) > 285
+        assert len(times) > 245
     assert all(len(scan.free_rays) for scan in scans)
 
 
