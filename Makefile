@@ -17,7 +17,7 @@ export OPENBLAS_NUM_THREADS := 1
 unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: help install fly test test-fast test-long test-lowest test-numerics mutants golden golden-renew
-.PHONY: fault-tables anew benchmark benchmark-parts benchmark-campaign benchmark-check docs clean
+.PHONY: claims claims-all claims-write fault-tables anew benchmark benchmark-parts benchmark-campaign benchmark-check docs clean
 
 help:
 	@echo "make fly          fly $(MISSION) with a simulated swarm (MISSION=... for another one)"
@@ -29,6 +29,9 @@ help:
 	@echo "make mutants      see whether the fast tests notice changes of the flight path (MUTANTS='--number 60 --seed 1')"
 	@echo "make golden       compare short flights, to the byte, with those of the commit BASE ($(BASE)) and with checksums"
 	@echo "make golden-renew write the checksums anew"
+	@echo "make claims       compare the figures of README.md and docs/ with docs/claims.toml; make test does so, too"
+	@echo "make claims-all   run the commands behind them that take minutes, where not run at this commit (ONLY='NAME ...')"
+	@echo "make claims-write put the values into the documents"
 	@echo "make fault-tables fly and write the tables of detection and of false alarms (about 22 min of CPU)"
 	@echo "make benchmark    the speed of flights relative to gym-pybullet-drones; adds to the history"
 	@echo "make benchmark-check  compare the CPU cost of flights with that of the commit BASE ($(BASE))"
@@ -76,6 +79,16 @@ golden: $(COMPILED)
 
 golden-renew: $(COMPILED)
 	$(VENV)/bin/python tests/golden/golden.py --renew
+
+claims: $(COMPILED)
+	$(VENV)/bin/python tests/claims/claims.py
+
+# What was interrupted goes on when started again.
+claims-all: $(COMPILED)
+	$(VENV)/bin/python tests/claims/claims.py --all $(ONLY)
+
+claims-write: $(COMPILED)
+	$(VENV)/bin/python tests/claims/claims.py --write
 
 fault-tables: $(COMPILED)
 	$(VENV)/bin/python -m gcs.campaign.faults.tables_page docs/faults.md missions/detection.toml missions/false_alarms.toml

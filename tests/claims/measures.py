@@ -1,0 +1,131 @@
+"""Figures that take a computation of their own, of seconds at most: each function returns the names of a claim."""
+
+from __future__ import annotations
+
+import csv
+import math
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.spatial import KDTree
+
+from gcs.campaign.faults.campaign_file import read_campaign
+from gcs.campaign.faults.plans import FaultFlights
+from gcs.campaign.scenarios.generator import DEFAULT_KINDS, generate
+from gcs.campaign.scenarios.judgement import least_separation
+from gcs.campaign.scenarios.passage import SHORT, SPARE, Passages
+from gcs.config import SystemConfig
+from gcs.flight.stack import speed_by_sight
+from idc_controller.model.linear import LinearModel
+from idc_controller.parameters import SystemParameters
+from idc_controller.perception.ray_pattern import RayPattern
+
+ROOT = Path(__file__).parents[2]
+_HISTORY = ROOT / "tests" / "benchmarks" / "history.csv"
+
+
+def geometry() -> dict[str, Any]:
+    """Lengths (m) that follow from the default system."""
+    system = SystemConfig()
+    parameters, passages = system.parameters(), Passages(system)
+    sensors = float(np.hypot(*parameters.p[:, :2].T).max())
+    margin, spare = system.avoidance.margin, system.guidance.navigator.spare
+    radius = passages.formation.radius
+    states = {n: len(LinearModel(_team(n)).A) for n in (3, 4)}
+    return {
+        "uav_above_payload": float((parameters.l - parameters.p[:, 2]).min()),
+        "payload_on_pad": system.resting_altitude,
+        "beyond_sensors": radius - sensors,
+        "passable_gap": 2.0 * (radius + margin + spare + SPARE),
+        "impassable_gap": 2.0 * (passages._half_width + margin - SHORT),
+        "states_of_uav": states[4] - states[3],
+        "states_of_payload": 4 * states[3] - 3 * states[4],
+        "separation_limit": parameters.separation(system.control.mpc.separation_share),
+        "separation_passed": least_separation(system),
+    }
+
+
+def sight() -> dict[str, Any]:
+    """Limits of the speed by sight (m/s), and the way to stop (m) from a speed."""
+    system = SystemConfig()
+    limit = speed_by_sight(system, LinearModel(system.parameters()), None)  # type: ignore[arg-type]
+    settings, acceleration = limit.settings, limit.settings.limits.acceleration
+
+    def way(speed: float) -> float:
+        duration = speed / acceleration + settings.stopping_delay
+        return speed * (settings.latency + duration / 2.0)
+
+    return {
+        "way": way,
+        "slow": limit.slow,
+        "fastest": limit.fastest,
+        "closing": limit.fastest + settings.closing_speed,
+        "follows_after": settings.latency + 0.5 * settings.stopping_delay,
+    }
+
+
+def rays() -> dict[str, Any]:
+    """Return the largest angle (deg) from a direction in view to a ray, of one scan and of ten in a row."""
+    sensor = SystemConfig().range_sensor
+    low, high = math.radians(sensor.elevation_min_deg), math.radians(sensor.elevation_max_deg)
+    pattern, random = RayPattern(sensor.rays, low, high), np.random.default_rng(1)
+    up, azimuth = random.uniform(math.sin(low), math.sin(high), 20_000), random.uniform(0.0, math.tau, 20_000)
+    # The gaps at the edges of the field are the largest.
+    edge = np.linspace(0.0, math.tau, 10_000)
+    up = np.concatenate([up, *(np.full_like(edge, math.sin(angle)) for angle in (low, high))])
+    azimuth, level = np.concatenate([azimuth, edge, edge]), np.sqrt(1.0 - up**2)
+    places = np.column_stack([level * np.cos(azimuth), level * np.sin(azimuth), -up])
+    gaps = {count: _largest_gap(pattern, places, count) for count in (1, 10)}
+    return {"one_scan": gaps[1], "ten_scans": gaps[10]}
+
+
+def courses() -> dict[str, Any]:
+    """Count the obstacles of ``gcs courses --count 100 --seed 2711``."""
+    system, obstacles = SystemConfig(), []
+    for number in range(1, 101):
+        scenario = generate(2711, number, DEFAULT_KINDS[(number - 1) % len(DEFAULT_KINDS)], system)
+        obstacles += tomllib.loads(scenario.text).get("obstacle", [])
+    known = sum(obstacle.get("known", True) for obstacle in obstacles)
+    return {"obstacles": len(obstacles), "known": known}
+
+
+def campaigns() -> dict[str, Any]:
+    """Count the flights of the campaign files."""
+    return {
+        name: sum(1 for _ in FaultFlights(read_campaign(ROOT / "missions" / f"{name}.toml")).plans(ROOT / "runs"))
+        for name in ("sphere_faults", "detection", "obstacle_noise", "lost_ground", "lost_vehicle")
+    }
+
+
+def missions() -> dict[str, Any]:
+    """Return the tables of the project's own mission files, by name."""
+    return {path.stem: tomllib.loads(path.read_text(encoding="utf-8")) for path in (ROOT / "missions").glob("*.toml")}
+
+
+def benchmark() -> dict[str, Any]:
+    """Return the last row of the history that ``make benchmark`` has written with gym-pybullet-drones' own anchor."""
+    with _HISTORY.open(encoding="utf-8") as file:
+        row = [row for row in csv.DictReader(file) if row["anchor"] == "gym-pybullet-drones"][-1]
+    return {name: float(value) for name, value in row.items() if _is_number(value)}
+
+
+def _team(vehicles: int) -> SystemParameters:
+    system = SystemConfig()
+    return replace(system, team=replace(system.team, vehicles=vehicles)).parameters()
+
+
+def _largest_gap(pattern: RayPattern, places: Any, count: int) -> float:
+    rays = np.concatenate([pattern.directions(scan) for scan in range(count)])
+    chords, _ = KDTree(rays).query(places)
+    return math.degrees(2.0 * math.asin(float(chords.max()) / 2.0))
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
