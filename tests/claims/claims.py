@@ -138,6 +138,8 @@ def main(arguments: Sequence[str]) -> int:
             for name, text in written(claims, values, documents()).items():
                 (ROOT / name).write_text(text, encoding="utf-8")
         found = problems(claims, values, documents())
+    except KeyboardInterrupt:
+        return 130
     except ClaimsError as error:
         console.print(str(error), style="red", markup=False)
         return 2
