@@ -168,9 +168,11 @@ def _counts(claims: ClaimsFile, record: Record, wrong: int) -> str:
         counts[claims.kind(claim.source)] += len(claim.figures)
     commit = commit_of(ROOT / "docs")
     old = sum(entry.commit != commit for name, entry in record.measured.items() if name in claims.sources)
+    opened = sum(part.reason.startswith("open") for part in claims.definitions)
     classes = ", ".join(f"{counts[name]} {name}" for name in CLASSES)
     return (
-        f"{sum(counts.values())} figures ({classes}), {len(claims.definitions)} definitions, {wrong} problems; "
+        f"{sum(counts.values())} figures ({classes}), {len(claims.definitions)} definitions ({opened} open), "
+        f"{wrong} problems; "
         f"{old} of {len(record.measured)} records of an earlier commit (make claims-all); {cpu_seconds():.1f} s of CPU"
     )
 
