@@ -18,7 +18,7 @@ from gcs.campaign.scenarios.generator import DEFAULT_KINDS, generate
 from gcs.campaign.scenarios.judgement import least_separation
 from gcs.campaign.scenarios.passage import SHORT, SPARE, Passages
 from gcs.config import SystemConfig
-from gcs.flight.stack import speed_by_sight
+from gcs.flight.stack import reaction_time, speed_by_sight, tilted_formation
 from idc_controller.model.linear import LinearModel
 from idc_controller.parameters import SystemParameters
 from idc_controller.perception.ray_pattern import RayPattern
@@ -58,8 +58,10 @@ def sight() -> dict[str, Any]:
         duration = speed / acceleration + settings.stopping_delay
         return speed * (settings.latency + duration / 2.0)
 
+    reaction = reaction_time(system, tilted_formation(system))
     return {
         "way": way,
+        "give_way": reaction - settings.confirmation - system.safety.planner.stage,
         "slow": limit.slow,
         "fastest": limit.fastest,
         "closing": limit.fastest + settings.closing_speed,
