@@ -1,6 +1,5 @@
 """Lockstep: the world's clock is the ground's clock (see :mod:`gcs.mavlink.lockstep`)."""
 
-import math
 import socket
 from collections.abc import Callable
 
@@ -10,7 +9,7 @@ from gcs.drivers.settings import DriverSettings
 from gcs.flight.failsafe import Failsafe
 from gcs.flight.ground_station import GroundStation
 from gcs.mavlink.address import Address
-from gcs.mavlink.lockstep import Done, Tick, decode_tick
+from gcs.mavlink.lockstep import Done, Tick, decode_tick, next_call_us
 
 _REFUSAL_TIME = 0.2  # s of wall time in which a closed port is reported
 
@@ -66,8 +65,7 @@ def run_in_lockstep(
             connection.send(datagram, address)
         station.sent()
         progress()
-        due = station.next_timer()
-        next_us = None if due is None else max(math.ceil(due * 1e6 - 1e-3), tick.time_us + 1)
+        next_us = next_call_us(station.next_timer(), tick.time_us)
         connection.send(Done(tick.serial, next_us, station.ended).encode(), clock_address)
     if joined:
         connection.send(Done(0, None, leaving=True).encode(), clock_address)

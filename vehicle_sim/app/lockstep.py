@@ -5,7 +5,7 @@ import time
 from collections.abc import Iterator
 
 from gcs.mavlink.address import Address
-from gcs.mavlink.lockstep import Done, Tick, decode_done
+from gcs.mavlink.lockstep import Done, LockstepTime, Tick, decode_done
 from gcs.mavlink.udp import arrived
 from vehicle_sim.app.ending import Ending
 from vehicle_sim.app.sockets import SwarmSockets
@@ -13,9 +13,6 @@ from vehicle_sim.app.swarm_log import LOG, SwarmLog
 from vehicle_sim.swarm import Swarm
 
 ANSWER_TIME = 5.0  # s of wall time for the ground to answer a tick
-STRIDE_US = 100_000  # of free time between looks at the world
-# Ticks at one moment after which time goes on: two who always have an answer for each other must not stop it.
-TICKS_AT_ONE_TIME = 1000
 
 
 class LockstepDriver:
@@ -34,7 +31,7 @@ class LockstepDriver:
         self._clock = sockets.clock
         self._ending = ending
         self._answer_time = answer_time
-        self._time_us = round(swarm.time * 1e6)
+        self._time = LockstepTime(swarm.time)
         self._serial = 0
         self._joining: Address | None = None
         self._log = SwarmLog(swarm)
@@ -83,7 +80,6 @@ class LockstepDriver:
 
     def _serve(self, ground: Address) -> None:
         """Tick until the ground leaves, does not answer for too long, or the end comes."""
-        ticks_at_this_time = 0
         while True:
             self._send()
             # Serial 0 is the ground's join request.
@@ -93,19 +89,12 @@ class LockstepDriver:
             self._receive()
             if done is None or done.leaving:
                 return
-            ticks_at_this_time += 1
-            due = [us for us in (self._next_due_us(), done.next_us) if us is not None]
-            next_us = max(min(due, default=self._time_us + STRIDE_US), self._time_us)
-            if next_us == self._time_us and ticks_at_this_time >= TICKS_AT_ONE_TIME:
-                next_us += 1000
-            if next_us > self._time_us:
-                ticks_at_this_time = 0
-                self._time_us = next_us
+            self._time.advance(self._swarm.next_timer(), done.next_us)
 
     def _tick(self, ground: Address) -> None:
         """Send the time to ``ground``. A tick that cannot be sent has no answer."""
         try:
-            self._clock.sendto(Tick(self._serial, self._time_us).encode(), ground)
+            self._clock.sendto(Tick(self._serial, self._time.us).encode(), ground)
         except OSError:
             return
 
@@ -128,27 +117,21 @@ class LockstepDriver:
 
     def _let_land(self) -> None:
         """Time runs freely until the vehicles have landed and disarmed."""
-        give_up = self._time_us + round(self._swarm.failsafe.landing_timeout * 1e6)
-        while not self._swarm.at_rest and self._time_us < give_up and not self._ending.requested:
-            due = self._next_due_us()
-            stride = self._time_us + STRIDE_US
-            self._time_us = stride if due is None else min(max(due, self._time_us + 1), stride)
+        give_up = self._time.us + round(self._swarm.failsafe.landing_timeout * 1e6)
+        while not self._swarm.at_rest and self._time.us < give_up and not self._ending.requested:
+            self._time.run_free(self._swarm.next_timer())
             self._send()
             self._receive()
         self._ending.look()
 
-    def _next_due_us(self) -> int | None:
-        timer = self._swarm.next_timer()
-        return None if timer is None else round(timer * 1e6)
-
     def _send(self) -> None:
-        now = self._time_us / 1e6
+        now = self._time.world
         self._swarm.advance_to(now)
         self._log.update()
         for vehicle, datagram, address in self._swarm.datagrams_to_send(now):
             self._sockets.send(vehicle, datagram, address)
 
     def _receive(self) -> None:
-        now = self._time_us / 1e6
+        now = self._time.world
         for vehicle, datagram, sender in self._sockets.received():
             self._swarm.receive(vehicle, datagram, sender, now)
