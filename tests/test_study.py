@@ -68,7 +68,7 @@ def test_changed_system_file_differs_in_given_values_only(tmp_path):
 
 
 def test_unknown_key_of_system_file_is_refused():
-    with pytest.raises(KeyError):
+    with pytest.raises(UnusableInput, match=r"did you mean 'avoidance\.margin'"):
         system_text({"avoidance.margins": 0.25})
 
 

@@ -11,9 +11,11 @@ def importing() -> Iterator[None]:
 
     The imports of a flight make 200,000 objects that stay, which every collection would look through.
     """
+    collects = gc.isenabled()
     gc.disable()
     try:
         yield
     finally:
         gc.freeze()
-        gc.enable()
+        if collects:
+            gc.enable()

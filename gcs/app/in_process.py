@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Protocol, Self
 
 from gcs.app.fly import FlightResult, flight_result, ground_station
+from gcs.app.imports import importing
 from gcs.drivers.in_process import InProcessLockstep, World
 from gcs.errors import GcsError
 from gcs.flight.flight import Flight
@@ -48,7 +49,9 @@ def open_world(mission: Mission, run_dir: Path) -> RecordedWorld:
     if not found:
         raise GcsError(f"no simulated world is installed (entry points {WORLDS}): install cooplift again")
     entry = found[DEFAULT_WORLD] if DEFAULT_WORLD in found.names else next(iter(found))
-    world: RecordedWorld = entry.load()(mission, run_dir)
+    with importing():
+        open_one = entry.load()
+    world: RecordedWorld = open_one(mission, run_dir)
     return world
 
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from gcs.config import SystemConfig
+from gcs.config.overrides import set_by_path
 from gcs.mission.model import Limits, Lissajous, Obstacle
 from gcs.mission.obstacle_table import keys_of
 
@@ -33,16 +34,10 @@ def mission_text(
 def system_text(changes: Mapping[str, Any]) -> str:
     """Return the default system, whole, as a file with ``changes`` by key: ``{"avoidance.margin": 0.25}``.
 
-    Raises :class:`KeyError` for a key that the system does not have.
+    Raises :class:`UnusableInput` for a key that the system does not have.
     """
     tables = SystemConfig().tables()
-    for key, value in changes.items():
-        *path, name = key.split(".")
-        table = tables
-        for part in path:
-            table = table[part]
-        table[name]  # a key that it has
-        table[name] = value
+    set_by_path(tables, changes)
     return tables_text(tables)
 
 

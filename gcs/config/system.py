@@ -166,6 +166,11 @@ def read_system(path: Path | None = None) -> SystemConfig:
     for table, use in _OTHER_FILES.items():
         if table in file.data:
             raise UnusableFile([file.problem((table,), use)])
+    return system_of(file)
+
+
+def system_of(file: TomlFile) -> SystemConfig:
+    """Return the system of a parsed file. Raises :class:`UnusableFile` as :func:`read_system` does."""
     config: SystemConfig = file.validated(_validator())
     if problems := _disagreements(config, file):
         raise UnusableFile(problems)

@@ -54,6 +54,14 @@ class TomlFile:
         )
 
 
+class GivenTables(TomlFile):
+    """Tables that a program has given, in place of a file; ``path`` is what messages call them."""
+
+    def problem(self, key: Sequence[str | int], reason: str) -> str:
+        """Return a message of one line: name, table.key, reason."""
+        return f"{self.path}: {dotted(key)}: {reason}"
+
+
 def read_toml(path: Path) -> TomlFile:
     """Parse a TOML file. Raises :class:`UnusableFile` with the line of a syntax error."""
     text = read_text(path)

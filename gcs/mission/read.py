@@ -1,9 +1,12 @@
 """Read a mission of any of the three formats, with the system it is flown by."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from gcs.config import SystemConfig, UnusableFile, read_system
+from gcs.config.overrides import with_settings
 from gcs.config.text_file import read_text
 from gcs.config.toml_file import TomlFile
 from gcs.config.validate import Key
@@ -14,11 +17,13 @@ from gcs.mission.toml_mission import DEFAULT_SEED, check_with_system, points_rou
 _SUFFIXES = {".waypoints": "wpl", ".txt": "wpl", ".plan": "plan", ".json": "plan", ".toml": "toml"}
 
 
-def read_mission(path: Path | str, config_path: Path | str | None = None) -> Mission:
+def read_mission(
+    path: Path | str, config_path: Path | str | None = None, settings: Mapping[str, Any] | None = None
+) -> Mission:
     """Read a mission: ``.toml``, ``QGC WPL 110`` or QGroundControl ``.plan``, recognised by their content.
 
     The system comes from ``config_path``, else from the file that the mission names, else from ``system.toml`` beside
-    the mission, else the default system.
+    the mission, else the default system; ``settings`` by dotted path take the place of its own.
 
     Raises :class:`UnusableFile` (a :class:`gcs.errors.UnusableInput`) with every reason found.
     """
@@ -26,8 +31,8 @@ def read_mission(path: Path | str, config_path: Path | str | None = None) -> Mis
     config = None if config_path is None else Path(config_path)
     text = read_text(path)
     if mission_format(path, text) == "toml":
-        return _from_toml(path, config)
-    system = _system(path, None, config)
+        return _from_toml(path, config, settings or {})
+    system = with_settings(_system(path, None, config), settings or {})
     return _from_waypoints(path, text, system)
 
 
@@ -77,11 +82,11 @@ def _from_waypoints(path: Path, text: str, system: SystemConfig, speed: float | 
     )  # fmt: skip
 
 
-def _from_toml(path: Path, config: Path | None) -> Mission:
+def _from_toml(path: Path, config: Path | None, settings: Mapping[str, Any]) -> Mission:
     file, table = read_mission_file(path)
     if config is None and table.mission.system is not None:
         _beside(file, ("mission", "system"), table.mission.system)
-    system = _system(path, table.mission.system, config)
+    system = with_settings(_system(path, table.mission.system, config), settings)
     check_with_system(file, table, system)
     reference, capped = table.reference, tuple[str, ...]()
     if isinstance(reference, Lissajous):

@@ -2,12 +2,13 @@
 
 import csv
 import io
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import orjson
+from numpy.typing import NDArray
 
 from gcs.errors import UnusableInput
 from gcs.record.append_file import AppendOnlyFile
@@ -161,6 +162,26 @@ def read_text_table(path: Path | str) -> dict[str, list[str]]:
     return _text_table(path, *_read_lines(path))
 
 
+def structured_array(name: str, text: str, text_columns: Collection[str] = ()) -> NDArray[np.void]:
+    """Return a table (``text`` of a file ``name``) as a structured array (rows,) with a field a column.
+
+    Fields are float64, those of ``text_columns`` text. Raises as :func:`read_table`.
+    """
+    columns, lines = _lines_of(name, text)
+    numbers = _plain_numbers(lines, len(columns))
+    if numbers is not None:
+        return np.ascontiguousarray(numbers).view([(column, float) for column in columns]).reshape(len(lines))
+    table = _text_table(name, columns, lines)
+    try:
+        arrays = {c: np.array(cells, dtype=str if c in text_columns else float) for c, cells in table.items()}
+    except ValueError:
+        raise UnusableInput(f"{name}, {_first_bad_cell(table)} is not a number") from None
+    found = np.empty(len(lines), dtype=[(column, array.dtype) for column, array in arrays.items()])
+    for column, array in arrays.items():
+        found[column] = array
+    return found
+
+
 def _read_lines(path: Path | str) -> tuple[list[str], list[str]]:
     """Return the names of the columns, and the complete lines below them."""
     try:
@@ -169,6 +190,10 @@ def _read_lines(path: Path | str) -> tuple[list[str], list[str]]:
         raise UnusableInput(f"{path}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
         raise UnusableInput(f"{path}: is not a text file") from None
+    return _lines_of(path, text)
+
+
+def _lines_of(path: Path | str, text: str) -> tuple[list[str], list[str]]:
     header, *lines = text.split("\n")
     if not lines:
         raise UnusableInput(f"{path}, line 1: the header is missing or cut off")

@@ -1,0 +1,167 @@
+"""A flight as a function: :func:`gcs.fly`."""
+
+from __future__ import annotations
+
+import dataclasses
+import operator
+import tempfile
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import ExitStack
+from datetime import UTC, datetime
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pydantic import TypeAdapter
+
+from gcs.app.arguments import CONTROLLERS
+from gcs.app.flown import Flight, flown
+from gcs.app.in_process import FlightInProcess
+from gcs.app.logs import LOG
+from gcs.app.preflight import preflight
+from gcs.config import read_system
+from gcs.config.overrides import with_settings
+from gcs.config.toml_file import GivenTables
+from gcs.config.validate import UnusableFile
+from gcs.errors import UnusableInput
+from gcs.mission.faults import check_faults_of, fault_problems, read_fault
+from gcs.mission.model import Fault, Limits, Mission
+from gcs.mission.read import read_mission
+from gcs.numerics import differences
+from gcs.record.run_folder import NewRunFolder, write_manifest
+
+if TYPE_CHECKING:
+    from gcs.campaign.testing import AnyFault
+
+
+def fly(
+    mission: Path | str | Mission,
+    *,
+    seed: int | None = None,
+    config: Path | str | None = None,
+    settings: Mapping[str, Any] | None = None,
+    controller: str = "idc",
+    faults: Iterable[AnyFault] = (),
+    limits: Limits | Mapping[str, Any] | None = None,
+    run_dir: Path | str | None = None,
+) -> Flight:
+    """Fly a mission in lockstep with a simulated swarm, in this process, and return the flight.
+
+    The same arguments give the same flight, to the byte that of ``gcs fly`` where that can fly it. Several flights may
+    be flown one after the other in a process, and in parallel in several.
+
+    Args:
+        mission: a mission file of any format, or a mission built in Python.
+        seed: of every random number, in place of the mission's own.
+        config: a system file in place of the mission's own.
+        settings: values by dotted path, such as ``{"avoidance.margin": 0.3}``, in place of the system file's
+            (docs/settings.md). A mission built in Python keeps the route that it has.
+        controller: ``idc`` (tracking with obstacle avoidance), ``mpc`` (tracking only) or ``paper`` (the paper's own
+            filter).
+        faults: after the mission's own, each as the keys of a ``[[fault]]`` table, or as the parameters of a kind, such
+            as ``gcs.faults.link.PacketLoss(probability=0.3)``, from take-off to the end.
+        limits: in place of the mission's own, as the keys of its table ``[limits]``.
+        run_dir: a folder for the records, made if it is absent; None: none is written.
+
+    Raises:
+        UnusableInput: (:mod:`gcs.errors`) for whatever cannot be flown, before the flight.
+        GcsError: no simulated world is installed.
+    """
+    flown_mission = _mission(mission, seed, config, settings or {}, limits)
+    faults = [*faults]
+    flown_mission = _with_faults(flown_mission, faults)
+    if controller not in CONTROLLERS:
+        raise UnusableInput(f"controller '{controller}' is none of {', '.join(CONTROLLERS)}")
+    for note in (*flown_mission.notes, *preflight(flown_mission).lines):
+        LOG.info("note: %s", note)
+    given = {
+        "seed": seed, "config": config and str(config), "settings": settings and dict(settings),
+        "controller": None if controller == "idc" else controller, "faults": faults, "limits": limits,
+    }  # fmt: skip
+    options = "".join(f", {name}={value!r}" for name, value in given.items() if value not in (None, []))
+    replay = f"gcs.fly({'mission' if isinstance(mission, Mission) else repr(str(mission))}{options})"
+    with ExitStack() as opened:
+        if run_dir is None:  # the summary is made from the files of the records
+            run_dir = Path(opened.enter_context(tempfile.TemporaryDirectory(prefix="cooplift-"))) / "run"
+            keep = False
+        else:
+            keep = True
+        folder = opened.enter_context(NewRunFolder(flown_mission.name, run_dir))
+        started = datetime.now(UTC)
+        write_manifest(
+            folder.path, command=[replay], seed=flown_mission.seed, mission=flown_mission,
+            system=flown_mission.system, start=started,
+        )  # fmt: skip
+        flight = opened.enter_context(
+            FlightInProcess(flown_mission, folder.path, controller=controller, start_epoch=started.timestamp())
+        )
+        if others := differences():
+            LOG.warning(others)
+        folder.keep()
+        flight.fly()
+        return flown(flight.result(), flight.setpoints, replay, keep=keep)
+
+
+def _mission(
+    mission: Path | str | Mission,
+    seed: int | None,
+    config: Path | str | None,
+    settings: Mapping[str, Any],
+    limits: Limits | Mapping[str, Any] | None,
+) -> Mission:
+    """Return the mission as it will be flown, but for further faults. Raises :class:`UnusableInput`."""
+    if isinstance(mission, Mission):
+        system = mission.system if config is None else read_system(Path(config))
+        mission = dataclasses.replace(mission, system=with_settings(system, settings))
+        check_faults_of(mission)
+    else:
+        mission = read_mission(mission, config, settings)
+    if seed is not None:
+        mission = dataclasses.replace(mission, seed=_seed(seed))
+    if limits is not None:
+        mission = dataclasses.replace(mission, limits=_limits(limits))
+    return mission
+
+
+def _seed(seed: int) -> int:
+    try:
+        whole = operator.index(seed)
+    except TypeError:
+        whole = -1
+    if not 0 <= whole < 2**63:
+        raise UnusableInput(f"seed {seed!r} is not a whole number from 0 to {2**63 - 1}")
+    return whole
+
+
+@cache
+def _limits_adapter() -> TypeAdapter[Limits]:
+    return TypeAdapter(Limits)
+
+
+def _limits(limits: Limits | Mapping[str, Any]) -> Limits:
+    tables = dict(limits) if isinstance(limits, Mapping) else dataclasses.asdict(limits)
+    return GivenTables(Path("limits"), tables, {}).validated(_limits_adapter())
+
+
+def _with_faults(mission: Mission, faults: Sequence[AnyFault]) -> Mission:
+    """Return the mission with ``faults`` after its own. Raises :class:`UnusableInput`."""
+    if not faults:
+        return mission
+    # Campaigns take long to import, spent only where there are faults.
+    from gcs.campaign.faults.base_mission import fault_table
+    from gcs.campaign.testing import fault
+
+    given = GivenTables(Path("faults"), {}, {})
+    found = []
+    for index, one in enumerate(faults):
+        try:
+            table = fault_table(one if isinstance(one, Fault | Mapping) else fault(one))
+        except TypeError as error:
+            raise UnusableInput(f"faults: {error}") from None
+        read = read_fault(given, index, table)
+        if problems := [
+            given.problem(("fault", index, key), reason) for key, reason in fault_problems(read, mission.system)
+        ]:
+            raise UnusableFile(problems)
+        found.append(read)
+    return dataclasses.replace(mission, faults=(*mission.faults, *found))

@@ -1,0 +1,57 @@
+"""Settings given by dotted path, such as ``avoidance.margin``, in place of those of a system file."""
+
+from collections.abc import Mapping
+from difflib import get_close_matches
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from gcs.config.schema import listed_settings
+from gcs.config.system import SystemConfig, system_of
+from gcs.config.toml_file import GivenTables
+from gcs.errors import UnusableInput
+
+
+def with_settings(system: SystemConfig, settings: Mapping[str, Any]) -> SystemConfig:
+    """Return ``system`` with values by dotted path, checked as those of a system file.
+
+    A value of None leaves the setting out; arrays may be numpy's; the file of a mesh is looked for from the current
+    folder. Raises :class:`UnusableInput` for a path that is no setting's, with the nearest that is one, and for values
+    that are out of range or do not agree with the others.
+    """
+    if not settings:
+        return system
+    tables = system.tables()
+    if (mesh := system.payload.mesh) is not None:
+        tables["payload"]["mesh"] = str(mesh.path)  # not as seen from the system file
+    set_by_path(tables, settings)
+    return system_of(GivenTables(Path("settings"), tables, {}))
+
+
+def set_by_path(tables: dict[str, Any], settings: Mapping[str, Any]) -> None:
+    """Set values by dotted path in the tables of a system file. Raises :class:`UnusableInput` for another path."""
+    for path, value in settings.items():
+        if path not in _paths():
+            raise UnusableInput(f"settings: there is no '{path}'{_hint(path)}")
+        *names, key = path.split(".")
+        table = tables
+        for name in names:
+            table = table.setdefault(name, {})
+        if value is None:
+            table.pop(key, None)
+        else:
+            table[key] = value.tolist() if hasattr(value, "tolist") else value
+
+
+@cache
+def _paths() -> tuple[str, ...]:
+    return tuple(f"{listed.table}.{listed.key}" for listed in listed_settings(SystemConfig))
+
+
+def _hint(path: str) -> str:
+    """Return what is meant: the nearest path, or else the one whose last part is nearest."""
+    near = get_close_matches(path, _paths(), 1, 0.75)
+    if not near:
+        keys = {known.rpartition(".")[2]: known for known in reversed(_paths())}
+        near = [keys[key] for key in get_close_matches(path.rpartition(".")[2], keys, 1)]
+    return f": did you mean '{near[0]}'?" if near else ": docs/settings.md lists all"
