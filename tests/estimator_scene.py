@@ -1,7 +1,7 @@
 """Measurements of a team at rest in hover, and an estimator that receives them, for tests."""
 
 import numpy as np
-from flight_in_process import MISSIONS
+from flights import MISSIONS
 
 from gcs.config import read_system
 from idc_controller.estimation.estimator import Estimator

@@ -1,6 +1,6 @@
 """A small fault campaign, and what its flights would come to."""
 
-from flight_in_process import short_figure
+from flights import short_figure
 
 from gcs.campaign.faults.campaign_file import read_campaign
 from gcs.campaign.faults.plans import FaultFlights

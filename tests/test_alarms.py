@@ -4,7 +4,7 @@ import json
 from dataclasses import replace
 
 import pytest
-from flight_in_process import HOP, InProcessFlight, system_file
+from flights import HOP, InProcessFlight, system_file
 
 from gcs.campaign.faults.judgement import detection, first_start
 from gcs.config.flight_settings import DEFAULTS

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from flight_in_process import system_file
+from flights import system_file
 from truth_rows import write_state
 
 from gcs.app.exit_status import ExitStatus

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from flight_in_process import short_figure
+from flights import short_figure
 from small_campaign import CAMPAIGN, campaign_file, flights
 
 from gcs.app.cli import main

@@ -3,7 +3,7 @@
 from itertools import pairwise
 
 import pytest
-from flight_in_process import HOP, InProcessFlight, system_file
+from flights import HOP, InProcessFlight, system_file
 
 from gcs.flight.compute_times import ComputeTimes, Part
 from gcs.record.tables import read_table

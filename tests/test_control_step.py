@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 import pytest
-from flight_in_process import MISSIONS
+from flights import MISSIONS
 from one_measurement import measurement
 
 from gcs.config import read_system

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from estimator_truth import known_to_the_world, true_state
-from flight_in_process import MISSIONS, InProcessFlight, check_within_limits, noiseless, short_figure
+from flights import MISSIONS, InProcessFlight, check_within_limits, noiseless, short_figure
 from scipy.stats import chi2
 
 from gcs.config import read_system

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pandas
 import pytest
-from flight_in_process import HOP
+from flights import HOP
 from small_campaign import CAMPAIGN, OUTSIDE, SUMMARY, campaign_file
 
 from gcs.app.cli import main

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from flight_in_process import MISSIONS
+from flights import MISSIONS
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from nonlinear_motion import uav_positions

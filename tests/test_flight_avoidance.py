@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from flight_in_process import InProcessFlight, system_file, truth_of
+from flights import InProcessFlight, system_file, truth_of
 from mission_files import MISSIONS
 
 from gcs.app.exit_status import ExitStatus

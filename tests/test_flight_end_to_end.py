@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from flight_in_process import (
+from flights import (
     MISSIONS,
     check_within_limits,
     copied_mission,

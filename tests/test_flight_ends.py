@@ -10,7 +10,7 @@ import socket
 
 import numpy as np
 import pytest
-from flight_in_process import InProcessFlight, address_of, short_figure, truth_of
+from flights import InProcessFlight, address_of, short_figure, truth_of
 from programs import PATIENCE, GcsProcess, addresses_of, base_port, swarm_process
 from pymavlink import mavutil
 

@@ -7,7 +7,7 @@ Flights of one process: tests/test_pytest_plugin.py and the last of these fly fa
 from dataclasses import replace
 
 import pytest
-from flight_in_process import InProcessFlight, short_figure
+from flights import InProcessFlight, short_figure
 
 from gcs.app.exit_status import ExitStatus
 from gcs.campaign.testing import fault

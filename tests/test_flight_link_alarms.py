@@ -1,7 +1,7 @@
 """Alarms of links and clocks in flight: each named beside the others, and congestion as what it is."""
 
 import pytest
-from flight_in_process import HOP, InProcessFlight, system_file
+from flights import HOP, InProcessFlight, system_file
 
 from gcs.flight.detectors import MonitorAlarm
 from gcs.mission.model import Fault

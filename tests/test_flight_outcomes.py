@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from flight_in_process import HOP, InProcessFlight, system_file
+from flights import HOP, InProcessFlight, system_file
 
 from gcs.app.exit_status import ExitStatus
 from gcs.mission.read import read_mission

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 import pytest
-from flight_in_process import MISSIONS
+from flights import MISSIONS
 
 from gcs.flight.alarms import AlarmLog
 from gcs.flight.condition import Trigger

@@ -4,7 +4,7 @@ import contextlib
 import threading
 
 import pytest
-from flight_in_process import position_rmse, short_figure, truth_of
+from flights import position_rmse, short_figure, truth_of
 from virtual_time import VirtualTime
 
 from gcs.app.fly import ground_station

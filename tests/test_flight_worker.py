@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 from file_events import wait_for_ends, wait_for_file
-from flight_in_process import HOP, system_file
+from flights import HOP, system_file
 from programs import ENVIRONMENT, gcs_fly
 
 from gcs.campaign.flight_worker import FlightWorker

@@ -2,7 +2,7 @@
 
 import pymavlink.dialects.v20.common as mavlink
 import pytest
-from flight_in_process import MISSIONS, address_of
+from flights import MISSIONS, address_of
 
 from gcs.app.fly import ground_station
 from gcs.flight.ground_station import GROUND_COMPONENT, GROUND_SYSTEM

@@ -4,7 +4,7 @@ from random import Random
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 import pytest
-from flight_in_process import GROUND, InProcessFlight, address_of, check_within_limits, short_figure
+from flights import GROUND, InProcessFlight, address_of, check_within_limits, short_figure
 from hostile_messages import hostile_to_ground, hostile_to_vehicle
 from hostile_traffic import HostileTraffic, Traffic, with_random_contents
 

@@ -4,7 +4,7 @@ import contextlib
 
 import pymavlink.dialects.v20.ardupilotmega as mavlink
 import pytest
-from flight_in_process import GROUND, MISSIONS, address_of
+from flights import GROUND, MISSIONS, address_of
 
 from gcs.app.fly import ground_station
 from gcs.app.fly_options import FlyOptions

@@ -15,7 +15,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from flight_in_process import HOP, system_file
+from flights import HOP, system_file
 from mission_files import MISSIONS
 from programs import ENVIRONMENT, PATIENCE
 from small_campaign import SUMMARY, campaign_file

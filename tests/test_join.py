@@ -3,11 +3,12 @@
 import logging
 
 import pytest
-from flight_in_process import GROUND, HOP, InProcessFlight, address_of, system_file
+from flights import HOP, InProcessFlight, system_file
 from rich.console import Console
 
 from gcs.app.flight_log import FlightLog
 from gcs.app.progress import FlightProgress
+from gcs.drivers.in_process import InProcessLockstep
 from gcs.flight.phase import IN_AIR
 from gcs.mission.read import read_mission
 from vehicle_sim.faults.disturbances import Disturbances
@@ -17,30 +18,35 @@ CLIMBED = 2.0
 """Seconds of the climb that are flown: the window of the clock's alarm then holds all from the first contact on."""
 
 
+class LateStation:
+    """A ground station whose own time is 0 when the world's is ``waited`` (s)."""
+
+    def __init__(self, station, waited):
+        self._station, self._waited = station, waited
+
+    def __getattr__(self, name):
+        return getattr(self._station, name)
+
+    def receive_all(self, datagrams, now):
+        self._station.receive_all(datagrams, now - self._waited)
+
+    def datagrams_to_send(self, now):
+        return self._station.datagrams_to_send(now - self._waited)
+
+    def next_timer(self):
+        return self._station.next_timer() + self._waited
+
+
 class Joining(InProcessFlight):
-    """A ground whose own time is 0 when it joins a swarm that has run without one for ``waited`` seconds."""
+    """A ground whose own time is 0 when it joins a swarm that has run without one for a while."""
 
-    waited = 0.0
-
-    def fly_to_the_climb(self, on_exchange=lambda in_process: None):
-        """Fly for a few seconds of the climb, as :meth:`InProcessFlight.fly` does."""
-        swarm, station, airborne = self.swarm, self.station, None
-        self.now = self.waited
-        while airborne is None or self.now < airborne + CLIMBED:
-            swarm.advance_to(self.now)
-            ground = self.now - self.waited
-            telemetry = list(swarm.datagrams_to_send(self.now))
-            received = [(datagram, address_of(i)) for i, datagram, address in telemetry if address == GROUND]
-            station.receive_all(received, ground)
-            for datagram, address in station.datagrams_to_send(ground):
-                swarm.receive(address[1] - 14579, datagram, GROUND, self.now)
-            on_exchange(self)
-            if airborne is None and self.flight.phase in IN_AIR:
-                airborne = self.now
-            due = [t for t in (swarm.next_timer(), station.next_timer() + self.waited) if t is not None]
-            self.now = max(min(due), self.now)
-            assert self.now < self.waited + 20.0
-        return self
+    def fly_to_the_climb(self, waited, on_exchange):
+        """Join after ``waited`` (s), and fly for a few seconds of the climb."""
+        self.swarm.advance_to(waited)
+        self.lockstep = InProcessLockstep(self.world, LateStation(self.station, waited))
+        self.fly(on_exchange, until=waited + 20.0, stop=lambda: self.flight.phase in IN_AIR)
+        assert self.flight.phase in IN_AIR
+        self.fly(on_exchange, until=self.now + CLIMBED)
 
 
 class Ahead(Disturbances):
@@ -63,9 +69,8 @@ def test_ground_that_joins_a_swarm_raises_no_alarm_and_counts_from_its_own_start
     mission = read_mission(tmp_path / "hop.toml")
     console = Console(record=True, width=120)
     with Joining(mission, tmp_path / "run", faults=Ahead(ahead)) as joining, caplog.at_level(logging.INFO):
-        joining.waited = waited
         progress, log = FlightProgress(console), FlightLog(joining.station)
-        joining.fly_to_the_climb(lambda _: (progress.update(joining.flight), log.update()))
+        joining.fly_to_the_climb(waited, lambda _: (progress.update(joining.flight), log.update()))
         assert joining.flight.failsafes.alarms.alarms == []
         assert joining.flight.time == pytest.approx(waited + ahead + joining.flight.elapsed, abs=1.0)
     lines = [line.split() for line in console.export_text().splitlines()]

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from filterpy.kalman import KalmanFilter
-from flight_in_process import MISSIONS
+from flights import MISSIONS
 from paper_system import system
 from scipy.linalg import expm
 from scipy.stats import chi2

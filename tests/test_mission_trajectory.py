@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from flight_in_process import short_figure
+from flights import short_figure
 from mission_files import RETURN, TAKE_OFF, A, read, row, wpl
 
 from gcs.flight.mission_trajectory import MissionTrajectory

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from flight_in_process import MISSIONS
+from flights import MISSIONS
 from mpc_oracle import optimal_moves
 from scipy.linalg import solve_discrete_are
 from test_control_kernels import inputs_plainly

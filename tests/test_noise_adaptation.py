@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from flight_in_process import InProcessFlight, check_within_limits, short_figure
+from flights import InProcessFlight, check_within_limits, short_figure
 
 from gcs.mission.read import read_mission
 from idc_controller.estimation.health.noise_adaptation import NoiseAdaptation, Reaction

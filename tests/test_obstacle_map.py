@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from flight_in_process import InProcessFlight, short_figure
+from flights import InProcessFlight, short_figure
 from obstacle_scene import HERE, Scene, box, map_of, moving_tracks, outside, pole, run, sphere, wall
 
 from gcs.flight import stack
@@ -13,7 +13,6 @@ from gcs.mission.read import read_mission
 from idc_controller.geometry.capsule import Capsule
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
-from vehicle_sim.swarm import Swarm
 from vehicle_sim.world.obstacle_bodies import Obstacle as WorldObstacle
 
 SIGMAS = 3.0
@@ -165,12 +164,10 @@ def test_map_in_flight_has_the_obstacles_the_vehicles_detect(tmp_path):
         Obstacle("known", (-5.0, 0.0, -3.0), Sphere(0.4)),
     )  # fmt: skip
     mission = replace(mission, obstacles=obstacles)
-    with InProcessFlight(mission, tmp_path / "run") as flight:
+    with InProcessFlight(mission, tmp_path / "run", obstacles=obstacles) as flight:
         obstacle_map = stack.obstacle_map(mission)
         flown = flight.flight
         flown.system = flown.failsafes.system = replace(flown.system, obstacle_map=obstacle_map)
-        flight.swarm.close()
-        flight.swarm = Swarm(mission.system, seed=1, home=mission.home, obstacles=obstacles)
         flight.fly(until=6.0)
         predicted = obstacle_map.predict(np.array([flight.now]))
         assert obstacle_map.placement.discarded == 0

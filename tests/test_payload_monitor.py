@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from flight_in_process import MISSIONS
+from flights import MISSIONS
 
 from gcs.config import read_system
 from gcs.config.flight_settings import DEFAULTS

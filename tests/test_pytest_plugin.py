@@ -7,7 +7,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from flight_in_process import HOP, system_file
+from flights import HOP, system_file
 
 from gcs.campaign import testing
 from gcs.campaign.process_pool import FlownProcess

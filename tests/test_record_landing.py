@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from flight_in_process import HOP, system_file
+from flights import HOP, system_file
 from truth_rows import write_state
 
 from gcs.app.fly import flight_result

@@ -4,7 +4,7 @@ from unittest.mock import patch
 
 import numpy as np
 import pytest
-from flight_in_process import MISSIONS, InProcessFlight
+from flights import MISSIONS, InProcessFlight
 from range_scene import return_variance
 
 from gcs.mission.read import read_mission

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from estimator_truth import known_to_the_world, true_state
-from flight_in_process import HOP, InProcessFlight, system_file
+from flights import HOP, InProcessFlight, system_file
 from obstacle_scene import outside
 from pymavlink import mavutil
 

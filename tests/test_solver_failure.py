@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from avoidance_scene import avoidance, fly, pole, sphere, straight
-from flight_in_process import MISSIONS, InProcessFlight
+from flights import MISSIONS, InProcessFlight
 
 from gcs.mission.read import read_mission
 from idc_controller.errors import SolverError

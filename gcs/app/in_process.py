@@ -81,6 +81,7 @@ class FlightInProcess:
         self.setpoints = SentSetpoints()
         self._takeoff: float | None = None
         """Wall time of take-off (s)."""
+        self._closed = False
         with ExitStack() as opened:
             self.world = open_world(mission, run_dir) if world is None else world
             opened.callback(self.world.close)
@@ -137,8 +138,12 @@ class FlightInProcess:
             self.step(exchanged)
 
     def result(self) -> FlightResult:
-        """Let the vehicles come to rest, close the records, write the summary, and return how the flight ended."""
-        self.lockstep.let_land()
+        """Let the vehicles come to rest, close the records, write the summary, and return how the flight ended.
+
+        Of a flight that is closed already, the records end there.
+        """
+        if not self._closed:
+            self.lockstep.let_land()
         wall = 0.0 if self._takeoff is None else time.monotonic() - self._takeoff
         self.close()
         incomplete = (*self.recorder.incomplete.found, *self.world.incomplete)
@@ -146,6 +151,7 @@ class FlightInProcess:
 
     def close(self) -> None:
         """Close world and records; harmless when they are closed."""
+        self._closed = True
         self._closing.close()
 
     def __enter__(self) -> Self:

@@ -18,7 +18,7 @@ from rich.table import Table
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "tests"))
 
-from flight_in_process import MISSIONS  # noqa: E402
+from flights import MISSIONS  # noqa: E402
 from flying import AIRFRAME, Body  # noqa: E402
 from onboard import step_alone  # noqa: E402
 from test_mpc import DEFAULT, STAGES, error_of  # noqa: E402

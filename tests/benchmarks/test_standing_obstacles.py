@@ -18,7 +18,7 @@ from threadpoolctl import threadpool_limits
 sys.path.insert(0, str(Path(__file__).parents[2]))
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from flight_in_process import LONGEST, MISSIONS, InProcessFlight
+from flights import LONGEST, MISSIONS, InProcessFlight
 
 from gcs.flight.compute_times import Part
 from gcs.mission.read import read_mission

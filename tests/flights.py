@@ -1,7 +1,4 @@
-"""A whole flight in one process: the ground station and the swarm on a virtual clock, datagrams handed over in memory.
-
-The same objects as in a real flight, without sockets: quick, repeatable, and open to questions at every exchange.
-"""
+"""Flights in this process for tests: worlds other than the mission's, questions at every exchange, short missions."""
 
 import csv
 import shutil
@@ -10,16 +7,15 @@ from pathlib import Path
 
 import numpy as np
 
-from gcs.app.fly import flight_result, ground_station
+from gcs.app.in_process import FlightInProcess
+from gcs.drivers.in_process import GROUND as GROUND
 from gcs.mission.read import read_mission
-from gcs.record.recorder import FlightRecorder
 from gcs.record.summary import within_limits
 from vehicle_sim.faults.fault_injector import FaultInjector
+from vehicle_sim.in_process import InProcessWorld
 from vehicle_sim.swarm import Swarm
-from vehicle_sim.world.truth_log import TruthLog
 
 MISSIONS = Path(__file__).parents[1] / "missions"
-GROUND = ("127.0.0.1", 1)
 LONGEST = 300.0  # s of simulated time after which a flight is taken for stuck
 
 SHORT_FIGURE = """
@@ -103,8 +99,8 @@ def copied_mission(folder, name, **changes):
     return Path(shutil.copy(MISSIONS / name, folder))
 
 
-class InProcessFlight:
-    """One flight. ``on_exchange(flight)`` is called after every exchange and may do what it likes."""
+class InProcessFlight(FlightInProcess):
+    """One flight, in a world that may be another one than the mission's."""
 
     def __init__(
         self, mission, folder, *, seed=None, world=None, faults=None, controller="idc", obstacles=(), addresses=None
@@ -116,60 +112,25 @@ class InProcessFlight:
         """
         if isinstance(mission, Path):
             mission = read_mission(mission)
-        self.mission = mission if seed is None else replace(mission, seed=seed)
-        self.folder = folder
+        mission = mission if seed is None else replace(mission, seed=seed)
         folder.mkdir(parents=True, exist_ok=True)
-        config = world or self.mission.system
-        if faults is None and self.mission.faults:
-            faults = FaultInjector(self.mission.faults, self.mission.seed, config)
-        self.swarm = Swarm(config, seed=self.mission.seed, home=self.mission.home, faults=faults, obstacles=obstacles)
-        self.swarm.record(TruthLog(folder, config.team.vehicles))
-        self.recorder = FlightRecorder(folder, 0.0)
-        true = [address_of(vehicle.system_id) for vehicle in self.swarm.vehicles]
-        self.station = ground_station(self.mission, addresses or true, self.recorder, controller)
-        self.flight = self.station.flight
-        self.now = 0.0
+        config = world or mission.system
+        if faults is None and mission.faults:
+            faults = FaultInjector(mission.faults, mission.seed, config)
+        self.swarm = Swarm(config, seed=mission.seed, home=mission.home, faults=faults, obstacles=obstacles)
+        world = InProcessWorld(self.swarm, folder)
+        super().__init__(mission, folder, controller=controller, world=world, addresses=addresses)
+        self.folder = folder
 
     def fly(self, on_exchange=lambda in_process: None, until=LONGEST, stop=lambda: False):
         """Fly to the end of the flight, to ``until`` (s), or until ``stop()`` is true."""
-        swarm, station = self.swarm, self.station
-        while not station.ended and self.now <= until and not stop():
-            swarm.advance_to(self.now)
-            telemetry = list(swarm.datagrams_to_send(self.now))
-            station.resume()
-            received = [(datagram, address_of(i)) for i, datagram, address in telemetry if address == GROUND]
-            station.receive_all(received, self.now)
-            for datagram, address in station.datagrams_to_send(self.now):
-                swarm.receive(address[1] - 14579, datagram, GROUND, self.now)
-            on_exchange(self)
-            due = [t for t in (swarm.next_timer(), station.next_timer()) if t is not None]
-            self.now = max(min(due), self.now)
+        super().fly(lambda: on_exchange(self), until=until, stop=stop)
         assert self.now <= LONGEST, "the flight does not end"
         return self
 
     def run_without_ground(self, duration=120.0):
         """Advance the world without a ground until all is at rest (at most ``duration``, s); return whether it is."""
-        end = self.now + duration
-        while not self.swarm.at_rest and self.now < end:
-            self.now += 0.1
-            self.swarm.advance_to(self.now)
-            self.swarm.datagrams_to_send(self.now)
-        return self.swarm.at_rest
-
-    def close(self):
-        self.recorder.close()
-        self.swarm.close()
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self.close()
-
-    def result(self):
-        """Close the records and return how the flight ended, as the command does."""
-        self.close()
-        return flight_result(self.folder, self.mission, self.station, self.recorder.last_time, wall=0.0)
+        return self.lockstep.let_land(duration)
 
     def summary(self):
         return self.result().summary
