@@ -5,7 +5,9 @@ import re
 import subprocess
 import sys
 from dataclasses import replace
+from importlib.metadata import EntryPoint, EntryPoints
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -99,6 +101,17 @@ def test_missing_mission_and_used_run_folder_are_refused(tmp_path):
 def test_installation_without_a_world_is_an_error(tmp_path, monkeypatch):
     monkeypatch.setattr(in_process, "entry_points", lambda group: ())
     with pytest.raises(GcsError, match=r"no simulated world is installed \(entry points cooplift.world\)"):
+        gcs.fly(HOP)
+
+
+def test_world_is_that_of_an_entry_point(monkeypatch):
+    def world(mission, run_dir):
+        raise UnusableInput(f"no {mission.name} in this world")
+
+    monkeypatch.setitem(sys.modules, "another_engine", SimpleNamespace(world=world))
+    entry = EntryPoint("another", "another_engine:world", in_process.WORLDS)
+    monkeypatch.setattr(in_process, "entry_points", lambda group: EntryPoints([entry]))
+    with pytest.raises(UnusableInput, match="no hop in this world"):
         gcs.fly(HOP)
 
 

@@ -20,6 +20,7 @@ from gcs.record.tables import (
     TableWriter,
     read_table,
     read_text_table,
+    structured_array,
     truth_columns,
 )
 
@@ -32,6 +33,18 @@ def test_numbers_read_back_to_the_bit(tmp_path) -> None:
     columns = read_table(tmp_path / "reference.csv")
     assert tuple(columns) == REFERENCE_COLUMNS
     assert np.array_equal(np.column_stack(list(columns.values())), rows)
+
+
+def test_table_is_read_as_a_structured_array() -> None:
+    numbers = structured_array("a.csv", "t,x\n0.5,1\n1.5,-2e-3\n2.5,cut o")
+    assert numbers.tolist() == [(0.5, 1.0), (1.5, -0.002)] and numbers.dtype.names == ("t", "x")
+    special = structured_array("a.csv", "t,x\n0.5,inf\n1.5,nan\n")
+    assert special["x"][0] == math.inf and math.isnan(special["x"][1])
+    texts = structured_array("a.csv", 't,name\n0.5,"a, b"\n1.5,c\n', ("name",))
+    assert texts.tolist() == [(0.5, "a, b"), (1.5, "c")]
+    assert structured_array("a.csv", "t,name\n", ("name",)).shape == (0,)
+    with pytest.raises(UnusableInput, match=r"a\.csv, line 3, x: 'wide' is not a number"):
+        structured_array("a.csv", "t,x\n0.5,1\n1.5,wide\n")
 
 
 @pytest.mark.parametrize("special", [math.nan, math.inf, -math.inf, -0.0, 5e-324, 1.7976931348623157e308, 1e-5, 1e22])
