@@ -20,11 +20,11 @@ from gcs.app.in_process import FlightInProcess
 from gcs.app.logs import LOG
 from gcs.app.preflight import preflight
 from gcs.config import read_system
-from gcs.config.overrides import with_settings
+from gcs.config.overrides import plain, with_settings
 from gcs.config.toml_file import GivenTables
 from gcs.config.validate import UnusableFile
 from gcs.errors import UnusableInput
-from gcs.mission.faults import check_faults_of, fault_problems, read_fault
+from gcs.mission.faults import check_faults_of, fault_problems, parameter_problems, read_fault
 from gcs.mission.model import Fault, Limits, Mission
 from gcs.mission.read import read_mission
 from gcs.numerics import differences
@@ -67,39 +67,39 @@ def fly(
         UnusableInput: (:mod:`gcs.errors`) for whatever cannot be flown, before the flight.
         GcsError: no simulated world is installed.
     """
-    flown_mission = _mission(mission, seed, config, settings or {}, limits)
     faults = [*faults]
-    flown_mission = _with_faults(flown_mission, faults)
+    checked = _with_faults(_mission(mission, seed, config, settings or {}, limits), faults)
     if controller not in CONTROLLERS:
         raise UnusableInput(f"controller '{controller}' is none of {', '.join(CONTROLLERS)}")
-    for note in (*flown_mission.notes, *preflight(flown_mission).lines):
+    for note in (*checked.notes, *preflight(checked).lines):
         LOG.info("note: %s", note)
-    given = {
-        "seed": seed, "config": config and str(config), "settings": settings and dict(settings),
-        "controller": None if controller == "idc" else controller, "faults": faults, "limits": limits,
-    }  # fmt: skip
-    options = "".join(f", {name}={value!r}" for name, value in given.items() if value not in (None, []))
-    replay = f"gcs.fly({'mission' if isinstance(mission, Mission) else repr(str(mission))}{options})"
+    replay = _call(
+        mission, seed=seed, config=config and str(config), settings={k: plain(v) for k, v in (settings or {}).items()},
+        controller=None if controller == "idc" else controller, faults=faults, limits=limits,
+    )  # fmt: skip
     with ExitStack() as opened:
-        if run_dir is None:  # the summary is made from the files of the records
-            run_dir = Path(opened.enter_context(tempfile.TemporaryDirectory(prefix="cooplift-"))) / "run"
-            keep = False
-        else:
-            keep = True
-        folder = opened.enter_context(NewRunFolder(flown_mission.name, run_dir))
+        wanted = run_dir
+        if wanted is None:  # the figures are computed from files
+            wanted = Path(opened.enter_context(tempfile.TemporaryDirectory(prefix="cooplift-"))) / "run"
+        folder = opened.enter_context(NewRunFolder(checked.name, wanted))
         started = datetime.now(UTC)
         write_manifest(
-            folder.path, command=[replay], seed=flown_mission.seed, mission=flown_mission,
-            system=flown_mission.system, start=started,
-        )  # fmt: skip
+            folder.path, command=[replay], seed=checked.seed, mission=checked, system=checked.system, start=started
+        )
         flight = opened.enter_context(
-            FlightInProcess(flown_mission, folder.path, controller=controller, start_epoch=started.timestamp())
+            FlightInProcess(checked, folder.path, controller=controller, start_epoch=started.timestamp())
         )
         if others := differences():
             LOG.warning(others)
         folder.keep()
         flight.fly()
-        return flown(flight.result(), flight.setpoints, replay, keep=keep)
+        return flown(flight.result(), flight.setpoints, replay, keep=run_dir is not None)
+
+
+def _call(mission: Path | str | Mission, **options: Any) -> str:
+    """Return the call of :func:`fly` with those options that are given, as Python source."""
+    given = "".join(f", {name}={value!r}" for name, value in options.items() if value not in (None, [], {}))
+    return f"gcs.fly({'mission' if isinstance(mission, Mission) else repr(str(mission))}{given})"
 
 
 def _mission(
@@ -113,6 +113,9 @@ def _mission(
     if isinstance(mission, Mission):
         system = mission.system if config is None else read_system(Path(config))
         mission = dataclasses.replace(mission, system=with_settings(system, settings))
+        given = GivenTables(Path("mission"), {}, {})
+        if problems := [line for i, one in enumerate(mission.faults) for line in parameter_problems(given, i, one)]:
+            raise UnusableFile(problems)
         check_faults_of(mission)
     else:
         mission = read_mission(mission, config, settings)

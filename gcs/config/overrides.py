@@ -40,7 +40,12 @@ def set_by_path(tables: dict[str, Any], settings: Mapping[str, Any]) -> None:
         if value is None:
             table.pop(key, None)
         else:
-            table[key] = value.tolist() if hasattr(value, "tolist") else value
+            table[key] = plain(value)
+
+
+def plain(value: Any) -> Any:
+    """Return the same value of Python's own types, if it is an array or a number of numpy's."""
+    return value.tolist() if hasattr(value, "tolist") else value
 
 
 @cache
