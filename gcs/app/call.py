@@ -48,7 +48,8 @@ def fly(
     """Fly a mission in lockstep with a simulated swarm, in this process, and return the flight.
 
     The same arguments give the same flight, to the byte that of ``gcs fly`` where that can fly it. Several flights may
-    be flown one after the other in a process, and in parallel in several.
+    be flown one after the other in a process, and in parallel in several. Ask for ``gcs.fly`` before numpy is imported:
+    otherwise the last digits can depend on the processor, which is logged as a warning (logger ``gcs``).
 
     Args:
         mission: a mission file of any format, or a mission built in Python.
