@@ -37,11 +37,13 @@ HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
 sys.path.insert(0, str(HERE.parent))
 
+from gcs.numerics import choose_kernels, differences  # noqa: E402
+
+choose_kernels()  # before numpy is loaded: the checksums on file hold for that choice only
+
 import pandas as pd  # noqa: E402
 import pymavlink.dialects.v20.common as mavlink  # noqa: E402
 from commit_tree import environment_of, tree_of  # noqa: E402
-
-from gcs.numerics import choose_kernels, differences  # noqa: E402
 
 CHECKSUMS = HERE / "checksums.json"
 MISSIONS = HERE / "missions"
@@ -219,7 +221,6 @@ def main() -> int:
     parser.add_argument("--base", default="HEAD~1", metavar="COMMIT", help="compare with this (default: %(default)s)")
     parser.add_argument("--renew", action="store_true", help="write the checksums of these flights anew")
     options = parser.parse_args()
-    choose_kernels()
     names = options.flights or [*GOLDEN]
     on_file = json.loads(CHECKSUMS.read_text(encoding="utf-8")) if CHECKSUMS.exists() else {"flights": {}}
     unlike = _unlike(on_file.get("versions", {}))
