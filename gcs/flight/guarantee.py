@@ -39,7 +39,7 @@ class Guarantee:
             return
         safety = step.record.decision.safety
         if safety.infeasible:
-            text = "no QP has a solution: a stop is flown, or the plan before where that keeps farther away"
+            text = "no QP has a solution: the safest of the plan in force and of stops is flown"
             step.raise_alarm(safety.nearest or "team", GuaranteeAlarm.SAFETY_GUARANTEE_VOID, text)
         if not safety.verified:
             is_void = safety.clearance < 0.0

@@ -17,7 +17,7 @@ from idc_controller.rotations import euler_from_quaternion
 Array = NDArray[np.float64]
 
 PROJECT, EXTRAPOLATING = "project", "extrapolating"
-"""This project's controller, told where the spheres will be; told of their motion now only, as the paper's filter is.
+"""This project's controller, given where the spheres will be; given their motion now only, as the paper's filter is.
 """
 LOST_TILT, LOST_DISTANCE = 60.0, 60.0
 """deg and m: the payload has tipped over, or flown away."""

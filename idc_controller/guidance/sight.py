@@ -6,6 +6,7 @@ in sight there must be time to give way to one.
 """
 
 import math
+from functools import cached_property
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -127,7 +128,7 @@ class SpeedBySight:
         """Whether nothing else limited the progress more in the last step."""
         self._since: float | None = None
 
-    @property
+    @cached_property
     def fastest(self) -> float:
         """Own speed that leaves time to give way to what comes from beyond the range (m/s)."""
         return closing_speed(self._view, self._formation, self._reaction) - self.settings.closing_speed

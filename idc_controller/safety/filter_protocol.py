@@ -19,7 +19,7 @@ class SafetyReport(NamedTuple):
     standing_slack: float = 0.0
     """The same of obstacles that stand (m)."""
     infeasible: bool = False
-    """No QP had a solution: a stop is flown, or the plan before where that keeps farther away."""
+    """No QP had a solution: the safest of the plan in force and of stops is flown."""
     clearance: float = math.inf
     """Least distance of the plan from obstacles, less their growth, by exact distances up to the margin (m)."""
     verified: bool = True

@@ -25,9 +25,6 @@ NEGLIGIBLE = 1e-5
 VERIFIED = 1e-3
 """m by which a plan may miss the margin, by exact distances, and count as verified: what solvers leave."""
 
-_ASIDE = np.vstack([np.zeros(3), *(d * np.vstack([np.eye(3), -np.eye(3)]) for d in (1.0, 2.0))])
-"""Places to stop at, from where the motion ends for the least cost, where no QP has a solution (13, 3) (NED, m)."""
-
 
 class AvoidanceFilter:
     """Keeps every obstacle out of the hull; see :class:`~idc_controller.safety.filter_protocol.SafetyFilter`."""
@@ -160,7 +157,8 @@ class AvoidanceFilter:
         """
         rest, begin = self._rest(start, ahead)
         plans = [kept] if (kept := self._kept(time, ahead)) is not None else []
-        for aside in _ASIDE:
+        ways = np.vstack([np.eye(3), -np.eye(3)])
+        for aside in np.vstack([np.zeros(3), *(distance * ways for distance in self.filter_settings.stops_aside)]):
             from_rest = begin.copy()
             from_rest[0] -= aside
             stop, moved = self.planner.free(from_rest), rest - ahead

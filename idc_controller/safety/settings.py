@@ -113,6 +113,12 @@ class FilterSettings(SettingsTable):
     excess_max: float = setting(
         1.0, "m", "largest distance off the plan, beyond the tracking bound, by which obstacles are grown", ge=0.0
     )
+    stops_aside: tuple[float, ...] = setting(
+        (1.0, 2.0),
+        "m",
+        "distances aside of the nearest stop, on each axis, of those tried without a QP solution",
+        gt=0.0,
+    )
     switching_share: float = setting(
         0.9, "", "share of the present plan's cost below which another side of an obstacle is chosen", gt=0.0, le=1.0
     )

@@ -56,7 +56,7 @@ def generate(
     random = np.random.default_rng([seed, number, KINDS.index(kind)])
     draw: Callable[[Random], _Drawn | None]
     if kind == APPROACHING:
-        draw = partial(_approached, system)
+        draw = partial(_approached, system, closing_speed_limit(system))
     elif kind in _LAYOUTS:
         draw = partial(_lay_out, kind, Passages(system))
     else:
@@ -86,9 +86,8 @@ def _draft(kind: str, system: SystemConfig, fastest: float, random: Random) -> _
     return _Drawn(draft.reference, draft.obstacles) if draft.can_be_flown() else None
 
 
-def _approached(system: SystemConfig, random: Random) -> _Drawn | None:
-    """Draw a path that one obstacle meets from any bearing, at 0.7 to 1 times the closing speed that can be met."""
-    closing = closing_speed_limit(system)
+def _approached(system: SystemConfig, closing: float, random: Random) -> _Drawn | None:
+    """Draw a path that one obstacle meets from any bearing, at 0.7 to 1 times the largest ``closing`` speed (m/s)."""
     own = round(random.uniform(OWN_SPEEDS[0], min(OWN_SPEEDS[1], closing - 2.0 * SLOWEST)), 3)
     obstacle = max(random.uniform(0.7, 1.0) * closing - own, SLOWEST)
     draft = Draft(random, system, obstacle)
