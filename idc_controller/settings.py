@@ -1,15 +1,18 @@
-"""Declaration of a setting: a field of a frozen dataclass with its default, unit, meaning and range.
+"""Tables of settings: frozen dataclasses whose fields a system file sets, or ``--set`` by their path.
 
-Every sub-package whose behaviour depends on numbers has a ``settings.py`` with such dataclasses. Each is a table of the
-system file; ``docs/settings.md`` lists them all.
+Every sub-package whose behaviour depends on numbers has a ``settings.py`` with such dataclasses. What users set is
+declared by :func:`setting`, with unit, meaning and range, and listed in ``docs/settings.md``; everything else is a
+plain default, with its meaning in a comment.
 """
 
 from dataclasses import dataclass, field, fields
 from functools import cached_property
-from typing import Any, cast
+from typing import Annotated, Any, cast
 
 METADATA_KEY = "setting"
 DERIVED_KEY = "derived"
+Share = Annotated[float, "share"]
+"""A share or a probability: at most 1, and less where its default is."""
 
 
 @dataclass(frozen=True)

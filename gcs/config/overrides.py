@@ -6,7 +6,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from gcs.config.schema import listed_settings
+from gcs.config.schema import paths
 from gcs.config.system import SystemConfig, system_of
 from gcs.config.toml_file import GivenTables
 from gcs.errors import UnusableInput
@@ -50,7 +50,7 @@ def plain(value: Any) -> Any:
 
 @cache
 def _paths() -> tuple[str, ...]:
-    return tuple(f"{listed.table}.{listed.key}" for listed in listed_settings(SystemConfig))
+    return tuple(paths(SystemConfig))
 
 
 def _hint(path: str) -> str:

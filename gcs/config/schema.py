@@ -1,8 +1,9 @@
 """Schema of declared settings: a validator by which pydantic reads them strictly, and a listing.
 
-A table of the system file is a frozen dataclass whose fields are declared with
-:func:`idc_controller.settings.setting`; a field that is such a dataclass itself is a table within the table. Other
-fields are no keys of the file: constants, and what is ``derived`` from other settings.
+A table of the system file is a frozen dataclass. Its fields are keys, those that are such dataclasses tables within the
+table, except what is ``derived`` from other settings. Those declared with :func:`idc_controller.settings.setting` are
+listed, with the bounds that they state; a plain default is held to its type, its sign, and, as a
+:data:`idc_controller.settings.Share`, to 1.
 """
 
 import dataclasses
@@ -24,7 +25,7 @@ from pydantic_core.core_schema import (
 )
 
 from idc_controller.errors import ParameterError
-from idc_controller.settings import DERIVED_KEY, METADATA_KEY, Setting
+from idc_controller.settings import DERIVED_KEY, METADATA_KEY, Setting, SettingsTable, Share
 
 
 @dataclasses.dataclass(frozen=True)
@@ -57,31 +58,36 @@ def _table_schema(cls: type[Any]) -> CoreSchema:
 
     keys = {
         name: typed_dict_field(
-            _schema(hint, _bounds(field.metadata[METADATA_KEY])) if METADATA_KEY in field.metadata else
-            _table_schema(hint),
-            required=False,
+            _table_schema(hint) if _is_table(hint) else _schema(hint, _bounds(hint, field)), required=False
         )
-        for name, hint, field in _declared(cls)
-    }  # fmt: skip
+        for name, hint, field in _keys(cls)
+    }
     return no_info_after_validator_function(construct, typed_dict_schema(keys, extra_behavior="forbid"))
 
 
 def listed_settings(cls: type[Any], table: str = "") -> Iterator[ListedSetting]:
-    """Yield every setting below the dataclass ``cls``, in the order of its declaration."""
-    for name, hint, field in _declared(cls):
-        if METADATA_KEY in field.metadata:
-            yield ListedSetting(table, name, _default(field), field.metadata[METADATA_KEY])
-        else:
+    """Yield every setting that is declared as such below the dataclass ``cls``, in the order of its declaration."""
+    for name, hint, field in _keys(cls):
+        if _is_table(hint):
             yield from listed_settings(hint, f"{table}.{name}" if table else name)
+        elif METADATA_KEY in field.metadata:
+            yield ListedSetting(table, name, _default(field), field.metadata[METADATA_KEY])
+
+
+def paths(cls: type[Any], table: str = "") -> Iterator[str]:
+    """Yield the dotted path of every key below the dataclass ``cls``."""
+    for name, hint, _ in _keys(cls):
+        path = f"{table}.{name}" if table else name
+        yield from paths(hint, path) if _is_table(hint) else (path,)
 
 
 def table_of(values: Any) -> dict[str, Any]:
     """Return an object of a settings dataclass as the table of its keys: arrays as lists, absent what is None."""
     table = {}
-    for name, _, field in _declared(type(values)):
+    for name, hint, _ in _keys(type(values)):
         value = getattr(values, name)
         if value is not None:
-            table[name] = _plain(value) if METADATA_KEY in field.metadata else table_of(value)
+            table[name] = table_of(value) if _is_table(hint) else _plain(value)
     return table
 
 
@@ -96,25 +102,24 @@ def _plain(value: Any) -> Any:
     return [_plain(item) for item in value] if isinstance(value, tuple) else value
 
 
-_Declared = tuple[tuple[str, Any, dataclasses.Field[Any]], ...]
-_declared_of: dict[type[Any], _Declared] = {}
+_Keys = tuple[tuple[str, Any, dataclasses.Field[Any]], ...]
+_keys_of: dict[type[Any], _Keys] = {}
 
 
-def _declared(cls: type[Any]) -> _Declared:
-    """Return name, type and field of every setting and table of ``cls``; found once, as resolving types takes long."""
-    if cls not in _declared_of:
-        hints = get_type_hints(cls)
-        _declared_of[cls] = tuple(
+def _keys(cls: type[Any]) -> _Keys:
+    """Return name, type and field of every key of ``cls``; found once, as resolving types takes long."""
+    if cls not in _keys_of:
+        hints = get_type_hints(cls, include_extras=True)
+        _keys_of[cls] = tuple(
             (field.name, hints[field.name], field)
             for field in dataclasses.fields(cls)
-            if METADATA_KEY in field.metadata or _is_table(hints[field.name], field)
+            if DERIVED_KEY not in field.metadata
         )
-    return _declared_of[cls]
+    return _keys_of[cls]
 
 
-def _is_table(hint: Any, field: dataclasses.Field[Any]) -> bool:
-    is_dataclass = isinstance(hint, type) and dataclasses.is_dataclass(hint)
-    return is_dataclass and DERIVED_KEY not in field.metadata and bool(_declared(hint))
+def _is_table(hint: Any) -> bool:
+    return isinstance(hint, type) and issubclass(hint, SettingsTable)
 
 
 def _default(field: dataclasses.Field[Any]) -> Any:
@@ -123,14 +128,21 @@ def _default(field: dataclasses.Field[Any]) -> Any:
     return field.default
 
 
-def _bounds(setting: Setting) -> dict[str, Any]:
-    bounds = {"gt": setting.gt, "ge": setting.ge, "lt": setting.lt, "le": setting.le}
-    return {name: bound for name, bound in bounds.items() if bound is not None}
+def _bounds(hint: Any, field: dataclasses.Field[Any]) -> dict[str, Any]:
+    """Return the bounds of a setting: as declared, or else those of a plain default."""
+    if (declared := field.metadata.get(METADATA_KEY)) is not None:
+        bounds = {"gt": declared.gt, "ge": declared.ge, "lt": declared.lt, "le": declared.le}
+        return {name: bound for name, bound in bounds.items() if bound is not None}
+    default = _default(field)
+    least, largest = (min(default), max(default)) if isinstance(default, tuple) else (default, default)
+    below = {"gt": 0} if least > 0 else {"ge": 0} if least == 0 else {}
+    above = ({"lt": 1} if largest < 1 else {"le": 1}) if hint == Share else {}
+    return below | above
 
 
 def _schema(hint: Any, bounds: Mapping[str, Any]) -> CoreSchema:
     """Return the schema of a setting of the type ``hint``, with ``bounds`` on every number in it."""
-    if hint is float:
+    if hint is float or hint == Share:
         return float_schema(allow_inf_nan=False, **bounds)
     if hint is int:
         return int_schema(**bounds)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from gcs.config.flight_settings import DEFAULTS
-from idc_controller.settings import SettingsTable, derived, setting
+from idc_controller.settings import SettingsTable, Share, derived, setting
 from idc_controller.trajectory.settings import BrakingSettings
 
 
@@ -30,35 +30,31 @@ class VehicleFailsafeSettings(SettingsTable):
     link_loss: int = setting(
         10, "s", "COM_DL_LOSS_T: without a message of any ground until a holding vehicle descends", ge=5, le=300
     )
-    stop_plan_age: float = setting(2.0, "s", "since its start in which the ground's stop plan may be begun", gt=0.0)
-    stop_plan_distance: float = setting(
-        2.0, "m", "from the stop plan within which it is followed: farther away it does not fit the vehicle", gt=0.0
-    )
+    stop_plan_age: float = 2.0  # s; since its start in which the ground's stop plan may be begun
+    # m; from the stop plan within which it is followed: farther away it does not fit the vehicle
+    stop_plan_distance: float = 2.0
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class NavigationSettings(SettingsTable):
     """Estimate of the vehicle's own state while a sensor on board fails."""
 
-    timeout: float = setting(0.2, "s", "without a usable sample until the navigation counts as failed", gt=0.0)
-    stuck_after: int = setting(3, "", "samples equal to the digit after which a sensor counts as stuck", ge=1)
-    rates_bandwidth: float = setting(
-        30.0, "rad/s", "bandwidth of body rates estimated from the attitude: above that of the attitude loop", gt=0.0
-    )
-    gap_max: float = setting(0.05, "s", "between samples; after a longer gap that estimate begins anew", gt=0.0)
+    timeout: float = 0.2  # s; without a usable sample until the navigation counts as failed
+    stuck_after: int = 3  # samples equal to the digit after which a sensor counts as stuck
+    # rad/s; bandwidth of body rates estimated from the attitude: above that of the attitude loop
+    rates_bandwidth: float = 30.0
+    gap_max: float = 0.05  # s; between samples; after a longer gap that estimate begins anew
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SetpointSettings(SettingsTable):
     """Set-points of the ground: what is flown of them, and which are refused."""
 
-    hold: float = setting(
-        0.1, "s", "the last set-point is flown; then the mean of the last: longer than set-points are apart", gt=0.0
-    )
-    mean_over: float = setting(0.2, "s", "set-points that the mean is taken of", gt=0.0)
-    rate_max: float = setting(20.0, "rad/s", "largest body rate of a set-point", gt=0.0)
-    quaternion_norm_error_max: float = setting(0.1, "", "deviation of a set-point quaternion's norm from 1", gt=0.0)
-    stop_duration_max: float = setting(60.0, "s", "longest stop plan", gt=0.0)
+    hold: float = 0.1  # s; the last set-point is flown; then the mean of the last: longer than set-points are apart
+    mean_over: float = 0.2  # s; set-points that the mean is taken of
+    rate_max: float = 20.0  # rad/s; largest body rate of a set-point
+    quaternion_norm_error_max: float = 0.1  # deviation of a set-point quaternion's norm from 1
+    stop_duration_max: float = 60.0  # s; longest stop plan
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -69,16 +65,16 @@ class HoldSettings(SettingsTable):
     against another.
     """
 
-    horizontal_kp: float = setting(0.8, "1/s2", "horizontal position gain", gt=0.0)
-    horizontal_kd: float = setting(1.5, "1/s", "horizontal velocity gain", gt=0.0)
-    horizontal_ki: float = setting(0.1, "1/s3", "horizontal integral gain", ge=0.0)
-    integral_max: float = setting(2.5, "m/s2", "largest integral part", ge=0.0)
-    vertical_kp: float = setting(3.2, "1/s2", "altitude gain", gt=0.0)
-    vertical_kd: float = setting(4.5, "1/s", "vertical velocity gain", gt=0.0)
-    horizontal_max: float = setting(0.35, "g", "largest horizontal acceleration", gt=0.0)
-    vertical_max: float = setting(0.35, "g", "largest vertical acceleration", gt=0.0)
-    step_max: float = setting(0.1, "s", "longest time between samples that the integral covers", gt=0.0)
-    descent_ramp: float = setting(1.0, "s", "until a descent has reached its speed", gt=0.0)
+    horizontal_kp: float = 0.8  # 1/s2; horizontal position gain
+    horizontal_kd: float = 1.5  # 1/s; horizontal velocity gain
+    horizontal_ki: float = 0.1  # 1/s3; horizontal integral gain
+    integral_max: float = 2.5  # m/s2; largest integral part
+    vertical_kp: float = 3.2  # 1/s2; altitude gain
+    vertical_kd: float = 4.5  # 1/s; vertical velocity gain
+    horizontal_max: float = 0.35  # g; largest horizontal acceleration
+    vertical_max: float = 0.35  # g; largest vertical acceleration
+    step_max: float = 0.1  # s; longest time between samples that the integral covers
+    descent_ramp: float = 1.0  # s; until a descent has reached its speed
     land_speed: float = setting(0.5, "m/s", "MPC_LAND_SPEED: speed of the descent", ge=0.1, le=1.0)
     braking: BrakingSettings = derived(BrakingSettings())
     """Braking of a vehicle without a stop plan, as of the team: by ``guidance`` and ``motion``."""
@@ -88,25 +84,17 @@ class HoldSettings(SettingsTable):
 class LandDetectorSettings(SettingsTable):
     """Conditions of a vehicle in the air and of one on the ground."""
 
-    lifted: float = setting(0.15, "m", "above where it was armed: the vehicle is in the air", gt=0.0)
-    vertical_speed_max: float = setting(0.1, "m/s", "vertical speed of a vehicle on the ground", gt=0.0)
-    time: float = setting(0.5, "s", "for which a condition of the ground must last", gt=0.0)
-    touchdown_thrust: float = setting(
-        0.85, "", "share of the hover thrust below which the ground carries the rest", gt=0.0, lt=1.0
-    )
-    touchdown_sinking: float = setting(
-        0.25, "m/s", "sinking below which a descent is stopped: half of its speed, for vehicles may still sink aside",
-        gt=0.0,
-    )  # fmt: skip
-    velocity_filter: float = setting(0.2, "s", "time constant of the vertical speed", gt=0.0)
-    altitude_filter: float = setting(0.1, "s", "time constant of the altitude", gt=0.0)
-    hover_filter: float = setting(2.0, "s", "time constant of the hover thrust", gt=0.0)
-    unloaded_share: float = setting(
-        0.5, "", "of the hover thrust beyond the own weight, below which the payload is not carried", ge=0.0, lt=1.0
-    )
-    supported_thrust: float = setting(
-        0.9, "", "share of the own weight below which something else supports the vehicle", gt=0.0, le=1.0
-    )
+    lifted: float = 0.15  # m; above where it was armed: the vehicle is in the air
+    vertical_speed_max: float = 0.1  # m/s; vertical speed of a vehicle on the ground
+    time: float = 0.5  # s; for which a condition of the ground must last
+    touchdown_thrust: Share = 0.85  # share of the hover thrust below which the ground carries the rest
+    # m/s; sinking below which a descent is stopped: half of its speed, for vehicles may still sink aside
+    touchdown_sinking: float = 0.25
+    velocity_filter: float = 0.2  # s; time constant of the vertical speed
+    altitude_filter: float = 0.1  # s; time constant of the altitude
+    hover_filter: float = 2.0  # s; time constant of the hover thrust
+    unloaded_share: Share = 0.5  # of the hover thrust beyond the own weight, below which the payload is not carried
+    supported_thrust: Share = 0.9  # share of the own weight below which something else supports the vehicle
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -128,35 +116,29 @@ class AutopilotSettings(SettingsTable):
 class StreamIntervals(SettingsTable):
     """Default intervals of the streams: PX4's of its normal mode, or near."""
 
-    heartbeat: float = setting(1.0, "s", "HEARTBEAT of the autopilot and of the payload unit", gt=0.0)
-    sys_status: float = setting(1.0, "s", "SYS_STATUS", gt=0.0)
-    extended_sys_state: float = setting(0.2, "s", "EXTENDED_SYS_STATE", gt=0.0)
-    attitude: float = setting(0.1, "s", "ATTITUDE", gt=0.0)
-    global_position_int: float = setting(0.2, "s", "GLOBAL_POSITION_INT", gt=0.0)
-    gps_raw_int: float = setting(1.0, "s", "GPS_RAW_INT", gt=0.0)
-    home_position: float = setting(2.0, "s", "HOME_POSITION", gt=0.0)
-    battery_status: float = setting(2.0, "s", "BATTERY_STATUS", gt=0.0)
-    vfr_hud: float = setting(0.5, "s", "VFR_HUD", gt=0.0)
-    vibration: float = setting(10.0, "s", "VIBRATION of the autopilot and of the payload unit", gt=0.0)
+    heartbeat: float = 1.0  # s; HEARTBEAT of the autopilot and of the payload unit
+    sys_status: float = 1.0  # s; SYS_STATUS
+    extended_sys_state: float = 0.2  # s; EXTENDED_SYS_STATE
+    attitude: float = 0.1  # s; ATTITUDE
+    global_position_int: float = 0.2  # s; GLOBAL_POSITION_INT
+    gps_raw_int: float = 1.0  # s; GPS_RAW_INT
+    home_position: float = 2.0  # s; HOME_POSITION
+    battery_status: float = 2.0  # s; BATTERY_STATUS
+    vfr_hud: float = 0.5  # s; VFR_HUD
+    vibration: float = 10.0  # s; VIBRATION of the autopilot and of the payload unit
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class VehicleLinkSettings(SettingsTable):
     """Service of a vehicle to its peers: every address that sends it valid MAVLink."""
 
-    peer_timeout: float = setting(10.0, "s", "without a message from a peer until its streams stop", gt=0.0)
-    peers_max: int = setting(8, "", "peers served at once, beside the ports of clients to which it always sends", ge=1)
-    replies_max: int = setting(200, "", "answers queued for one peer; more requests at once are dropped", ge=1)
-    interval_min: float = setting(
-        0.004, "s", "shortest interval that SET_MESSAGE_INTERVAL may set: the onboard loop's period", gt=0.0
-    )
-    repeat_interval: float = setting(0.04, "s", "between the repetitions of a message whose content changed", gt=0.0)
-    repeats: int = setting(3, "", "repetitions of a message whose content changed: a datagram may be lost", ge=0)
-    setpoint_streams_max: int = setting(16, "", "senders of set-points served at once", ge=1)
-    reordering_max: float = setting(
-        1.0,
-        "s",
-        "a set-point older than the last by less was overtaken on the link; by more: its clock was set",
-        gt=0.0,
-    )
+    peer_timeout: float = 10.0  # s; without a message from a peer until its streams stop
+    peers_max: int = 8  # peers served at once, beside the ports of clients to which it always sends
+    replies_max: int = 200  # answers queued for one peer; more requests at once are dropped
+    interval_min: float = 0.004  # s; shortest interval that SET_MESSAGE_INTERVAL may set: the onboard loop's period
+    repeat_interval: float = 0.04  # s; between the repetitions of a message whose content changed
+    repeats: int = 3  # repetitions of a message whose content changed: a datagram may be lost
+    setpoint_streams_max: int = 16  # senders of set-points served at once
+    # s; a set-point older than the last by less was overtaken on the link; by more: its clock was set
+    reordering_max: float = 1.0
     intervals: StreamIntervals = field(default_factory=StreamIntervals)

@@ -2,15 +2,15 @@
 
 from dataclasses import dataclass
 
-from idc_controller.settings import SettingsTable, setting
+from idc_controller.settings import SettingsTable
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class DriverSettings(SettingsTable):
     """Wall times of the drivers."""
 
-    join_interval: float = setting(0.5, "s", "after which an unanswered request to join the world is repeated", gt=0.0)
-    tick_timeout: float = setting(20.0, "s", "without a tick, after which the simulated world is lost", gt=0.0)
-    wait_max: float = setting(0.1, "s", "for datagrams in real time, so that an interrupt is noticed", gt=0.0)
-    landing_timeout: float = setting(60.0, "s", "for vehicle-sim to land what is in the air after the flight", ge=0.0)
-    end_timeout: float = setting(10.0, "s", "after that, for vehicle-sim to close its records", ge=0.0)
+    join_interval: float = 0.5  # s; after which an unanswered request to join the world is repeated
+    tick_timeout: float = 20.0  # s; without a tick, after which the simulated world is lost
+    wait_max: float = 0.1  # s; for datagrams in real time, so that an interrupt is noticed
+    landing_timeout: float = 60.0  # s; for vehicle-sim to land what is in the air after the flight
+    end_timeout: float = 10.0  # s; after that, for vehicle-sim to close its records

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from idc_controller.estimation.settings import WindSettings
-from idc_controller.settings import SettingsTable, derived, setting
+from idc_controller.settings import SettingsTable, Share, derived, setting
 
 Triple = tuple[float, float, float]
 
@@ -62,21 +62,14 @@ class MpcSettings(SettingsTable):
     """Control period (s): of ``rates.control``."""
     tuning: MpcTuning = derived(MpcTuning())
     """Table ``controller``."""
-    constraint_interval: int = setting(
-        3, "", "control steps between the stages of the prediction at which states are constrained, the first on", ge=1
-    )
-    thrust_min: float = setting(1.0, "N", "least thrust set-point of a UAV", ge=0.0)
-    thrust_share_max: float = setting(
-        0.95, "", "largest thrust set-point, as a share of the largest thrust", gt=0, le=1
-    )
-    separation_share: float = setting(
-        0.425, "", "part of the gap between neighbouring rotor discs in hover that has to stay open", ge=0.0, le=1.0
-    )
-    neighbour_share: float = setting(
-        1.3, "", "pairs of UAVs up to so many times the least distance apart in hover are neighbours", ge=1.0
-    )
-    slack_linear: float = setting(1e3, "", "linear cost of exceeding a limit of the state", gt=0.0)
-    slack_quadratic: float = setting(1e4, "", "quadratic cost of exceeding a limit of the state", gt=0.0)
+    # control steps between the stages of the prediction at which states are constrained, the first on
+    constraint_interval: int = 3
+    thrust_min: float = 1.0  # N; least thrust set-point of a UAV
+    thrust_share_max: Share = 0.95  # largest thrust set-point, as a share of the largest thrust
+    separation_share: Share = 0.425  # part of the gap between neighbouring rotor discs in hover that has to stay open
+    neighbour_share: float = 1.3  # pairs of UAVs up to so many times the least distance apart in hover are neighbours
+    slack_linear: float = 1e3  # linear cost of exceeding a limit of the state
+    slack_quadratic: float = 1e4  # quadratic cost of exceeding a limit of the state
 
     @property
     def constraint_stages(self) -> list[int]:
@@ -88,13 +81,10 @@ class MpcSettings(SettingsTable):
 class GroundControlSettings(SettingsTable):
     """Regulator that keeps the UAVs upright over a payload on the ground."""
 
-    design_share: float = setting(0.8, "", "thrust for which the gain is designed, over hover thrust", gt=0.0)
-    state: tuple[float, float, float, float, float] = setting(
-        (100.0, 80.0, 1.0, 0.1, 0.0), "", "weights of link tilt, its rate, UAV tilt, its rate, its acceleration", ge=0.0
-    )
-    setpoint: float = setting(
-        200.0, "", "weight of the tilt set-point: a lower one needs telemetry that is less than 0.2 s late", gt=0.0
-    )
+    design_share: float = 0.8  # thrust for which the gain is designed, over hover thrust
+    # weights of link tilt, its rate, UAV tilt, its rate, its acceleration
+    state: tuple[float, float, float, float, float] = (100.0, 80.0, 1.0, 0.1, 0.0)
+    setpoint: float = 200.0  # weight of the tilt set-point: a lower one needs telemetry that is less than 0.2 s late
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -107,25 +97,14 @@ class ControllerSettings(SettingsTable):
     """Table ``estimation.wind``."""
     ground: GroundControlSettings = derived(GroundControlSettings())
     """Table ``control.ground``."""
-    load_time_constant: float = setting(
-        0.5, "s", "with which the reference follows the estimated load: slower than the estimate itself", gt=0.0
-    )
-    mass_share: tuple[float, float] = setting(
-        (0.5, 2.0), "", "least and largest payload mass that is learnt, over that of the system file", gt=0.0
-    )
-    force_limit: float = setting(
-        0.4, "", "largest disturbance force that the reference leans against, over the payload's weight", ge=0.0
-    )
-    drag_limit: float = setting(
-        0.65, "", "the same where wind explains the force: of drag, and of drag and disturbance force together", ge=0.0
-    )
-    upright_time_constant: float = setting(
-        0.5, "s", "with which links come upright over a payload on the ground", gt=0.0
-    )
-    position_error_limit: float = setting(
-        0.3, "m", "a position error of the payload is answered as if it were at most this", gt=0.0
-    )
-    velocity_error_limit: float = setting(0.6, "m/s", "the same of its velocity", gt=0.0)
-    least_lift: float = setting(
-        0.05, "", "least upward force in a UAV's set-points, over its hover thrust: it points up always", gt=0.0, lt=1.0
-    )
+    # s; with which the reference follows the estimated load: slower than the estimate itself
+    load_time_constant: float = 0.5
+    # least and largest payload mass that is learnt, over that of the system file
+    mass_share: tuple[float, float] = (0.5, 2.0)
+    force_limit: float = 0.4  # largest disturbance force that the reference leans against, over the payload's weight
+    # the same where wind explains the force: of drag, and of drag and disturbance force together
+    drag_limit: float = 0.65
+    upright_time_constant: float = 0.5  # s; with which links come upright over a payload on the ground
+    position_error_limit: float = 0.3  # m; a position error of the payload is answered as if it were at most this
+    velocity_error_limit: float = 0.6  # m/s; the same of its velocity
+    least_lift: Share = 0.05  # least upward force in a UAV's set-points, over its hover thrust: it points up always

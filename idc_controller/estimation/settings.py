@@ -4,53 +4,53 @@ from dataclasses import dataclass, field, replace
 from typing import Self
 
 from idc_controller.errors import ParameterError
-from idc_controller.settings import SampleCount, SampledSettings, SampleShare, SettingsTable, derived, setting
+from idc_controller.settings import SampleCount, SampledSettings, SampleShare, SettingsTable, Share, derived, setting
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ProcessNoiseSettings(SettingsTable):
     """Densities of the white noise that drives what the linear model leaves out, per square root of a second."""
 
-    payload_acceleration: float = setting(0.003, "m/s2/sqrt(s)", "noise of the payload's acceleration", ge=0.0)
-    payload_angular_acceleration: float = setting(0.003, "rad/s2/sqrt(s)", "noise of its angular acceleration", ge=0.0)
-    link_acceleration: float = setting(0.0015, "1/s2/sqrt(s)", "noise of the acceleration of link directions", ge=0.0)
-    uav_jerk: float = setting(0.85, "1/s3/sqrt(s)", "noise of the third derivative of a UAV's thrust direction", ge=0.0)
-    thrust: float = setting(0.012, "N/s/sqrt(s)", "noise of the derivative of a UAV's thrust", ge=0.0)
-    force: float = setting(0.05, "N/sqrt(s)", "random walk of the disturbance force on the payload", ge=0.0)
-    uav_force: float = setting(0.01, "N/sqrt(s)", "random walk of the disturbance force common to the UAVs", ge=0.0)
-    per_vehicle_force: float = setting(0.01, "N", "change of each UAV's disturbance force between samples", ge=0.0)
-    mass: float = setting(0.005, "kg/sqrt(s)", "random walk of the payload's mass", ge=0.0)
+    payload_acceleration: float = 0.003  # m/s2/sqrt(s); noise of the payload's acceleration
+    payload_angular_acceleration: float = 0.003  # rad/s2/sqrt(s); noise of its angular acceleration
+    link_acceleration: float = 0.0015  # 1/s2/sqrt(s); noise of the acceleration of link directions
+    uav_jerk: float = 0.85  # 1/s3/sqrt(s); noise of the third derivative of a UAV's thrust direction
+    thrust: float = 0.012  # N/s/sqrt(s); noise of the derivative of a UAV's thrust
+    force: float = 0.05  # N/sqrt(s); random walk of the disturbance force on the payload
+    uav_force: float = 0.01  # N/sqrt(s); random walk of the disturbance force common to the UAVs
+    per_vehicle_force: float = 0.01  # N; change of each UAV's disturbance force between samples
+    mass: float = 0.005  # kg/sqrt(s); random walk of the payload's mass
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class InitialCovarianceSettings(SettingsTable):
     """Standard deviations of the state of a team that stands on the ground."""
 
-    position: float = setting(0.05, "m", "initial uncertainty of the payload's position", gt=0.0)
-    velocity: float = setting(0.02, "m/s", "initial uncertainty of the payload's velocity", gt=0.0)
-    attitude: float = setting(0.02, "rad", "initial uncertainty of the payload's attitude", gt=0.0)
-    rates: float = setting(0.02, "rad/s", "initial uncertainty of the payload's body rates", gt=0.0)
-    link: float = setting(0.02, "", "initial uncertainty of the lateral parts of the link directions", gt=0.0)
-    link_rate: float = setting(0.02, "1/s", "initial uncertainty of their derivatives", gt=0.0)
-    thrust_direction: float = setting(0.03, "", "initial uncertainty of the UAVs' thrust directions", gt=0.0)
-    thrust_direction_rate: float = setting(0.1, "1/s", "initial uncertainty of their first derivatives", gt=0.0)
-    thrust_direction_acceleration: float = setting(0.3, "1/s2", "initial uncertainty of their second ones", gt=0.0)
-    thrust: float = setting(0.5, "N", "initial uncertainty of a UAV's thrust", gt=0.0)
-    mass: float = setting(0.2, "kg", "initial uncertainty of the payload's mass about its nominal one", ge=0.0)
-    force: float = setting(0.3, "N", "initial uncertainty of the disturbance force on the payload", ge=0.0)
-    uav_force: float = setting(0.05, "N", "initial uncertainty of the disturbance force common to the UAVs", ge=0.0)
-    per_vehicle_force: float = setting(0.05, "N", "initial uncertainty of each UAV's own disturbance force", ge=0.0)
+    position: float = 0.05  # m; initial uncertainty of the payload's position
+    velocity: float = 0.02  # m/s; initial uncertainty of the payload's velocity
+    attitude: float = 0.02  # rad; initial uncertainty of the payload's attitude
+    rates: float = 0.02  # rad/s; initial uncertainty of the payload's body rates
+    link: float = 0.02  # initial uncertainty of the lateral parts of the link directions
+    link_rate: float = 0.02  # 1/s; initial uncertainty of their derivatives
+    thrust_direction: float = 0.03  # initial uncertainty of the UAVs' thrust directions
+    thrust_direction_rate: float = 0.1  # 1/s; initial uncertainty of their first derivatives
+    thrust_direction_acceleration: float = 0.3  # 1/s2; initial uncertainty of their second ones
+    thrust: float = 0.5  # N; initial uncertainty of a UAV's thrust
+    mass: float = 0.2  # kg; initial uncertainty of the payload's mass about its nominal one
+    force: float = 0.3  # N; initial uncertainty of the disturbance force on the payload
+    uav_force: float = 0.05  # N; initial uncertainty of the disturbance force common to the UAVs
+    per_vehicle_force: float = 0.05  # N; initial uncertainty of each UAV's own disturbance force
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CovarianceResetSettings(SampledSettings):
     """Standard deviations added to a prediction that most measurements contradict: what a gust or a blow changes."""
 
-    velocity: float = setting(0.1, "m/s", "added to the payload's velocity", ge=0.0)
-    rates: float = setting(0.1, "rad/s", "added to the payload's body rates", ge=0.0)
-    link_rate: float = setting(0.03, "1/s", "added to the derivatives of the link directions", ge=0.0)
-    force: float = setting(3.0, "N", "raised uncertainty of the disturbance force on the payload", ge=0.0)
-    payload_time: float = setting(0.12, "s", "of rejections of the payload unit until the prediction is reset", gt=0.0)
+    velocity: float = 0.1  # m/s; added to the payload's velocity
+    rates: float = 0.1  # rad/s; added to the payload's body rates
+    link_rate: float = 0.03  # 1/s; added to the derivatives of the link directions
+    force: float = 3.0  # N; raised uncertainty of the disturbance force on the payload
+    payload_time: float = 0.12  # s; of rejections of the payload unit until the prediction is reset
     payload_rejections = SampleCount("payload_time")
     """Rejections of the payload unit in a row after which the prediction is reset rather than the unit."""
 
@@ -59,28 +59,28 @@ class CovarianceResetSettings(SampledSettings):
 class MeasurementModelSettings(SettingsTable):
     """Least standard deviations of measurements: the linear model's own errors, whatever the sensor's noise is."""
 
-    position_noise_min: float = setting(2e-3, "m", "least noise assumed of a position", gt=0.0)
-    velocity_noise_min: float = setting(4e-3, "m/s", "least noise assumed of a velocity", gt=0.0)
-    attitude_noise_min: float = setting(2e-4, "rad", "least noise assumed of an attitude", gt=0.0)
-    rates_noise_min: float = setting(1e-3, "rad/s", "least noise assumed of body rates", gt=0.0)
+    position_noise_min: float = 2e-3  # m; least noise assumed of a position
+    velocity_noise_min: float = 4e-3  # m/s; least noise assumed of a velocity
+    attitude_noise_min: float = 2e-4  # rad; least noise assumed of an attitude
+    rates_noise_min: float = 1e-3  # rad/s; least noise assumed of body rates
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class StuckSensorSettings(SettingsTable):
     """Detection of repeated values, which are no measurements."""
 
-    repeats: int = setting(2, "", "repetitions to the digit after which a channel is stuck", ge=1)
-    relay_interval: float = setting(0.02, "s", "by which the stamps of relayed copies of one sample differ", ge=0.0)
+    repeats: int = 2  # repetitions to the digit after which a channel is stuck
+    relay_interval: float = 0.02  # s; by which the stamps of relayed copies of one sample differ
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ChannelIsolationSettings(SampledSettings):
     """Isolation and restoration of a vehicle's channels."""
 
-    rejection_time: float = setting(0.48, "s", "of rejections less acceptances until a channel is isolated", gt=0.0)
-    acceptance_time: float = setting(1.0, "s", "of consistent samples in a row until it is restored", gt=0.0)
-    restoring_probability: float = setting(0.999, "", "share of nominal samples that are consistent", gt=0.0, lt=1.0)
-    unusable_time: float = setting(0.5, "s", "for which a missing, stuck or rejected pose is unusable", ge=0.0)
+    rejection_time: float = 0.48  # s; of rejections less acceptances until a channel is isolated
+    acceptance_time: float = 1.0  # s; of consistent samples in a row until it is restored
+    restoring_probability: Share = 0.999  # share of nominal samples that are consistent
+    unusable_time: float = 0.5  # s; for which a missing, stuck or rejected pose is unusable
     rejections = SampleCount("rejection_time")
     """Rejections less acceptances after which a channel is isolated."""
     acceptances = SampleCount("acceptance_time")
@@ -91,16 +91,16 @@ class ChannelIsolationSettings(SampledSettings):
 class DeadReckoningSettings(SampledSettings):
     """Consistency of poses with the motion measured with them."""
 
-    window: float = setting(2.0, "s", "over which poses are compared with their integrated motion", gt=0.0)
-    gap: float = setting(0.3, "s", "without a sample after which the integration starts anew", gt=0.0)
-    median_time: float = setting(0.36, "s", "at either end of the window whose median is compared", gt=0.0)
-    smoothing_time: float = setting(0.2, "s", "of samples whose median motion is integrated", gt=0.0)
-    position_error: float = setting(0.03, "m", "error of integrated velocities over the window", gt=0.0)
-    attitude_error: float = setting(0.02, "rad", "error of integrated body rates over the window", gt=0.0)
-    sigmas: float = setting(5.0, "", "standard deviations of the medians' difference allowed beside that", gt=0.0)
-    consistent_ratio: float = setting(0.5, "", "test ratio of sources that count as evidence", gt=0.0, lt=1.0)
-    consecutive: int = setting(3, "", "inconsistent tests in a row that are needed of the payload unit", ge=1)
-    misfit_limit: float = setting(25.0, "", "limit of squared innovations where poses and motions compete", gt=0.0)
+    window: float = 2.0  # s; over which poses are compared with their integrated motion
+    gap: float = 0.3  # s; without a sample after which the integration starts anew
+    median_time: float = 0.36  # s; at either end of the window whose median is compared
+    smoothing_time: float = 0.2  # s; of samples whose median motion is integrated
+    position_error: float = 0.03  # m; error of integrated velocities over the window
+    attitude_error: float = 0.02  # rad; error of integrated body rates over the window
+    sigmas: float = 5.0  # standard deviations of the medians' difference allowed beside that
+    consistent_ratio: Share = 0.5  # test ratio of sources that count as evidence
+    consecutive: int = 3  # inconsistent tests in a row that are needed of the payload unit
+    misfit_limit: float = 25.0  # limit of squared innovations where poses and motions compete
     samples = SampleCount("median_time")
     """Samples whose median is compared."""
     smoothed = SampleCount("smoothing_time")
@@ -111,19 +111,19 @@ class DeadReckoningSettings(SampledSettings):
 class NoiseAdaptationSettings(SampledSettings):
     """Adaptation of measurement and process noise to the innovations."""
 
-    measurement_scale_max: float = setting(400.0, "", "largest scale of the measurement variances", ge=1.0)
-    median_limit: float = setting(2.0, "", "median squared normalised innovation above which the scale grows", gt=1.0)
-    growth: float = setting(1.3, "", "factor of the scale at each such update", gt=1.0)
-    decay: float = setting(0.97, "", "factor of the scale where that median is below 1", gt=0.0, lt=1.0)
-    process_levels: int = setting(3, "", "highest level of the process-noise scale of the forces", ge=0)
-    process_step: float = setting(5.0, "", "factor of the forces' process noise from level to level", gt=1.0)
-    correlation_memory: float = setting(0.4, "s", "of the running mean of the correlation of innovations", gt=0.0)
-    correlation_max: float = setting(3.0, "", "bound of the correlation of one update", gt=0.0)
-    correlation_rise: float = setting(0.3, "", "mean correlation above which the level rises", gt=0.0)
-    correlation_fall: float = setting(0.1, "", "mean correlation below which it falls", gt=0.0)
-    dwell_time: float = setting(0.4, "s", "between two changes of the level", gt=0.0)
-    gap: float = setting(0.2, "s", "between updates that are still consecutive", gt=0.0)
-    persistent_cosine: float = setting(0.5, "", "cosine between innovations that is no noise", gt=-1.0, lt=1.0)
+    measurement_scale_max: float = 400.0  # largest scale of the measurement variances
+    median_limit: float = 2.0  # median squared normalised innovation above which the scale grows
+    growth: float = 1.3  # factor of the scale at each such update
+    decay: Share = 0.97  # factor of the scale where that median is below 1
+    process_levels: int = 3  # highest level of the process-noise scale of the forces
+    process_step: float = 5.0  # factor of the forces' process noise from level to level
+    correlation_memory: float = 0.4  # s; of the running mean of the correlation of innovations
+    correlation_max: float = 3.0  # bound of the correlation of one update
+    correlation_rise: float = 0.3  # mean correlation above which the level rises
+    correlation_fall: float = 0.1  # mean correlation below which it falls
+    dwell_time: float = 0.4  # s; between two changes of the level
+    gap: float = 0.2  # s; between updates that are still consecutive
+    persistent_cosine: Share = 0.5  # cosine between innovations that is no noise
     correlation_share = SampleShare("correlation_memory")
     """Share of an update in the mean correlation of innovations."""
     dwell = SampleCount("dwell_time")
@@ -136,15 +136,15 @@ class SetpointHistorySettings(SampledSettings):
 
     rate: float = derived(20.0)
     """Rate of the set-points (Hz)."""
-    loss_min: float = setting(0.005, "", "least probability with which a set-point is lost on its link", gt=0.0, le=1.0)
-    loss_memory: float = setting(1.0, "s", "of the running mean of the loss", gt=0.0)
-    loss_time_max: float = setting(1.0, "s", "of lost set-points in a row that is noticed", gt=0.0)
-    time_tolerance: float = setting(0.012, "s", "about the time of effect in which either set-point may act", ge=0.0)
-    period_min: float = setting(0.012, "s", "least time between set-points", gt=0.0)
-    punctuality: float = setting(0.005, "s", "error of a reported time of effect: a step of the vehicle", ge=0.0)
-    tilt_tolerance: float = setting(2e-4, "", "by which the tilts of one set-point differ", ge=0.0)
-    thrust_tolerance: float = setting(2e-3, "N", "by which the thrusts of one set-point differ", ge=0.0)
-    neighbour_time: float = setting(0.15, "s", "before and after a set-point whose others may act in its place", gt=0.0)
+    loss_min: Share = 0.005  # least probability with which a set-point is lost on its link
+    loss_memory: float = 1.0  # s; of the running mean of the loss
+    loss_time_max: float = 1.0  # s; of lost set-points in a row that is noticed
+    time_tolerance: float = 0.012  # s; about the time of effect in which either set-point may act
+    period_min: float = 0.012  # s; least time between set-points
+    punctuality: float = 0.005  # s; error of a reported time of effect: a step of the vehicle
+    tilt_tolerance: float = 2e-4  # by which the tilts of one set-point differ
+    thrust_tolerance: float = 2e-3  # N; by which the thrusts of one set-point differ
+    neighbour_time: float = 0.15  # s; before and after a set-point whose others may act in its place
     loss_share = SampleShare("loss_memory")
     """Share of one set-point in the running mean of the loss."""
     losses_max = SampleCount("loss_time_max")
@@ -157,17 +157,17 @@ class SetpointHistorySettings(SampledSettings):
 class WindSettings(SettingsTable):
     """Memory, uncertainties and extent of the wind estimate."""
 
-    memory: float = setting(10.0, "s", "time constant with which the past is discounted", gt=0.0)
+    memory: float = 10.0  # s; time constant with which the past is discounted
     speed_max: float = setting(8.0, "m/s", "largest wind along each axis", gt=0.0)
-    spacing: float = setting(0.5, "m/s", "spacing of the grid of winds", gt=0.0)
-    gust_force: float = setting(1.0, "N", "force that a steady wind leaves unexplained, root mean square", gt=0.0)
-    gust_time: float = setting(2.0, "s", "correlation time of that force", gt=0.0)
-    factor_sigma: float = setting(0.3, "", "standard deviation of the drag factor about 1", gt=0.0)
-    factor_max: float = setting(2.0, "", "largest drag factor", gt=0.0)
-    speed_sigma: float = setting(4.0, "m/s", "standard deviation of the wind along each axis", gt=0.0)
-    force_min: float = setting(0.4, "N", "force below which there is no wind, root mean square over the memory", gt=0.0)
-    explained_min: float = setting(0.3, "", "share of the force that a wind must explain to be used", ge=0.0, le=1.0)
-    explained_full: float = setting(0.7, "", "share from which on it is used wholly", gt=0.0, le=1.0)
+    spacing: float = 0.5  # m/s; spacing of the grid of winds
+    gust_force: float = 1.0  # N; force that a steady wind leaves unexplained, root mean square
+    gust_time: float = 2.0  # s; correlation time of that force
+    factor_sigma: float = 0.3  # standard deviation of the drag factor about 1
+    factor_max: float = 2.0  # largest drag factor
+    speed_sigma: float = 4.0  # m/s; standard deviation of the wind along each axis
+    force_min: float = 0.4  # N; force below which there is no wind, root mean square over the memory
+    explained_min: Share = 0.3  # share of the force that a wind must explain to be used
+    explained_full: Share = 0.7  # share from which on it is used wholly
 
     def __post_init__(self) -> None:
         if self.explained_full <= self.explained_min:
@@ -179,11 +179,11 @@ class WindSettings(SettingsTable):
 class InnovationMonitorSettings(SampledSettings):
     """Detection of bias and noise by the innovations of one sensor over about a second."""
 
-    false_alarm: float = setting(1e-10, "", "probability per sample of an alarm of a nominal sensor", gt=0.0, lt=1.0)
-    memory: float = setting(1.0, "s", "of the running means", gt=0.0)
-    rejections: int = setting(3, "", "rejections within the time below that are an alarm", ge=1)
-    rejection_time: float = setting(1.0, "s", "in which they are counted", gt=0.0)
-    manoeuvre_factor: float = setting(2.5, "", "of these limits for UAV attitudes, modelled less exactly", ge=1.0)
+    false_alarm: Share = 1e-10  # probability per sample of an alarm of a nominal sensor
+    memory: float = 1.0  # s; of the running means
+    rejections: int = 3  # rejections within the time below that are an alarm
+    rejection_time: float = 1.0  # s; in which they are counted
+    manoeuvre_factor: float = 2.5  # of these limits for UAV attitudes, modelled less exactly
     share = SampleShare("memory")
     """Share of one sample in the running means."""
 
@@ -192,10 +192,10 @@ class InnovationMonitorSettings(SampledSettings):
 class EstimatorSettings(SettingsTable):
     """All settings of the estimator, by part."""
 
-    gate_probability: float = setting(1.0 - 1e-6, "", "share of nominal measurements accepted", gt=0.0, lt=1.0)
-    history: float = setting(1.0, "s", "by which a measurement may be late and is still used", gt=0.0)
-    simultaneous: float = setting(0.002, "s", "within which measurements are of one moment", ge=0.0)
-    payload_timeout: float = setting(0.3, "s", "without the payload unit until a payload on ground is held", gt=0.0)
+    gate_probability: Share = 1.0 - 1e-6  # share of nominal measurements accepted
+    history: float = 1.0  # s; by which a measurement may be late and is still used
+    simultaneous: float = 0.002  # s; within which measurements are of one moment
+    payload_timeout: float = 0.3  # s; without the payload unit until a payload on ground is held
     process: ProcessNoiseSettings = field(default_factory=ProcessNoiseSettings)
     initial: InitialCovarianceSettings = field(default_factory=InitialCovarianceSettings)
     reset: CovarianceResetSettings = field(default_factory=CovarianceResetSettings)

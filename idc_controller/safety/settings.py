@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from idc_controller.arrays import Array
 from idc_controller.errors import ParameterError
-from idc_controller.settings import SettingsTable, derived, setting
+from idc_controller.settings import SettingsTable, Share, derived, setting
 from idc_controller.trajectory.integrator_chain import Chain
 from idc_controller.trajectory.settings import AvoidanceSettings, Limits
 
@@ -19,57 +19,41 @@ Triple = tuple[float, float, float]
 class PlannerSettings(SettingsTable):
     """The safety QP: weights of the deviation per axis (x, y, z), limits of the plan, and the barrier."""
 
-    stage: float = setting(0.1, "s", "from stage to stage of a plan", gt=0.0)
-    blocks: tuple[int, ...] = setting(
-        (1, 1, 1, 1, 2, 2, 2, 3, 3, 4, 6, 6), "", "stages from knot to knot of the snap; their sum is the horizon", ge=1
-    )
+    stage: float = 0.1  # s; from stage to stage of a plan
+    # stages from knot to knot of the snap; their sum is the horizon
+    blocks: tuple[int, ...] = (1, 1, 1, 1, 2, 2, 2, 3, 3, 4, 6, 6)
     position: Triple = setting((0.7, 0.7, 1.0), "", "weight of the deviation's position, x, y, z", ge=0.0)
     velocity: Triple = setting((0.6, 0.6, 0.05), "", "weight of the deviation's velocity, x, y, z", ge=0.0)
     acceleration: float = setting(0.005, "", "weight of the deviation's acceleration", ge=0.0)
-    jerk: float = setting(0.002, "", "weight of the deviation's jerk", ge=0.0)
-    snap: Triple = setting((0.001, 0.001, 0.0002), "", "weight of the deviation's snap, x, y, z", gt=0.0)
-    crackle: float = setting(
-        0.0002, "", "weight of the change of snap from stage to stage: the UAVs' tilt rates follow it", ge=0.0
-    )
+    jerk: float = 0.002  # weight of the deviation's jerk
+    snap: Triple = (0.001, 0.001, 0.0002)  # weight of the deviation's snap, x, y, z
+    crackle: float = 0.0002  # weight of the change of snap from stage to stage: the UAVs' tilt rates follow it
     limits: Limits = derived(Limits())
     """Limits of the motion between waypoints, from which the plan's follow: table ``motion``."""
-    acceleration_share: Triple = setting(
-        (2.0, 2.0, 1.8), "", "largest acceleration of a plan over that between waypoints, x, y, z", gt=0.0
-    )
-    snap_share: Triple = setting(
-        (1.0, 1.0, 5.0 / 3.0), "", "largest snap of a plan over that between waypoints, x, y, z", gt=0.0
-    )
-    ground_clearance: float = setting(0.05, "m", "least height of the payload's underside in a plan", ge=0.0)
+    acceleration_share: Triple = (2.0, 2.0, 1.8)  # largest acceleration of a plan over that between waypoints, x, y, z
+    snap_share: Triple = (1.0, 1.0, 5.0 / 3.0)  # largest snap of a plan over that between waypoints, x, y, z
+    ground_clearance: float = 0.05  # m; least height of the payload's underside in a plan
     barrier_rates: tuple[float, ...] = derived(AvoidanceSettings.barrier_rates)
     """Rates of the exponential barrier (1/s), one for each degree: ``avoidance.barrier_rates``."""
     margin: float = derived(AvoidanceSettings.margin)
     """Clearance to keep between hull and obstacles (m): ``avoidance.margin``."""
     tracking: float = setting(0.10, "m", "bound on the payload's deviation from the plan, added to the margin", ge=0.0)
     uav_tracking: float = setting(0.02, "m", "what the rotor discs may deviate beyond that", ge=0.0)
-    slack_linear: float = setting(1000.0, "", "linear cost of a barrier's slack", gt=0.0)
-    slack_quadratic: float = setting(100.0, "", "quadratic cost of a barrier's slack", gt=0.0)
-    slack_time_constant: float = setting(
-        0.8,
-        "s",
-        "with which one slack of an obstacle fades over the horizon and the other sets in: clearance that has to be "
-        "given up now is won back, and what cannot be kept later excuses nothing now",
-        gt=0.0,
-    )
-    limit_interval: int = setting(
-        3, "", "stages from one at which a plan's limits are kept to the next: between them it cannot change much", ge=1
-    )
-    acceleration_spare: float = setting(
-        0.1, "m/s2", "beyond the reference's own acceleration, which a plan may always have", ge=0.0
-    )
-    snap_spare: float = setting(1.0, "m/s4", "beyond the reference's own snap, which a plan may always have", ge=0.0)
+    slack_linear: float = 1000.0  # linear cost of a barrier's slack
+    slack_quadratic: float = 100.0  # quadratic cost of a barrier's slack
+    # s; with which one slack of an obstacle fades over the horizon and the other sets in: clearance that has to be
+    # given up now is won back, and what cannot be kept later excuses nothing now
+    slack_time_constant: float = 0.8
+    # stages from one at which a plan's limits are kept to the next: between them it cannot change much
+    limit_interval: int = 3
+    acceleration_spare: float = 0.1  # m/s2; beyond the reference's own acceleration, which a plan may always have
+    snap_spare: float = 1.0  # m/s4; beyond the reference's own snap, which a plan may always have
     pop_limit: Triple = setting(
         (60.0, 60.0, 300.0), "m/s6", "largest pop of a plan, the change of its crackle over time, x, y, z", gt=0.0
     )
-    pop_spare: float = setting(5.0, "m/s6", "beyond the reference's own pop, which a plan may always have", ge=0.0)
-    limit_slack_linear: float = setting(
-        3000.0, "", "linear cost of exceeding the plan's limits: beyond them it cannot be tracked", gt=0.0
-    )
-    limit_slack_quadratic: float = setting(1000.0, "", "quadratic cost of exceeding the plan's limits", gt=0.0)
+    pop_spare: float = 5.0  # m/s6; beyond the reference's own pop, which a plan may always have
+    limit_slack_linear: float = 3000.0  # linear cost of exceeding the plan's limits: beyond them it cannot be tracked
+    limit_slack_quadratic: float = 1000.0  # quadratic cost of exceeding the plan's limits
 
     @cached_property
     def chain(self) -> Chain:
@@ -105,20 +89,10 @@ class PlannerSettings(SettingsTable):
 class FilterSettings(SettingsTable):
     """Obstacles that take part in a plan, and the succession of plans."""
 
-    watch: float = setting(2.5, "m", "obstacles that come closer to the hull than this take part in the QP", gt=0.0)
-    memory: float = setting(2.5, "s", "how long plans of the past are kept: late measurements refer to them", gt=0.0)
-    recovery: float = setting(
-        1.5, "s", "time constant with which the tracker brings the payload back onto the plan", gt=0.0
-    )
-    excess_max: float = setting(
-        1.0, "m", "largest distance off the plan, beyond the tracking bound, by which obstacles are grown", ge=0.0
-    )
-    stops_aside: tuple[float, ...] = setting(
-        (1.0, 2.0),
-        "m",
-        "distances aside of the nearest stop, on each axis, of those tried without a QP solution",
-        gt=0.0,
-    )
-    switching_share: float = setting(
-        0.9, "", "share of the present plan's cost below which another side of an obstacle is chosen", gt=0.0, le=1.0
-    )
+    watch: float = 2.5  # m; obstacles that come closer to the hull than this take part in the QP
+    memory: float = 2.5  # s; how long plans of the past are kept: late measurements refer to them
+    recovery: float = 1.5  # s; time constant with which the tracker brings the payload back onto the plan
+    excess_max: float = 1.0  # m; largest distance off the plan, beyond the tracking bound, by which obstacles are grown
+    # m; distances aside of the nearest stop, on each axis, of those tried without a QP solution
+    stops_aside: tuple[float, ...] = (1.0, 2.0)
+    switching_share: Share = 0.9  # share of the present plan's cost below which another side of an obstacle is chosen

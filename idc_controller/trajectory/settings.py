@@ -56,7 +56,7 @@ class AvoidanceSettings(SettingsTable):
 class BrakingSettings(SettingsTable):
     """Duration of a stop: the least, or as long as the deceleration demands."""
 
-    time: float = setting(4.0, "s", "least time in which a team without set-points comes to rest", gt=0.0)
+    time: float = 4.0  # s; least time in which a team without set-points comes to rest
     deceleration: float = derived(2.0)
     """Largest deceleration of that stop (m/s2); a faster team takes longer."""
 
