@@ -6,10 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from gcs.app.fly import simulator_arguments
+from gcs.app.fly_options import FlyOptions, prepare
 from gcs.config import SystemConfig, read_system
 from gcs.config.overrides import with_settings
 from gcs.errors import UnusableInput
 from gcs.mission.read import read_mission
+from vehicle_sim.app.arguments import parse
 
 MISSIONS = Path(__file__).parents[1] / "missions"
 
@@ -65,3 +68,31 @@ def test_path_of_no_setting_is_refused_with_the_nearest(path, hint):
 def test_route_is_made_for_the_changed_system():
     assert read_mission(MISSIONS / "square.waypoints").reference.speed == SystemConfig().motion.speed
     assert read_mission(MISSIONS / "square.waypoints", settings={"motion.speed": 1.25}).reference.speed == 1.25
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "reason"),
+    [
+        ("perception.retention.delete_after", 0.0, "must be greater than 0, found 0.0"),
+        ("perception.standing_map.hit_share_min", 1.5, "must be less than 1, found 1.5"),
+        ("perception.association.merge_frames", 2.5, "must be a valid integer, found 2.5"),
+        ("perception.tracking.motion.frequencies", 1.0, "must be a valid array, found 1.0"),
+    ],
+)
+def test_plain_default_is_held_to_type_and_sign(path, value, reason):
+    with pytest.raises(UnusableInput, match=rf"^settings: {path}.*: {reason}"):
+        with_settings(SystemConfig(), {path: value})
+
+
+def test_plain_default_is_set_by_its_path_and_in_a_system_file(tmp_path):
+    (tmp_path / "system.toml").write_text("[perception.retention]\ndelete_after = 2\n")
+    changed = with_settings(SystemConfig(), {"perception.retention.delete_after": 2.0})
+    assert changed == read_system(tmp_path / "system.toml") != SystemConfig()
+    assert changed.perception.retention.delete_after == 2.0
+
+
+def test_simulator_of_a_flight_has_its_settings(tmp_path):
+    given = {"payload.mesh": "a b.obj", "world.payload_mass_factor": 1.1, "avoidance.barrier_rates": [6.0, 6.0]}
+    mission = prepare(FlyOptions(MISSIONS / "hop.toml"))
+    options = FlyOptions(MISSIONS / "hop.toml", settings=given)
+    assert parse(simulator_arguments(options, mission, tmp_path)).settings == given

@@ -2,6 +2,7 @@
 
 import argparse
 import math
+import tomllib
 from collections.abc import Sequence
 from difflib import get_close_matches
 from functools import partial
@@ -80,6 +81,29 @@ def number(text: str, least: float, most: float) -> float:
     if not least <= value <= most:
         raise argparse.ArgumentTypeError(f"{text!r} is not a number from {least:g} to {most:g}")
     return value
+
+
+class Settings(argparse.Action):
+    """``--set PATH=VALUE``, any number of times: settings by their path; a value is TOML's, else it is text."""
+
+    def __call__(self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, text: Any, *_: object) -> None:
+        """Add a setting to those that were given before."""
+        path, equals, value = text.partition("=")
+        if not path or not equals:
+            raise argparse.ArgumentError(self, f"{text!r} is not PATH=VALUE")
+        try:
+            (read,) = tomllib.loads(f"value = {value}").values()
+        except ValueError:
+            read = value
+        setattr(namespace, self.dest, {**(getattr(namespace, self.dest) or {}), path: read})
+
+
+def add_settings(parser: argparse.ArgumentParser) -> None:
+    """Add the option ``--set``; without it, ``settings`` is None."""
+    parser.add_argument(
+        "--set", action=Settings, dest="settings", metavar="PATH=VALUE",
+        help="a setting in place of the system file's, such as avoidance.margin=0.4; may be repeated",
+    )  # fmt: skip
 
 
 VEHICLES_MIN = 3

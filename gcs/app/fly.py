@@ -1,6 +1,7 @@
 """``gcs fly``: a mission file, a swarm, a driver and a run folder become one flight with a summary."""
 
 import dataclasses
+import json
 import math
 import sys
 import time
@@ -112,7 +113,7 @@ def fly(
         connection = resources.enter_context(closing(Connection(_local_address(options.urls))))
         simulator = None
         if vehicle_sim is not None:
-            arguments = _simulator_arguments(options, mission, run_dir)
+            arguments = simulator_arguments(options, mission, run_dir)
             simulator = resources.enter_context(Simulator(vehicle_sim, arguments, mission.system.drivers))
         addresses = options.addresses(mission.system.team.vehicles) if simulator is None else [*simulator.vehicles]
         recorder = resources.enter_context(FlightRecorder(run_dir, started.timestamp()))
@@ -246,12 +247,14 @@ def _check_clock(options: FlyOptions) -> None:
         )
 
 
-def _simulator_arguments(options: FlyOptions, mission: Mission, run_dir: Path) -> list[str]:
+def simulator_arguments(options: FlyOptions, mission: Mission, run_dir: Path) -> list[str]:
     """Return the arguments of a ``vehicle-sim`` for this flight."""
     arguments = ["--mission", str(options.mission), "--vehicles", str(mission.system.team.vehicles)]
     arguments += ["--seed", str(mission.seed), "--run-dir", str(run_dir), "--base-port", "0"]
     if options.config is not None:
         arguments += ["--config", str(options.config)]
+    for path, value in (options.settings or {}).items():
+        arguments += ["--set", f"{path}={json.dumps(value)}"]
     in_real_time = ["--realtime", "--speed", str(options.pace)]
     return arguments + (in_real_time if options.realtime else ["--lockstep", "--ground-port", "0"])
 

@@ -1,9 +1,11 @@
 """Options of ``gcs fly``, and the mission as it will be flown with them: all that can be wrong before a flight."""
 
 import dataclasses
+from collections.abc import Mapping
 from dataclasses import dataclass
 from operator import itemgetter
 from pathlib import Path
+from typing import Any
 
 from gcs.app.arguments import VEHICLES_MIN
 from gcs.drivers.simulator import VEHICLES_MAX
@@ -21,6 +23,8 @@ class FlyOptions:
 
     mission: Path
     config: Path | None = None
+    settings: Mapping[str, Any] | None = None
+    """By dotted path, in place of the system file's."""
     vehicles: int | None = None
     seed: int | None = None
     run_dir: Path | None = None
@@ -80,16 +84,18 @@ def prepare(options: FlyOptions) -> Mission:
                 f"--connect {options.urls[0]}: {vehicles} of the team's vehicles, which are {VEHICLES_MIN} or more: "
                 "name the URL of each"
             )
-    mission = read_mission_for(options.mission, options.config, vehicles)
+    mission = read_mission_for(options.mission, options.config, vehicles, options.settings)
     vehicles = mission.system.team.vehicles
     if options.connect is None and vehicles > VEHICLES_MAX:
         raise UnusableInput(f"{vehicles} vehicles: vehicle-sim simulates {VEHICLES_MAX} at most: see --vehicles")
     return mission if options.seed is None else dataclasses.replace(mission, seed=options.seed)
 
 
-def read_mission_for(path: Path, config: Path | None = None, vehicles: int | None = None) -> Mission:
+def read_mission_for(
+    path: Path, config: Path | None = None, vehicles: int | None = None, settings: Mapping[str, Any] | None = None
+) -> Mission:
     """Read a mission for a team of ``vehicles`` in place of the system file's. Raises :class:`UnusableInput`."""
-    mission = read_mission(path, config)
+    mission = read_mission(path, config, settings)
     if vehicles is not None:
         mission = dataclasses.replace(mission, system=mission.system.with_vehicles(vehicles))
         check_faults_of(mission)

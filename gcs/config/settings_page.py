@@ -10,9 +10,11 @@ from idc_controller.settings import Setting
 _INTRODUCTION = """\
 # Settings
 
-Every key of a system file, by table. A file names what differs from these defaults, nothing else is needed; an unknown
-key, a wrong type and a value out of range are refused with file, line and reason (exit status 2).
-[`missions/system.toml`](../missions/system.toml) shows the main tables with their default values.
+What users set, by table of the system file. A file names what differs from these defaults; an unknown key, a wrong type
+and a value out of range are refused with file, line and reason (exit status 2).
+[`missions/system.toml`](../missions/system.toml) shows the main tables. `--set PATH=VALUE` (`gcs fly`, `gcs check`,
+`vehicle-sim`) and `gcs.fly(..., settings={...})` take their place: `--set avoidance.margin=0.4`. Every other number
+that decides flight behaviour is set in the same ways: its path is that of its default in a `settings.py`.
 
 This page is written from the declarations by `make docs`.
 """

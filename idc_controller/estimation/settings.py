@@ -4,7 +4,7 @@ from dataclasses import dataclass, field, replace
 from typing import Self
 
 from idc_controller.errors import ParameterError
-from idc_controller.settings import SampleCount, SampledSettings, SampleShare, SettingsTable, Share, derived, setting
+from idc_controller.settings import SampleCount, SampledSettings, SampleShare, SettingsTable, Share, derived
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -158,7 +158,7 @@ class WindSettings(SettingsTable):
     """Memory, uncertainties and extent of the wind estimate."""
 
     memory: float = 10.0  # s; time constant with which the past is discounted
-    speed_max: float = setting(8.0, "m/s", "largest wind along each axis", gt=0.0)
+    speed_max: float = 8.0  # m/s; largest wind along each axis
     spacing: float = 0.5  # m/s; spacing of the grid of winds
     gust_force: float = 1.0  # N; force that a steady wind leaves unexplained, root mean square
     gust_time: float = 2.0  # s; correlation time of that force

@@ -170,10 +170,9 @@ class ObstacleFilterSettings(SettingsTable):
     outside_share: float = 0.01
     static_speed: float = 0.1  # m/s; speed below which a track is static
     static_weight: Share = 0.5  # weight of the static model above which it is
-    mover_speed_max: float = setting(5.0, "m/s", "speed above which a track is no obstacle that moves", gt=0.0)
-    mover_face_max: float = setting(
-        1.6, "m", "edges of a flat face of which both are longer: that is a wall, and does not move", gt=0.0
-    )
+    mover_speed_max: float = 5.0  # m/s; speed above which a track is no obstacle that moves
+    # m; edges of a flat face of which both are longer: that is a wall, and does not move
+    mover_face_max: float = 1.6
     late_speed: float = 0.5  # m/s; uncertainty of the speed by which late frames are moved
     pole_complexity: float = 0.4  # by which a pole must fit better than a sphere
     wall_complexity: float = 0.8  # by which a wall must fit better than a sphere

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-from gcs.app.arguments import SEED, SPEED, VEHICLES, Parser, Version, whole_number
+from gcs.app.arguments import SEED, SPEED, VEHICLES, Parser, Version, add_settings, whole_number
 from gcs.app.logs import add_log_arguments
 from gcs.mavlink.address import GROUND_PORT, SDK_PORT, VEHICLE_PORT
 
@@ -44,6 +44,7 @@ def parse(argv: list[str] | None) -> argparse.Namespace:
     add("--mission", type=Path, metavar="M",
         help="mission file (.toml, .plan, .waypoints) that gives home, obstacles, seed and system")  # fmt: skip
     add("--config", type=Path, metavar="C", help="system file (default: the mission's, else the packaged one)")
+    add_settings(parser)
     add("--seed", type=SEED, metavar="S",
         help="seed of all sensor noise (default: the mission's, else 1)")  # fmt: skip
     add("--run-dir", type=Path, metavar="D",

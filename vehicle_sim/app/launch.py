@@ -11,6 +11,7 @@ from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
 from gcs.config import SystemConfig, read_system
+from gcs.config.overrides import with_settings
 from gcs.mavlink.address import THIS_MACHINE, VEHICLE_PORT
 from gcs.mission.faults import check_faults_of
 from gcs.mission.model import Mission
@@ -109,8 +110,8 @@ def _run(options: Namespace, arguments: list[str], started: contextlib.ExitStack
 
 
 def _read(options: Namespace) -> tuple[Mission | None, SystemConfig]:
-    mission = None if options.mission is None else read_mission(options.mission, options.config)
-    config = read_system(options.config) if mission is None else mission.system
+    mission = None if options.mission is None else read_mission(options.mission, options.config, options.settings)
+    config = with_settings(read_system(options.config), options.settings or {}) if mission is None else mission.system
     if options.vehicles is not None:
         config = config.with_vehicles(options.vehicles)
     if mission is not None:

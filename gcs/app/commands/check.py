@@ -8,7 +8,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gcs.app.arguments import VEHICLES
+from gcs.app.arguments import VEHICLES, add_settings
 from gcs.app.exit_status import ExitStatus
 from gcs.app.imports import importing
 from gcs.errors import UnusableInput
@@ -26,6 +26,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--vehicles", type=VEHICLES, metavar="N", help="number of vehicles in place of the system file's"
     )
     parser.add_argument("--config", type=Path, metavar="C", help="system file in place of the mission's")
+    add_settings(parser)
     parser.add_argument("--json", action="store_true", help="print legs, notes and reasons as JSON")
 
 
@@ -39,7 +40,7 @@ def run(arguments: argparse.Namespace) -> int:
         from gcs.mission.describe import describe
 
     try:
-        mission = read_mission_for(arguments.mission, arguments.config, arguments.vehicles)
+        mission = read_mission_for(arguments.mission, arguments.config, arguments.vehicles, arguments.settings)
         found = preflight(mission)
     except UnusableInput as refused:
         if arguments.json:
