@@ -29,7 +29,7 @@ ALLOWED = {
         "gcs.config gcs.faults gcs.flight gcs.mission gcs.record idc_controller.geometry idc_controller.guidance"
     ),
     "gcs.config": "",
-    "gcs.drivers": "gcs.flight gcs.mavlink",
+    "gcs.drivers": "gcs.config gcs.flight gcs.mavlink",
     "gcs.faults": "gcs.config",
     "gcs.flight": (
         "gcs.config gcs.mavlink gcs.mission idc_controller.control idc_controller.estimation "

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from gcs.config.flight_settings import DriverSettings
 from gcs.drivers.forked_program import ForkedProgram
-from gcs.drivers.settings import DriverSettings
 from gcs.drivers.simulator import Simulator
 from gcs.errors import GcsError
 

@@ -6,9 +6,9 @@ from types import SimpleNamespace
 import pytest
 from scripted_station import VEHICLE, ScriptedStation
 
+from gcs.config.flight_settings import DriverSettings
 from gcs.drivers.connection import Connection, LockstepConnection
 from gcs.drivers.lockstep import is_refused, run_in_lockstep
-from gcs.drivers.settings import DriverSettings
 from gcs.flight.failsafe import Failsafe
 from gcs.mavlink.lockstep import Done, Tick, decode_done
 

@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import pytest
 from scripted_station import VEHICLE, ScriptedStation
 
+from gcs.config.flight_settings import DriverSettings
 from gcs.drivers.realtime import run_in_real_time
-from gcs.drivers.settings import DriverSettings
 from gcs.flight.failsafe import Failsafe
 
 SETTINGS = DriverSettings(wait_max=0.2)

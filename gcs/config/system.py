@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from pydantic_core import SchemaValidator
 
-from gcs.config.flight_settings import FlightSettings
+from gcs.config.flight_settings import DriverSettings, FlightSettings
 from gcs.config.schema import table_of, table_validator
 from gcs.config.sub_packages import ControlConfig, EstimationConfig, GuidanceConfig, SafetyConfig
 from gcs.config.tables import (
@@ -32,7 +32,6 @@ from gcs.config.tables import (
 from gcs.config.toml_file import TomlFile, read_toml
 from gcs.config.validate import Key, UnusableFile
 from gcs.config.vehicle_settings import AutopilotSettings, VehicleLinkSettings
-from gcs.drivers.settings import DriverSettings
 from gcs.errors import UnusableInput
 from gcs.mavlink.settings import MavlinkSettings
 from idc_controller.arrays import Array

@@ -3,9 +3,9 @@
 import socket
 from collections.abc import Callable
 
+from gcs.config.flight_settings import DriverSettings
 from gcs.drivers.connection import LockstepConnection
 from gcs.drivers.interrupt import Interrupt
-from gcs.drivers.settings import DriverSettings
 from gcs.flight.failsafe import Failsafe
 from gcs.flight.ground_station import GroundStation
 from gcs.mavlink.address import Address

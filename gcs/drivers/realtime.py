@@ -3,9 +3,9 @@
 import time
 from collections.abc import Callable
 
+from gcs.config.flight_settings import DriverSettings
 from gcs.drivers.connection import Connection
 from gcs.drivers.interrupt import Interrupt
-from gcs.drivers.settings import DriverSettings
 from gcs.flight.failsafe import Failsafe
 from gcs.flight.ground_station import GroundStation
 

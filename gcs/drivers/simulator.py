@@ -6,8 +6,8 @@ import re
 from collections.abc import Sequence
 from types import TracebackType
 
+from gcs.config.flight_settings import DriverSettings
 from gcs.drivers.forked_program import ForkedProgram
-from gcs.drivers.settings import DriverSettings
 from gcs.errors import GcsError, UnusableInput
 from gcs.mavlink.address import Address
 
