@@ -52,7 +52,8 @@ def fly(
     otherwise the last digits can depend on the processor, which is logged as a warning (logger ``gcs``).
 
     Args:
-        mission: a mission file of any format, or a mission built in Python.
+        mission: a mission file of any format, the name of one of the package's own (``gcs missions``), or a mission
+            built in Python.
         seed: of every random number, in place of the mission's own.
         config: a system file in place of the mission's own.
         settings: values by dotted path, such as ``{"avoidance.margin": 0.3}``, in place of the system file's

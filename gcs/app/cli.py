@@ -19,6 +19,7 @@ from idc_controller.errors import IdcError
 COMMANDS = {
     "fly": "fly a mission",
     "check": "say what will be flown, or why not",
+    "missions": "list the missions that come with the package",
     "report": "draw what happened in a run",
     "courses": "fly many random obstacle scenarios",
     "faults": "list the kinds of fault, fly campaigns of them",
@@ -29,10 +30,11 @@ COMMANDS = {
 _DESCRIPTION = """\
 The ground station of cooplift: UAVs that carry one payload together.
 
-  gcs check missions/delivery.plan          what will be flown, or every reason why not
-  gcs fly missions/figure_eight.toml        flies it with a simulated swarm of its own
+  gcs missions                              the missions that come with the package
+  gcs check delivery                        what will be flown, or every reason why not
+  gcs fly figure_eight                      flies it with a simulated swarm of its own
   gcs report runs/figure-eight-1            draws what happened
-  gcs faults missions/telemetry_faults.toml flies a campaign of telemetry faults
+  gcs faults telemetry_faults               flies a campaign of telemetry faults
   gcs courses                               flies 200 random obstacle scenarios and shows the distribution
   gcs study margin                          flies a mission with other margins; other studies likewise
   gcs reproduce --quick                     the paper's figures and numbers, as printed and as corrected

@@ -11,6 +11,7 @@ from gcs.config.text_file import read_text
 from gcs.config.toml_file import TomlFile
 from gcs.config.validate import Key
 from gcs.mission.model import DEFAULT_HOME, Home, Lissajous, Mission
+from gcs.mission.own import named
 from gcs.mission.reasons import merged
 from gcs.mission.toml_mission import DEFAULT_SEED, check_with_system, points_route, read_mission_file
 
@@ -22,12 +23,13 @@ def read_mission(
 ) -> Mission:
     """Read a mission: ``.toml``, ``QGC WPL 110`` or QGroundControl ``.plan``, recognised by their content.
 
-    The system comes from ``config_path``, else from the file that the mission names, else from ``system.toml`` beside
-    the mission, else the default system; ``settings`` by dotted path take the place of its own.
+    ``path`` may be the name of one of the package's own (:mod:`gcs.mission.own`). The system comes from
+    ``config_path``, else from the file that the mission names, else from ``system.toml`` beside the mission, else the
+    default system; ``settings`` by dotted path take the place of its own.
 
     Raises :class:`UnusableFile` (a :class:`gcs.errors.UnusableInput`) with every reason found.
     """
-    path = Path(path)
+    path = named(path)
     config = None if config_path is None else Path(config_path)
     text = read_text(path)
     if mission_format(path, text) == "toml":

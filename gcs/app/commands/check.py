@@ -21,7 +21,7 @@ DESCRIPTION = "Reads a mission and says what will be flown, or every reason why 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("mission", type=Path, metavar="MISSION", help="mission file")
+    parser.add_argument("mission", type=Path, metavar="MISSION", help="mission file, or a name of gcs missions")
     parser.add_argument(
         "--vehicles", type=VEHICLES, metavar="N", help="number of vehicles in place of the system file's"
     )

@@ -28,7 +28,10 @@ Exit status: 0 all passed (by default: within their limits); 1 not all; 2 unusab
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("campaign", nargs="?", type=Path, metavar="CAMPAIGN", help="campaign file, see docs/faults.md")
+    parser.add_argument(
+        "campaign", nargs="?", type=Path, metavar="CAMPAIGN",
+        help="campaign file (docs/faults.md), or a name of gcs missions",
+    )  # fmt: skip
     parser.add_argument("--kinds", action="store_true", help="list the kinds of fault with their parameters")
     add_campaign_arguments(parser, "runs/<name of the campaign>")
 

@@ -12,7 +12,8 @@ from gcs.errors import UnusableInput
 from gcs.mavlink.address import GROUND_PORT, THIS_MACHINE, VEHICLE_PORT, parse_url
 
 DESCRIPTION = """\
-Flies a mission: a QGroundControl .plan, a QGC WPL 110 file, or the project's .toml.
+Flies a mission: a QGroundControl .plan, a QGC WPL 110 file, the project's .toml, or one of the package's own by its
+name (gcs missions).
 
 Without --connect it starts a simulated swarm (vehicle-sim) for itself, in lockstep unless --realtime is given.
 With --connect it flies a swarm that runs already:
@@ -31,7 +32,7 @@ are incomplete; 130 interrupted, vehicles landed.
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
-    add("mission", nargs="?", metavar="MISSION", help="mission file")
+    add("mission", nargs="?", metavar="MISSION", help="mission file, or a name of gcs missions")
     add("--realtime", action="store_true", help="run on the wall clock instead of in lockstep")
     add("--speed", type=SPEED, metavar="X",
         help="simulated seconds per second of wall time, with --realtime (default: 1)")  # fmt: skip

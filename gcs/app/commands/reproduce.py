@@ -13,6 +13,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from gcs.app.arguments import number_of_jobs
 from gcs.errors import UnusableInput, UnwritableRecord
+from gcs.mission.own import own_folder
 from gcs.mission.read import read_mission
 from gcs.record.run_data import read_run
 from gcs.record.run_folder import UnwritableFile, check_writable, make_folder
@@ -52,7 +53,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--missions", type=Path, metavar="DIR",
-        help="folder of the mission files that are flown (default: missions)",
+        help="folder of the mission files that are flown (default: the package's own)",
     )  # fmt: skip
 
 
@@ -60,7 +61,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Run the command, and return its exit status."""
     if arguments.quick and arguments.missions is not None:
         raise UnusableInput("gcs reproduce: --quick flies no missions: leave --missions out")
-    chosen, out, missions = plan(arguments.quick), arguments.out, arguments.missions or Path("missions")
+    chosen, out, missions = plan(arguments.quick), arguments.out, arguments.missions or own_folder()
     # All that can be wrong is looked for before anything is written.
     for mission, _ in chosen.flights.values():
         read_mission(missions / mission)

@@ -9,6 +9,7 @@ from gcs.app.campaigns import add_campaign_arguments, run_campaign
 from gcs.campaign.studies.plans import StudyFlights
 from gcs.campaign.studies.study import STUDIES
 from gcs.errors import UnusableInput
+from gcs.mission.own import own_folder
 
 DESCRIPTION = """\
 Flies the same missions again with one parameter changed at a time, and reports what depends on it:
@@ -32,7 +33,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--quick", action="store_true", help="few flights: one seed, or two random scenarios")
     add("--seeds", type=partial(whole_number, least=1, most=9999), metavar="N",
         help="seeds of the noise, 1 .. N, or random scenarios 1 .. N (default: the study's, 3 or 20)")  # fmt: skip
-    add("--missions", type=Path, default=Path("missions"), metavar="DIR", help="folder of the mission files")
+    add("--missions", type=Path, metavar="DIR",
+        help="folder of the mission files (default: the package's own)")  # fmt: skip
     add_campaign_arguments(parser, "runs/studies")
 
 
@@ -40,5 +42,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Run the command, and return its exit status."""
     if arguments.quick and arguments.seeds is not None:
         raise UnusableInput(f"gcs study: --quick and --seeds {arguments.seeds} both say how many: leave one out")
-    flights = StudyFlights(STUDIES[arguments.name], arguments.seeds, arguments.quick, arguments.missions)
+    flights = StudyFlights(
+        STUDIES[arguments.name], arguments.seeds, arguments.quick, arguments.missions or own_folder()
+    )
     return run_campaign(flights, arguments.out or Path("runs/studies"), arguments)

@@ -59,6 +59,7 @@ class BaseMission:
 def read_base(path: Path, config: Path | None = None) -> BaseMission:
     """Read a mission of any format. Raises :class:`gcs.config.UnusableFile` like :func:`read_mission`."""
     mission = read_mission(path, config)
+    path = mission.path
     if mission_format(path, read_text(path)) == "toml":
         tables = read_toml(path).data
     else:

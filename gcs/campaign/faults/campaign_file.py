@@ -19,6 +19,7 @@ from gcs.config.toml_file import TomlFile, read_toml
 from gcs.config.validate import Key, NotNegative, strict
 from gcs.mission.faults import fault_problems, read_fault
 from gcs.mission.model import Limits, Name
+from gcs.mission.own import named
 
 Seed = Annotated[int, Field(ge=0, lt=2**63)]
 Severity = Annotated[dict[str, Annotated[tuple[Any, ...], Field(min_length=1, max_length=1000)]], Field(min_length=1)]
@@ -87,8 +88,11 @@ def _adapter() -> TypeAdapter[CampaignTables]:
 
 
 def read_campaign(path: Path) -> CampaignFile:
-    """Read a campaign with its missions. Raises :class:`UnusableFile` with every reason found."""
-    file = read_toml(path)
+    """Read a campaign with its missions; ``path`` may be the name of one of the package's own.
+
+    Raises :class:`UnusableFile` with every reason found.
+    """
+    file = read_toml(named(path, "campaign"))
     for other, use in _OTHER_FILES.items():
         if other in file.data and "campaign" not in file.data:
             raise UnusableFile([file.problem((other,), use)])
