@@ -16,7 +16,7 @@ export OPENBLAS_NUM_THREADS := 1
 # Compiled modules are kept: the tests start many programs.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help install fly test test-fast test-long test-lowest test-numerics mutants golden golden-renew
+.PHONY: help install fly test test-fast test-long test-lowest test-numerics golden golden-renew
 .PHONY: claims claims-all claims-write fault-tables anew benchmark benchmark-parts benchmark-campaign benchmark-check docs clean
 
 help:
@@ -26,7 +26,6 @@ help:
 	@echo "make test-long    the same cases with further seeds and sizes, and longer missions"
 	@echo "make test-lowest  some tests and a flight with the lowest versions that pyproject.toml allows"
 	@echo "make test-numerics  tests of linear algebra and a flight with other OpenBLAS kernels (KERNELS='$(KERNELS)')"
-	@echo "make mutants      see whether the fast tests notice changes of the flight path (MUTANTS='--number 60 --seed 1')"
 	@echo "make golden       compare short flights, to the byte, with those of the commit BASE ($(BASE)) and with checksums"
 	@echo "make golden-renew write the checksums anew"
 	@echo "make claims       compare the figures of README.md and docs/ with docs/claims.toml; make test does so, too"
@@ -70,9 +69,6 @@ test-numerics: $(COMPILED)
 		COOPLIFT_KERNELS=unpinned OPENBLAS_CORETYPE=$$kernels NPY_DISABLE_CPU_FEATURES="X86_V3 AVX2 FMA3" \
 			$(VENV)/bin/python -m pytest --numprocesses auto --dist loadfile -m numerics $(NUMERICS) || exit 1; \
 	done
-
-mutants: $(COMPILED)
-	$(VENV)/bin/python tests/mutation/mutants.py $(MUTANTS)
 
 golden: $(COMPILED)
 	$(VENV)/bin/python tests/golden/golden.py --base $(BASE) $(FLIGHTS)
