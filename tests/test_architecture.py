@@ -271,36 +271,3 @@ def test_modules_have_no_cycle():
         if path.name != "__init__.py"
     }
     [*TopologicalSorter({name: {*modules_imported(path, {*paths})} for name, path in paths.items()}).static_order()]
-
-
-def attributes(definition):
-    """Names of the attributes that a class declares or that its methods assign."""
-    declared = {n.target.id for n in definition.body if isinstance(n, ast.AnnAssign) and isinstance(n.target, ast.Name)}
-    assigned = {
-        n.attr
-        for n in ast.walk(definition)
-        if isinstance(n, ast.Attribute) and isinstance(n.ctx, ast.Store) and getattr(n.value, "id", "") == "self"
-    }
-    return declared | assigned
-
-
-def is_record(definition):
-    """An immutable table of values: settings, or a row of results."""
-    return any("frozen=True" in ast.unparse(d) for d in definition.decorator_list) or any(
-        getattr(base, "id", "") == "NamedTuple" for base in definition.bases
-    )
-
-
-MANY_ATTRIBUTES = {"FlightState"}
-"""Classes with a state and more than a dozen attributes, for the reason in their docstring."""
-
-
-def test_classes_with_a_state_have_a_dozen_attributes():
-    definitions = [
-        definition
-        for package in FORBIDDEN
-        for path in (ROOT / package).rglob("*.py")
-        for definition in nodes_in(path)
-        if isinstance(definition, ast.ClassDef) and not is_record(definition)
-    ]
-    assert {definition.name for definition in definitions if len(attributes(definition)) > 12} == MANY_ATTRIBUTES

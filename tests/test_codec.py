@@ -1,6 +1,8 @@
+import random
 import struct
 
 import numpy as np
+import pymavlink.dialects.v20.ardupilotmega as dialect
 import pymavlink.dialects.v20.common as mavlink
 import pytest
 from hypothesis import given, settings
@@ -9,6 +11,10 @@ from pymavlink import mavutil
 
 from gcs.mavlink import px4
 from gcs.mavlink.codec import BAD_FRAMES_MAX, DATAGRAM_LIMIT, Codec, gather
+from gcs.mavlink.frame_kernels import RUN_LIMIT
+from gcs.mavlink.layout import LAYOUTS, PackedRun
+from gcs.mavlink.messages import Received
+from gcs.mavlink.telemetry import scan_returns
 
 
 def attitude(stamp: int = 7) -> mavlink.MAVLink_attitude_quaternion_message:
@@ -133,6 +139,59 @@ def test_every_message_of_the_dialect_with_random_payload_is_read_or_refused() -
             [received] = codec.decode(b"\xfd" + body + struct.pack("<H", crc))
             read += received.message.msgname == kind.msgname
     assert read == 4 * len(mavlink.mavlink_map)
+
+
+def scan(count: int, seed: int = 1) -> PackedRun:
+    """Returns of a scan as a vehicle packs them."""
+    layout, rng = LAYOUTS[dialect.MAVLINK_MSG_ID_OBSTACLE_DISTANCE_3D], np.random.default_rng(seed)
+    values = np.zeros(count, layout.dtype)
+    values["time_boot_ms"], values["frame"] = 5000, mavlink.MAV_FRAME_BODY_FRD
+    for name in ("x", "y", "z"):
+        values[name] = rng.normal(0.0, 4.0, count)
+    return PackedRun(layout, values)
+
+
+def frames_by_pymavlink(run: PackedRun, sequence: int = 0) -> list[bytes]:
+    sender = dialect.MAVLink(None, 3, 1)
+    frames = []
+    for k, value in enumerate(run.values):
+        fields = dict(zip(run.layout.dtype.names, value.tolist(), strict=True))
+        sender.seq = (sequence + k) % 256
+        frames.append(dialect.MAVLink_obstacle_distance_3d_message(**fields).pack(sender))
+    return frames
+
+
+def returns(received: list[Received]) -> list[list[list[float]]]:
+    """All returns that are read of messages and runs of messages."""
+    found = [scan_returns(one) for one in received]
+    return [np.concatenate(parts).tolist() for parts in zip(*(one[1:] for one in found), strict=True)]
+
+
+@pytest.mark.parametrize("count", [1, 30, 257])
+def test_returns_of_a_scan_are_framed_as_by_pymavlink_and_read_at_once_as_one_by_one(count: int) -> None:
+    frames = Codec(3, 1).frames(scan(count))
+    assert frames == frames_by_pymavlink(scan(count))
+    datagram = b"".join(frames)
+    whole, single = Codec(255, 190).read(datagram), Codec(255, 190).decode(datagram)
+    assert len(whole) == 1 + (count > RUN_LIMIT) and len(single) == count
+    assert returns(whole) == returns(single)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_scan_with_damaged_frames_is_read_as_its_good_frames(seed: int) -> None:
+    rng = random.Random(seed)
+    frames = frames_by_pymavlink(scan(12, seed), rng.randrange(256)) + frames_by_pymavlink(scan(5, seed), 7)
+    frames.insert(rng.randrange(17), Codec(3, 1).encode(attitude()))
+    bad = rng.sample(range(18), 3)
+    damaged = [bytearray(frame) for frame in frames]
+    for at in bad:
+        damaged[at][rng.randrange(10, len(frames[at]))] ^= rng.randint(1, 255)
+    good = b"".join(frame for at, frame in enumerate(frames) if at not in bad)
+    read, expected = (
+        [one for one in Codec(255, 190).read(data) if one.layout.kind.msgname == "OBSTACLE_DISTANCE_3D"]
+        for data in (b"".join(damaged), good)
+    )
+    assert returns(read) == returns(expected)
 
 
 def test_gather_fills_datagrams_in_order_and_within_the_limit() -> None:
