@@ -1,18 +1,20 @@
-"""Compile fixed-size numeric kernels with numba; the machine code is cached on disk beside the module."""
+"""Compile numeric kernels with numba; the machine code is kept on disk for all checkouts."""
 
 import hashlib
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from functools import cache
 from types import CodeType, ModuleType
 from typing import Any, TypeVar, cast
 
 import numba
 import numpy as np
-from numba.core.caching import IndexDataCacheFile
-
-from idc_controller.kernel_loading import LeanFunctionCache
+from numba.core import config as numba_config
+from numba.core.caching import CompileResultCacheImpl, FunctionCache, _CacheLocator
+from numba.misc.appdirs import AppDirs
 
 Function = TypeVar("Function", bound=Callable[..., Any])
+_CONFIG: Any = numba_config
 
 
 def kernel(signature: str) -> Callable[[Function], Function]:
@@ -27,7 +29,8 @@ def kernel(signature: str) -> Callable[[Function], Function]:
     def compiled(function: Function) -> Function:
         dispatcher: Any = inlined(function)
         if dispatcher is not function:  # as it is with NUMBA_DISABLE_JIT
-            dispatcher._cache = _KernelCache(function)
+            cache: Any = _KernelCache
+            dispatcher._cache = cache(function)
             dispatcher.compile(signature)
             dispatcher.disable_compile()
         return cast(Function, dispatcher)
@@ -40,17 +43,46 @@ def inlined(function: Function) -> Function:
     return cast(Function, numba.njit(error_model="numpy")(function))
 
 
-class _KernelCache(LeanFunctionCache):
-    """Numba's cache on disk, with files of their own for each state of all that a kernel's machine code follows from.
+class _ByContent(_CacheLocator):
+    """Where numba keeps a kernel: by a checksum of all that its machine code follows from, so for any checkout.
 
-    Numba by itself looks at the kernel's own module alone, but kernels call functions and name constants of others.
+    Numba's own locators look at the path and the text of the kernel's module alone, but kernels call functions and name
+    constants of others.
     """
 
-    def __init__(self, function: Callable[..., Any]) -> None:
-        super().__init__(function)  # type: ignore[no-untyped-call]
-        checksum = _checksum(function)
-        name = f"{self._impl.filename_base}-{checksum[:16]}"
-        self._cache_file = IndexDataCacheFile(self._cache_path, name, source_stamp=checksum)
+    def __init__(self, function: Callable[..., Any], folder: str) -> None:
+        self._folder, self._checksum = folder, _checksum(function)
+
+    def get_cache_path(self) -> str:
+        """Return the folder."""
+        return self._folder
+
+    def get_source_stamp(self) -> str:
+        """Return what the kernel has to have been compiled from."""
+        return self._checksum
+
+    def get_disambiguator(self) -> str:
+        """Return what tells files of one name apart."""
+        return self._checksum[:16]
+
+    @classmethod
+    def from_function(cls, function: Callable[..., Any], path: str) -> Any:
+        """Return that of the first folder that can be written: ``NUMBA_CACHE_DIR``, the user's, beside the module."""
+        beside = f"{path.rpartition('/')[0]}/__pycache__"
+        for folder in filter(None, (_CONFIG.CACHE_DIR, AppDirs("cooplift", False).user_cache_dir, beside)):
+            locator: Any = cls(function, folder)
+            with suppress(OSError):
+                locator.ensure_cache_path()
+                return locator
+        return None
+
+
+class _KernelFiles(CompileResultCacheImpl):
+    _locator_classes = [_ByContent]  # noqa: RUF012
+
+
+class _KernelCache(FunctionCache):
+    _impl_class = _KernelFiles
 
 
 @cache
@@ -61,6 +93,7 @@ def _checksum(function: Callable[..., Any]) -> str:
         *_parts(function.__code__, function.__globals__),
         *_parts_of_value(bound, ()),
         *_parts(inlined.__code__, {}),  # numba's options
+        numba.__version__,
     )
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()
 

@@ -1,7 +1,6 @@
 """The project as of another commit, beside the work tree and ready to fly in the same environment."""
 
 import os
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -19,7 +18,6 @@ def tree_of(commit):
         tree = Path(scratch) / "tree"
         subprocess.run([*git, "add", "--quiet", "--detach", str(tree), commit], check=True)
         try:
-            _copy_kernels(tree)
             _compile_kernels(tree)
             yield tree
         finally:
@@ -29,16 +27,6 @@ def tree_of(commit):
 def environment_of(tree):
     """Return the variables with which ``python -m gcs`` is that of ``tree``, not the installed one."""
     return {**os.environ, "PYTHONPATH": str(tree)}
-
-
-def _copy_kernels(tree):
-    """Copy machine code of the work tree, which serves where the kernels are equal: files are named by checksum."""
-    for package in ("idc_controller", "gcs", "vehicle_sim"):
-        for file in (ROOT / package).rglob("__pycache__/*.nb?"):
-            folder = tree / file.parent.relative_to(ROOT)
-            if folder.parent.exists():
-                folder.mkdir(exist_ok=True)
-                shutil.copy2(file, folder)
 
 
 def _compile_kernels(tree):

@@ -46,7 +46,8 @@ def _support(
 
 
 @inlined
-def _dot(a: Array, b: Array) -> float:
+def dot(a: Array, b: Array) -> float:
+    """Return the dot product of two vectors (3,)."""
     return float(a[0] * b[0] + a[1] * b[1] + a[2] * b[2])
 
 
@@ -73,9 +74,9 @@ def _nearest_on_edge(a: Array, b: Array, v: Array) -> int:
 def _nearest_on_triangle(a: Array, b: Array, c: Array, v: Array) -> int:
     """Write the point of a triangle nearest to the origin into ``v`` (3,); return the bits of its corners about it."""
     ab, ac = b - a, c - a
-    d1, d2 = -_dot(ab, a), -_dot(ac, a)
-    d3, d4 = -_dot(ab, b), -_dot(ac, b)
-    d5, d6 = -_dot(ab, c), -_dot(ac, c)
+    d1, d2 = -dot(ab, a), -dot(ac, a)
+    d3, d4 = -dot(ab, b), -dot(ac, b)
+    d5, d6 = -dot(ab, c), -dot(ac, c)
     va, vb, vc = d3 * d6 - d5 * d4, d5 * d2 - d1 * d6, d1 * d4 - d3 * d2
     nx, ny, nz = ab[1] * ac[2] - ab[2] * ac[1], ab[2] * ac[0] - ab[0] * ac[2], ab[0] * ac[1] - ab[1] * ac[0]
     square = nx * nx + ny * ny + nz * nz
@@ -85,20 +86,20 @@ def _nearest_on_triangle(a: Array, b: Array, c: Array, v: Array) -> int:
         return 7
     other = np.empty(3)
     bits = _nearest_on_edge(a, b, v)
-    least = _dot(v, v)
+    least = dot(v, v)
     found = _nearest_on_edge(a, c, other)
-    if _dot(other, other) < least:
-        least, bits = _dot(other, other), (found & 1) | (found & 2) << 1
+    if dot(other, other) < least:
+        least, bits = dot(other, other), (found & 1) | (found & 2) << 1
         v[:] = other
     found = _nearest_on_edge(b, c, other)
-    if _dot(other, other) < least:
+    if dot(other, other) < least:
         bits = found << 1
         v[:] = other
     return bits
 
 
 @inlined
-def _nearest_on_simplex(simplex: Array, count: int, v: Array) -> int:
+def nearest_on_simplex(simplex: Array, count: int, v: Array) -> int:
     """Write the point nearest to the origin into ``v`` (3,) and keep the rows about it; return how many.
 
     Four of them: the origin lies within.
@@ -122,8 +123,8 @@ def _nearest_on_simplex(simplex: Array, count: int, v: Array) -> int:
             if beyond * -(a[0] * nx + a[1] * ny + a[2] * nz) > 0.0:
                 continue
             found = _nearest_on_triangle(a, simplex[j], simplex[k], other)
-            if _dot(other, other) < least:
-                least = _dot(other, other)
+            if dot(other, other) < least:
+                least = dot(other, other)
                 bits = (found & 1) << i | (found >> 1 & 1) << j | (found >> 2 & 1) << k
                 v[:] = other
     kept = 0
@@ -144,19 +145,19 @@ def _distance(points: Array, bodies: Array, b: int, offset: Array, v: Array) -> 
     simplex, before = np.empty((4, 3)), np.empty(3)
     _support(points, bodies, b, x, y, z, v, simplex, 0)
     v[:] = simplex[0]
-    count, square, gap = 1, _dot(v, v), math.inf
+    count, square, gap = 1, dot(v, v), math.inf
     for _ in range(_MOST_STEPS):
         if square < _CONTACT * _CONTACT:
             return -1.0
         _support(points, bodies, b, x, y, z, v, simplex, count)
-        gap = square - _dot(v, simplex[count])
+        gap = square - dot(v, simplex[count])
         if gap <= (_TIGHT if bodies[b, 3] == 0.0 else _TIGHT_ROUND) * square:
             break
         before[:] = v
-        count = _nearest_on_simplex(simplex, count + 1, v)
+        count = nearest_on_simplex(simplex, count + 1, v)
         if count == 4:
             return -1.0
-        now = _dot(v, v)
+        now = dot(v, v)
         if now >= square:
             v[:] = before
             break
