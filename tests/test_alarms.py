@@ -57,6 +57,26 @@ def test_lost_and_reordered_messages_follow_from_sequence_numbers(numbers, count
     assert event_counts(numbers) == counts
 
 
+def test_gap_after_a_loss_is_a_loss_at_once_until_a_message_comes_late():
+    link, wait = LinkStatistics(), LinkSettings.reordering_time
+    lost = []
+    for number, now in [
+        (0, 0.0),
+        (2, 0.0),
+        (3, wait),
+        (5, 1.01 * wait),
+        (8, 1.02 * wait),
+        (7, 1.03 * wait),
+        (10, 1.04 * wait),
+    ]:
+        link.message(number, now)
+        link.settle(now)
+        lost.append(link.lost)
+    assert lost == [0, 0, 0, 2, 3, 3, 3] and link.reordered == 1
+    link.settle(2.05 * wait)
+    assert link.lost == 4
+
+
 def write_records(folder, rows, starts):
     lines = [",".join(ALARM_COLUMNS), *(f"{time},vehicle 2,measurements_rejected,warning,position" for time in rows)]
     (folder / "alarms.csv").write_text("\n".join(lines) + "\n")

@@ -10,7 +10,7 @@ NUMBERS = 256
 REMEMBERED = 96
 """Numbers known as received; less than half of all, so that behind and ahead are not confused."""
 AHEAD = NUMBERS - REMEMBERED
-"""Numbers that are as far ahead as this, or farther, are behind."""
+"""Numbers that are farther ahead than this are behind."""
 _CYCLE = bytes(range(NUMBERS)) * 2
 
 
@@ -21,7 +21,7 @@ class LinkStatistics:
     """
 
     def __init__(self, reordering_time: float = LinkSettings.reordering_time) -> None:
-        """``reordering_time`` (s): a gap that is older is a loss."""
+        """``reordering_time`` (s): a gap that is older is a loss; from then on all are, until a message comes late."""
         self._reordering_time = reordering_time
         self.lost = 0
         self.reordered = 0
@@ -39,6 +39,8 @@ class LinkStatistics:
         self._newest: int | None = None
         self._seen: deque[int] = deque(maxlen=REMEMBERED)
         self._gaps: deque[tuple[float, set[int]]] = deque()
+        self._losing = False
+        """Whether what was missing last was lost."""
 
     def add_not_finite(self, component: int) -> None:
         """Count a measurement of ``component`` that is not finite."""
@@ -52,19 +54,20 @@ class LinkStatistics:
         newest = self._newest
         ahead = 1 if newest is None else (number - newest) % NUMBERS
         self.breaks += newest is None or ahead != 1
-        if 0 < ahead < AHEAD:
+        if 0 < ahead <= AHEAD:
             if newest is not None and ahead > 1:
                 missing = {(newest + k) % NUMBERS for k in range(1, ahead)}
                 self._gaps.append((now, missing))
             self._newest = number
             self._seen.append(number)
             return True
-        if any(number in missing for _, missing in self._gaps):
+        if number in self._seen:
+            self.duplicated += 1
+        else:
             self.reordered += 1
+            self._losing = False
             for _, missing in self._gaps:
                 missing.discard(number)
-        elif number in self._seen:
-            self.duplicated += 1
         return False
 
     def run(self, number: int, length: int, now: float) -> None:
@@ -83,6 +86,7 @@ class LinkStatistics:
             self._newest = (number + length - 1) % NUMBERS
 
     def settle(self, now: float) -> None:
-        """Count the gaps that are not filled by ``now`` (s) as losses."""
-        while self._gaps and now - self._gaps[0][0] > self._reordering_time:
-            self.lost += bool(self._gaps.popleft()[1])
+        """Count the gaps that are not filled by ``now`` (s) as losses; those after a loss at once."""
+        while self._gaps and (self._losing or now - self._gaps[0][0] > self._reordering_time):
+            self._losing = bool(self._gaps.popleft()[1])
+            self.lost += self._losing
