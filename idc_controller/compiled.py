@@ -13,6 +13,8 @@ from numba.core import config as numba_config
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, _CacheLocator
 from numba.misc.appdirs import AppDirs
 
+from idc_controller import uncompiled
+
 Function = TypeVar("Function", bound=Callable[..., Any])
 _CONFIG: Any = numba_config
 
@@ -83,6 +85,15 @@ class _KernelFiles(CompileResultCacheImpl):
 
 class _KernelCache(FunctionCache):
     _impl_class = _KernelFiles
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Return the kernel on disk for a signature, None if there is none."""
+        found = super().load_overload(sig, target_context)
+        if found is None and uncompiled.compile_all is not None:
+            compile_all, uncompiled.compile_all = uncompiled.compile_all, None
+            compile_all()
+            found = super().load_overload(sig, target_context)
+        return found
 
 
 @cache

@@ -100,6 +100,7 @@ COMMON = {
         "rotations",
         "rotations_float",
         "settings",
+        "uncompiled",
     )
 } | {"gcs.errors", "gcs.numerics"}
 """Modules beside the sub-packages that everything above them may import."""

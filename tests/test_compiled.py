@@ -1,6 +1,7 @@
 """Machine code on disk is used as long as all that it follows from is the same, and no longer."""
 
 import importlib
+import shutil
 import sys
 
 import pytest
@@ -72,6 +73,18 @@ def test_another_checkout_compiles_nothing(imported):
     other = imported("second", length_kernels="# Moved by a line.\n" + MODULES["length_kernels"])
     assert not is_compiled_anew(other)
     assert other(1.0) == 112.0
+
+
+def test_all_kernels_are_compiled_when_the_first_is_not_on_disk(imported, tmp_path, monkeypatch):
+    kept, aside = tmp_path / "cache", tmp_path / "aside"
+    imported()
+    kept.rename(aside)
+    monkeypatch.setattr(
+        "idc_controller.uncompiled.compile_all", lambda: shutil.copytree(aside, kept, dirs_exist_ok=True)
+    )
+    assert not is_compiled_anew(imported())
+    shutil.rmtree(kept)
+    assert is_compiled_anew(imported())  # once a process
 
 
 def test_modules_that_cannot_be_compiled_are_named_with_their_reasons(tmp_path, monkeypatch):

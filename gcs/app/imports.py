@@ -1,21 +1,44 @@
-"""Imports without collections of garbage."""
+"""Imports of what a flight needs: without collections of garbage, and with its kernels compiled beforehand."""
 
 import gc
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+
+from idc_controller import uncompiled
+
+_COMPILER = "vehicle_sim.app.compile_kernels"
+_INTERRUPTED = 130
 
 
 @contextmanager
 def importing() -> Iterator[None]:
     """Collect no garbage within; what is there at the end, later collections pass over, the program's last one, too.
 
-    The imports of a flight make 200,000 objects that stay, which every collection would look through.
+    The imports of a flight make 200,000 objects that stay, which every collection would look through. If kernels lack
+    machine code, all are compiled at once, by all cores, with a line of progress: the first time that takes minutes.
     """
     collects = gc.isenabled()
     gc.disable()
+    uncompiled.compile_all = _compile_all
     try:
         yield
     finally:
         gc.freeze()
         if collects:
             gc.enable()
+
+
+def _compile_all() -> None:
+    import signal
+    import subprocess
+
+    command = [sys.executable, "-m", _COMPILER]
+    with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL) as compiler:
+        try:
+            interrupted = compiler.wait() == _INTERRUPTED
+        except KeyboardInterrupt:
+            compiler.send_signal(signal.SIGINT)
+            raise
+    if interrupted:
+        raise KeyboardInterrupt
