@@ -102,7 +102,7 @@ COMMON = {
         "settings",
         "uncompiled",
     )
-} | {"gcs.errors", "gcs.numerics"}
+} | {"gcs.errors", "gcs.extras", "gcs.numerics"}
 """Modules beside the sub-packages that everything above them may import."""
 
 

@@ -15,6 +15,7 @@ from gcs.campaign.faults.plans import FaultFlights
 from gcs.campaign.faults.rates import interval, rates_of
 from gcs.campaign.faults.report import draw_matrix, report
 from gcs.campaign.process_pool import FlownProcess
+from gcs.campaign.tables import write_parquet
 from gcs.record.outcome import Outcome
 
 
@@ -38,8 +39,8 @@ def test_rates_have_wilson_intervals(tmp_path):
 def test_csv_and_parquet_agree(tmp_path):
     made = results(tmp_path, 2, 1)
     made.append(dataclasses.replace(made[0], clearance_min_m=0.25, contacts=None, outcome=Outcome.FAILED, level=2))
-    _, [table, parquet, rates, *_] = report("a test", made, tmp_path)
-    frame = pandas.read_parquet(parquet)
+    _, [table, rates, *_] = report("a test", made, tmp_path)
+    frame = pandas.read_parquet(write_parquet(tmp_path / "results.parquet", COLUMNS, made))
     assert tuple(frame.columns) == COLUMNS and len(frame) == 4
     assert frame["clearance_min_m"].isna().tolist() == [True, True, True, False]
     assert frame["seed"].dtype == "Int64" and frame["within_limits"].tolist() == [True, True, False, True]

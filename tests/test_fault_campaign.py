@@ -127,7 +127,7 @@ def test_campaign_passes_safe_landings_where_file_requires_no_more(tmp_path, flo
     monkeypatch.setattr(engine, "fly_process", fly)
     for require, passed in (("safe", 2), ("within limits", 0)):  # what is on record is judged anew
         text = CAMPAIGN.replace("seeds =", f'require = "{require}"\nseeds =')
-        assert main(["faults", str(campaign_file(tmp_path, text)), "--out", str(tmp_path / "out")]) == 1
+        assert main(["faults", str(campaign_file(tmp_path, text)), "--out", str(tmp_path / "out"), "--parquet"]) == 1
         assert f"{passed} of 6 flights" in capsys.readouterr().out
         frame = pandas.read_parquet(tmp_path / "out" / "results.parquet")
         assert frame["passed"].tolist() == [passed > 0] * 2 + [False] * 4
@@ -194,7 +194,7 @@ def test_campaign_killed_completes_without_flying_twice(severities, kills, tmp_p
     again = subprocess.run(command, capture_output=True, text=True, timeout=300)
     assert again.returncode == 0, again.stdout + again.stderr
     assert f"{count} of {count} flights within their limits" in again.stdout
-    frame = pandas.read_parquet(out / "results.parquet")
+    frame = pandas.read_csv(out / "results.csv", keep_default_na=False)
     assert frame["number"].tolist() == [*range(1, count + 1)] and (frame["notes"] == "").all()
     assert (frame["true_source"] == "link of all vehicles").all() and (frame["isolation"] == "right").all()
     reported += [line.partition(":")[0] for line in again.stdout.splitlines() if line.startswith("loss-")]

@@ -5,11 +5,18 @@ import sys
 import tomllib
 from pathlib import Path
 
+import pytest
 from test_architecture import imported, nodes_in
+
+from gcs.app.cli import main
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("gcs", "idc_controller", "vehicle_sim")
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+
+EXTRAS = PROJECT["optional-dependencies"]
+REQUIRED = [*PROJECT["dependencies"], *EXTRAS["parquet"], *EXTRAS["suites"]]
+DECLARED = [*REQUIRED, *EXTRAS["dev"][1:]]
 
 
 def normal(name):
@@ -28,16 +35,13 @@ def test_imported_packages_are_the_declared_dependencies():
     # The plugin is loaded by pytest alone; the others are parts of pydantic and numba.
     foreign -= {"pytest", "pydantic_core", "llvmlite"}
     # Each of them is named after its module, but for one.
-    assert {normal({"yaml": "PyYAML"}.get(module, module)) for module in foreign} == names(PROJECT["dependencies"])
+    assert {normal({"yaml": "PyYAML"}.get(module, module)) for module in foreign} == names(REQUIRED)
 
 
 def pins(name):
     """Versions by package of a list of pinned packages."""
     text = (ROOT / name).read_text(encoding="utf-8")
     return {normal(pin): version for pin, version in re.findall(r"^([\w.-]+)==([\w.]+)", text, re.MULTILINE)}
-
-
-DECLARED = PROJECT["dependencies"] + PROJECT["optional-dependencies"]["dev"]
 
 
 def test_all_dependencies_are_locked_with_hashes():
@@ -73,3 +77,26 @@ def test_notice_names_every_locked_package_with_a_licence():
 
 def test_package_holds_no_symbolic_links():
     assert not [path for package in PACKAGES for path in (ROOT / package).rglob("*") if path.is_symlink()]
+
+
+def test_development_has_all_extras():
+    assert EXTRAS["dev"][0] == "cooplift[parquet,suites]" and set(EXTRAS["pandas"]) <= set(EXTRAS["parquet"])
+    assert EXTRAS.keys() == {"dev", "pandas", "parquet", "suites"}
+
+
+@pytest.mark.parametrize(
+    "words, package, extra",
+    [
+        ("faults many_hops --parquet", "pyarrow", "parquet"),
+        ("courses --suite course.yaml", "yaml", "suites"),
+    ],
+)
+def test_command_that_needs_an_extra_names_it(words, package, extra, monkeypatch, tmp_path, capsys):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setitem(sys.modules, package, None)  # as if it were not installed
+    monkeypatch.delitem(sys.modules, "gcs.campaign.suites.yaml_file", raising=False)
+    monkeypatch.delitem(sys.modules, "gcs.campaign.suites.aerialist", raising=False)
+    assert main(words.split()) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1 and f"needs {package}" in error and f"pip install 'cooplift[{extra}]'" in error
+    assert not list(tmp_path.iterdir())

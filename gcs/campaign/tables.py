@@ -11,6 +11,7 @@ from rich.text import Text
 
 from gcs.campaign.result import COLUMN_TYPES, Result
 from gcs.errors import UnusableInput
+from gcs.extras import extra
 
 SHOWN_FAILURES = 20
 _DTYPES = {"int": "Int64", "float": "Float64", "bool": "boolean", "str": "string"}
@@ -26,6 +27,13 @@ def write_csv(path: Path, columns: Sequence[str], rows: Iterable[Mapping[str, An
     except OSError as error:
         raise UnusableInput(f"{path}: cannot be written: {error.strerror}") from None
     return path
+
+
+def check_parquet() -> None:
+    """Raise :class:`UnusableInput` where the packages that write Parquet are not installed."""
+    with extra("parquet", "--parquet"):
+        import pandas  # noqa: F401
+        import pyarrow.parquet  # noqa: F401
 
 
 def write_parquet(path: Path, columns: Sequence[str], results: Sequence[Result]) -> Path:

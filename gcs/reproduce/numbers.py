@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,9 +23,6 @@ from idc_controller.paper.avoidance import linear_acceleration
 from idc_controller.paper.plant import Plant, PlantState
 from idc_controller.paper.state_space import Layout
 from idc_controller.parameters import SystemParameters, polygon_attachments
-
-if TYPE_CHECKING:
-    import pandas
 
 Array = NDArray[np.float64]
 
@@ -229,10 +226,8 @@ def _worst_by_sigma(noise: dict[str, Any]) -> dict[str, dict[str, dict[str, Any]
     return worst
 
 
-def matrices() -> dict[str, pandas.DataFrame]:
-    """Return the matrices of the paper's external file, with labels of rows and columns, at hover and 20 Hz."""
-    import pandas  # takes long to import
-
+def matrices() -> dict[str, tuple[Array, Sequence[str], Sequence[str]]]:
+    """Return the matrices of the paper's external file, with labels of rows and of columns, at hover and 20 Hz."""
     p = configuration().parameters()
     full, small, inputs = Layout.full(4).names(), Layout.minimal(4).names(), state_space.input_names(4)
     continuous, continuous_small = state_space.linearised(p), state_space.minimal(p)
@@ -240,10 +235,9 @@ def matrices() -> dict[str, pandas.DataFrame]:
         *state_space.discretised(*continuous, PERIOD),
         *state_space.discretised(*continuous_small, PERIOD),
     )
-    table = pandas.DataFrame
     return {
-        "A_continuous": table(continuous[0], full, full), "B_continuous": table(continuous[1], full, inputs),
-        "A": table(A, full, full), "B": table(B, full, inputs),
-        "A_minimal": table(A_small, small, small), "B_minimal": table(B_small, small, inputs),
-        "minimal_to_full": table(state_space.embedding(p), full, small),
+        "A_continuous": (continuous[0], full, full), "B_continuous": (continuous[1], full, inputs),
+        "A": (A, full, full), "B": (B, full, inputs),
+        "A_minimal": (A_small, small, small), "B_minimal": (B_small, small, inputs),
+        "minimal_to_full": (state_space.embedding(p), full, small),
     }  # fmt: skip

@@ -20,7 +20,7 @@ Flies a campaign of faults: faults x severities x missions x seeds, in parallel,
   gcs faults missions/telemetry_faults.toml        every flight of the campaign, on all cores
 
 Every flight is a mission file that `gcs fly` repeats. A campaign that was interrupted resumes when started again; one
-whose file has grown flies what is new. Writes results.csv and results.parquet (a row a flight), rates.csv, matrix.png.
+whose file has grown flies what is new. Writes results.csv (a row a flight), rates.csv, matrix.png.
 Exit status: 0 all passed (by default: within their limits); 1 not all; 2 unusable input; 3 results cannot be written;
 130 interrupted, results kept.
 """
@@ -33,6 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="campaign file (docs/faults.md), or a name of gcs missions",
     )  # fmt: skip
     parser.add_argument("--kinds", action="store_true", help="list the kinds of fault with their parameters")
+    parser.add_argument("--parquet", action="store_true", help="write results.parquet, too (extra: cooplift[parquet])")
     add_campaign_arguments(parser, "runs/<name of the campaign>")
 
 
@@ -48,4 +49,5 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.campaign is None:
         raise UnusableInput("gcs faults: no campaign file: name one, or list the kinds of fault with --kinds")
     file = read_campaign(arguments.campaign)
-    return run_campaign(FaultFlights(file), arguments.out or Path("runs") / plain(file.name), arguments)
+    flights = FaultFlights(file, parquet=arguments.parquet)
+    return run_campaign(flights, arguments.out or Path("runs") / plain(file.name), arguments)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import csv
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -95,8 +96,11 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _write_matrices(folder: Path) -> None:
     folder.mkdir()
-    for name, matrix in matrices().items():
-        matrix.to_csv(folder / f"{name}.csv", lineterminator="\r\n")
+    for name, (matrix, rows, columns) in matrices().items():
+        with (folder / f"{name}.csv").open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            writer.writerow(["", *columns])
+            writer.writerows([row, *values] for row, values in zip(rows, matrix.tolist(), strict=True))
 
 
 def _draw(chosen: Plan, results: Results, found: dict[str, Any], out: Path, done: Callable[[str], None]) -> list[str]:

@@ -14,6 +14,7 @@ from gcs.campaign.faults.detection_table import Detections, detections
 from gcs.campaign.faults.judgement import COLUMNS, WITHIN_LIMITS, judge, meets
 from gcs.campaign.folder import digest, plain
 from gcs.campaign.result import Result
+from gcs.campaign.tables import check_parquet, write_parquet
 from gcs.errors import UnusableInput
 
 MAX_FLIGHTS = 1_000_000
@@ -33,9 +34,11 @@ class FaultFlights(PlanGenerator):
         ("error", "position_rmse_m", "m"),
     )
 
-    def __init__(self, file: CampaignFile) -> None:
-        """Raises :class:`UnusableInput` for too many flights."""
-        self.file = file
+    def __init__(self, file: CampaignFile, *, parquet: bool = False) -> None:
+        """``parquet``: results in this form, too. Raises :class:`UnusableInput` for too many flights, or without it."""
+        if parquet:
+            check_parquet()
+        self.file, self._parquet = file, parquet
         count = len(file.cases) * len(file.missions) * len(file.seeds)
         if count > MAX_FLIGHTS:
             raise UnusableInput(f"{count} flights are more than {MAX_FLIGHTS}: list fewer faults, missions or seeds")
@@ -74,10 +77,13 @@ class FaultFlights(PlanGenerator):
         return meets(self.file.require, result)
 
     def report(self, results: Sequence[Result], out: Path) -> tuple[list[RenderableType], list[Path]]:
-        """Write ``results.csv``, ``results.parquet``, ``rates.csv`` and the matrix."""
+        """Write ``results.csv`` (and ``results.parquet``), ``rates.csv`` and the matrix."""
         from gcs.campaign.faults.report import report  # matplotlib takes long to import
 
-        return report(self.file.name, results, out, self.detections(results))
+        parts, files = report(self.file.name, results, out, self.detections(results))
+        if self._parquet:
+            files.append(write_parquet(out / "results.parquet", COLUMNS, results))
+        return parts, files
 
     def detections(self, results: Sequence[Result]) -> list[Detections]:
         """Return the rows of the table of detection."""

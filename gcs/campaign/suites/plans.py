@@ -34,9 +34,7 @@ def read_suite(files: Sequence[Path], config: Path | None, speed: float, seed: i
     Raises:
         UnusableFile: with every reason found in all files.
     """
-    # Neither is needed where random scenarios are flown.
-    from gcs.campaign.suites.aerialist import read_aerialist
-    from gcs.campaign.suites.course_list import read_list
+    from gcs.campaign.suites.course_list import read_list  # not needed where random scenarios are flown
 
     system = read_system(config)
     speed = min(speed, system.motion.speed_max)
@@ -45,6 +43,8 @@ def read_suite(files: Sequence[Path], config: Path | None, speed: float, seed: i
     for path in files:
         try:
             if path.suffix.lower() in AERIALIST:
+                from gcs.campaign.suites.aerialist import read_aerialist  # an extra
+
                 courses.append(read_aerialist(path, config, speed, seed))
             elif path.suffix.lower() in LISTS:
                 courses += read_list(path, system, speed, seed)

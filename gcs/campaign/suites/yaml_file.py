@@ -5,10 +5,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from gcs.config.text_file import read_text
 from gcs.config.validate import Key, UnusableFile, dotted
+from gcs.extras import extra
+
+with extra("suites", "tests in YAML"):
+    import yaml
 
 _DEPTH_MAX = 32
 """Levels of a file that are read; a test has five."""
