@@ -15,6 +15,7 @@ sys.path.insert(0, str(BENCHMARKS))
 
 from benchmark import add_to_history, exponents, memory, ratios  # noqa: E402
 from check import is_dearer  # noqa: E402
+from growth import calls_of_a_control_step, size  # noqa: E402
 from measure import FLIGHTS, ROOT, write_missions  # noqa: E402
 
 
@@ -77,6 +78,24 @@ def test_benchmark_gives_speed_relative_to_the_anchor(measured, tmp_path):
 def test_benchmark_fits_exponents_and_memory(measured, tmp_path):
     assert exponents(tmp_path, 5.0) == {"vehicles_exponent": 1.0, "obstacles_exponent": 1.0}
     assert memory(tmp_path, 10.0) == {"memory_minutes": 10.0, "ground_mb_per_hour": 6.0, "world_mb_per_hour": 0.0}
+
+
+def test_size_is_that_of_a_tree(tmp_path):
+    for name, text in {
+        "gcs/__init__.py": '"""The ground."""\n\n__all__ = ["fly", "Flight"]\n', "idc_controller/__init__.py": "",
+        "vehicle_sim/world.py": "a = 1\n", "tests/test_a.py": "assert 1\n" * 7,
+        "docs/settings.md": "| key | default |\n|---|---|\n| `a` | 1 |\n| `b` | 2 |\n",
+    }.items():  # fmt: skip
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(text)
+    found = size(tmp_path)
+    assert found == {"product_lines": 4, "test_lines": 7, "modules": 3, "settings": 2, "public_names": 2}
+
+
+@pytest.mark.slow
+def test_calls_of_a_control_step_are_the_same_at_each_run():
+    _, second, third = (calls_of_a_control_step("hop", 1.0, 2.0) for _ in range(3))  # the first imports
+    assert second == third > 100
 
 
 def test_history_keeps_earlier_rows_when_a_column_is_new(tmp_path, monkeypatch):

@@ -6,7 +6,7 @@
 
 CPU time of both programs per simulated second, from take-off to the end of the flight. A ratio of 1 means as fast as
 the anchor (`anchor.py`; ANCHOR_PYTHON names a Python with gym-pybullet-drones), 2 twice as fast. Adds a row to
-`history.csv`.
+`history.csv`, with the size of the project and the number of calls of a control step (`growth.py`).
 """
 
 import argparse
@@ -21,6 +21,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
+from growth import calls_of_a_control_step, size
 from measure import FLIGHTS, HERE, ROOT, anchor, fly, mission_text, obstacles, use_one_core, write, write_missions
 from rich.console import Console
 from rich.table import Table
@@ -46,6 +47,7 @@ def main():
         row |= ratios(folder, rounds, duration)
         row |= exponents(folder, 5.0)
         row |= memory(folder, memory_minutes)
+        row |= grown()
     if not options.quick:
         add_to_history(row)
 
@@ -137,6 +139,22 @@ def memory(folder, minutes):
     return row
 
 
+def grown():
+    """Return the size of the project and the calls of a control step; print them beside those of the last row."""
+    row = {**size(ROOT), "step_calls": calls_of_a_control_step()}
+    last = history()[-1] if HISTORY.exists() else {}
+    table = Table("", "now", f"at {last.get('commit', '-')}", title="size of the project")
+    for name, value in row.items():
+        table.add_row(name, str(value), last.get(name, ""))
+    CONSOLE.print(table)
+    return row
+
+
+def history():
+    with HISTORY.open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
 def spread(values):
     return float(np.median(values)), min(values), max(values)
 
@@ -171,10 +189,7 @@ def machine():
 
 def add_to_history(row):
     """Add a row to the history; a column that is new is empty in earlier rows."""
-    rows = []
-    if HISTORY.exists():
-        with HISTORY.open(newline="") as file:
-            rows = list(csv.DictReader(file))
+    rows = history() if HISTORY.exists() else []
     columns = list(dict.fromkeys([*(name for earlier in rows for name in earlier), *row]))
     with HISTORY.open("w", newline="") as file:
         writer = csv.DictWriter(file, columns, restval="", lineterminator="\n")
