@@ -67,6 +67,22 @@ def test_monitor_finds_noise_of_one_sensor():
     assert 4.0 < found[KEYS[2], Finding.NOISY] < 6.0
 
 
+@pytest.mark.parametrize("channel", [slice(0, 3), slice(3, 6)])
+def test_noise_of_one_channel_is_not_diluted_by_the_other(channel):
+    """The mean square of all rows, 1.8, would take 1.5 s on average to reach its limit of 1.6."""
+    factor = np.ones(6)
+    factor[channel] = 1.6
+    random, delays = np.random.default_rng(7), []
+    for _ in range(40):
+        monitor = InnovationMonitor(GATE)
+        for k in range(250):
+            monitor.learn(0.04 * k, KEYS[:1], SIZES[:1], random.standard_normal(6) * (factor if k >= 50 else 1.0), ())
+            if monitor.findings(0.04 * k):
+                break
+        delays.append(0.04 * (k - 49))
+    assert min(delays) > 0.0 and np.mean(delays) < 1.2
+
+
 def test_monitor_allows_attitudes_larger_innovations():
     assert findings(300, changed=lambda k, i, nu: nu * (1.5 if i == 3 else 1.0)) == {}
     assert (KEYS[3], Finding.NOISY) in findings(300, changed=lambda k, i, nu: nu * (3.0 if i == 3 else 1.0))
@@ -101,7 +117,7 @@ def test_monitor_counts_replayed_moment_once():
 def test_compiled_running_means_equal_plain_ones():
     rng, sizes, share = np.random.default_rng(6), np.array([6, 4, 3]), 0.04
     gates = lower_quantile(GATE, np.arange(7))
-    mean, square, last = np.zeros((3, 6)), np.ones(3), np.full(3, -np.inf)
+    mean, square, last = np.zeros((3, 6)), np.ones((3, 3)), np.full(3, -np.inf)
     plain_mean, plain_square = mean.copy(), square.copy()
     for k in range(40):
         innovations = [rng.choice([1.0, 30.0, np.nan, np.inf], size, p=[0.7, 0.1, 0.1, 0.1]) * rng.standard_normal(size)
@@ -113,8 +129,12 @@ def test_compiled_running_means_equal_plain_ones():
         for i, (size, innovation) in enumerate(zip(sizes, innovations, strict=True)):
             if new[i]:
                 bounded = np.nan_to_num(np.clip(innovation, -np.sqrt(gates[size]), np.sqrt(gates[size])))
-                plain_mean[i, :size] += share * (bounded - plain_mean[i, :size])
-                plain_square[i] += share * (min(bounded @ bounded, gates[size]) / size - plain_square[i])
+                channels = np.split(bounded, [size // 2] if size > 3 else [size])
+                for part, rows in enumerate([bounded, *channels]):
+                    limited = min(rows @ rows, gates[len(channels[0]) if part else size]) / max(len(rows), 1)
+                    plain_square[i, part] += share * (limited - plain_square[i, part])
+                for half, rows in zip(np.split(plain_mean[i], 2), channels, strict=True):
+                    half[: len(rows)] += share * (rows - half[: len(rows)])
     assert mean == pytest.approx(plain_mean, rel=1e-12, abs=1e-15)
     assert square == pytest.approx(plain_square, rel=1e-12)
 
@@ -122,11 +142,12 @@ def test_compiled_running_means_equal_plain_ones():
 def test_compiled_limits_equal_those_of_whole_arrays():
     rng = np.random.default_rng(8)
     for factor in (1.0, 100.0):
-        mean, square = rng.normal(size=(12, 6)), rng.uniform(size=12)
-        mean_limits, square_limits = factor * rng.uniform(0.0, 12.0, 12), factor * rng.uniform(size=12)
+        mean, square = rng.normal(size=(12, 6)), rng.uniform(size=(12, 3))
+        mean_limits, square_limits = factor * rng.uniform(1.0, 18.0, (12, 3)), factor * rng.uniform(0.1, 2.0, (12, 3))
         found, biased, noisy = exceeded(mean, square, mean_limits, square_limits)
-        np.testing.assert_array_equal(biased, (mean**2).sum(axis=1) > mean_limits)
-        np.testing.assert_array_equal(noisy, square > square_limits)
+        sums = np.column_stack([(rows**2).sum(axis=1) for rows in (mean, mean[:, :3], mean[:, 3:])])
+        np.testing.assert_array_equal(biased, (sums > mean_limits).any(axis=1))
+        np.testing.assert_array_equal(noisy, (square > square_limits).any(axis=1))
         assert found == bool(biased.any() or noisy.any()) == (factor == 1.0)
 
 

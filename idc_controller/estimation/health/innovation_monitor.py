@@ -1,7 +1,8 @@
 """Monitoring of each sensor's innovations over time: biases far below the gate, noise, and repeated rejections.
 
 Innovations of a consistent filter, normalised by their covariance, are independent and normal with variance 1. Running
-means over about a second show what no single sample does.
+means over about a second show what no single sample does. A fault of one channel, a pose or its motion, is diluted by
+the other one: whole samples and each of their channels are tested.
 """
 
 from collections import defaultdict, deque
@@ -31,25 +32,25 @@ class _Statistics:
     """Running means of S sensors; samples with another number of rows are of a sensor of their own."""
 
     mean: Array
-    """Of the innovations (S, 6)."""
+    """Of the innovations, each channel in a half (S, 6)."""
     square: Array
-    """Of their mean squares (S,)."""
+    """Of the mean squares of all rows and of each channel (S, 3)."""
     last: Array
     """Times of the last samples (S,) (s)."""
     of_uav_attitude: Mask
     """Sensors (S,) whose limits are wider."""
     mean_limits: Array
-    """(S,)"""
+    """(S, 3)"""
     square_limits: Array
-    """(S,)"""
+    """(S, 3)"""
 
-    def append(self, of_uav_attitude: bool, mean_limit: float, square_limit: float) -> None:
+    def append(self, of_uav_attitude: bool, mean_limits: Array, square_limits: Array) -> None:
         """Append a sensor without samples."""
-        self.mean = np.vstack([self.mean, np.zeros(6)])
-        self.square, self.last = np.append(self.square, 1.0), np.append(self.last, -np.inf)
+        self.mean, self.square = np.vstack([self.mean, np.zeros(6)]), np.vstack([self.square, np.ones(3)])
+        self.last = np.append(self.last, -np.inf)
         self.of_uav_attitude = np.append(self.of_uav_attitude, of_uav_attitude)
-        self.mean_limits = np.append(self.mean_limits, mean_limit)
-        self.square_limits = np.append(self.square_limits, square_limit)
+        self.mean_limits = np.vstack([self.mean_limits, mean_limits])
+        self.square_limits = np.vstack([self.square_limits, square_limits])
 
 
 class InnovationMonitor:
@@ -62,18 +63,19 @@ class InnovationMonitor:
         self._settings = s = settings
         self._sensors: dict[tuple[SensorKey, int], int] = {}
         """Index of each sensor and number of rows: some samples have only one of its channels."""
-        none = np.zeros(0)
-        self._statistics = _Statistics(np.zeros((0, 6)), none, none, np.zeros(0, dtype=bool), none, none)
+        none = np.zeros((0, 3))
+        self._statistics = _Statistics(np.zeros((0, 6)), none, np.zeros(0), np.zeros(0, dtype=bool), none, none)
         self._rejections: dict[tuple[SensorKey, int], deque[float]] = {}
         """Times of the rejections of late (s)."""
         sizes = np.arange(7)
-        kept = (2.0 - s.share) / s.share
-        # Variance of a running mean is 1 / kept; its square sum times kept is chi-squared with ``size`` degrees of
-        # freedom, and the running mean square like one of kept * size of them.
         self._gates = lower_quantile(gate_probability, sizes)
-        freedom = kept * sizes[1:]
-        self._mean_limits = np.append(0.0, upper_quantile(s.false_alarm, sizes[1:]) / kept)
-        self._square_limits = np.append(0.0, upper_quantile(s.false_alarm, freedom) / freedom)
+        # Rows of a sample of each size, and of its two channels; of a single channel the first is the sample.
+        rows = np.array([(n, n // 2, n // 2) if n > 3 else (n, n, 1) for n in np.maximum(sizes, 1)])
+        kept = (2.0 - s.share) / s.share
+        # Variance of a running mean is 1 / kept; its square sum times kept is chi-squared with as many degrees of
+        # freedom as rows, and the running mean square like one of kept * rows of them.
+        self._mean_limits = upper_quantile(s.false_alarm / 3.0, rows) / kept
+        self._square_limits = upper_quantile(s.false_alarm / 3.0, kept * rows) / (kept * rows)
 
     def learn(
         self, time: float, keys: Sequence[SensorKey], sizes: Indices, normalised: Array, rejected: Sequence[SensorKey]

@@ -8,7 +8,7 @@ from idc_controller.compiled import kernel
 
 @kernel(
     "boolean[::1](float64, int64[::1], int64[::1], float64[::1], float64[::1], float64, "
-    "float64[:, ::1], float64[::1], float64[::1])"
+    "float64[:, ::1], float64[:, ::1], float64[::1])"
 )
 def running_means(
     time: float, which: Indices, sizes: Indices, innovations: Array, gates: Array, share: float,
@@ -23,47 +23,55 @@ def running_means(
         innovations: normalised, one measurement after the other (m,); nan counts as 0.
         gates: largest squares that count, by the number of rows (7,).
         share: of one sample in the running means.
-        mean: running means of the innovations (S, 6).
-        square: running means of their mean squares (S,).
+        mean: running means of the innovations, each channel in a half (S, 6).
+        square: running means of the mean squares of all rows and of each channel (S, 3).
         last: time of the last measurement of each sensor (S,) (s).
     """
     new = np.empty(len(which), np.bool_)
     first = 0
     for j in range(len(which)):
         at, size = which[j], sizes[j]
-        gate = gates[size]
-        bound = np.sqrt(gate)
+        bound = np.sqrt(gates[size])
         new[j] = time > last[at]
         if new[j]:
             last[at] = time
-            total = 0.0
+            rows = size // 2 if size > 3 else size
+            squares = np.zeros(3)
             for c in range(size):
                 value = min(max(innovations[first + c], -bound), bound)
                 if value != value:
                     value = 0.0
-                mean[at, c] += share * (value - mean[at, c])
-                total += value * value
-            square[at] += share * (min(total, gate) / size - square[at])
+                part = c // rows
+                mean[at, 3 * part + c % rows] += share * (value - mean[at, 3 * part + c % rows])
+                squares[0] += value * value
+                squares[1 + part] += value * value
+            square[at, 0] += share * (min(squares[0], gates[size]) / size - square[at, 0])
+            for part in range(1, 3):
+                square[at, part] += share * (min(squares[part], gates[rows]) / rows - square[at, part])
         first += size
     return new
 
 
-@kernel("Tuple((boolean, boolean[::1], boolean[::1]))(float64[:, ::1], float64[::1], float64[::1], float64[::1])")
+@kernel(
+    "Tuple((boolean, boolean[::1], boolean[::1]))(float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1])"
+)
 def exceeded(mean: Array, square: Array, mean_limits: Array, square_limits: Array) -> tuple[bool, Mask, Mask]:
     """Return whether a running mean is too large, and of which of S sensors the innovation (S,) and the square (S,).
 
     Args:
-        mean: running means of the innovations (S, 6).
-        square: running means of their mean squares (S,).
-        mean_limits: largest square sums of ``mean`` (S,).
-        square_limits: largest values of ``square`` (S,).
+        mean, square: running means of :func:`running_means`.
+        mean_limits: largest square sums of ``mean``, of all rows and of each channel (S, 3).
+        square_limits: largest values of ``square`` (S, 3).
     """
-    biased, noisy, found = np.empty(len(square), np.bool_), np.empty(len(square), np.bool_), False
+    biased, noisy, found = np.zeros(len(square), np.bool_), np.zeros(len(square), np.bool_), False
     for at in range(len(square)):
-        total = 0.0
-        for c in range(mean.shape[1]):
-            total += mean[at, c] * mean[at, c]
-        biased[at], noisy[at] = total > mean_limits[at], square[at] > square_limits[at]
+        totals = np.zeros(3)
+        for c in range(6):
+            totals[0] += mean[at, c] * mean[at, c]
+            totals[1 + c // 3] += mean[at, c] * mean[at, c]
+        for part in range(3):
+            biased[at] |= totals[part] > mean_limits[at, part]
+            noisy[at] |= square[at, part] > square_limits[at, part]
         found = found or biased[at] or noisy[at]
     return found, biased, noisy
 
