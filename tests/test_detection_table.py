@@ -184,10 +184,16 @@ def test_rows_of_detection_by_fault():
     assert [row.fault for row in found] == ["bias", "drift", "stuck"]
     row = found[0]
     assert (row.flights, row.right, row.ambiguous, row.wrong, row.none) == (3, 1, 1, 1, 0)
-    assert (row.median_s, row.worst_s) == (0.5, 0.876)
+    assert (row.median_s, row.worst_s, row.latest_s) == (0.5, 0.876, 0.876)
     assert row.first_alarms == "innovation_bias, stuck_sensor"
     assert row.named_wrongly == "navigation of payload; clock of vehicle 1"
-    assert (found[1].none, found[1].median_s, found[1].worst_s) == (1, None, None)
+    assert (found[1].none, found[1].median_s, found[1].worst_s, found[1].latest_s) == (1, None, None, None)
+
+
+def test_rows_of_several_seeds_have_the_figures_of_the_middle_one():
+    delays = {1: (0.1, 0.3, 0.5), 2: (0.2, 0.4, 2.0), 3: (0.9, 1.0, 1.1)}
+    [row] = detections([], [flown("loss", "", delay, seed=seed) for seed in delays for delay in delays[seed]])
+    assert (row.flights, row.median_s, row.worst_s, row.latest_s) == (9, 0.4, 1.1, 2.0)
 
 
 def test_rows_of_detection_by_severity_and_the_rest_by_fault():
@@ -225,9 +231,10 @@ def test_seconds_have_two_digits():
 def test_detection_table_in_markdown():
     text = detections_markdown(detections([], FLOWN[2:5]))
     assert text.splitlines()[2:] == [
-        "| bias | clock of vehicle 2 | 1 |  | 1 |  |  | `innovation_bias` | 0.13 s | 0.13 s | clock of vehicle 1 |",
-        "| drift | clock of vehicle 2 | 1 |  |  |  | 1 |  |  |  |  |",
-        "| stuck | clock of vehicle 2 | 1 | 1 |  |  |  | `stuck_sensor` | 0.12 s | 0.12 s |  |",
+        "| bias | clock of vehicle 2 | 1 |  | 1 |  |  | `innovation_bias` | 0.13 s | 0.13 s | 0.13 s "
+        "| clock of vehicle 1 |",
+        "| drift | clock of vehicle 2 | 1 |  |  |  | 1 |  |  |  |  |  |",
+        "| stuck | clock of vehicle 2 | 1 | 1 |  |  |  | `stuck_sensor` | 0.12 s | 0.12 s | 0.12 s |  |",
     ]
 
 
@@ -240,6 +247,15 @@ def test_rows_of_a_campaign_name_its_faults(tmp_path):
         read_campaign(campaign_file(tmp_path, CAMPAIGN + row.replace("0.3", "0.2")))
     with pytest.raises(UnusableFile, match=r"'slow' appears 2 times"):
         read_campaign(campaign_file(tmp_path, CAMPAIGN + row + row))
+
+
+def test_seeds_of_a_row_are_in_place_of_the_campaigns(tmp_path):
+    row = '[[row]]\nname = "some"\nfaults = ["slow"]\nseeds = [5, 6, 9]\n'
+    plans = [*FaultFlights(read_campaign(campaign_file(tmp_path, CAMPAIGN + row))).plans(tmp_path)]
+    seeds = {name: {plan.labels["seed"] for plan in plans if plan.labels["fault"] == name} for name in ("slow", "loss")}
+    assert seeds == {"slow": {5, 6, 9}, "loss": {3, 7}}
+    with pytest.raises(UnusableFile, match=r"row\[1\].seeds: 5 appears 2 times"):
+        read_campaign(campaign_file(tmp_path, CAMPAIGN + row.replace("6", "5")))
 
 
 @pytest.mark.parametrize("events", [0, 1, 7])

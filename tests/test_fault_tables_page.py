@@ -180,7 +180,7 @@ def test_command_writes_both_tables_and_flies_what_is_missing(tmp_path, flown, m
     assert code == 0 and len(flown) == 12
     assert page.startswith("# Faults\n") and page.endswith("The end.\n") and "old" not in page
     assert page.count("page.md campaign.toml clean.toml` at commit 0123abc:\n\n| ") == 2
-    assert "| all of them | link of all vehicles | 6 | 6 |  |  |  | `messages_lost` | 10 s | 10 s |  |" in page
+    assert "| all of them | link of all vehicles | 6 | 6 |  |  |  | `messages_lost` | 10 s | 10 s | 10 s |  |" in page
     assert "| forest | 2 | 0.020 | 2 | 2 | 100.0 | 314.8 | 2 innovation_bias |" in page
     assert "| short_figure, until the fault | 6 | 0.013 | 0 | 0 | 0.0 | 224.7 |  |" in page  # 8 s each
     assert "| all | 12 | 0.073 | 2 | 2 | 27.3 | 85.9 | 2 innovation_bias |" in page

@@ -1,7 +1,7 @@
 """The campaign file: which faults, how severe, in which missions, with which seeds. Read strictly."""
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
@@ -10,8 +10,8 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, TypeAdapter
 
 from gcs.campaign.faults.base_mission import BaseMission, read_base
-from gcs.campaign.faults.cases import CLEAN, Case, SweptFault, label
-from gcs.campaign.faults.detection_table import DetectionRow, case_name
+from gcs.campaign.faults.cases import CLEAN, Case, Seeds, SweptFault, label
+from gcs.campaign.faults.detection_table import DetectionRow, case_name, row_of
 from gcs.campaign.faults.drawn_mission import DrawnMission, ScenarioTable
 from gcs.campaign.scenarios.field import FIELD
 from gcs.config import UnusableFile
@@ -21,7 +21,6 @@ from gcs.mission.faults import fault_problems, read_fault
 from gcs.mission.model import Limits, Name
 from gcs.mission.own import named
 
-Seed = Annotated[int, Field(ge=0, lt=2**63)]
 Severity = Annotated[dict[str, Annotated[tuple[Any, ...], Field(min_length=1, max_length=1000)]], Field(min_length=1)]
 _OWN_KEYS = ("name", "severity", "start_between")
 
@@ -38,7 +37,7 @@ class CampaignTable:
 
     name: Name
     missions: Annotated[tuple[Annotated[str, Field(min_length=1)], ...], Field(min_length=1, max_length=1000)]
-    seeds: Annotated[tuple[Seed, ...], Field(min_length=1, max_length=10_000)] | None = None
+    seeds: Seeds | None = None
     first_seed: Annotated[int, Field(ge=0, lt=2**62)] | None = None
     seed_count: Annotated[int, Field(ge=1, le=10_000)] | None = None
     clean: bool = False
@@ -80,6 +79,10 @@ class CampaignFile:
     controller: str
     require: str
     rows: tuple[DetectionRow, ...]
+
+    def seeds_of(self, case: Case) -> tuple[int, ...]:
+        """Return the seeds of a case: those of its row, or the campaign's."""
+        return row_of(self.rows, case.name, case.severity).seeds or self.seeds
 
 
 @cache
@@ -140,13 +143,17 @@ def _disagreements(file: TomlFile, tables: CampaignTables) -> Iterator[str]:
     elif table.seed_count is None:
         yield file.problem(("campaign",), "needs either seeds or seed_count")
     for key in ("seeds", "missions"):
-        for value, number in Counter(getattr(table, key) or ()).items():
-            if number > 1:
-                yield file.problem(("campaign", key), f"{value} appears {number} times")
+        yield from _repeated(file, ("campaign", key), getattr(table, key))
     if not tables.fault and not table.clean:
         yield file.problem(("campaign",), "has no fault: needs [[fault]], or clean = true")
     if table.clean and any(fault.name == CLEAN for fault in tables.fault):
         yield file.problem(("campaign", "clean"), f"a fault is named '{CLEAN}', as the flights without are")
+
+
+def _repeated(file: TomlFile, key: Key, values: Sequence[Any] | None) -> Iterator[str]:
+    for value, number in Counter(values or ()).items():
+        if number > 1:
+            yield file.problem(key, f"{value} appears {number} times")
 
 
 def _missions(file: TomlFile, tables: CampaignTables) -> tuple[dict[str, BaseMission], list[str]]:
@@ -185,10 +192,11 @@ def _fault_problems(file: TomlFile, cases: tuple[Case, ...], base: BaseMission) 
 
 
 def _row_problems(file: TomlFile, rows: tuple[DetectionRow, ...], cases: tuple[Case, ...]) -> Iterator[str]:
-    """Names in the rows of the table of detection that are of no case, or appear twice."""
+    """Names in the rows of the table of detection that are of no case, or appear twice, and seeds that do."""
     names = {name for case in cases for name in (case.name, case_name(case.name, case.severity))}
     count = Counter(name for row in rows for name in row.faults)
     for i, row in enumerate(rows):
+        yield from _repeated(file, ("row", i, "seeds"), row.seeds)
         for j, name in enumerate(row.faults):
             if name not in names or count[name] > 1:
                 reason = f"'{name}' appears {count[name]} times" if name in names else f"there is no fault '{name}'"

@@ -3,12 +3,16 @@
 import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
+from pydantic import Field
 
 from gcs.campaign.faults.sources import FaultSource, sources_of
 from gcs.mission.model import Fault
+
+Seeds = Annotated[tuple[Annotated[int, Field(ge=0, lt=2**63)], ...], Field(min_length=1, max_length=10_000)]
+"""Seeds of the flights of a case."""
 
 CLEAN = "no fault"
 """The name of the case without one."""

@@ -9,6 +9,7 @@ from typing import Annotated
 
 from pydantic import Field
 
+from gcs.campaign.faults.cases import Seeds
 from gcs.campaign.faults.sources import ISOLATIONS, NONE
 from gcs.campaign.result import Result
 from gcs.campaign.tables import write_csv
@@ -21,18 +22,24 @@ from gcs.mission.model import Name
 class DetectionRow:
     """``[[row]]`` of a campaign: the cases of a row, and the limits (s) of their delays; with one, all are detected.
 
-    A case is named by its fault, which stands for all of its severities, or as ``fault: severity``.
+    A case is named by its fault, which stands for all of its severities, or as ``fault: severity``. ``seeds``: of its
+    flights, in place of the campaign's.
     """
 
     name: Name
     faults: Annotated[tuple[Name, ...], Field(min_length=1, max_length=1000)]
     median: Positive | None = None
     worst: Positive | None = None
+    seeds: Seeds | None = None
 
 
 @dataclass(frozen=True)
 class Detections:
-    """The flights of a row. Delays (s) are from the start of the fault to the first alarm."""
+    """The flights of a row. Delays (s) are from the start of the fault to the first alarm.
+
+    The delay of a random fault is a draw: median and worst are those of the middle seed, each by itself, the medians of
+    what every seed has.
+    """
 
     fault: str
     true_source: str
@@ -45,6 +52,8 @@ class Detections:
     first_alarms: str
     median_s: float | None
     worst_s: float | None
+    latest_s: float | None
+    """Of all seeds."""
     median_limit_s: float | None
     worst_limit_s: float | None
 
@@ -64,21 +73,27 @@ def case_name(fault: str, severity: str) -> str:
     return f"{fault}: {severity}" if severity else fault
 
 
+def row_of(rows: Sequence[DetectionRow], fault: str, severity: str) -> DetectionRow:
+    """Return the row of a case; each fault that no row names, at the severities that none does, is its own."""
+    named = (row for name in (case_name(fault, severity), fault) for row in rows if name in row.faults)
+    return next(named, DetectionRow(fault, (fault,)))
+
+
 def detections(rows: Sequence[DetectionRow], results: Sequence[Result]) -> list[Detections]:
-    """Return the rows that were flown; each fault that no row names, at the severities that none does, is its own."""
-    named = {name: row for row in rows for name in row.faults}
+    """Return the rows that were flown."""
     flown: dict[DetectionRow, list[Result]] = {row: [] for row in rows}
     for result in results:
-        if not result.isolation:
-            continue
-        row = named.get(case_name(result.fault, result.severity)) or named.get(result.fault)
-        flown.setdefault(row or DetectionRow(result.fault, (result.fault,)), []).append(result)
+        if result.isolation:
+            flown.setdefault(row_of(rows, result.fault, result.severity), []).append(result)
     return [_row(row, group) for row, group in flown.items() if group]
 
 
 def _row(row: DetectionRow, group: Sequence[Result]) -> Detections:
     count = Counter(result.isolation for result in group)
-    delays = [result.detected_s for result in group if result.detected_s is not None]
+    delays: dict[int, list[float]] = {}
+    for result in group:
+        if result.detected_s is not None:
+            delays.setdefault(result.seed, []).append(result.detected_s)
     right, ambiguous, wrong, none = (count[verdict] for verdict in ISOLATIONS)
     return Detections(
         fault=row.name,
@@ -90,8 +105,9 @@ def _row(row: DetectionRow, group: Sequence[Result]) -> Detections:
         none=none,
         named_wrongly="; ".join(dict.fromkeys(result.named_source for result in group if result.named_source)),
         first_alarms=_codes(group),
-        median_s=statistics.median(delays) if delays else None,
-        worst_s=max(delays, default=None),
+        median_s=statistics.median(map(statistics.median, delays.values())) if delays else None,
+        worst_s=statistics.median(map(max, delays.values())) if delays else None,
+        latest_s=max(map(max, delays.values()), default=None),
         median_limit_s=row.median,
         worst_limit_s=row.worst,
     )
@@ -117,13 +133,13 @@ def write_detections(path: Path, rows: Sequence[Detections]) -> Path:
 def detections_markdown(rows: Sequence[Detections]) -> str:
     """Return the rows as a table in Markdown."""
     lines = [
-        "| fault | true source | flights | right | ambiguous | wrong | none | first alarm | median | worst "
+        "| fault | true source | flights | right | ambiguous | wrong | none | first alarm | median | worst | latest "
         "| named in its place |",
-        "|---|---|---|---|---|---|---|---|---|---|---|",
+        "|---|---|---|---|---|---|---|---|---|---|---|---|",
     ]
     for row in rows:
         codes = ", ".join(f"`{code}`" for code in row.first_alarms.split(", ") if code)
-        delays = ["" if delay is None else f"{seconds(delay)} s" for delay in (row.median_s, row.worst_s)]
+        delays = ["" if delay is None else f"{seconds(delay)} s" for delay in (row.median_s, row.worst_s, row.latest_s)]
         counts = [str(n or "") for n in (row.right, row.ambiguous, row.wrong, row.none)]
         cells = [row.fault, row.true_source, str(row.flights), *counts, codes, *delays, row.named_wrongly]
         lines.append(f"| {' | '.join(cells)} |")

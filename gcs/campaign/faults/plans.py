@@ -21,7 +21,7 @@ MAX_FLIGHTS = 1_000_000
 
 
 class FaultFlights(PlanGenerator):
-    """Every case of a campaign file in every mission with every seed, in this order.
+    """Every case of a campaign file in every mission with every seed of its, in this order.
 
     A name holds a digest of everything that the flight is flown by, except the program: another flight has another.
     """
@@ -39,7 +39,7 @@ class FaultFlights(PlanGenerator):
         if parquet:
             check_parquet()
         self.file, self._parquet = file, parquet
-        count = len(file.cases) * len(file.missions) * len(file.seeds)
+        count = len(file.missions) * sum(len(file.seeds_of(case)) for case in file.cases)
         if count > MAX_FLIGHTS:
             raise UnusableInput(f"{count} flights are more than {MAX_FLIGHTS}: list fewer faults, missions or seeds")
         if file.require != WITHIN_LIMITS:
@@ -53,7 +53,9 @@ class FaultFlights(PlanGenerator):
     def plans(self, out: Path) -> Iterator[FlightPlan]:
         """Yield all flights, by case, then mission, then seed."""
         file, folder = self.file, out / "missions"
-        flights = [(case, mission, seed) for case in file.cases for mission in file.missions for seed in file.seeds]
+        flights = [
+            (case, mission, seed) for case in file.cases for mission in file.missions for seed in file.seeds_of(case)
+        ]
         for number, (case, mission, seed) in enumerate(flights, start=1):
             base = file.missions[mission]
             title = " ".join(part for part in (mission, case.name, case.severity) if part)
