@@ -36,8 +36,8 @@ class LinkStatistics:
         """Messages that do not follow the newest one: there was a gap, or they came late or again; or the first."""
         self.scans = ScanSequence()
         """Which scans are complete."""
-        self._newest: int | None = None
         self._seen: deque[int] = deque(maxlen=REMEMBERED)
+        """The newest last."""
         self._gaps: deque[tuple[float, set[int]]] = deque()
         self._losing = False
         """Whether what was missing last was lost."""
@@ -51,14 +51,13 @@ class LinkStatistics:
         """Count a message by its sequence number (0 .. 255); return True if it was sent after all that came before."""
         if self._gaps:
             self.settle(now)
-        newest = self._newest
+        newest = self._seen[-1] if self._seen else None
         ahead = 1 if newest is None else (number - newest) % NUMBERS
         self.breaks += newest is None or ahead != 1
         if 0 < ahead <= AHEAD:
             if newest is not None and ahead > 1:
                 missing = {(newest + k) % NUMBERS for k in range(1, ahead)}
                 self._gaps.append((now, missing))
-            self._newest = number
             self._seen.append(number)
             return True
         if number in self._seen:
@@ -74,7 +73,7 @@ class LinkStatistics:
         """Count messages of consecutive numbers, ``number`` the first, as :meth:`message` does one by one."""
         first = 0
         # Where the first follows what came before, all do.
-        if self._newest is None or (number - self._newest) % NUMBERS != 1:
+        if not self._seen or (number - self._seen[-1]) % NUMBERS != 1:
             while first < length and not self.message((number + first) % NUMBERS, now):
                 first += 1
             first += 1
@@ -83,7 +82,6 @@ class LinkStatistics:
                 self.settle(now)
             begin = (number + first) % NUMBERS
             self._seen.extend(_CYCLE[begin : begin + length - first])
-            self._newest = (number + length - 1) % NUMBERS
 
     def settle(self, now: float) -> None:
         """Count the gaps that are not filled by ``now`` (s) as losses; those after a loss at once."""
