@@ -113,7 +113,7 @@ def test_repeated_covariance_resets_raise_an_alarm_but_not_in_a_hard_manoeuvre()
     assert Monitored().raised(steps=count, reset=True, steady=False) == []
 
 
-@pytest.mark.parametrize(("size", "expected"), [(5.0, []), (9.0, [("payload", MonitorAlarm.DISTURBANCE_FORCE)])])
+@pytest.mark.parametrize(("size", "expected"), [(4.9, []), (5.0, [("payload", MonitorAlarm.DISTURBANCE_FORCE)])])
 def test_disturbance_force_beyond_its_covariance_raises_an_alarm(size, expected):
     assert Monitored().raised(steps=1, force=(0.0, size, 0.0)) == expected
 

@@ -13,13 +13,15 @@ from scipy.stats import chi2
 from test_flatness import Wave
 
 from gcs.config import read_system
+from gcs.config.flight_settings import DEFAULTS
 from idc_controller.estimation.estimator import Estimator
 from idc_controller.estimation.health.chi_squared import lower_quantile, upper_quantile
 from idc_controller.estimation.kalman_filter import Innovation, SparseRows, StructuredKalmanFilter
-from idc_controller.estimation.measurements import PAYLOAD, Attitude, Position
+from idc_controller.estimation.measurement_model import MeasurementModel
+from idc_controller.estimation.measurements import PAYLOAD, Attitude, MeasurementNoise, Position
 from idc_controller.estimation.process_model import ProcessModel
 from idc_controller.estimation.propagation_kernels import about_reference, are_finite, defect
-from idc_controller.estimation.settings import ProcessNoiseSettings
+from idc_controller.estimation.settings import EstimatorSettings, ProcessNoiseSettings
 from idc_controller.estimation.update_kernels import gated, mean_products
 from idc_controller.model.linear import LinearModel
 from idc_controller.rotations import euler_from_quaternion, rotation_from_quaternion
@@ -326,3 +328,30 @@ def test_noise_between_vehicles_goes_to_both_axes_of_the_force_on_each_that_is_m
     forces = expected[process.uav_force].reshape(-1, 2)
     forces[[0, 2]] = 0.3**2
     np.testing.assert_array_equal(P, np.diag(expected))
+
+
+@pytest.mark.parametrize("vehicles", [3, 4, 6])
+def test_estimated_force_varies_by_half_of_its_error_variance_where_there_is_none(vehicles):
+    """The covariance of the filter counts on a force that walks; that of its gains without a walk is less."""
+    model = LinearModel(read_system(MISSIONS / "system.toml").with_vehicles(vehicles).parameters())
+    settings = EstimatorSettings()
+    walking = ProcessModel(model, settings.process)
+    calm = ProcessModel(model, replace(settings.process, force=0.0))
+    force, period = walking.force, 40_000
+    observed = MeasurementModel(model, MeasurementNoise(), settings.measurement).observations.values()
+    H = np.zeros((sum(len(rows) for rows, _ in observed), walking.size))
+    H[:, : model.layout.size] = np.vstack([rows for rows, _ in observed])
+    R = np.diag(np.concatenate([variance for _, variance in observed]))
+    F = walking.transition(period).F(walking.force_of_mass(np.zeros(3)))
+    P = walking.initial_covariance(settings.initial)
+    C = P.copy()
+    C[force, force] = 0.0
+    for _ in range(100):
+        P, C = F @ P @ F.T + walking.noise(period, 1.0), F @ C @ F.T + calm.noise(period, 1.0)
+        for covariance in (P, C):
+            walking.add_per_vehicle_noise(covariance, np.arange(vehicles))
+        K = P @ H.T @ np.linalg.inv(H @ P @ H.T + R)
+        L = np.eye(walking.size) - K @ H
+        P, C = (L @ covariance @ L.T + K @ R @ K.T for covariance in (P, C))
+    share = np.linalg.eigvals(np.linalg.solve(P[force, force], C[force, force])).real
+    assert 0.3 < share.max() < DEFAULTS.monitor.force_share

@@ -64,6 +64,8 @@ class MonitorSettings(SettingsTable):
     manoeuvre_tilt: float = 0.1  # rad; change of tilt set-points in one step, beyond the attitude loop's linear model
     manoeuvre_time: float = 2.0  # s; after such a step, without alarms from UAV attitudes
     noise_factor: float = 4.0  # of the variances of all sensors; clean flights reach 2
+    # of the force's error variance, that its estimate has without a force; the filter comes to 0.4
+    force_share: float = 0.5
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -283,7 +283,8 @@ class _ModelMismatch:
 
     def __init__(self, settings: MonitorSettings, innovations: InnovationMonitorSettings) -> None:
         self._noise_factor = settings.noise_factor
-        self._force_limit = float(upper_quantile(innovations.false_alarm, 3))
+        # The error of the estimate includes the walk of the force: where there is none, the estimate varies by less.
+        self._force_limit = settings.force_share * float(upper_quantile(innovations.false_alarm, 3))
 
     def __call__(self, step: MonitorStep) -> None:
         if not step.clear or step.record is None:
