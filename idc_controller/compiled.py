@@ -88,11 +88,12 @@ class _KernelCache(FunctionCache):
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Return the kernel on disk for a signature, None if there is none."""
-        found = super().load_overload(sig, target_context)
+        load: Callable[..., Any] = super().load_overload
+        found = load(sig, target_context)
         if found is None and uncompiled.compile_all is not None:
             compile_all, uncompiled.compile_all = uncompiled.compile_all, None
             compile_all()
-            found = super().load_overload(sig, target_context)
+            found = load(sig, target_context)
         return found
 
 
