@@ -16,7 +16,7 @@ export OPENBLAS_NUM_THREADS := 1
 # Compiled modules are kept: the tests start many programs.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help install fly test test-fast test-long test-lowest test-numerics golden golden-renew
+.PHONY: help install fly test test-fast test-long test-lowest test-numerics release golden golden-renew
 .PHONY: claims claims-all claims-write fault-tables anew benchmark benchmark-parts benchmark-campaign benchmark-check docs clean
 
 help:
@@ -25,6 +25,7 @@ help:
 	@echo "make test-fast    ruff, mypy and the tests that need no flight"
 	@echo "make test-long    the same cases with further seeds and sizes, and longer missions"
 	@echo "make test-lowest  some tests and a flight with the lowest versions that pyproject.toml allows"
+	@echo "make release      build sdist and wheel into dist/; install the wheel elsewhere, fly there, run another project's tests"
 	@echo "make test-numerics  tests of linear algebra and a flight with other OpenBLAS kernels (KERNELS='$(KERNELS)')"
 	@echo "make golden       compare short flights, to the byte, with those of the commit BASE ($(BASE)) and with checksums"
 	@echo "make golden-renew write the checksums anew"
@@ -58,9 +59,14 @@ test-fast: $(COMPILED)
 test-long: $(COMPILED)
 	$(VENV)/bin/python -m pytest --numprocesses auto --dist load -m long --durations 25
 
-# Builds the package as a wheel and flies a mission with the lowest versions that pyproject.toml allows.
+# The package as a wheel with the lowest versions that pyproject.toml allows.
 test-lowest: $(INSTALLED)
-	tests/packaging/lowest $(VENV)/bin/python
+	tests/packaging/wheel $(VENV)/bin/python lowest
+
+# Of the last commit, whose version has a dated entry in the changelog.
+release: $(INSTALLED)
+	$(VENV)/bin/python -m pytest -n 0 tests/test_packaging.py
+	tests/packaging/wheel $(VENV)/bin/python
 
 # Any that the processor has; those that sum as the pinned ones do, such as Zen, prove nothing.
 test-numerics: $(COMPILED)
@@ -113,6 +119,7 @@ install: $(COMPILED)
 # A PYTHON that is named is the one, or none is: another .venv than its own is made anew.
 PYTHONS := $(or $(PYTHON),python3.11 python3 python3.12 python3.13 python)
 USABLE := import sys, venv, ensurepip; sys.version_info >= (3, 11) or sys.exit(1); print(sys.base_prefix, sys.version)
+HAS_WHEELS := import sys; sys.exit(sys.version_info >= (3, 12))
 ifdef PYTHON
 NAMED := $(shell $(PYTHON) -c '$(USABLE)' 2>/dev/null)
 ifeq ($(NAMED),)
@@ -134,6 +141,10 @@ $(INSTALLED): pyproject.toml setup.py constraints.txt $(ANEW)
 	echo "cooplift needs Python 3.11 or newer; found: $$(python3 --version 2>&1 || echo none)." >&2; \
 	echo "Install python3.11, or name one: make PYTHON=/path/to/python3.11" >&2; \
 	exit 1
+	@$(VENV)/bin/python -c '$(HAS_WHEELS)' || { command -v $${CXX:-c++} >/dev/null || { \
+		echo "pybullet has no wheel for this Python, and there is no C++ compiler: install g++, or make PYTHON=python3.11" >&2; \
+		exit 1; }; \
+		echo "pybullet has no wheel for this Python: compiling it, some twelve minutes of CPU; pip keeps the wheel"; }
 	@$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes -r constraints.txt
 	@$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps -e .
 	@touch $@
@@ -146,5 +157,5 @@ $(COMPILED): $(INSTALLED) $(shell find $(PACKAGES) -name '*.py')
 anew:
 
 clean:
-	rm -rf $(VENV) build *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) build dist *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis
 	find $(PACKAGES) tests -name __pycache__ -prune -exec rm -rf {} +

@@ -1,15 +1,23 @@
 """The ground: telemetry in, set-points out, and the mission in between.
 
 ``gcs.fly(mission)`` flies a mission with a simulated swarm in this process; it returns a ``gcs.Flight``.
+
+Public, with annotations and changed by the rules of semantic versioning only, are the names of ``__all__``, the fixture
+``fly_with_faults`` with what docs/faults.md imports for it, the entry points ``cooplift.world``, the commands, and the
+files. Whatever else can be imported of ``gcs``, ``vehicle_sim`` and ``idc_controller`` may change in any version.
 """
 
 from typing import TYPE_CHECKING, Any
 
+from gcs.errors import GcsError, UnusableInput
+
 if TYPE_CHECKING:
     from gcs.app.call import fly
     from gcs.app.flown import Flight
+    from gcs.mission.model import Fault, Limits, Mission
+    from gcs.mission.read import read_mission
 
-__all__ = ["Flight", "fly"]
+__all__ = ["Fault", "Flight", "GcsError", "Limits", "Mission", "UnusableInput", "fly", "read_mission"]
 
 
 def __getattr__(name: str) -> Any:

@@ -8,6 +8,9 @@ from pathlib import Path
 import pytest
 from test_architecture import imported, nodes_in
 
+import gcs
+import idc_controller
+import vehicle_sim
 from gcs.app.cli import main
 
 ROOT = Path(__file__).parents[1]
@@ -77,6 +80,18 @@ def test_notice_names_every_locked_package_with_a_licence():
 
 def test_package_holds_no_symbolic_links():
     assert not [path for package in PACKAGES for path in (ROOT / package).rglob("*") if path.is_symlink()]
+
+
+def test_public_names_are_documented_and_the_packages_say_what_is_not_public():
+    assert all(getattr(gcs, name).__doc__ for name in gcs.__all__)
+    assert (ROOT / "gcs" / "py.typed").exists()
+    assert "may change" in gcs.__doc__
+    assert "Not public" in vehicle_sim.__doc__ and "Not public" in idc_controller.__doc__
+
+
+def test_version_has_a_dated_entry_in_the_changelog():
+    entries = re.findall(r"^## \[(\d\S+)\] - (\d{4}-\d\d-\d\d)$", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)
+    assert entries[0][0] == PROJECT["version"]
 
 
 def test_development_has_all_extras():
