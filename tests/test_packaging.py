@@ -95,8 +95,8 @@ def test_version_has_a_dated_entry_in_the_changelog():
 
 
 def test_development_has_all_extras():
-    assert EXTRAS["dev"][0] == "cooplift[parquet,suites]" and set(EXTRAS["pandas"]) <= set(EXTRAS["parquet"])
-    assert EXTRAS.keys() == {"dev", "pandas", "parquet", "suites"}
+    assert EXTRAS["dev"][0] == "cooplift[parquet,suites]"
+    assert EXTRAS.keys() == {"dev", "parquet", "suites"}
 
 
 @pytest.mark.parametrize(

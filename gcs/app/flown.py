@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcs.app.fly import FlightResult
-from gcs.extras import extra
 from gcs.faults.record import FAULTS_FILE
 from gcs.record.outcome import Outcome
 from gcs.record.setpoints import SentSetpoints
@@ -111,10 +110,9 @@ class Flight:
     def frame(self, name: str) -> pandas.DataFrame:
         """Return a record as a pandas frame, by the name of its attribute, such as ``"truth"`` or ``"alarms"``.
 
-        Raises :class:`ValueError` for another name, :class:`gcs.errors.UnusableInput` without pandas (extra "pandas").
+        Raises :class:`ValueError` for another name.
         """
-        with extra("pandas", "Flight.frame"):
-            import pandas  # takes long to import
+        import pandas  # takes long to import
 
         if name not in (*_FILES, "setpoints"):
             raise ValueError(f"{name!r} is no record: {', '.join((*_FILES, 'setpoints'))}")
