@@ -20,11 +20,11 @@ from gcs.campaign.faults.tables_page import DETECTION, FALSE_ALARMS, commit_of, 
 from gcs.campaign.process_pool import FlownProcess
 from gcs.campaign.scenarios import field as fields
 from gcs.campaign.scenarios.field import field
-from gcs.campaign.scenarios.schedule import Schedule
 from gcs.config import UnusableFile, read_system
 from gcs.errors import GcsError, UnusableInput
 from gcs.mission.model import Mission
 from gcs.mission.read import read_mission
+from gcs.planning.schedule import Schedule
 from idc_controller.geometry.bounding_cylinder import BoundingCylinder
 from idc_controller.geometry.free_space import FreeSpace
 

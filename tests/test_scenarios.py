@@ -17,11 +17,11 @@ from gcs.campaign.scenarios.judgement import COLUMNS
 from gcs.campaign.scenarios.moving import MOTIONS, displacement, motion_for, top_speed
 from gcs.campaign.scenarios.plans import Scenarios
 from gcs.campaign.scenarios.report import from_bad_end, report
-from gcs.campaign.scenarios.schedule import Schedule, arrival
 from gcs.config.flight_settings import DEFAULTS
 from gcs.errors import UnusableInput
 from gcs.mission.model import Lissajous
 from gcs.mission.read import read_mission
+from gcs.planning.schedule import Schedule, arrival
 from gcs.record.run_folder import open_run_folder
 from gcs.record.tables import truth_columns
 from idc_controller.geometry.obstacles import PredictedObstacle

@@ -17,10 +17,10 @@ from gcs.campaign.scenarios.judgement import judge, named_gap, names_the_gap
 from gcs.campaign.scenarios.moving import STOP_AND_GO_HOLDS, STOP_AND_GO_SPEEDS, displacement, top_speed
 from gcs.campaign.scenarios.passage import Passage, Passages, passage_of, places_of
 from gcs.campaign.scenarios.rooms import rooms
-from gcs.campaign.scenarios.schedule import Schedule
 from gcs.config import read_system
 from gcs.mission.motion import WaypointsMotion
 from gcs.mission.read import read_mission
+from gcs.planning.schedule import Schedule
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.free_space import FreeSpace
 from idc_controller.geometry.pole import Pole

@@ -15,7 +15,7 @@ from vehicle_sim.mavlink.vehicle import Vehicle
 from vehicle_sim.world.obstacle_bodies import ObstacleBodies
 from vehicle_sim.world.range_sensor import RangeSensor
 from vehicle_sim.world.rotors import Rotors, Wrenches
-from vehicle_sim.world.sensors import PAYLOAD_UNIT, Measurement, NavigationSensors, SensorNoise
+from vehicle_sim.world.sensors import PAYLOAD_UNIT, Measurement, NavigationSensors, SensorNoise, vehicle_noise
 from vehicle_sim.world.world_state import WorldState
 
 
@@ -112,5 +112,5 @@ def _navigation_sensors(noise: SensorsConfig, seed: int, vehicles: Sequence[int]
     """Return the sensors of the payload's unit and of the ``vehicles`` (system ids)."""
     attitude = math.radians(noise.attitude_deg)
     payload_noise = SensorNoise(noise.position, attitude, noise.payload_velocity, noise.payload_rates)
-    uav_noise = SensorNoise(noise.position, attitude, noise.uav_velocity, noise.uav_rates)
-    return NavigationSensors([payload_noise, *[uav_noise] * len(vehicles)], seed, [PAYLOAD_UNIT, *vehicles])
+    noises = [payload_noise, *[vehicle_noise(noise)] * len(vehicles)]
+    return NavigationSensors(noises, seed, [PAYLOAD_UNIT, *vehicles])

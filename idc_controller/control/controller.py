@@ -15,6 +15,7 @@ from idc_controller.control.force_components import setpoints_from_force_compone
 from idc_controller.control.force_kernels import directions, tracking_error
 from idc_controller.control.ground_controller import GroundController
 from idc_controller.control.load_adaptation import LoadAdaptation
+from idc_controller.control.planning import plan
 from idc_controller.control.settings import ControllerSettings
 from idc_controller.control.tracker import Tracker
 from idc_controller.estimation.estimate import Estimate
@@ -107,11 +108,7 @@ class IntegratedDecisionController:
         begin = self._stopwatch()
         trajectory: PayloadTrajectory = mission
         if not on_ground:
-            trajectory = self.safety.filter(estimate.time, self.guidance.reference(estimate.time, mission), estimate)
-            report = self.safety.report
-            self.guidance.observe(
-                trajectory, report.lag, report.deviation, self.load.estimate.air, report.standing_slack
-            )
+            trajectory = plan(self.safety, self.guidance, estimate, mission, self.load.estimate.air)
         self._tracked = None if on_ground else trajectory
         planned = self._stopwatch()
         if on_ground:

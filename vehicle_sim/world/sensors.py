@@ -7,6 +7,7 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
+from gcs.config.tables import SensorsConfig
 from idc_controller.arrays import Array
 from vehicle_sim.world.errors import SimulationError
 from vehicle_sim.world.state_kernels import STATE_COLUMNS, measure
@@ -91,6 +92,11 @@ class SensorNoise:
             value = getattr(self, name)
             if not (math.isfinite(value) and value >= 0.0):
                 raise SimulationError(f"noise of {name} must be zero or more, got {value}")
+
+
+def vehicle_noise(noise: SensorsConfig) -> SensorNoise:
+    """Return the noise of the sensors of each vehicle."""
+    return SensorNoise(noise.position, math.radians(noise.attitude_deg), noise.uav_velocity, noise.uav_rates)
 
 
 class NavigationSensors:

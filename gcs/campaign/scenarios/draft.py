@@ -13,12 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcs.campaign.scenarios.moving import FLIGHT, MOTIONS, displacement, motion_for, stop_and_go, top_speed
-from gcs.campaign.scenarios.schedule import Schedule
 from gcs.config import SystemConfig
 from gcs.mission.model import Lissajous, Mission, Obstacle
 from gcs.mission.motion import AnyMotion, LinearMotion
 from gcs.mission.route import Route
 from gcs.mission.toml_mission import route_through
+from gcs.planning.schedule import Schedule
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.shape import Shape

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import numpy as np
 
-from gcs.campaign.scenarios.schedule import Schedule
 from gcs.campaign.toml_text import mission_text
 from gcs.config import SystemConfig
 from gcs.errors import GcsError
 from gcs.mission.model import Limits, Lissajous, Mission, Obstacle
+from gcs.planning.schedule import Schedule
 from idc_controller.geometry.bounding_cylinder import BoundingCylinder
 from idc_controller.geometry.free_space import FreeSpace
 from idc_controller.geometry.pole import Pole

@@ -13,11 +13,11 @@ import numpy as np
 from gcs.campaign.process_pool import FlownProcess
 from gcs.campaign.result import summary_columns
 from gcs.campaign.scenarios.passage import Passage
-from gcs.campaign.scenarios.schedule import Schedule, arrival
 from gcs.config import SystemConfig
 from gcs.errors import GcsError
 from gcs.mission.model import Limits
 from gcs.mission.read import read_mission
+from gcs.planning.schedule import Schedule, arrival
 from gcs.record.outcome import Outcome
 from gcs.record.run_data import read_run
 

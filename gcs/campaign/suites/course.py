@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from gcs.campaign.scenarios.passage import Passage, passage_of
-from gcs.campaign.scenarios.schedule import Schedule
 from gcs.mission.model import Mission, Obstacle
+from gcs.planning.schedule import Schedule
 from idc_controller.geometry.bounding_cylinder import BoundingCylinder
 from idc_controller.geometry.free_space import FreeSpace
 

@@ -1,0 +1,141 @@
+"""A flight on the planning level: perception, guidance and safety filter on ideal tracking.
+
+The payload and its UAVs are, at every control step, where the trajectory in force has them; the vehicles' sensors are
+the simulator's. There is no physics, no MAVLink, no estimator, and nothing on disk.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from gcs.flight import stack
+from gcs.flight.mission_trajectory import MissionTrajectory
+from gcs.mission.model import Mission
+from gcs.planning.scanned_map import ScannedMap
+from gcs.planning.schedule import LONGEST, PAD_OFFSET
+from gcs.planning.sensors import TeamSensors
+from idc_controller.arrays import Array
+from idc_controller.control.planning import plan
+from idc_controller.estimation.estimate import Estimate
+from idc_controller.estimation.measurement_model import MeasurementModel
+from idc_controller.estimation.measurements import MeasurementNoise, VehicleStates
+from idc_controller.estimation.settings import MeasurementModelSettings
+from idc_controller.guidance.progress import Guidance
+from idc_controller.model.linear import LinearModel
+from idc_controller.safety.filter_protocol import SafetyFilter
+from idc_controller.trajectory.flatness import Load, PayloadTrajectory
+from idc_controller.trajectory.reference import Reference
+from idc_controller.trajectory.trajectory import RestTrajectory, Trajectory
+
+BEFORE = 1.0
+"""Time (s) for which the vehicles scan on the pad before their rotors start."""
+ROWS = 2
+"""Rows on record in a control step."""
+
+
+class IdealTracking:
+    """Guidance and safety filter, and a payload that is where their trajectory has it."""
+
+    def __init__(self, model: LinearModel, safety: SafetyFilter, guidance: Guidance, rest: Trajectory) -> None:
+        """``rest``: where the payload is before the first plan."""
+        self.model, self.safety, self.guidance = model, safety, guidance
+        self.followed: PayloadTrajectory = rest
+        self._load = Load(model.parameters.m_0, np.zeros(3))
+
+    def states(self, times: Array) -> Array:
+        """Return the states (K, 12 + 11 N) at ``times`` (K,) (s), as the linear model orders them."""
+        return Reference(self.model.parameters, self.followed, self._load).at(times).x
+
+    def plan(self, time: float, state: Array, mission: Trajectory) -> None:
+        """Plan along ``mission`` from ``time`` (s) on, at which the ``state`` is (12 + 11 N,)."""
+        n = self.model.layout.number_of_uavs
+        none, size = np.zeros((3, 3)), self.model.layout.size
+        estimate = Estimate(time, state, none[0], np.zeros((n, 3)), 0.0, none, lambda: np.zeros((size, size)))
+        self.followed = plan(self.safety, self.guidance, estimate, mission)
+
+
+class PlanningFlight:
+    """One mission, step by step. Times in s from the first scan on.
+
+    Public state, to be read only: ``tracking``, ``reason`` for which it was broken off (empty: it was not) and its time
+    ``broken_off``, ``climb``, the time at which the climb begins, ``slack``, the largest violation of the margin by a
+    plan (m), and the rows on record: ``times``, ``motion_times`` (since the obstacles have begun to move), ``states``.
+    """
+
+    def __init__(self, mission: Mission, start: float, sensors: TeamSensors | None = None) -> None:
+        """``start``: of the climb, in the obstacles' time (s). ``sensors``: None: those that are installed."""
+        config = mission.system
+        model = stack.linear_model(config)
+        self.mission, self._scanned = mission, ScannedMap(mission, sensors)
+        self.climb = BEFORE + config.flight.takeoff_landing.spool_up_time
+        self._motion_start = self.climb - start
+        pad = np.array([PAD_OFFSET, -PAD_OFFSET, -config.resting_altitude])
+        self._trajectory = MissionTrajectory(mission, pad, self.climb)
+        self.tracking = IdealTracking(
+            model,
+            stack.avoidance(config, model, self._scanned.map),
+            stack.guidance(config, model, self._scanned.map, self._scanned.map, mission.area),
+            RestTrajectory(pad),
+        )
+        self._vehicles = MeasurementModel(model, MeasurementNoise(), MeasurementModelSettings()).vehicles
+        self.reason, self.broken_off, self.slack = "", math.nan, 0.0
+        self._rows: list[tuple[Array, Array]] = []
+        """Times (ROWS,) and states (ROWS, 12 + 11 N) of each step."""
+
+    @property
+    def time(self) -> float:
+        """Time of the next step (s)."""
+        return len(self._rows) / self.mission.system.rates.control
+
+    @property
+    def ended(self) -> bool:
+        """True if the payload is at the end of its descent."""
+        return self.tracking.guidance.progress(self.time) >= self._trajectory.trajectory.end
+
+    @property
+    def times(self) -> Array:
+        """Times (T,) (s)."""
+        return np.concatenate([times for times, _ in self._rows])
+
+    @property
+    def states(self) -> Array:
+        """States (T, 12 + 11 N), as the linear model orders them."""
+        return np.concatenate([states for _, states in self._rows])
+
+    @property
+    def motion_times(self) -> Array:
+        """Times (T,) (s) since the obstacles have begun to move; 0 before."""
+        return np.maximum(self.times - self._motion_start, 0.0)
+
+    def vehicles(self, time: float, state: Array) -> VehicleStates:
+        """Return the vehicles in a ``state`` (12 + 11 N,)."""
+        return self._vehicles(time, state)
+
+    def fly(self) -> None:
+        """Fly to the end of the descent."""
+        while not self.ended:
+            if self.time > LONGEST and not self.reason:
+                self._break_off(f"the mission lasts longer than {LONGEST:g} s")
+            self.step()
+
+    def step(self) -> None:
+        """Take one control step."""
+        time, tracking = self.time, self.tracking
+        state = tracking.states(np.array([time]))[0]
+        self._scanned.step(len(self._rows), time - self._motion_start, self.vehicles(time, state))
+        if time >= self.climb:
+            if not self.reason and (reason := tracking.guidance.blocked(time)):
+                self._break_off(reason)
+            tracking.plan(time, state, self._trajectory.trajectory)
+            self.slack = max(self.slack, tracking.safety.report.slack)
+        times: Array = time + np.arange(ROWS, dtype=float) / (ROWS * self.mission.system.rates.control)
+        self._rows.append((times, tracking.states(times)))
+
+    def _break_off(self, reason: str) -> None:
+        """Come to rest and land, as the ground does."""
+        self.reason, self.broken_off, guidance = reason, self.time, self.tracking.guidance
+        followed, progress = guidance.stopping_trajectory(self.time, self._trajectory.trajectory)
+        self._trajectory.brake_and_land(followed, progress)
+        guidance.restart(self.time, progress)
