@@ -16,10 +16,12 @@ from gcs.campaign.faults import tables_page
 from gcs.campaign.faults.campaign_file import read_campaign
 from gcs.campaign.faults.detection_table import case_name
 from gcs.campaign.faults.plans import FaultFlights
-from gcs.campaign.faults.tables_page import DETECTION, FALSE_ALARMS, commit_of, main, renewed
+from gcs.campaign.faults.tables_page import DETECTION, FALSE_ALARMS, main
 from gcs.campaign.process_pool import FlownProcess
+from gcs.campaign.product import commit_of
 from gcs.campaign.scenarios import field as fields
 from gcs.campaign.scenarios.field import field
+from gcs.campaign.tables import renewed
 from gcs.config import UnusableFile, read_system
 from gcs.errors import GcsError, UnusableInput
 from gcs.mission.model import Mission

@@ -8,10 +8,12 @@ import pytest
 from scenario_results import result_of
 
 from gcs.app.cli import main
+from gcs.campaign import product
 from gcs.campaign.engine import Campaign
 from gcs.campaign.flight_worker import FlightWorker
 from gcs.campaign.process_pool import FlownProcess
 from gcs.campaign.result import Result
+from gcs.campaign.scenarios import generator as scenarios
 from gcs.campaign.scenarios.generator import DEFAULT_KINDS, KINDS, generate
 from gcs.campaign.scenarios.judgement import COLUMNS
 from gcs.campaign.scenarios.moving import MOTIONS, displacement, motion_for, top_speed
@@ -300,10 +302,15 @@ def test_campaign_resumes_after_an_interrupt(tmp_path, flown):
     assert len(again.results) == 8
 
 
-def test_scenario_that_has_changed_is_flown_again(tmp_path, flown):
+def test_what_has_changed_is_flown_again(tmp_path, flown, monkeypatch):
     campaign_in(tmp_path).fly(nothing, nothing)
     (tmp_path / "out" / "missions" / "0002-moving.toml").write_text("another")
-    assert [r.number for r in campaign_in(tmp_path).results].count(2) == 0
+    assert len(campaign_in(tmp_path).results) == 6  # it is written anew
+    monkeypatch.setattr(scenarios, "HELD_TO", dataclasses.replace(scenarios.HELD_TO, clearance=0.2))
+    assert campaign_in(tmp_path).results == []
+    monkeypatch.undo()
+    monkeypatch.setattr(product, "code_digest", lambda: "of another code")
+    assert campaign_in(tmp_path).results == []
 
 
 @pytest.mark.parametrize("change", [{"seed": 6}, {"kinds": ("poles",)}, {"controller": "mpc"}, {"fastest": 3.0}])

@@ -9,8 +9,7 @@ from scenario_results import result_of
 
 from gcs.app.cli import main
 from gcs.campaign.engine import Campaign
-from gcs.campaign.result import Result, read_result
-from gcs.campaign.scenarios.judgement import COLUMNS, OPTIONAL
+from gcs.campaign.result import Result
 from gcs.campaign.scenarios.moving import top_speed
 from gcs.campaign.studies.plans import StudyFlights
 from gcs.campaign.studies.report import draw_study
@@ -20,7 +19,6 @@ from gcs.campaign.toml_text import system_text
 from gcs.config import read_system
 from gcs.errors import UnusableInput
 from gcs.mission.read import read_mission
-from gcs.record.run_folder import write_json
 
 MISSIONS = Path(__file__).parents[1] / "missions"
 
@@ -147,17 +145,6 @@ def test_study_without_its_missions_is_refused(tmp_path):
 
 
 # Results
-
-
-def test_results_of_earlier_version_are_read(tmp_path, flown):
-    campaign = campaign_of("mass", tmp_path, quick=True)
-    campaign.fly(nothing, nothing)
-    path = campaign.result_path(campaign.plans[0])
-    whole = read_result(path, COLUMNS, OPTIONAL)
-    write_json(path, whole.row([column for column in COLUMNS if column not in OPTIONAL]))
-    assert read_result(path, COLUMNS, OPTIONAL) == dataclasses.replace(whole, position_rmse_m=None)
-    write_json(path, {"number": 1})
-    assert read_result(path, COLUMNS, OPTIONAL) is None
 
 
 def test_command_flies_and_reports(tmp_path, flown, capsys, pictures):

@@ -106,6 +106,13 @@ def add_settings(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
 
 
+def time_span(text: str) -> float:
+    """Return an argument that is a time (s), such as 90s, 30m or 2h."""
+    if (unit := {"s": 1.0, "m": 60.0, "h": 3600.0}.get(text[-1:])) is None:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a time such as 90s, 30m or 2h")
+    return unit * number(text[:-1], 0.0, 1e6)
+
+
 VEHICLES_MIN = 3
 """Fewer vehicles cannot hold a payload level."""
 VEHICLES = partial(whole_number, least=VEHICLES_MIN, most=99)

@@ -27,11 +27,17 @@ def add_campaign_arguments(parser: argparse.ArgumentParser, out: str) -> None:
     add("--keep", choices=KEEP, default="failures", help="the flights whose run folders are kept (default: failures)")
 
 
-def run_campaign(generator: PlanGenerator, out: Path, arguments: argparse.Namespace) -> ExitStatus:
-    """Fly a campaign in the folder ``out``, and print its report."""
+def campaign_console() -> Console:
+    """Return the console of a campaign: a line for each flight where it is no terminal."""
     console = Console(highlight=False, soft_wrap=True)
     if not console.is_terminal:
         console.width = WIDTH
+    return console
+
+
+def run_campaign(generator: PlanGenerator, out: Path, arguments: argparse.Namespace) -> ExitStatus:
+    """Fly a campaign in the folder ``out``, and print its report."""
+    console = campaign_console()
     with console.status("writing the missions"):
         campaign = Campaign(generator, out, arguments.jobs, arguments.keep)
     interrupted = False
@@ -41,7 +47,7 @@ def run_campaign(generator: PlanGenerator, out: Path, arguments: argparse.Namesp
         interrupted = True
     results = campaign.results
     problems = generator.problems(results)
-    reported = not results or _report(generator, results, problems, out, console)
+    reported = not results or report(generator, results, problems, out, console)
     if interrupted:
         left = len(campaign.plans) - len(results)
         LOG.error("interrupted with %d flights to go: start the command again to resume", left)
@@ -51,10 +57,10 @@ def run_campaign(generator: PlanGenerator, out: Path, arguments: argparse.Namesp
     return ExitStatus.OUTSIDE_LIMITS if problems or not all(result.passed for result in results) else ExitStatus.DONE
 
 
-def _report(
+def report(
     generator: PlanGenerator, results: Sequence[Result], problems: Sequence[str], out: Path, console: Console
 ) -> bool:
-    """Write and print the report; return whether it could be written."""
+    """Write and print the report of a campaign; return whether it could be written."""
     first, failed = headline(results, generator.what, generator.passed_means), failed_flights(results)
     try:
         parts, files = generator.report(results, out)

@@ -3,6 +3,7 @@
 import dataclasses
 import json
 import math
+import os
 import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -100,6 +101,7 @@ def fly(
     """
     check_curve(mission)
     _check_clock(options)
+    before = cpu_time()
     with Interrupt() as interrupt, ExitStack() as resources:
         folder = resources.enter_context(NewRunFolder(mission.name, options.run_dir))
         run_dir, started = folder.path, datetime.now(UTC)
@@ -154,7 +156,13 @@ def fly(
         if simulator is not None:
             incomplete += [found for line in simulator.last_lines if (found := read_line(line)) is not None]
         wall = time.monotonic() - wall
-        return flight_result(run_dir, mission, station, recorder.last_time, wall, tuple(incomplete))
+        used = cpu_time() - before
+        return flight_result(run_dir, mission, station, recorder.last_time, wall, tuple(incomplete), used)
+
+
+def cpu_time() -> float:
+    """Return the CPU time (s) of this process and of those that it has waited for."""
+    return sum(os.times()[:4])
 
 
 def flight_result(
@@ -164,10 +172,11 @@ def flight_result(
     last_time: float,
     wall: float,
     incomplete: tuple[Incomplete, ...] = (),
+    cpu: float | None = None,
 ) -> FlightResult:
     """Return how a flight of ``wall`` seconds ended, and write its summary; its records end at ``last_time`` (s).
 
-    ``incomplete``: the records that end before.
+    ``incomplete``: the records that end before. ``cpu``: time of the processor (s); None: not known.
     """
     flight = station.flight
     limits = dataclasses.asdict(mission.limits or Limits())
@@ -194,6 +203,7 @@ def flight_result(
     # By the clock of the records, as it may be before take-off.
     summary["broken_off_s"] = None if math.isnan(flight.failsafes.time) else round(flight.failsafes.time, 6)
     summary["alarms"] = len(flight.failsafes.alarms.alarms)
+    summary["cpu_s"] = None if cpu is None else round(cpu, 2)
     if incomplete:
         summary["incomplete_records"] = {file.name: file.end for file in incomplete}
     if not truth_ends:

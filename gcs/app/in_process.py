@@ -10,7 +10,7 @@ from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Protocol, Self
 
-from gcs.app.fly import FlightResult, flight_result, ground_station
+from gcs.app.fly import FlightResult, cpu_time, flight_result, ground_station
 from gcs.app.imports import importing
 from gcs.drivers.in_process import InProcessLockstep, World
 from gcs.errors import GcsError
@@ -81,6 +81,7 @@ class FlightInProcess:
         self.setpoints = SentSetpoints()
         self._takeoff: float | None = None
         """Wall time of take-off (s)."""
+        self._cpu = cpu_time()
         self._closed = False
         with ExitStack() as opened:
             self.world = open_world(mission, run_dir) if world is None else world
@@ -147,7 +148,8 @@ class FlightInProcess:
         wall = 0.0 if self._takeoff is None else time.monotonic() - self._takeoff
         self.close()
         incomplete = (*self.recorder.incomplete.found, *self.world.incomplete)
-        return flight_result(self.run_dir, self.mission, self.station, self.recorder.last_time, wall, incomplete)
+        cpu = cpu_time() - self._cpu
+        return flight_result(self.run_dir, self.mission, self.station, self.recorder.last_time, wall, incomplete, cpu)
 
     def close(self) -> None:
         """Close world and records; harmless when they are closed."""

@@ -4,7 +4,9 @@ import dataclasses
 import shlex
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
+from multiprocessing import get_context
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -13,6 +15,7 @@ from rich.console import RenderableType
 from gcs.campaign.flight_worker import FlightWorker
 from gcs.campaign.folder import adopt_folder, check_adoptable, folder_lock, remove_folder, write_text
 from gcs.campaign.process_pool import FlownProcess, all_cores, fly_process, run_parallel
+from gcs.campaign.product import verdict_key
 from gcs.campaign.result import Result, read_result, summary_columns
 from gcs.errors import UnwritableRecord
 from gcs.record.incomplete import INCOMPLETE
@@ -28,6 +31,7 @@ class FlightPlan:
 
     ``labels`` are columns of its result that are known before the flight, ``files`` are written before it; ``judge``
     returns the columns that follow from its process and its run folder, ``failures`` and ``outcome`` among them.
+    ``fly`` flies and judges it in another process; None: ``gcs fly`` does.
     """
 
     number: int
@@ -37,6 +41,14 @@ class FlightPlan:
     judge: Callable[[FlownProcess, Path], Mapping[str, Any]]
     labels: Mapping[str, Any] = field(default_factory=dict)
     files: Mapping[Path, str] = field(default_factory=dict)
+    fly: Callable[["FlightPlan"], Result] | None = None
+
+    @property
+    def key(self) -> str:
+        """Text that is another where code, mission, seed or options are, by which its result is kept."""
+        named = dict(zip(self.options[::2], self.options[1::2], strict=True))
+        config = named.pop("--config", None)
+        return verdict_key(self.mission, None if config is None else Path(config), *named.values())
 
     @property
     def replay(self) -> str:
@@ -51,8 +63,6 @@ class PlanGenerator(ABC):
     passed_means: str = "within their limits"
     columns: ClassVar[tuple[str, ...]]
     """Columns of a stored result."""
-    optional: ClassVar[tuple[str, ...]] = ()
-    """Those of ``columns`` that results of earlier versions lack."""
     shown: ClassVar[tuple[tuple[str, str, str], ...]]
     """Columns printed of each flight: title, column and unit."""
 
@@ -82,7 +92,8 @@ class Campaign:
     """The flights of a campaign in its folder.
 
     ``missions/`` holds the mission files that are not somebody else's, ``flights/NAME/`` the run folders,
-    ``results/NAME.json`` the results. A campaign that is started again flies what has no result yet.
+    ``results/NAME.json`` the results. A campaign that is started again flies what has no result yet of the same code,
+    mission and seed.
     """
 
     def __init__(self, generator: PlanGenerator, out: Path, jobs: int | None = None, keep: str = "failures") -> None:
@@ -98,12 +109,12 @@ class Campaign:
             adopt_folder(out, settings)
         for name in ("missions", "flights", "results"):
             make_folder(out / name)
+        self._pool = ProcessPoolExecutor(self._jobs, get_context("spawn"))  # starts none yet
         self._results: dict[str, Result] = {}
         for plan in self.plans:
-            written = [path for path, text in plan.files.items() if write_text(path, text)]
-            if plan.mission in written:  # what was flown was another mission
-                self.result_path(plan).unlink(missing_ok=True)
-            elif (result := read_result(self.result_path(plan), generator.columns, generator.optional)) is not None:
+            for path, text in plan.files.items():
+                write_text(path, text)
+            if (result := read_result(self.result_path(plan), plan.key, generator.columns)) is not None:
                 self._results[plan.name] = self._judged(plan, result)
 
     @property
@@ -111,8 +122,13 @@ class Campaign:
         """The results so far, in the order of the plans."""
         return [self._results[plan.name] for plan in self.plans if plan.name in self._results]
 
-    def fly(self, started: Callable[[FlightPlan], None], ended: Callable[[Result], None]) -> None:
-        """Fly what has no result yet; both callbacks are called in the caller's thread.
+    def fly(
+        self,
+        started: Callable[[FlightPlan], None],
+        ended: Callable[[Result], None],
+        plans: Sequence[FlightPlan] | None = None,
+    ) -> None:
+        """Fly what has no result yet, of ``plans`` (None: of all); both callbacks are called in the caller's thread.
 
         On an interrupt all flights are ended, and the results so far are kept. Raises
         :class:`gcs.errors.UnusableInput` when another process flies in the folder, and
@@ -124,7 +140,7 @@ class Campaign:
             if discard:
                 result = dataclasses.replace(result, run_dir="")
             try:
-                write_json(self.result_path(plan), result.row(self.generator.columns))
+                write_json(self.result_path(plan), {"key": plan.key, **result.row(self.generator.columns)})
             except UnwritableFile as error:
                 raise UnwritableRecord(f"{error}: the campaign ends here; start it again to resume") from None
             self._results[plan.name] = result
@@ -137,11 +153,14 @@ class Campaign:
                 for result in self.results:
                     if not result.run_dir:  # the process may have been killed just before it removed the folder
                         remove_folder(self.out / "flights" / result.name)
-            waiting = [plan for plan in self.plans if plan.name not in self._results]
+            chosen = self.plans if plans is None else plans
+            waiting = [plan for plan in chosen if plan.name not in self._results]
             run_parallel(waiting, self._jobs, self.fly_one, started, keep)
 
     def fly_one(self, plan: FlightPlan, worker: FlightWorker) -> Result | None:
         """Fly and judge; None if ``worker.stop`` was set before the flight ended."""
+        if plan.fly is not None:
+            return self._judged(plan, self._pool.submit(plan.fly, plan).result())
         run_dir = self.run_dir(plan)
         flown = fly_process(plan.mission, plan.options, run_dir, worker)
         return None if flown is None else self.result_of(plan, flown)

@@ -71,16 +71,15 @@ def read_object(path: Path) -> dict[str, Any]:
     return content if isinstance(content, dict) else {}
 
 
-def write_text(path: Path, text: str) -> bool:
-    """Write a file unless it has that content, and return whether it had not. Raises :class:`UnusableInput`."""
+def write_text(path: Path, text: str) -> None:
+    """Write a file unless it has that content. Raises :class:`UnusableInput`."""
     try:
         if path.exists() and path.read_text(encoding="utf-8") == text:
-            return False
+            return
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text, encoding="utf-8")
     except OSError as error:
         raise UnusableInput(f"{path}: cannot be written: {error.strerror}") from None
-    return True
 
 
 def remove_folder(folder: Path) -> None:

@@ -1,5 +1,7 @@
 """The progress display of a campaign."""
 
+from collections.abc import Sequence
+
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
@@ -9,8 +11,11 @@ from gcs.campaign.result import Result
 SHOWN_FLIGHTS = 6
 
 
-def fly_with_progress(campaign: Campaign, console: Console) -> None:
-    """Fly with a progress bar at a terminal and a line for each flight that fails; elsewhere a line for each flight."""
+def fly_with_progress(campaign: Campaign, console: Console, plans: Sequence[FlightPlan] | None = None) -> None:
+    """Fly with a progress bar at a terminal and a line for each flight that fails; elsewhere a line for each flight.
+
+    ``plans``: those to be flown; None: all.
+    """
     what = campaign.generator.what
     failed = sum(not result.passed for result in campaign.results)
     flying: list[str] = []
@@ -26,7 +31,8 @@ def fly_with_progress(campaign: Campaign, console: Console) -> None:
     )
     with progress:
         done = len(campaign.results)
-        task = progress.add_task(what, total=len(campaign.plans), completed=done, failed=failed, flying="")
+        total = len(campaign.plans) if plans is None else done + len(plans)
+        task = progress.add_task(what, total=total, completed=done, failed=failed, flying="")
 
         def started(plan: FlightPlan) -> None:
             flying.append(plan.name)
@@ -40,7 +46,7 @@ def fly_with_progress(campaign: Campaign, console: Console) -> None:
             if not console.is_terminal or not result.passed:
                 console.print(flight_line(campaign, result), markup=False)
 
-        campaign.fly(started, ended)
+        campaign.fly(started, ended, plans)
 
 
 def flight_line(campaign: Campaign, result: Result) -> str:

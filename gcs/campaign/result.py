@@ -29,6 +29,7 @@ class Result:
     reason: str = ""
     exit_code: int = 0
     wall_s: float = 0.0
+    cpu_s: float | None = None
     run_dir: str = ""
     """Empty where it was discarded."""
     replay: str = ""
@@ -111,6 +112,7 @@ def summary_columns(flown: FlownProcess, run_dir: Path) -> dict[str, Any]:
         "reason": flown.reason,
         "exit_code": flown.exit_code,
         "wall_s": round(flown.wall, 1),
+        "cpu_s": summary.get("cpu_s"),
         "run_dir": str(run_dir) if run_dir.exists() else "",
         "clearance_min_m": summary.get("clearance_min_m"),
         "tilt_max_deg": max(angles, default=None),
@@ -129,16 +131,10 @@ def summary_columns(flown: FlownProcess, run_dir: Path) -> dict[str, Any]:
     }
 
 
-def read_result(path: Path, columns: Collection[str], optional: Collection[str] = ()) -> Result | None:
-    """Read a stored result; None where there is none, or one of another version.
-
-    ``optional``: those of ``columns`` that results of earlier versions lack.
-    """
-    if not path.exists():
-        return None
-    content = read_object(path)
-    is_whole = set(columns) - set(optional) <= content.keys() <= set(columns)
-    if not is_whole or content["format"] != FORMAT:
+def read_result(path: Path, key: str, columns: Collection[str]) -> Result | None:
+    """Read a stored result of ``columns``; None where there is none, or one that was kept by another ``key``."""
+    content = read_object(path) if path.exists() else {}
+    if content.pop("key", None) != key or content.keys() != set(columns):
         return None
     return Result(**content)
 

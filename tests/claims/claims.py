@@ -29,7 +29,7 @@ from rich.table import Table  # noqa: E402
 from rich.text import Text  # noqa: E402
 from sources import ROOT, Record, Values, cpu_seconds, run  # noqa: E402
 
-from gcs.campaign.faults.tables_page import commit_of  # noqa: E402
+from gcs.campaign.product import commit_of  # noqa: E402
 
 FILE, RECORD = ROOT / "docs" / "claims.toml", ROOT / "docs" / "measured.json"
 

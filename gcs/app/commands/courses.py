@@ -4,12 +4,13 @@ import argparse
 from functools import partial
 from pathlib import Path
 
-from gcs.app.arguments import CONTROLLERS, number, whole_number
-from gcs.app.campaigns import add_campaign_arguments, run_campaign
-from gcs.campaign.engine import PlanGenerator
+from gcs.app.arguments import CONTROLLERS, number, time_span, whole_number
+from gcs.app.campaigns import add_campaign_arguments
+from gcs.app.levels import BOTH, FULL, LEVELS, run_level
 from gcs.campaign.folder import plain
 from gcs.campaign.scenarios.generator import DEFAULT_KINDS, KINDS
 from gcs.campaign.scenarios.plans import Scenarios
+from gcs.campaign.suites.plans import Suite, read_suite
 from gcs.config import read_system
 from gcs.errors import UnusableInput
 
@@ -20,6 +21,7 @@ Flies many obstacle scenarios in parallel and shows the distribution of clearanc
   gcs courses --count 20 --kinds moving      obstacles on a collision course with the payload
   gcs courses --count 60 --kinds forest rooms    obstacles with passages, some of them too narrow
   gcs courses --count 1000 --out runs/courses-seed1    adds more scenarios to a campaign
+  gcs courses --level both --budget 30m      all by planning alone, those that nearly fail in full
   gcs courses --suite tests/*.yaml           tests of Aerialist; also lists in JSON lines, and missions
 
 Every scenario is a mission file that `gcs fly` repeats. A campaign that was interrupted resumes when started again.
@@ -50,16 +52,26 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--config", type=Path, metavar="C", help="system file in place of the default system")
     add("--obstacle-speed", type=partial(number, least=0.5, most=20.0), metavar="V",
         help=f"highest speed of moving obstacles in m/s, but of stop_and_go (default: {FASTEST:g})")  # fmt: skip
+    add("--level", choices=LEVELS, default=FULL, help="planning: perception, guidance and safety filter on ideal "
+        "tracking, without physics and MAVLink; full: whole flights; both: planning, then whole flights, those of the "
+        "least planned clearance first (default: full)")  # fmt: skip
+    add("--budget", type=time_span, metavar="TIME",
+        help="of --level both: CPU time after which no further flight is flown in full, such as 30m, 2h (default: all)"
+        )  # fmt: skip
     add_campaign_arguments(parser, "runs/courses-seed<S>, runs/courses-<first file of the suite>")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command, and return its exit status."""
+    if arguments.level != FULL and arguments.controller != "idc":
+        raise UnusableInput(f"--level {arguments.level}: the controller {arguments.controller} plans nothing")
+    if arguments.level != BOTH and arguments.budget is not None:
+        raise UnusableInput("--budget goes with --level both")
     generator, name = _suite(arguments) if arguments.suite else _random(arguments)
-    return run_campaign(generator, arguments.out or Path("runs") / f"courses-{name}", arguments)
+    return run_level(generator, arguments.out or Path("runs") / f"courses-{name}", arguments)
 
 
-def _random(arguments: argparse.Namespace) -> tuple[PlanGenerator, str]:
+def _random(arguments: argparse.Namespace) -> tuple[Scenarios, str]:
     """Return random scenarios, and their name."""
     if arguments.speed is not None:
         raise UnusableInput("--speed goes with --suite: random scenarios have their own speeds")
@@ -75,10 +87,8 @@ def _random(arguments: argparse.Namespace) -> tuple[PlanGenerator, str]:
     return scenarios, f"seed{arguments.seed}"
 
 
-def _suite(arguments: argparse.Namespace) -> tuple[PlanGenerator, str]:
+def _suite(arguments: argparse.Namespace) -> tuple[Suite, str]:
     """Return other people's scenarios, read whole, and their name."""
-    from gcs.campaign.suites.plans import Suite, read_suite  # only where it is needed
-
     for option in ("count", "kinds", "obstacle_speed"):
         if getattr(arguments, option) is not None:
             raise UnusableInput(f"--{option.replace('_', '-')} is for random scenarios, not for --suite")

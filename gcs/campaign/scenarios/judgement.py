@@ -15,11 +15,11 @@ from gcs.campaign.result import summary_columns
 from gcs.campaign.scenarios.passage import Passage
 from gcs.config import SystemConfig
 from gcs.errors import GcsError
-from gcs.mission.model import Limits
+from gcs.mission.model import Limits, Mission
 from gcs.mission.read import read_mission
 from gcs.planning.schedule import Schedule, arrival
 from gcs.record.outcome import Outcome
-from gcs.record.run_data import read_run
+from gcs.record.run_data import RunData, read_run
 
 AT_GOAL = 0.5
 """m, horizontally, within which the payload has arrived."""
@@ -32,11 +32,9 @@ whose rows are soft: with a spacing of 1 m 0.75 m where the controller keeps 0.7
 COLUMNS = (
     "number", "name", "kind", "passed", "failures", "outcome", "reason", "exit_code", "clearance_min_m",
     "tilt_max_deg", "uav_separation_min_m", "contacts", "arrival_s", "nominal_arrival_s", "delay_s", "goal_error_m",
-    "duration_s", "step_time_p50_ms", "step_time_p99_ms", "infeasible_steps", "real_time_factor", "wall_s", "replay",
-    "position_rmse_m", "slack_max_m", "passage", "gap_m", "gap_named_m", "format",
+    "duration_s", "step_time_p50_ms", "step_time_p99_ms", "infeasible_steps", "real_time_factor", "wall_s", "cpu_s",
+    "replay", "position_rmse_m", "slack_max_m", "passage", "gap_m", "gap_named_m", "format",
 )  # fmt: skip
-OPTIONAL = ("position_rmse_m", "slack_max_m", "passage", "gap_m", "gap_named_m")
-"""Columns that results of earlier versions lack."""
 
 
 def least_separation(system: SystemConfig) -> float:
@@ -56,15 +54,29 @@ def judge(
 
     ``passage``: of the standing obstacles; None: there is a way.
     """
-    summary = flown.summary
     as_flown = read_mission(mission, config)
-    schedule = Schedule(as_flown)
+    try:
+        run = read_run(run_dir) if flown.summary else None
+    except GcsError:
+        run = None
+    return judged(as_flown, Schedule(as_flown), held_to, passage, flown, run)
+
+
+def judged(
+    as_flown: Mission,
+    schedule: Schedule,
+    held_to: Limits,
+    passage: Passage | None,
+    flown: FlownProcess,
+    run: RunData | None,
+) -> dict[str, Any]:
+    """Return the columns of a flight of known ``schedule`` with the records ``run``; None: it has none."""
+    summary, figures = flown.summary, summary_columns(flown, Path())
     nominal = arrival(schedule.times, schedule.positions, schedule.goal, AT_GOAL)
     nominal = schedule.landing if nominal is None else nominal
     # From the start of the rotors on, as in the summary.
     spent = as_flown.system.flight.takeoff_landing.spool_up_time - schedule.start
-    arrived, goal_error = _arrival(run_dir, schedule) if summary else (None, None)
-    figures = summary_columns(flown, run_dir)
+    arrived, goal_error = (None, None) if run is None else _arrival(run, schedule)
     clearance, tilt = figures["clearance_min_m"], figures["tilt_max_deg"]
     separation, outcome = figures["uav_separation_min_m"], summary.get("outcome", Outcome.FAILED.value)
     named = named_gap(flown.reason)
@@ -107,12 +119,8 @@ def names_the_gap(passage: Passage | None, reason: str) -> bool:
     return named is not None and abs(named - passage.gap.width) <= GAP_TOLERANCE
 
 
-def _arrival(run_dir: Path, schedule: Schedule) -> tuple[float | None, float | None]:
+def _arrival(run: RunData, schedule: Schedule) -> tuple[float | None, float | None]:
     """Return when the payload came to the goal (s from the start of the rotors), and its distance at the end (m)."""
-    try:
-        run = read_run(run_dir)
-    except GcsError:
-        return None, None
     powered = np.flatnonzero((run.thrust > 0.0).any(axis=1))
     if len(powered) == 0:
         return None, None

@@ -12,13 +12,17 @@ from rich.console import RenderableType
 from gcs.campaign.engine import FlightPlan, PlanGenerator
 from gcs.campaign.result import Result
 from gcs.campaign.scenarios.generator import DEFAULT_KINDS, HELD_TO, generate
-from gcs.campaign.scenarios.judgement import COLUMNS, OPTIONAL, judge, least_separation
+from gcs.campaign.scenarios.judgement import COLUMNS, judge, least_separation
+from gcs.campaign.scenarios.planning import fly_planning
 from gcs.config import read_system
 
 
 @dataclass(frozen=True)
 class Scenarios(PlanGenerator):
-    """``count`` random scenarios of ``seed``, of ``kinds`` in turn; obstacles move at up to ``fastest`` (m/s)."""
+    """``count`` random scenarios of ``seed``, of ``kinds`` in turn; obstacles move at up to ``fastest`` (m/s).
+
+    ``planning``: on the planning level.
+    """
 
     count: int
     seed: int
@@ -26,11 +30,11 @@ class Scenarios(PlanGenerator):
     controller: str = "idc"
     config: Path | None = None
     fastest: float = 2.0
+    planning: bool = False
 
     what = "scenarios"
     passed_means = "passed"
     columns = COLUMNS
-    optional = OPTIONAL
     shown = (
         ("clearance", "clearance_min_m", "m"),
         ("angle", "tilt_max_deg", "deg"),
@@ -60,8 +64,9 @@ class Scenarios(PlanGenerator):
             scenario = generate(self.seed, number, kind, system, self.fastest)
             mission = out / "missions" / f"{scenario.name}.toml"
             judgement = partial(judge, mission, self.config, HELD_TO, scenario.passage)
+            fly = partial(fly_planning, self.config, HELD_TO, scenario.passage) if self.planning else None
             labels, files = {"kind": kind}, {mission: scenario.text}
-            yield FlightPlan(number, scenario.name, mission, tuple(options), judgement, labels, files)
+            yield FlightPlan(number, scenario.name, mission, tuple(options), judgement, labels, files, fly)
 
     def report(self, results: Sequence[Result], out: Path) -> tuple[list[RenderableType], list[Path]]:
         """Write ``results.csv``, ``results.json`` and the distribution."""

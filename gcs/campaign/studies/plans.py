@@ -16,7 +16,7 @@ from gcs.campaign.engine import FlightPlan, PlanGenerator
 from gcs.campaign.folder import digest, plain
 from gcs.campaign.result import Result
 from gcs.campaign.scenarios.generator import HELD_TO, generate
-from gcs.campaign.scenarios.judgement import COLUMNS, OPTIONAL, judge
+from gcs.campaign.scenarios.judgement import COLUMNS, judge
 from gcs.campaign.scenarios.moving import top_speed
 from gcs.campaign.scenarios.plans import Scenarios
 from gcs.campaign.studies.study import MARGIN, MOVING, Study, Variant
@@ -37,7 +37,6 @@ class StudyFlights(PlanGenerator):
     """
 
     columns = COLUMNS
-    optional = OPTIONAL
     shown = Scenarios.shown
 
     def __init__(

@@ -13,7 +13,8 @@ from gcs.campaign.engine import FlightPlan, PlanGenerator
 from gcs.campaign.folder import plain
 from gcs.campaign.result import Result
 from gcs.campaign.scenarios.generator import HELD_TO
-from gcs.campaign.scenarios.judgement import COLUMNS, OPTIONAL, judge, least_separation
+from gcs.campaign.scenarios.judgement import COLUMNS, judge, least_separation
+from gcs.campaign.scenarios.planning import fly_planning
 from gcs.campaign.scenarios.plans import Scenarios
 from gcs.campaign.suites.course import Course, checked_passage
 from gcs.config import UnusableFile, read_system
@@ -67,18 +68,18 @@ def _mission(path: Path, config: Path | None) -> Course:
 
 @dataclass(frozen=True)
 class Suite(PlanGenerator):
-    """``courses`` of other people, with noise of ``seed`` where they do not say."""
+    """``courses`` of other people, with noise of ``seed`` where they do not say; ``planning``: on that level."""
 
     courses: tuple[Course, ...]
     seed: int
     speed: float
     controller: str = "idc"
     config: Path | None = None
+    planning: bool = False
 
     what = "courses"
     passed_means = "passed"
     columns = COLUMNS
-    optional = OPTIONAL
     shown = Scenarios.shown
 
     @property
@@ -103,7 +104,8 @@ class Suite(PlanGenerator):
             files = {mission: course.text} if course.text else {}
             files |= {out / "missions" / beside: text for beside, text in course.files.items()}
             judgement = partial(judge, mission, self.config, HELD_TO, course.passage)
-            yield FlightPlan(number, name, mission, tuple(options), judgement, {"kind": course.kind}, files)
+            fly = partial(fly_planning, self.config, HELD_TO, course.passage) if self.planning else None
+            yield FlightPlan(number, name, mission, tuple(options), judgement, {"kind": course.kind}, files, fly)
 
     def report(self, results: Sequence[Result], out: Path) -> tuple[list[RenderableType], list[Path]]:
         """Write ``results.csv``, ``results.json`` and the distribution."""
