@@ -18,6 +18,7 @@ from gcs.campaign.scenarios.generator import APPROACHING, KINDS
 from gcs.campaign.scenarios.levels import cost, differences, fly_levels
 from gcs.campaign.scenarios.plans import Scenarios
 from gcs.campaign.tables import extreme, made_by, markdown_table, renewed
+from gcs.numerics import choose_kernels
 
 PLACE = "table of levels"
 COURSES = Scenarios(count=30, seed=3107, kinds=tuple(kind for kind in KINDS if kind != APPROACHING))
@@ -31,8 +32,9 @@ def main(arguments: Sequence[str]) -> int:
     parser.add_argument("--out", type=Path, default=Path("runs/levels"), help="folder (default: runs/levels)")
     options = parser.parse_args(arguments)
     page, commit = options.page.read_text(encoding="utf-8"), commit_of(Path(__file__).parents[2])
-    planning = Campaign(replace(COURSES, planning=True), options.out / "planning", options.jobs)
+    choose_kernels()  # of the processes that plan
     full = Campaign(COURSES, options.out, options.jobs)
+    planning = Campaign(replace(COURSES, planning=True), options.out / "planning", options.jobs)
     fly_levels(planning, full, None, Console(highlight=False, soft_wrap=True))
     command = f"python -m {__spec__.name} {options.page}"
     table = markdown_table(rows(planning.results, full.results))
