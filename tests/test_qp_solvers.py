@@ -1,5 +1,8 @@
 """Every solver takes every program of the one interface, and all of them find the same minimiser."""
 
+from dataclasses import replace
+
+import daqp
 import numpy as np
 import pytest
 
@@ -57,6 +60,56 @@ def test_proxqp_agrees_from_a_warm_start_with_other_gradients_and_bounds():
         # Without bounds the rows are others.
         problem = QuadraticProgram(first.H, other.g, first.G, other.h)
         assert warm.solve(problem).x == pytest.approx(DaqpSolver().solve(problem).x, abs=1e-5)
+
+
+def lazy_program(seed):
+    """A program of 6 variables, 60 lazy rows and 4 others; rows 20 to 39 share a slack, those from 40 on another.
+
+    In a quarter of the programs rows contradict each other, in half of them those with a slack.
+    """
+    rng = np.random.default_rng(seed)
+    root = rng.normal(size=(6, 6))
+    H, G = np.eye(8), np.zeros((64, 8))
+    H[:6, :6], G[:, :6] = root @ root.T + 0.1 * np.eye(6), rng.normal(size=(64, 6))
+    G[20:40, 6] = G[40:60, 7] = -rng.uniform(0.2, 1.0, 20)
+    h = rng.uniform(0.05, 0.5, 64)
+    if seed % 4 == 3:
+        G[5], h[5] = -G[4], -2.0 * h[4]
+    if seed % 2:
+        G[45, :6], h[45] = -G[44, :6], -2.0 * h[44]
+    g = np.concatenate([5.0 * rng.normal(size=6), [10.0, 1.0]])
+    lower, upper = np.concatenate([np.full(6, -0.5), np.zeros(2)]), np.concatenate([np.full(6, 0.5), np.full(2, INF)])
+    return QuadraticProgram(H, g, G, h, lower, upper, lazy=np.arange(64) < 60)
+
+
+def test_lazy_rows_change_neither_the_optimum_nor_whether_there_is_one():
+    solved, slacks = 0, 0
+    for seed in range(200):
+        problem = lazy_program(seed)
+        try:
+            optimum = DaqpSolver().solve(replace(problem, lazy=None)).x
+        except SolverError:
+            with pytest.raises(SolverError):
+                DaqpSolver().solve(problem)
+            continue
+        solved, slacks = solved + 1, slacks + (optimum[6:] > 0.01).any()
+        assert DaqpSolver().solve(problem).x == pytest.approx(optimum, rel=0.0, abs=1e-9)
+    assert 100 < solved < 200 and 50 < slacks < solved, (solved, slacks)
+
+
+def test_lazy_rows_are_left_out_until_they_are_broken(monkeypatch):
+    sizes, solve = [], daqp.solve
+
+    def counted(H, g, G, *others, **options):
+        sizes.append(G.shape)
+        return solve(H, g, G, *others, **options)
+
+    monkeypatch.setattr(daqp, "solve", counted)
+    H = np.array([[2.0, 1.0, 0.0, 0.0], [1.0, 2.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
+    G, h = np.array([[-1.0, 0.0, -1.0, 0.0], [0.0, -1.0, 0.0, -1.0]]), np.array([-1.0, 9.0])
+    lower = np.array([-INF, -INF, 0.0, 0.0])
+    DaqpSolver().solve(QuadraticProgram(H, np.array([0.0, 0.0, 9.0, 9.0]), G, h, lower, lazy=np.array([True, True])))
+    assert sizes == [(0, 2), (1, 3)]  # the row that is broken, and the variables that are in it or coupled
 
 
 @pytest.mark.parametrize("solver", SOLVERS)

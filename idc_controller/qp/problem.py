@@ -31,6 +31,8 @@ class QuadraticProgram:
     soft: NDArray[np.bool_] | None = None
     """Rows of G that may be exceeded where they cannot be kept (m,), by an excess e in units of the row's norm in the
     metric of H^-1, at the cost 1/2 ``SOFT_COST`` e^2; None: no row."""
+    lazy: NDArray[np.bool_] | None = None
+    """Rows of G that seldom bind (m,): a solver may leave out those that its minimiser keeps anyway; None: no row."""
 
     @property
     def is_bounded(self) -> bool:

@@ -14,7 +14,7 @@ from typing import Self
 import numpy as np
 from scipy.linalg import block_diag, solve_discrete_are
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Mask
 from idc_controller.errors import SolverError
 from idc_controller.geometry.formation import Formation
 from idc_controller.qp.daqp_solver import DaqpSolver
@@ -140,7 +140,7 @@ class Planner:
         g = np.concatenate([self.cost.G @ start.T.ravel(), layout.linear])
         least, most = self.snap_bounds.bounds(step)
         lower, upper = np.concatenate([least, layout.least]), np.concatenate([most, layout.most])
-        return QuadraticProgram(layout.H, g, G, np.concatenate(bounds), lower, upper)
+        return QuadraticProgram(layout.H, g, G, np.concatenate(bounds), lower, upper, lazy=layout.lazy)
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,6 +151,8 @@ class _Layout:
     """(n, n)"""
     G: Array
     """Rows of all constraints, with the shares of the slacks and no z (m, n)."""
+    lazy: Mask
+    """Rows of constraints that are lazy (m,)."""
     linear: Array
     quadratic: Array
     """Costs of the slacks (n - 3 knots,)."""
@@ -169,7 +171,9 @@ class _Layout:
         for penalty, share in shares:
             if penalty not in slacks:
                 slacks[penalty] = slice(n, n := n + share.shape[1])
-        G, row = np.zeros((sum(len(share) for _, share in shares), n)), 0
+        counts = [len(share) for _, share in shares]
+        lazy = np.repeat([constraint.is_lazy for constraint in constraints], counts)
+        G, row = np.zeros((sum(counts), n)), 0
         for penalty, share in shares:
             G[row : row + len(share), slacks[penalty]] = -share
             row += len(share)
@@ -177,7 +181,7 @@ class _Layout:
         linear = np.repeat([penalty.linear for penalty in slacks], number)
         quadratic = np.repeat([penalty.quadratic for penalty in slacks], number)
         return cls(
-            block_diag(H, np.diag(quadratic)), G, linear, quadratic,
+            block_diag(H, np.diag(quadratic)), G, lazy, linear, quadratic,
             np.zeros(n - len(H)), np.full(n - len(H), np.inf), slacks,
         )  # fmt: skip
 

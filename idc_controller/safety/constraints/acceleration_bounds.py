@@ -14,6 +14,8 @@ DIRECTIONS = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [_DIAGONAL, _DIAGONAL, 0
 class AccelerationBounds:
     """Rows for every direction; the reference's own acceleration is always allowed."""
 
+    is_lazy = False
+
     def __init__(self, settings: PlannerSettings, penalty: Penalty) -> None:
         self.penalty = penalty
         self._spare = settings.acceleration_spare

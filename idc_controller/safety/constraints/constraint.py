@@ -37,6 +37,8 @@ class Constraint(Protocol):
     """Rows G z <= h + S slack of the safety QP; z (3 knots,) is the deviation's snap at the knots, axis by axis."""
 
     penalty: Penalty
+    is_lazy: bool
+    """Whether its rows are many, of which few bind."""
 
     def rows(self, step: PlanningStep) -> tuple[Array, Array]:
         """Return G (m, 3 knots) and h (m,)."""

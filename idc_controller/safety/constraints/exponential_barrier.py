@@ -28,6 +28,8 @@ from idc_controller.trajectory.integrator_chain import Chain
 class ExponentialBarrier:
     """Two sets of rows an obstacle, payload box and rotor discs, and two slacks."""
 
+    is_lazy = True
+
     def __init__(self, formation: Formation, settings: PlannerSettings) -> None:
         self.formation, self.settings = formation, settings
         self.penalty = Penalty(settings.slack_linear, settings.slack_quadratic)

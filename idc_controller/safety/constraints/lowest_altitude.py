@@ -11,6 +11,8 @@ from idc_controller.safety.settings import PlannerSettings
 class LowestAltitude:
     """Rows on the height of the payload's centre; the reference's own height is always allowed."""
 
+    is_lazy = False
+
     def __init__(self, formation: Formation, settings: PlannerSettings, penalty: Penalty) -> None:
         self.penalty = penalty
         self.lowest = -(formation.payload.below + settings.ground_clearance)

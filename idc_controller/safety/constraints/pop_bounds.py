@@ -15,6 +15,8 @@ from idc_controller.safety.settings import PlannerSettings
 class PopBounds:
     """Rows for every knot and axis, from the crackle in force on; the reference's own pop is always allowed."""
 
+    is_lazy = False
+
     def __init__(self, settings: PlannerSettings, penalty: Penalty) -> None:
         self.penalty = penalty
         chain = settings.chain
