@@ -131,7 +131,7 @@ endif
 endif
 
 # Without build isolation nothing is fetched that constraints.txt does not name.
-$(INSTALLED): pyproject.toml setup.py constraints.txt $(ANEW)
+$(INSTALLED): pyproject.toml constraints.txt $(ANEW)
 	@for python in $(PYTHONS); do \
 		if $$python -c '$(USABLE)' >/dev/null 2>&1; then \
 			echo "Installing into $(VENV) with $$($$python --version) (once, two to three minutes)"; \

@@ -15,7 +15,8 @@ from gcs.app.cli import main
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("gcs", "idc_controller", "vehicle_sim")
-PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+PROJECT = PYPROJECT["project"]
 
 EXTRAS = PROJECT["optional-dependencies"]
 REQUIRED = [*PROJECT["dependencies"], *EXTRAS["parquet"], *EXTRAS["suites"]]
@@ -92,6 +93,11 @@ def test_public_names_are_documented_and_the_packages_say_what_is_not_public():
 def test_version_has_a_dated_entry_in_the_changelog():
     entries = re.findall(r"^## \[(\d\S+)\] - (\d{4}-\d\d-\d\d)$", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)
     assert entries[0][0] == PROJECT["version"]
+
+
+def test_all_packages_are_installed():
+    found = {".".join(path.parent.relative_to(ROOT).parts) for top in PACKAGES for path in (ROOT / top).rglob("*.py")}
+    assert {*PYPROJECT["tool"]["setuptools"]["packages"]} == {*found, "gcs.missions"}
 
 
 def test_development_has_all_extras():
