@@ -23,7 +23,7 @@ import vehicle_sim
 from gcs.drivers.forked_program import FORK
 
 _LOCK = Path(AppDirs("cooplift", appauthor=False).user_cache_dir) / "compiling"
-_TITLE = "compiling numeric kernels that are not on disk yet (all: some 7 min of CPU)"
+_TITLE = "compiling numeric kernels that are not on disk yet (all of them: minutes)"
 _INTERRUPTED = 130
 
 
