@@ -1,6 +1,5 @@
 """Flights in this process for tests: worlds other than the mission's, questions at every exchange, short missions."""
 
-import csv
 import shutil
 from dataclasses import replace
 from pathlib import Path
@@ -10,6 +9,7 @@ import numpy as np
 from gcs.app.in_process import FlightInProcess
 from gcs.drivers.in_process import GROUND as GROUND
 from gcs.mission.read import read_mission
+from gcs.record.reader import read_table
 from gcs.record.summary import within_limits
 from vehicle_sim.faults.fault_injector import FaultInjector
 from vehicle_sim.in_process import InProcessWorld
@@ -155,16 +155,14 @@ def check_within_limits(summary, rmse=0.03):
 
 
 def truth_of(folder):
-    """truth.csv as {column: array}."""
-    with (folder / "truth.csv").open(newline="") as file:
-        rows = list(csv.DictReader(file))
-    return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+    """The rows of truth.csv."""
+    return read_table(folder / "truth.csv")
 
 
 def position_rmse(truth_folder, run_folder):
     """Position RMSE (m) of the payload about the mission, 10 s after take-off and on."""
     truth = truth_of(truth_folder)
-    reference = np.genfromtxt(run_folder / "reference.csv", delimiter=",", names=True)
+    reference = read_table(run_folder / "reference.csv")
     at = reference["time_s"]
     late = at > at[0] + 10.0
     squared = sum(

@@ -6,7 +6,7 @@ import pytest
 from flights import HOP, InProcessFlight, system_file
 
 from gcs.flight.compute_times import ComputeTimes, Part
-from gcs.record.tables import read_table
+from gcs.record.reader import read_table
 
 
 class Stopwatch:
@@ -73,7 +73,7 @@ def test_all_that_the_ground_computes_in_flight_is_in_one_part(tmp_path, monkeyp
         flight.station.resume, flight.recorder.compute_times = counted, kept
         flight.fly(stop=lambda: len(at_step) == 40)
     steps = read_table(tmp_path / "run" / "steps.csv")
-    parts = [name for name in steps if name.endswith("_ms") and name not in ("total_ms", "mpc_ms")]
+    parts = [name for name in steps.dtype.names if name.endswith("_ms") and name not in ("total_ms", "mpc_ms")]
     assert len(parts) == len(Part)
     assert steps["total_ms"] == pytest.approx(sum(steps[name] for name in parts))
     assert steps["total_ms"][1:] == pytest.approx([after - before for before, after in pairwise(at_step)])

@@ -11,11 +11,11 @@ from gcs.app.fly_options import FlyOptions, prepare
 from gcs.errors import UnusableInput
 from gcs.faults import KINDS, read_settings
 from gcs.faults.listing import parameters, renewed
-from gcs.faults.record import notes_of
 from gcs.faults.suggestions import kind_meant
 from gcs.mission.describe import describe
 from gcs.mission.model import Fault
 from gcs.mission.read import read_mission
+from gcs.record.faults import notes_of
 
 ROOT = Path(__file__).parents[1]
 BEGIN = """

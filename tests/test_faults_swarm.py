@@ -1,6 +1,5 @@
 """Faults in a whole swarm: on the wire, in the world, on record."""
 
-import csv
 import json
 import math
 import signal
@@ -11,7 +10,8 @@ from fault_injection import SYSTEM, fault
 from programs import PATIENCE, process
 from scripted_ground import ScriptedGround, exchange
 
-from gcs.faults.record import fault_notes
+from gcs.record.faults import fault_notes
+from gcs.record.reader import read_table
 from vehicle_sim.faults.active import ActiveFault
 from vehicle_sim.faults.fault_injector import FaultInjector
 from vehicle_sim.faults.record import record_faults
@@ -170,8 +170,7 @@ def test_wind_displaces_the_load(tmp_path):
     for name, faults in (("still", ()), ("windy", (fault("wind", velocity=[0.0, 5.0, 0.0]),))):
         (tmp_path / name).mkdir()
         lifted(*faults, folder=tmp_path / name)
-        with (tmp_path / name / "truth.csv").open(newline="") as file:
-            ends.append(float(list(csv.DictReader(file))[-1]["payload_y_m"]))
+        ends.append(read_table(tmp_path / name / "truth.csv")["payload_y_m"][-1])
     assert abs(ends[0]) < 0.05 and ends[1] > 0.3
 
 

@@ -8,7 +8,8 @@ from flights import HOP, InProcessFlight, system_file
 from gcs.app.exit_status import ExitStatus
 from gcs.mission.read import read_mission
 from gcs.record.landing import is_set_down
-from gcs.record.tables import ALARMS, read_text_table
+from gcs.record.reader import read_table
+from gcs.record.tables import ALARMS
 
 pytestmark = pytest.mark.slow
 
@@ -61,8 +62,8 @@ def test_payload_that_is_too_heavy_to_rise_stays_on_the_ground(tmp_path):
     assert result.reason == "the payload does not rise: it is 0.6 m below its plan (limit 0.6 m)"
     assert is_set_down(result.summary["landing"])
     # Within the time that its plan takes for that: a second and a half at 1 m/s.
-    alarms = read_text_table(tmp_path / "run" / ALARMS)
-    assert float(alarms["time_s"][alarms["code"].index("climb_stalled")]) < flight.flight.takeoff_time + 5.0
+    alarms = read_table(tmp_path / "run" / ALARMS)
+    assert alarms["time_s"][alarms["code"] == "climb_stalled"][0] < flight.flight.takeoff_time + 5.0
 
 
 def test_take_off_within_an_obstacle_is_refused(tmp_path):
@@ -81,5 +82,5 @@ def test_contact_ends_the_flight(tmp_path):
     result = flown(mission, tmp_path / "run", controller="mpc")
     assert result.exit_code == ExitStatus.OUTSIDE_LIMITS and result.summary["outcome"] == "collided"
     assert "an impact: the accelerometer of" in result.reason
-    alarms = read_text_table(tmp_path / "run" / ALARMS)
-    assert alarms["code"].count("impact") == 1
+    alarms = read_table(tmp_path / "run" / ALARMS)
+    assert alarms["code"].tolist().count("impact") == 1

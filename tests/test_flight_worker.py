@@ -1,7 +1,6 @@
 """Warm processes of a campaign: flights in forks are what they are in programs of their own, and end as these do."""
 
 import contextlib
-import csv
 import json
 import os
 import signal
@@ -18,6 +17,7 @@ from programs import ENVIRONMENT, gcs_fly
 
 from gcs.campaign.flight_worker import FlightWorker
 from gcs.campaign.process_pool import fly_process, run_parallel
+from gcs.record.reader import read_table
 
 pytestmark = pytest.mark.slow
 
@@ -40,8 +40,8 @@ def records(folder):
     for name, left_out in (("manifest.json", {"command", "start"}), ("summary.json", TIMES)):
         table = json.loads(content[name])
         content[name] = {key: value for key, value in table.items() if key not in left_out}
-    rows = csv.DictReader(content["steps.csv"].decode().splitlines())
-    content["steps.csv"] = [{key: row[key] for key in row if "_ms" not in key} for row in rows]
+    steps = read_table(folder / "steps.csv")
+    content["steps.csv"] = [steps[name].tolist() for name in steps.dtype.names if "_ms" not in name]
     content["telemetry.tlog"] = messages(content["telemetry.tlog"])
     return content
 

@@ -146,7 +146,7 @@ def test_truth_ends_together_with_the_disk_and_the_world_goes_on(tmp_path, small
         times = [float(line.partition(",")[0]) for line in text.splitlines()[1:]]
         assert file.end - 0.021 < max(times, default=0.0) < file.end  # the row before the first that is missing
     run = read_run(tmp_path)
-    assert len(run.time) and np.isfinite(run.clearance[0, 0])
+    assert len(run.time) and np.isfinite(run.clearance[0])
 
 
 def test_obstacles_are_left_out_when_their_shapes_cannot_be_written(tmp_path):

@@ -14,10 +14,11 @@ from mission_files import MISSIONS, TOML, description_of, read, refusal
 from programs import ENVIRONMENT
 
 from gcs.campaign.toml_text import mission_text
-from gcs.errors import UnusableInput
 from gcs.mission.model import Limits, Obstacle
-from gcs.record.clearance import clearance_over_time
+from gcs.record.clearance import Formation, ObstacleTrack
 from gcs.record.obstacle_shapes import OBSTACLE_SHAPES, read_shape, write_shapes
+from gcs.record.reader import read_json
+from idc_controller.errors import ShapeError
 from idc_controller.geometry.box import Box
 from idc_controller.geometry.capsule import Capsule
 from idc_controller.geometry.mesh import Mesh, MeshHull
@@ -192,15 +193,15 @@ def test_physics_engine_has_the_same_geometry(shape):
 @pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: shape.kind)
 def test_record_gives_the_shape_and_its_clearance_back(shape, tmp_path):
     write_shapes(tmp_path, {"x": shape, "ball": Sphere(1.0)})
-    assert read_shape(tmp_path, "x", shape.kind, shape.columns) == shape
-    assert read_shape(tmp_path, "ball", "sphere", Sphere(1.0).columns) == Sphere(1.0)
-    with pytest.raises(UnusableInput, match="does not hold the"):
-        read_shape(tmp_path, "another", shape.kind, shape.columns)
-    with pytest.raises(UnusableInput, match="obstacle x: shape is 'cone', expected one of sphere"):
-        read_shape(tmp_path, "x", "cone", shape.columns)
-    (tmp_path / OBSTACLE_SHAPES).unlink()
-    with pytest.raises(UnusableInput, match="does not hold the"):
-        read_shape(tmp_path, "x", shape.kind, shape.columns)
+    fields = read_json(tmp_path / OBSTACLE_SHAPES)
+    assert read_shape(shape.kind, shape.columns, fields["x"]) == shape
+    assert "ball" not in fields and read_shape("sphere", Sphere(1.0).columns, None) == Sphere(1.0)
+    with pytest.raises(ShapeError, match=r"needs the run's obstacle_shapes\.json"):
+        read_shape(shape.kind, shape.columns, None)
+    with pytest.raises(ShapeError, match=r"obstacle_shapes\.json does not hold the"):
+        read_shape(shape.kind, shape.columns, {"edges": 1.0})
+    with pytest.raises(ShapeError, match="shape is 'cone', expected one of sphere"):
+        read_shape("cone", shape.columns, None)
 
 
 def test_columns_hold_the_bounding_box():
@@ -216,13 +217,11 @@ def test_no_file_of_shapes_where_the_columns_suffice(tmp_path):
 
 
 def test_clearance_to_a_capsule_is_exact():
-    from gcs.record.clearance import ObstacleTrack
-
     level = np.array([[1.0, 0.0, 0.0, 0.0]])
     track = ObstacleTrack("drum", Capsule(0.4, 2.0, pitch=math.pi / 2), np.array([[0.0, 0.0, 3.0]]))
     uavs = np.array([[[0.5, 0.5, -3.2], [0.5, -0.5, -3.2], [-0.5, -0.5, -3.2], [-0.5, 0.5, -3.2]]])
-    got = clearance_over_time(np.zeros((1, 3)), level, uavs, np.tile(level, (1, 4, 1)).reshape(1, 4, 4), [track])
-    assert got[0, 0] == pytest.approx(3.0 - 0.4 - 0.25, abs=1e-5)
+    got = Formation(np.zeros((1, 3)), level, uavs, np.tile(level, (1, 4, 1)).reshape(1, 4, 4)).clearance([track])
+    assert got[0] == pytest.approx(3.0 - 0.4 - 0.25, abs=1e-5)
 
 
 def test_rock_of_the_missions_is_unknown(tmp_path: Path):

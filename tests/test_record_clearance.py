@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gcs.errors import UnusableInput
-from gcs.record.clearance import DEFAULT_PAYLOAD, ObstacleTrack, clearance_over_time
+from gcs.record.clearance import DEFAULT_PAYLOAD, Formation, ObstacleTrack
 from idc_controller.geometry.box import Box, Wall
 from idc_controller.geometry.capsule import Capsule
 from idc_controller.geometry.mesh import Mesh, MeshHull
@@ -28,13 +28,8 @@ BOUND = 1e-6  # m
 def clearance(obstacle: ObstacleTrack, rotation=LEVEL, shift=(0.0, 0.0, 0.0), uav_quaternion=LEVEL) -> float:
     """Clearance of the level formation, moved as a whole, from one obstacle."""
     R = rotation_from_quaternion(rotation)
-    return clearance_over_time(
-        np.array([shift]),
-        rotation[None],
-        (UAVS @ R.T + shift)[None],
-        np.array([[uav_quaternion] * 4]),
-        [obstacle],
-    )[0, 0]
+    uavs, attitudes = (UAVS @ R.T + shift)[None], np.array([[uav_quaternion] * 4])
+    return Formation(np.array([shift]), rotation[None], uavs, attitudes).clearance([obstacle])[0]
 
 
 def sphere(position, radius=0.5) -> ObstacleTrack:
@@ -119,7 +114,7 @@ def test_clearance_of_random_hulls_agrees_with_separating_planes() -> None:
         uavs = UAVS + rng.uniform(-0.3, 0.3, UAVS.shape)
         centre = rng.normal(size=3)
         centre *= 4.0 / np.linalg.norm(centre)
-        got = clearance_over_time(np.zeros((1, 3)), LEVEL[None], uavs[None], quaternions[None], [sphere(centre)])
+        got = Formation(np.zeros((1, 3)), LEVEL[None], uavs[None], quaternions[None]).clearance([sphere(centre)])
         axis = rotation_from_quaternion(quaternions)[:, :, 2]
 
         def gap(normals, centre=centre, uavs=uavs, axis=axis):
@@ -133,24 +128,50 @@ def test_clearance_of_random_hulls_agrees_with_separating_planes() -> None:
             tried = best + spread * rng.normal(size=(300, 3))
             tried = np.vstack([best, tried / np.linalg.norm(tried, axis=1, keepdims=True)])
             best, spread = tried[np.argmax(gap(tried))], spread * 0.7
-        assert got[0, 0] == pytest.approx(gap(best[None])[0], abs=BOUND)
+        assert got[0] == pytest.approx(gap(best[None])[0], abs=BOUND)
 
 
 def test_size_and_radius_given() -> None:
-    got = clearance_over_time(
-        np.zeros((1, 3)), LEVEL[None], UAVS[None], np.array([[LEVEL] * 4]),
-        [sphere((0, 0, 4)), sphere((9, 0.5, -1.25))],
-        payload_vertices=PayloadHull.box((1.0, 1.0, 2.0)).vertices, disc_radius=0.5,
-    )  # fmt: skip
+    payload = PayloadHull.box((1.0, 1.0, 2.0))
+    formation = Formation(np.zeros((1, 3)), LEVEL[None], UAVS[None], np.array([[LEVEL] * 4]), payload, disc_radius=0.5)
+    got = formation.clearances([sphere((0, 0, 4)), sphere((9, 0.5, -1.25))])
     assert got[0] == pytest.approx([4 - 1 - 0.5, 9 - 1.0 - 0.5], abs=BOUND)
 
 
 def test_clearance_without_record_is_nan() -> None:
     track = ObstacleTrack("s", Sphere(0.5), np.array([[0.0, 0.0, 3.0], [np.nan] * 3]))
     states = [np.repeat(a[None], 2, axis=0) for a in (np.zeros(3), LEVEL, UAVS, np.array([LEVEL] * 4))]
-    got = clearance_over_time(*states, [track])
-    assert got[0, 0] == pytest.approx(2.25, abs=BOUND)
-    assert np.isnan(got[1, 0])
+    got = Formation(*states).clearance([track])
+    assert got[0] == pytest.approx(2.25, abs=BOUND)
+    assert np.isnan(got[1])
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_clearance_over_a_flight_is_the_least_of_all_obstacles(seed) -> None:
+    rng = np.random.default_rng(seed)
+    T = 400
+    speed = rng.normal(size=(T, 3)).cumsum(axis=0) * 0.01
+    payload = np.cumsum(0.02 * speed, axis=0)
+    angles = 0.3 * np.sin(np.linspace(0.0, 9.0, T)[:, None] * rng.uniform(0.5, 3.0, 5) + rng.uniform(0.0, 6.0, 5))
+    attitudes = np.array([[quaternion_from_euler(a, 0.5 * a, 2.0 * a) for a in row] for row in angles])
+    uavs = payload[:, None] + UAVS + rng.normal(size=(T, 4, 3)).cumsum(axis=0) * 0.002
+    obstacles = []
+    for k in range(60):
+        place = np.append(rng.uniform(-8.0, 8.0, 2), -3.0) + np.linspace(0.0, 1.0, T)[:, None] * (k % 3) * [2.0, 1.0, 0]
+        place[rng.integers(0, T) : rng.integers(0, T)] = np.nan
+        obstacles.append(ObstacleTrack("x", SHAPES[k % len(SHAPES)], place))
+    payload[200] = np.nan
+    formation = Formation(payload, attitudes[:, 0], uavs, attitudes[:, 1:])
+    each = formation.clearances(obstacles)
+    expected = np.nan_to_num(each, nan=np.inf).min(axis=1)
+    assert np.isnan(each[200]).all() and np.isfinite(expected).sum() == T - 1
+    expected[200] = np.nan
+    np.testing.assert_allclose(formation.clearance(obstacles), expected, atol=1e-7)
+    for k in (3, 399):  # each row for itself
+        states = payload, attitudes[:, 0], uavs, attitudes[:, 1:]
+        there = [ObstacleTrack("x", o.shape, o.position[k : k + 1]) for o in obstacles]
+        alone = Formation(*(state[k : k + 1] for state in states)).clearances(there)
+        np.testing.assert_allclose(alone[0], each[k], atol=1e-7)
 
 
 @pytest.mark.parametrize("heading", [0.0, 0.05, 0.7])
@@ -203,7 +224,7 @@ def test_clearance_kernel_agrees_with_coal(shape, seed, away) -> None:
     position = payload + away * direction / np.linalg.norm(direction)
     states = (payload, attitudes[0], uavs, np.array(attitudes[1:]))
     track = ObstacleTrack("x", shape, position[None])
-    got = clearance_over_time(*(np.asarray(state)[None] for state in states), [track])[0, 0]
+    got = Formation(*(np.asarray(state)[None] for state in states)).clearance([track])[0]
     # The polygons lie within the discs.
     assert -1e-5 <= clearance_by_coal(states, shape, position) - got <= 0.3 * (1.0 - np.cos(np.pi / FINE)) + 1e-5
 

@@ -13,7 +13,7 @@ from PIL import Image
 from gcs.app.cli import main
 from gcs.app.commands import reproduce as command
 from gcs.record.clearance import ObstacleTrack
-from gcs.record.run_data import RunData
+from gcs.record.run_data import RunData, RunTables
 from gcs.reproduce import figures
 from gcs.reproduce.numbers import flight_numbers, model_numbers
 from gcs.reproduce.page import ABSENT, paper_text, rounded
@@ -173,7 +173,7 @@ def recorded(folder, tilt_deg, contacts):
     }  # fmt: skip
     return RunData(
         folder, "truth", time, position, quaternion, np.zeros((T, 3)), uavs, level, np.full((T, 4), 14.0),
-        np.array(contacts), obstacles, None, None, {}, summary,
+        np.array(contacts), obstacles, RunTables(folder), {}, summary,
     )  # fmt: skip
 
 

@@ -1,14 +1,15 @@
-"""Records of the world: modes as they change, and files that are closed when the log is."""
+"""Records of the world: the contract's columns, modes as they change, and files that are closed when the log is."""
 
 from pathlib import Path
 
+import pytest
+from recorded_run import BALL, CORNERS, LEVEL, REST, world_state, write_truth
 from truth_rows import write_state
 
+from gcs.errors import UnusableInput
 from gcs.record.tables import MODE_COLUMNS
 from vehicle_sim.world.truth_log import TruthLog
 from vehicle_sim.world.world_state import UavState, WorldState
-
-LEVEL, REST = (1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
 
 
 def state(time: float) -> WorldState:
@@ -47,3 +48,43 @@ def test_closed_log_holds_no_file_and_takes_no_more_rows(tmp_path: Path) -> None
     log.write_mode(1.0, 1, "LAND", True, False)
     assert [(tmp_path / name).read_bytes() for name in ("truth.csv", "modes.csv")] == before
     assert before[0].count(b"\n") == before[1].count(b"\n") == 2
+
+
+def test_equal_states_give_equal_bytes(tmp_path) -> None:
+    for name in ("a", "b"):
+        write_truth(tmp_path / name, standing=[BALL])
+    for name in ("truth.csv", "obstacles.csv"):
+        assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
+
+
+def test_truth_columns_are_in_order_of_the_contract(tmp_path) -> None:
+    with TruthLog(tmp_path / "new", 2) as log:
+        uavs = (
+            UavState((10, 11, 12), (0, 1, 0, 0), (0, 0, 0), (0, 0, 0), 16, True),
+            UavState((13, 14, 15), (0, 0, 1, 0), (0, 0, 0), (0, 0, 0), 17, False),
+        )
+        write_state(log, WorldState(0.02, (1, 2, 3), (1, 0, 0, 0), (4, 5, 6), (7, 8, 9), uavs), 3)
+    header, row = (tmp_path / "new" / "truth.csv").read_text().splitlines()
+    assert dict(zip(header.split(","), map(float, row.split(",")), strict=True)) == {
+        "time_s": 0.02, "payload_x_m": 1, "payload_y_m": 2, "payload_z_m": 3,
+        "payload_qw": 1, "payload_qx": 0, "payload_qy": 0, "payload_qz": 0,
+        "payload_vx_mps": 4, "payload_vy_mps": 5, "payload_vz_mps": 6,
+        "payload_wx_radps": 7, "payload_wy_radps": 8, "payload_wz_radps": 9,
+        "uav1_x_m": 10, "uav1_y_m": 11, "uav1_z_m": 12,
+        "uav1_qw": 0, "uav1_qx": 1, "uav1_qy": 0, "uav1_qz": 0, "uav1_thrust_n": 16,
+        "uav2_x_m": 13, "uav2_y_m": 14, "uav2_z_m": 15,
+        "uav2_qw": 0, "uav2_qx": 0, "uav2_qy": 1, "uav2_qz": 0, "uav2_thrust_n": 17, "contacts": 3,
+    }  # fmt: skip
+    assert row.endswith(",3")
+    assert not (tmp_path / "new" / "obstacles.csv").exists()
+
+
+def test_truth_of_another_flight_is_not_overwritten(tmp_path) -> None:
+    write_truth(tmp_path, rows=1)
+    with pytest.raises(UnusableInput, match=r"truth\.csv: there is a record of another flight"):
+        TruthLog(tmp_path, 4)
+
+
+def test_state_of_another_number_of_uavs_is_an_error(tmp_path) -> None:
+    with TruthLog(tmp_path, 3) as log, pytest.raises(ValueError, match="47 values for 39 columns"):
+        write_state(log, world_state(0.0, (0.0, 0.0, 0.0), LEVEL, CORNERS, [0.0] * 4), 0)

@@ -8,9 +8,9 @@ import pymavlink.dialects.v20.common as mavlink
 import pytest
 from mission_files import MISSIONS
 from programs import PATIENCE, process
-from test_swarm import rows
 
 from gcs.mavlink.codec import Codec
+from gcs.record.reader import read_table
 from vehicle_sim.app.cli import main
 
 OPTIONS = [
@@ -161,9 +161,8 @@ def test_signal_ends_simulation_with_closed_records(tmp_path, number, status, pa
         running.send_signal(number)
         assert running.wait(PATIENCE) == status
         assert running.stderr.read() == ""
-    truth = rows(tmp_path / "run" / "truth.csv")
-    assert truth[0]["time_s"] == "0.0"
-    assert rows(tmp_path / "run" / "obstacles.csv")[0]["name"] == "pole"
+    assert read_table(tmp_path / "run" / "truth.csv")["time_s"][0] == 0.0
+    assert read_table(tmp_path / "run" / "obstacles.csv")["name"].tolist() == ["pole"]
     manifest = json.loads((tmp_path / "run" / "manifest.json").read_text())
     assert manifest["seed"] == 11
     assert manifest["mission"]["name"] == "an obstacle"

@@ -6,9 +6,9 @@ from pathlib import Path
 
 from gcs.drivers.in_process import GROUND
 from gcs.errors import UnusableInput
-from gcs.faults.record import FAULTS_FILE
 from gcs.mavlink.address import THIS_MACHINE, VEHICLE_PORT, Address
 from gcs.mission.model import Mission
+from gcs.record.faults import FAULTS_FILE
 from gcs.record.incomplete import Incomplete, IncompleteRecords
 from gcs.record.run_folder import UnwritableFile
 from vehicle_sim.world.engine_messages import greeting_of_engine_dropped

@@ -114,7 +114,7 @@ class Swarm:
         self._truth = truth
         self._modes_recorded = False
         self._contacts = self.world.contacts().pairs
-        self._write_truth(truth, self.world.states())
+        self._write_truth(truth, self.world.states(), begins=True)
 
     def close(self) -> None:
         """End the world and the record; harmless when they have ended."""
@@ -195,10 +195,10 @@ class Swarm:
         if records and self._truth is not None:
             self._write_truth(self._truth, states)
 
-    def _write_truth(self, truth: TruthLog, states: Array) -> None:
-        """Record the true ``states`` with the most contacts at a time since the last row."""
-        world = self.world
-        truth.write(world.time, states, world.thrusts, self._contacts, world.obstacles.all())
+    def _write_truth(self, truth: TruthLog, states: Array, *, begins: bool = False) -> None:
+        """Record the true ``states`` with the most contacts at a time since the last row; standing obstacles once."""
+        obstacles = self.world.obstacles.all() if begins else self._obstacles.moving()
+        truth.write(self.world.time, states, self.world.thrusts, self._contacts, obstacles)
         self._contacts = 0
 
     def _onboard(self, states: Array) -> None:

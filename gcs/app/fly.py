@@ -42,9 +42,10 @@ from gcs.numerics import differences
 from gcs.record.incomplete import Incomplete, read_line
 from gcs.record.outcome import Outcome
 from gcs.record.recorder import FlightRecorder
-from gcs.record.run_data import SUMMARY, TRUTH, RunData, read_run
-from gcs.record.run_folder import NewRunFolder, UnwritableFile, write_manifest
+from gcs.record.run_data import RunData, read_run
+from gcs.record.run_folder import SUMMARY, NewRunFolder, UnwritableFile, write_manifest
 from gcs.record.summary import summarise, within_limits, write_summary
+from gcs.record.tables import TRUTH
 from gcs.record.verdict import GroundReport, verdict
 from idc_controller.guidance.progress import Guidance
 from idc_controller.paper.printed_filter import PrintedFilter

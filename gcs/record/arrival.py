@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -140,18 +140,8 @@ def obstruction(run: RunData, place: Array, row: int) -> str:
     if not run.number_of_uavs or not run.barriers:
         return ""
     keep = run.kept_clearance
-    level = np.array([[1.0, 0.0, 0.0, 0.0]])
-    upright = run.uav_position[0] - run.payload_position[0]
-    there = replace(
-        run,
-        time=run.time[[row]],
-        payload_position=place[None],
-        payload_quaternion=level,
-        uav_position=(place + upright)[None],
-        uav_quaternion=np.tile(level, (1, len(upright), 1)),
-        obstacles=tuple(replace(track, position=track.position[[row]]) for track in run.obstacles),
-    )
-    clearance = np.nan_to_num(there.clearance[0], nan=np.inf)
+    found = run.level_formation(place[None]).clearances(run.barriers_at(run.time[[row]]))
+    clearance = np.nan_to_num(found[0], nan=np.inf)
     nearest = int(np.argmin(clearance))
     if clearance[nearest] > 2.0 * keep:
         return ""

@@ -7,10 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from gcs.errors import UnusableInput
-from gcs.record.clearance_kernels import clearance
+from gcs.record.clearance_kernels import lower_clearance
 from idc_controller.arrays import Array
 from idc_controller.errors import ShapeError
 from idc_controller.geometry.oriented import OrientedShape
@@ -39,35 +38,46 @@ class ObstacleTrack:
             raise UnusableInput(f"obstacle {self.name}: {error}") from error
 
 
-def clearance_over_time(
-    payload_position_in_world: ArrayLike,
-    payload_quaternion: ArrayLike,
-    uav_position_in_world: ArrayLike,
-    uav_quaternion: ArrayLike,
-    obstacles: Sequence[ObstacleTrack],
-    payload_vertices: ArrayLike = DEFAULT_PAYLOAD.vertices,
-    disc_radius: float = 0.3,
-) -> Array:
-    """Return the distance between formation and obstacles (T, number of obstacles) (m); 0 where they meet.
+@dataclass(frozen=True, eq=False)
+class Formation:
+    """The formation at T times, of N UAVs. NED, m, quaternions body to world, w first."""
 
-    Shapes: (T, 3), w-first (T, 4), (T, N, 3), w-first (T, N, 4), (V, 3), NED, quaternions body to world. A row or an
-    obstacle position that is not finite gives NaN.
-    """
-    payload_position = np.asarray(payload_position_in_world, dtype=float)
-    uav_rotation = rotation_from_quaternion(np.asarray(uav_quaternion, dtype=float))
-    # About the payload, so that the last digits do not depend on where in the world the flight is.
-    discs = np.asarray(uav_position_in_world, dtype=float) - payload_position[:, None]
-    formation = (
-        np.array(payload_vertices, dtype=float),
-        np.ascontiguousarray(rotation_from_quaternion(np.asarray(payload_quaternion, dtype=float))),
-        np.ascontiguousarray(discs),
-        np.ascontiguousarray(uav_rotation[..., 2]),
-        disc_radius,
-    )
-    found = np.empty((len(payload_position), len(obstacles)))
-    for j, obstacle in enumerate(obstacles):
-        found[:, j] = clearance(*formation, *_body(obstacle.shape), obstacle.position - payload_position)
-    return found
+    payload_position: Array  # (T, 3)
+    payload_quaternion: Array  # (T, 4)
+    uav_position: Array  # (T, N, 3)
+    uav_quaternion: Array  # (T, N, 4)
+    payload: PayloadHull = DEFAULT_PAYLOAD
+    disc_radius: float = 0.3
+
+    def clearance(self, obstacles: Sequence[ObstacleTrack]) -> Array:
+        """Return the distance to the nearest of the obstacles (T,) (m); 0 where they meet, NaN where none is known.
+
+        A row or an obstacle's position that is not finite counts as unknown.
+        """
+        rotation = np.ascontiguousarray(rotation_from_quaternion(self.payload_quaternion))
+        axes = np.ascontiguousarray(rotation_from_quaternion(self.uav_quaternion)[..., 2])
+        # About the payload, so that the last digits do not depend on where in the world the flight is.
+        discs = np.ascontiguousarray(self.uav_position - self.payload_position[:, None])
+        vertices = np.array(self.payload.vertices)
+        formation = vertices, rotation, discs, axes, self.disc_radius
+        # No point of the hull goes farther from row to row than its payload's or its discs'.
+        turned = np.linalg.norm(np.diff(rotation, axis=0), axis=(1, 2)) * np.linalg.norm(vertices, axis=1).max()
+        step = np.linalg.norm(np.diff(self.payload_position, axis=0), axis=1) + turned
+        discs_step = np.linalg.norm(np.diff(self.uav_position, axis=0), axis=2)
+        discs_step += self.disc_radius * np.linalg.norm(np.diff(axes, axis=0), axis=2)
+        step = np.max(discs_step, axis=1, initial=0.0).clip(step)
+        least = np.full(len(rotation), np.inf)
+        for obstacle in obstacles:
+            moved = np.linalg.norm(np.diff(obstacle.position, axis=0), axis=1)
+            way = np.concatenate([[0.0], np.cumsum(step + moved)])
+            offsets = obstacle.position - self.payload_position
+            lower_clearance(*formation, *_body(obstacle.shape), offsets, way, least)
+        return np.where(np.isinf(least), np.nan, least)
+
+    def clearances(self, obstacles: Sequence[ObstacleTrack]) -> Array:
+        """Return the distance to each of the obstacles (T, number of them) (m), otherwise as :meth:`clearance`."""
+        each = [self.clearance([obstacle]) for obstacle in obstacles]
+        return np.stack(each, axis=1) if each else np.empty((len(self.payload_position), 0))
 
 
 def _body(shape: Shape) -> tuple[Array, Array, Array]:

@@ -1,4 +1,4 @@
-"""Clearance, compiled: the distance between the formation's hull and a convex obstacle at every time of a flight.
+"""Clearance, compiled: the distance between the formation's hull and the nearest of convex obstacles over a flight.
 
 Gilbert-Johnson-Keerthi on support functions, as in :mod:`idc_controller.geometry.gjk_kernels`, with the discs as they
 are and obstacles of any convex shape.
@@ -70,10 +70,10 @@ def _obstacle_support(corners: Array, box: Array, rotation: Array, offset: Array
 
 
 @kernel(
-    "float64[::1](float64[:, ::1], float64[:, :, ::1], float64[:, :, ::1], float64[:, :, ::1], float64, "
-    "float64[:, ::1], float64[::1], float64[:, ::1], float64[:, ::1])"
+    "void(float64[:, ::1], float64[:, :, ::1], float64[:, :, ::1], float64[:, :, ::1], float64, "
+    "float64[:, ::1], float64[::1], float64[:, ::1], float64[:, ::1], float64[::1], float64[::1])"
 )
-def clearance(
+def lower_clearance(
     vertices: Array,
     rotations: Array,
     discs: Array,
@@ -83,8 +83,12 @@ def clearance(
     box: Array,
     rotation: Array,
     offsets: Array,
-) -> Array:
-    """Return the distance (T,) (m) between hull and obstacle; 0 where they meet, NaN where a state is not finite.
+    way: Array,
+    least: Array,
+) -> None:
+    """Lower ``least`` (T,) (m) to the distance between hull and obstacle, 0 where they meet, where that is less.
+
+    Where a state is not finite it stays.
 
     Args:
         vertices: corners (V, 3) of the payload in its frame (m).
@@ -96,15 +100,19 @@ def clearance(
         box: widened by half edges x, y, z, by a radius about its z axis and by a ball (5,) (m).
         rotation: obstacle to world (3, 3).
         offsets: centres (T, 3) of the obstacle about the payload, world axes (m).
+        way: by how much the distance may have changed at most since the first row (T,) (m); NaN: not known.
+        least: changed in place.
     """
-    steps = len(offsets)
-    distances = np.full(steps, np.nan)
-    simplex = np.zeros((4, 3))
-    for t in range(steps):
+    simplex, v, reach = np.zeros((4, 3)), np.zeros(3), -math.inf
+    for t in range(len(offsets)):
+        if reach - way[t] >= least[t]:
+            continue
         known = math.isfinite(np.sum(offsets[t]) + np.sum(rotations[t]) + np.sum(discs[t]) + np.sum(axes[t]))
         if not known:
             continue
-        v = -offsets[t]
+        # Begin where the last row has ended: from row to row, bodies hardly move.
+        if dot(v, v) == 0.0:
+            v = -offsets[t]
         if dot(v, v) == 0.0:
             v[0] = 1.0
         count, distance = 0, math.inf
@@ -123,5 +131,6 @@ def clearance(
                 distance = min(nearer, distance)
                 break
             distance = nearer
-        distances[t] = max(distance - box[4], 0.0)
-    return distances
+        distance = max(distance - box[4], 0.0)
+        reach = distance + way[t]
+        least[t] = min(least[t], distance)

@@ -1,6 +1,6 @@
 """Pictures of a run folder: what ``gcs report`` draws, and every flight at its end."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -61,7 +61,7 @@ def draw_position(run: RunData) -> Figure:
     figure, axes = _rows(run, "Payload position", 4, height=8.5)
     reference = run.reference_position
     for i, (ax, name) in enumerate(zip(axes, ("north", "east", "down"), strict=False)):
-        if len(reference) and run.reference is not None:
+        if len(reference):
             ax.plot(run.reference["time_s"], reference[:, i], **_REFERENCE_STYLE)
         ax.plot(run.time, run.payload_position[:, i], color=FLOWN, lw=1.4, label=_flown(run))
         ax.set_ylabel(f"{name} (m)")
@@ -133,18 +133,17 @@ def draw_thrust(run: RunData) -> Figure:
 
 
 def draw_separation(run: RunData) -> Figure:
-    """Return the separation of the UAVs, and the clearance to each obstacle, over time."""
-    barriers = run.barriers
-    title = "UAV separation and clearance" if barriers else "UAV separation"
-    figure, axes = _rows(run, title, 2 if barriers else 1, height=6.4 if barriers else 4.2)
+    """Return the separation of the UAVs, and the clearance to the nearest obstacle, over time."""
+    has_barriers = bool(run.barriers)
+    title = "UAV separation and clearance" if has_barriers else "UAV separation"
+    figure, axes = _rows(run, title, 2 if has_barriers else 1, height=6.4 if has_barriers else 4.2)
     if run.number_of_uavs > 1:
         axes[0].plot(run.time, run.uav_separation(), color=FLOWN, lw=1.4, label="nearest two UAVs")
     axes[0].set_ylabel("between centres (m)")
     _draw_floor(axes[0], _limit(run, "uav_separation"))
-    if barriers:
-        for i, (obstacle, clearance) in enumerate(zip(barriers, run.clearance.T, strict=True)):
-            axes[1].plot(run.time, clearance, color=SERIES[i % len(SERIES)], lw=1.4, label=obstacle.name)
-        axes[1].set_ylabel("hull to obstacle (m)")
+    if has_barriers:
+        axes[1].plot(run.time, run.clearance, color=FLOWN, lw=1.4, label="nearest obstacle or fence")
+        axes[1].set_ylabel("from the hull (m)")
         _draw_floor(axes[1], _limit(run, "clearance"))
     return figure
 
@@ -212,7 +211,4 @@ def _flown(run: RunData) -> str:
 
 def _limit(run: RunData, name: str) -> float | None:
     entry = (run.summary.get("limits") or {}).get(name)
-    if not entry:
-        return None
-    # A list in records of format 1.
-    return float(entry["limit"] if isinstance(entry, Mapping) else entry[1])
+    return float(entry["limit"]) if entry else None

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from gcs.record.clearance_kernels import clearance
+from gcs.record.clearance_kernels import lower_clearance
 from gcs.record.run_data import RunData
 from idc_controller.arrays import Array, Mask
 from idc_controller.rotations import rotation_from_quaternion
@@ -102,9 +102,10 @@ def _height(run: RunData, rotation: Array) -> Array:
     half = np.append(np.ptp(hull.bounds, axis=0)[:2] / 2.0 + about_home.margin, about_home.thickness / 2.0)
     place = np.append(hull.bounds.mean(axis=0)[:2], -0.5 * about_home.thickness)
     none = np.empty((len(near), 0, 3))
-    to_pad = clearance(
+    nearest = height[near]
+    lower_clearance(
         hull.vertices.copy(), np.ascontiguousarray(rotation[near]), none, none, 0.0, np.zeros((1, 3)),
-        np.append(half, (0.0, 0.0)), np.eye(3), place - run.payload_position[near],
+        np.append(half, (0.0, 0.0)), np.eye(3), place - run.payload_position[near], np.full(len(near), np.nan), nearest,
     )  # fmt: skip
-    height[near] = np.minimum(height[near], to_pad)
+    height[near] = nearest
     return np.asarray(height)

@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from gcs.record.tables import MODE_COLUMNS, read_text_table
+from gcs.record.reader import read_table
+from gcs.record.tables import MODES
 
-MODES = "modes.csv"
 OFFBOARD = "OFFBOARD"
 
 
@@ -13,12 +13,8 @@ def stops_after(run_dir: Path | str, since: float) -> dict[int, float]:
 
     Without those that did not, and empty without the file. Raises :class:`gcs.errors.UnusableInput` for a damaged one.
     """
-    path = Path(run_dir) / MODES
-    if not path.exists() or path.stat().st_size == 0:
-        return {}
-    table = read_text_table(path)
     stops: dict[int, float] = {}
-    for time, vehicle, mode in zip(*(table[name] for name in MODE_COLUMNS[:3]), strict=True):
-        if float(time) >= since and mode != OFFBOARD:
-            stops.setdefault(int(vehicle), float(time))
+    for row in read_table(Path(run_dir) / MODES):
+        if row["time_s"] >= since and row["mode"] != OFFBOARD:
+            stops.setdefault(int(row["vehicle"]), float(row["time_s"]))
     return stops

@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     from idc_controller.geometry.shape import Shape
     from idc_controller.perception.obstacle_map import ObstacleMap
 
-INTERVAL = 0.1  # s
+INTERVAL, STANDING_INTERVAL = 0.1, 1.0
+"""s, between rows of the tracks, and of what stands."""
 _GRID_TOLERANCE = 1e-6
 _NOTHING = (0.0,) * 7
 """Columns of a piece that is no more."""
@@ -33,20 +34,22 @@ class ObstacleRecorder:
             )
         )
         self._pieces: dict[str, tuple[Shape, Array]] = {}
-        self._next = -math.inf
+        self._next = self._next_standing = -math.inf
 
     def record(self, obstacle_map: ObstacleMap, time: float) -> None:
-        """Record tracked obstacles and changes of the standing ones at team ``time`` (s), ten times a second."""
+        """Record tracked obstacles at team ``time`` (s), ten times a second, and changes of the standing ones, once."""
         if time < self._next - _GRID_TOLERANCE:
             return
-        self._next = (math.floor(time / INTERVAL + _GRID_TOLERANCE) + 1) * INTERVAL
+        self._next = _after(time, INTERVAL)
         for track in obstacle_map.confirmed_tracks(time):
             shape, columns = track.shape, track.shape.columns
             self._tracks.write(
                 [round(time, 6), track.name, shape.kind, *track.position.tolist(), *track.velocity.tolist(),
                  columns.radius, *columns.size, columns.yaw, track.growth]
             )  # fmt: skip
-        self._record_standing(obstacle_map.seen.pieces, time)
+        if time >= self._next_standing - _GRID_TOLERANCE:
+            self._next_standing = _after(time, STANDING_INTERVAL)
+            self._record_standing(obstacle_map.seen.pieces, time)
 
     def close(self) -> None:
         """Close the tables; harmless when they are closed."""
@@ -62,5 +65,10 @@ class ObstacleRecorder:
             for name, shape, centre in pieces
             if name not in before or before[name][0] is not shape
         ]
-        for row in (*gone, *changed):
-            self._standing.write([round(time, 6), *row])
+        if rows := [(round(time, 6), *row) for row in (*gone, *changed)]:
+            self._standing.write(*rows)
+
+
+def _after(time: float, interval: float) -> float:
+    """Return the first multiple of ``interval`` (s) after ``time`` (s)."""
+    return (math.floor(time / interval + _GRID_TOLERANCE) + 1) * interval

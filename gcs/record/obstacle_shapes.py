@@ -5,7 +5,6 @@ import json
 from collections.abc import Mapping
 from pathlib import Path
 
-from gcs.errors import UnusableInput
 from idc_controller.errors import ShapeError
 from idc_controller.geometry.shape import Columns, Shape
 from idc_controller.geometry.shapes import shape_class
@@ -24,18 +23,15 @@ def write_shapes(folder: Path, shapes: Mapping[str, Shape]) -> None:
         (folder / OBSTACLE_SHAPES).write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
 
 
-def read_shape(folder: Path, name: str, kind: str, columns: Columns) -> Shape:
-    """Return the shape of an obstacle from the columns or, where those do not suffice, from the file.
+def read_shape(kind: str, columns: Columns, fields: Mapping[str, object] | None) -> Shape:
+    """Return a shape from its ``fields`` in the file or, where that has none (None), from the columns.
 
-    Raises :class:`UnusableInput` for a shape that does not exist or that neither holds.
+    Raises :class:`ShapeError` for a shape that does not exist or that neither holds.
     """
+    cls = shape_class(kind)
+    if fields is None:
+        return cls.from_columns(columns)
     try:
-        cls = shape_class(kind)
-        if cls.in_columns:
-            return cls.from_columns(columns)
-        found = json.loads((folder / OBSTACLE_SHAPES).read_text(encoding="utf-8"))[name]
-        return cls.from_fields({key: value for key, value in found.items() if key != "shape"})
-    except ShapeError as error:
-        raise UnusableInput(f"obstacle {name}: {error}") from error
-    except (OSError, ValueError, LookupError, TypeError) as error:
-        raise UnusableInput(f"{folder / OBSTACLE_SHAPES}: does not hold the {kind} {name!r}: {error}") from error
+        return cls.from_fields({key: value for key, value in fields.items() if key != "shape"})
+    except (ValueError, LookupError, TypeError) as error:
+        raise ShapeError(f"{OBSTACLE_SHAPES} does not hold the {kind}: {error}") from error

@@ -20,7 +20,6 @@ from gcs.record.tables import (
     PLAN_COLUMNS,
     REFERENCE_COLUMNS,
     STEP_COLUMNS,
-    STEP_PART_COLUMNS,
     TableWriter,
 )
 from gcs.record.tlog import TelemetryLog
@@ -49,7 +48,7 @@ class FlightRecorder:
         self._tlog = TelemetryLog(run_dir / "telemetry.tlog", start_epoch, incomplete)
         self._reference = TableWriter(run_dir / "reference.csv", REFERENCE_COLUMNS, incomplete)
         self._estimate = TableWriter(run_dir / "estimate.csv", ESTIMATE_COLUMNS, incomplete)
-        self._steps = TableWriter(run_dir / "steps.csv", (*STEP_COLUMNS, *STEP_PART_COLUMNS), incomplete)
+        self._steps = TableWriter(run_dir / "steps.csv", STEP_COLUMNS, incomplete)
         self._alarms = TableWriter(run_dir / ALARMS, ALARM_COLUMNS, incomplete)
         self._obstacles = ObstacleRecorder(run_dir, incomplete)
         self._plan = TableWriter(run_dir / "plan.csv", PLAN_COLUMNS, incomplete)

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import json
-from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from copy import copy
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -17,34 +15,34 @@ from gcs.config.system import SystemConfig
 from gcs.config.tables import PadSettings
 from gcs.errors import UnusableInput
 from gcs.mission.fence import boundary_walls
-from gcs.record.clearance import ObstacleTrack, clearance_over_time
-from gcs.record.obstacle_shapes import read_shape
-from gcs.record.run_folder import MANIFEST
-from gcs.record.tables import (
-    ESTIMATE_COLUMNS,
-    OBSTACLE_COLUMNS,
-    REFERENCE_COLUMNS,
-    STEP_COLUMNS,
-    read_table,
-    read_text_table,
-    truth_columns,
-)
+from gcs.record.clearance import Formation, ObstacleTrack
+from gcs.record.obstacle_shapes import OBSTACLE_SHAPES, read_shape
+from gcs.record.reader import Table, read_json, read_table
+from gcs.record.run_folder import MANIFEST, SUMMARY
+from gcs.record.tables import ESTIMATE, OBSTACLES, REFERENCE, REFERENCE_COLUMNS, STEPS, TRUTH
 from idc_controller.arrays import Array
-from idc_controller.geometry.shape import Columns, Shape
+from idc_controller.errors import ShapeError
+from idc_controller.geometry.shape import Columns
 from idc_controller.payload_hull import PayloadHull
 
-Table = dict[str, Array]
 
-SUMMARY, TRUTH = "summary.json", "truth.csv"
+class RunTables(dict[str, Table]):
+    """The tables of a run folder by file, each read when it is first asked for; see :func:`read_table`."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+
+    def __missing__(self, file: str) -> Table:
+        self[file] = table = read_table(self._folder / file)
+        return table
 
 
 @dataclass(frozen=True, eq=False)
 class RunData:
     """The records of a flight: T rows of N UAVs. NED, SI, w-first quaternions body to world.
 
-    ``source`` is ``truth``, or ``estimate`` when the folder has no truth; N is 0 then and ``contacts`` is
-    None. ``reference`` and ``steps`` are the tables, None when absent; ``manifest`` and ``summary`` the JSON
-    objects, empty when absent.
+    ``source`` is ``truth``, or ``estimate`` when the folder has no truth; N is 0 then and ``contacts`` is None.
+    ``tables`` are without rows, ``manifest`` and ``summary``, the JSON objects, empty when absent.
     """
 
     folder: Path
@@ -58,8 +56,7 @@ class RunData:
     thrust: Array  # (T, N)
     contacts: Array | None  # (T,)
     obstacles: tuple[ObstacleTrack, ...]
-    reference: Table | None
-    steps: Table | None
+    tables: Mapping[str, Table]
     manifest: Mapping[str, Any]
     summary: Mapping[str, Any]
 
@@ -69,10 +66,18 @@ class RunData:
         return int(self.uav_position.shape[1])
 
     @property
+    def reference(self) -> Table:
+        """The payload's reference by the mission."""
+        return self.tables[REFERENCE]
+
+    @property
+    def steps(self) -> Table:
+        """The compute times of the control steps."""
+        return self.tables[STEPS]
+
+    @property
     def reference_position(self) -> Array:
-        """The reference's position (rows, 3); no rows without a reference."""
-        if self.reference is None:
-            return np.empty((0, 3))
+        """The reference's position (rows, 3)."""
         return np.column_stack([self.reference[name] for name in REFERENCE_COLUMNS[1:4]])
 
     def setting(self, *path: str) -> Any:
@@ -120,10 +125,8 @@ class RunData:
     def fence(self) -> tuple[ObstacleTrack, ...]:
         """The edges of the area that must not be left, as walls on its outer side."""
         boundary = (self.manifest.get("mission") or {}).get("boundary") or ()
-        if boundary and np.ndim(boundary[0]) == 1:  # of an older run, a single ring
-            boundary = [boundary]
         return tuple(
-            ObstacleTrack(wall.name, wall.shape, np.tile(wall.position, (len(self.time), 1)))
+            ObstacleTrack(wall.name, wall.shape, np.broadcast_to(wall.position, (len(self.time), 3)))
             for wall in boundary_walls(boundary)
         )
 
@@ -134,21 +137,40 @@ class RunData:
 
     @cached_property
     def clearance(self) -> Array:
-        """Distance from the formation to each of the barriers (T, number of them) (m), NaN where unknown."""
-        return clearance_over_time(
-            self.payload_position,
-            self.payload_quaternion,
-            self.uav_position,
-            self.uav_quaternion,
-            self.barriers,
-            self.payload.vertices,
-            self.setting("uav", "disc_radius"),
-        )
+        """Distance from the formation to the nearest of the barriers (T,) (m), NaN where unknown."""
+        return self._formation(slice(None)).clearance(self.barriers)
+
+    def clearances(self, rows: slice) -> Array:
+        """Return the distance to each of the barriers (K, number of them) (m) in some rows, NaN where unknown."""
+        return self._formation(rows).clearances([replace(b, position=b.position[rows]) for b in self.barriers])
+
+    def _formation(self, rows: slice) -> Formation:
+        return Formation(
+            self.payload_position[rows], self.payload_quaternion[rows], self.uav_position[rows],
+            self.uav_quaternion[rows], self.payload, self.setting("uav", "disc_radius"),
+        )  # fmt: skip
+
+    def level_formation(self, places: Array) -> Formation:
+        """Return the formation with its payload at ``places`` (K, 3), all level and all links upright."""
+        upright = self.uav_position[0] - self.payload_position[0]
+        level = np.tile([1.0, 0.0, 0.0, 0.0], (len(places), len(upright), 1))
+        uavs = places[:, None] + upright
+        return replace(
+            self._formation(slice(0)),
+            payload_position=places, payload_quaternion=level[:, 0], uav_position=uavs, uav_quaternion=level,
+        )  # fmt: skip
+
+    def barriers_at(self, times: Array) -> list[ObstacleTrack]:
+        """Return the barriers at ``times`` (K,) (s) within the flight."""
+        return [
+            replace(b, position=np.column_stack([np.interp(times, self.time, axis) for axis in b.position.T]))
+            for b in self.barriers
+        ]
 
 
 def position_error(run: RunData) -> tuple[Array, Array]:
     """Return times (K,) (s) within the reference's span, and position minus reference then (K, 3) (m)."""
-    if run.reference is None or len(run.reference["time_s"]) == 0:
+    if not len(run.reference):
         return np.empty(0), np.empty((0, 3))
     at = run.reference["time_s"]
     inside = (run.time >= at[0]) & (run.time <= at[-1])
@@ -166,101 +188,60 @@ def read_run(run_dir: Path | str) -> RunData:
     folder = Path(run_dir)
     if not folder.is_dir():
         raise UnusableInput(f"{folder}: is not a folder")
-    if not any((folder / name).exists() for name in (MANIFEST, TRUTH, "estimate.csv")):
-        files = "manifest.json, truth.csv or estimate.csv"
-        raise UnusableInput(f"{folder}: is not a run folder: it holds no {files}")
-    truth = _table(folder / TRUTH)
+    if not any((folder / name).exists() for name in (MANIFEST, TRUTH, ESTIMATE)):
+        raise UnusableInput(f"{folder}: is not a run folder: it holds no {MANIFEST}, {TRUTH} or {ESTIMATE}")
+    tables = RunTables(folder)
     # A truth of no rows (its world never ran) must not hide what the ground recorded.
-    from_truth = truth is not None and len(truth["time_s"]) > 0
-    state = truth if from_truth else _table(folder / "estimate.csv", ESTIMATE_COLUMNS)
-    if state is None:
-        state = {name: np.empty(0) for name in ESTIMATE_COLUMNS}
-    n = sum(name.endswith("_thrust_n") for name in state) if from_truth else 0
-    if from_truth:
-        _check_columns(folder / TRUTH, state, truth_columns(n))
-    time = state["time_s"]
+    from_truth = len(tables[TRUTH]) > 0
+    state = tables[TRUTH if from_truth else ESTIMATE]
+    n = sum(name.endswith("_thrust_n") for name in state.dtype.names or ())
 
-    def stack(prefix: str, parts: tuple[str, ...]) -> Array:
+    def stack(prefix: str, parts: Iterable[str]) -> Array:
         return np.column_stack([state[f"{prefix}_{part}"] for part in parts])
 
-    def uavs(parts: tuple[str, ...]) -> Array:
+    def uavs(*parts: str) -> Array:
         each = [stack(f"uav{i}", parts) for i in range(1, n + 1)]
-        return np.stack(each, axis=1) if each else np.empty((len(time), 0, len(parts)))
+        return np.stack(each, axis=1) if each else np.empty((len(state), 0, len(parts)))
 
     position, quaternion = ("x_m", "y_m", "z_m"), ("qw", "qx", "qy", "qz")
     return RunData(
         folder=folder,
         source="truth" if from_truth else "estimate",
-        time=time,
+        time=np.ascontiguousarray(state["time_s"]),
         payload_position=stack("payload", position),
         payload_quaternion=stack("payload", quaternion),
         payload_velocity=stack("payload", ("vx_mps", "vy_mps", "vz_mps")),
-        uav_position=uavs(position),
-        uav_quaternion=uavs(quaternion),
-        thrust=uavs(("thrust_n",))[:, :, 0],
-        contacts=state["contacts"] if from_truth else None,
-        obstacles=_obstacles(folder / "obstacles.csv", time) if from_truth else (),
-        reference=_table(folder / "reference.csv", REFERENCE_COLUMNS),
-        steps=_table(folder / "steps.csv", STEP_COLUMNS),
-        manifest=_json(folder / MANIFEST),
-        summary=_json(folder / SUMMARY),
+        uav_position=uavs(*position),
+        uav_quaternion=uavs(*quaternion),
+        thrust=uavs("thrust_n")[:, :, 0],
+        contacts=np.ascontiguousarray(state["contacts"]) if from_truth else None,
+        obstacles=_obstacles(tables[OBSTACLES], state["time_s"], folder) if from_truth else (),
+        tables=tables,
+        manifest=read_json(folder / MANIFEST),
+        summary=read_json(folder / SUMMARY),
     )
 
 
-def _table(path: Path, columns: tuple[str, ...] = ("time_s",)) -> Table | None:
-    """Return a table, None if it is absent or was cut off before its header was written."""
-    if not path.exists() or path.stat().st_size == 0:
-        return None
-    table = read_table(path)
-    _check_columns(path, table, columns)
-    return table
-
-
-def _check_columns(path: Path, table: Mapping[str, object], columns: tuple[str, ...]) -> None:
-    for name in columns:
-        if name not in table:
-            raise UnusableInput(f"{path}, line 1: column {name} is missing")
-
-
-def _obstacles(path: Path, time: Array) -> tuple[ObstacleTrack, ...]:
-    """Return the obstacles over the times of the truth; NaN where a cut-off flight left no row."""
-    if not path.exists() or path.stat().st_size == 0:
-        return ()
-    table = read_text_table(path)
-    _check_columns(path, table, OBSTACLE_COLUMNS)
-    row_of_time = {moment: row for row, moment in enumerate(time.tolist())}
-    seen: Counter[tuple[str, str]] = Counter()
-    shapes: dict[tuple[str, int], Shape] = {}
-    tracks: dict[tuple[str, int], Array] = {}
-    numbers = [table[name] for name in OBSTACLE_COLUMNS if name not in ("time_s", "name", "shape")]
-    rows = zip(table["time_s"], table["name"], table["shape"], *numbers, strict=True)
-    for line, (moment, name, shape, *cells) in enumerate(rows, start=2):
+def _obstacles(table: Table, time: Array, folder: Path) -> tuple[ObstacleTrack, ...]:
+    """Return the obstacles over the times of the truth; NaN where a cut-off flight left no row of one that moves."""
+    rows_of: dict[str, list[int]] = {}
+    for row, name in enumerate(table["name"]):
+        rows_of.setdefault(name, []).append(row)
+    shapes = read_json(folder / OBSTACLE_SHAPES)
+    tracks = []
+    for name, rows in rows_of.items():
+        found = table[rows]
+        kind, radius, *size, yaw = found[["shape", "radius_m", "size_x_m", "size_y_m", "size_z_m", "yaw_rad"]][0].item()
+        places = np.column_stack([found[axis] for axis in ("x_m", "y_m", "z_m")])
+        if len(rows) == 1:  # it stands
+            track = np.broadcast_to(places, (len(time), 3))
+        else:
+            track = np.full((len(time), 3), np.nan)
+            _, at, known = np.intersect1d(time, found["time_s"], return_indices=True)
+            track[at] = places[known]
         try:
-            at = float(moment)
-            x, y, z, radius, size_x, size_y, size_z, yaw = map(float, cells)
-        except ValueError:
-            raise UnusableInput(f"{path}, line {line}: a value is not a number") from None
-        # Two obstacles of one name are distinguished by their order at that moment.
-        key = (name, seen[moment, name])
-        seen[moment, name] += 1
-        if key not in tracks:
-            tracks[key] = np.full((len(time), 3), np.nan)
-            shapes[key] = read_shape(path.parent, name, shape, Columns(radius, (size_x, size_y, size_z), yaw))
-        if at in row_of_time:
-            tracks[key][row_of_time[at]] = (x, y, z)
-    return tuple(ObstacleTrack(key[0], shapes[key], track) for key, track in tracks.items())
-
-
-def _json(path: Path) -> Mapping[str, Any]:
-    try:
-        text = path.read_text(encoding="utf-8")
-        content = json.loads(text) if text.strip() else {}
-    except FileNotFoundError:
-        return {}
-    except OSError as error:
-        raise UnusableInput(f"{path}: cannot be read: {error.strerror}") from None
-    except ValueError as error:
-        raise UnusableInput(f"{path}: is not JSON: {error}") from None
-    if not isinstance(content, dict):
-        raise UnusableInput(f"{path}: is not a JSON object")
-    return content
+            shape = read_shape(kind, Columns(radius, (size[0], size[1], size[2]), yaw), shapes.get(name))
+        except ShapeError as error:
+            raise UnusableInput(f"{folder / OBSTACLES}: obstacle {name}: {error}") from error
+        tracks.append(ObstacleTrack(name, shape, track))
+    return tuple(tracks)

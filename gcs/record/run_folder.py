@@ -21,8 +21,8 @@ import numpy as np
 from gcs.errors import UnusableInput
 from gcs.numerics import numerics
 
-MANIFEST = "manifest.json"
-FORMAT = 2
+MANIFEST, SUMMARY = "manifest.json", "summary.json"
+FORMAT = 3
 """Version of the format of ``manifest.json``, ``summary.json`` and tables of results; before it was written: 1."""
 _DISTRIBUTION = "cooplift"
 

@@ -1,15 +1,13 @@
 """Safety figures of a flight: what the guarantee assumes, and where a flight went beyond it; detours."""
 
-from collections.abc import Mapping
-from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from gcs.record.landing import is_clear_of_ground
+from gcs.record.reader import Table
 from gcs.record.run_data import RunData, position_error
-from gcs.record.tables import PLAN_COLUMNS, read_table
+from gcs.record.tables import PLAN
 from idc_controller.arrays import Array
 
 GRAVITY = 9.81  # m/s2
@@ -23,11 +21,8 @@ def safety_figures(run: RunData) -> dict[str, Any] | None:
     Tracking errors are those of the true state (of the estimate where there is no truth) against the plan in force,
     while the payload is clear of the ground; UAVs against their positions by the plan's links (m).
     """
-    path = Path(run.folder) / "plan.csv"
-    if not path.exists():
-        return None
-    plan = read_table(path)
-    if set(PLAN_COLUMNS) - set(plan) or len(plan["time_s"]) < 2 or len(run.time) == 0:
+    plan = run.tables[PLAN]
+    if len(plan) < 2 or len(run.time) == 0:
         return None
     time = plan["time_s"]
     # Steps that follow each other: in between the plan is followed, elsewhere nothing was planned.
@@ -74,7 +69,7 @@ def safety_figures(run: RunData) -> dict[str, Any] | None:
     }
 
 
-def _unverified(plan: Mapping[str, Array], margin: float) -> str | None:
+def _unverified(plan: Table, margin: float) -> str | None:
     """Return why the least of the plans that were not verified was not; None: all were."""
     unverified = np.flatnonzero(plan["verified"] == 0.0)
     if not len(unverified):
@@ -110,26 +105,12 @@ def return_times(run: RunData, clearance: float) -> list[tuple[float, float]]:
     The reference is free while the formation on it, level and with its links upright, keeps ``clearance`` (m) to all
     obstacles. Where the payload did not come back, the time to the end.
     """
-    if run.reference is None or not run.obstacles or not run.number_of_uavs or not len(run.time):
+    if not len(run.reference) or not run.obstacles or not run.number_of_uavs or not len(run.time):
         return []
     time, place = run.reference["time_s"][::EVERY], run.reference_position[::EVERY]
-    level = np.array([1.0, 0.0, 0.0, 0.0])
-    upright = run.uav_position[0] - run.payload_position[0]
-    planned = replace(
-        run,
-        time=time,
-        payload_position=place,
-        payload_quaternion=np.tile(level, (len(time), 1)),
-        uav_position=place[:, None] + upright,
-        uav_quaternion=np.tile(level, (len(time), len(upright), 1)),
-        obstacles=tuple(replace(track, position=_at(time, run.time, track.position)) for track in run.obstacles),
-    )
-    free = np.nan_to_num(planned.clearance, nan=np.inf).min(axis=1) >= clearance
+    found = run.level_formation(place).clearance(run.barriers_at(time))
+    free = np.nan_to_num(found, nan=np.inf) >= clearance
     at, error = position_error(run)
     near = at[np.linalg.norm(error, axis=1) <= BACK]
     cleared = time[1:][free[1:] & ~free[:-1]]
     return [(float(t), float(min(near[near >= t], default=at[-1]) - t)) for t in cleared]
-
-
-def _at(times: Array, known: Array, values: Array) -> Array:
-    return np.column_stack([np.interp(times, known, axis) for axis in values.T])

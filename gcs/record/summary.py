@@ -9,8 +9,9 @@ import numpy as np
 from gcs.record.arrival import Arrival
 from gcs.record.landing import in_air, landing_figures, onsets
 from gcs.record.outcome import Outcome
-from gcs.record.run_data import SUMMARY, RunData, Table, position_error
-from gcs.record.run_folder import FORMAT, write_json
+from gcs.record.reader import Table
+from gcs.record.run_data import RunData, position_error
+from gcs.record.run_folder import FORMAT, SUMMARY, write_json
 from gcs.record.safety import safety_figures
 from idc_controller.arrays import Array
 from idc_controller.rotations import euler_from_quaternion
@@ -122,7 +123,7 @@ def position_rmse(run: RunData, settle: float) -> dict[str, float | None]:
     Counted from ``settle`` seconds after the reference begins; None where no row is left.
     """
     time, error = position_error(run)
-    if run.reference is None or len(time) == 0:
+    if len(time) == 0:
         return dict.fromkeys(("x", "y", "z", "total"))
     error = error[time >= run.reference["time_s"][0] + settle]
     if len(error) == 0:
@@ -152,28 +153,28 @@ def payload_tilt_max(run: RunData) -> dict[str, float | None]:
     return dict(zip(("roll", "pitch", "yaw"), np.max(angles, axis=0).tolist(), strict=True))
 
 
-def _step_times(steps: Table | None) -> dict[str, float | None]:
-    total = steps["total_ms"] if steps is not None else np.empty(0)
-    return {name: _percentile(total, percent) for name, percent in (("p50", 50.0), ("p99", 99.0), ("max", 100.0))}
+def _step_times(steps: Table) -> dict[str, float | None]:
+    percents = {"p50": 50.0, "p99": 99.0, "max": 100.0}
+    return {name: _percentile(steps["total_ms"], percent) for name, percent in percents.items()}
 
 
-def _step_parts(steps: Table | None) -> dict[str, dict[str, float | None]] | None:
-    """Return p50 and p99 of the parts of a control step; None where they are not on record."""
-    if steps is None or any(column not in steps for column in STEP_PARTS.values()):
-        return None
-    return {
-        part: {"p50": _percentile(steps[column], 50.0), "p99": _percentile(steps[column], 99.0)}
-        for part, column in STEP_PARTS.items()
-    }
+def _step_parts(steps: Table) -> dict[str, dict[str, float | None]] | None:
+    """Return p50 and p99 of the parts of a control step; None without a step."""
+    return (
+        None
+        if not len(steps)
+        else {
+            part: {"p50": _percentile(steps[column], 50.0), "p99": _percentile(steps[column], 99.0)}
+            for part, column in STEP_PARTS.items()
+        }
+    )
 
 
-def _solver(steps: Table | None) -> dict[str, float | int | None]:
-    if steps is None:
-        return {"mpc_p50_ms": None, "planner_p50_ms": None, "infeasible_steps": None}
+def _solver(steps: Table) -> dict[str, float | int | None]:
     return {
         "mpc_p50_ms": _percentile(steps["mpc_ms"], 50.0),
         "planner_p50_ms": _percentile(steps["planner_ms"], 50.0),
-        "infeasible_steps": int(np.count_nonzero(steps["infeasible"])),
+        "infeasible_steps": int(np.count_nonzero(steps["infeasible"])) if len(steps) else None,
     }
 
 

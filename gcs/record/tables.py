@@ -1,19 +1,16 @@
-"""The tables (CSV) of a run folder: their columns, their writer and their reader."""
+"""The tables (CSV) of a run folder: their columns and their writer."""
 
 import csv
 import io
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import orjson
-from numpy.typing import NDArray
 
-from gcs.errors import UnusableInput
 from gcs.record.append_file import AppendOnlyFile
 from gcs.record.incomplete import IncompleteRecords
-from idc_controller.arrays import Array
 
 PAYLOAD_COLUMNS = (
     "payload_x_m", "payload_y_m", "payload_z_m",
@@ -24,13 +21,10 @@ PAYLOAD_COLUMNS = (
 REFERENCE_COLUMNS = ("time_s", "x_m", "y_m", "z_m", "vx_mps", "vy_mps", "vz_mps")
 # The estimate: the payload's state and the disturbance force on it, as estimated.
 ESTIMATE_COLUMNS = ("time_s", *PAYLOAD_COLUMNS, "disturbance_x_n", "disturbance_y_n", "disturbance_z_n")
-# Wall-clock times stand in this table only, so that every other one repeats to the byte.
+# Wall-clock times stand in this table only, so that every other one repeats to the byte. ``total_ms`` is all that the
+# ground computed; of ``control_ms``, ``mpc_ms`` is the tracker's.
 STEP_COLUMNS = (
     "time_s", "estimator_ms", "planner_ms", "mpc_ms", "total_ms", "solver_iterations", "infeasible",
-)  # fmt: skip
-# What the ground computed beside ``estimator_ms`` and ``planner_ms``; all of it is ``total_ms``. Of ``control_ms``,
-# ``mpc_ms`` is the tracker's.
-STEP_PART_COLUMNS = (
     "telemetry_ms", "perception_ms", "control_ms", "stop_plan_ms", "monitoring_ms", "recording_ms", "setpoints_ms",
 )  # fmt: skip
 # What was tracked, and what the safety filter did, at every control step in the air.
@@ -53,11 +47,7 @@ STANDING_OBSTACLE_COLUMNS = (
 # What each vehicle flew from when on, as it stood on board, and whether against the ground's intention.
 MODE_COLUMNS = ("time_s", "vehicle", "mode", "armed", "failsafe")
 
-# Alarms of the ground.
-ALARMS = "alarms.csv"
 ALARM_COLUMNS = ("time_s", "source", "code", "severity", "text")
-
-Cell = float | int | bool | str
 
 
 def truth_columns(number_of_uavs: int) -> tuple[str, ...]:
@@ -65,6 +55,19 @@ def truth_columns(number_of_uavs: int) -> tuple[str, ...]:
     parts = ("x_m", "y_m", "z_m", "qw", "qx", "qy", "qz", "thrust_n")
     uavs = tuple(f"uav{i}_{part}" for i in range(1, number_of_uavs + 1) for part in parts)
     return ("time_s", *PAYLOAD_COLUMNS, *uavs, "contacts")
+
+
+TRUTH, OBSTACLES, MODES, ALARMS = "truth.csv", "obstacles.csv", "modes.csv", "alarms.csv"
+REFERENCE, ESTIMATE, PLAN, STEPS = "reference.csv", "estimate.csv", "plan.csv", "steps.csv"
+COLUMNS: Mapping[str, tuple[str, ...]] = {
+    TRUTH: truth_columns(0), OBSTACLES: OBSTACLE_COLUMNS, MODES: MODE_COLUMNS, ALARMS: ALARM_COLUMNS,
+    REFERENCE: REFERENCE_COLUMNS, ESTIMATE: ESTIMATE_COLUMNS, PLAN: PLAN_COLUMNS, STEPS: STEP_COLUMNS,
+}  # fmt: skip
+"""Columns that a file has; ``truth.csv`` also those of the UAVs."""
+TEXT_COLUMNS = frozenset(("name", "shape", "kind", "mode", "source", "code", "severity", "text"))
+"""Columns of text in any table; all others are of numbers."""
+
+Cell = float | int | bool | str
 
 
 class TableWriter(AppendOnlyFile):
@@ -85,18 +88,9 @@ class TableWriter(AppendOnlyFile):
         self.columns = tuple(columns)
         super().__init__(path, incomplete, head=_line(self.columns), when_needed=when_needed)
 
-    def write(self, row: Iterable[Cell]) -> None:
-        """Append one row, a value a column. Raises :class:`ValueError` for another number of values."""
-        self.append(self._row(row))
-
-    def write_behind(self, first: float, rests: Iterable[bytes]) -> None:
-        """Append rows in one record: the number ``first``, and behind it what :meth:`rest` has made."""
-        head = repr(first).encode() + b","
-        self.append(head + head.join(rests))
-
-    def rest(self, cells: Iterable[Cell]) -> bytes:
-        """Return a row without its first cell, to be written often. Raises as :meth:`write`."""
-        return self._row((0, *cells)).removeprefix(b"0,")
+    def write(self, *rows: Iterable[Cell]) -> None:
+        """Append rows, a value a column, in one record. Raises :class:`ValueError` for another number of values."""
+        self.append(b"".join(map(self._row, rows)))
 
     def _row(self, row: Iterable[Cell]) -> bytes:
         cells = [_FORMATS.get(type(value), _cell)(value) for value in row]
@@ -138,95 +132,3 @@ def _line(cells: Sequence[str]) -> bytes:
         csv.writer(buffer, lineterminator="").writerow([" ".join(cell.splitlines()) for cell in cells])
         line = buffer.getvalue()
     return (line + "\n").encode()
-
-
-def read_table(path: Path | str) -> dict[str, Array]:
-    """Return the columns of a numeric table, each (rows,). Otherwise like :func:`read_text_table`."""
-    columns, lines = _read_lines(path)
-    numbers = _plain_numbers(lines, len(columns))
-    if numbers is not None:
-        return dict(zip(columns, np.ascontiguousarray(numbers.T), strict=True))
-    table = _text_table(path, columns, lines)
-    try:
-        return {name: np.array(cells, dtype=float) for name, cells in table.items()}
-    except ValueError:
-        raise UnusableInput(f"{path}, {_first_bad_cell(table)} is not a number") from None
-
-
-def read_text_table(path: Path | str) -> dict[str, list[str]]:
-    """Return the columns of a table as text.
-
-    A last line without its line break, as a killed process may leave, is left out. Raises :class:`UnusableInput`, with
-    file and line, for a file that cannot be read or is not such a table.
-    """
-    return _text_table(path, *_read_lines(path))
-
-
-def structured_array(name: str, text: str, text_columns: Collection[str] = ()) -> NDArray[np.void]:
-    """Return a table (``text`` of a file ``name``) as a structured array (rows,) with a field a column.
-
-    Fields are float64, those of ``text_columns`` text. Raises as :func:`read_table`.
-    """
-    columns, lines = _lines_of(name, text)
-    numbers = _plain_numbers(lines, len(columns))
-    if numbers is not None:
-        return np.ascontiguousarray(numbers).view([(column, float) for column in columns]).reshape(len(lines))
-    table = _text_table(name, columns, lines)
-    try:
-        arrays = {c: np.array(cells, dtype=str if c in text_columns else float) for c, cells in table.items()}
-    except ValueError:
-        raise UnusableInput(f"{name}, {_first_bad_cell(table)} is not a number") from None
-    found = np.empty(len(lines), dtype=[(column, array.dtype) for column, array in arrays.items()])
-    for column, array in arrays.items():
-        found[column] = array
-    return found
-
-
-def _read_lines(path: Path | str) -> tuple[list[str], list[str]]:
-    """Return the names of the columns, and the complete lines below them."""
-    try:
-        text = Path(path).read_text(encoding="utf-8")
-    except OSError as error:
-        raise UnusableInput(f"{path}: cannot be read: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise UnusableInput(f"{path}: is not a text file") from None
-    return _lines_of(path, text)
-
-
-def _lines_of(path: Path | str, text: str) -> tuple[list[str], list[str]]:
-    header, *lines = text.split("\n")
-    if not lines:
-        raise UnusableInput(f"{path}, line 1: the header is missing or cut off")
-    return header.split(","), lines[:-1]
-
-
-def _plain_numbers(lines: Sequence[str], columns: int) -> Array | None:
-    """Return the rows (rows, columns) of lines that are numbers as JSON has them, None for any others."""
-    text = "\n".join(lines).encode()
-    if text.translate(None, b"0123456789.eE+-,\n"):
-        return None
-    try:
-        rows = np.array(orjson.loads(b"[[" + text.replace(b"\n", b"],[") + b"]]"), dtype=float)
-    except ValueError:
-        return None
-    return rows if rows.shape == (len(lines), columns) else None
-
-
-def _text_table(path: Path | str, columns: Sequence[str], lines: Sequence[str]) -> dict[str, list[str]]:
-    rows = list(csv.reader(lines))
-    for number, row in enumerate(rows, start=2):
-        if len(row) != len(columns):
-            raise UnusableInput(f"{path}, line {number}: {len(row)} values for {len(columns)} columns")
-    return (
-        dict(zip(columns, map(list, zip(*rows, strict=True)), strict=True)) if rows else {name: [] for name in columns}
-    )
-
-
-def _first_bad_cell(table: Mapping[str, Sequence[str]]) -> str:
-    for number, row in enumerate(zip(*table.values(), strict=True), start=2):
-        for name, cell in zip(table, row, strict=True):
-            try:
-                float(cell)
-            except ValueError:
-                return f"line {number}, {name}: {cell!r}"
-    raise AssertionError("all cells are numbers")

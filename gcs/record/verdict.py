@@ -85,7 +85,7 @@ def _identified(run: RunData, ground: GroundReport) -> str:
     if not _SEEN.search(ground.reason) or not run.obstacles or not run.number_of_uavs:
         return ""
     row = min(int(np.searchsorted(run.time, ground.ended_at)), len(run.time) - 1)
-    clearance = np.nan_to_num(run.clearance[row, : len(run.obstacles)], nan=np.inf)
+    clearance = np.nan_to_num(run.clearances(slice(row, row + 1))[0, : len(run.obstacles)], nan=np.inf)
     nearest = int(np.argmin(clearance))
     return f" (nearest then: {run.obstacles[nearest].name}, {clearance[nearest]:.2f} m from the formation)"
 
@@ -96,11 +96,8 @@ def contact(run: RunData) -> str:
         return ""
     row = int(np.flatnonzero(run.contacts)[0])
     about = slice(max(row - 1, 0), row + 1)
-    named = [
-        track.name
-        for j, track in enumerate(run.obstacles)
-        if np.nanmin(run.clearance[about, j], initial=np.inf) < _NEAR
-    ]
+    nearest = np.nan_to_num(run.clearances(about), nan=np.inf).min(axis=0)
+    named = [track.name for track, clearance in zip(run.obstacles, nearest, strict=False) if clearance < _NEAR]
     discs = 2.0 * float(run.setting("uav", "disc_radius"))
     for i, j in combinations(range(run.number_of_uavs), 2):
         if np.linalg.norm(run.uav_position[about, i] - run.uav_position[about, j], axis=1).min() < discs + _NEAR:

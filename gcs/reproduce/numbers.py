@@ -51,7 +51,6 @@ def flight_numbers(summary: Mapping[str, Any], run: RunData) -> dict[str, Any]:
     powered = (run.thrust > 0.0).any(axis=1)
     in_contact = np.flatnonzero((contacts > 0) & powered)
     before = slice(0, in_contact[0] + 1 if len(in_contact) else len(run.time))
-    nearest = run.clearance[before]
     return {
         "outcome": summary["outcome"],
         "clearance_min_m": summary["clearance_min_m"],
@@ -61,14 +60,15 @@ def flight_numbers(summary: Mapping[str, Any], run: RunData) -> dict[str, Any]:
         "rmse_m": summary["position_rmse_m"]["total"],
         "duration_s": summary["duration_s"],
         "first_contact_s": float(run.time[in_contact[0]]) if len(in_contact) else None,
-        "touched_first": _touched_first(run, nearest[-1]) if len(in_contact) else None,
+        "touched_first": _touched_first(run, in_contact[0]) if len(in_contact) else None,
         "tilt_max_before_contact_deg": float(np.abs(payload_angles(run)[before, :2]).max()),
-        "clearance_before_contact_m": float(np.nanmin(nearest)),
+        "clearance_before_contact_m": float(np.nanmin(run.clearance[before])),
     }
 
 
-def _touched_first(run: RunData, clearance: Array) -> str:
-    """Return the name of the obstacle of the first contact, or that two UAVs touched each other."""
+def _touched_first(run: RunData, row: int) -> str:
+    """Return the name of the obstacle of the first contact, in a ``row``, or that two UAVs touched each other."""
+    clearance = run.clearances(slice(row, row + 1))[0]
     return run.obstacles[int(np.argmin(clearance))].name if clearance.min() < 0.01 else "one UAV another"
 
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gcs.record.clearance import ObstacleTrack, clearance_over_time
+from gcs.record.clearance import Formation, ObstacleTrack
 from gcs.reproduce.controls import PERIOD, Control, PaperControl, PaperVariant, ProjectControl
 from gcs.reproduce.scene import MARGIN, RADIUS, Sphere, configuration, shaped_figure, two_spheres
 from idc_controller.geometry.sphere import Sphere as SphereShape
@@ -149,7 +149,7 @@ def simulate(case: Case) -> Flown:
     return Flown(
         spheres, 10.0 if as_printed else shaped.full_rate, 5.0 if as_printed else shaped.full_rate,
         times, control.reference(times), r_0, attitude, uavs, attitudes, u, avoiding,
-        clearance_over_time(r_0, attitude, uavs, attitudes, tracks, truth.payload.vertices, truth.disc_radius),
+        Formation(r_0, attitude, uavs, attitudes, truth.payload, truth.disc_radius).clearances(tracks),
         control.infeasible_tracking, control.infeasible_avoidance, lost_at,
     )  # fmt: skip
 

@@ -137,7 +137,7 @@ def _truth_log(
 
 def _report_faults(options: Namespace, injector: FaultInjector, swarm: Swarm, incomplete: IncompleteRecords) -> None:
     """Record what the faults affected, and print notes on those that affected nothing."""
-    from gcs.faults.record import FAULTS_FILE, notes_of
+    from gcs.record.faults import FAULTS_FILE, notes_of
     from vehicle_sim.faults.record import faults_record, record_faults
 
     if options.run_dir is not None:

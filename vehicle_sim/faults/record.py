@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any
 
-from gcs.faults.record import FAULTS_FILE
+from gcs.record.faults import FAULTS_FILE
 from gcs.record.run_folder import write_json
 from vehicle_sim.faults.fault_injector import FaultInjector
 

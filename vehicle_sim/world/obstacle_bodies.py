@@ -50,6 +50,10 @@ class ObstacleBodies:
         """Return the obstacles at the current time, in the order in which they were added."""
         return tuple(self._obstacles.values())
 
+    def __getitem__(self, name: str) -> Obstacle:
+        """Return an obstacle at the current time."""
+        return self._obstacles[name]
+
     @property
     def ray_bodies(self) -> RayBodies:
         """The obstacles as rays meet them."""
@@ -123,6 +127,10 @@ class MovingObstacles:
         """Move them to where the motions have them ``time`` (s) after they began."""
         for name, rest, displacement in self._moving:
             self._bodies.move(name, _moved(rest, displacement(time)))
+
+    def moving(self) -> list[Obstacle]:
+        """Return those that have a motion, at the current time."""
+        return [self._bodies[name] for name, *_ in self._moving]
 
 
 def _moved(rest: Vector, by: Vector) -> Vector:

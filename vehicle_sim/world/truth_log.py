@@ -32,14 +32,13 @@ class TruthLog:
         self._truth = TableWriter(folder / "truth.csv", truth_columns(number_of_uavs), incomplete)
         self._obstacles = TableWriter(folder / "obstacles.csv", OBSTACLE_COLUMNS, incomplete, when_needed=True)
         self._modes = TableWriter(folder / "modes.csv", MODE_COLUMNS, incomplete, when_needed=True)
-        self._rows: dict[str, tuple[Obstacle, bytes]] = {}
-        """Obstacles as they were last written, with their rows without the time."""
+        self._shapes_written = False
         self._flown: dict[int, tuple[str, bool, bool]] = {}
 
     def write(
         self, time: float, states: Array, thrusts: Sequence[float], contacts: int, obstacles: Sequence[Obstacle] = ()
     ) -> None:
-        """Append the state at a ``time`` (s), and the obstacles at that time.
+        """Append the state at a ``time`` (s), and ``obstacles``: at first all, then those that move.
 
         ``states`` (N + 1, 13) as in :mod:`.state_kernels`, ``thrusts`` (N) of the UAVs; ``contacts`` is the number of
         touching pairs, pad and cradles excluded. Raises ``ValueError`` for another number of UAVs.
@@ -54,10 +53,10 @@ class TruthLog:
         self._truth.write_numbers(row)
         if not obstacles or self._obstacles.closed:
             return
-        if not self._rows:
+        if not self._shapes_written:
+            self._shapes_written = True
             self._write_shapes(obstacles)
-        table = self._obstacles
-        table.write_behind(time, [self._row(table, obstacle) for obstacle in obstacles])
+        self._obstacles.write(*[_row(time, obstacle) for obstacle in obstacles])
 
     def _write_shapes(self, obstacles: Sequence[Obstacle]) -> None:
         """Write those shapes that the columns do not hold; without them the obstacles cannot be read."""
@@ -68,16 +67,6 @@ class TruthLog:
             path.unlink(missing_ok=True)
             self.incomplete.add(path, error)
             self._obstacles.close()
-
-    def _row(self, table: TableWriter, obstacle: Obstacle) -> bytes:
-        """Return the row of an obstacle without its time; of one that has not moved since, the same again."""
-        last, row = self._rows.get(obstacle.name, (None, b""))
-        if last is not obstacle:
-            shape = obstacle.shape
-            numbers = (*obstacle.position_in_world, shape.columns.radius, *shape.columns.size, shape.columns.yaw)
-            row = table.rest([obstacle.name, shape.kind, *map(float, numbers)])
-            self._rows[obstacle.name] = obstacle, row
-        return row
 
     def write_mode(self, time: float, vehicle: int, mode: str, armed: bool, failsafe: bool) -> None:
         """Append what a vehicle (its system id) flies from ``time`` (s) on, if it is not what it flew before."""
@@ -96,3 +85,9 @@ class TruthLog:
 
     def __exit__(self, *_: object) -> None:
         self.close()
+
+
+def _row(time: float, obstacle: Obstacle) -> list[float | str]:
+    columns = obstacle.shape.columns
+    numbers = (*obstacle.position_in_world, columns.radius, *columns.size, columns.yaw)
+    return [time, obstacle.name, obstacle.shape.kind, *map(float, numbers)]

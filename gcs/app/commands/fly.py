@@ -114,7 +114,7 @@ def run(arguments: argparse.Namespace) -> int:
     elif result.flown:
         print_summary(console, result.summary, result.run_dir, pictures)
     if mission.faults:
-        from gcs.faults.record import fault_notes
+        from gcs.record.faults import fault_notes
 
         for note in fault_notes(result.run_dir):
             LOG.warning("note: %s", note)

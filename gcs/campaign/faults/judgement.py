@@ -1,6 +1,5 @@
 """The judgement of a flight with faults."""
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -12,12 +11,13 @@ from gcs.campaign.process_pool import FlownProcess
 from gcs.campaign.result import Result
 from gcs.errors import UnusableInput
 from gcs.faults import KINDS
-from gcs.faults.record import FAULTS_FILE, fault_notes
+from gcs.record.faults import FAULTS_FILE, fault_notes
 from gcs.record.landing import is_set_down
 from gcs.record.modes import stops_after
 from gcs.record.outcome import Outcome
+from gcs.record.reader import read_json, read_table
 from gcs.record.summary import limits_not_held
-from gcs.record.tables import ALARMS, read_text_table
+from gcs.record.tables import ALARMS
 
 WITHIN_LIMITS, SAFE = REQUIREMENTS = ("within limits", "safe")
 """Conditions of a pass: completed within its limits; or set down safely in any phase, with its limits held."""
@@ -105,13 +105,13 @@ def first_start(run_dir: Path, count: int | None = None) -> float | None:
     None: none of them started, or there is no record of them.
     """
     try:
-        record = json.loads((run_dir / FAULTS_FILE).read_text(encoding="utf-8"))
+        record = read_json(run_dir / FAULTS_FILE)
         faults = record["faults"][0 if count is None else len(record["faults"]) - count :]
         if count is not None:
             others = [f for f in faults if (kind := KINDS.get(f.get("kind"))) is None or kind.family != "world"]
             faults = others or faults
         return float(record["take_off_s"] + min(fault["activations"][0][0] for fault in faults if fault["activations"]))
-    except (OSError, ValueError, KeyError, TypeError, IndexError):
+    except (UnusableInput, KeyError, TypeError, IndexError, ValueError):
         return None
 
 
@@ -120,7 +120,7 @@ def clean_time(duration: float | None, run_dir: Path) -> float | None:
     first = first_start(run_dir)
     if duration is None or first is None:
         return duration
-    record = json.loads((run_dir / FAULTS_FILE).read_text(encoding="utf-8"))
+    record = read_json(run_dir / FAULTS_FILE)
     return round(max(0.0, duration - (float(record["end_s"]) - first)), 3)
 
 
@@ -140,12 +140,13 @@ def team_stop(run_dir: Path, begin: float | None) -> tuple[float | None, float |
 
 def detection(run_dir: Path, begin: float | None) -> Detection:
     """Return the detection of the faults of a case that start at ``begin``, from the flight's table of alarms."""
+    path, unknown = run_dir / ALARMS, Detection(None, "", None)
+    if not path.exists():
+        return unknown
     try:
-        alarms = read_text_table(run_dir / ALARMS)
-        times = [float(time) for time in alarms["time_s"]]
-        rows = [*zip(times, alarms["source"], alarms["code"], strict=True)]
-    except (UnusableInput, ValueError, KeyError):
-        return Detection(None, "", None)
+        rows = read_table(path)[["time_s", "source", "code"]].tolist()
+    except UnusableInput:
+        return unknown
     first = first_start(run_dir)
     codes = [code for time, _, code in rows if first is None or time < first]
     false = len(codes), " ".join(codes)

@@ -1,8 +1,11 @@
 """Faults in the records of a run folder."""
 
-import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
+
+from gcs.errors import UnusableInput
+from gcs.record.reader import read_json
 
 FAULTS_FILE = "faults.json"
 
@@ -10,12 +13,12 @@ FAULTS_FILE = "faults.json"
 def fault_notes(run_dir: Path) -> list[str]:
     """Return a line for every fault whose time never came, or that found nothing to disturb; none without a record."""
     try:
-        return notes_of(json.loads((run_dir / FAULTS_FILE).read_text(encoding="utf-8")))
-    except (OSError, ValueError, KeyError, TypeError):
+        return notes_of(read_json(run_dir / FAULTS_FILE))
+    except (UnusableInput, KeyError, TypeError):
         return []
 
 
-def notes_of(record: dict[str, Any]) -> list[str]:
+def notes_of(record: Mapping[str, Any]) -> list[str]:
     """Return the same from the contents of the file."""
     notes = []
     take_off = record["take_off_s"]
