@@ -55,7 +55,6 @@ class Planner:
         self.barrier = ExponentialBarrier(formation, settings)
         self.constraints = planner_constraints(self.barrier, settings)
         self.cost = _condensed_cost(settings)
-        self._layouts: dict[int, _Layout] = {}
 
     def free(self, start: Array) -> Plan:
         """Return the plan back to the reference from a deviation ``start`` (5, 3) with no obstacle near."""
@@ -88,7 +87,7 @@ class Planner:
         chain = self.settings.chain
         snap = reference[4, 0] + start[4]
         step = PlanningStep(reference, chain.response[0] @ start, acceleration, separations, snap, crackle)
-        layout = self._layout(len(separations))
+        layout = _Layout.of(self.constraints, self.cost.H, len(separations))
         problem = self._problem(start, step, layout)
         try:
             x = self.solver.solve(problem).x
@@ -122,16 +121,10 @@ class Planner:
             bool(np.all(G @ z <= h + 1e-9)) for G, h in rows
         )
 
-    def _layout(self, obstacles: int) -> _Layout:
-        """Return what is the same in every QP with that number of obstacles."""
-        if obstacles not in self._layouts:
-            self._layouts[obstacles] = _Layout.of(self.constraints, self.cost.H, obstacles)
-        return self._layouts[obstacles]
-
     def _problem(self, start: Array, step: PlanningStep, layout: _Layout) -> QuadraticProgram:
-        """Return the QP in (z, slacks)."""
+        """Return the QP in (z, slacks), in the matrices of its ``layout``."""
         n = 3 * self.settings.chain.knots
-        G, bounds, row = layout.G.copy(), [], 0
+        G, bounds, row = layout.G, [], 0
         for constraint in self.constraints:
             rows, h = constraint.rows(step)
             G[row : row + len(h), :n] = rows
@@ -164,19 +157,21 @@ class _Layout:
 
     @classmethod
     def of(cls, constraints: Sequence[Constraint], H: Array, obstacles: int) -> Self:
-        """Return the layout for ``constraints`` and the Hessian ``H`` (3 knots, 3 knots) of z."""
+        """Return a new layout for ``constraints`` and the Hessian ``H`` (3 knots, 3 knots) of z."""
         shares = [(constraint.penalty, constraint.slack_shares(obstacles)) for constraint in constraints]
         slacks: dict[Penalty, slice] = {}
         n = len(H)
         for penalty, share in shares:
             if penalty not in slacks:
-                slacks[penalty] = slice(n, n := n + share.shape[1])
-        counts = [len(share) for _, share in shares]
+                slacks[penalty] = slice(n, n := n + share.shape[0] * share.shape[2])
+        counts = [share.shape[0] * share.shape[1] for _, share in shares]
         lazy = np.repeat([constraint.is_lazy for constraint in constraints], counts)
         G, row = np.zeros((sum(counts), n)), 0
         for penalty, share in shares:
-            G[row : row + len(share), slacks[penalty]] = -share
-            row += len(share)
+            column = slacks[penalty].start
+            for block in -share:
+                G[row : row + len(block), column : column + block.shape[1]] = block
+                row, column = row + len(block), column + block.shape[1]
         number = [columns.stop - columns.start for columns in slacks.values()]
         linear = np.repeat([penalty.linear for penalty in slacks], number)
         quadratic = np.repeat([penalty.quadratic for penalty in slacks], number)

@@ -33,5 +33,5 @@ class AccelerationBounds:
         return self._G, np.stack([limit - value, limit + value], axis=1).ravel()
 
     def slack_shares(self, obstacles: int) -> Array:
-        """Return S (m, 1): one slack for all."""
-        return np.ones((len(self._G), 1))
+        """Return S (1, m, 1): one slack for all."""
+        return np.ones((1, len(self._G), 1))

@@ -45,5 +45,8 @@ class Constraint(Protocol):
         ...
 
     def slack_shares(self, obstacles: int) -> Array:
-        """Return S (m, s): by what share of each slack a row may be exceeded, with that number of obstacles."""
+        """Return the b blocks of S (b, m / b, s / b), which is else 0, with that number of obstacles.
+
+        S (m, s) is by what share of each slack a row may be exceeded.
+        """
         ...

@@ -53,8 +53,8 @@ class ExponentialBarrier:
         return G, (barrier_values(*planes, position, acceleration) @ self.operator.T).ravel()
 
     def slack_shares(self, obstacles: int) -> Array:
-        """Return S (2 K O, 2 O): the slack that fades and the one that sets in, of each obstacle."""
-        return np.kron(np.eye(obstacles), self._shares)
+        """Return S (O, 2 K, 2): the slack that fades and the one that sets in, of each obstacle."""
+        return np.broadcast_to(self._shares, (obstacles, *self._shares.shape))
 
     def values(self, separations: Sequence[Separation], position: Array, acceleration: Array) -> Array:
         """Return h of payload and discs at all stages (O, 2, K + 1) (m), along the separations' planes.

@@ -28,5 +28,5 @@ class LowestAltitude:
         return self._G, np.maximum(self.lowest, z) - z - step.free[self._stages, 0, 2]
 
     def slack_shares(self, obstacles: int) -> Array:
-        """Return S (m, 1): one slack for all."""
-        return np.ones((len(self._G), 1))
+        """Return S (1, m, 1): one slack for all."""
+        return np.ones((1, len(self._G), 1))

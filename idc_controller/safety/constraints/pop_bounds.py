@@ -43,5 +43,5 @@ class PopBounds:
         return self._G, np.concatenate([(limit - fixed).T.ravel(), (limit + fixed).T.ravel()])
 
     def slack_shares(self, obstacles: int) -> Array:
-        """Return S (6 knots, 1): one slack for all, in shares of the limit."""
-        return np.tile(np.repeat(self._limit, len(self._spans)), 2)[:, None]
+        """Return S (1, 6 knots, 1): one slack for all, in shares of the limit."""
+        return np.tile(np.repeat(self._limit, len(self._spans)), 2)[None, :, None]
