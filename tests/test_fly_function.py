@@ -22,6 +22,8 @@ from gcs.faults.link import PacketLoss
 from gcs.mission.model import Fault, Limits, Mission
 from gcs.mission.read import read_mission
 from gcs.mission.toml_mission import route_through
+from gcs.record.landing import in_air
+from gcs.record.run_data import read_run
 from gcs.record.run_folder import write_manifest
 from gcs.record.tables import ESTIMATE_COLUMNS, OBSTACLE_COLUMNS, PLAN_COLUMNS, REFERENCE_COLUMNS, truth_columns
 
@@ -210,7 +212,10 @@ def test_flight_has_the_bytes_of_the_command(tmp_path, text):
     if text is not None:
         assert [fault["kind"] for fault in flight.faults] == ["packet_loss", "latency"]
         assert all(fault["disturbed"] for fault in flight.faults)
-        assert {*flight.obstacles["name"]} == {"ball"} and len(flight.frame("alarms")) == len(flight.alarms)
+        assert flight.obstacles[["time_s", "name"]].tolist() == [(0.0, "ball")]  # it stands
+        run = read_run(flight.run_dir)
+        assert flight.figures["clearance_min_m"] == pytest.approx(run.clearance[in_air(run)].min(), abs=1e-6)
+        assert len(flight.frame("alarms")) == len(flight.alarms)
 
 
 @pytest.mark.slow

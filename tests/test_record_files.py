@@ -6,6 +6,7 @@ import contextlib
 import math
 import resource
 from collections.abc import Iterator
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from numpy.lib.recfunctions import structured_to_unstructured
 
 from gcs.errors import UnusableInput
 from gcs.record.append_file import AppendOnlyFile
+from gcs.record.obstacle_recorder import ObstacleRecorder
 from gcs.record.reader import read_table
 from gcs.record.tables import (
     ALARM_COLUMNS,
@@ -24,6 +26,9 @@ from gcs.record.tables import (
     TableWriter,
     truth_columns,
 )
+from idc_controller.geometry.box import Wall
+
+FIXED = Wall((1.0, 2.0, 5.0))
 
 
 def test_numbers_read_back_to_the_bit(tmp_path) -> None:
@@ -104,6 +109,18 @@ def test_earlier_records_are_never_overwritten(tmp_path) -> None:
 def test_absent_folder_is_refused(tmp_path) -> None:
     with pytest.raises(UnusableInput, match="cannot be written"):
         TableWriter(tmp_path / "absent" / "a.csv", ("a",))
+
+
+def test_boxes_of_the_map_are_recorded_once_a_second_where_they_have_changed(tmp_path) -> None:
+    recorder = ObstacleRecorder(tmp_path)
+    for k in range(100):
+        boxes = [("fixed", FIXED, np.zeros(3)), ("grows", Wall((1.0, 1.0, 1.0 + k)), np.ones(3))]
+        seen = SimpleNamespace(pieces=boxes[: 2 if k < 70 else 1])
+        recorder.record(SimpleNamespace(confirmed_tracks=lambda _: (), seen=seen), 3.0 + 0.05 * k)
+    recorder.close()
+    rows = read_table(tmp_path / "obstacles_standing.csv")[["time_s", "name", "size_z_m"]].tolist()
+    assert rows == [(3.0, "fixed", 5.0), *((3.0 + k, "grows", 1.0 + 20 * k) for k in range(4)), (7.0, "grows", 0.0)]
+    assert not (tmp_path / "obstacles_estimate.csv").exists()
 
 
 @contextlib.contextmanager

@@ -2,7 +2,6 @@
 
 import fcntl
 import hashlib
-import json
 import re
 import shutil
 from collections.abc import Iterator, Mapping
@@ -11,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from gcs.errors import UnusableInput
+from gcs.record.reader import read_json
 from gcs.record.run_folder import make_folder, write_json
 
 SETTINGS = "campaign.json"
@@ -42,7 +42,7 @@ def check_adoptable(folder: Path, settings: Mapping[str, Any]) -> None:
     """Raise :class:`UnusableInput` if ``folder`` holds a campaign of other settings, or something else."""
     path = folder / SETTINGS
     if path.exists():
-        found = read_object(path)
+        found = read_json(path)
         for name, value in settings.items():
             if found.get(name) != value:
                 reason = f"was begun with {name} {found.get(name)}, not {value}: name another with --out"
@@ -60,15 +60,6 @@ def adopt_folder(folder: Path, settings: Mapping[str, Any]) -> None:
     check_adoptable(folder, settings)
     if not (make_folder(folder) / SETTINGS).exists():
         write_json(folder / SETTINGS, settings)
-
-
-def read_object(path: Path) -> dict[str, Any]:
-    """Read a file of one JSON object; empty if it is anything else. Raises :class:`UnusableInput`."""
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise UnusableInput(f"{path}: cannot be read: {error}") from None
-    return content if isinstance(content, dict) else {}
 
 
 def write_text(path: Path, text: str) -> None:

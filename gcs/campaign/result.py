@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from gcs.campaign.folder import read_object
 from gcs.campaign.process_pool import FlownProcess
+from gcs.record.reader import read_json
 from gcs.record.run_folder import FORMAT
 
 
@@ -133,8 +133,8 @@ def summary_columns(flown: FlownProcess, run_dir: Path) -> dict[str, Any]:
 
 def read_result(path: Path, key: str, columns: Collection[str]) -> Result | None:
     """Read a stored result of ``columns``; None where there is none, or one that was kept by another ``key``."""
-    content = read_object(path) if path.exists() else {}
-    if content.pop("key", None) != key or content.keys() != set(columns):
+    content = read_json(path)
+    if content.pop("key", None) != key or content.keys() != set(columns) or content["format"] != FORMAT:
         return None
     return Result(**content)
 
