@@ -150,8 +150,8 @@ def test_clearance_without_record_is_nan() -> None:
 def test_clearance_over_a_flight_is_the_least_of_all_obstacles(seed) -> None:
     rng = np.random.default_rng(seed)
     T = 400
-    speed = rng.normal(size=(T, 3)).cumsum(axis=0) * 0.01
-    payload = np.cumsum(0.02 * speed, axis=0)
+    turns = np.linspace(0.0, 12.0, T)[:, None] * rng.uniform(0.5, 2.0, 3) + rng.uniform(0.0, 6.0, 3)
+    payload = [6.0, 6.0, 2.0] * np.sin(turns)
     angles = 0.3 * np.sin(np.linspace(0.0, 9.0, T)[:, None] * rng.uniform(0.5, 3.0, 5) + rng.uniform(0.0, 6.0, 5))
     attitudes = np.array([[quaternion_from_euler(a, 0.5 * a, 2.0 * a) for a in row] for row in angles])
     uavs = payload[:, None] + UAVS + rng.normal(size=(T, 4, 3)).cumsum(axis=0) * 0.002

@@ -42,6 +42,7 @@ def _formation_support(vertices: Array, rotation: Array, discs: Array, axes: Arr
     for i in range(len(discs)):
         n = axes[i]
         across = d - dot(n, d) * n
+        across -= dot(n, across) * n  # along the disc's axis, what is left is rounding that leads out of its plane
         length = math.sqrt(dot(across, across))
         along = dot(discs[i], d) + radius * length
         if along > farthest:
