@@ -11,9 +11,11 @@ from gcs.planning.flight import PlanningFlight
 from gcs.record.clearance import ObstacleTrack
 from gcs.record.landing import onsets
 from gcs.record.outcome import Outcome
+from gcs.record.reader import without_rows
 from gcs.record.run_data import RunData
 from gcs.record.run_folder import to_json
 from gcs.record.summary import summarise
+from gcs.record.tables import COLUMNS
 from gcs.record.verdict import GroundReport, verdict
 from idc_controller.arrays import Array
 
@@ -31,7 +33,7 @@ def planned(flight: PlanningFlight) -> RunData:
         run, completed=ended.outcome is Outcome.COMPLETED, outcome=ended.outcome, reason=ended.reason,
         arrival=ended.arrival, duration_s=float(run.time[-1]), real_time_factor=None,
     )  # fmt: skip
-    summary["contacts"] = onsets((run.clearance <= 0.0).sum(axis=1))
+    summary["contacts"] = onsets((run.clearance <= 0.0).astype(float))
     summary["safety"] = {"slack_max_m": round(flight.slack, 6)}
     return run.with_summary(summary)
 
@@ -59,8 +61,7 @@ def _record(flight: PlanningFlight) -> RunData:
             ObstacleTrack(obstacle.name, obstacle.shape, _places(obstacle, motion_times))
             for obstacle in mission.obstacles
         ),
-        reference=None,
-        steps=None,
+        tables={name: without_rows(columns) for name, columns in COLUMNS.items()},
         manifest={"mission": to_json(mission), "system": to_json(mission.system)},
         summary={},
     )

@@ -2,6 +2,7 @@
 
 import io
 import json
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -29,13 +30,18 @@ def read_table(path: Path | str) -> Table:
         needed = truth_columns(sum(name.endswith("_thrust_n") for name in columns))
     if missing := [name for name in needed if name not in columns]:
         raise UnusableInput(f"{path}, line 1: column {missing[0]} is missing")
-    fields = [(name, object if name in TEXT_COLUMNS else float) for name in columns]
+    empty = without_rows(columns)
     if not rows:
-        return np.empty(0, fields)
+        return empty
     try:
-        return np.loadtxt(io.StringIO(rows), fields, comments=None, delimiter=",", quotechar='"', ndmin=1)
+        return np.loadtxt(io.StringIO(rows), empty.dtype, comments=None, delimiter=",", quotechar='"', ndmin=1)
     except ValueError as error:
         raise UnusableInput(f"{path}, below the header: {error}") from None
+
+
+def without_rows(columns: Iterable[str]) -> Table:
+    """Return a table of ``columns`` without rows (0,)."""
+    return np.empty(0, [(name, object if name in TEXT_COLUMNS else float) for name in columns])
 
 
 def read_json(path: Path | str) -> dict[str, Any]:
