@@ -17,7 +17,7 @@ export OPENBLAS_NUM_THREADS := 1
 unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: help install fly test test-fast test-long test-lowest test-numerics release golden golden-renew
-.PHONY: claims claims-all claims-write fault-tables anew benchmark benchmark-parts benchmark-campaign benchmark-check docs clean
+.PHONY: claims claims-all claims-write fault-tables anew benchmark benchmark-campaign benchmark-check docs clean
 
 help:
 	@echo "make fly          fly $(MISSION) with a simulated swarm (MISSION=... for another one)"
@@ -36,7 +36,6 @@ help:
 	@echo "make benchmark    the speed of flights relative to gym-pybullet-drones; adds to the history"
 	@echo "make benchmark-check  compare the CPU cost of flights with that of the commit BASE ($(BASE))"
 	@echo "make benchmark-campaign  throughput of parallel flights against a single one's"
-	@echo "make benchmark-parts  the CPU cost of parts, of the planner, and of QP solvers"
 	@echo "make docs         write docs/settings.md, docs/failsafes.md and NOTICE from what they are about"
 	@echo "make install      only install, into $(VENV)"
 	@echo "make clean        remove $(VENV) and the caches"
@@ -98,9 +97,6 @@ fault-tables: $(COMPILED)
 # OPTIONS: --quick, --long, --rounds N. ANCHOR_PYTHON: a Python with gym-pybullet-drones, else an equal loop is flown.
 benchmark: $(COMPILED)
 	$(VENV)/bin/python tests/benchmarks/benchmark.py $(OPTIONS)
-
-benchmark-parts: $(COMPILED)
-	$(VENV)/bin/python -m pytest -o addopts= -s tests/benchmarks
 
 benchmark-campaign: $(COMPILED)
 	$(VENV)/bin/python tests/benchmarks/campaign.py

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from idc_controller.perception.placed_scan import PlacedScan
+from idc_controller.perception.voxel_kernels import BLOCKS, EDGE, HELD
 
 RANGE_SIGMA, POSITION_SIGMA, ATTITUDE_SIGMA = 0.05, 0.03, math.radians(0.5)
 MISSED = 0.02
@@ -135,3 +136,24 @@ def return_variance(scan):
     along = ways[:, :, None] * ways[:, None, :] / np.maximum(square, 1e-12)
     own = scan.position_sigma**2 * np.eye(3) + scan.range_sigma**2 * along
     return own + scan.attitude_sigma**2 * square * (np.eye(3) - along)
+
+
+def cells_at(standing, points):
+    """What a standing map holds of the voxels with ``points`` (n, 3): rays that passed, with :data:`HELD` if hit."""
+    store, voxels = standing._store, np.floor(points / standing.settings.voxel).astype(int)
+    count = int(store.counts[BLOCKS])
+    corners = [tuple(corner) for corner in standing._corners(np.arange(count)).tolist()]
+    rows = dict(zip(corners, store.cells, strict=False))
+    unseen = np.zeros(EDGE**3, dtype=np.uint8)
+    blocks = [rows.get(tuple(corner), unseen) for corner in (voxels // EDGE * EDGE).tolist()]
+    return np.array([block[cell] for block, cell in zip(blocks, voxels % EDGE @ (EDGE**2, EDGE, 1), strict=True)])
+
+
+def is_occupied(standing, points):
+    """Whether the voxels with ``points`` (n, 3) hold points that were hit."""
+    return cells_at(standing, points) & HELD > 0
+
+
+def is_seen_free(standing, points):
+    """Whether the voxels with ``points`` (n, 3) were seen free and hold no point that was hit."""
+    return cells_at(standing, points) == standing.settings.free_passes

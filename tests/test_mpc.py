@@ -7,14 +7,16 @@ import pytest
 from flights import MISSIONS
 from mpc_oracle import optimal_moves
 from scipy.linalg import solve_discrete_are
-from test_control_kernels import inputs_plainly
 
 from gcs.config import read_system
-from idc_controller.control.force_components import setpoints_from_force_components, state_in_force_components
+from idc_controller.control.force_components import (
+    inputs_in_force_components,
+    setpoints_from_force_components,
+    state_in_force_components,
+)
 from idc_controller.control.mpc import ModelPredictiveController, input_weight, state_weight
-from idc_controller.control.prediction import move_blocks
 from idc_controller.control.settings import MpcSettings, MpcTuning
-from idc_controller.errors import ParameterError, SolverError
+from idc_controller.errors import SolverError
 from idc_controller.model.linear import LinearModel
 from idc_controller.qp.parametric import ParametricQp
 from idc_controller.trajectory.flatness import Load
@@ -27,11 +29,6 @@ CONFIG = read_system(MISSIONS / "system.toml")
 MODEL = LinearModel(CONFIG.parameters())
 LAYOUT = MODEL.layout
 DEFAULT = ModelPredictiveController(MODEL, MpcSettings())
-
-
-def inputs_in_force_components(u, hover):
-    """Set-points (..., 3 N) as F_xy / f_hover and -F_z."""
-    return inputs_plainly(u, LAYOUT, hover)
 
 
 def stages_at(height, settings=DEFAULT.settings, model=MODEL):
@@ -79,14 +76,6 @@ def test_mpc_without_active_constraints_is_the_linear_quadratic_regulator(vehicl
         assert np.allclose(output.delta_u, -K @ error, rtol=1e-6, atol=1e-9)
 
 
-def test_blocked_moves_cost_little_and_bring_the_system_to_rest():
-    rng = np.random.default_rng(3)
-    error = 0.02 * rng.standard_normal(LAYOUT.size)
-    for _ in range(400):
-        error = next_error(DEFAULT, error)
-    assert np.max(np.abs(error)) < 1e-4
-
-
 @pytest.mark.parametrize(
     "parts",
     [
@@ -115,7 +104,7 @@ def test_hard_input_limits_are_kept_whatever_the_error():
     for _ in range(30):
         error = rng.standard_normal(LAYOUT.size) * rng.choice([0.1, 0.5])
         output = DEFAULT.track(error, STAGES)
-        u = inputs_in_force_components(STAGES.u[0], p.hover_thrust) + output.delta_u
+        u = inputs_in_force_components(STAGES.u[0], LAYOUT, p.hover_thrust) + output.delta_u
         assert np.all(np.abs(u[LAYOUT.n_setpoint]) <= np.tan(s.tuning.uav_tilt_limit) + 1e-5)
         assert np.all(u[LAYOUT.f_setpoint] <= 0.95 * p.thrust_max + 1e-4)
         assert np.all(u[LAYOUT.f_setpoint] >= s.thrust_min - 1e-4)
@@ -161,7 +150,7 @@ def test_mpc_marks_step_and_cuts_move_to_both_input_limits_when_qp_has_no_soluti
         patched.setattr(mpc.qp, "solve", fail)
         output = mpc.track(error_of(**parts), STAGES)
     assert output.infeasible
-    u = inputs_in_force_components(STAGES.u[0], hover)
+    u = inputs_in_force_components(STAGES.u[0], LAYOUT, hover)
     tilt, thrust_max = np.full(8, np.tan(s.tuning.uav_tilt_limit)), s.thrust_share_max * MODEL.parameters.thrust_max
     lower, upper = np.append(-tilt, [s.thrust_min] * 4), np.append(tilt, [thrust_max] * 4)
     assert u + output.delta_u == pytest.approx(np.clip(u + free_move(error_of(**parts)), lower, upper), abs=1e-6)
@@ -217,40 +206,15 @@ def test_soft_row_is_kept_exactly_when_feasible_and_exceeded_otherwise():
     assert exceeded.x == pytest.approx([3.0, 0.0], abs=2e-3)
 
 
-def test_warm_start_saves_iterations_with_equal_solution():
-    error = error_of(Theta=(np.radians(4.5), 0.0, 0.0), omega=(0.4, 0.0, 0.0))
-    cold = ModelPredictiveController(MODEL, DEFAULT.settings)
-    first = cold.track(error, STAGES)
-    again = cold.track(error, STAGES)
-    assert again.iterations <= first.iterations
-    assert again.delta_u == pytest.approx(first.delta_u, abs=1e-3)
-
-
 def test_force_components_are_inverted_exactly():
     rng = np.random.default_rng(5)
     hover = MODEL.parameters.hover_thrust
     u = np.concatenate([0.2 * rng.standard_normal(8), hover + rng.standard_normal(4)])
     target = np.concatenate([0.2 * rng.standard_normal(8), hover + rng.standard_normal(4)])
-    delta = inputs_in_force_components(target, hover) - inputs_in_force_components(u, hover)
-    assert setpoints_from_force_components(delta, u, hover, 0.05) == pytest.approx(target)
+    delta = inputs_in_force_components(target, LAYOUT, hover) - inputs_in_force_components(u, LAYOUT, hover)
+    assert setpoints_from_force_components(delta, u, LAYOUT, hover, 0.05) == pytest.approx(target)
     x = np.zeros(LAYOUT.size)
     x[LAYOUT.n], x[LAYOUT.f] = u[:8], u[8:]
     converted = state_in_force_components(x, LAYOUT, hover)
     as_inputs = np.concatenate([converted[LAYOUT.n], converted[LAYOUT.f]])
-    assert as_inputs == pytest.approx(inputs_in_force_components(u, hover))
-
-
-@pytest.mark.parametrize("horizon", [2, 7, 20, 33])
-def test_move_blocks_sum_to_any_horizon(horizon):
-    assert sum(move_blocks(horizon)) == horizon
-
-
-def test_mpc_refuses_move_blocks_that_do_not_sum_to_the_horizon():
-    for blocks in ((1, 1), (0,) * 20):
-        with pytest.raises(ParameterError, match="move blocks"):
-            ModelPredictiveController(MODEL, MpcSettings(), blocks)
-
-
-def test_states_are_constrained_from_the_first_stage_at_the_interval_to_the_horizon():
-    settings = MpcSettings(tuning=MpcTuning(horizon=8), constraint_interval=3)
-    assert settings.constraint_stages == [1, 4, 7]
+    assert as_inputs == pytest.approx(inputs_in_force_components(u, LAYOUT, hover))

@@ -5,9 +5,7 @@ import pytest
 from obstacle_scene import HERE, RAYS, SENSORS, Scene, hand_over, map_of, moving_tracks, outside, run, sphere, wall
 
 from idc_controller.estimation.measurements import Attitude, Position, VehicleStates
-from idc_controller.perception.scan_kernels import possible_points
 from idc_controller.perception.scan_placement import ScanPlacement
-from idc_controller.perception.settings import ScanSettings
 
 STANDS = np.array([5.0, 0.0, -6.0])
 FRONT = STANDS[None] - [0.5, 0.0, 0.0]
@@ -56,15 +54,6 @@ def test_scan_is_placed_by_the_pose_nearest_in_time(time, nearest):
     assert scan.returns[0] == pytest.approx(expected, abs=2e-3)
 
 
-def test_scan_of_a_vehicle_that_sends_no_pose_is_placed_by_its_estimate():
-    placement, settings = ScanPlacement(SENSORS, RAYS), ScanSettings()
-    placement.poses.add_estimated(VehicleStates(0.0, np.hstack([HERE, np.zeros(3), LEVEL, np.zeros(3)])[None]))
-    hand_over(placement, 0.0, 0, None, AHEAD)
-    assert placement.scans(settings.pose_wait) == []
-    [scan] = placement.scans(settings.pose_wait + 0.01)
-    assert scan.returns[0] == pytest.approx([5.0, 0.0, -6.0])
-
-
 def test_scan_waits_for_its_pose_and_is_discarded_without_one():
     m, scene = map_of(), Scene(0)
     found = scene.look(1.0, HERE, [sphere(STANDS)])[0]
@@ -80,14 +69,6 @@ def test_scan_waits_for_its_pose_and_is_discarded_without_one():
     m.update(1.1)
     m.update(1.5)
     assert m.placement.discarded == 1
-
-
-def test_scans_of_unusable_attitudes_without_estimates_are_discarded():
-    m, scene = map_of(), Scene(0)
-    for k in range(10):
-        scene.feed(m, 0.1 * k, HERE, [sphere(STANDS)])
-        m.update(0.1 * k, unusable_attitudes=frozenset(range(4)))
-    assert m.tracks == [] and m.seen.pieces == []
 
 
 # Range sensors that are lost
@@ -137,34 +118,3 @@ def test_sensing_is_not_lost_with_one_valid_sensor():
         m.update(k / 20)
         assert not m.sensing_lost
     assert m.tracks == []
-
-
-def test_track_deleted_before_sensing_loss_is_restored():
-    """Until the loss is detected, the track of an obstacle in view is deleted."""
-    m, scene = map_of(), Scene(0)
-    run(m, lambda t: [sphere(crossing(t))], 3.0, scene=scene)
-    run(m, lambda t: [], 4.5, begin=3.0, scene=scene)
-    assert m.tracks == []
-    for k in range(90, 115):
-        m.placement.range_sensors.set_failed({0, 1, 2, 3}, k / 20)
-        m.update(k / 20)
-    assert m.sensing_lost
-    for k in range(115, 175):  # and is kept, although they report valid health again
-        if k % 2 == 0:
-            scene.feed(m, k / 20, HERE, [])
-        m.placement.range_sensors.set_failed(set(), k / 20)
-        m.update(k / 20)
-    assert not m.sensing_lost
-    assert len(moving_tracks(m)) == 1
-
-
-def test_possible_points_agree_with_plain_conditions():
-    rng = np.random.default_rng(3)
-    special = np.array([0.0, -0.0, 1.0, 25.0, np.nan, np.inf, -np.inf, 3e38])
-    points, ranges = rng.choice(special, (2000, 3)), rng.choice([10.0, 1.0, np.nan, np.inf, -1.0, 0.0], 2000)
-    expected = [
-        k
-        for k, (point, reach) in enumerate(zip(points.tolist(), ranges.tolist(), strict=True))
-        if np.isfinite(sum(point) + reach) and 0.0 < np.linalg.norm(point) < 2.0 * reach
-    ]
-    assert possible_points(points, ranges, 2.0).tolist() == expected

@@ -1,16 +1,13 @@
 """Numbers that follow from a key of the system file: the key is changed and the behaviour follows."""
 
-import math
 from contextlib import closing
 from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from obstacle_scene import hand_over
 from standing_obstacles import StandingObstacles
 
-from gcs.campaign.scenarios.judgement import least_separation
 from gcs.config import UnusableFile, read_system
 from gcs.drivers.connection import Connection
 from gcs.drivers.interrupt import Interrupt
@@ -20,7 +17,6 @@ from gcs.flight.mission_trajectory import MissionTrajectory
 from gcs.mavlink.requests import CommandState
 from gcs.mavlink.vehicle_link import VehicleLink
 from gcs.mission.read import read_mission
-from idc_controller.control.constraints.uav_separation import UavSeparation
 from idc_controller.estimation.health.channel_isolation import ChannelIsolation
 from idc_controller.estimation.measurement_model import MeasurementModel
 from idc_controller.estimation.measurements import Attitude, MeasurementNoise
@@ -82,13 +78,6 @@ def test_lowest_waypoint_and_landing_follow_the_height_of_the_payload_and_of_the
         read_mission(path)
 
 
-def test_neighbours_at_the_spacing_itself_are_kept_apart():
-    config = system()
-    mpc = replace(config.control.mpc, neighbour_share=1.0)
-    rows = UavSeparation(LinearModel(config.parameters()), mpc)
-    assert len(rows.G) == 4  # the sides of the square, not its diagonals
-
-
 def test_stop_without_setpoints_keeps_farther_off_with_a_larger_margin():
     place = np.array([4.0, 2.4, -5.0])
     obstacles = StandingObstacles([("beside", Sphere(0.5), place)])
@@ -108,11 +97,6 @@ def test_separation_limit_follows_spacing_of_the_team(spacing, limit):
     separation = tracker.state_constraints[-1]
     assert separation.distance == pytest.approx(limit)
     assert separation.limits == pytest.approx(np.full(4, spacing - limit))
-
-
-@pytest.mark.parametrize(("spacing", "limit"), [(1.0, 0.75), (1.4, 0.9)])
-def test_least_separation_of_a_pass_follows_spacing_of_the_team(spacing, limit):
-    assert least_separation(system(team={"spacing": spacing})) == pytest.approx(limit)
 
 
 def test_limits_of_plans_follow_limits_of_motion():
@@ -135,25 +119,6 @@ def test_stop_without_setpoints_takes_longer_with_a_smaller_acceleration():
     assert durations == pytest.approx([4.0, 1.5 * 3.0 / (4.0 / 3.0 * 0.5)])
 
 
-@pytest.mark.parametrize(("telemetry", "counts"), [(25, (12, 25, 9, 5, 3, 10, 30)), (50, (24, 50, 18, 10, 6, 20, 60))])
-def test_counts_of_samples_follow_rate_of_telemetry(telemetry, counts):
-    config = system(rates={"telemetry": telemetry})
-    s = stack.estimator(config, LinearModel(config.parameters())).settings
-    of_estimator = (
-        s.isolation.rejections, s.isolation.acceptances, s.dead_reckoning.samples, s.dead_reckoning.smoothed,
-        s.reset.payload_rejections, s.adaptation.dwell,
-    )  # fmt: skip
-    assert (*of_estimator, stack.perception(config).scans.poses) == counts
-    assert s.adaptation.correlation_share == pytest.approx(0.1 * 25 / telemetry)
-
-
-@pytest.mark.parametrize(("control", "losses", "neighbours"), [(20, 20, 3), (10, 10, 2)])
-def test_counts_of_setpoints_follow_rate_of_control(control, losses, neighbours):
-    config = system(rates={"control": control})
-    setpoints = stack.estimator(config, LinearModel(config.parameters())).settings.setpoints
-    assert (setpoints.losses_max, setpoints.neighbours, setpoints.loss_share) == (losses, neighbours, 1.0 / losses)
-
-
 def test_isolation_of_a_channel_takes_as_long_at_any_rate_of_telemetry():
     times = []
     for telemetry in (25, 50):
@@ -169,18 +134,6 @@ def test_isolation_of_a_channel_takes_as_long_at_any_rate_of_telemetry():
             steps += 1
         times.append(steps / telemetry)
     assert times == [0.48, 0.48]
-
-
-def test_predictions_of_obstacles_are_compared_within_half_of_the_time_between_scans():
-    assert stack.perception(system(range_sensor={"rate": 10})).tracking.manoeuvre.frame == 0.05
-    assert stack.perception(system(range_sensor={"rate": 25})).tracking.manoeuvre.frame == 0.02
-
-
-@pytest.mark.parametrize(("missed_share", "passes"), [(0.0, 1), (0.02, 2), (0.1, 3), (0.5, 10)])
-def test_space_counts_as_free_by_as_many_rays_as_the_range_sensors_missed_share_takes(missed_share, passes):
-    """The probability that all of them missed what fills it is 1e-3 at most."""
-    settings = stack.perception(system(range_sensor={"missed_share": missed_share})).standing_map
-    assert settings.free_passes == passes
 
 
 @pytest.mark.parametrize("tries", [2, 4])
@@ -204,16 +157,6 @@ def test_world_without_ticks_is_lost_after_the_time_of_the_file(tmp_path):
     with closing(Connection()) as ground, closing(Connection()) as world:
         run_in_lockstep(station, ground, world.socket.getsockname(), Interrupt(), read_system(path).drivers)
     assert reasons == ["the simulated world does not answer for 0.05 s"]
-
-
-def test_returns_have_the_noise_of_the_range_sensor_and_of_the_poses():
-    config = system(range_sensor={"noise": 0.07}, sensors={"position": 0.03, "attitude_deg": 1.0})
-    placement = stack.obstacle_map(SimpleNamespace(system=config, obstacles=(), boundary=())).placement
-    on_ray = 5.0 * stack.sensor_rays(config.range_sensor).pattern.directions(0)[:1]
-    hand_over(placement, 0.0, 0, ([0.0, 0.0, -5.0], [1.0, 0.0, 0.0, 0.0]), on_ray)
-    [scan] = placement.scans(0.0)
-    assert (scan.range_sigma, scan.attitude_sigma) == pytest.approx((0.07, math.radians(1.0)))
-    assert scan.position_sigma == pytest.approx(0.03, rel=0.01)
 
 
 def test_waypoints_are_passed_within_the_corner_of_the_motion(tmp_path):

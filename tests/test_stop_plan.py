@@ -9,9 +9,8 @@ from idc_controller.model.linear import StateLayout
 from idc_controller.trajectory.flatness import Load, flat_reference
 from idc_controller.trajectory.lissajous import LissajousTrajectory
 from idc_controller.trajectory.lissajous_curve import LissajousCurve
-from idc_controller.trajectory.settings import BrakingSettings, Limits
+from idc_controller.trajectory.settings import Limits
 from idc_controller.trajectory.stop_plan import Braking, stop_plan
-from idc_controller.trajectory.stop_plan_kernels import control_points
 
 PARAMETERS = read_system().parameters()
 LIMITS = Limits(20.0, 6.0, 20.0, 80.0)
@@ -41,19 +40,6 @@ def test_stop_plan_starts_with_current_motion_and_ends_at_rest(time):
     # All of them are moved alike, so the payload stays level.
     places = plan.control_points[:, -1] - plan.control_points[0, -1]
     assert places == pytest.approx(PARAMETERS.p - PARAMETERS.p[0], abs=1e-6)
-
-
-def test_stop_plan_takes_longer_at_higher_speed():
-    curve = LissajousTrajectory(LissajousCurve((60.0, 3.0), -2.5), 0.2, 40.0, LIMITS, start=10.0)
-    times = np.linspace(10.0, 50.0, 401)
-    time = times[np.argmax(np.linalg.norm(curve.derivatives(times, 1)[1], axis=1))]
-    flat = flat_reference(PARAMETERS, curve, np.array([time]), LOAD)
-    before, after = uav_positions(curve, [time - 0.01, time + 0.01]).mean(axis=1)
-    speed = np.linalg.norm(after - before) / 0.02
-    assert speed > 6.0
-    assert stop_plan(PARAMETERS, flat, time).duration == pytest.approx(
-        1.5 * speed / BrakingSettings().deceleration, rel=1e-4
-    )
 
 
 @pytest.mark.parametrize("time", [11.0, 13.7, 18.2])
@@ -96,14 +82,3 @@ def test_stop_plan_starts_at_current_positions_and_translates_all_uavs_alike():
     # What is not known is not reckoned with.
     x[layout.r_0] = np.nan
     assert stop_plan(PARAMETERS, flat, 13.7, x).control_points == pytest.approx(usual.control_points)
-
-
-@pytest.mark.parametrize("paths", [(4, 1), (1, 5), (3, 3)])
-def test_control_points_are_those_of_the_quartic(paths):
-    rng = np.random.default_rng(4)
-    states, durations = rng.normal(size=(paths[0], 3, 3)), rng.uniform(2.0, 9.0, paths[1])
-    asides = rng.normal(size=(paths[1], 3))
-    shares = np.array([[1.0, 0.0, 0.0], [1.0, 1 / 4, 0.0], *[[1.0, 1 / 2, 1 / 12]] * 3])
-    points = shares @ (states * durations[:, None, None] ** np.arange(3)[:, None])
-    points[:, 2:] += asides[:, None]
-    assert control_points(states, durations, asides) == pytest.approx(points, abs=1e-12)

@@ -34,30 +34,6 @@ def test_region_holds_the_body_at_all_its_places(seed):
         assert inside(shape, centre, place + surface).max() < 1e-9
 
 
-def test_region_of_a_straight_way_is_no_wider_than_the_body():
-    ways = np.linspace([0.0, 0.0, -6.0], [3.0, 4.0, -6.0], 9)
-    shape, centre = region_of(ways).box(BALL, 0.0)
-    assert sorted(shape.size) == pytest.approx([1.0, 1.0, 6.0])
-    assert centre == pytest.approx([1.5, 2.0, -6.0])
-
-
-def test_region_forgets_old_places_but_never_the_last():
-    region = region_of([[0.0, 0.0, -6.0], [4.0, 0.0, -6.0], [4.0, 2.0, -6.0]])
-    shape, centre = region.box(BALL, 1.0)
-    assert sorted(shape.size) == pytest.approx([1.0, 1.0, 3.0])
-    shape, centre = region.box(BALL, 99.0)
-    assert shape.size == pytest.approx((1.0, 1.0, 1.0))
-    assert centre == pytest.approx([4.0, 2.0, -6.0])
-
-
-def test_place_counts_as_visited_only_if_it_was_before():
-    region = region_of([[0.0, 0.0, -6.0], [4.0, 0.0, -6.0], [8.0, 0.0, -6.0]])
-    assert region.holds(np.array([3.0, 0.0, -6.0]), 1.5)
-    assert not region.holds(np.array([6.0, 0.0, -6.0]), 1.5)
-    assert not region.holds(np.array([3.0, 1.0, -6.0]), 1.5)
-    assert not region.holds(np.array([0.0, 0.0, -6.0]), 0.0)
-
-
 def to_and_fro(t):
     """Position of what goes 3 m to and fro in 2.5 s each, at up to 1.9 m/s and 2.4 m/s2, and rests 1 s at both ends."""
     phase = t % 7.0

@@ -18,7 +18,6 @@ from gcs.flight.sliding_window import EventCounter
 from gcs.mavlink.clock import RemoteClock
 from idc_controller.estimation.health.chi_squared import upper_quantile
 from idc_controller.estimation.health.innovation_monitor import Finding, InnovationMonitor
-from idc_controller.estimation.health.innovation_monitor_kernels import normalised_square
 from idc_controller.estimation.measurements import PAYLOAD, Position
 from idc_controller.estimation.settings import InnovationMonitorSettings
 
@@ -295,7 +294,8 @@ class _ModelMismatch:
             step.raise_alarm("team", MonitorAlarm.SENSOR_NOISE, text)
         if step.steady and adaptation.is_at_limit:
             step.raise_alarm("payload", MonitorAlarm.PROCESS_NOISE)
-        if normalised_square(estimate.force, estimate.force_covariance) > self._force_limit:
+        covariance = estimate.force_covariance + 1e-12 * np.eye(3)  # settings may leave none
+        if estimate.force @ np.linalg.solve(covariance, estimate.force) > self._force_limit:
             text = " ".join(f"{f:.1f}" for f in estimate.force) + " N north east down"
             step.raise_alarm("payload", MonitorAlarm.DISTURBANCE_FORCE, text)
 

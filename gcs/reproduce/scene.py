@@ -66,11 +66,11 @@ def shaped_figure(duration: float) -> ShapedFigure:
     up = WaypointTrajectory([0.0, 0.0, 0.0], [Leg(np.array([0.0, 0.0, -ALTITUDE]), motion.climb_speed)], climb)
     up.position(ALTITUDE / motion.climb_speed + 20.0)  # its end is known only after a sample beyond it
     figure = LissajousTrajectory(LissajousCurve(AMPLITUDE, -ALTITUDE), RATE, duration, curve, start=up.end)
-    begin, phase = figure.full_rate[0], figure.phase([figure.full_rate[0]])[0, 0]
+    begin, phase = figure.full_rate[0], float(figure.phase(figure.full_rate[0]))
     # The phase is monotonic: the time of a quarter turn is before or after the full rate begins.
     times = np.linspace(up.end, begin, 2000)
     turn = np.pi / 2.0
-    meets = float(np.interp(turn, figure.phase(times)[0], times)) if phase > turn else begin + (turn - phase) / RATE
+    meets = float(np.interp(turn, figure.phase(times), times)) if phase > turn else begin + (turn - phase) / RATE
     return ShapedFigure(up.then(lambda _end, _position: figure), begin, meets)
 
 

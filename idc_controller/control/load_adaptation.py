@@ -3,7 +3,7 @@
 import numpy as np
 
 from idc_controller.arrays import Array
-from idc_controller.control.load_kernels import followed_forces
+from idc_controller.control.force_components import limited
 from idc_controller.control.settings import ControllerSettings
 from idc_controller.estimation.estimate import Estimate
 from idc_controller.estimation.wind import WindEstimator
@@ -37,14 +37,15 @@ class LoadAdaptation:
         share = self.settings.period / self.settings.load_time_constant
         mass = load.mass + share * (self.parameters.m_0 + estimate.mass_excess - load.mass)
         velocity = estimate.x[self.layout.v_0]
-        before = _drag(load.air, velocity)
+        drag_before, uav_drag_before = _drag(load.air, velocity)
         # What one of the UAVs has of its own is no wind.
         self.wind.learn(estimate.force, _median(estimate.uav_force), velocity)
         limit = self._weight * (self.settings.force_limit if self.wind.air is None else self.settings.drag_limit)
-        force, uav_force = followed_forces(
-            load.force, load.uav_force, estimate.force, estimate.uav_force,
-            *before, *_drag(self.wind.air, velocity), share, limit, self._uav_limit,
-        )  # fmt: skip
+        # Drag that comes on top from now on changes what is left over, not the whole.
+        drag, uav_drag = _drag(self.wind.air, velocity)
+        force, uav_force = load.force + drag_before - drag, load.uav_force + uav_drag_before - uav_drag
+        force += share * (limited(estimate.force, limit) - drag - force)
+        uav_force += share * (limited(estimate.uav_force, self._uav_limit) - uav_drag - uav_force)
         least, most = self.settings.mass_share
         mass = min(max(mass, least * self.parameters.m_0), most * self.parameters.m_0)
         self.estimate = Load(mass, force, uav_force, self.wind.air)

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from idc_controller.arrays import Array
 from idc_controller.errors import TrajectoryError
 from idc_controller.parameters import SystemParameters
 
@@ -28,11 +27,6 @@ class BoundingCylinder:
     """Half edges of that rectangle, north and east, without its rounding."""
     rounding: float = math.inf
     """Distance from the core to its edge; infinite: only the cylinder counts."""
-
-    @property
-    def row(self) -> Array:
-        """The formation as compiled code takes it (6,)."""
-        return np.array([self.radius, self.above, self.below, *self.core, self.rounding])
 
     def __post_init__(self) -> None:
         for name in ("radius", "above", "below"):

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from idc_controller.arrays import Array, Mask
+from idc_controller.arrays import Array, Indices, Mask
 from idc_controller.errors import TrajectoryError
 from idc_controller.geometry.bounding_cylinder import BoundingCylinder
 from idc_controller.geometry.flight_area import FlightArea
@@ -24,6 +24,9 @@ from idc_controller.geometry.shape import Shape
 if TYPE_CHECKING:
     from idc_controller.geometry.obstacles import PredictedObstacle
 
+_GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
+_SEARCH_STEPS = 20
+"""Of golden section: to 1e-4 of a segment."""
 TOUCHING = 1e-6
 """m; a place that keeps the margin to within this keeps it."""
 
@@ -63,8 +66,7 @@ class FreeSpace:
         self.growth = np.zeros(len(obstacles)) if growth is None else np.array(growth, dtype=float)
         if self.growth.shape != (len(obstacles),) or not np.isfinite(self.centres).all():
             raise TrajectoryError("every obstacle needs a finite centre and one growth")
-        self._bodies = _Bodies([shape for shape, _ in obstacles])
-        self._row = formation.row
+        self._bodies = _Bodies.of([shape for shape, _ in obstacles])
         self.lateral_reach = np.array([shape.horizontal_reach for shape, _ in obstacles]) + self.growth
         """Extent of each obstacle from its centre outwards (M,) (m)."""
         self.vertical_reach = self._bodies.half_height + self.growth
@@ -83,8 +85,6 @@ class FreeSpace:
 
     def free_lattice(self, north: Array, east: Array, down: Array, extra: float) -> Mask:
         """:meth:`is_free` at every combination of coordinates (X,), (Y,), (Z,) -> (X, Y, Z)."""
-        from idc_controller.geometry.free_space_kernels import bar_lattice  # compiled code takes long to load
-
         altitude = (-down >= self.lowest - TOUCHING) & (-down <= self.highest + TOUCHING)
         free = np.broadcast_to(altitude, (len(north), len(east), len(down))).copy()
         keep = self.margin + extra + self.growth - TOUCHING
@@ -92,7 +92,14 @@ class FreeSpace:
         if self.area is not None:
             level = np.stack(np.meshgrid(north, east, indexing="ij"), axis=-1)
             free &= self.area.contains(level.reshape(-1, 2)).reshape(len(north), len(east), 1)
-        bar_lattice(free, north, east, down, keep, around, self.centres, self._bodies.sizes, self._row)
+        for m, (x, y, z) in enumerate(self.centres):
+            i, j = (
+                slice(*np.searchsorted(axis, (place - around[m], place + around[m])))
+                for axis, place in ((north, x), (east, y))
+            )
+            body = _Bodies(self._bodies.sizes[m])
+            level = body.level_gaps(north[i, None] - x, east[j] - y, self.formation)[..., None]
+            free[i, j] &= _joined(level, body.height_gaps(down - z, self.formation)) >= keep[m] + body.ball
         return free
 
     def within_bounds(self, places: Array) -> Mask:
@@ -108,14 +115,34 @@ class FreeSpace:
 
     def keep_away(self, starts: Array, ends: Array, least: Array) -> Mask:
         """Return whether the clearance is ``least`` (M,) or more on the segments ``starts`` to ``ends`` (E, 3)."""
+        kept, half = np.ones(len(starts), dtype=bool), np.linalg.norm(ends - starts, axis=1)[:, None] / 2.0
         if not (len(self.centres) and len(starts)):
-            return np.ones(len(starts), dtype=bool)
-        from idc_controller.geometry.free_space_kernels import keep_away
+            return kept
+        middle = self.clearance((starts + ends) / 2.0) - least
+        # Nowhere does the distance change faster than the place.
+        rows, bodies = np.nonzero(middle <= 2.0 * half)
+        outer = self._clearance_of(bodies, np.stack([starts[rows], ends[rows]])).min(axis=0) - least[bodies]
+        middle = middle[rows, bodies]
+        kept[rows[np.minimum(middle, outer) < 0.0]] = False
+        unsure = (outer + middle < half[rows, 0]) & kept[rows]
+        rows, bodies = rows[unsure], bodies[unsure]
+        kept[rows[self._least_clearance(bodies, starts[rows], ends[rows]) < least[bodies]]] = False
+        return kept
 
-        return keep_away(
-            np.ascontiguousarray(starts), np.ascontiguousarray(ends), least, self.centres, self.growth,
-            self._bodies.sizes, self._row,
-        )  # fmt: skip
+    def _clearance_of(self, bodies: Indices, places: Array) -> Array:
+        """Return the clearance at each of ``places`` (..., K, 3) to the one of the bodies (K,) (..., K) (m)."""
+        shapes = _Bodies(self._bodies.sizes[bodies])
+        return np.asarray(shapes.distance(places - self.centres[bodies], self.formation) - self.growth[bodies])
+
+    def _least_clearance(self, bodies: Indices, starts: Array, ends: Array) -> Array:
+        """Return the least clearance on each segment from ``starts`` to ``ends`` (K, 3) to one of the bodies (K,)."""
+        low, high, least = np.zeros(len(bodies)), np.ones(len(bodies)), np.full(len(bodies), math.inf)
+        for _ in range(_SEARCH_STEPS if len(bodies) else 0):
+            shares = np.stack([high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)])
+            left, right = self._clearance_of(bodies, starts + shares[..., None] * (ends - starts))
+            least = np.minimum(least, np.minimum(left, right))
+            low, high = np.where(left > right, shares[0], low), np.where(left > right, high, shares[1])
+        return least
 
 
 def first_conflict(
@@ -131,7 +158,7 @@ def first_conflict(
     count = len(positions)
     centres = np.stack([np.broadcast_to(o.positions, (count, 3)) for o in obstacles], axis=1)
     growth = np.stack([np.broadcast_to(o.growth, (count,)) for o in obstacles], axis=1)
-    distance = _Bodies([o.shape for o in obstacles]).distance(positions[:, None] - centres, formation)
+    distance = _Bodies.of([o.shape for o in obstacles]).distance(positions[:, None] - centres, formation)
     near = (distance - growth < margin - TOUCHING).any(axis=1)
     return int(np.argmax(near)) if near.any() else None
 
@@ -139,10 +166,15 @@ def first_conflict(
 class _Bodies:
     """The obstacles' sizes as arrays: a box with half edges, rounded horizontally or in all directions."""
 
-    def __init__(self, shapes: Sequence[Shape]) -> None:
-        self.sizes = np.array([shape.upright_bounds for shape in shapes]).reshape(len(shapes), 7)
+    def __init__(self, sizes: Array) -> None:
+        self.sizes = sizes
         self._half_x, self._half_y, self._half_z, self._upright, self.ball, self._cosine, self._sine = self.sizes.T
         self._turned = bool(np.any(self._sine))
+
+    @classmethod
+    def of(cls, shapes: Sequence[Shape]) -> _Bodies:
+        """Return those of M ``shapes``."""
+        return cls(np.array([shape.upright_bounds for shape in shapes]).reshape(len(shapes), 7))
 
     @property
     def half_height(self) -> Array:
@@ -151,12 +183,11 @@ class _Bodies:
 
     def distance(self, offsets: Array, formation: BoundingCylinder) -> Array:
         """Distance between bodies (M) and the formation ``offsets`` (..., M, 3) away from them; < 0 inside (m)."""
-        horizontal, vertical = self.gaps(offsets, formation)
-        return np.asarray(_joined(horizontal, vertical) - self.ball)
+        level = self.level_gaps(offsets[..., 0], offsets[..., 1], formation)
+        return np.asarray(_joined(level, self.height_gaps(offsets[..., 2], formation)) - self.ball)
 
-    def gaps(self, offsets: Array, formation: BoundingCylinder) -> tuple[Array, Array]:
-        """Horizontal and vertical part (..., M) of the distance to the bodies less their ``ball`` (m)."""
-        x, y = offsets[..., 0], offsets[..., 1]
+    def level_gaps(self, x: Array, y: Array, formation: BoundingCylinder) -> Array:
+        """Horizontal part (..., M) of the distance to the bodies less their ``ball`` (m)."""
         c, s = np.abs(self._cosine), np.abs(self._sine)
         half_x, half_y = formation.core
         along = np.maximum(
@@ -167,11 +198,14 @@ class _Bodies:
             x, y = self._cosine * x + self._sine * y, self._cosine * y - self._sine * x
         x, y = np.abs(x) - self._half_x, np.abs(y) - self._half_y
         along = np.maximum(along, np.maximum(x - half_x * c - half_y * s, y - half_x * s - half_y * c))
-        horizontal = np.maximum(_joined(x, y) - formation.radius, along - formation.rounding) - self._upright
+        circle = _joined(x, y) - formation.radius
+        return np.asarray(np.maximum(circle, along - formation.rounding) - self._upright)
+
+    def height_gaps(self, z: Array, formation: BoundingCylinder) -> Array:
+        """Vertical part (..., M) of the distance to the bodies less their ``ball`` (m)."""
         # The formation reaches from `below` under the payload's centre (down is positive) to `above` over it.
-        z = offsets[..., 2] + (formation.below - formation.above) / 2.0
-        vertical = np.abs(z) - self._half_z - (formation.below + formation.above) / 2.0
-        return np.asarray(horizontal), np.asarray(vertical)
+        z = z + (formation.below - formation.above) / 2.0
+        return np.asarray(np.abs(z) - self._half_z - (formation.below + formation.above) / 2.0)
 
 
 def _joined(a: Array, b: Array) -> Array:

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.ndimage import label
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
@@ -21,7 +22,6 @@ from idc_controller.geometry.bounding_cylinder import BoundingCylinder
 from idc_controller.geometry.flight_area import FlightArea
 from idc_controller.geometry.free_space import FreeSpace, first_conflict
 from idc_controller.geometry.shape import Shape
-from idc_controller.guidance.detour_kernels import connected, lattice_graph
 from idc_controller.guidance.settings import DetourSettings
 from idc_controller.guidance.straighten import free_segments_from, straightened
 from idc_controller.trajectory.trajectory import point
@@ -31,6 +31,7 @@ __all__ = ["BoundingCylinder", "Detour", "FreeSpace", "find_detour", "first_conf
 Box = tuple[Array, Array]
 """Two opposite corners, NED (m)."""
 
+_TIE = 1e-9  # m, so that no edge is without cost
 _LONGER = (2.0, 6.0, math.inf)  # m than the straight line: limit of a path's length in three searches
 
 _HALF = [(i, j, k) for i in (-1, 0, 1) for j in (-1, 0, 1) for k in (-1, 0, 1) if (i, j, k) > (0, 0, 0)]
@@ -201,8 +202,9 @@ class _Grid:
             return None, "there is no free space about the start"
         if len(goals) == 0:
             return None, "there is no free space about the goal"
-        flat, number = self._numbered(nodes)
-        reachable = connected(flat, number, _DIRECTIONS @ self._strides, starts)
+        parts, _ = label(self._free[2:-2:2, 2:-2:2, 2:-2:2], np.ones((3, 3, 3)))
+        part = parts[tuple(nodes.T)]
+        reachable = np.isin(part, part[starts])
         if not reachable[goals].any():
             return None, "every path from start to goal is closed or too narrow for the formation"
         to_goal = np.linalg.norm(places - self._goal, axis=1)
@@ -228,13 +230,6 @@ class _Grid:
                 break
         return near
 
-    def _numbered(self, nodes: NDArray[np.intp]) -> tuple[NDArray[np.intp], NDArray[np.int32]]:
-        """Return the places of ``nodes`` (n, 3) in the flat array of the lattice (n,), and the node at each place."""
-        flat = (2 * nodes + 2) @ self._strides
-        number = np.full(self._free.size, -1, dtype=np.int32)
-        number[flat] = np.arange(len(nodes))
-        return flat, number
-
     def _search(
         self,
         nodes: NDArray[np.intp],
@@ -246,7 +241,9 @@ class _Grid:
     ) -> NDArray[np.intp] | None:
         """Indices of the nodes on the shortest path among the ``chosen`` ones; None: there is none."""
         count = len(chosen)
-        flat, number = self._numbered(nodes[chosen])
+        flat = (2 * nodes[chosen] + 2) @ self._strides
+        number = np.full(self._free.size, -1, dtype=np.int32)
+        number[flat] = np.arange(count)
         # Each edge costs its length less what it gains on the goal: Dijkstra then searches as A* does, and what
         # it counts is how much longer than straight the path is.
         to_goal = np.linalg.norm(places[chosen] - self._goal, axis=1)
@@ -256,11 +253,20 @@ class _Grid:
         back[chosen] = np.arange(count)
         first, last = (back[ends][back[ends] >= 0] for ends in (starts, goals))
         out = np.linalg.norm(places[chosen[first]] - self._start, axis=1) + to_goal[first] - straight
-        is_last = np.zeros(count, dtype=bool)
-        is_last[last] = True
+        # The edges of each node, the last of them to the goal, then those of the start.
+        steps = _DIRECTIONS @ self._strides
+        ends = np.column_stack([number[flat[:, None] + 2 * steps], np.full(count, count + 1)])
+        is_edge = np.zeros(ends.shape, dtype=bool)
+        is_edge[:, :-1] = (ends[:, :-1] >= 0) & self._free.ravel()[flat[:, None] + steps]
+        is_edge[last, -1] = True
+        costs = np.append(lengths, 0.0) + np.append(to_goal, (0.0, 0.0))[ends] - to_goal[:, None]
+        costs[:, -1] = 0.0
+        begins = np.concatenate([[0], np.cumsum(is_edge.sum(axis=1)), 2 * [is_edge.sum() + len(first)]])
         graph = csr_array(
-            lattice_graph(
-                flat, number, self._free.ravel(), _DIRECTIONS @ self._strides, lengths, to_goal, first, out, is_last
+            (
+                np.maximum(np.append(costs[is_edge], out), 0.0) + _TIE,
+                np.append(ends[is_edge], first),
+                begins,
             ),
             shape=(count + 2, count + 2),
         )

@@ -9,33 +9,17 @@ from idc_controller.compiled import inlined, kernel
 from idc_controller.perception.normal_kernels import surface_normal
 from idc_controller.perception.voxel_kernels import (
     BORN,
-    CELLS,
     HELD,
     MEAN,
-    NUMBER,
     PASSED,
     PROVEN,
     SCATTER,
-    USED,
     WEIGHT,
     cell_index,
     element_at,
-    element_voxel,
     find_block,
     voxel,
 )
-
-
-@kernel("uint8[::1](int64[:, ::1], int32[:, ::1], uint8[:, ::1], float64[:, ::1], float64)")
-def cells_at(table: Indices, pages: Links, cells: Cells, points: Array, size: float) -> Cells:
-    """Return the cells (n,) of the voxels with ``points`` (n, 3), 0 where nothing was ever seen."""
-    found = np.zeros(points.shape[0], np.uint8)
-    for p in range(points.shape[0]):
-        x, y, z = voxel(points[p, 0], size), voxel(points[p, 1], size), voxel(points[p, 2], size)
-        block = find_block(table, pages, x, y, z)
-        if block >= 0:
-            found[p] = cells[block, cell_index(x, y, z)]
-    return found
 
 
 @kernel("boolean[::1](int64[:, ::1], int32[:, ::1], int32[:, ::1], float64[:, ::1], float64[:, ::1], float64, float64)")
@@ -65,39 +49,6 @@ def normals_at(
         index = element_at(table, pages, links, x, y, z)
         if index >= 0 and elements[index, PROVEN] == 1.0:
             surface_normal(table, pages, blocks, links, elements, elements[index], found[p])
-    return found
-
-
-@kernel("int64[::1](float64[:, ::1], int64[::1])")
-def used_elements(elements: Array, counts: Indices) -> Indices:
-    """Return the indices of the elements that are no spare ones."""
-    found, n = np.empty(counts[USED], np.int64), 0
-    for e in range(counts[USED]):
-        if elements[e, NUMBER] > 0.0:
-            found[n] = e
-            n += 1
-    return found[:n].copy()
-
-
-@kernel("int64[::1](int32[:, ::1], int64[::1])")
-def elements_of_blocks(links: Links, blocks: Indices) -> Indices:
-    """Return the indices of the elements in some ``blocks`` (n,)."""
-    found, n = np.empty(blocks.shape[0] * CELLS, np.int64), 0
-    for b in blocks:
-        for cell in range(CELLS):
-            index = (links[b, cell] >> 8) - 1
-            if index >= 0:
-                found[n] = index
-                n += 1
-    return found[:n].copy()
-
-
-@kernel("int64[:, ::1](int64[:, ::1], float64[:, ::1], int64[::1])")
-def voxels_of_elements(blocks: Indices, elements: Array, indices: Indices) -> Indices:
-    """Return the voxels (n, 3) of the elements with ``indices`` (n,)."""
-    found = np.empty((indices.shape[0], 3), np.int64)
-    for n in range(indices.shape[0]):
-        found[n, 0], found[n, 1], found[n, 2] = element_voxel(blocks, elements[indices[n]])
     return found
 
 

@@ -12,7 +12,6 @@ from idc_controller.perception.pose_history import PoseHistory
 from idc_controller.perception.range_sensors import RangeSensors, SensorModel
 from idc_controller.perception.ray_offset import RayOffset
 from idc_controller.perception.ray_pattern import RayPattern, scan_index
-from idc_controller.perception.scan_kernels import possible_points
 from idc_controller.perception.scan_placement_kernels import free_ends, placed_returns
 from idc_controller.perception.settings import ScanSettings
 from idc_controller.rotations import rotation_from_quaternion
@@ -136,7 +135,9 @@ class ScanPlacement:
         if scan is None:
             self.discarded += len(points)
             return
-        possible = possible_points(points, returns.max_range, self._settings.range_factor)
+        distance = np.sqrt(points[:, 0] ** 2 + points[:, 1] ** 2 + points[:, 2] ** 2)
+        reach = self._settings.range_factor * returns.max_range
+        possible = np.flatnonzero((distance > 0.0) & (distance < reach) & np.isfinite(reach))
         waiting = sum(other.count for other in self._waiting[uav].values())
         usable = possible[: max(self._points_max - waiting, 0)]
         if len(usable) < len(points):

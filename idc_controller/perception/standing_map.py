@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import ndtri
 
-from idc_controller.arrays import Array, Cells, Indices, Mask
+from idc_controller.arrays import Array, Indices, Mask
 from idc_controller.estimation.health.chi_squared import upper_quantile
 from idc_controller.geometry.obstacles import Bodies
 from idc_controller.geometry.shape import Shape
@@ -27,11 +27,12 @@ from idc_controller.perception.return_kernels import add_returns
 from idc_controller.perception.settings import StandingMapSettings
 from idc_controller.perception.sight_kernels import first_hidden, unseen_cells
 from idc_controller.perception.voxel_kernels import (
+    BLOCK,
     BLOCKS,
     BORN,
+    CELL,
     CHANGE,
     EDGE,
-    HELD,
     HIGH,
     HITS,
     KEY,
@@ -120,7 +121,7 @@ class StandingMap:
         than the settling time before is not of it.
         """
         v = self._store
-        indices = queries.used_elements(v.elements, v.counts)
+        indices = self._used()
         if not len(indices) or not bodies:
             return
         means = v.elements[indices, MEAN : MEAN + 3]
@@ -130,15 +131,6 @@ class StandingMap:
         is_its = (distance <= gap) & (v.elements[indices, BORN] >= since[:, None])
         found = indices[is_its.any(axis=0)]
         release(v.table, v.pages, v.blocks, v.cells, v.links, v.elements, v.counts, found, self.settings.free_passes)
-
-    def is_occupied(self, points: Array) -> Mask:
-        """Return whether the voxels with ``points`` (n, 3) hold points that were hit (n,)."""
-        return np.asarray(self._cells_at(points) & HELD > 0)
-
-    def is_seen_free(self, points: Array) -> Mask:
-        """Return whether the voxels with ``points`` (n, 3) were seen free and hold no point that was hit (n,)."""
-        cells = self._cells_at(points)
-        return np.asarray(cells == self.settings.free_passes)
 
     def unseen(self, path: Array, body: Array, most: int) -> tuple[Indices, Array]:
         """Return up to ``most`` cells on the way of a body along its ``path`` (P, 3) that were not seen free.
@@ -187,7 +179,7 @@ class StandingMap:
 
     def occupied(self) -> SurfaceElements:
         """Return all surface elements."""
-        return self.elements(queries.used_elements(self._store.elements, self._store.counts))
+        return self.elements(self._used())
 
     def take_changed_blocks(self) -> tuple[Indices, Indices, Mask]:
         """Return the blocks that changed since the last call.
@@ -200,13 +192,12 @@ class StandingMap:
         changed = np.flatnonzero(changes)
         surface = changes[changed] & SURFACE != 0
         changes[changed] = 0
-        keys = self._store.blocks[changed, KEY]
-        corners = np.stack([(keys >> shift & 0x1FFFFF) - (1 << 20) for shift in (42, 21, 0)], axis=1) * EDGE
-        return changed, corners, np.asarray(surface)
+        return changed, self._corners(changed), np.asarray(surface)
 
     def elements_of(self, blocks: Indices) -> SurfaceElements:
         """Return the surface elements in some ``blocks`` (n,)."""
-        return self.elements(queries.elements_of_blocks(self._store.links, blocks))
+        found = (self._store.links[blocks].ravel() >> 8).astype(np.int64) - 1
+        return self.elements(found[found >= 0])
 
     def elements(self, indices: Indices) -> SurfaceElements:
         """Return the surface elements with these ``indices`` (n,)."""
@@ -214,7 +205,7 @@ class StandingMap:
         return SurfaceElements(
             indices,
             rows[:, NUMBER].astype(np.int64),
-            queries.voxels_of_elements(self._store.blocks, self._store.elements, indices),
+            self._corners(rows[:, BLOCK].astype(np.int64)) + (rows[:, CELL].astype(np.int64)[:, None] >> (6, 3, 0) & 7),
             rows[:, MEAN : MEAN + 3],
             rows[:, LOW : LOW + 3],
             rows[:, HIGH : HIGH + 3],
@@ -230,7 +221,7 @@ class StandingMap:
     def gaps(self, box: Array, most: int, among: Indices = _ALL) -> Array:
         """Return the middles (n, 3) of up to ``most`` gaps in a box: seen free, with no point in the 27 voxels about.
 
-        ``box`` (8,): see :mod:`idc_controller.perception.upright_box_kernels`; ``among``: blocks that are searched.
+        ``box`` (8,): see :mod:`idc_controller.perception.upright_box`; ``among``: blocks that are searched.
         """
         s, v = self.settings, self._store
         return boxes.gaps_within(v.table, v.pages, v.blocks, v.cells, v.links, among, box, s.voxel, s.free_passes, most)
@@ -263,9 +254,14 @@ class StandingMap:
         """Elements ever used: their indices are smaller."""
         return int(self._store.counts[USED])
 
-    def _cells_at(self, points: Array) -> Cells:
-        points = np.ascontiguousarray(points, dtype=float).reshape(-1, 3)
-        return queries.cells_at(self._store.table, self._store.pages, self._store.cells, points, self.settings.voxel)
+    def _used(self) -> Indices:
+        """Return the indices of the elements that are no spare ones."""
+        return np.flatnonzero(self._store.elements[: self.element_count, NUMBER] > 0.0)
+
+    def _corners(self, blocks: Indices) -> Indices:
+        """Return the first voxels (n, 3) of ``blocks`` (n,)."""
+        keys = self._store.blocks[blocks, KEY]
+        return np.asarray(((keys[:, None] >> (42, 21, 0) & 0x1FFFFF) - (1 << 20)) * EDGE)
 
 
 def _sigmas(scan: PlacedScan) -> Array:

@@ -1,14 +1,13 @@
-"""Upright boxes that hold points of the standing map, and the gaps in them, compiled.
+"""Bounds of the points of the standing map, and gaps in upright boxes about them, compiled.
 
-A box is a row of 8 numbers: centre (3,), half edges along its heading, across it and vertically (m), cosine and sine of
-the heading. Bounds are rows of 6: lower (3,) and upper (3,) (m).
+Boxes and bounds: see :mod:`idc_controller.perception.upright_box`.
 """
 
 import math
 
 import numpy as np
 
-from idc_controller.arrays import Array, Cells, Indices, Links, Mask
+from idc_controller.arrays import Array, Cells, Indices, Links
 from idc_controller.compiled import inlined, kernel
 from idc_controller.perception.voxel_kernels import (
     EDGE,
@@ -27,94 +26,6 @@ from idc_controller.perception.voxel_kernels import (
     key_corner,
     voxel,
 )
-
-_COARSE, _FINE = 18, 5
-"""Headings tried of a quarter turn, and on each side of the best of them."""
-
-
-@inlined
-def _spans(bounds: Array, rows: Indices, cosine: float, sine: float) -> tuple[float, float, float, float]:
-    """Return the least and largest coordinate of bounds along a heading and across it (m)."""
-    low_u, high_u, low_v, high_v = math.inf, -math.inf, math.inf, -math.inf
-    a, b = abs(cosine), abs(sine)
-    for r in rows:
-        x, y = (bounds[r, 0] + bounds[r, 3]) / 2.0, (bounds[r, 1] + bounds[r, 4]) / 2.0
-        p, q = (bounds[r, 3] - bounds[r, 0]) / 2.0, (bounds[r, 4] - bounds[r, 1]) / 2.0
-        u, v = cosine * x + sine * y, cosine * y - sine * x
-        du, dv = a * p + b * q, a * q + b * p
-        low_u, high_u = min(low_u, u - du), max(high_u, u + du)
-        low_v, high_v = min(low_v, v - dv), max(high_v, v + dv)
-    return low_u, high_u, low_v, high_v
-
-
-@inlined
-def _set_box(
-    box: Array, low_u: float, high_u: float, low_v: float, high_v: float, top: float, bottom: float, cosine: float,
-    sine: float,
-) -> None:  # fmt: skip
-    u, v = (low_u + high_u) / 2.0, (low_v + high_v) / 2.0
-    box[0], box[1], box[2] = cosine * u - sine * v, sine * u + cosine * v, (top + bottom) / 2.0
-    box[3], box[4], box[5] = (high_u - low_u) / 2.0, (high_v - low_v) / 2.0, (bottom - top) / 2.0
-    box[6], box[7] = cosine, sine
-
-
-@kernel("float64[::1](float64[:, ::1], int64[::1])")
-def fitted_box(bounds: Array, rows: Indices) -> Array:
-    """Return the upright box (8,) with about the least plan view that holds ``bounds`` (E, 6) of some ``rows`` (n,).
-
-    The heading is the best of some, found to half a degree.
-    """
-    box, least, best = np.empty(8), math.inf, 0.0
-    step = math.pi / 2.0 / _COARSE
-    for i in range(_COARSE + 2 * _FINE):
-        if i < _COARSE:
-            heading = i * step
-        else:
-            if i == _COARSE:
-                middle = best
-            j = i - _COARSE - _FINE
-            heading = middle + (j + 1 if j >= 0 else j) * step / (2.0 * _FINE)
-        low_u, high_u, low_v, high_v = _spans(bounds, rows, math.cos(heading), math.sin(heading))
-        area = (high_u - low_u) * (high_v - low_v)
-        if area < least * (1.0 - 1e-9):
-            least, best = area, heading
-    top, bottom = math.inf, -math.inf
-    for r in rows:
-        top, bottom = min(top, bounds[r, 2]), max(bottom, bounds[r, 5])
-    low_u, high_u, low_v, high_v = _spans(bounds, rows, math.cos(best), math.sin(best))
-    _set_box(box, low_u, high_u, low_v, high_v, top, bottom, math.cos(best), math.sin(best))
-    return box
-
-
-@kernel("float64[::1](float64[::1], float64[:, ::1], int64[::1])")
-def extended_box(box: Array, bounds: Array, rows: Indices) -> Array:
-    """Return a ``box`` (8,) extended, at its heading, to hold the ``bounds`` (E, 6) of some ``rows`` (n,)."""
-    cosine, sine, found = box[6], box[7], np.empty(8)
-    low_u, high_u, low_v, high_v = _spans(bounds, rows, cosine, sine)
-    u, v = cosine * box[0] + sine * box[1], cosine * box[1] - sine * box[0]
-    top, bottom = box[2] - box[5], box[2] + box[5]
-    for r in rows:
-        top, bottom = min(top, bounds[r, 2]), max(bottom, bounds[r, 5])
-    _set_box(
-        found, min(low_u, u - box[3]), max(high_u, u + box[3]), min(low_v, v - box[4]), max(high_v, v + box[4]), top,
-        bottom, cosine, sine,
-    )  # fmt: skip
-    return found
-
-
-@kernel("boolean[::1](float64[::1], float64[:, ::1], int64[::1], float64)")
-def reaches_out(box: Array, bounds: Array, rows: Indices, tolerance: float) -> Mask:
-    """Return which of ``bounds`` (E, 6), at ``rows`` (n,), reach beyond a ``box`` (8,) by over ``tolerance`` (m)."""
-    found, one = np.empty(rows.shape[0], np.bool_), np.empty(1, np.int64)
-    u, v = box[6] * box[0] + box[7] * box[1], box[6] * box[1] - box[7] * box[0]
-    for i in range(rows.shape[0]):
-        one[0] = rows[i]
-        low_u, high_u, low_v, high_v = _spans(bounds, one, box[6], box[7])
-        beyond = max(u - box[3] - low_u, high_u - u - box[3])
-        beyond = max(beyond, v - box[4] - low_v, high_v - v - box[4])
-        beyond = max(beyond, box[2] - box[5] - bounds[rows[i], 2], bounds[rows[i], 5] - box[2] - box[5])
-        found[i] = beyond > tolerance
-    return found
 
 
 @kernel(

@@ -21,11 +21,13 @@ import numpy as np
 from idc_controller.arrays import Array
 from idc_controller.model.drag import Air
 from idc_controller.parameters import SystemParameters
-from idc_controller.trajectory.flatness_kernels import flat_map, stencil_grid
+from idc_controller.trajectory.flatness_kernels import flat_map
 
 # Spacing of the samples from which derivatives of the UAVs' forces are taken (s): the trajectory is smooth up to snap
 # only, and these derivatives go beyond it.
 STENCIL = 0.05
+_SAME = 1e-9
+"""Times closer than this (s) are the same."""
 
 _STILL_AIR = Air(np.zeros(3), np.zeros(3), 0.0)
 
@@ -96,13 +98,20 @@ def flat_reference(
 ) -> FlatReference:
     """Exact reference at ``times`` (K,) (s): states and the set-points that hold the vehicles on it."""
     p, N = parameters, parameters.number_of_uavs
-    grid, index = stencil_grid(times, STENCIL)
+    grid: Array = (times[:, None] + np.arange(-2, 3) * STENCIL).ravel()
+    # A horizon whose stages are as far apart as the stencil's points needs most times five times over.
+    ticks = np.rint(grid / _SAME)
+    order = ticks.argsort(kind="stable")
+    is_new = np.append(True, np.diff(ticks[order]) > 0.0)
+    index = np.empty(len(grid), dtype=int)
+    index[order] = np.cumsum(is_new) - 1
+    grid, places = grid[order[is_new]], index.reshape(-1, 5)
     derivatives = np.ascontiguousarray(trajectory.derivatives(grid))
     air = load.air or _STILL_AIR
     constant = np.empty((N, 3))
     constant[:] = load.uav_force
     x, u, payload, (q, q_dot, q_ddot), tension, thrust, on_payload, on_uavs = flat_map(
-        derivatives, index, STENCIL, load.mass, load.force, constant,
+        derivatives, places, STENCIL, load.mass, load.force, constant,
         load.air is not None, air.wind, air.payload, air.uav, air.limit,
         p.g, p.p, p.l, p.m, p.attitude_kp, p.attitude_kd, p.motor_time_constant,
     )  # fmt: skip

@@ -6,41 +6,8 @@ from idc_controller.arrays import Array, Indices
 from idc_controller.compiled import inlined, kernel
 from idc_controller.model.drag import SMOOTHING
 
-_SAME = 1e-9
-"""Times closer than this (s) are the same."""
-
 _VECTOR, _MATRIX = (f"Array(float64, {axes}, 'C', readonly=True)" for axes in (1, 2))
 """Types of arrays of parameters, which are read only."""
-
-
-@kernel("Tuple((float64[::1], int64[:, ::1]))(float64[::1], float64)")
-def stencil_grid(times: Array, spacing: float) -> tuple[Array, Indices]:
-    """Return the times at which a stencil of five about each of ``times`` (K,) (s) needs the trajectory.
-
-    A horizon whose stages are as far apart as the stencil's points needs most times five times over.
-
-    Args:
-        times: in any order (K,) (s).
-        spacing: of the stencil's points (s).
-
-    Returns:
-        The times without repetitions, in order (G,) (s), and the index in them of each stencil's points (K, 5).
-    """
-    grid = np.empty(5 * len(times))
-    for k in range(len(times)):
-        for o in range(5):
-            grid[5 * k + o] = times[k] + (o - 2) * spacing
-    ticks = np.rint(grid / _SAME)
-    order = np.argsort(ticks, kind="mergesort")
-    chosen, index = np.empty(len(grid)), np.empty((len(times), 5), dtype=np.int64)
-    count = 0
-    for j in range(len(order)):
-        at = order[j]
-        if j == 0 or ticks[at] != ticks[order[j - 1]]:
-            chosen[count] = grid[at]
-            count += 1
-        index[at // 5, at % 5] = count - 1
-    return chosen[:count].copy(), index
 
 
 @inlined

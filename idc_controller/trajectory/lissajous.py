@@ -17,8 +17,7 @@ from idc_controller.errors import TrajectoryError
 from idc_controller.trajectory.lissajous_curve import LissajousCurve, check_full_rate, largest_derivatives
 from idc_controller.trajectory.settings import Limits
 from idc_controller.trajectory.trajectory import Times, Trajectory, finite, positive
-from idc_controller.trajectory.trajectory_kernels import figure_eight, figure_eight_at
-from idc_controller.trajectory.trajectory_kernels import phase as phase_at
+from idc_controller.trajectory.trajectory_kernels import figure_eight_at
 
 SHORTEST_RAMP, LONGEST_RAMP = 0.25, 60.0
 """s, between rest and the full rate."""
@@ -70,9 +69,9 @@ class LissajousTrajectory(Trajectory):
         self._phase, self._rate, self._shape = (phase.c, phase.x), phase.derivative(), self.curve.as_array()
         self.start, self._end = float(phase.x[0]), float(phase.x[-1])
 
-    def phase(self, times: ArrayLike, order: int = 0) -> Array:
-        """Phase and its derivatives at times (K,), s: (order + 1, K), rad / s^d."""
-        return phase_at(*self._phase, np.ascontiguousarray(times, dtype=float), order, True)
+    def phase(self, times: ArrayLike) -> Array:
+        """Phase at times (K,), s: (K,), rad."""
+        return np.asarray(PPoly(*self._phase)(np.clip(times, self.start, self._end)))
 
     def evaluate(self, times: Times, order: int) -> Array:
         """See ``Trajectory.evaluate``; analytic, by the chain rule."""
@@ -179,7 +178,7 @@ def _holds_limits(curve: LissajousCurve, limits: Limits, phase: PPoly, times: Ar
 
 
 def _holds_limits_at(curve: LissajousCurve, limits: Limits, phase: PPoly, times: Array) -> bool:
-    phases = phase_at(phase.c, phase.x, times, 4, False)
-    norms = np.linalg.norm(figure_eight(curve.as_array(), phases)[1:], axis=2).max(axis=1)
+    phases = np.array([phase(times, order) for order in range(5)])
+    norms = np.linalg.norm(curve.by_time(phases), axis=2).max(axis=1)
     # Never backwards; samples may miss a peak by a little.
     return bool(phases[1].min() >= -1e-9 and np.all(norms <= limits.as_array()[:4] * (1.0 - 1e-3)))

@@ -48,6 +48,18 @@ class LissajousCurve:
         result[0] += [*self.centre, self.down]
         return result
 
+    def by_time(self, phases: Array) -> Array:
+        """Return velocity to snap (4, K, 3) by the chain rule; ``phases``: phase and derivatives by time (5, K)."""
+        _, r_1, r_2, r_3, r_4 = self.by_phase(phases[0], 4)
+        s_1, s_2, s_3, s_4 = phases[1:, :, None]
+        curved = r_2 * (3.0 * s_2**2 + 4.0 * s_1 * s_3)
+        return np.array([
+            r_1 * s_1,
+            r_2 * s_1**2 + r_1 * s_2,
+            r_3 * s_1**3 + 3.0 * r_2 * s_1 * s_2 + r_1 * s_3,
+            r_4 * s_1**4 + 6.0 * r_3 * s_1**2 * s_2 + curved + r_1 * s_4,
+        ])  # fmt: skip
+
 
 def largest_derivatives(curve: LissajousCurve, rate: float) -> Array:
     """Largest norms (4,) of speed to snap at the full rate."""

@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike
 
 from idc_controller.arrays import Array
 from idc_controller.errors import TrajectoryError
-from idc_controller.trajectory.trajectory_kernels import span
 
 
 class Times(NamedTuple):
@@ -25,7 +24,7 @@ class Times(NamedTuple):
 
     def checked(self) -> Times:
         """Return it; raises TrajectoryError unless all times are finite."""
-        if not math.isfinite(self.latest):
+        if not (math.isfinite(self.earliest) and math.isfinite(self.latest)):
             raise TrajectoryError("times must be a list of finite numbers")
         return self
 
@@ -65,7 +64,7 @@ class Trajectory(ABC):
             raise TrajectoryError(f"derivatives exist for order 0 to 4, not {order}")
         if not len(array):
             return np.zeros((order + 1, 0, 3))
-        return self.evaluate(Times(array, *span(array)).checked(), order)
+        return self.evaluate(Times(array, float(array.min()), float(array.max())).checked(), order)
 
     @abstractmethod
     def evaluate(self, times: Times, order: int) -> Array:

@@ -22,12 +22,6 @@ def _span(times: Array) -> tuple[float, float]:
     return earliest, latest
 
 
-@kernel("UniTuple(float64, 2)(float64[::1])")
-def span(times: Array) -> tuple[float, float]:
-    """Return the earliest and the latest of ``times`` (K,) (s); NaN twice if one of them is not finite."""
-    return _span(times)
-
-
 @kernel("float64[:, :, ::1](float64[:, ::1], float64[:, :, ::1], float64[::1], int64)")
 def spline(control_points: Array, basis: Array, arguments: Array, order: int) -> Array:
     """Return position and derivatives (order + 1, K, 3) of a uniform B-spline of degree 5.
@@ -65,7 +59,7 @@ def spline(control_points: Array, basis: Array, arguments: Array, order: int) ->
 
 @inlined
 def _polynomial(coefficients: Array, knots: Array, time: float, values: Array) -> None:
-    """Write a piecewise polynomial and its derivatives at ``time`` into ``values`` (order + 1,); see ``phase``."""
+    """Write a piecewise polynomial and its derivatives at ``time`` into ``values`` (order + 1,); see ``_phase``."""
     degree = len(coefficients) - 1
     piece = 0
     while piece < len(knots) - 2 and time >= knots[piece + 1]:
@@ -83,31 +77,25 @@ def _polynomial(coefficients: Array, knots: Array, time: float, values: Array) -
 
 
 @inlined
-def _phase(coefficients: Array, knots: Array, times: Array, order: int, at_rest: bool) -> Array:
-    """Return a piecewise polynomial and its derivatives (order + 1, K).
+def _phase(coefficients: Array, knots: Array, times: Array, order: int) -> Array:
+    """Return a piecewise polynomial and its derivatives (order + 1, K), at rest at the first and the last knot.
+
+    There and beyond them the derivatives are exactly zero.
 
     Args:
         coefficients: (degree + 1, pieces), highest power first.
         knots: between the pieces (pieces + 1,) (s).
         times: (K,) (s).
         order: highest derivative.
-        at_rest: at the first and the last knot, and beyond them: the derivatives are exactly zero there.
     """
     result = np.zeros((order + 1, len(times)))
     values = np.empty(order + 1)
     for i, time in enumerate(times):
-        inside = min(max(time, knots[0]), knots[-1]) if at_rest else time
-        _polynomial(coefficients, knots, inside, values)
+        _polynomial(coefficients, knots, min(max(time, knots[0]), knots[-1]), values)
         result[:, i] = values
-        if at_rest and (time <= knots[0] or time >= knots[-1]):
+        if time <= knots[0] or time >= knots[-1]:
             result[1:, i] = 0.0
     return result
-
-
-@kernel("float64[:, ::1](float64[:, ::1], float64[::1], float64[::1], int64, boolean)")
-def phase(coefficients: Array, knots: Array, times: Array, order: int, at_rest: bool) -> Array:
-    """Return a piecewise polynomial and its derivatives (order + 1, K); see ``_phase``."""
-    return _phase(coefficients, knots, times, order, at_rest)
 
 
 @inlined
@@ -148,12 +136,6 @@ def _figure_eight(curve: Array, phases: Array) -> Array:
     return result
 
 
-@kernel("float64[:, :, ::1](float64[::1], float64[:, ::1])")
-def figure_eight(curve: Array, phases: Array) -> Array:
-    """Return position and derivatives by time (order + 1, K, 3) on the figure eight; see ``_figure_eight``."""
-    return _figure_eight(curve, phases)
-
-
 @kernel("float64[:, :, ::1](float64[::1], float64[:, ::1], float64[::1], float64[::1], int64)")
 def figure_eight_at(curve: Array, coefficients: Array, knots: Array, times: Array, order: int) -> Array:
     """Return position and derivatives (order + 1, K, 3) on the figure eight at ``times`` (K,) (s).
@@ -164,7 +146,7 @@ def figure_eight_at(curve: Array, coefficients: Array, knots: Array, times: Arra
         times: (K,) (s).
         order: highest derivative.
     """
-    return _figure_eight(curve, _phase(coefficients, knots, times, order, True))
+    return _figure_eight(curve, _phase(coefficients, knots, times, order))
 
 
 @inlined
@@ -208,7 +190,9 @@ def chain(states: Array, period: float, elapsed: Array) -> Array:
 
 @kernel("Tuple((int64[::1], float64[::1], float64, float64))(float64[:, ::1], float64[::1])")
 def progress(scalings: Array, times: Array) -> tuple[NDArray[np.int64], Array, float, float]:
-    """Return the piece in force (M,), the progress of its reference (M,) (s), and the span of that; see ``span``.
+    """Return the piece in force (M,), the progress of its reference (M,) (s), and the span of that.
+
+    The span is NaN twice if a progress is not finite.
 
     Args:
         scalings: start (s), progress at the start (s) and rate of the pieces, each in force until the next (P, 3).
