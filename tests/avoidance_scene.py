@@ -8,6 +8,7 @@ from paper_system import system
 from plain_flatness import flat_forces
 from scipy.spatial import ConvexHull
 
+from gcs.planning.flight import IdealTracking
 from idc_controller.estimation.estimate import Estimate
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.obstacles import PredictedObstacle
@@ -16,6 +17,7 @@ from idc_controller.geometry.sphere import Sphere
 from idc_controller.guidance.navigator import Navigator
 from idc_controller.guidance.progress import AdaptiveGuidance
 from idc_controller.guidance.settings import NavigatorSettings, ProgressSettings
+from idc_controller.model.linear import LinearModel
 from idc_controller.safety.safety_filter import AvoidanceFilter
 from idc_controller.safety.settings import PlannerSettings
 from idc_controller.trajectory.flatness import Load
@@ -106,23 +108,6 @@ def straight(length, speed=1.5, altitude=5.0, start=0.0):
     return WaypointTrajectory([0.0, 0.0, -altitude], legs, Limits(speed, 1.5, 2.0, 6.0), start=start)
 
 
-class Avoidance:
-    """Guidance and safety filter together, as the controller runs them."""
-
-    def __init__(self, safety, guidance):
-        self.safety, self.guidance = safety, guidance
-
-    @property
-    def report(self):
-        return self.safety.report
-
-    def step(self, time, mission, estimate):
-        """The trajectory to track from ``time`` on."""
-        trajectory = self.safety.filter(time, self.guidance.reference(time, mission), estimate)
-        self.guidance.observe(trajectory, self.report.lag, self.report.deviation, None)
-        return trajectory
-
-
 def avoidance(obstacles, n=4, margin=0.5, speed=1.5, by_sight=None, area=None, **settings):
     parameters, scene = system(n), Scene(obstacles)
     safety = AvoidanceFilter(parameters, PlannerSettings(margin=margin, **settings), scene)
@@ -130,14 +115,14 @@ def avoidance(obstacles, n=4, margin=0.5, speed=1.5, by_sight=None, area=None, *
     navigation = NavigatorSettings(limits=Limits(speed, 1.5, 2.0, 6.0), margin=margin)
     navigator = Navigator(parameters, navigation, scene, stages, area)
     guidance = AdaptiveGuidance(navigator, ProgressSettings(), stages, parameters.m_0 * parameters.g, by_sight)
-    return Avoidance(safety, guidance)
+    return IdealTracking(LinearModel(parameters), safety, guidance)
 
 
 @dataclass
 class Flown:
     """Result of a flight."""
 
-    avoidance: Avoidance
+    avoidance: IdealTracking
     mission: WaypointTrajectory
     times: list = field(default_factory=list)
     derivatives: list = field(default_factory=list)
@@ -175,17 +160,16 @@ def fly(avoidance, mission, duration, on_step=lambda flown, time: None, until_en
     """Fly ``mission``; stops a second after its end is reached."""
     flown = Flown(avoidance, mission)
     before = None
-    position = mission.position(time)
     while time < duration:
-        trajectory = avoidance.step(time, mission, estimate_at(time, position))
+        trajectory = avoidance.step(time, mission)
         now = trajectory.derivatives(np.array([time, time + STEP]))
         if before is not None:
             flown.seams.append(np.abs(now[:, 0] - before.derivatives(np.array([time]))[:, 0]).max(axis=1))
         flown.times.append(time)
         flown.derivatives.append(now[:, 0])
-        flown.reports.append(avoidance.report)
+        flown.reports.append(avoidance.safety.report)
         flown.rates.append(avoidance.guidance.rate)
-        position, before = now[0, 1], trajectory
+        before = trajectory
         time = round(time + STEP, 6)
         on_step(flown, time)
         if np.isnan(flown.ends_at) and np.isfinite(mission.end) and avoidance.guidance.progress(time) >= mission.end:

@@ -4,6 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from mission_files import MISSIONS
 
 from gcs.config.overrides import with_settings
 from gcs.mission.read import read_mission
@@ -48,6 +49,48 @@ shape = "wall"
 position = [6.0, 0.0, -20.0]
 size = [0.3, 300.0, 40.0]
 """
+TILTED = """
+[mission]
+name = "tilted shapes"
+seed = 2
+
+[reference]
+kind = "lissajous"
+amplitude = [6.0, 3.0]
+angular_frequency = 0.5
+altitude = 5.0
+duration = 14.0
+
+[[obstacle]]
+name = "beam"
+shape = "box"
+size = [0.4, 3.0, 0.4]
+position = [-6.0, 0.0, -5.5]
+roll_deg = 35.0
+yaw_deg = 20.0
+known = true
+
+[[obstacle]]
+name = "drum"
+shape = "capsule"
+radius = 0.35
+length = 1.2
+position = [6.0, 0.0, -5.5]
+roll_deg = 60.0
+yaw_deg = 40.0
+known = false
+motion = { kind = "harmonic", amplitude = [0.0, 1.0, 0.0], angular_frequency = 0.6 }
+"""
+
+POLE = """
+[[obstacle]]
+name = "mast"
+shape = "pole"
+position = [7.0, 0.0]
+radius = 0.3
+height = 12.0
+known = false
+"""
 FEW_RAYS = {"range_sensor.rays": 500}
 HELD_TO = 0.3  # m of clearance
 
@@ -81,6 +124,31 @@ def test_course_is_flown_with_the_margin_kept(mission):
     moved = np.diff(run.payload_position, axis=0) / np.diff(run.time)[:, None]
     np.testing.assert_allclose(moved, run.payload_velocity[:-1], atol=0.05)
     np.testing.assert_allclose(run.payload_position[-1, :2], [12.0, 0.0], atol=0.3)
+
+
+def rock(folder):
+    """A rock that is not on the map, on the path, until that is past it."""
+    mission = read_mission(MISSIONS / "unknown_rock.toml", settings=FEW_RAYS)
+    return dataclasses.replace(mission, reference=dataclasses.replace(mission.reference, duration=14.0))
+
+
+def tilted(folder):
+    """A tilted box on the map, and a tilted capsule that moves and is not."""
+    (folder / "tilted.toml").write_text(TILTED)
+    return read_mission(folder / "tilted.toml", settings=FEW_RAYS)
+
+
+def pole(folder):
+    """A pole that is not on the map."""
+    return course(folder, POLE)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("make", [tilted, *(pytest.param(make, marks=pytest.mark.long) for make in (rock, pole))])
+def test_bodies_of_any_shape_are_avoided(make, tmp_path):
+    summary = planned(flown(make(tmp_path))).summary
+    assert summary["completed"], summary["reason"]
+    assert summary["clearance_min_m"] >= 0.4 and summary["uav_separation_min_m"] >= 0.75
 
 
 def without_margin(mission, monkeypatch):

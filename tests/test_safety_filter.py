@@ -24,13 +24,13 @@ def test_plan_is_kept_for_length_of_a_stage():
     for k in range(4):
         time = 1.0 + STEP * k
         ahead = time + np.linspace(0.0, 2.0, 5)
-        shapes.append(avoided.step(time, mission, estimate_at(time, mission.position(time))))
+        shapes.append(avoided.step(time, mission))
         if k % 2:
             np.testing.assert_array_equal(shapes[k].derivatives(ahead), shapes[k - 1].derivatives(ahead))
     assert not np.array_equal(shapes[2].derivatives(ahead), shapes[1].derivatives(ahead))
     avoided.guidance.restart(1.2, 1.2)
     other = straight(16.0, 0.5)
-    new = avoided.step(1.2, other, estimate_at(1.2, other.position(1.2)))
+    new = avoided.step(1.2, other)
     assert not np.array_equal(new.derivatives(ahead), shapes[3].derivatives(ahead))
 
 
@@ -65,7 +65,7 @@ def test_past_reference_is_the_tracked_one():
     def watch(flown, time):
         tracked_past[round(flown.times[-1], 6)] = flown.derivatives[-1]
         if time > 6.0 and round(time / STEP) % 20 == 0:
-            trajectory = avoided.step(time, flown.mission, estimate_at(time, flown.derivatives[-1][0]))
+            trajectory = avoided.step(time, flown.mission)
             past = time - STEP * np.arange(1, 20)
             expected = np.stack([tracked_past[round(t, 6)] for t in past], axis=1)
             np.testing.assert_allclose(trajectory.derivatives(past), expected, atol=1e-9)
@@ -75,17 +75,17 @@ def test_past_reference_is_the_tracked_one():
 
 def test_tracking_error_of_payload_increases_distance_of_plan():
     avoided, mission = avoidance([sphere("beside", (1.0, -2.3, -5.0))]), straight(16.0)
-    avoided.step(0.0, mission, estimate_at(0.0, mission.position(0.0)))
+    avoided.step(0.0, mission)
     # Within tracking errors it is unchanged.
     near = mission.position(STEP) + np.array([0.0, 0.1, 0.0])
-    trajectory = avoided.step(STEP, mission, estimate_at(STEP, near))
+    trajectory = avoided.plan(estimate_at(STEP, near), mission)
     np.testing.assert_array_equal(trajectory.derivatives(np.array([STEP]))[0], mission.derivatives(np.array([STEP]))[0])
     far = mission.position(2 * STEP) + np.array([0.0, 1.15, 0.0])
-    trajectory = avoided.step(2 * STEP, mission, estimate_at(2 * STEP, far))
+    trajectory = avoided.plan(estimate_at(2 * STEP, far), mission)
     # No step in what is tracked: the estimator stands on it.
     now = np.array([2 * STEP])
     np.testing.assert_allclose(trajectory.derivatives(now)[0], mission.derivatives(now)[0], atol=1e-9)
-    assert avoided.report.active
+    assert avoided.safety.report.active
     ahead = np.array([2 * STEP + 1.0])
     assert (trajectory.derivatives(ahead) - mission.derivatives(ahead))[0, 0, 1] > 0.03
 
@@ -94,10 +94,10 @@ def test_disturbance_leaves_mission_unchanged_without_near_obstacles():
     avoided, mission = avoidance([sphere("far", (50.0, 50.0, -5.0))]), straight(16.0)
     for k in range(40):
         pushed = mission.position(k * STEP) + np.array([0.0, 1.0, 0.0])
-        trajectory = avoided.step(k * STEP, mission, estimate_at(k * STEP, pushed))
+        trajectory = avoided.plan(estimate_at(k * STEP, pushed), mission)
     now = np.array([39 * STEP])
     np.testing.assert_array_equal(trajectory.derivatives(now)[0], mission.derivatives(now)[0])
-    assert not avoided.report.active
+    assert not avoided.safety.report.active
 
 
 def test_filter_leaves_setpoints_unchanged():
@@ -125,10 +125,10 @@ def test_number_of_qps_reported_is_that_of_those_solved(monkeypatch):
     counts, expected = [], 0
     for k in range(80):
         time, before = STEP * k, len(solved)
-        avoided.step(time, mission, estimate_at(time, mission.position(time)))
+        avoided.step(time, mission)
         # A plan is kept for the length of a stage, and its report with it.
-        expected = len(solved) - before or (expected if avoided.report.qp_count else 0)
-        assert avoided.report.qp_count == expected, time
+        expected = len(solved) - before or (expected if avoided.safety.report.qp_count else 0)
+        assert avoided.safety.report.qp_count == expected, time
         counts.append(expected)
     assert len({*counts}) >= 3
 
@@ -138,10 +138,8 @@ def plans(avoided, mission, steps):
     before = None
     for k in range(steps):
         time = STEP * k
-        place = mission.position(time) if before is None else before.derivatives(np.array([time]))[0, 0]
         reference = avoided.guidance.reference(time, mission)
-        now = avoided.safety.filter(time, reference, estimate_at(time, place))
-        avoided.guidance.observe(now, avoided.report.lag, avoided.report.deviation, None)
+        now = avoided.step(time, mission)
         if before is not None and now is not before:
             yield time, reference, before, now
         before = now
@@ -154,8 +152,8 @@ def test_lag_is_how_far_the_trajectory_is_behind_its_reference_along_the_path():
         wanted = reference.derivatives(at)[:, 0]
         apart, speed = before.derivatives(at)[0, 0] - wanted[0], np.linalg.norm(wanted[1])
         behind = -apart @ wanted[1] / speed if speed > 0.05 else np.linalg.norm(apart[:2])
-        assert avoided.report.lag == pytest.approx(max(behind, 0.0), abs=1e-9), time
-        lags.append(avoided.report.lag)
+        assert avoided.safety.report.lag == pytest.approx(max(behind, 0.0), abs=1e-9), time
+        lags.append(avoided.safety.report.lag)
     assert max(lags) > 0.1
 
 
@@ -163,6 +161,6 @@ def test_lag_of_a_team_that_is_to_rest_is_its_horizontal_distance_from_there():
     avoided, lags = avoidance([sphere("m", (4.0, 0.5, -5.0), (-1.0, 0.0, 0.0))]), []
     rest = RestTrajectory([0.0, 0.0, -5.0], 0.0)
     for time, _, before, _ in plans(avoided, rest, 60):
-        lags.append(avoided.report.lag)
+        lags.append(avoided.safety.report.lag)
         assert lags[-1] == pytest.approx(np.hypot(*before.derivatives(np.array([time]))[0, 0, :2]), abs=1e-9)
     assert max(lags) > 0.3

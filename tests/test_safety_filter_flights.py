@@ -7,7 +7,6 @@ from avoidance_scene import (
     STEP,
     avoidance,
     clearance_of,
-    estimate_at,
     fly,
     hull_of,
     pole,
@@ -147,10 +146,9 @@ def test_abort_stops_safely_and_smoothly(when):
     stop = followed.stop(clock)
     avoided.guidance.restart(when, clock)
     before = flown.path[:, -1]
-    position, points = before[0], []
-    time, previous = when, None
+    time, previous, points = when, None, []
     while time < when + 12.0:
-        trajectory = avoided.step(time, stop, estimate_at(time, position))
+        trajectory = avoided.step(time, stop)
         now = trajectory.derivatives(np.array([time, time + STEP]))
         if previous is None:
             # From where it was, as it moved.
@@ -160,7 +158,7 @@ def test_abort_stops_safely_and_smoothly(when):
         else:
             np.testing.assert_allclose(now[:4, 0], previous[:4, 1], atol=1e-6)
         points.append(now[:, 0])
-        position, previous, time = now[0, 1], now, round(time + STEP, 6)
+        previous, time = now, round(time + STEP, 6)
     path = np.stack(points, axis=1)
     assert np.linalg.norm(path[1, -1]) < 0.05
     assert np.linalg.norm(path[0, -1] - before[0]) < 6.0

@@ -1,13 +1,13 @@
 """Scenarios of boxes, forests, rooms, overhangs, and of what stops and goes: ranges, free ends, and the way."""
 
 import math
+from dataclasses import replace
 from functools import cache
 from itertools import pairwise
 
 import numpy as np
 import pytest
 import shapely
-from avoidance_scene import STEP, avoidance, estimate_at
 
 from gcs.campaign.process_pool import FlownProcess
 from gcs.campaign.scenarios.boxes import boxes
@@ -20,6 +20,7 @@ from gcs.campaign.scenarios.rooms import rooms
 from gcs.config import read_system
 from gcs.mission.motion import WaypointsMotion
 from gcs.mission.read import read_mission
+from gcs.planning.flight import PlanningFlight
 from gcs.planning.schedule import Schedule
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.free_space import FreeSpace
@@ -27,9 +28,6 @@ from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
 from idc_controller.guidance.detour import find_detour
 from idc_controller.guidance.narrowest_gap import Gap
-from idc_controller.trajectory.paths import Leg
-from idc_controller.trajectory.settings import Limits
-from idc_controller.trajectory.waypoints import WaypointTrajectory
 
 KINDS = ("boxes", "forest", "rooms", "overhang")
 SYSTEM = read_system(None)
@@ -263,26 +261,24 @@ def test_heading_of_boxes_is_turned_all_round():
     assert np.ptp(np.array(yaws) % math.pi) > 2.5
 
 
+class NoScans:
+    """Range sensors of which nothing comes."""
+
+    def scan(self, time, motion_time, states):
+        return []
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("is_height", [pytest.param(False, marks=pytest.mark.long), True])
 def test_ground_that_knows_all_walls_breaks_off_with_the_true_gap(is_height, tmp_path):
-    """Guidance and safety filter without a plant, in the first rooms of a seed without a way."""
+    """On the planning level, in the first rooms of a seed without a way."""
     courses = (generated(31, number, "rooms") for number in range(1, 100))
     scenario = next(
         each for each in courses if each.passage.verdict == "impassable" and each.passage.gap.is_height == is_height
     )
     mission = read(scenario, tmp_path)
-    walls = [
-        (o.name, o.shape, lambda times, place=o.position: np.tile(place, (len(times), 1)), 0.0)
-        for o in mission.obstacles
-    ]
-    begin, *rest = map(np.array, places_of(mission))
-    speed = mission.reference.speed
-    leg = WaypointTrajectory(begin, [Leg(place, speed) for place in rest], Limits(speed, 1.5, 2.0, 6.0), start=0.0)
-    stack, position, reason = avoidance(walls, speed=speed), begin, ""
-    for time in np.arange(0.0, 90.0, STEP):
-        trajectory = stack.step(time, leg, estimate_at(time, position))
-        position = trajectory.derivatives(np.array([time + STEP]), 0)[0, 0]
-        if reason := stack.guidance.blocked(time):
-            break
-    assert names_the_gap(scenario.passage, reason), reason
+    mission = replace(mission, obstacles=tuple(replace(obstacle, known=True) for obstacle in mission.obstacles))
+    flight = PlanningFlight(mission, Schedule(mission).start, NoScans())
+    while not (flight.reason or flight.ended):
+        flight.step()
+    assert names_the_gap(scenario.passage, flight.reason), flight.reason

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from avoidance_scene import STEP, avoidance, estimate_at, straight
+from avoidance_scene import STEP, avoidance, straight
 from paper_system import system
 
 from gcs.config import SystemConfig
@@ -56,7 +56,7 @@ def flown(sight, speed, length, duration, each=lambda time, place: None):
     mission, states, place = straight(length, speed), [], np.zeros(3)
     for time in STEP * np.arange(round(duration / STEP)):
         each(time, place)
-        trajectory = both.step(time, mission, estimate_at(time, mission.position(0.0) if not states else place))
+        trajectory = both.step(time, mission)
         place, velocity = trajectory.derivatives(np.array([time + STEP]), 1)[:, 0]
         states.append((place[0], velocity[0]))
     return np.array(states), both

@@ -34,9 +34,9 @@ def flown_with_failures(scene, begin, end):
     planner, step = avoided.safety.planner, avoided.step
     solver = planner.solver = Failing(planner.solver, begin, end)
 
-    def timed(time, mission, estimate):
+    def timed(time, mission):
         solver.time = time
-        return step(time, mission, estimate)
+        return step(time, mission)
 
     avoided.step = timed
     flown = fly(avoided, straight(16.0), 40.0)

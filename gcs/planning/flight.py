@@ -27,7 +27,7 @@ from idc_controller.model.linear import LinearModel
 from idc_controller.safety.filter_protocol import SafetyFilter
 from idc_controller.trajectory.flatness import Load, PayloadTrajectory
 from idc_controller.trajectory.reference import Reference
-from idc_controller.trajectory.trajectory import RestTrajectory, Trajectory
+from idc_controller.trajectory.trajectory import Trajectory
 
 BEFORE = 1.0
 """Time (s) for which the vehicles scan on the pad before their rotors start."""
@@ -38,22 +38,29 @@ ROWS = 2
 class IdealTracking:
     """Guidance and safety filter, and a payload that is where their trajectory has it."""
 
-    def __init__(self, model: LinearModel, safety: SafetyFilter, guidance: Guidance, rest: Trajectory) -> None:
-        """``rest``: where the payload is before the first plan."""
+    def __init__(self, model: LinearModel, safety: SafetyFilter, guidance: Guidance) -> None:
         self.model, self.safety, self.guidance = model, safety, guidance
-        self.followed: PayloadTrajectory = rest
+        self.followed: PayloadTrajectory | None = None
+        """None before the first plan."""
         self._load = Load(model.parameters.m_0, np.zeros(3))
 
-    def states(self, times: Array) -> Array:
-        """Return the states (K, 12 + 11 N) at ``times`` (K,) (s), as the linear model orders them."""
-        return Reference(self.model.parameters, self.followed, self._load).at(times).x
+    def states(self, times: Array, mission: Trajectory) -> Array:
+        """Return the states (K, 12 + 11 N) at ``times`` (K,) (s), before the first plan those along ``mission``."""
+        return Reference(self.model.parameters, self.followed or mission, self._load).at(times).x
 
-    def plan(self, time: float, state: Array, mission: Trajectory) -> None:
-        """Plan along ``mission`` from ``time`` (s) on, at which the ``state`` is (12 + 11 N,)."""
-        n = self.model.layout.number_of_uavs
-        none, size = np.zeros((3, 3)), self.model.layout.size
-        estimate = Estimate(time, state, none[0], np.zeros((n, 3)), 0.0, none, lambda: np.zeros((size, size)))
+    def step(self, time: float, mission: Trajectory) -> PayloadTrajectory:
+        """Plan along ``mission`` at ``time`` (s), and return what is followed from then on."""
+        state = self.states(np.array([time]), mission)[0]
+        n, size = self.model.layout.number_of_uavs, self.model.layout.size
+        none = np.zeros((3, 3))
+        return self.plan(
+            Estimate(time, state, none[0], np.zeros((n, 3)), 0.0, none, lambda: np.zeros((size, size))), mission
+        )
+
+    def plan(self, estimate: Estimate, mission: Trajectory) -> PayloadTrajectory:
+        """Plan from an ``estimate``, which may be off the trajectory, and return what is followed from then on."""
         self.followed = plan(self.safety, self.guidance, estimate, mission)
+        return self.followed
 
 
 class PlanningFlight:
@@ -77,7 +84,6 @@ class PlanningFlight:
             model,
             stack.avoidance(config, model, self._scanned.map),
             stack.guidance(config, model, self._scanned.map, self._scanned.map, mission.area),
-            RestTrajectory(pad),
         )
         self._vehicles = MeasurementModel(model, MeasurementNoise(), MeasurementModelSettings()).vehicles
         self.reason, self.broken_off, self.slack = "", math.nan, 0.0
@@ -122,16 +128,16 @@ class PlanningFlight:
 
     def step(self) -> None:
         """Take one control step."""
-        time, tracking = self.time, self.tracking
-        state = tracking.states(np.array([time]))[0]
+        time, tracking, mission = self.time, self.tracking, self._trajectory
+        state = tracking.states(np.array([time]), mission.trajectory)[0]
         self._scanned.step(len(self._rows), time - self._motion_start, self.vehicles(time, state))
         if time >= self.climb:
             if not self.reason and (reason := tracking.guidance.blocked(time)):
                 self._break_off(reason)
-            tracking.plan(time, state, self._trajectory.trajectory)
+            tracking.step(time, mission.trajectory)
             self.slack = max(self.slack, tracking.safety.report.slack)
         times: Array = time + np.arange(ROWS, dtype=float) / (ROWS * self.mission.system.rates.control)
-        self._rows.append((times, tracking.states(times)))
+        self._rows.append((times, tracking.states(times, mission.trajectory)))
 
     def _break_off(self, reason: str) -> None:
         """Come to rest and land, as the ground does."""

@@ -68,12 +68,18 @@ def undecided(planned: Sequence[Result], full: Sequence[Result]) -> list[Result]
 
 
 def levels_report(planned: Sequence[Result], full: Sequence[Result]) -> list[RenderableType]:
-    """Return both levels in a table, verdicts that differ, and what was not decided."""
-    rows = [_row("planning", planned), _row("full", full)]
-    parts: list[RenderableType] = [text_table(rows, left=("level",))]
+    """Return both levels in a table, verdicts that differ, and what was not decided with its bound of contacts."""
+    parts: list[RenderableType] = [text_table([_row("planning", planned), _row("full", full)], left=("level",))]
     parts += [Text(line, "red") for line in differences(planned, full)]
     if left := undecided(planned, full):
-        parts.append(Text(f"{undecided_text(planned, full)}:"))
+        nearer = {result.name for result in planned if nearness(result) < nearness(left[0])}
+        contacts = [bool(result.contacts) for result in full if result.name in nearer]
+        bound = contact_bound(sum(contacts), len(contacts))
+        parts.append(Text(
+            f"{len(left)} not decided, with {_clearance(left)} or more of planned clearance. Contacts in full flights "
+            f"of less: {sum(contacts)} of {len(contacts)}. If more planned clearance makes none likelier, at most "
+            f"{bound:.1%} of those not decided have one ({CONFIDENCE:.0%}, Clopper-Pearson):"
+        ))  # fmt: skip
         parts += [Text(f"  {course.name}: {_verdict(course)}, {_clearance([course])}") for course in left[:SHOWN]]
         if len(left) > SHOWN:
             parts.append(Text(f"  ... and {len(left) - SHOWN} more"))
@@ -90,16 +96,6 @@ def differences(planned: Sequence[Result], full: Sequence[Result]) -> list[str]:
         for plan, flight in pairs
         if plan.passed != flight.passed
     ]
-
-
-def undecided_text(planned: Sequence[Result], full: Sequence[Result]) -> str:
-    """Return how many courses were not decided in full, and the bound on the rate of contacts among them."""
-    left, contacts = undecided(planned, full), sum(bool(result.contacts) for result in full)
-    return (
-        f"{len(left)} not decided in full, with a planned clearance of {_clearance(left)} or more. In full: {contacts} "
-        f"contacts in {len(full)}, all of less planned clearance. If more of it makes none likelier, at most "
-        f"{contact_bound(contacts, len(full)):.1%} of those not decided have one ({CONFIDENCE:.0%}, Clopper-Pearson)"
-    )
 
 
 def _row(level: str, results: Sequence[Result]) -> Mapping[str, str]:
