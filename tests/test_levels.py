@@ -70,6 +70,12 @@ def test_bound_counts_only_flights_of_less_planned_clearance(tmp_path, flown, ca
     assert "3 not decided" in (said := capsys.readouterr().out) and "Contacts in full flights of less: 1 of 2." in said
 
 
+def test_levels_share_a_folder_in_any_order(tmp_path, flown):
+    for level in ("planning", "full", "both", "planning"):
+        assert command(tmp_path, "--level", level, count=1) == 0
+    assert flown == [(True, 1), (False, 1)]
+
+
 @pytest.mark.parametrize(
     "wrong",
     [

@@ -10,6 +10,7 @@ from gcs.app.campaigns import campaign_console, report, run_campaign
 from gcs.app.exit_status import ExitStatus
 from gcs.app.logs import LOG
 from gcs.campaign.engine import Campaign
+from gcs.campaign.folder import adopt_folder
 from gcs.campaign.scenarios.levels import fly_levels, levels_report, undecided
 from gcs.campaign.scenarios.plans import Scenarios
 from gcs.campaign.suites.plans import Suite
@@ -23,6 +24,7 @@ def run_level(generator: Scenarios | Suite, out: Path, arguments: argparse.Names
         return run_campaign(generator, out, arguments)
     on_planning, folder = dataclasses.replace(generator, planning=True), out / "planning"
     if arguments.level == PLANNING:
+        adopt_folder(out, generator.settings)
         return run_campaign(on_planning, folder, arguments)
     console, interrupted = campaign_console(), False
     with console.status("writing the missions"):
