@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from obstacle_scene import HERE, Scene, map_of, moving_tracks, pole, run, sphere
 
 from idc_controller.perception.motion_evidence import MotionEvidence, PartOfScan
-from idc_controller.perception.motion_evidence_kernels import count_rays
+from idc_controller.perception.motion_evidence_kernels import by_sector, count_rays
 from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.settings import StandingMapSettings
 from idc_controller.perception.surfaces.points import SurfacePoints
@@ -54,9 +54,9 @@ def test_counted_rays_agree_with_plain_reference(seed, count, spread, upright):
     sigmas, variances, found = np.array([0.05, 0.02, 0.004]), rng.uniform(0.001, 0.01, count), np.zeros(2)
     normals = rng.normal(size=(count, 3))
     normals *= rng.integers(2, size=(count, 1)) / np.linalg.norm(normals, axis=1)[:, None]
-    scene = origin, ends[:40], ends[40:], sigmas, places, variances, normals, 0.15, 3.0
-    count_rays(*scene, found)
-    assert found.tolist() == counted(*scene)
+    rays, body = (origin, ends[:40], ends[40:]), (sigmas, places, variances, normals, 0.15, 3.0)
+    count_rays(origin, *by_sector(*rays), *body, found)
+    assert found.tolist() == counted(*rays, *body)
 
 
 def scan_of(returns, free=(), uav=0, time=0.0):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from avoidance_scene import STEP, avoidance, straight
 from paper_system import system
+from range_scene import is_occupied, is_seen_free
 
 from gcs.config import SystemConfig
 from gcs.flight.stack import closing_speed_limit, reaction_time, tilted_formation
@@ -192,8 +193,8 @@ def test_unseen_cells_are_those_of_the_plain_formula(seed):
     # Cells in view, plainly: a voxel of theirs was seen free or is at a point.
     offsets = settings.voxel * (np.array(np.meshgrid(*3 * [[-0.5, 0.5]])).reshape(3, -1).T)
     for middle in middles:
-        assert not seen.is_seen_free(middle + offsets).any()
-        assert not seen.is_occupied(middle + offsets).any()
+        assert not is_seen_free(seen, middle + offsets).any()
+        assert not is_occupied(seen, middle + offsets).any()
     # They are ahead, not where the body is; and above the least height.
     inside = (np.hypot(*middles[:, :2].T) <= 1.2) & (middles[:, 2] >= -2.0) & (middles[:, 2] <= -0.2)
     assert not inside.any()

@@ -5,7 +5,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from range_scene import Box, Pole, Sensor, Sphere
+from range_scene import Box, Pole, Sensor, Sphere, is_occupied, is_seen_free
 
 from idc_controller.perception.placed_scan import PlacedScan
 from idc_controller.perception.settings import StandingMapSettings
@@ -53,7 +53,7 @@ def test_no_point_that_was_hit_is_lost_while_it_stands(bodies):
     hits = fill(standing, sensor, bodies, (0.0, 0.0, -4.0), 0.0, 5.0)
     assert len(hits) > 200
     elements = standing.occupied()
-    lost = hits[~standing.is_occupied(hits)]
+    lost = hits[~is_occupied(standing, hits)]
     assert len(lost) < 0.03 * len(hits)
     checked = np.concatenate([lost, hits[:: 1 + len(hits) // 200]])
     apart = np.maximum(np.maximum(elements.low[:, None] - checked, checked - elements.high[:, None]), 0.0)
@@ -113,11 +113,11 @@ def test_voxel_is_freed_by_as_many_scans_as_its_own_record_requires(hits, passes
     for k in range(hits):
         standing.add(PlacedScan(PERIOD * k, np.zeros(3), point, 0.05, 0.03, 0.009))
     scans = 0
-    while standing.is_occupied(point)[0]:
+    while is_occupied(standing, point)[0]:
         standing.add(rays_through(point[0], count=5))
         scans += 1
     assert scans == passes
-    assert standing.is_seen_free(point)[0]
+    assert is_seen_free(standing, point)[0]
 
 
 def test_trail_of_a_moving_sphere_is_freed_behind_it():
@@ -142,7 +142,7 @@ def test_scan_that_hits_a_voxel_frees_nothing_of_it():
     for k in range(100):
         both = PlacedScan(PERIOD * k, np.zeros(3), point, 0.05, 0.03, 0.009, np.tile(2.0 * point, (5, 1)))
         standing.add(both)
-    assert standing.is_occupied(point)[0]
+    assert is_occupied(standing, point)[0]
 
 
 def test_nothing_is_forgotten_by_time_or_out_of_sight():
@@ -194,8 +194,8 @@ def test_returns_of_what_moves_leave_no_points_but_free_what_they_pass():
     scan = PlacedScan(0.0, np.zeros(3), np.array([[4.1, 0.1, 0.1], [0.1, 4.1, 0.1]]), 0.05, 0.03, 0.009)
     for _ in range(SETTINGS.free_passes):
         standing.add(scan, moving=np.array([True, False]))
-    np.testing.assert_array_equal(standing.is_occupied(scan.returns), [False, True])
-    assert standing.is_seen_free(scan.returns / 2.0).all()
+    np.testing.assert_array_equal(is_occupied(standing, scan.returns), [False, True])
+    assert is_seen_free(standing, scan.returns / 2.0).all()
 
 
 def test_memory_follows_the_space_that_was_seen():
@@ -214,8 +214,8 @@ def test_map_keeps_what_it_holds_when_its_arrays_grow():
     for point in points:
         for _ in range(2):
             standing.add(PlacedScan(0.0, point + np.array([8.0, 0.3, 0.2]), point[None], 0.05, 0.03, 0.009))
-    assert standing.is_occupied(points).all()
-    assert standing.is_seen_free(points + np.array([4.0, 0.15, 0.1])).all()
+    assert is_occupied(standing, points).all()
+    assert is_seen_free(standing, points + np.array([4.0, 0.15, 0.1])).all()
     assert len(standing.occupied().indices) == len(points)
 
 

@@ -137,7 +137,10 @@ class _Pieces:
 
     def touching(self, low: Array, high: Array) -> list[tuple[Piece, Mask]]:
         """Return the pieces that reach into boxes with bounds ``low`` and ``high`` (n, 3), and which of them (n,)."""
-        within = np.asarray(((low <= self._table[:, None, 1]) & (high >= self._table[:, None, 0])).all(axis=2))
+        within = np.ones((len(self._table), len(low)), dtype=bool)
+        for axis in range(3):
+            within &= low[:, axis] <= self._table[:, 1, axis, None]
+            within &= high[:, axis] >= self._table[:, 0, axis, None]
         pieces = [(self._by_row[row], within[row]) for row in np.flatnonzero(within.any(axis=1)).tolist()]
         return [(piece, boxes) for piece, boxes in pieces if piece is not None]
 

@@ -141,8 +141,7 @@ def _shares(scan: PlacedScan, places: tuple[Array, Array, Array]) -> tuple[float
     if len(places[0]):
         sigmas = np.array([scan.range_sigma, scan.position_sigma, scan.attitude_sigma])
         count_rays(
-            np.ascontiguousarray(scan.origin), np.ascontiguousarray(scan.returns),
-            np.ascontiguousarray(scan.free_rays), sigmas, *places, _BESIDE, _SIGMAS, counts,
+            np.ascontiguousarray(scan.origin), *scan.rays_by_sector, sigmas, *places, _BESIDE, _SIGMAS, counts,
         )  # fmt: skip
     ends, passes = counts.tolist()
     met = max(ends + passes, 1.0)

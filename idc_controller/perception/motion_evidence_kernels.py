@@ -4,8 +4,49 @@ import math
 
 import numpy as np
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Indices, Mask
 from idc_controller.compiled import inlined, kernel
+
+_SECTORS = 128
+"""Of the bearing, about a sensor."""
+
+
+@inlined
+def _sector(north: float, east: float) -> int:
+    """Return the sector of a bearing: they follow each other round the circle, and are not equally wide."""
+    size = abs(north) + abs(east)
+    quarter = east / size if 0.0 < size < math.inf else 0.0
+    turn = 0.25 * quarter if north >= 0.0 else 0.5 - 0.25 * quarter
+    return int((turn % 1.0) * _SECTORS) % _SECTORS
+
+
+@kernel("Tuple((float64[:, ::1], boolean[::1], int64[::1]))(float64[::1], float64[:, ::1], float64[:, ::1])")
+def by_sector(origin: Array, returns: Array, free: Array) -> tuple[Array, Mask, Indices]:
+    """Return the rays of a scan in the order of their bearings, as :func:`count_rays` takes them.
+
+    Args:
+        origin: place of the sensor (3,), NED (m).
+        returns: ends of the rays that returned (n, 3).
+        free: ends of the rays that returned nothing up to there (k, 3).
+
+    Returns:
+        The ends (n + k, 3), which of them are returns (n + k,), and the first ray of each sector, then n + k.
+    """
+    count = len(returns) + len(free)
+    sectors, first = np.empty(count, np.int64), np.zeros(_SECTORS + 1, np.int64)
+    for r in range(count):
+        end = returns[r] if r < len(returns) else free[r - len(returns)]
+        sectors[r] = _sector(end[0] - origin[0], end[1] - origin[1])
+        first[sectors[r] + 1] += 1
+    for sector in range(_SECTORS):
+        first[sector + 1] += first[sector]
+    ends, returned, place = np.empty((count, 3)), np.empty(count, np.bool_), first.copy()
+    for r in range(count):
+        to = place[sectors[r]]
+        place[sectors[r]] += 1
+        returned[to] = r < len(returns)
+        ends[to] = returns[r] if r < len(returns) else free[r - len(returns)]
+    return ends, returned, first
 
 
 @inlined
@@ -44,13 +85,14 @@ def _meeting(
 
 
 @kernel(
-    "void(float64[::1], float64[:, ::1], float64[:, ::1], float64[::1], float64[:, ::1], float64[::1],"
+    "void(float64[::1], float64[:, ::1], boolean[::1], int64[::1], float64[::1], float64[:, ::1], float64[::1],"
     " float64[:, ::1], float64, float64, float64[::1])"
 )
 def count_rays(
     origin: Array,
-    returns: Array,
-    free: Array,
+    ends: Array,
+    returned: Mask,
+    first: Indices,
     sigmas: Array,
     places: Array,
     variances: Array,
@@ -63,8 +105,7 @@ def count_rays(
 
     Args:
         origin: place of the sensor (3,), NED (m).
-        returns: ends of the rays that returned (n, 3).
-        free: ends of the rays that returned nothing up to there (k, 3).
+        ends, returned, first: its rays, see :func:`by_sector`.
         sigmas: standard deviations of range (m), position (m) and attitude (rad).
         places: of the points (m, 3).
         variances: of each on any axis (m,) (m2).
@@ -89,27 +130,37 @@ def count_rays(
         radius = max(radius, math.sqrt(square) + beside)
     distance = math.sqrt(middle[0] ** 2 + middle[1] ** 2 + middle[2] ** 2)
     level_square = level * level * (1.0 + 1e-9)
-    is_beside = middle[0] ** 2 + middle[1] ** 2 > level_square
-    for r in range(returns.shape[0] + free.shape[0]):
-        returned = r < returns.shape[0]
-        end = returns[r] if returned else free[r - returns.shape[0]]
-        if is_beside:
-            # In plan view, where what is upright is small, rays pass it as near or nearer.
-            north, east = end[0] - origin[0], end[1] - origin[1]
-            across = north * middle[1] - east * middle[0]
-            if north * middle[0] + east * middle[1] <= 0.0 or across * across > level_square * (north**2 + east**2):
+    level_distance = math.sqrt(middle[0] ** 2 + middle[1] ** 2)
+    is_beside = level_distance > level * (1.0 + 1e-9)
+    low, sectors = 0, _SECTORS
+    if is_beside:
+        # The sectors that the places' circle takes in plan view, and those next to them.
+        sine = level / level_distance
+        cosine = math.sqrt(1.0 - sine * sine)
+        north, east = middle[0], middle[1]
+        low = _sector(north * cosine + east * sine, east * cosine - north * sine) - 1
+        high = _sector(north * cosine - east * sine, east * cosine + north * sine) + 1
+        sectors = min((high - low) % _SECTORS + 1, _SECTORS)
+    for sector in range(low, low + sectors):
+        for r in range(first[sector % _SECTORS], first[sector % _SECTORS + 1]):
+            end = ends[r]
+            if is_beside:
+                # In plan view, where what is upright is small, rays pass it as near or nearer.
+                north, east = end[0] - origin[0], end[1] - origin[1]
+                across, square = north * middle[1] - east * middle[0], level_square * (north**2 + east**2)
+                if north * middle[0] + east * middle[1] <= 0.0 or across * across > square:
+                    continue
+            square, along = 0.0, 0.0
+            for i in range(3):
+                way = end[i] - origin[i]
+                square += way * way
+                along += way * middle[i]
+            # Nearer to the middle than the places' radius; along is in square metres.
+            if distance > radius and (along <= 0.0 or (distance**2 - radius**2) * square > along * along):
                 continue
-        square, along = 0.0, 0.0
-        for i in range(3):
-            way = end[i] - origin[i]
-            square += way * way
-            along += way * middle[i]
-        # Nearer to the middle than the places' radius; along is in square metres.
-        if distance > radius and (along <= 0.0 or (distance**2 - radius**2) * square > along * along):
-            continue
-        variance = sigmas[1] ** 2 + sigmas[2] ** 2 * square + (sigmas[0] ** 2 if returned else 0.0)
-        ends, passes = _meeting(origin, end, variance, places, variances, normals, beside, deviations)
-        if ends and returned:
-            counts[0] += 1.0
-        elif passes:
-            counts[1] += 1.0
+            variance = sigmas[1] ** 2 + sigmas[2] ** 2 * square + (sigmas[0] ** 2 if returned[r] else 0.0)
+            meets, passes = _meeting(origin, end, variance, places, variances, normals, beside, deviations)
+            if meets and returned[r]:
+                counts[0] += 1.0
+            elif passes:
+                counts[1] += 1.0

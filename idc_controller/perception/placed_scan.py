@@ -1,10 +1,12 @@
 """One scan of a range sensor, placed in the world by the pose of its vehicle."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
-from idc_controller.arrays import Array
+from idc_controller.arrays import Array, Indices, Mask
+from idc_controller.perception.motion_evidence_kernels import by_sector
 
 
 def _none() -> Array:
@@ -45,3 +47,8 @@ class PlacedScan:
     """The vehicle (0 .. N-1)."""
     up: Array = field(default_factory=_up)
     """Upward axis of its body frame (3,)."""
+
+    @cached_property
+    def rays_by_sector(self) -> tuple[Array, Mask, Indices]:
+        """All rays by their bearings, see :func:`~idc_controller.perception.motion_evidence_kernels.by_sector`."""
+        return by_sector(*map(np.ascontiguousarray, (self.origin, self.returns, self.free_rays)))

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
@@ -14,6 +13,10 @@ from idc_controller.geometry.shape import Shape
 from idc_controller.perception.convex_pieces import ConvexPieces
 from idc_controller.perception.settings import StandingMapSettings
 from idc_controller.perception.standing_map import StandingMap
+
+NamedBody = tuple[str, Shape, Array]
+"""Name, shape, and centre (3,) (NED, m)."""
+Estimate = Callable[[], tuple[Shape, Array]]
 
 
 class MapObstacle(NamedTuple):
@@ -41,6 +44,32 @@ class NextObstacles(NamedTuple):
     """From the next of all others that can be detected (n,)."""
 
 
+class _AtRest:
+    """Obstacles that stand, gathered."""
+
+    def __init__(self, obstacles: Sequence[NamedBody], estimates: Sequence[Estimate | None]) -> None:
+        self._obstacles, self._estimates = obstacles, estimates
+        self.centres = np.array([centre for *_, centre in obstacles]).reshape(-1, 3)
+        self._reach = np.array([shape.horizontal_reach for _, shape, _ in obstacles])
+        self._predicted: dict[int, list[PredictedObstacle]] = {}
+
+    def near(self, place: Array, radius: float) -> Indices:
+        """Return the indices of those within ``radius`` (m) of the vertical line through ``place`` (3,)."""
+        apart = self.centres[:, :2] - place[:2]
+        return np.flatnonzero(np.hypot(apart[:, 0], apart[:, 1]) <= radius + self._reach)
+
+    def predict(self, count: int, region: Region | None) -> list[PredictedObstacle]:
+        """Return them at ``count`` moments, all or those that reach into a ``region``."""
+        if count not in self._predicted:
+            places, growth = np.repeat(self.centres[:, None], count, axis=1), np.zeros(count)
+            self._predicted[count] = [
+                PredictedObstacle(name, shape, place, growth, estimate=estimate)
+                for (name, shape, _), estimate, place in zip(self._obstacles, self._estimates, places, strict=True)
+            ]
+        predicted = self._predicted[count]
+        return predicted[:] if region is None else [predicted[i] for i in self.near(*region).tolist()]
+
+
 class StandingObstacles:
     """The standing obstacles of the map, gathered."""
 
@@ -48,23 +77,10 @@ class StandingObstacles:
         self.obstacles = [(o.name, o.shape, o.centre) for o in known]
         self.names = [o.name for o in known]
         self.bodies = Bodies([o.shape for o in known])
-        self.centres = np.array([o.centre for o in known]).reshape(-1, 3)
-        self._reach = np.array([o.shape.horizontal_reach for o in known])
+        self._at_rest = _AtRest(self.obstacles, [None] * len(known))
+        self.centres = self._at_rest.centres
+        self.predict = self._at_rest.predict
         self._is_body = np.array([o.is_body for o in known], dtype=bool)
-        self._predicted: dict[int, list[PredictedObstacle]] = {}
-
-    def predict(self, count: int, region: Region | None) -> list[PredictedObstacle]:
-        """Return them at ``count`` moments, all or those that reach into a ``region``."""
-        if not self.obstacles:
-            return []
-        if count not in self._predicted:
-            self._predicted[count] = [at_rest(count, *obstacle) for obstacle in self.obstacles]
-        predicted = self._predicted[count]
-        if region is None:
-            return predicted[:]
-        apart = self.centres[:, :2] - region.place[:2]
-        near = np.hypot(apart[:, 0], apart[:, 1]) <= region.radius + self._reach
-        return [predicted[i] for i in np.flatnonzero(near).tolist()]
 
     def next_to(self, points: Array, origin: Array) -> NextObstacles:
         """Return those next to points (n, 3), seen from ``origin`` (3,); those beyond 2 m may be left out."""
@@ -73,8 +89,7 @@ class StandingObstacles:
         if not len(points) or not self.names:
             return none
         farthest = float(np.hypot(*(points[:, :2] - origin[:2]).T).max())
-        apart = self.centres[:, :2] - origin[:2]
-        near = np.flatnonzero(np.hypot(apart[:, 0], apart[:, 1]) <= farthest + self._reach + 2.0)
+        near = self._at_rest.near(origin, farthest + 2.0)
         if not len(near):
             return none
         shapes = [self.bodies.shapes[i] for i in near.tolist()]
@@ -96,11 +111,8 @@ class SeenObstacles:
         self.map = StandingMap(settings)
         self._cover = ConvexPieces()
         self._known: dict[int, tuple[Array, Shape]] = {}
-        self._pieces: list[tuple[str, Shape, Array]] = []
-        self._estimates: list[Callable[[], tuple[Shape, Array]]] = []
-        self._places = np.empty((0, 2))
-        self._reach = np.empty(0)
-        self._predicted: dict[int, list[PredictedObstacle]] = {}
+        self.pieces: list[NamedBody] = []
+        self._at_rest = _AtRest([], [])
 
     def update(self) -> None:
         """Cover what has changed in the map."""
@@ -112,32 +124,9 @@ class SeenObstacles:
                 shape = piece.shape
             known[piece.number] = piece.box, shape
         self._known = known
-        self._estimates = [partial(piece.estimate, self.map) for piece in pieces]
-        self._pieces = [(f"piece {number}", shape, box[:3]) for number, (box, shape) in known.items()]
-        self._places = np.array([centre[:2] for *_, centre in self._pieces]).reshape(-1, 2)
-        self._reach = np.array([shape.horizontal_reach for _, shape, _ in self._pieces])
-        self._predicted = {}
-
-    @property
-    def pieces(self) -> list[tuple[str, Shape, Array]]:
-        """Name, shape and centre (3,) (NED, m) of each."""
-        return self._pieces
+        self.pieces = [(f"piece {number}", shape, box[:3]) for number, (box, shape) in known.items()]
+        self._at_rest = _AtRest(self.pieces, [partial(piece.estimate, self.map) for piece in pieces])
 
     def predict(self, count: int, region: Region | None) -> list[PredictedObstacle]:
         """Return them at ``count`` moments, all or those that reach into a ``region``."""
-        if count not in self._predicted:
-            self._predicted[count] = [
-                replace(at_rest(count, *piece), estimate=estimate)
-                for piece, estimate in zip(self._pieces, self._estimates, strict=True)
-            ]
-        predicted = self._predicted[count]
-        if region is None:
-            return predicted[:]
-        apart = self._places - region.place[:2]
-        near = np.hypot(apart[:, 0], apart[:, 1]) <= region.radius + self._reach
-        return [predicted[i] for i in np.flatnonzero(near).tolist()]
-
-
-def at_rest(count: int, name: str, shape: Shape, centre: Array) -> PredictedObstacle:
-    """Return an obstacle that stands, at ``count`` moments."""
-    return PredictedObstacle(name, shape, np.tile(centre, (count, 1)), np.zeros(count))
+        return self._at_rest.predict(count, region)

@@ -106,8 +106,8 @@ def separations(
         for i, number in enumerate(numbers):
             shape = obstacles.shape(number)
             _measure_by_library(formation, points, shape, offsets[i], distances[i], normals[i], missing[i])
-    found = [Separation(obstacles[number], distances[i], normals[i]) for i, number in enumerate(numbers)]
-    return [separation for separation in found if separation.clearance < within]
+    near = (distances - obstacles.growth[indices]).min(axis=1, initial=np.inf) < within
+    return [Separation(obstacles[numbers[i]], distances[i], normals[i]) for i in np.flatnonzero(near).tolist()]
 
 
 def _measure_by_library(

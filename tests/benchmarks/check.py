@@ -15,10 +15,15 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from commit_tree import tree_of
-from measure import FLIGHTS, ROOT, fly, use_one_core, write_missions
+from measure import FLIGHTS, ROOT, fly, use_one_core, write, write_missions
+
+from gcs.campaign.scenarios.generator import generate
+from gcs.config import read_system
 
 LIMIT = 1.10
 DURATION = 5.0  # s
+FOREST = ("forest", 20.0)
+"""Name of the flight through an unknown forest, and how much of it is flown (s)."""
 
 
 def main():
@@ -36,14 +41,16 @@ def compare(base, scratch, options):
     for tree in (base, ROOT):
         folder = scratch / f"missions of {'base' if tree is base else 'head'}"
         folder.mkdir()
-        missions[tree] = write_missions(tree, folder, DURATION)
+        forest = write(folder, FOREST[0], generate(2902, 1, "forest", read_system(), 2.0).text)
+        missions[tree] = {**write_missions(tree, folder, DURATION), FOREST[0]: forest}
     dearer = []
-    for name in FLIGHTS:
+    for name in (*FLIGHTS, FOREST[0]):
+        options = ("--until", FOREST[1]) if name == FOREST[0] else ()
         ratios = []
         for k in range(options.rounds):
             cost = {}
             for tree in (base, ROOT) if k % 2 else (ROOT, base):
-                cost[tree] = fly(tree, missions[tree][name])["ms_per_second"]
+                cost[tree] = fly(tree, missions[tree][name], *options)["ms_per_second"]
             ratios.append(cost[ROOT] / cost[base])
         median = statistics.median(ratios)
         spread = f"{min(ratios):.2f} to {max(ratios):.2f}"

@@ -1,10 +1,10 @@
 """The cost of one flight by `gcs fly`, both programs: prints one line of JSON.
 
-    PYTHONPATH=TREE python tests/benchmarks/flight_cost.py MISSION [--vehicles N] [--memory]
+    PYTHONPATH=TREE python tests/benchmarks/flight_cost.py MISSION [--vehicles N] [--memory] [--until S]
 
-CPU time from take-off to the end of the flight, per simulated second; apart from it that of starting up both programs,
-imports included, and of the summary (`start_and_end_s`). The compute times
-of the control steps are CPU times here, so that other work on the machine does not count. The tree that is measured is
+CPU time from take-off to the end of the flight, or to S seconds after take-off, per simulated second; apart from it that
+of starting up both programs, imports included, and of the summary (`start_and_end_s`). The compute times of the control
+steps are CPU times here, so that other work on the machine does not count. The tree that is measured is
 that of PYTHONPATH; of it, only what `gcs fly` prepares and flies a mission with is used.
 """
 
@@ -27,11 +27,15 @@ def cpu_clock(pid):
     return (~pid << 3) | 2
 
 
+class Enough(Exception):
+    """What is measured of the flight is over."""
+
+
 class Meter:
     """CPU time and memory of this process and of those that it started; called after every exchange of the flight."""
 
-    def __init__(self, memory):
-        self.memory = [] if memory else None
+    def __init__(self, memory, until):
+        self.memory, self.until = [] if memory else None, until
         self.begin = self.end = None
         self.clocks, self.pids = [], []
 
@@ -48,6 +52,8 @@ class Meter:
             self.end = (flight.time, self.cpu())
         if self.memory is not None and flight.time - (self.memory or [[-math.inf]])[-1][0] >= MEMORY_INTERVAL:
             self.memory.append([flight.time, *map(resident, self.pids)])
+        if self.duration >= self.until:
+            raise Enough
 
     def cpu(self):
         return sum(map(time.clock_gettime, self.clocks))
@@ -80,6 +86,7 @@ def main():
     parser.add_argument("mission", type=Path)
     parser.add_argument("--vehicles", type=int)
     parser.add_argument("--memory", action="store_true", help="sample the memory of both processes")
+    parser.add_argument("--until", type=float, default=math.inf, help="s after take-off at which the flight is cut off")
     options = parser.parse_args()
     time.perf_counter = time.thread_time
     try:  # as the command does
@@ -92,15 +99,17 @@ def main():
 
         importing = contextlib.nullcontext
 
-    meter = Meter(options.memory)
+    meter, summary = Meter(options.memory, options.until), {}
     with tempfile.TemporaryDirectory() as folder:
         flown = FlyOptions(options.mission, vehicles=options.vehicles, seed=1, run_dir=Path(folder) / "run")
         mission = prepare(flown)
         with importing():
             from gcs.app.fly import fly
-        result = fly(flown, mission, meter)
-    if not result.summary["completed"]:
-        sys.exit(f"{options.mission}: {result.summary['outcome']}: {result.reason}")
+        with contextlib.suppress(Enough):
+            result = fly(flown, mission, meter)
+            summary = result.summary
+            if not summary["completed"]:
+                sys.exit(f"{options.mission}: {summary['outcome']}: {result.reason}")
     print(
         json.dumps(
             {
@@ -108,8 +117,8 @@ def main():
                 "duration_s": meter.duration,
                 "spent_s": meter.spent,
                 "start_and_end_s": time.process_time() + ended_children() - meter.spent,
-                "step_ms": result.summary["step_time_ms"],
-                "parts_ms": result.summary.get("step_parts_ms"),
+                "step_ms": summary.get("step_time_ms"),
+                "parts_ms": summary.get("step_parts_ms"),
                 "memory_mb": meter.memory,
             }
         )
