@@ -2,8 +2,8 @@
 
     PYTHONPATH=TREE python tests/benchmarks/flight_cost.py MISSION [--vehicles N] [--memory] [--until S]
 
-CPU time from take-off to the end of the flight, or to S seconds after take-off, per simulated second; apart from it that
-of starting up both programs, imports included, and of the summary (`start_and_end_s`). The compute times of the control
+CPU time from take-off to the end of the flight, or to S seconds after it, per simulated second; apart from it that of
+starting up both programs, imports included, and of the summary (`start_and_end_s`). The compute times of the control
 steps are CPU times here, so that other work on the machine does not count. The tree that is measured is
 that of PYTHONPATH; of it, only what `gcs fly` prepares and flies a mission with is used.
 """
