@@ -1,9 +1,13 @@
 """``gcs.fly``: a flight within this process. It has the bytes of ``gcs fly``, and leaves nothing behind."""
 
 import gc
+import json
+import os
 import re
+import signal
 import subprocess
 import sys
+import weakref
 from dataclasses import replace
 from importlib.metadata import EntryPoint, EntryPoints
 from pathlib import Path
@@ -144,13 +148,14 @@ def test_import_of_the_package_loads_nothing_and_sets_nothing():
 
 
 @pytest.mark.parametrize("collects", [True, False])
-def test_imports_leave_the_collection_of_garbage_as_it_was(collects):
+def test_import_of_nothing_new_leaves_the_collection_of_garbage_as_it_was(collects):
+    frozen = gc.get_freeze_count()
     if not collects:
         gc.disable()
     try:
         with importing():
             assert not gc.isenabled()
-        assert gc.isenabled() is collects
+        assert gc.isenabled() is collects and gc.get_freeze_count() == frozen
     finally:
         gc.enable()
 
@@ -226,9 +231,9 @@ def test_mission_built_in_python_is_flown_with_settings_and_faults(tmp_path):
     settings, loss = {"world.payload_mass_factor": np.float64(1.1)}, PacketLoss(probability=0.2)
     flight = gcs.fly(mission, settings=settings, faults=[loss], controller="mpc")
     assert flight.completed and not flight.within_limits
-    assert repr(flight) == "<flight built: completed, outside its limits>"
+    assert repr(flight) == "<flight built: completed, outside its limits (position_rmse None (limit 0.0001))>"
     assert flight.replay.startswith(
-        "gcs.fly(mission, settings={'world.payload_mass_factor': 1.1}, controller='mpc', faults=[PacketLoss("
+        "gcs.fly(mission, settings={'world.payload_mass_factor': 1.1}, controller='mpc', faults=[{'kind': 'packet_loss'"
     )
     [fault] = flight.faults
     assert fault["kind"] == "packet_loss" and fault["disturbed"] > 0
@@ -259,6 +264,44 @@ def test_flights_that_take_turns_have_the_bytes_of_flights_alone(tmp_path):
             assert flight.result().summary["outcome"] == "completed"
     for number in range(2):
         assert same_bytes(tmp_path / f"alone{number}", tmp_path / f"turns{number}")
+
+
+def test_flight_that_is_over_takes_no_memory_when_the_next_begins(tmp_path):
+    with in_folder(read_mission(HOP), tmp_path / "first") as flight:
+        station = weakref.ref(flight.station)
+    del flight
+    with in_folder(read_mission(HOP), tmp_path / "second"):
+        assert station() is None
+
+
+@pytest.mark.slow
+def test_interrupt_lands_the_vehicles_closes_the_records_and_is_raised(tmp_path, monkeypatch):
+    step, before = FlightInProcess.step, signal.getsignal(signal.SIGINT)
+
+    def interrupted(self, exchanged):
+        if self.now > 4.0 and not self.flight.failsafes.interrupted:
+            os.kill(os.getpid(), signal.SIGINT)
+        step(self, exchanged)
+
+    monkeypatch.setattr(FlightInProcess, "step", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        gcs.fly(HOP, run_dir=tmp_path / "run")
+    assert signal.getsignal(signal.SIGINT) == before
+    summary = json.loads((tmp_path / "run" / "summary.json").read_text())
+    assert summary["outcome"] == "interrupted" and summary["landing"]["on_ground"] and summary["contacts"] == 0
+    assert (tmp_path / "run" / "truth.csv").read_text().endswith("\n")
+
+
+@pytest.mark.slow
+def test_second_interrupt_ends_the_flight_at_once(tmp_path, monkeypatch):
+    def interrupted(self, exchanged):
+        for _ in range(2):
+            os.kill(os.getpid(), signal.SIGINT)
+
+    monkeypatch.setattr(FlightInProcess, "step", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        gcs.fly(HOP, run_dir=tmp_path / "run")
+    assert (tmp_path / "run" / "truth.csv").exists() and not (tmp_path / "run" / "summary.json").exists()
 
 
 @pytest.mark.slow

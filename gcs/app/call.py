@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import operator
+import signal
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import ExitStack
@@ -23,7 +24,9 @@ from gcs.config import read_system
 from gcs.config.overrides import plain, with_settings
 from gcs.config.toml_file import GivenTables
 from gcs.config.validate import UnusableFile
+from gcs.drivers.interrupt import Interrupt
 from gcs.errors import UnusableInput
+from gcs.flight.failsafe import Failsafe
 from gcs.mission.faults import check_faults_of, fault_problems, parameter_problems, read_fault
 from gcs.mission.model import Fault, Limits, Mission
 from gcs.mission.read import read_mission
@@ -68,18 +71,20 @@ def fly(
     Raises:
         UnusableInput: (:mod:`gcs.errors`) for whatever cannot be flown, before the flight.
         GcsError: no simulated world is installed.
+        KeyboardInterrupt: after Ctrl-C, once the vehicles have landed and the records are closed; at a second one, at
+            once.
     """
-    faults = [*faults]
-    checked = _with_faults(_mission(mission, seed, config, settings or {}, limits), faults)
+    tables = _fault_tables(faults)
+    checked = _with_faults(_mission(mission, seed, config, settings or {}, limits), tables)
     if controller not in CONTROLLERS:
         raise UnusableInput(f"controller '{controller}' is none of {', '.join(CONTROLLERS)}")
     for note in (*checked.notes, *preflight(checked).lines):
         LOG.info("note: %s", note)
     replay = _call(
         mission, seed=seed, config=config and str(config), settings={k: plain(v) for k, v in (settings or {}).items()},
-        controller=None if controller == "idc" else controller, faults=faults, limits=limits,
+        controller=None if controller == "idc" else controller, faults=tables, limits=limits and _limit_table(limits),
     )  # fmt: skip
-    with ExitStack() as opened:
+    with Interrupt((signal.SIGINT,)) as interrupt, ExitStack() as opened:
         wanted = run_dir
         if wanted is None:  # the figures are computed from files
             wanted = Path(opened.enter_context(tempfile.TemporaryDirectory(prefix="cooplift-"))) / "run"
@@ -94,8 +99,18 @@ def fly(
         if others := differences():
             LOG.warning(others)
         folder.keep()
-        flight.fly()
-        return flown(flight.result(), flight.setpoints, replay, keep=run_dir is not None)
+
+        def land_if_interrupted() -> None:
+            if interrupt.requested and not flight.flight.failsafes.interrupted:
+                flight.station.raise_failsafe(flight.now, Failsafe.INTERRUPTED, "interrupted")
+
+        interrupt.begin_flight()
+        flight.fly(land_if_interrupted)
+        interrupt.end_flight()
+        found = flown(flight.result(), flight.setpoints, replay, keep=run_dir is not None)
+        if interrupt.requested:
+            raise KeyboardInterrupt
+        return found
 
 
 def _call(mission: Path | str | Mission, **options: Any) -> str:
@@ -144,25 +159,35 @@ def _limits_adapter() -> TypeAdapter[Limits]:
 
 
 def _limits(limits: Limits | Mapping[str, Any]) -> Limits:
-    tables = dict(limits) if isinstance(limits, Mapping) else dataclasses.asdict(limits)
-    return GivenTables(Path("limits"), tables, {}).validated(_limits_adapter())
+    return GivenTables(Path("limits"), _limit_table(limits), {}).validated(_limits_adapter())
 
 
-def _with_faults(mission: Mission, faults: Sequence[AnyFault]) -> Mission:
-    """Return the mission with ``faults`` after its own. Raises :class:`UnusableInput`."""
+def _limit_table(limits: Limits | Mapping[str, Any]) -> dict[str, Any]:
+    """Return limits as the keys of a table ``[limits]``."""
+    given = limits if isinstance(limits, Mapping) else dataclasses.asdict(limits)
+    return {key: value for key, value in given.items() if value is not None}
+
+
+def _fault_tables(faults: Iterable[AnyFault]) -> list[dict[str, Any]]:
+    """Return faults as the keys of ``[[fault]]`` tables. Raises :class:`UnusableInput`."""
+    faults = [*faults]
     if not faults:
-        return mission
+        return []
     # Campaigns take long to import, spent only where there are faults.
     from gcs.campaign.faults.base_mission import fault_table
     from gcs.campaign.testing import fault
 
+    try:
+        return [fault_table(one if isinstance(one, Fault | Mapping) else fault(one)) for one in faults]
+    except TypeError as error:
+        raise UnusableInput(f"faults: {error}") from None
+
+
+def _with_faults(mission: Mission, tables: Sequence[Mapping[str, Any]]) -> Mission:
+    """Return the mission with faults of ``tables`` after its own. Raises :class:`UnusableInput`."""
     given = GivenTables(Path("faults"), {}, {})
     found = []
-    for index, one in enumerate(faults):
-        try:
-            table = fault_table(one if isinstance(one, Fault | Mapping) else fault(one))
-        except TypeError as error:
-            raise UnusableInput(f"faults: {error}") from None
+    for index, table in enumerate(tables):
         read = read_fault(given, index, table)
         if problems := [
             given.problem(("fault", index, key), reason) for key, reason in fault_problems(read, mission.system)

@@ -13,7 +13,7 @@ from gcs.record.faults import FAULTS_FILE
 from gcs.record.outcome import Outcome
 from gcs.record.reader import Table, read_json
 from gcs.record.setpoints import SentSetpoints
-from gcs.record.summary import within_limits
+from gcs.record.summary import limits_not_held, within_limits
 
 if TYPE_CHECKING:
     import pandas
@@ -42,6 +42,8 @@ class Flight:
     """The call that repeats it, as Python source; ``mission`` in it is a mission that was built in Python."""
     run_dir: Path | None
     """The folder of the records; None: none was asked for."""
+    incomplete: tuple[str, ...]
+    """Names of the records that could not be written in full."""
     _records: Mapping[str, Table]
     _sent: SentSetpoints
 
@@ -111,8 +113,13 @@ class Flight:
         return pandas.DataFrame(getattr(self, name))
 
     def __repr__(self) -> str:
-        how = self.outcome if not self.completed or self.within_limits else f"{self.outcome}, outside its limits"
-        return f"<flight {self.name}: {how}{f' ({self.reason})' if self.reason else ''}>"
+        limits = self.figures["limits"]
+        missed = [
+            f"{name} {limits[name]['value']} (limit {limits[name]['limit']})" for name in limits_not_held(self.figures)
+        ]
+        how = f"{self.outcome}, outside its limits" if self.completed and missed else self.outcome
+        why = "; ".join(part for part in (*missed, self.reason) if part)
+        return f"<flight {self.name}: {how}{f' ({why})' if why else ''}>"
 
 
 def flown(result: FlightResult, sent: SentSetpoints, replay: str, *, keep: bool) -> Flight:
@@ -125,6 +132,7 @@ def flown(result: FlightResult, sent: SentSetpoints, replay: str, *, keep: bool)
         faults=tuple(read_json(result.run_dir / FAULTS_FILE).get("faults", ())),
         replay=replay,
         run_dir=result.run_dir if keep else None,
+        incomplete=tuple(file.name for file in result.incomplete),
         _records={name: tables[f"{name}.csv"] for name in _TABLES},
         _sent=sent,
     )

@@ -13,18 +13,19 @@ _INTERRUPTED = 130
 
 @contextmanager
 def importing() -> Iterator[None]:
-    """Collect no garbage within; what is there at the end, later collections pass over, the program's last one, too.
+    """Collect no garbage within; if modules came, later collections pass over what is there, the last one, too.
 
     The imports of a flight make 200,000 objects that stay, which every collection would look through. If kernels lack
     machine code, all are compiled at once, by all cores, with a line of progress: the first time that takes minutes.
     """
-    collects = gc.isenabled()
+    collects, before = gc.isenabled(), len(sys.modules)
     gc.disable()
     uncompiled.compile_all = _compile_all
     try:
         yield
     finally:
-        gc.freeze()
+        if len(sys.modules) > before:  # else it would keep the garbage of flights before
+            gc.freeze()
         if collects:
             gc.enable()
 

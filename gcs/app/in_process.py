@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import math
 import time
 from collections.abc import Callable, Sequence
@@ -83,6 +84,7 @@ class FlightInProcess:
         """Wall time of take-off (s)."""
         self._cpu = cpu_time()
         self._closed = False
+        gc.collect()  # of flights before: their cycles hold large arrays
         with ExitStack() as opened:
             self.world = open_world(mission, run_dir) if world is None else world
             opened.callback(self.world.close)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import signal
 import threading
+from collections.abc import Sequence
 from types import FrameType, TracebackType
 from typing import Any
 
@@ -11,15 +12,16 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 class Interrupt:
-    """While in use, every signal of :data:`SIGNALS` raises :class:`KeyboardInterrupt`, except in a flight and after it.
+    """While in use, each of ``signals`` raises :class:`KeyboardInterrupt`, except in a flight and after it.
 
     In a flight the first one is a request, and only a second Ctrl-C or SIGTERM raises it; after it, while records are
     closed, none does. SIGHUP, which comes from the terminal and again from the shell, is never a second one, and of no
     effect where it was ignored before (``nohup``). A context manager; outside the main thread it does nothing.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, signals: Sequence[signal.Signals] = SIGNALS) -> None:
         self.requested = False
+        self._signals = signals
         self._in_flight = self._flown = self._hung_up = False
         self._previous: dict[int, Any] = {}
 
@@ -33,7 +35,7 @@ class Interrupt:
 
     def __enter__(self) -> Interrupt:
         if threading.current_thread() is threading.main_thread():
-            for number in SIGNALS:
+            for number in self._signals:
                 if number != signal.SIGHUP or signal.getsignal(number) != signal.SIG_IGN:
                     self._previous[number] = signal.signal(number, self._on_signal)
         return self
