@@ -1,7 +1,10 @@
 """A small fault campaign, and what its flights would come to."""
 
+from concurrent.futures import Executor, Future
+
 from flights import short_figure
 
+from gcs.campaign import flight
 from gcs.campaign.faults.campaign_file import read_campaign
 from gcs.campaign.faults.plans import FaultFlights
 
@@ -31,6 +34,36 @@ def campaign_file(folder, text=CAMPAIGN):
     path = folder / "campaign.toml"
     path.write_text(text)
     return path
+
+
+class InThisThread(Executor):
+    """Calls are carried out as they are submitted."""
+
+    def __init__(self, *_):
+        pass
+
+    def submit(self, call, /, *arguments, **keywords):
+        future = Future()
+        future.set_result(call(*arguments, **keywords))
+        return future
+
+
+def fly_nothing(monkeypatch, fly):
+    """Whatever campaign flies from here on, a flight is ``fly(plan, run_dir)``."""
+    monkeypatch.setattr(flight, "fly", fly)
+    monkeypatch.setattr("gcs.app.campaigns.WorkerProcesses", InThisThread)
+    monkeypatch.setattr("gcs.campaign.faults.tables_page.WorkerProcesses", InThisThread)
+
+
+def flown_in(campaign, ended=lambda result: None):
+    """Fly a campaign in this thread."""
+    campaign.fly(InThisThread(), ended)
+    return campaign
+
+
+def judged(campaign, plan, flown):
+    """The result of a flight that is over."""
+    return campaign.judged(plan, plan.result(flown, campaign.run_dir(plan)))
 
 
 def flights(folder, text=CAMPAIGN):

@@ -6,7 +6,7 @@ import json
 import pandas
 import pytest
 from scipy.stats import binomtest
-from small_campaign import OUTSIDE, SUMMARY, campaign_file
+from small_campaign import OUTSIDE, SUMMARY, campaign_file, judged
 
 from gcs.campaign.engine import Campaign
 from gcs.campaign.faults.campaign_file import read_campaign
@@ -14,15 +14,15 @@ from gcs.campaign.faults.judgement import COLUMNS, first_start, is_safe, meets, 
 from gcs.campaign.faults.plans import FaultFlights
 from gcs.campaign.faults.rates import interval, rates_of
 from gcs.campaign.faults.report import draw_matrix, report
-from gcs.campaign.process_pool import FlownProcess
-from gcs.campaign.tables import write_parquet
+from gcs.campaign.result import Flown
+from gcs.campaign.tables import flight_columns, write_parquet
 from gcs.record.outcome import Outcome
 
 
 def results(tmp_path, within, outside=0, **figures):
     campaign = Campaign(FaultFlights(read_campaign(campaign_file(tmp_path))), tmp_path / "out")
-    processes = [FlownProcess(0, SUMMARY, "", 1.0)] * within + [FlownProcess(1, SUMMARY | OUTSIDE, "", 1.0)] * outside
-    made = [campaign.result_of(campaign.plans[0], process) for process in processes]
+    flown = [Flown(0, SUMMARY, "", 1.0)] * within + [Flown(1, SUMMARY | OUTSIDE, "", 1.0)] * outside
+    made = [judged(campaign, campaign.plans[0], one) for one in flown]
     return [dataclasses.replace(result, **figures) for result in made]
 
 
@@ -39,12 +39,13 @@ def test_rates_have_wilson_intervals(tmp_path):
 def test_csv_and_parquet_agree(tmp_path):
     made = results(tmp_path, 2, 1)
     made.append(dataclasses.replace(made[0], clearance_min_m=0.25, contacts=None, outcome=Outcome.FAILED, level=2))
-    _, [table, rates, *_] = report("a test", made, tmp_path)
-    frame = pandas.read_parquet(write_parquet(tmp_path / "results.parquet", COLUMNS, made))
-    assert tuple(frame.columns) == COLUMNS and len(frame) == 4
+    _, [table, timing, rates, *_] = report("a test", made, tmp_path)
+    frame = pandas.read_parquet(write_parquet(tmp_path / "results.parquet", flight_columns(COLUMNS), made))
+    assert tuple(frame.columns) == flight_columns(COLUMNS) and len(frame) == 4
+    assert pandas.read_csv(timing)["wall_s"].tolist() == [1.0] * 4
     assert frame["clearance_min_m"].isna().tolist() == [True, True, True, False]
     assert frame["seed"].dtype == "Int64" and frame["within_limits"].tolist() == [True, True, False, True]
-    some = ["fault", "seed", "within_limits", "clearance_min_m", "contacts", "tilt_max_deg", "replay"]
+    some = ["fault", "seed", "within_limits", "clearance_min_m", "contacts", "tilt_max_deg"]
     read = pandas.read_csv(table)
     pandas.testing.assert_frame_equal(read[some].astype(frame[some].dtypes), frame[some])
     assert pandas.read_csv(rates)["flights"].tolist() == [3, 1]
@@ -61,7 +62,7 @@ def test_report_covers_all_outcomes(tmp_path, pictures):
 
 
 def test_flight_without_a_summary_has_failed():
-    assert outcome(FlownProcess(-9, {}, "no memory", 1.0)) is Outcome.FAILED
+    assert outcome(Flown(1, {}, "no memory", 1.0)) is Outcome.FAILED
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ import json
 
 import pytest
 from scipy.stats import poisson
-from small_campaign import CAMPAIGN, SUMMARY, campaign_file
+from small_campaign import CAMPAIGN, SUMMARY, campaign_file, judged
 
 from gcs.campaign.engine import Campaign
 from gcs.campaign.faults.campaign_file import read_campaign
@@ -32,8 +32,7 @@ from gcs.campaign.faults.sources import (
     source_of,
     sources_of,
 )  # fmt: skip
-from gcs.campaign.process_pool import FlownProcess
-from gcs.campaign.result import Result
+from gcs.campaign.result import Flown, Result
 from gcs.config import UnusableFile
 from gcs.faults import KINDS
 from gcs.flight.detectors import MonitorAlarm
@@ -152,12 +151,12 @@ def test_campaign_judges_alarms_since_the_fault(tmp_path):
         campaign.run_dir(plan), (7.9, "vehicle 1", "clock_error"), (8.25, "vehicle 2", "messages_lost"),
         (8.5, "vehicle 3", "clock_error"),
     )  # fmt: skip
-    result = campaign.result_of(plan, FlownProcess(0, SUMMARY, "", 1.0))
+    result = judged(campaign, plan, Flown(0, SUMMARY, "", 1.0))
     assert (result.true_source, result.isolation, result.named_source) == ("link of vehicle 2", RIGHT, "")
     assert (result.detected_s, result.detected_as, result.false_alarms) == (0.25, "messages_lost, vehicle 2", 1)
     assert (result.clean_s, result.false_codes) == (8.0, "clock_error")  # of 20 s, which end at 20 s
     # Without a record it is not known.
-    result = campaign.result_of(other, FlownProcess(1, {}, "", 1.0))
+    result = judged(campaign, other, Flown(1, {}, "", 1.0))
     assert (result.true_source, result.isolation) == ("link of vehicle 2", "")
 
 

@@ -10,16 +10,16 @@ from pathlib import Path
 import pandas
 import pytest
 from flights import HOP
-from small_campaign import CAMPAIGN, OUTSIDE, SUMMARY, campaign_file
+from small_campaign import CAMPAIGN, OUTSIDE, SUMMARY, campaign_file, flown_in, fly_nothing
 
 from gcs.app.cli import main
-from gcs.campaign import engine
 from gcs.campaign.engine import Campaign
 from gcs.campaign.faults.campaign_file import read_campaign
 from gcs.campaign.faults.plans import FaultFlights
 from gcs.campaign.folder import folder_lock
-from gcs.campaign.process_pool import FlownProcess
+from gcs.campaign.result import Flown
 from gcs.errors import UnusableInput
+from gcs.record.run_folder import open_run_folder
 
 pytestmark = pytest.mark.slow
 
@@ -29,13 +29,13 @@ def flown(monkeypatch):
     """Nothing is flown: the flights are noted, and those of the second severity are outside their limits."""
     names = []
 
-    def fly(mission, options, run_dir, worker):
-        names.append(mission.stem)
-        run_dir.mkdir()
-        bad = "0.3" in mission.stem
-        return FlownProcess(int(bad), SUMMARY | (OUTSIDE if bad else {}), "", 1.0)
+    def fly(plan, run_dir):
+        names.append(plan.name)
+        open_run_folder("", run_dir)
+        bad = "0.3" in plan.name
+        return Flown(int(bad), SUMMARY | (OUTSIDE if bad else {}), "", 1.0)
 
-    monkeypatch.setattr(engine, "fly_process", fly)
+    fly_nothing(monkeypatch, fly)
     return names
 
 
@@ -43,13 +43,8 @@ def campaign_in(folder, text=CAMPAIGN, **options):
     return Campaign(FaultFlights(read_campaign(campaign_file(folder, text))), folder / "out", **options)
 
 
-def nothing(_):
-    pass
-
-
 def test_campaign_flies_every_flight_once(tmp_path, flown):
-    campaign = campaign_in(tmp_path, jobs=2)
-    campaign.fly(nothing, nothing)
+    campaign = flown_in(campaign_in(tmp_path))
     assert sorted(flown) == sorted(flight.name for flight in campaign.plans)
     assert [result.number for result in campaign.results] == [1, 2, 3, 4, 5, 6]
     assert [result.outcome for result in campaign.results[1:4]] == ["completed"] * 3
@@ -57,7 +52,7 @@ def test_campaign_flies_every_flight_once(tmp_path, flown):
     # Of those within limits only the results are kept.
     kept = sorted(path.name for path in (tmp_path / "out" / "flights").iterdir())
     assert kept == sorted(result.name for result in campaign.results if result.run_dir) and len(kept) == 2
-    campaign_in(tmp_path).fly(nothing, nothing)
+    flown_in(campaign_in(tmp_path))
     assert len(flown) == 6
 
 
@@ -67,26 +62,26 @@ def test_campaign_resumes_after_an_interrupt(tmp_path, flown):
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        campaign_in(tmp_path, jobs=1).fly(nothing, interrupted)
+        flown_in(campaign_in(tmp_path), interrupted)
+    assert not [*(tmp_path / "out" / "flights").glob(".*")]
     (tmp_path / "out" / "flights" / ".half-flown").mkdir()
-    again = campaign_in(tmp_path, jobs=1)
+    again = campaign_in(tmp_path)
     assert [result.number for result in again.results] == [1, 2, 3]
-    again.fly(nothing, nothing)
+    flown_in(again)
     assert [flown.count(flight.name) for flight in again.plans[:3]] == [1, 1, 1]
     assert len(again.results) == 6 and not (tmp_path / "out" / "flights" / ".half-flown").exists()
 
 
 def test_grown_campaign_flies_only_what_is_new(tmp_path, flown):
-    campaign_in(tmp_path).fly(nothing, nothing)
+    flown_in(campaign_in(tmp_path))
     grown = CAMPAIGN.replace("[0.1, 0.3]", "[0.05, 0.1, 0.3]").replace("[3, 7]", "[3, 7, 8]")
-    campaign = campaign_in(tmp_path, grown)
-    campaign.fly(nothing, nothing)
+    campaign = flown_in(campaign_in(tmp_path, grown))
     assert len(flown) == 6 + 12 - 6 and len(set(flown)) == 12
     assert [(r.level, r.severity) for r in campaign.results[3:9:3]] == [(2, "probability 0.1"), (3, "probability 0.3")]
 
 
 def test_campaign_flies_changed_mission_again(tmp_path, flown):
-    campaign_in(tmp_path).fly(nothing, nothing)
+    flown_in(campaign_in(tmp_path))
     path = campaign_file(tmp_path)
     system = tmp_path / "system.toml"
     system.write_text(system.read_text().replace("link_length = 3.2", "link_length = 3.1"))
@@ -98,7 +93,7 @@ def test_folder_is_refused_to_another_campaign_or_process(tmp_path, flown):
     with pytest.raises(UnusableInput, match="was begun with faults a test, not another"):
         campaign_in(tmp_path, CAMPAIGN.replace("a test", "another"))
     with folder_lock(tmp_path / "out"), pytest.raises(UnusableInput, match="another process is flying there"):
-        campaign.fly(nothing, nothing)
+        flown_in(campaign)
     assert flown == []
 
 
@@ -121,10 +116,10 @@ def test_campaign_passes_safe_landings_where_file_requires_no_more(tmp_path, flo
     aborted = SUMMARY | {"completed": False, "outcome": "aborted", "limits": {}, "landing": landing}
     ends = {"0.1": aborted, "0.3": aborted | OUTSIDE, "slow": aborted | {"outcome": "collided", "contacts": 1}}
 
-    def fly(mission, options, run_dir, worker):
-        return FlownProcess(1, next(end for name, end in ends.items() if name in mission.stem), "", 1.0)
+    def fly(plan, run_dir):
+        return Flown(1, next(end for name, end in ends.items() if name in plan.name), "", 1.0)
 
-    monkeypatch.setattr(engine, "fly_process", fly)
+    fly_nothing(monkeypatch, fly)
     for require, passed in (("safe", 2), ("within limits", 0)):  # what is on record is judged anew
         text = CAMPAIGN.replace("seeds =", f'require = "{require}"\nseeds =')
         assert main(["faults", str(campaign_file(tmp_path, text)), "--out", str(tmp_path / "out"), "--parquet"]) == 1
@@ -137,8 +132,7 @@ def test_campaign_passes_safe_landings_where_file_requires_no_more(tmp_path, flo
 
 
 def test_interrupted_command_exits_130(tmp_path, flown, monkeypatch, capsys):
-    def interrupted(campaign, console):
-        campaign.fly_one(campaign.plans[0], None)
+    def interrupted(campaign, executor, console):
         raise KeyboardInterrupt
 
     monkeypatch.setattr("gcs.app.campaigns.fly_with_progress", interrupted)
@@ -210,10 +204,10 @@ def test_campaign_killed_completes_without_flying_twice(severities, kills, tmp_p
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
 def test_signal_ends_the_command_with_the_results_so_far(tmp_path, flown, monkeypatch, capsys, number):
-    def signalled(campaign, console):
-        campaign.fly(nothing, lambda result: os.kill(os.getpid(), number))
+    def signalled(campaign, executor, console):
+        campaign.fly(executor, lambda result: os.kill(os.getpid(), number))
 
     monkeypatch.setattr("gcs.app.campaigns.fly_with_progress", signalled)
-    assert main(["faults", str(campaign_file(tmp_path)), "--out", str(tmp_path / "out"), "--jobs", "1"]) == 130
+    assert main(["faults", str(campaign_file(tmp_path)), "--out", str(tmp_path / "out")]) == 130
     assert "interrupted with 5 flights to go" in capsys.readouterr().err
     assert len([*(tmp_path / "out" / "results").glob("*.json")]) == 1

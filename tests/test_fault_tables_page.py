@@ -8,17 +8,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from small_campaign import CAMPAIGN, SUMMARY, campaign_file
+from small_campaign import CAMPAIGN, SUMMARY, campaign_file, fly_nothing
 
 from gcs.app import cli
-from gcs.campaign import engine
 from gcs.campaign.faults import tables_page
 from gcs.campaign.faults.campaign_file import read_campaign
 from gcs.campaign.faults.detection_table import case_name
 from gcs.campaign.faults.plans import FaultFlights
 from gcs.campaign.faults.tables_page import DETECTION, FALSE_ALARMS, main
-from gcs.campaign.process_pool import FlownProcess
 from gcs.campaign.product import commit_of
+from gcs.campaign.result import Flown
 from gcs.campaign.scenarios import field as fields
 from gcs.campaign.scenarios.field import field
 from gcs.campaign.tables import renewed
@@ -27,6 +26,7 @@ from gcs.errors import GcsError, UnusableInput
 from gcs.mission.model import Mission
 from gcs.mission.read import read_mission
 from gcs.planning.schedule import Schedule
+from gcs.record.run_folder import open_run_folder
 from idc_controller.geometry.bounding_cylinder import BoundingCylinder
 from idc_controller.geometry.free_space import FreeSpace
 
@@ -149,21 +149,21 @@ def flown(monkeypatch):
     """Nothing is flown: 10 s into a fault an alarm is raised, without one none, and in the forest a false one."""
     names = []
 
-    def fly(mission, options, run_dir, worker):
-        names.append(mission.stem)
-        run_dir.mkdir()
-        has_fault = "no-fault" not in mission.stem
+    def fly(plan, run_dir):
+        names.append(plan.name)
+        open_run_folder("", run_dir)
+        has_fault = "no-fault" not in plan.name
         rows = ["time_s,source,code,severity,text"]
         rows += ["18.0,vehicle 3,messages_lost,warning,x"] if has_fault else []
-        rows += ["2.0,vehicle 1,innovation_bias,warning,x"] if "forest" in mission.stem else []
+        rows += ["2.0,vehicle 1,innovation_bias,warning,x"] if "forest" in plan.name else []
         (run_dir / "alarms.csv").write_text("\n".join([*rows, ""]))
         faults = [{"number": 1, "kind": "packet_loss", "line": 1, "start": 5.0, "seen": 1, "disturbed": 1,
                    "occurrences": 1, "activations": [[5.0, None]]}]  # fmt: skip
         record = {"take_off_s": 3.0, "end_s": 36.0, "faults": faults if has_fault else []}
         (run_dir / "faults.json").write_text(json.dumps(record))
-        return FlownProcess(0, SUMMARY | {"duration_s": 36.0}, "", 1.0)
+        return Flown(0, SUMMARY | {"duration_s": 36.0}, "", 1.0)
 
-    monkeypatch.setattr(engine, "fly_process", fly)
+    fly_nothing(monkeypatch, fly)
     return names
 
 

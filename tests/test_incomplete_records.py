@@ -18,14 +18,14 @@ import pytest
 from flights import HOP, system_file
 from mission_files import MISSIONS
 from programs import ENVIRONMENT, PATIENCE
-from small_campaign import SUMMARY, campaign_file
+from small_campaign import SUMMARY, campaign_file, fly_nothing
 from test_record_landing import flight, write_flight
 
 import gcs.app.cli
 import vehicle_sim.app.cli
 from gcs.app.exit_status import ExitStatus
 from gcs.app.fly import flight_result
-from gcs.campaign.process_pool import FlownProcess
+from gcs.campaign.result import Flown
 from gcs.drivers.simulator import Simulator
 from gcs.flight.alarms import AlarmLog
 from gcs.mission.read import read_mission
@@ -33,7 +33,7 @@ from gcs.record.append_file import AppendOnlyFile
 from gcs.record.incomplete import Incomplete, IncompleteRecords, in_one_line, read_line
 from gcs.record.recorder import FlightRecorder
 from gcs.record.run_data import read_run
-from gcs.record.run_folder import write_json
+from gcs.record.run_folder import open_run_folder, write_json
 from gcs.record.tables import TableWriter
 from idc_controller.geometry.shapes import shape_class
 from vehicle_sim.world.obstacle_bodies import Obstacle
@@ -249,31 +249,31 @@ def test_simulator_exits_with_3_when_its_records_are_incomplete(tmp_path, small_
 
 
 def test_campaign_ends_with_3_when_a_result_cannot_be_written(tmp_path, monkeypatch, capsys):
-    def fly_process(mission, options, run_dir, worker):
-        run_dir.mkdir(parents=True)
-        return FlownProcess(0, SUMMARY, "", 1.0)
+    def fly(plan, run_dir):
+        open_run_folder("", run_dir)
+        return Flown(0, SUMMARY, "", 1.0)
 
-    monkeypatch.setattr("gcs.campaign.engine.fly_process", fly_process)
+    fly_nothing(monkeypatch, fly)
     path = campaign_file(tmp_path)
     with no_new_content("loss*.json.part"):
-        code = gcs.app.cli.main(["faults", str(path), "--out", str(tmp_path / "out"), "--jobs", "1"])
+        code = gcs.app.cli.main(["faults", str(path), "--out", str(tmp_path / "out")])
     assert code == ExitStatus.INCOMPLETE
     assert "cannot be written: No space left on device: the campaign ends here" in capsys.readouterr().err
     assert not [*(tmp_path / "out" / "results").iterdir()]
 
 
 def test_campaign_prints_what_it_has_when_its_report_cannot_be_written(tmp_path, monkeypatch, capsys):
-    def fly_process(mission, options, run_dir, worker):
-        run_dir.mkdir(parents=True)
-        return FlownProcess(0, SUMMARY, "", 1.0)
+    def fly(plan, run_dir):
+        open_run_folder("", run_dir)
+        return Flown(0, SUMMARY, "", 1.0)
 
     def full(*_):
         raise FULL
 
-    monkeypatch.setattr("gcs.campaign.engine.fly_process", fly_process)
+    fly_nothing(monkeypatch, fly)
     monkeypatch.setattr("gcs.campaign.faults.plans.FaultFlights.report", full)
     path = campaign_file(tmp_path)
-    code = gcs.app.cli.main(["faults", str(path), "--out", str(tmp_path / "out"), "--jobs", "1"])
+    code = gcs.app.cli.main(["faults", str(path), "--out", str(tmp_path / "out")])
     assert code == ExitStatus.INCOMPLETE
     output = capsys.readouterr()
     assert "6 of 6 flights within their limits" in output.out
@@ -281,15 +281,15 @@ def test_campaign_prints_what_it_has_when_its_report_cannot_be_written(tmp_path,
 
 
 def test_flight_with_incomplete_records_passes_no_campaign(tmp_path, monkeypatch, capsys):
-    def fly_process(mission, options, run_dir, worker):
-        run_dir.mkdir(parents=True)
-        return FlownProcess(ExitStatus.INCOMPLETE, SUMMARY, "", 1.0)
+    def fly(plan, run_dir):
+        open_run_folder("", run_dir)
+        return Flown(ExitStatus.INCOMPLETE, SUMMARY, "", 1.0)
 
-    monkeypatch.setattr("gcs.campaign.engine.fly_process", fly_process)
+    fly_nothing(monkeypatch, fly)
     text = campaign_file(tmp_path).read_text().replace("[[fault]]", 'require = "safe"\n\n[[fault]]', 1)
     (tmp_path / "campaign.toml").write_text(text)
     path = str(tmp_path / "campaign.toml")
-    code = gcs.app.cli.main(["faults", path, "--out", str(tmp_path / "out"), "--jobs", "1", "--keep", "none"])
+    code = gcs.app.cli.main(["faults", path, "--out", str(tmp_path / "out"), "--keep", "none"])
     assert code == ExitStatus.OUTSIDE_LIMITS
     assert "0 of " in capsys.readouterr().out
 

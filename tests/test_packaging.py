@@ -19,7 +19,7 @@ PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 PROJECT = PYPROJECT["project"]
 
 EXTRAS = PROJECT["optional-dependencies"]
-REQUIRED = [*PROJECT["dependencies"], *EXTRAS["parquet"], *EXTRAS["suites"]]
+REQUIRED = [*PROJECT["dependencies"], *EXTRAS["cluster"], *EXTRAS["parquet"], *EXTRAS["suites"]]
 DECLARED = [*REQUIRED, *EXTRAS["dev"][1:]]
 
 
@@ -101,8 +101,8 @@ def test_all_packages_are_installed():
 
 
 def test_development_has_all_extras():
-    assert EXTRAS["dev"][0] == "cooplift[parquet,suites]"
-    assert EXTRAS.keys() == {"dev", "parquet", "suites"}
+    assert EXTRAS["dev"][0] == "cooplift[cluster,parquet,suites]"
+    assert EXTRAS.keys() == {"cluster", "dev", "parquet", "suites"}
 
 
 @pytest.mark.parametrize(
@@ -110,6 +110,7 @@ def test_development_has_all_extras():
     [
         ("faults many_hops --parquet", "pyarrow", "parquet"),
         ("courses --suite course.yaml", "yaml", "suites"),
+        ("courses --scheduler tcp://127.0.0.1:1", "distributed", "cluster"),
     ],
 )
 def test_command_that_needs_an_extra_names_it(words, package, extra, monkeypatch, tmp_path, capsys):
@@ -117,6 +118,7 @@ def test_command_that_needs_an_extra_names_it(words, package, extra, monkeypatch
     monkeypatch.setitem(sys.modules, package, None)  # as if it were not installed
     monkeypatch.delitem(sys.modules, "gcs.campaign.suites.yaml_file", raising=False)
     monkeypatch.delitem(sys.modules, "gcs.campaign.suites.aerialist", raising=False)
+    monkeypatch.delitem(sys.modules, "gcs.campaign.cluster", raising=False)
     assert main(words.split()) == 2
     error = capsys.readouterr().err
     assert error.count("\n") == 1 and f"needs {package}" in error and f"pip install 'cooplift[{extra}]'" in error

@@ -1,24 +1,24 @@
 """Random obstacle scenarios: what is generated can be flown and repeats; a campaign keeps its results and resumes."""
 
 import dataclasses
-import json
 
 import numpy as np
 import pytest
 from scenario_results import result_of
+from small_campaign import InThisThread, flown_in, judged
 
 from gcs.app.cli import main
-from gcs.campaign import product
+from gcs.campaign import engine, product
 from gcs.campaign.engine import Campaign
-from gcs.campaign.flight_worker import FlightWorker
-from gcs.campaign.process_pool import FlownProcess
-from gcs.campaign.result import Result
+from gcs.campaign.flight import fly_plan
+from gcs.campaign.result import Flown, Result
 from gcs.campaign.scenarios import generator as scenarios
 from gcs.campaign.scenarios.generator import DEFAULT_KINDS, KINDS, generate
 from gcs.campaign.scenarios.judgement import COLUMNS
 from gcs.campaign.scenarios.moving import MOTIONS, displacement, motion_for, top_speed
 from gcs.campaign.scenarios.plans import Scenarios
 from gcs.campaign.scenarios.report import from_bad_end, report
+from gcs.campaign.tables import flight_columns
 from gcs.config.flight_settings import DEFAULTS
 from gcs.errors import UnusableInput
 from gcs.mission.model import Lissajous
@@ -187,7 +187,7 @@ def record(campaign, plan, late=0.0, stop_short=False):
 def test_flight_on_time_passes(campaign):
     plan = campaign.plans[0]
     record(campaign, plan)
-    result = campaign.result_of(plan, FlownProcess(0, SUMMARY, "", 12.3))
+    result = judged(campaign, plan, Flown(0, SUMMARY, "", 12.3))
     assert result.passed and result.failures == "" and result.reason == ""
     assert result.delay_s == pytest.approx(0.0, abs=0.05)
     assert result.goal_error_m < 0.01
@@ -198,9 +198,9 @@ def test_flight_on_time_passes(campaign):
 def test_delay_and_missed_goal_fail(campaign):
     late, short = campaign.plans
     record(campaign, late, late=3.0)
-    assert campaign.result_of(late, FlownProcess(0, SUMMARY, "", 1.0)).delay_s == pytest.approx(3.0, abs=0.05)
+    assert judged(campaign, late, Flown(0, SUMMARY, "", 1.0)).delay_s == pytest.approx(3.0, abs=0.05)
     record(campaign, short, stop_short=True)
-    result = campaign.result_of(short, FlownProcess(0, SUMMARY, "", 1.0))
+    result = judged(campaign, short, Flown(0, SUMMARY, "", 1.0))
     assert (result.passed, result.failures, result.delay_s) == (False, "arrival", None)
     assert result.goal_error_m > 2.0
 
@@ -221,24 +221,15 @@ def test_delay_and_missed_goal_fail(campaign):
 def test_flight_outside_a_limit_fails(campaign, figures, failures):
     plan = campaign.plans[0]
     record(campaign, plan)
-    messages = "   3.65 s  climb\nflight broken off: a closed wall\n  9.00 s  ended\n"
-    result = campaign.result_of(plan, FlownProcess(1, SUMMARY | figures, messages, 1.0))
+    result = judged(campaign, plan, Flown(1, SUMMARY | figures, "a closed wall", 1.0))
     assert (result.passed, result.failures, result.reason) == (False, failures, "a closed wall")
 
 
-def test_flight_that_could_not_start_fails_with_its_reason(campaign, monkeypatch):
-    monkeypatch.setenv("PATH", "")
-    broken = dataclasses.replace(campaign.plans[0], options=("--controller", "none"))
-    with FlightWorker() as worker:
-        result = campaign.fly_one(broken, worker)
-    assert not result.passed and result.exit_code == 2
-    assert "invalid choice" in result.reason
-
-
-def test_flight_ends_when_stop_event_is_set(campaign):
-    with FlightWorker() as worker:
-        worker.stop.set()
-        assert campaign.fly_one(campaign.plans[0], worker) is None
+def test_flight_that_could_not_start_fails_with_its_reason(campaign):
+    broken = dataclasses.replace(campaign.plans[0], controller="none")
+    result = fly_plan(broken, campaign.out / "flights")
+    assert not result.passed and result.exit_code == 2 and result.run_dir == ""
+    assert "controller 'none' is none of" in result.reason
 
 
 # Campaign
@@ -252,36 +243,31 @@ def flown(monkeypatch):
     """Scenarios are not flown: their numbers are noted, and every fourth fails."""
     numbers = []
 
-    def fly(campaign, plan, worker):
+    def fly(plan, folder):
         numbers.append(plan.number)
-        campaign.run_dir(plan).mkdir(parents=True)
-        return result_of(campaign, plan, **({} if plan.number % 4 else FAILED))
+        (folder / f".{plan.name}").mkdir()
+        return result_of(run_dir=str(folder / f".{plan.name}"), **({} if plan.number % 4 else FAILED))
 
-    monkeypatch.setattr(Campaign, "fly_one", fly)
+    monkeypatch.setattr(engine, "fly_plan", fly)
+    monkeypatch.setattr("gcs.app.campaigns.WorkerProcesses", InThisThread)
     return numbers
 
 
-def campaign_in(folder, jobs=None, **changes):
+def campaign_in(folder, **changes):
     scenarios = Scenarios(**({"count": 6, "seed": 5, "kinds": ("poles", "moving")} | changes))
-    return Campaign(scenarios, folder / "out", jobs)
-
-
-def nothing(_):
-    pass
+    return Campaign(scenarios, folder / "out")
 
 
 def test_campaign_flies_every_scenario_once(tmp_path, flown):
-    campaign = campaign_in(tmp_path, jobs=2)
-    started, ended = [], []
-    campaign.fly(started.append, ended.append)
-    assert sorted(flown) == [1, 2, 3, 4, 5, 6]
-    assert len(started) == len(ended) == 6
+    ended = []
+    campaign = flown_in(campaign_in(tmp_path), ended.append)
+    assert flown == [1, 2, 3, 4, 5, 6] and ended == campaign.results
     names = sorted(path.name for path in (tmp_path / "out" / "missions").iterdir())
     assert names == [f"{n:04d}-{kind}.toml" for n, kind in enumerate(["poles", "moving"] * 3, start=1)]
-    _, [table, content, _] = campaign.generator.report(campaign.results, campaign.out)
+    _, [table, timing, _] = campaign.generator.report(campaign.results, campaign.out)
     lines = table.read_text().splitlines()
-    assert lines[0] == ",".join(COLUMNS) and len(lines) == 7
-    assert [row["number"] for row in json.loads(content.read_text())] == [1, 2, 3, 4, 5, 6]
+    assert lines[0] == ",".join(flight_columns(COLUMNS)) and len(lines) == 7
+    assert timing.read_text().startswith("number,name,step_time_p50_ms,")
     # Of those that passed only the results are kept.
     assert [path.name for path in (tmp_path / "out" / "flights").iterdir()] == ["0004-moving"]
 
@@ -292,18 +278,16 @@ def test_campaign_resumes_after_an_interrupt(tmp_path, flown):
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        campaign_in(tmp_path, jobs=1).fly(nothing, interrupted)
-    before = list(flown)
-    assert before[:3] == [1, 2, 3] and len(before) < 6
-    again = campaign_in(tmp_path, jobs=1, count=8)
+        flown_in(campaign_in(tmp_path), interrupted)
+    again = campaign_in(tmp_path, count=8)
     assert [r.number for r in again.results] == [1, 2, 3]
-    again.fly(nothing, nothing)
+    flown_in(again)
     assert sorted(set(flown)) == list(range(1, 9)) and flown.count(1) == flown.count(3) == 1
     assert len(again.results) == 8
 
 
 def test_what_has_changed_is_flown_again(tmp_path, flown, monkeypatch):
-    campaign_in(tmp_path).fly(nothing, nothing)
+    flown_in(campaign_in(tmp_path))
     (tmp_path / "out" / "missions" / "0002-moving.toml").write_text("another")
     assert len(campaign_in(tmp_path).results) == 6  # it is written anew
     monkeypatch.setattr(scenarios, "HELD_TO", dataclasses.replace(scenarios.HELD_TO, clearance=0.2))

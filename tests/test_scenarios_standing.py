@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import shapely
 
-from gcs.campaign.process_pool import FlownProcess
+from gcs.campaign.result import Flown
 from gcs.campaign.scenarios.boxes import boxes
 from gcs.campaign.scenarios.forest import APART, DENSITIES, forest
 from gcs.campaign.scenarios.generator import generate
@@ -230,7 +230,7 @@ def test_impassable_course_passes_when_broken_off_with_its_narrowest_gap(tmp_pat
         "completed": outcome == "completed", "outcome": outcome, "contacts": 4 * hit, "uav_separation_min_m": 0.9,
         "clearance_min_m": 0.0 if hit else 0.5, "payload_tilt_max_deg": {"roll": 1.0},
     }  # fmt: skip
-    flown = FlownProcess(1, summary, f"flight broken off: {reason}" if reason else "", 1.0)
+    flown = Flown(1, summary, reason, 1.0)
     columns = judge(mission, None, read(scenario, tmp_path).limits, Passage(verdict, GAP), flown, tmp_path / "none")
     assert columns["failures"] == failures
     assert (columns["passage"], columns["gap_m"]) == (verdict, 1.96)

@@ -6,15 +6,18 @@ from pathlib import Path
 
 import pytest
 from scenario_results import result_of
+from small_campaign import InThisThread, flown_in
 
 from gcs.app.cli import main
+from gcs.campaign import engine
 from gcs.campaign.engine import Campaign
+from gcs.campaign.folder import shown
 from gcs.campaign.result import Result
 from gcs.campaign.scenarios.moving import top_speed
 from gcs.campaign.studies.plans import StudyFlights
 from gcs.campaign.studies.report import draw_study
 from gcs.campaign.studies.study import MOVING, STUDIES, STUDY_COLUMNS
-from gcs.campaign.tables import extreme
+from gcs.campaign.tables import extreme, flight_columns
 from gcs.campaign.toml_text import system_text
 from gcs.config import read_system
 from gcs.errors import UnusableInput
@@ -28,11 +31,7 @@ def campaign_of(name, folder, missions=MISSIONS, **options):
 
 
 def system_of(plan):
-    return read_system(Path(plan.options[plan.options.index("--config") + 1]) if "--config" in plan.options else None)
-
-
-def nothing(_):
-    pass
+    return read_system(plan.config)
 
 
 @pytest.fixture
@@ -40,15 +39,16 @@ def flown(monkeypatch):
     """Nothing is flown: what would be is noted; those without avoidance collide."""
     plans = []
 
-    def fly(campaign, plan, worker):
+    def fly(plan, folder):
         plans.append(plan)
-        collides = "mpc" in plan.options and plan.labels["clearance_asked_m"]
+        collides = plan.controller == "mpc" and plan.labels["clearance_asked_m"]
         figures = (
             {"failures": "contact", "contacts": 2, "outcome": "collided", "clearance_min_m": 0} if collides else {}
         )
-        return result_of(campaign, plan, **figures)
+        return result_of(**figures)
 
-    monkeypatch.setattr(Campaign, "fly_one", fly)
+    monkeypatch.setattr(engine, "fly_plan", fly)
+    monkeypatch.setattr("gcs.app.campaigns.WorkerProcesses", InThisThread)
     return plans
 
 
@@ -78,15 +78,14 @@ def test_study_plans_valid_missions(name, tmp_path):
     study, plans = STUDIES[name], campaign_of(name, tmp_path, quick=True).plans
     assert len(plans) == len(study.missions) * len(study.variants)
     for plan in plans:
-        config = None if "--config" not in plan.options else Path(plan.options[-3])
-        assert read_mission(plan.mission, config).system == system_of(plan)
+        assert read_mission(plan.mission, plan.config).system == system_of(plan)
     assert len({plan.name for plan in plans}) == len(plans)
 
 
 def test_margin_study_changes_margin_and_clearance_limit(tmp_path):
     plans = campaign_of("margin", tmp_path, seeds=2).plans
-    found = [(system_of(p).avoidance.margin, p.labels["clearance_asked_m"], p.options[-1]) for p in plans]
-    assert found == [(m, m, seed) for m in (0.25, 0.5, 0.75, 1.0) for seed in "12"]
+    found = [(system_of(p).avoidance.margin, p.labels["clearance_asked_m"], p.seed) for p in plans]
+    assert found == [(m, m, seed) for m in (0.25, 0.5, 0.75, 1.0) for seed in (1, 2)]
     assert all(plan.labels["tilt_limit_deg"] == 5.0 for plan in plans)
 
 
@@ -102,7 +101,7 @@ def test_each_study_changes_its_parameter(tmp_path):
     assert changed("detection", lambda p: system_of(p).range_sensor.range) == [10.0, 7.0, 5.0, 3.0]
     barriers = [p.labels["variant"] for p in campaign_of("barrier", tmp_path).plans[::3]][:4]
     assert barriers == ["plain rows", "5 1/s", "3 1/s", "6, 6 1/s"]
-    controllers = changed("controllers", lambda p: (p.labels["mission"], p.options[1]))
+    controllers = changed("controllers", lambda p: (p.labels["mission"], p.controller))
     assert len(set(controllers)) == 9 and ("pole_course", "paper") in controllers
 
 
@@ -121,7 +120,7 @@ def test_speed_study_has_fast_obstacles_off_the_map(tmp_path):
 
 def test_studies_in_one_folder_share_flights(tmp_path, flown):
     for name in ("margin", "mass", "controllers"):
-        campaign_of(name, tmp_path, quick=True).fly(nothing, nothing)
+        flown_in(campaign_of(name, tmp_path, quick=True))
     assert len(flown) == 4 + 2 + 8
     shared = campaign_of("mass", tmp_path, quick=True).results[1]
     assert shared.kind == "1" and shared.variant == "1"
@@ -132,7 +131,7 @@ def test_study_flies_changed_mission_again(tmp_path, flown):
     missions.mkdir()
     for path in MISSIONS.glob("*.toml"):
         (missions / path.name).write_text(path.read_text())
-    campaign_of("mass", tmp_path / "out", missions, quick=True).fly(nothing, nothing)
+    flown_in(campaign_of("mass", tmp_path / "out", missions, quick=True))
     assert len(campaign_of("mass", tmp_path / "out", missions, quick=True).results) == 3
     path = missions / "figure_eight_spheres.toml"
     path.write_text(path.read_text().replace("radius = 0.5 ", "radius = 0.6 "))
@@ -148,15 +147,15 @@ def test_study_without_its_missions_is_refused(tmp_path):
 
 
 def test_command_flies_and_reports(tmp_path, flown, capsys, pictures):
-    arguments = ["--quick", "--jobs", "1", "--out", str(tmp_path), "--missions", str(MISSIONS)]
+    arguments = ["--quick", "--out", str(tmp_path), "--missions", str(MISSIONS)]
     assert main(["study", "controllers", *arguments]) == 1
     printed = capsys.readouterr().out
     assert "0.60 >= 0.45" in printed and "0.00 >= 0.5" in printed
     assert printed.count("1/1") == 7 and printed.count("0/1") == 2
-    assert f"gcs fly {MISSIONS / 'pole_course.toml'} --controller mpc --seed 1" in printed
+    assert f"gcs fly {shown(MISSIONS / 'pole_course.toml')} --controller mpc --seed 1" in printed
     with (tmp_path / "controllers.csv").open() as file:
         rows = list(csv.DictReader(file))
-    assert tuple(rows[0]) == STUDY_COLUMNS and len(rows) == 9
+    assert tuple(rows[0]) == flight_columns(STUDY_COLUMNS) and len(rows) == 9
     assert {row["clearance_asked_m"] for row in rows} == {"", "0.5", "0.45"}
     assert (tmp_path / "controllers.png").is_file()
     texts = pictures["controllers.png"]
@@ -168,14 +167,14 @@ def test_command_flies_and_reports(tmp_path, flown, capsys, pictures):
 
 
 def test_interrupted_study_reports_what_there_is(tmp_path, flown, monkeypatch, capsys):
-    def interrupted(campaign, console):
+    def interrupted(campaign, executor, console):
         def ended(result):
             raise KeyboardInterrupt
 
-        campaign.fly(nothing, ended)
+        campaign.fly(executor, ended)
 
     monkeypatch.setattr("gcs.app.campaigns.fly_with_progress", interrupted)
-    arguments = ["mass", "--quick", "--jobs", "1", "--out", str(tmp_path), "--missions", str(MISSIONS)]
+    arguments = ["mass", "--quick", "--out", str(tmp_path), "--missions", str(MISSIONS)]
     assert main(["study", *arguments]) == 130
     assert "interrupted with 2 flights to go" in capsys.readouterr().err
     assert len((tmp_path / "mass.csv").read_text().splitlines()) == 2

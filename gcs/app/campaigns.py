@@ -2,6 +2,8 @@
 
 import argparse
 from collections.abc import Sequence
+from concurrent.futures import Executor
+from contextlib import AbstractContextManager
 from pathlib import Path
 
 from rich.console import Console, Group
@@ -10,19 +12,24 @@ from gcs.app.arguments import number_of_jobs
 from gcs.app.exit_status import ExitStatus
 from gcs.app.logs import LOG
 from gcs.campaign.engine import KEEP, Campaign, PlanGenerator
+from gcs.campaign.executors import WorkerProcesses
 from gcs.campaign.progress import fly_with_progress
 from gcs.campaign.result import Result
 from gcs.campaign.tables import failed_flights, headline
 from gcs.errors import UnusableInput
+from gcs.extras import extra
 
 WIDTH = 150
 """Characters of a line where standard output is no terminal."""
 
 
 def add_campaign_arguments(parser: argparse.ArgumentParser, out: str) -> None:
-    """Add ``--jobs``, ``--out`` (whose default is ``out``) and ``--keep``."""
+    """Add ``--jobs``, ``--scheduler``, ``--out`` (whose default is ``out``) and ``--keep``."""
     add = parser.add_argument
     add("--jobs", type=number_of_jobs, metavar="J", help="parallel flights (default: auto, one per core)")
+    add("--scheduler", metavar="ADDRESS",
+        help="fly on the Dask cluster of this scheduler, such as tcp://10.0.0.1:8786; its workers must share the file "
+        "system of this machine")  # fmt: skip
     add("--out", type=Path, metavar="DIR", help=f"folder (default: {out})")
     add("--keep", choices=KEEP, default="failures", help="the flights whose run folders are kept (default: failures)")
 
@@ -38,13 +45,14 @@ def campaign_console() -> Console:
 def run_campaign(generator: PlanGenerator, out: Path, arguments: argparse.Namespace) -> ExitStatus:
     """Fly a campaign in the folder ``out``, and print its report."""
     console = campaign_console()
-    with console.status("writing the missions"):
-        campaign = Campaign(generator, out, arguments.jobs, arguments.keep)
     interrupted = False
-    try:
-        fly_with_progress(campaign, console)
-    except KeyboardInterrupt:
-        interrupted = True
+    with executor_of(arguments) as executor:
+        with console.status("writing the missions"):
+            campaign = Campaign(generator, out, arguments.keep)
+        try:
+            fly_with_progress(campaign, executor, console)
+        except KeyboardInterrupt:
+            interrupted = True
     results = campaign.results
     problems = generator.problems(results)
     reported = not results or report(generator, results, problems, out, console)
@@ -55,6 +63,17 @@ def run_campaign(generator: PlanGenerator, out: Path, arguments: argparse.Namesp
     if not reported:
         return ExitStatus.INCOMPLETE
     return ExitStatus.OUTSIDE_LIMITS if problems or not all(result.passed for result in results) else ExitStatus.DONE
+
+
+def executor_of(arguments: argparse.Namespace) -> AbstractContextManager[Executor]:
+    """Return what carries out the flights: processes of this machine, or a cluster."""
+    if arguments.scheduler is None:
+        return WorkerProcesses(arguments.jobs)
+    if arguments.jobs is not None:
+        raise UnusableInput(f"--jobs {arguments.jobs} is for this machine: the scheduler knows its workers")
+    with extra("cluster", "--scheduler"):
+        from gcs.campaign.cluster import cluster
+    return cluster(arguments.scheduler)
 
 
 def report(

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from rich.console import Group
 
-from gcs.app.campaigns import campaign_console, report, run_campaign
+from gcs.app.campaigns import campaign_console, executor_of, report, run_campaign
 from gcs.app.exit_status import ExitStatus
 from gcs.app.logs import LOG
 from gcs.campaign.engine import Campaign
@@ -27,13 +27,14 @@ def run_level(generator: Scenarios | Suite, out: Path, arguments: argparse.Names
         adopt_folder(out, generator.settings)
         return run_campaign(on_planning, folder, arguments)
     console, interrupted = campaign_console(), False
-    with console.status("writing the missions"):
-        full = Campaign(generator, out, arguments.jobs, arguments.keep)
-        planning = Campaign(on_planning, folder, arguments.jobs, arguments.keep)
-    try:
-        fly_levels(planning, full, arguments.budget, console)
-    except KeyboardInterrupt:
-        interrupted = True
+    with executor_of(arguments) as executor:
+        with console.status("writing the missions"):
+            full = Campaign(generator, out, arguments.keep)
+            planning = Campaign(on_planning, folder, arguments.keep)
+        try:
+            fly_levels(planning, full, arguments.budget, executor, console)
+        except KeyboardInterrupt:
+            interrupted = True
     planned, flown = planning.results, full.results
     reported = not flown or report(generator, flown, (), out, console)
     console.print(Group(*levels_report(planned, flown)))

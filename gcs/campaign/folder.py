@@ -19,7 +19,7 @@ _LOCK = ".flying"
 
 @contextmanager
 def folder_lock(out: Path) -> Iterator[None]:
-    """Lock the folder ``out``, and discard what a killed process left half-flown in ``out/flights``.
+    """Lock the folder ``out``, and discard what is left half-flown in ``out/flights``, then and before.
 
     Raises:
         UnusableInput: Another process has locked it.
@@ -33,9 +33,17 @@ def folder_lock(out: Path) -> Iterator[None]:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)  # released by the system, however the process ends
         except OSError:
             raise UnusableInput(f"{out}: another process is flying there") from None
-        for draft in (out / "flights").glob(".*"):
-            remove_folder(draft)
-        yield
+        try:
+            _remove_drafts(out)
+            yield
+        finally:
+            _remove_drafts(out)
+
+
+def _remove_drafts(out: Path) -> None:
+    """Remove the run folders of flights that have not ended."""
+    for draft in (out / "flights").glob(".*"):
+        remove_folder(draft)
 
 
 def check_adoptable(folder: Path, settings: Mapping[str, Any]) -> None:
@@ -76,6 +84,12 @@ def write_text(path: Path, text: str) -> None:
 def remove_folder(folder: Path) -> None:
     """Remove a folder with all that is in it, if there is one."""
     shutil.rmtree(folder, ignore_errors=True)
+
+
+def shown(path: Path) -> Path:
+    """Return a path as it is named in the current folder."""
+    here = Path.cwd()
+    return path.relative_to(here) if path.is_relative_to(here) else path
 
 
 def plain(text: str) -> str:

@@ -1,29 +1,30 @@
 """The progress display of a campaign."""
 
 from collections.abc import Sequence
+from concurrent.futures import Executor
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-from gcs.campaign.engine import Campaign, FlightPlan
+from gcs.campaign.engine import Campaign
+from gcs.campaign.flight import FlightPlan
 from gcs.campaign.result import Result
 
-SHOWN_FLIGHTS = 6
 
-
-def fly_with_progress(campaign: Campaign, console: Console, plans: Sequence[FlightPlan] | None = None) -> None:
+def fly_with_progress(
+    campaign: Campaign, executor: Executor, console: Console, plans: Sequence[FlightPlan] | None = None
+) -> None:
     """Fly with a progress bar at a terminal and a line for each flight that fails; elsewhere a line for each flight.
 
     ``plans``: those to be flown; None: all.
     """
     what = campaign.generator.what
     failed = sum(not result.passed for result in campaign.results)
-    flying: list[str] = []
     progress = Progress(
         TextColumn(what),
         BarColumn(),
         MofNCompleteColumn(),
-        TextColumn("{task.fields[failed]} failed  {task.fields[flying]}"),
+        TextColumn("{task.fields[failed]} failed"),
         TimeElapsedColumn(),
         TimeRemainingColumn(),
         console=console,
@@ -32,21 +33,16 @@ def fly_with_progress(campaign: Campaign, console: Console, plans: Sequence[Flig
     with progress:
         done = len(campaign.results)
         total = len(campaign.plans) if plans is None else done + len(plans)
-        task = progress.add_task(what, total=total, completed=done, failed=failed, flying="")
-
-        def started(plan: FlightPlan) -> None:
-            flying.append(plan.name)
-            progress.update(task, flying=" ".join(flying[:SHOWN_FLIGHTS]))
+        task = progress.add_task(what, total=total, completed=done, failed=failed)
 
         def ended(result: Result) -> None:
             nonlocal failed
             failed += not result.passed
-            flying.remove(result.name)
-            progress.update(task, advance=1, failed=failed, flying=" ".join(flying[:SHOWN_FLIGHTS]))
+            progress.update(task, advance=1, failed=failed)
             if not console.is_terminal or not result.passed:
                 console.print(flight_line(campaign, result), markup=False)
 
-        campaign.fly(started, ended, plans)
+        campaign.fly(executor, ended, plans)
 
 
 def flight_line(campaign: Campaign, result: Result) -> str:

@@ -29,7 +29,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 @pytest.fixture
 def fly_with_faults(request: pytest.FixtureRequest) -> Generator[FaultFlights, None, None]:
-    """Fly a mission with faults in lockstep: ``fly_with_faults("hover.toml", [fault, ...], seed=3)``."""
+    """Call :func:`gcs.fly`: ``fly_with_faults("hover.toml", [fault, ...], seed=3)``."""
     from gcs.campaign.folder import digest, plain
     from gcs.campaign.testing import FaultFlights
 
@@ -38,10 +38,8 @@ def fly_with_faults(request: pytest.FixtureRequest) -> Generator[FaultFlights, N
     root = here / request.config.getoption("fault_runs")
     folder = root / f"{plain(node.name)[:80]}-{digest(node.nodeid)}"
     shutil.rmtree(folder, ignore_errors=True)  # of an earlier run of the same test
-    flights = FaultFlights(folder, beside=node.path.parent, shown_from=here)
-    node.stash[_FLIGHTS] = flights
-    with contextlib.closing(flights):
-        yield flights
+    node.stash[_FLIGHTS] = flights = FaultFlights(folder, beside=node.path.parent)
+    yield flights
     if not node.stash.get(_FAILED, False):
         shutil.rmtree(folder, ignore_errors=True)
         with contextlib.suppress(OSError):  # others have failed

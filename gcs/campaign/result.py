@@ -3,14 +3,28 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from gcs.campaign.process_pool import FlownProcess
 from gcs.record.reader import read_json
 from gcs.record.run_folder import FORMAT
+
+TIMING = (
+    "wall_s", "cpu_s", "real_time_factor", "step_time_p50_ms", "step_time_p99_ms", "run_dir", "replay",
+)  # fmt: skip
+"""Columns that depend on the machine and on the folder: those of ``timing.csv``, and of no other table."""
+
+
+@dataclass(frozen=True)
+class Flown:
+    """How a flight ended: exit status, summary (empty without one), reason (empty: completed), wall time (s)."""
+
+    exit_code: int
+    summary: Mapping[str, Any]
+    reason: str
+    wall: float
 
 
 @dataclass(frozen=True)
@@ -103,8 +117,8 @@ class Result:
         return None if value is None else float(value)
 
 
-def summary_columns(flown: FlownProcess, run_dir: Path) -> dict[str, Any]:
-    """Return the columns that follow from the summary of a flight, and how its process ended."""
+def summary_columns(flown: Flown) -> dict[str, Any]:
+    """Return the columns that follow from the summary of a flight, and how it ended."""
     summary = flown.summary
     angles = [angle for angle in summary.get("payload_tilt_max_deg", {}).values() if angle is not None]
     steps, landing = summary.get("step_time_ms", {}), summary.get("landing") or {}
@@ -113,7 +127,6 @@ def summary_columns(flown: FlownProcess, run_dir: Path) -> dict[str, Any]:
         "exit_code": flown.exit_code,
         "wall_s": round(flown.wall, 1),
         "cpu_s": summary.get("cpu_s"),
-        "run_dir": str(run_dir) if run_dir.exists() else "",
         "clearance_min_m": summary.get("clearance_min_m"),
         "tilt_max_deg": max(angles, default=None),
         "uav_separation_min_m": summary.get("uav_separation_min_m"),

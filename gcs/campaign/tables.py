@@ -9,7 +9,7 @@ from rich import box
 from rich.table import Table
 from rich.text import Text
 
-from gcs.campaign.result import COLUMN_TYPES, Result
+from gcs.campaign.result import COLUMN_TYPES, TIMING, Result
 from gcs.errors import UnusableInput
 from gcs.extras import extra
 
@@ -27,6 +27,18 @@ def write_csv(path: Path, columns: Sequence[str], rows: Iterable[Mapping[str, An
     except OSError as error:
         raise UnusableInput(f"{path}: cannot be written: {error.strerror}") from None
     return path
+
+
+def write_results(out: Path, columns: Sequence[str], results: Sequence[Result], name: str = "results") -> list[Path]:
+    """Write ``results.csv``, whose bytes depend on the flights alone, and the other columns as ``timing.csv``."""
+    timing = ("number", "name", *(column for column in columns if column in TIMING))
+    tables = {f"{name}.csv": flight_columns(columns), "timing.csv": timing}
+    return [write_csv(out / file, chosen, [r.row(chosen) for r in results]) for file, chosen in tables.items()]
+
+
+def flight_columns(columns: Sequence[str]) -> tuple[str, ...]:
+    """Return the columns that depend on the flight alone."""
+    return tuple(column for column in columns if column not in TIMING)
 
 
 def check_parquet() -> None:

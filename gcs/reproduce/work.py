@@ -1,21 +1,17 @@
-"""Carries out a plan on all cores: simulations in processes, flights as ``gcs fly`` with a simulated swarm each."""
+"""Carries out a plan on all cores: simulations and flights, each in a process."""
 
-import multiprocessing
-import signal
-import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from multiprocessing.pool import Pool
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-from threadpoolctl import threadpool_limits
-
-from gcs.campaign.flight_worker import POLL, FlightWorker
-from gcs.campaign.process_pool import all_cores, fly_process, run_parallel
+import gcs
+from gcs.campaign.executors import WorkerProcesses, carry_out
+from gcs.campaign.folder import remove_folder
 from gcs.errors import GcsError
 from gcs.reproduce.plan import Plan
-from gcs.reproduce.simulation import Case, Flown, simulate
+from gcs.reproduce.simulation import Flown, simulate
 
 
 @dataclass
@@ -24,50 +20,44 @@ class Results:
 
     folders: Mapping[str, Path] = field(default_factory=dict)
     simulations: dict[tuple[str, str], Flown] = field(default_factory=dict)
-    flights: dict[str, dict[str, Any]] = field(default_factory=dict)
+    flights: dict[str, Mapping[str, Any]] = field(default_factory=dict)
 
 
 def run(plan: Plan, missions: Path, out: Path, jobs: int | None, done: Callable[[str], None]) -> Results:
     """Carry out ``plan`` with ``jobs`` in parallel (None: one per core); ``done`` receives each name as it ends.
 
-    An interrupt ends all of it. Raises :class:`GcsError` for a flight that did not start; any other flight is a result.
+    An interrupt ends all of it. Raises :class:`GcsError` for a flight that was not flown, and when a process is killed.
     """
-    results, jobs = Results({name: out / "flights" / name for name in plan.flights}), jobs or all_cores()
+    results = Results({name: out / "flights" / name for name in plan.flights})
+    # The longest first, so that no core idles at the end.
+    tasks: dict[tuple[str, str], Callable[[], Any]] = {
+        ("flights", name): partial(_fly, missions / mission, controller, results.folders[name])
+        for name, (mission, controller) in plan.flights.items()
+    }
+    cases = sorted(plan.cases.items(), key=lambda item: -item[1].duration)
+    tasks |= {task: partial(simulate, case) for task, case in cases}
 
-    def carry_out(task: tuple[str, str], worker: FlightWorker) -> str | None:
-        section, name = task
-        if task in plan.cases:
-            simulated = _simulated(plan.cases[task], processes, worker.stop)
-            if simulated is None:
-                return None
-            results.simulations[task] = simulated
+    def ended(item: tuple[tuple[str, str], Callable[[], Any]], result: Any) -> None:
+        (section, name), _ = item
+        if result is None:
+            raise GcsError(f"{section} {name}: its process was killed")
+        if (section, name) in plan.cases:
+            results.simulations[section, name] = result
         else:
-            mission, controller = missions / plan.flights[name][0], plan.flights[name][1]
-            flown = fly_process(mission, ("--controller", controller), results.folders[name], worker)
-            if flown is None:
-                return None
-            if not flown.summary:
-                raise GcsError(f"{mission}: {flown.reason or 'the flight did not end'}")
-            results.flights[name] = flown.summary
-        return f"{section} {name}"
+            results.flights[name] = result
+        done(f"{section} {name}")
 
-    # The longest first, so that no core idles at the end. Spawned: a fork would inherit the progress display's threads.
-    tasks = [*(("flights", name) for name in plan.flights)]
-    tasks += sorted(plan.cases, key=lambda task: -plan.cases[task].duration)
-    with multiprocessing.get_context("spawn").Pool(jobs, _prepare) as processes:
-        run_parallel(tasks, jobs, carry_out, lambda task: None, lambda task, name: done(name))
+    with WorkerProcesses(jobs) as executor:
+        carry_out(executor, _carry_out, tasks.items(), ended)
     return results
 
 
-def _simulated(case: Case, processes: Pool, stop: threading.Event) -> Flown | None:
-    pending = processes.apply_async(simulate, (case,))
-    while not stop.is_set():
-        pending.wait(POLL)
-        if pending.ready():
-            return pending.get()
-    return None
+def _carry_out(item: tuple[tuple[str, str], Callable[[], Any]]) -> Any:
+    _, call = item
+    return call()
 
 
-def _prepare() -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent process
-    threadpool_limits(limits=1)
+def _fly(mission: Path, controller: str, run_dir: Path) -> Mapping[str, Any]:
+    """Return the summary of a flight."""
+    remove_folder(run_dir)  # of a process that was killed
+    return gcs.fly(mission, controller=controller, run_dir=run_dir).figures

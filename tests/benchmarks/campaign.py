@@ -2,8 +2,8 @@
 
     python tests/benchmarks/campaign.py [--flights N]
 
-Flies the same mission one at a time and on all cores, by the campaigns' process pool. The speed of a single flight is
-that of the flights one at a time from take-off to their end: simulated over wall time, without start and summary. The
+Flies the same mission one at a time and on all cores, by the campaigns' processes. The speed of a single flight is that
+of the flights one at a time from take-off to their end: simulated over wall time, without start and summary. The
 throughput of parallel flights is all they flew over the wall time of the whole campaign, start of its processes,
 summaries and all; its share of cores x single-flight speed is printed (wall time: the machine must be idle). Beside
 it the CPU time of a flight's start and end, by a program of its own and in the campaign.
@@ -13,8 +13,8 @@ import argparse
 import resource
 import sys
 import tempfile
-import threading
 import time
+from functools import partial
 from pathlib import Path
 
 from measure import ROOT, fly, mission_text, write
@@ -23,7 +23,8 @@ from rich.table import Table
 
 sys.path.insert(0, str(ROOT))
 
-from gcs.campaign.process_pool import all_cores, fly_process, run_parallel
+import gcs
+from gcs.campaign.executors import WorkerProcesses, all_cores, carry_out
 
 
 def main():
@@ -55,21 +56,22 @@ def flown(mission, folder, count, jobs):
     """
     summaries = []
 
-    def flight(seed, worker):
-        return fly_process(mission, ("--seed", str(seed)), folder / f"flight-{jobs}-{seed}", worker)
-
-    def ended(_, process):
-        if process.exit_code:
-            sys.exit(f"{mission}: {process.reason}")
-        summaries.append(process.summary)
+    def ended(seed, figures):
+        if not (figures and figures["completed"]):
+            sys.exit(f"{mission}, seed {seed}: {figures and figures['reason']}")
+        summaries.append(figures)
 
     begin, before = time.monotonic(), children()
-    run_parallel(range(1, count + 1), jobs, flight, lambda _: None, ended)
+    with WorkerProcesses(jobs) as executor:
+        carry_out(executor, partial(figures_of, mission, folder / str(jobs)), range(1, count + 1), ended)
     wall = time.monotonic() - begin
-    assert threading.active_count() == 1  # nothing flies on
     durations = [summary["duration_s"] for summary in summaries]
     in_air = sum(summary["duration_s"] / summary["real_time_factor"] for summary in summaries)
     return sum(durations) / wall, (children() - before) / count, sum(durations) / in_air
+
+
+def figures_of(mission, folder, seed):
+    return gcs.fly(mission, seed=seed, run_dir=folder / str(seed)).figures
 
 
 def children():

@@ -51,7 +51,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     add("--json", action="store_true", help="print the summary as JSON instead of a table")
     add("--no-pictures", action="store_true", help="draw none; gcs report does it later")
-    add("--with-parent", action="store_true", help=argparse.SUPPRESS)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -84,7 +83,6 @@ def run(arguments: argparse.Namespace) -> int:
         from gcs.app.fly import fly
         from gcs.app.preflight import preflight
         from gcs.app.progress import FlightProgress
-        from gcs.campaign.process_pool import BROKEN_OFF, end_with_parent
         from gcs.drivers.forked_program import ForkedProgram
         from gcs.drivers.simulator import PROGRAM
         from gcs.record.incomplete import in_one_line
@@ -94,10 +92,8 @@ def run(arguments: argparse.Namespace) -> int:
     for note in (*mission.notes, *preflight(mission).lines):
         LOG.info("note: %s", note)
     with ExitStack() as started:
-        # Before there are threads: those of the progress line and of the parent's end.
+        # Before there are threads: those of the progress line.
         vehicle_sim = None if options.connect is not None else started.enter_context(ForkedProgram(PROGRAM))
-        if arguments.with_parent:
-            end_with_parent()
         progress = started.enter_context(FlightProgress(console))
         result = fly(options, mission, progress.update, vehicle_sim)
     pictures: list[Path] = []
@@ -122,7 +118,7 @@ def run(arguments: argparse.Namespace) -> int:
         LOG.warning("note: faults come from the simulator: start it with vehicle-sim --mission %s", options.mission)
     if result.reason:
         broken_off = result.summary["broken_off_s"] is not None
-        LOG.error("%s%s", BROKEN_OFF if broken_off else f"flight {result.summary['outcome']}: ", result.reason)
+        LOG.error("flight %s: %s", "broken off" if broken_off else result.summary["outcome"], result.reason)
     if result.incomplete:
         LOG.error("%s; the figures are of what there is", in_one_line(result.incomplete))
     return result.exit_code

@@ -7,8 +7,7 @@ from typing import Any
 
 from gcs.campaign.faults.cases import Case
 from gcs.campaign.faults.sources import AlarmRow, Isolation, isolation
-from gcs.campaign.process_pool import FlownProcess
-from gcs.campaign.result import Result
+from gcs.campaign.result import Flown, Result
 from gcs.errors import UnusableInput
 from gcs.faults import KINDS
 from gcs.record.faults import FAULTS_FILE, fault_notes
@@ -46,7 +45,7 @@ class Detection:
     alarms: tuple[AlarmRow, ...] = field(default=(), compare=False)
 
 
-def judge(case: Case, flown: FlownProcess, run_dir: Path) -> dict[str, Any]:
+def judge(case: Case, flown: Flown, run_dir: Path) -> dict[str, Any]:
     """Return the columns of a flight whose last faults are those of its case."""
     begin = first_start(run_dir, len(case.faults))
     stop = stop_time(flown.summary, begin)
@@ -75,7 +74,7 @@ def judge(case: Case, flown: FlownProcess, run_dir: Path) -> dict[str, Any]:
     }
 
 
-def outcome(flown: FlownProcess) -> Outcome:
+def outcome(flown: Flown) -> Outcome:
     """Return how a flight ended; one without a summary has failed."""
     return Outcome(flown.summary.get("outcome") or Outcome.FAILED)
 

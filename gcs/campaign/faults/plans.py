@@ -7,14 +7,15 @@ from typing import Any
 
 from rich.console import RenderableType
 
-from gcs.campaign.engine import FlightPlan, PlanGenerator
+from gcs.campaign.engine import PlanGenerator
 from gcs.campaign.faults.campaign_file import CampaignFile
 from gcs.campaign.faults.cases import CLEAN
 from gcs.campaign.faults.detection_table import Detections, detections
 from gcs.campaign.faults.judgement import COLUMNS, WITHIN_LIMITS, judge, meets
+from gcs.campaign.flight import FlightPlan
 from gcs.campaign.folder import digest, plain
 from gcs.campaign.result import Result
-from gcs.campaign.tables import check_parquet, write_parquet
+from gcs.campaign.tables import check_parquet, flight_columns, write_parquet
 from gcs.errors import UnusableInput
 
 MAX_FLIGHTS = 1_000_000
@@ -67,11 +68,11 @@ class FaultFlights(PlanGenerator):
                 number,
                 name,
                 path,
-                ("--controller", file.controller),
                 partial(judge, case),
-                {"fault": case.name, "kind": case.kind, "level": case.level, "severity": case.severity,
-                 "mission": mission, "seed": seed, "true_source": ", ".join(map(str, case.sources))},
-                {path: text, **{folder / file_name: content for file_name, content in base.files.items()}},
+                file.controller,
+                labels={"fault": case.name, "kind": case.kind, "level": case.level, "severity": case.severity,
+                        "mission": mission, "seed": seed, "true_source": ", ".join(map(str, case.sources))},
+                files={path: text, **{folder / file_name: content for file_name, content in base.files.items()}},
             )  # fmt: skip
 
     def passes(self, result: Result) -> bool:
@@ -79,12 +80,12 @@ class FaultFlights(PlanGenerator):
         return meets(self.file.require, result)
 
     def report(self, results: Sequence[Result], out: Path) -> tuple[list[RenderableType], list[Path]]:
-        """Write ``results.csv`` (and ``results.parquet``), ``rates.csv`` and the matrix."""
+        """Write ``results.csv`` (and ``results.parquet``), ``timing.csv``, ``rates.csv`` and the matrix."""
         from gcs.campaign.faults.report import report  # matplotlib takes long to import
 
         parts, files = report(self.file.name, results, out, self.detections(results))
         if self._parquet:
-            files.append(write_parquet(out / "results.parquet", COLUMNS, results))
+            files.append(write_parquet(out / "results.parquet", flight_columns(COLUMNS), results))
         return parts, files
 
     def detections(self, results: Sequence[Result]) -> list[Detections]:

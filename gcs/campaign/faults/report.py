@@ -15,7 +15,7 @@ from gcs.campaign.faults.false_alarms import false_alarms, write_false_alarms
 from gcs.campaign.faults.judgement import COLUMNS
 from gcs.campaign.faults.rates import CONFIDENCE, Rates, rates_of, write_rates
 from gcs.campaign.result import Result
-from gcs.campaign.tables import extreme, text_table, write_csv
+from gcs.campaign.tables import extreme, text_table, write_results
 from gcs.record.figures import save_picture
 from gcs.record.outcome import Outcome
 
@@ -36,7 +36,7 @@ def report(
     """Write the tables and the matrix; return the rates by fault and severity, and the files."""
     rates, clear = rates_of(results), false_alarms(results)
     files = [
-        write_csv(out / "results.csv", COLUMNS, [result.row(COLUMNS) for result in results]),
+        *write_results(out, COLUMNS, results),
         write_rates(out / "rates.csv", rates),
         draw_matrix(name, results, out),
     ]

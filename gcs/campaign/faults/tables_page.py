@@ -12,6 +12,7 @@ from pathlib import Path
 from rich.console import Console
 
 from gcs.campaign.engine import Campaign
+from gcs.campaign.executors import WorkerProcesses
 from gcs.campaign.faults.campaign_file import read_campaign
 from gcs.campaign.faults.detection_table import Detections, detections_markdown
 from gcs.campaign.faults.false_alarms import false_alarms, false_alarms_markdown
@@ -51,8 +52,9 @@ def main(arguments: Sequence[str]) -> int:
             flights = FaultFlights(read_campaign(path))
             out = options.out / plain(flights.file.name)
             before = cpu_minutes()
-            campaign = Campaign(flights, out, options.jobs)
-            fly_with_progress(campaign, console)
+            campaign = Campaign(flights, out)
+            with WorkerProcesses(options.jobs) as executor:
+                fly_with_progress(campaign, executor, console)
             console.print(f"{flights.file.name}: {cpu_minutes() - before:.1f} minutes of CPU", markup=False)
             rows += flights.detections(campaign.results)
             results += campaign.results

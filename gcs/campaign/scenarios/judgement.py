@@ -10,8 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from gcs.campaign.process_pool import FlownProcess
-from gcs.campaign.result import summary_columns
+from gcs.campaign.result import Flown, summary_columns
 from gcs.campaign.scenarios.passage import Passage
 from gcs.config import SystemConfig
 from gcs.errors import GcsError
@@ -47,7 +46,7 @@ def judge(
     config: Path | None,
     held_to: Limits,
     passage: Passage | None,
-    flown: FlownProcess,
+    flown: Flown,
     run_dir: Path,
 ) -> dict[str, Any]:
     """Return the columns of a flight of ``mission`` by the system file ``config``, held to the limits ``held_to``.
@@ -67,11 +66,11 @@ def judged(
     schedule: Schedule,
     held_to: Limits,
     passage: Passage | None,
-    flown: FlownProcess,
+    flown: Flown,
     run: RunData | None,
 ) -> dict[str, Any]:
     """Return the columns of a flight of known ``schedule`` with the records ``run``; None: it has none."""
-    summary, figures = flown.summary, summary_columns(flown, Path())
+    summary, figures = flown.summary, summary_columns(flown)
     nominal = arrival(schedule.times, schedule.positions, schedule.goal, AT_GOAL)
     nominal = schedule.landing if nominal is None else nominal
     # From the start of the rotors on, as in the summary.

@@ -1,12 +1,14 @@
 """Levels of evidence: all courses on the planning level, and those that nearly fail in full, within a budget of CPU."""
 
 from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
 
 from rich.console import Console, RenderableType
 from rich.text import Text
 from scipy.stats import binomtest
 
-from gcs.campaign.engine import Campaign, FlightPlan
+from gcs.campaign.engine import Campaign
+from gcs.campaign.flight import FlightPlan
 from gcs.campaign.progress import fly_with_progress
 from gcs.campaign.result import Result
 from gcs.campaign.tables import extreme, text_table
@@ -17,11 +19,11 @@ COST = 3.0
 SHOWN = 20
 
 
-def fly_levels(planning: Campaign, full: Campaign, budget: float | None, console: Console) -> None:
+def fly_levels(planning: Campaign, full: Campaign, budget: float | None, executor: Executor, console: Console) -> None:
     """Fly all of ``planning``, then of the same courses in ``full`` what ``budget`` holds (see :func:`affordable`)."""
-    fly_with_progress(planning, console)
+    fly_with_progress(planning, executor, console)
     while chosen := affordable(full.plans, planning.results, full.results, budget):
-        fly_with_progress(full, console, chosen)
+        fly_with_progress(full, executor, console, chosen)
 
 
 def affordable(

@@ -12,13 +12,13 @@ from pathlib import Path
 from rich.console import Console
 
 from gcs.campaign.engine import Campaign
+from gcs.campaign.executors import WorkerProcesses
 from gcs.campaign.product import commit_of
 from gcs.campaign.result import Result
 from gcs.campaign.scenarios.generator import APPROACHING, KINDS
 from gcs.campaign.scenarios.levels import cost, differences, fly_levels
 from gcs.campaign.scenarios.plans import Scenarios
 from gcs.campaign.tables import extreme, made_by, markdown_table, renewed
-from gcs.numerics import choose_kernels
 
 PLACE = "table of levels"
 COURSES = Scenarios(count=30, seed=3107, kinds=tuple(kind for kind in KINDS if kind != APPROACHING))
@@ -32,10 +32,10 @@ def main(arguments: Sequence[str]) -> int:
     parser.add_argument("--out", type=Path, default=Path("runs/levels"), help="folder (default: runs/levels)")
     options = parser.parse_args(arguments)
     page, commit = options.page.read_text(encoding="utf-8"), commit_of(Path(__file__).parents[2])
-    choose_kernels()  # of the processes that plan
-    full = Campaign(COURSES, options.out, options.jobs)
-    planning = Campaign(replace(COURSES, planning=True), options.out / "planning", options.jobs)
-    fly_levels(planning, full, None, Console(highlight=False, soft_wrap=True))
+    full = Campaign(COURSES, options.out)
+    planning = Campaign(replace(COURSES, planning=True), options.out / "planning")
+    with WorkerProcesses(options.jobs) as executor:
+        fly_levels(planning, full, None, executor, Console(highlight=False, soft_wrap=True))
     command = f"python -m {__spec__.name} {options.page}"
     table = markdown_table(rows(planning.results, full.results))
     notes = "".join(f"\n- {line}" for line in differences(planning.results, full.results))

@@ -1,11 +1,9 @@
 """Obstacle scenarios on the planning level: on ideal tracking, judged as flights are."""
 
 import time
-from pathlib import Path
 
-from gcs.campaign.engine import FlightPlan
-from gcs.campaign.process_pool import FlownProcess
-from gcs.campaign.result import Result, summary_columns
+from gcs.campaign.flight import FlightPlan
+from gcs.campaign.result import Flown, Result, summary_columns
 from gcs.campaign.scenarios.judgement import judged
 from gcs.campaign.scenarios.passage import Passage
 from gcs.mission.model import Limits
@@ -15,15 +13,15 @@ from gcs.planning.outcome import planned
 from gcs.planning.schedule import Schedule
 
 
-def fly_planning(config: Path | None, held_to: Limits, passage: Passage | None, plan: FlightPlan) -> Result:
+def fly_planning(held_to: Limits, passage: Passage | None, plan: FlightPlan) -> Result:
     """Fly the mission of a ``plan`` on ideal tracking in this process; the arguments are those of its judgement."""
     wall, cpu = time.monotonic(), time.process_time()
-    mission = read_mission(plan.mission, config)
+    mission = read_mission(plan.mission, plan.config)
     schedule = Schedule(mission)
     flight = PlanningFlight(mission, schedule.start)
     flight.fly()
     run = planned(flight)
     summary = {**run.summary, "cpu_s": round(time.process_time() - cpu, 2)}
-    flown = FlownProcess(0, summary, "", time.monotonic() - wall)
+    flown = Flown(0, summary, "", time.monotonic() - wall)
     columns = judged(mission, schedule, held_to, passage, flown, run)
-    return Result(**{**summary_columns(flown, Path()), "run_dir": "", **columns})
+    return Result(**{**summary_columns(flown), **columns})

@@ -9,7 +9,8 @@ from typing import Any
 
 from rich.console import RenderableType
 
-from gcs.campaign.engine import FlightPlan, PlanGenerator
+from gcs.campaign.engine import PlanGenerator
+from gcs.campaign.flight import FlightPlan
 from gcs.campaign.result import Result
 from gcs.campaign.scenarios.generator import DEFAULT_KINDS, HELD_TO, generate
 from gcs.campaign.scenarios.judgement import COLUMNS, judge, least_separation
@@ -56,20 +57,20 @@ class Scenarios(PlanGenerator):
     def plans(self, out: Path) -> Iterator[FlightPlan]:
         """Yield a flight for each scenario."""
         system = read_system(self.config)
-        options = ["--controller", self.controller]
-        if self.config is not None:
-            options += ["--config", str(self.config)]
+        config = self.config and self.config.absolute()
         for number in range(1, self.count + 1):
             kind = self.kinds[(number - 1) % len(self.kinds)]
             scenario = generate(self.seed, number, kind, system, self.fastest)
             mission = out / "missions" / f"{scenario.name}.toml"
-            judgement = partial(judge, mission, self.config, HELD_TO, scenario.passage)
-            fly = partial(fly_planning, self.config, HELD_TO, scenario.passage) if self.planning else None
-            labels, files = {"kind": kind}, {mission: scenario.text}
-            yield FlightPlan(number, scenario.name, mission, tuple(options), judgement, labels, files, fly)
+            judgement = partial(judge, mission, config, HELD_TO, scenario.passage)
+            fly = partial(fly_planning, HELD_TO, scenario.passage) if self.planning else None
+            yield FlightPlan(
+                number, scenario.name, mission, judgement, self.controller, config,
+                labels={"kind": kind}, files={mission: scenario.text}, fly=fly,
+            )  # fmt: skip
 
     def report(self, results: Sequence[Result], out: Path) -> tuple[list[RenderableType], list[Path]]:
-        """Write ``results.csv``, ``results.json`` and the distribution."""
+        """Write ``results.csv``, ``timing.csv`` and the distribution."""
         from gcs.campaign.scenarios.report import report  # matplotlib takes long to import
 
         return report(results, out, least_separation(read_system(self.config)))

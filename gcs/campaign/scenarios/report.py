@@ -11,9 +11,8 @@ from rich.table import Table
 from gcs.campaign.result import Result
 from gcs.campaign.scenarios.generator import HELD_TO
 from gcs.campaign.scenarios.judgement import COLUMNS
-from gcs.campaign.tables import extreme, text_table, write_csv
+from gcs.campaign.tables import extreme, text_table, write_results
 from gcs.record.figures import save_picture
-from gcs.record.run_folder import write_json
 
 _Quantity = tuple[str, str, str, float | None, bool]
 """Column, title, unit, limit, and whether high values are the bad ones."""
@@ -23,7 +22,7 @@ _TITLES = ("figure", "worst", "1 %", "5 %", "median", "limit")
 
 
 def report(results: Sequence[Result], out: Path, separation: float) -> tuple[list[RenderableType], list[Path]]:
-    """Write ``results.csv``, ``results.json`` and the picture of the distribution; return its tables, and the files.
+    """Write ``results.csv``, ``timing.csv`` and the picture of the distribution; return its tables, and the files.
 
     ``separation``: least UAV separation with which a flight passes (m).
     """
@@ -35,9 +34,8 @@ def report(results: Sequence[Result], out: Path, separation: float) -> tuple[lis
         ("goal_error_m", "error at goal", "m", None, True),
         ("step_time_p99_ms", "control step, p99", "ms", None, True),
     )
-    rows = [result.row(COLUMNS) for result in results]
-    files = [write_csv(out / "results.csv", COLUMNS, rows), write_json(out / "results.json", rows)]
-    return [_kinds(results), _distribution(results, quantities)], [*files, _draw(results, quantities[:4], out)]
+    files = [*write_results(out, COLUMNS, results), _draw(results, quantities[:4], out)]
+    return [_kinds(results), _distribution(results, quantities)], files
 
 
 def _kinds(results: Sequence[Result]) -> Table:

@@ -12,7 +12,8 @@ from typing import Any
 from pydantic import TypeAdapter
 from rich.console import RenderableType
 
-from gcs.campaign.engine import FlightPlan, PlanGenerator
+from gcs.campaign.engine import PlanGenerator
+from gcs.campaign.flight import FlightPlan
 from gcs.campaign.folder import digest, plain
 from gcs.campaign.result import Result
 from gcs.campaign.scenarios.generator import HELD_TO, generate
@@ -45,7 +46,7 @@ class StudyFlights(PlanGenerator):
         """``seeds``: flights of each variant; None: the study's own number."""
         self.study = study
         self._seeds = seeds or (study.quick if quick else study.seeds)
-        self._missions = missions
+        self._missions = missions.absolute()
         self._moving: dict[float, tuple[list[str], Iterator[str]]] = {}
 
     def plans(self, out: Path) -> Iterator[FlightPlan]:
@@ -62,16 +63,14 @@ class StudyFlights(PlanGenerator):
         return report(self.study, results, out)
 
     def _plan(self, out: Path, number: int, mission: str, variant: Variant, seed: int) -> FlightPlan:
-        options = ["--controller", variant.controller]
         files: dict[Path, str] = {}
         # Compared by their text: a flight of another study of the folder is the same where its values are.
         changes = _real_changes(variant.changes)
         system, changed = system_text(changes), _text_of(changes)
-        config = None
+        config, noise = None, None
         if changes:
             config = out / "systems" / f"{plain(changed)}.toml"
             files[config] = system
-            options += ["--config", str(config)]
         if mission == MOVING:
             title = f"moving{variant.fastest:g}"
             path, text = out / "missions" / f"{title}-{seed:04d}.toml", self._moving_scenario(variant.fastest, seed)
@@ -81,7 +80,7 @@ class StudyFlights(PlanGenerator):
             title, path = mission, self._missions / f"{mission}.toml"
             text = read_text(path)
             limits = read_mission(path).limits or HELD_TO
-            options += ["--seed", str(seed)]
+            noise = seed
             # A mission with a clearance limit is held to the margin, where that is what is changed.
             clearance = variant.changes.get(MARGIN, limits.clearance) if limits.clearance is not None else None
             held_to = dataclasses.replace(limits, clearance=clearance)
@@ -91,9 +90,8 @@ class StudyFlights(PlanGenerator):
             "kind": variant.label, "mission": mission, "variant": variant.label, "seed": seed,
             "clearance_asked_m": held_to.clearance, "tilt_limit_deg": held_to.payload_tilt_deg,
         }  # fmt: skip
-        return FlightPlan(
-            number, name, path, tuple(options), partial(judge, path, config, held_to, None), labels, files
-        )
+        judgement = partial(judge, path, config, held_to, None)
+        return FlightPlan(number, name, path, judgement, variant.controller, config, noise, labels, files)
 
     def _moving_scenario(self, fastest: float, number: int) -> str:
         """Return the mission of a random scenario of seed 1."""

@@ -14,7 +14,7 @@ from rich.text import Text
 
 from gcs.campaign.result import Result
 from gcs.campaign.studies.study import STUDY_COLUMNS, Study
-from gcs.campaign.tables import extreme, text_table, write_csv
+from gcs.campaign.tables import extreme, text_table, write_results
 from gcs.record.figures import LIMIT, SERIES, save_picture
 
 _MARKERS = "os^Dv"
@@ -24,8 +24,7 @@ _HIGHEST_ANGLE = 30.0
 
 def report(study: Study, results: Sequence[Result], out: Path) -> tuple[list[RenderableType], list[Path]]:
     """Write ``NAME.csv`` and ``NAME.png``; return the table for the terminal, and the files."""
-    rows = [result.row(STUDY_COLUMNS) for result in results]
-    files = [write_csv(out / f"{study.name}.csv", STUDY_COLUMNS, rows)]
+    files = write_results(out, STUDY_COLUMNS, results, study.name)
     files.append(draw_study(study, results, out / f"{study.name}.png"))
     return [Text(f"{study.name}: {study.about}; the worst of each"), _table(study, results)], files
 

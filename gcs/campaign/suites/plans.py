@@ -9,7 +9,8 @@ from typing import Any
 
 from rich.console import RenderableType
 
-from gcs.campaign.engine import FlightPlan, PlanGenerator
+from gcs.campaign.engine import PlanGenerator
+from gcs.campaign.flight import FlightPlan
 from gcs.campaign.folder import plain
 from gcs.campaign.result import Result
 from gcs.campaign.scenarios.generator import HELD_TO
@@ -18,6 +19,7 @@ from gcs.campaign.scenarios.planning import fly_planning
 from gcs.campaign.scenarios.plans import Scenarios
 from gcs.campaign.suites.course import Course, checked_passage
 from gcs.config import UnusableFile, read_system
+from gcs.mission.own import named
 from gcs.mission.read import read_mission
 
 AERIALIST, LISTS = (".yaml", ".yml"), (".jsonl", ".ndjson")
@@ -95,20 +97,21 @@ class Suite(PlanGenerator):
 
     def plans(self, out: Path) -> Iterator[FlightPlan]:
         """Yield a flight for each course."""
-        options = ["--controller", self.controller]
-        if self.config is not None:
-            options += ["--config", str(self.config)]
+        config = self.config and self.config.absolute()
         for number, course in enumerate(self.courses, start=1):
             name = f"{number:04d}-{plain(course.name)}"
-            mission = out / "missions" / f"{name}.toml" if course.text else Path(course.source)
+            mission = out / "missions" / f"{name}.toml" if course.text else named(course.source).absolute()
             files = {mission: course.text} if course.text else {}
             files |= {out / "missions" / beside: text for beside, text in course.files.items()}
-            judgement = partial(judge, mission, self.config, HELD_TO, course.passage)
-            fly = partial(fly_planning, self.config, HELD_TO, course.passage) if self.planning else None
-            yield FlightPlan(number, name, mission, tuple(options), judgement, {"kind": course.kind}, files, fly)
+            judgement = partial(judge, mission, config, HELD_TO, course.passage)
+            fly = partial(fly_planning, HELD_TO, course.passage) if self.planning else None
+            yield FlightPlan(
+                number, name, mission, judgement, self.controller, config,
+                labels={"kind": course.kind}, files=files, fly=fly,
+            )  # fmt: skip
 
     def report(self, results: Sequence[Result], out: Path) -> tuple[list[RenderableType], list[Path]]:
-        """Write ``results.csv``, ``results.json`` and the distribution."""
+        """Write ``results.csv``, ``timing.csv`` and the distribution."""
         from gcs.campaign.scenarios.report import report  # matplotlib takes long to import
 
         return report(results, out, least_separation(read_system(self.config)))
