@@ -1,92 +1,138 @@
-"""What the engine lacks of products of velocities, against central differences of motions at constant joint rates."""
+"""True velocities and missing loads, against a chain of bodies that is moved as the engine moves it."""
+
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from vehicle_sim.world.state_kernels import LOAD_COLUMNS, PART_COLUMNS, STATE_COLUMNS, states_from_engine
+from vehicle_sim.world.state_kernels import (
+    AXIS,
+    LOAD_COLUMNS,
+    MEMORY_COLUMNS,
+    PART_COLUMNS,
+    STATE_COLUMNS,
+    states_from_engine,
+)
 
 STEP = 0.002
-RNG = np.random.default_rng(11)
 VEHICLES = 4
-WORLD_AXES = [0.0, 0.0, 0.0, 1.0]
+FLIP = np.diag([1.0, -1.0, -1.0])
+IN_AXES = Rotation.random(random_state=9)  # payload frame to principal axes
 
 
-def products(rates, arm, link, link_rates, uav_rates, dt=1e-4):
-    """Acceleration and angular acceleration of a UAV while payload and joints keep their rates."""
-
-    def motion(t):
-        payload = Rotation.from_rotvec(rates * t)
-        of_link = payload * Rotation.from_rotvec((link_rates - rates) * t)
-        uav = of_link * Rotation.from_rotvec((uav_rates - link_rates) * t)
-        turning = rates + of_link.apply(link_rates - rates) + uav.apply(uav_rates - link_rates)
-        return payload.apply(arm) + of_link.apply(link), turning
-
-    (before, turned), (now, _), (after, turning) = motion(-dt), motion(0.0), motion(dt)
-    return (before - 2.0 * now + after) / dt**2, (turning - turned) / (2.0 * dt)
+def gyroscopic(moments, rates):
+    return np.cross(rates, moments * rates)
 
 
-def link_rates_of(velocity, rates, uav_velocity, arm, link, since):
-    """The link's rates from velocities that are older than its direction by ``since``; then none is about it."""
-    across = np.cross(link, uav_velocity - velocity - np.cross(rates, arm)) / (link @ link)
-    return across + since * (np.cross(rates, across) @ link) / (link @ link) * link
+@dataclass
+class Chain:
+    """Payload, a link along its own z axis, a UAV; in the engine's world."""
+
+    place: np.ndarray
+    payload: Rotation
+    link: Rotation
+    uav: Rotation
+    arm: np.ndarray
+    length: float
+
+    def moved(self, rates, t):
+        """After ``t`` seconds with constant rates: payload's velocity, its rates, the joints' in the child's frame."""
+        v, w, a, b = rates
+        turn = Rotation.from_rotvec(w * t)
+        link = turn * self.link * Rotation.from_rotvec(a * t)
+        relative = self.link.inv() * self.uav
+        uav = link * relative * Rotation.from_rotvec(b * t)
+        return Chain(self.place + v * t, turn * self.payload, link, uav, self.arm, self.length)
+
+    @property
+    def axis(self):
+        return self.link.as_matrix()[:, 2]
+
+    def uav_place(self):
+        return self.place + self.payload.apply(self.arm) + self.length * self.axis
+
+    def turning(self, rates):
+        """Angular velocities of payload, link and UAV."""
+        _, w, a, b = rates
+        of_link = w + self.link.apply(a)
+        return w, of_link, of_link + self.uav.apply(b)
+
+    def motion(self, rates):
+        """Velocity and angular velocity of the UAV."""
+        w, of_link, of_uav = self.turning(rates)
+        velocity = rates[0] + np.cross(w, self.payload.apply(self.arm)) + np.cross(of_link, self.length * self.axis)
+        return velocity, of_uav
+
+    def products(self, rates, dt=1e-4):
+        """Acceleration and angular acceleration of the UAV at constant rates, by differences."""
+        before, after = self.moved(rates, -dt), self.moved(rates, dt)
+        return tuple((b - a) / (2.0 * dt) for a, b in zip(before.motion(rates), after.motion(rates), strict=True))
+
+    def without_torque_about_the_axis(self, rates, before):
+        """``rates`` that follow ``before``, where nothing but the engine's products acts about the link's axis."""
+        v, w, a, b = rates
+        w_before, of_link, _ = self.turning(before)
+        wanted = self.axis @ of_link - STEP * self.axis @ np.cross(w_before, of_link)
+        return v, w, np.add(a, [0.0, 0.0, wanted - self.axis @ (w + self.link.apply(a))]), b
 
 
-def gyroscopic(inertia, rates):
-    return np.cross(rates, inertia @ rates)
+def chains(rng):
+    """A chain for each vehicle, the payload the same."""
+    payload, place = Rotation.random(random_state=2), rng.normal(size=3)
+    for k in range(VEHICLES):
+        link, uav = Rotation.random(2, random_state=20 + k)
+        yield Chain(place, payload, link, uav, rng.normal(size=3), 3.0 + rng.random())
 
 
-def scene():
-    """Rows of readings with links that keep their lengths, and of parts; all frames those of the world."""
-    n = VEHICLES
-    arms, links = RNG.normal(size=(n, 3)), 3.0 + RNG.random(n)
-    directions = RNG.normal(size=(n, 3))
-    links = links[:, None] * directions / np.linalg.norm(directions, axis=1, keepdims=True)
-    place, attitudes = RNG.normal(size=3), Rotation.random(n + 1, random_state=5)
-    attitudes = Rotation.from_quat([WORLD_AXES, *attitudes.as_quat()[1:]])
-    v, w = RNG.normal(size=3), RNG.normal(size=3)
-    uavs = v + np.cross(w, arms) + np.cross(RNG.normal(size=(n, 3)), links)
-    now = np.column_stack([np.vstack([v, uavs]), np.vstack([w, RNG.normal(size=(n, 3))])])
-    places = np.vstack([place, place + arms + links])
-    parts = np.column_stack([0.1 + RNG.random((n + 1, 3)), 1.0 + RNG.random(n + 1), np.vstack([place, arms])])
-    poses = np.column_stack([places, attitudes.as_quat()])
-    before = np.hstack([poses, now + 0.1 * RNG.normal(size=now.shape)])
-    return np.hstack([poses, now]), before, parts, arms, links
+def reading(chain, rates):
+    """Rows of payload and UAV as the engine gives them."""
+    v, w = chain.motion(rates)
+    return (
+        [*chain.place, *chain.payload.as_quat(), *rates[0], *rates[1]],
+        [*chain.uav_place(), *chain.uav.as_quat(), *v, *w],
+    )
 
 
-def test_loads_and_velocities_are_those_of_differences():
-    readings, before, parts, arms, links = scene()
-    states, loads = np.empty((VEHICLES + 1, STATE_COLUMNS)), np.empty((VEHICLES + 1, LOAD_COLUMNS))
+@pytest.mark.parametrize("weights", [(), (0.5,), (0.875, -0.375)], ids=["no step", "one step", "two steps"])
+def test_loads_and_velocities_are_those_of_rates_brought_forward(weights):
+    rng = np.random.default_rng(11)
+    all_chains, rows = list(chains(rng)), VEHICLES + 1
+    parts = np.column_stack([0.1 + rng.random((rows, 3)), 1.0 + rng.random((rows, 4))])
+    memory, states, loads = (np.zeros((rows, n)) for n in (MEMORY_COLUMNS, STATE_COLUMNS, LOAD_COLUMNS))
     assert parts.shape[1] == PART_COLUMNS
-    states_from_engine(readings, before, parts, np.array(WORLD_AXES), STEP, states, loads)
-    assert np.abs(loads[0, 3:]).max() > 1e-3 and np.abs(loads[1:]).max(axis=0).min() > 1e-3
-    v, w = readings[0, 7:10], readings[0, 10:13]
-    v_new, w_new = 1.5 * v - 0.5 * before[0, 7:10], 1.5 * w - 0.5 * before[0, 10:13]
-    flip = np.diag([1.0, -1.0, -1.0])
-    assert states[0, 7:10] == pytest.approx(flip @ v_new)
-    assert states[0, 10:] == pytest.approx(flip @ w_new)
-    inertia = np.diag(parts[0, :3])
-    assert loads[0, :3].tolist() == [0.0] * 3
-    assert loads[0, 3:] == pytest.approx(gyroscopic(inertia, w) - gyroscopic(inertia, w_new))
-    for row, earlier, part, state, load, arm, link in zip(
-        readings[1:], before[1:], parts[1:], states[1:], loads[1:], arms, links, strict=True
-    ):
-        v_i, w_i = row[7:10], row[10:13]
-        old = products(w, arm, link, link_rates_of(v, w, v_i, arm, link, STEP / 2), w_i)
-        v_on = 1.5 * v_i - 0.5 * earlier[7:10] - STEP / 2 * old[0]
-        w_on = 1.5 * w_i - 0.5 * earlier[10:13] - STEP / 2 * old[1]
-        new = products(w_new, arm, link, link_rates_of(v_new, w_new, v_on, arm, link, 0.0), w_on)
-        R, inertia = Rotation.from_quat(row[3:7]).as_matrix(), np.diag(part[:3])
-        assert state[7:10] == pytest.approx(flip @ v_on, abs=1e-8)
-        assert state[10:] == pytest.approx(flip @ R.T @ w_on, abs=1e-8)
-        assert load[:3] == pytest.approx(part[3] * R.T @ (old[0] - new[0]), abs=1e-5)
-        torque = inertia @ R.T @ (old[1] - new[1]) + gyroscopic(inertia, R.T @ w_i) - gyroscopic(inertia, R.T @ w_on)
-        assert load[3:] == pytest.approx(torque, abs=1e-5)
-
-
-def test_without_a_step_before_nothing_is_missing():
-    readings, _, parts, *_ = scene()
-    states, loads = np.empty((VEHICLES + 1, STATE_COLUMNS)), np.empty((VEHICLES + 1, LOAD_COLUMNS))
-    states_from_engine(readings, readings, parts, np.array(WORLD_AXES), 0.0, states, loads)
-    assert loads == pytest.approx(0.0, abs=1e-12)
-    assert states[:, 7:10] == pytest.approx(readings[:, 7:10] * [1.0, -1.0, -1.0])
+    all_rates = rng.normal(size=(1 + VEHICLES, 2, 3))
+    history = [[] for _ in all_chains]
+    for steps in range(len(weights) + 1):
+        readings = np.empty((rows, 13))
+        for i, chain in enumerate(all_chains, start=1):
+            rates = *all_rates[0], *all_rates[i]
+            if steps == 0:
+                parts[i, 4:] = chain.arm
+                memory[i, AXIS:] = *chain.axis, chain.axis @ chain.turning(rates)[1]
+            else:
+                rates = chain.without_torque_about_the_axis(rates, history[i - 1][0])
+                all_chains[i - 1] = chain = chain.moved(rates, STEP)
+            history[i - 1].insert(0, np.array(rates))
+            readings[0], readings[i] = reading(chain, rates)
+        states_from_engine(readings, parts, IN_AXES.as_quat(), STEP, steps, memory, states, loads)
+        all_rates = all_rates + 0.1 * rng.normal(size=all_rates.shape)
+    for i, (chain, rates) in enumerate(zip(all_chains, history, strict=True), start=1):
+        old, new = rates[0], rates[0].copy()
+        for k, weight in enumerate(weights):
+            new += weight * (rates[k] - rates[k + 1])
+        assert states[0, 7:10] == pytest.approx(FLIP @ new[0])
+        assert states[0, 10:] == pytest.approx(FLIP @ (chain.payload * IN_AXES).inv().apply(new[1]))
+        w, w_new = chain.payload.inv().apply([old[1], new[1]])
+        assert loads[0, :3].tolist() == [0.0] * 3
+        assert loads[0, 3:] == pytest.approx(gyroscopic(parts[0, :3], w) - gyroscopic(parts[0, :3], w_new))
+        (v_new, w_new), w = chain.motion(new), chain.motion(old)[1]
+        linear, angular = np.subtract(chain.products(old), chain.products(new))
+        into_body, moments = chain.uav.inv().apply, parts[i, :3]
+        assert states[i, 7:10] == pytest.approx(FLIP @ v_new, abs=1e-7)
+        assert states[i, 10:] == pytest.approx(FLIP @ into_body(w_new), abs=1e-7)
+        torque = gyroscopic(moments, into_body(w)) - gyroscopic(moments, into_body(w_new))
+        assert loads[i, :3] == pytest.approx(parts[i, 3] * into_body(linear), abs=1e-6)
+        assert loads[i, 3:] == pytest.approx(moments * into_body(angular) + torque, abs=1e-6)
+        # What is missing is far larger than the tolerances, or nothing.
+        assert np.abs(loads[i]).min() > 1e-3 if weights else not loads.any()

@@ -100,7 +100,7 @@ def test_free_motion_agrees_with_an_exact_integration(parameters, seed):
     # Velocities belong to the time of the poses from the beginning. Half a step older ones are 6 to 13 off.
     assert np.take(all_errors[0][0], [1, 2, 4, 5]).max() < 0.2
     whole, half = np.linalg.norm(all_errors, axis=0)
-    assert whole / half == pytest.approx(4.0, rel=0.15)
+    assert np.min(whole / half) > 3.5
 
 
 def energy(parameters, state):
@@ -113,12 +113,16 @@ def energy(parameters, state):
     return 0.5 * (masses @ np.sum(velocities**2, axis=1) + np.einsum("ij,ijk,ik->", rates, inertias, rates))
 
 
-@pytest.mark.parametrize("parameters", [system(3), unequal()], ids=["3", "unequal"])
-def test_free_motion_keeps_energy(parameters):
-    states = list(free_states(parameters, large_motion(parameters, 5), HZ, 10.0))
+@pytest.mark.parametrize(
+    ("parameters", "seed"),
+    [(system(3), 0), (system(3), 5), (system(3), 9), (system(4), 1), (unequal(), 0), (unequal(), 5)],
+)
+def test_free_motion_keeps_energy(parameters, seed):
+    """Also where links come near each other without touching, as (3, 0) at the end."""
+    states = list(free_states(parameters, large_motion(parameters, seed), HZ, 10.0))
     energies = np.array([energy(parameters, state) for state in states])
-    # Of first order: 2 to 10 %.
-    assert np.abs(energies / energies[0] - 1.0).max() < 1e-4
+    # Velocities brought forward to second order: 0.002 to 0.02 %, of first order: 2 to 10 %.
+    assert np.abs(energies / energies[0] - 1.0).max() < 2e-5
 
 
 def test_changed_payload_mass_changes_its_moments_of_inertia_too():

@@ -113,6 +113,7 @@ def place(world, state, inputs=None):
             system.body, system.uavs[i], _product(_conjugate(link_quaternion), uav_quaternion),
             _rotate_back(uav_quaternion, flipped(uav_rates.tolist())), physicsClientId=client,
         )  # fmt: skip
+    world._readings.update()
     world._readings.restart()
     world._contacts = ContactDetector(
         world.parameters, WorldConfig(), system, world._ground, world.obstacles, world._readings

@@ -79,4 +79,6 @@ class Ground:
                 standing = True
             else:
                 pairs.add((body_a, link_a, body_b, link_b))
-        return Contacts(len(pairs), standing) if pairs or not standing else _STANDING
+        if not pairs:
+            return _STANDING if standing else NO_CONTACTS
+        return Contacts(len(pairs), standing)

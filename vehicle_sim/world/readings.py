@@ -21,16 +21,17 @@ class Readings:
 
     def __init__(self, client: int, system: Multibody, parameters: SystemParameters, physics_step: float) -> None:
         """Read the state now; ``physics_step`` in s."""
-        self._body, self._links, self._client = system.body, system.uavs, client
-        self._physics_step = physics_step
-        self._correction = VelocityCorrection(system, parameters)
+        self._system, self._client = system, client
+        self._correction = VelocityCorrection(system, parameters, physics_step)
+        self.update()
         self.restart()
 
     def restart(self) -> None:
-        """Read a state to which no step has led: what accelerates it is unknown, its velocities are as the engine's."""
-        self.update()
-        self.update()
-        self._step = 0.0
+        """Take the velocities as the engine has them: no step has led here, or one with contact.
+
+        An impact is no acceleration by which velocities could be brought forward.
+        """
+        self._correction.restart(pybullet.getLinkStates(self._system.body, self._system.links, 1, 1, self._client))
 
     def update(self) -> None:
         """Read the state after a step.
@@ -38,12 +39,10 @@ class Readings:
         Forward kinematics is requested: without it links are one step behind the payload, and so are the frames in
         which the engine takes the next forces. Hence after every step, whether the state is read or not.
         """
-        body, client = self._body, self._client
-        self.uavs: Uavs = pybullet.getLinkStates(body, self._links, 1, 1, client)
+        body, client = self._system.body, self._client
+        self.uavs: Uavs = pybullet.getLinkStates(body, self._system.uavs, 1, 1, client)
         self.payload: Pose = pybullet.getBasePositionAndOrientation(body, client)
         self._correction.take(self.payload, pybullet.getBaseVelocity(body, client), self.uavs)
-        self._states: Array | None = None
-        self._step = self._physics_step
 
     def velocity_changes(self) -> list[list[float]]:
         """Return by how much the velocities of payload and UAVs (N + 1) changed in the last step (m/s, z up)."""
@@ -51,19 +50,15 @@ class Readings:
 
     def states(self) -> Array:
         """Return the true states of payload and UAVs now, (N + 1, 13) as in :mod:`.state_kernels`, to be read only."""
-        if self._states is None:
-            self._states = self._correction.evaluate(self._step)
-        return self._states
+        return self._correction.states
 
     def loads(self) -> Array:
         """Return the loads on payload and UAVs that the next step lacks, (N + 1, 6) as in :mod:`.state_kernels`.
 
         They hold while nothing but the links acts on a part by contact; to be used at once.
         """
-        self.states()
         return self._correction.loads
 
     def set_payload_moments(self, moments: Sequence[float]) -> None:
-        """Set the payload's principal moments of inertia (3,) (kg m2), from the next step on."""
+        """Set the payload's principal moments of inertia (3,) (kg m2), from the next reading on."""
         self._correction.set_payload_moments(moments)
-        self._states = None

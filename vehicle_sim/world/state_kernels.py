@@ -13,9 +13,12 @@ from idc_controller.rotations_float import Quaternion, Vector
 from vehicle_sim.world import world_state
 from vehicle_sim.world.velocity_product_kernels import (
     Motion,
-    brought_forward,
+    cross,
+    dot,
     gyroscopic,
+    link_rates,
     plus,
+    turned,
     velocity_products,
 )
 
@@ -27,6 +30,8 @@ READING_COLUMNS = 13
 PART_COLUMNS = 7
 #: Columns of a row of loads.
 LOAD_COLUMNS = 6
+#: Columns of a row of memory, and the first one of what says how a link turns about its axis.
+MEMORY_COLUMNS, AXIS = 16, 12
 
 _into_body = inlined(rotations_float.into_body)
 _product = inlined(world_state.product)
@@ -62,52 +67,96 @@ def _motion(row: Array) -> Motion:
     return _vector(row, 7), _vector(row, 10)
 
 
+@inlined
+def _lead(memory: Array, k: int, rates: Vector, before: Vector, change_before: Vector, steps: int) -> Vector:
+    """Return by how much ``rates`` will have changed half a step later, and write them with their last change.
+
+    ``before``: the same one step earlier, and ``change_before``: its change then; ``steps`` that they follow.
+    """
+    change = plus(rates, -1.0, before)
+    for j in range(3):
+        memory[k + j], memory[6 + k + j] = rates[j], change[j]
+    if steps == 0:
+        return 0.0, 0.0, 0.0
+    if steps == 1:
+        return 0.5 * change[0], 0.5 * change[1], 0.5 * change[2]
+    return plus((0.875 * change[0], 0.875 * change[1], 0.875 * change[2]), -0.375, change_before)
+
+
 @kernel(
-    "void(float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[::1], float64, float64[:, ::1], float64[:, ::1])"
+    "void(float64[:, ::1], float64[:, ::1], float64[::1], float64, int64, "
+    "float64[:, ::1], float64[:, ::1], float64[:, ::1])"
 )
 def states_from_engine(
-    readings: Array, before: Array, parts: Array, payload_in_axes: Array, step: float, states: Array, loads: Array
-) -> None:
+    readings: Array, parts: Array, payload_in_axes: Array, step: float, steps: int,
+    memory: Array, states: Array, loads: Array,
+) -> None:  # fmt: skip
     """Write the true ``states`` (M, 13) of payload and UAVs, and the ``loads`` (M, 6) that the engine lacks.
 
-    States and loads are of second order in the physics step, see :mod:`.velocity_product_kernels`.
+    See :mod:`.velocity_product_kernels`.
 
     Args:
         readings: of the engine (M, 13): position, attitude x first, velocity and angular velocity in its z-up world.
-        before: the same one step earlier (M, 13).
         parts: moments of inertia about the axes of the part's frame in the engine (kg m2), mass (kg), and where its
             link is attached in the payload's principal axes (m) (M, 7).
         payload_in_axes: payload frame to principal axes, x first, in which the engine has the payload's attitude (4,).
-        step: the physics step (s); zero: no step led here, the velocities are taken as they are.
+        step: the physics step (s).
+        steps: number of steps in a row that led here without contact. After none velocities are taken as they are, and
+            no load is missing.
+        memory: of the step before (M, 16), and is written for the next one: the payload's velocity and rates in the
+            world, the link's against the payload and the UAV's against the link in its own frame (6); how they changed
+            in the last step (6); the axis of the link (3) and its angular velocity about it (rad/s) as the engine will
+            have it after a step in which the axis does not change.
         states: is written.
         loads: is written: force (N) and torque (N m) in the part's frame in the engine.
     """
-    since = 0.5 * step
-    r, part = readings[0], parts[0]
+    r, part, last = readings[0], parts[0], memory[0]
     axes = (r[6], r[3], r[4], r[5])
     to_world = (axes[0], -axes[1], -axes[2], -axes[3])
-    none = (0.0, 0.0, 0.0)
-    place, old = _vector(r, 0), _motion(r)
-    new = brought_forward(old, _motion(before[0]), (none, none), since)
+    place, payload = _vector(r, 0), _motion(r)
+    lead_v = _lead(last, 0, payload[0], _vector(last, 0), _vector(last, 6), steps)
+    lead_w = _lead(last, 3, payload[1], _vector(last, 3), _vector(last, 9), steps)
+    payload_new = plus(payload[0], 1.0, lead_v), plus(payload[1], 1.0, lead_w)
     a = payload_in_axes
     attitude = _product((r[3], r[4], r[5], r[6]), (a[0], a[1], a[2], a[3]))
-    _write_state(states[0], place, _quaternion_from_engine(attitude), new)
-    torque = _gyroscopic_load(_vector(part, 0), axes, old, new)
+    _write_state(states[0], place, _quaternion_from_engine(attitude), payload_new)
+    torque = _gyroscopic_load(_vector(part, 0), axes, payload, payload_new)
+    by_payload = (step * payload[1][0], step * payload[1][1], step * payload[1][2])
     for k in range(3):
         loads[0, k], loads[0, 3 + k] = 0.0, torque[k]
     for i in range(1, readings.shape[0]):
-        r, part = readings[i], parts[i]
-        q, uav_old = (r[6], r[3], r[4], r[5]), _motion(r)
+        r, part, last = readings[i], parts[i], memory[i]
+        q, uav = (r[6], r[3], r[4], r[5]), _motion(r)
+        from_body = (q[0], -q[1], -q[2], -q[3])
         arm = _into_body(to_world, _vector(part, 4))
         link = plus(plus(_vector(r, 0), -1.0, place), -1.0, arm)
-        products = velocity_products(old, uav_old, arm, link, since)
-        uav_new = brought_forward(uav_old, _motion(before[i]), products, since)
+        length = math.sqrt(dot(link, link))
+        axis = (link[0] / length, link[1] / length, link[2] / length)
+        # Nothing turns a link about its own axis, the engine's products of old velocities do.
+        about = last[AXIS + 3] + dot(plus(axis, -1.0, _vector(last, AXIS)), payload[1])
+        turning = link_rates(payload, uav[0], arm, link, axis, about)
+        last[AXIS + 3] = about - step * dot(axis, cross(payload[1], turning))
+        relative = plus(turning, -1.0, payload[1])
+        by_joint = (step * relative[0], step * relative[1], step * relative[2])
+        # A joint's rates are constant in the frame of the link, which the step has turned.
+        before = turned(turned(_vector(last, 0), by_payload), by_joint)
+        change_before = turned(turned(_vector(last, 6), by_payload), by_joint)
+        lead_turning = plus(lead_w, 1.0, _lead(last, 0, relative, before, change_before, steps))
+        own = _into_body(q, plus(uav[1], -1.0, turning))
+        lead_own = _lead(last, 3, own, _vector(last, 3), _vector(last, 9), steps)
+        uav_new = (
+            plus(plus(plus(uav[0], 1.0, lead_v), 1.0, cross(lead_w, arm)), 1.0, cross(lead_turning, link)),
+            plus(plus(uav[1], 1.0, lead_turning), 1.0, _into_body(from_body, lead_own)),
+        )
         _write_state(states[i], _vector(r, 0), _quaternion_from_engine((r[3], r[4], r[5], r[6])), uav_new)
-        products_new = velocity_products(new, uav_new, arm, link, 0.0)
+        products = velocity_products(payload[1], turning, uav[1], arm, link)
+        turning_new = plus(turning, 1.0, lead_turning)
+        products_new = velocity_products(payload_new[1], turning_new, uav_new[1], arm, link)
         linear = _into_body(q, plus(products[0], -1.0, products_new[0]))
         angular = _into_body(q, plus(products[1], -1.0, products_new[1]))
-        torque = _gyroscopic_load(_vector(part, 0), q, uav_old, uav_new)
+        torque = _gyroscopic_load(_vector(part, 0), q, uav, uav_new)
         for k in range(3):
+            last[AXIS + k] = axis[k]
             loads[i, k] = part[3] * linear[k]
             loads[i, 3 + k] = part[k] * angular[k] + torque[k]
 

@@ -1,9 +1,11 @@
-"""Accelerations from products of velocities (Coriolis, centripetal), and the velocities after half a step more.
+"""The engine's generalised velocities, and the accelerations by products of them (Coriolis, centripetal).
 
-The engine takes gravity, forces and the mass matrix at the time of the poses, t, and its generalised velocities
-half a step earlier: the payload's, and the joints' in the child's frame. With the same velocities it computes the
-products, which makes them, and with them its motion, of first order in the step. What follows finds the velocities
-at t, and thereby the loads that are missing. All vectors are in one frame that does not turn.
+The engine is a leapfrog: at the time t of the poses it has the generalised velocities of half a step earlier, the
+payload's and the joints' in the child's frame, and changes them by the forces and the mass matrix at t. The products it
+takes from the old velocities, which makes them, and with them its motion, of first order in the step. What follows
+finds the velocities at t, to third order by those of three steps, and thereby the loads that are missing: what is left
+of second order is the same forwards and backwards in time, so that energy does not drift. All vectors are in one frame
+that does not turn, but where another is named.
 """
 
 from idc_controller.compiled import inlined
@@ -11,6 +13,12 @@ from idc_controller.rotations_float import Vector
 
 Motion = tuple[Vector, Vector]
 """A velocity (m/s) and an angular velocity (rad/s); of the products a linear and an angular acceleration."""
+
+
+@inlined
+def dot(a: Vector, b: Vector) -> float:
+    """Return the scalar product of ``a`` and ``b``."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 @inlined
@@ -26,49 +34,47 @@ def plus(a: Vector, factor: float, b: Vector) -> Vector:
 
 
 @inlined
+def turned(v: Vector, rotation: Vector) -> Vector:
+    """Return ``v`` turned by a small rotation vector (rad), to its second order."""
+    once = cross(rotation, v)
+    return plus(plus(v, 1.0, once), 0.5, cross(rotation, once))
+
+
+@inlined
 def gyroscopic(moments: Vector, rates: Vector) -> Vector:
     """Return w x J w (N m) of ``rates`` w (rad/s) about principal axes with ``moments`` J (kg m2), in these axes."""
     return cross(rates, (moments[0] * rates[0], moments[1] * rates[1], moments[2] * rates[2]))
 
 
 @inlined
-def velocity_products(payload: Motion, uav: Motion, arm: Vector, link: Vector, since: float) -> Motion:
-    """Return a UAV's acceleration (m/s2) and angular acceleration (rad/s2) while no generalised velocity changes.
+def link_rates(payload: Motion, velocity: Vector, arm: Vector, link: Vector, axis: Vector, about: float) -> Vector:
+    """Return a link's angular velocity (rad/s).
 
     Args:
         payload: its motion.
-        uav: the UAV's motion.
+        velocity: the UAV's (m/s).
         arm: from the payload's centre of mass to the attachment point (m).
         link: from there to the UAV (m).
-        since: by how much the generalised velocities are older than the poses (s).
-
-    Nothing turns a link about its own axis, hence it has no rate about it; velocities that are older than the link's
-    direction have one.
+        axis: the direction of ``link``.
+        about: angular velocity about the axis (rad/s), which the ends of the link do not show.
     """
-    (velocity, rates), (uav_velocity, uav_rates) = payload, uav
-    squared = link[0] * link[0] + link[1] * link[1] + link[2] * link[2]
-    attachment = cross(rates, arm)
-    swing = cross(link, plus(plus(uav_velocity, -1.0, velocity), -1.0, attachment))
-    turning = (swing[0] / squared, swing[1] / squared, swing[2] / squared)
-    # A joint's rates turn with the link, against the payload.
-    turn = cross(rates, turning)
-    about = since * (turn[0] * link[0] + turn[1] * link[1] + turn[2] * link[2]) / squared
-    turning = plus(turning, about, link)
-    turn = cross(rates, turning)
-    linear = plus(plus(cross(rates, attachment), 1.0, cross(turn, link)), 1.0, cross(turning, cross(turning, link)))
-    return linear, plus(turn, 1.0, cross(turning, uav_rates))
+    swing = cross(link, plus(plus(velocity, -1.0, payload[0]), -1.0, cross(payload[1], arm)))
+    squared = dot(link, link)
+    return plus((swing[0] / squared, swing[1] / squared, swing[2] / squared), about, axis)
 
 
 @inlined
-def brought_forward(now: Motion, before: Motion, products: Motion, since: float) -> Motion:
-    """Return the motion at the time of the poses.
+def velocity_products(payload_rates: Vector, turning: Vector, uav_rates: Vector, arm: Vector, link: Vector) -> Motion:
+    """Return a UAV's acceleration (m/s2) and angular acceleration (rad/s2) while no generalised velocity changes.
 
     Args:
-        now: motion by generalised velocities that are ``since`` (s), half a step, older than the poses.
-        before: the same one step earlier.
-        products: what changes the motion beside the generalised velocities, as :func:`velocity_products`.
-        since: half of the step.
+        payload_rates: the payload's angular velocity (rad/s).
+        turning: the link's.
+        uav_rates: the UAV's.
+        arm: from the payload's centre of mass to the attachment point (m).
+        link: from there to the UAV (m).
     """
-    (v, w), (v_before, w_before), (linear, angular) = now, before, products
-    v, w = plus(v, 0.5, plus(v, -1.0, v_before)), plus(w, 0.5, plus(w, -1.0, w_before))
-    return plus(v, -since, linear), plus(w, -since, angular)
+    # A joint's rates turn with the child, against the parent.
+    turn = cross(payload_rates, turning)
+    centripetal = plus(cross(payload_rates, cross(payload_rates, arm)), 1.0, cross(turning, cross(turning, link)))
+    return plus(centripetal, 1.0, cross(turn, link)), plus(turn, 1.0, cross(turning, uav_rates))

@@ -21,11 +21,9 @@ from vehicle_sim.world.ground import NO_CONTACTS, Contacts, Ground
 from vehicle_sim.world.multibody import check_supported, load_multibody
 from vehicle_sim.world.obstacle_bodies import ObstacleBodies
 from vehicle_sim.world.readings import Readings
-from vehicle_sim.world.state_kernels import LOAD_COLUMNS
 from vehicle_sim.world.world_state import UavState, WorldState, flipped
 
 _ORIGIN = (0.0, 0.0, 0.0)
-_NO_LOAD = [0.0] * LOAD_COLUMNS
 _LINK_FRAME, _WORLD_FRAME = pybullet.LINK_FRAME, pybullet.WORLD_FRAME
 _apply_force, _apply_torque = pybullet.applyExternalForce, pybullet.applyExternalTorque
 _step_simulation = pybullet.stepSimulation
@@ -125,12 +123,8 @@ class World:
         # The height of a UAV, which is at hand, says mostly that no cradle has anything to do.
         if self._cradles.number_held or self._readings.uavs[0][0][2] <= self._ground.standing_height + self._system.arm:
             self._update_cradles(thrusts)
-        # An impact is no acceleration by which velocities could be brought forward.
-        if self._cradles.number_held == 0 and self.contacts() is NO_CONTACTS:
-            (_, _, _, *torque), *loads = self._readings.loads().tolist()
-            _apply_torque(body, -1, torque, _LINK_FRAME, client)
-        else:
-            loads = [_NO_LOAD] * len(uavs)
+        (_, _, _, *torque), *loads = self._readings.loads().tolist()
+        _apply_torque(body, -1, torque, _LINK_FRAME, client)
         for uav, thrust, (x, y, z), (f_x, f_y, f_z, t_x, t_y, t_z) in zip(uavs, thrusts, torques, loads, strict=True):
             _apply_force(body, uav, (f_x, f_y, thrust + f_z), _ORIGIN, _LINK_FRAME, client)
             _apply_torque(body, uav, (t_x + x, t_y - y, t_z - z), _LINK_FRAME, client)
@@ -141,6 +135,8 @@ class World:
         self.steps += 1
         self._thrusts = tuple(thrusts)
         self._readings.update()
+        if self._cradles.number_held or self.contacts() is not NO_CONTACTS:
+            self._readings.restart()
 
     def _push(self, payload_force: Sequence[float] | None, uav_forces: Sequence[Sequence[float]] | None) -> None:
         """Let external forces act over the next step."""
