@@ -150,4 +150,4 @@ def test_plugin_takes_no_time_to_start():
         "print(*set(sys.modules) - before)"
     )
     run = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
-    assert set(run.stdout.split()) == {"gcs", "gcs.campaign", "gcs.campaign.pytest_plugin"}
+    assert set(run.stdout.split()) == {"gcs", "gcs.errors", "gcs.campaign", "gcs.campaign.pytest_plugin"}
