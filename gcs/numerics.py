@@ -9,8 +9,6 @@ OpenBLAS   kernels "Haswell", one thread  :func:`choose_kernels`: of numpy and o
 numpy      loops up to AVX2               :func:`choose_kernels`, as it is loaded
 proxsuite  the build for AVX2             ``idc_controller/qp/__init__.py``
 numba      any                            makes no difference (``tests/test_numerics.py``)
-malloc     pages of its own for each      :func:`choose_kernels`: ProxQP sums in an order that depends on the
-           block of 128 KiB or more       alignment of its blocks
 =========  =============================  ===================================================================
 
 Imports nothing that loads one of them.
@@ -18,12 +16,10 @@ Imports nothing that loads one of them.
 
 from __future__ import annotations
 
-import ctypes
 import os
 import platform
 import sys
 from collections.abc import Mapping, MutableMapping
-from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -38,18 +34,14 @@ _BLAS, _BLAS_OF = "openblas Haswell", "BLAS of "
 _NUMPY_DISABLE = "NPY_DISABLE_CPU_FEATURES"
 """Excludes ``NPY_ENABLE_CPU_FEATURES``: numpy refuses both."""
 _NEEDED = {"avx2", "fma"}
-_M_MMAP_THRESHOLD, _LARGE = -3, 128 * 1024
-"""Parameter of glibc's ``mallopt``, and its value at the start, which freed blocks raise unless it is set."""
 _NOT_PINNED = "results can differ in the last digits from those of other processors"
 
 
 def choose_kernels(environment: MutableMapping[str, str] = os.environ) -> None:
-    """Set the variables that the libraries read when they are loaded, and malloc; call it before numpy is imported.
+    """Set the variables that the libraries read when they are loaded; call it before numpy is imported.
 
     A processor without AVX2 and FMA keeps the libraries' own choice: code that it lacks would end the program.
     """
-    with suppress(AttributeError, OSError):  # another C library
-        ctypes.CDLL(None).mallopt(_M_MMAP_THRESHOLD, _LARGE)
     environment.update(_THREADS)
     if not _is_unpinned(environment) and processor_features() >= _NEEDED:
         environment.pop(_NUMPY_DISABLE, None)

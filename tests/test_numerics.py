@@ -14,8 +14,6 @@ from programs import ENVIRONMENT, gcs_fly
 
 from gcs import numerics
 from gcs.record.reader import read_table
-from idc_controller.qp.problem import QuadraticProgram
-from idc_controller.qp.proxqp_solver import ProxqpSolver
 
 ROOT = Path(__file__).parents[1]
 ROUNDING = 1e-9
@@ -56,18 +54,6 @@ def test_unpinned_environment_is_left_as_it_is(features):
     environment = {"COOPLIFT_KERNELS": "unpinned", "OPENBLAS_CORETYPE": "Nehalem"}
     numerics.choose_kernels(environment)
     assert environment["OPENBLAS_CORETYPE"] == "Nehalem" and "NPY_ENABLE_CPU_FEATURES" not in environment
-
-
-def test_qp_has_one_solution_whatever_memory_was_used_before():
-    """Three vehicles' tracking: 77 variables and 219 rows, for which ProxQP sums by the alignment of its blocks."""
-    numerics.choose_kernels({})
-    rng, used, found = np.random.default_rng(0), [], set()
-    root, rows = rng.normal(size=(77, 77)), rng.normal(size=(219, 77))
-    problem = QuadraticProgram(root @ root.T + np.eye(77), rng.normal(size=77), rows, rng.uniform(0.1, 1.0, 219))
-    for _ in range(20):
-        used = [*used[-20:], *(bytearray(size) for size in rng.integers(1, 500_000, 4))]
-        found.add(ProxqpSolver().solve(problem).x.tobytes())
-    assert len(found) == 1
 
 
 @pytest.mark.parametrize(

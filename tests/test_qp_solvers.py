@@ -120,3 +120,16 @@ def test_solver_refuses_contradicting_constraints(solver, h, lower):
     G = np.array([[1.0, 0.0], [-1.0, 0.0]])
     with pytest.raises(SolverError):
         solver().solve(QuadraticProgram(np.eye(2), np.zeros(2), G, np.array(h), lower))
+
+
+def test_proxqp_has_one_solution_wherever_its_memory_is():
+    """Tracking with three vehicles: of 77 variables and 219 rows; its factor is in what is free, or it is not."""
+    rng, used, found = np.random.default_rng(0), [], set()
+    root, rows = rng.normal(size=(77, 77)), rng.normal(size=(219, 77))
+    problem = QuadraticProgram(root @ root.T + np.eye(77), rng.normal(size=77), rows, rng.uniform(0.1, 1.0, 219))
+    for _ in range(40):
+        blocks = [bytearray(size) for size in rng.integers(50_000, 120_000, 20)]
+        used.append(blocks[-1])
+        del blocks
+        found.add(ProxqpSolver().solve(problem).x.tobytes())
+    assert len(found) == 1

@@ -8,6 +8,7 @@ from scipy.linalg import block_diag
 
 from idc_controller.arrays import Array
 from idc_controller.errors import SolverError
+from idc_controller.qp.memory import pages_of_their_own
 from idc_controller.qp.problem import SOFT_COST, QpSolution, QuadraticProgram
 
 UNBOUNDED = 1e20
@@ -46,7 +47,8 @@ class ProxqpSolver:
     def _initialise(self, problem: QuadraticProgram) -> None:
         H, rows = _hessian_and_rows(problem)
         m = len(rows)
-        self._set_up, self._qp = problem, proxqp.dense.QP(len(H), 0, m)
+        with pages_of_their_own():  # it sums in an order that depends on the alignment of its factor
+            self._set_up, self._qp = problem, proxqp.dense.QP(len(H), 0, m)
         settings = self._qp.settings
         settings.eps_abs, settings.max_iter, settings.max_iter_in = TOLERANCE, ITERATIONS, INNER_ITERATIONS
         # The residuals of feasibility and stationarity alone let some solutions be off the minimum by a few per cent.
