@@ -197,9 +197,8 @@ def test_campaign_killed_completes_without_flying_twice(severities, kills, tmp_p
     results = {result.stem: result.stat().st_mtime_ns for result in (out / "results").glob("*.json")}
     assert kept.items() <= results.items() and set(results) == set(frame["name"])
     names = {entry.name for entry in (out / "flights").iterdir()}
-    assert names == set(frame["name"]) and all(
-        json.loads((Path(d) / "faults.json").read_text()) for d in pandas.read_csv(out / "timing.csv")["run_dir"]
-    )
+    folders = pandas.read_csv(out / "timing.csv")["run_dir"]
+    assert names == set(frame["name"]) and all(json.loads((Path(d) / "faults.json").read_text()) for d in folders)
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])

@@ -311,6 +311,19 @@ def test_folder_of_something_else_is_refused(tmp_path):
         campaign_in(tmp_path)
 
 
+def test_each_scenario_is_flown_with_every_combination_of_settings(tmp_path, flown, capsys):
+    out = str(tmp_path / "out")
+    grid = ["--set", "avoidance.margin=0.4,0.5", "--set", "avoidance.barrier_rates=[],[6.0, 6.0]"]
+    main(["courses", "--count", "1", "--kinds", "poles", "--out", out, *grid])
+    printed = capsys.readouterr().out
+    assert "4 of 4 scenarios passed" in printed and len(flown) == 4
+    assert '"avoidance.margin=0.4 avoidance.barrier_rates=[6.0, 6.0]"' in (tmp_path / "out/results.csv").read_text()
+    campaign = campaign_in(tmp_path / "again", count=1, kinds=("poles",), grid={"avoidance.margin": [0.4, 0.5]})
+    assert [plan.settings for plan in campaign.plans] == [{"avoidance.margin": 0.4}, {"avoidance.margin": 0.5}]
+    assert len({plan.name for plan in campaign.plans}) == len({plan.key for plan in campaign.plans}) == 2
+    assert campaign.plans[1].replay.endswith("0001-poles.toml --controller idc --set avoidance.margin=0.5")
+
+
 def test_command_flies_and_reports(tmp_path, flown, capsys, pictures):
     out = str(tmp_path / "out")
     assert main(["courses", "--count", "3", "--kinds", "poles", "--out", out]) == 0

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import shapely
 
+from gcs.campaign.flight import FlightPlan
 from gcs.campaign.result import Flown
 from gcs.campaign.scenarios.boxes import boxes
 from gcs.campaign.scenarios.forest import APART, DENSITIES, forest
@@ -231,7 +232,8 @@ def test_impassable_course_passes_when_broken_off_with_its_narrowest_gap(tmp_pat
         "clearance_min_m": 0.0 if hit else 0.5, "payload_tilt_max_deg": {"roll": 1.0},
     }  # fmt: skip
     flown = Flown(1, summary, reason, 1.0)
-    columns = judge(mission, None, read(scenario, tmp_path).limits, Passage(verdict, GAP), flown, tmp_path / "none")
+    plan = FlightPlan(1, "mission", mission, dict)
+    columns = judge(read(scenario, tmp_path).limits, Passage(verdict, GAP), plan, flown, tmp_path / "none")
     assert columns["failures"] == failures
     assert (columns["passage"], columns["gap_m"]) == (verdict, 1.96)
 

@@ -1,4 +1,4 @@
-"""Settings by dotted path in place of a system file's: ``gcs.fly(settings=...)``, studies."""
+"""Settings by dotted path in place of a system file's: ``gcs.fly(settings=...)``."""
 
 from dataclasses import replace
 from pathlib import Path

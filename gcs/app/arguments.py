@@ -91,11 +91,23 @@ class Settings(argparse.Action):
         path, equals, value = text.partition("=")
         if not path or not equals:
             raise argparse.ArgumentError(self, f"{text!r} is not PATH=VALUE")
+        setattr(namespace, self.dest, {**(getattr(namespace, self.dest) or {}), path: self.read(value)})
+
+    def read(self, value: str) -> Any:
+        """Return a value."""
         try:
-            (read,) = tomllib.loads(f"value = {value}").values()
+            return tomllib.loads(f"value = {value}")["value"]
         except ValueError:
-            read = value
-        setattr(namespace, self.dest, {**(getattr(namespace, self.dest) or {}), path: read})
+            return value
+
+
+class SettingsGrid(Settings):
+    """``--set PATH=A,B,C``: all values of each setting."""
+
+    def read(self, value: str) -> list[Any]:
+        """Return the values."""
+        values = super().read(f"[{value}]")
+        return values if isinstance(values, list) else value.split(",")
 
 
 def add_settings(parser: argparse.ArgumentParser) -> None:

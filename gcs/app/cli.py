@@ -23,7 +23,6 @@ COMMANDS = {
     "report": "draw what happened in a run",
     "courses": "fly many random obstacle scenarios",
     "faults": "list the kinds of fault, fly campaigns of them",
-    "study": "fly missions with one parameter changed",
     "reproduce": "regenerate the figures and numbers of the paper",
 }
 """Each is a module with ``DESCRIPTION``, ``add_arguments(parser)`` and ``run(arguments)``, imported when named."""
@@ -36,7 +35,6 @@ The ground station of cooplift: UAVs that carry one payload together.
   gcs report runs/figure-eight-1            draws what happened
   gcs faults telemetry_faults               flies a campaign of telemetry faults
   gcs courses                               flies 200 random obstacle scenarios and shows the distribution
-  gcs study margin                          flies a mission with other margins; other studies likewise
   gcs reproduce --quick                     the paper's figures and numbers, as printed and as corrected
 """
 

@@ -1,5 +1,6 @@
 """One flight of a campaign: its plan, and the call that flies it in a process of the campaign's executor."""
 
+import json
 import os
 import secrets
 import shlex
@@ -36,10 +37,11 @@ class FlightPlan:
     number: int
     name: str
     mission: Path
-    judge: Callable[[Flown, Path], Mapping[str, Any]]
+    judge: Callable[["FlightPlan", Flown, Path], Mapping[str, Any]]
     controller: str = "idc"
     config: Path | None = None
     seed: int | None = None
+    settings: Mapping[str, Any] = field(default_factory=dict)
     labels: Mapping[str, Any] = field(default_factory=dict)
     files: Mapping[Path, str] = field(default_factory=dict)
     fly: Callable[["FlightPlan"], Result] | None = None
@@ -47,7 +49,8 @@ class FlightPlan:
     @property
     def key(self) -> str:
         """Text that is another where code, mission, seed or options are, by which its result is kept."""
-        return verdict_key(self.mission, self.config, self.controller, *([] if self.seed is None else [str(self.seed)]))
+        options = [self.controller, *([] if self.seed is None else [str(self.seed)]), *self._settings]
+        return verdict_key(self.mission, self.config, *options)
 
     @property
     def replay(self) -> str:
@@ -55,11 +58,16 @@ class FlightPlan:
         words = ["gcs", "fly", str(shown(self.mission)), "--controller", self.controller]
         words += [] if self.config is None else ["--config", str(shown(self.config))]
         words += [] if self.seed is None else ["--seed", str(self.seed)]
-        return shlex.join(words)
+        return shlex.join([*words, *(word for setting in self._settings for word in ("--set", setting))])
+
+    @property
+    def _settings(self) -> list[str]:
+        """The settings as ``--set`` takes them."""
+        return [f"{path}={json.dumps(value)}" for path, value in self.settings.items()]
 
     def result(self, flown: Flown, run_dir: Path) -> Result:
         """Judge the flight."""
-        columns = {**summary_columns(flown), **self.judge(flown, run_dir)}
+        columns = {**summary_columns(flown), **self.judge(self, flown, run_dir)}
         return Result(**columns, run_dir=str(run_dir) if run_dir.exists() else "")
 
 
@@ -85,7 +93,10 @@ def fly(plan: FlightPlan, run_dir: Path) -> Flown:
     begin = time.monotonic()
     summary: Mapping[str, Any] = {}
     try:
-        flight = gcs.fly(plan.mission, seed=plan.seed, config=plan.config, controller=plan.controller, run_dir=run_dir)
+        flight = gcs.fly(
+            plan.mission, seed=plan.seed, config=plan.config, settings=plan.settings, controller=plan.controller,
+            run_dir=run_dir,
+        )  # fmt: skip
     except UnusableInput as error:
         # The same text wherever the campaign is.
         exit_code, reason = UNUSABLE, str(error).replace(f"{plan.mission.parent}/", "")

@@ -73,8 +73,6 @@ class Result:
     level: int = 0
     severity: str = ""
     variant: str = ""
-    clearance_asked_m: float | None = None
-    tilt_limit_deg: float | None = None
 
     # Judgement of an obstacle scenario.
     arrival_s: float | None = None

@@ -5,8 +5,6 @@ import json
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from gcs.config import SystemConfig
-from gcs.config.overrides import set_by_path
 from gcs.mission.model import Limits, Lissajous, Obstacle
 from gcs.mission.obstacle_table import keys_of
 
@@ -29,16 +27,6 @@ def mission_text(
         _table("[limits]", _fields(limits)),
     ]
     return "\n\n".join(table for table in tables if table) + "\n"
-
-
-def system_text(changes: Mapping[str, Any]) -> str:
-    """Return the default system, whole, as a file with ``changes`` by key: ``{"avoidance.margin": 0.25}``.
-
-    Raises :class:`UnusableInput` for a key that the system does not have.
-    """
-    tables = SystemConfig().tables()
-    set_by_path(tables, changes)
-    return tables_text(tables)
 
 
 def tables_text(data: Mapping[str, Any]) -> str:

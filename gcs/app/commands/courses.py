@@ -4,10 +4,11 @@ import argparse
 from functools import partial
 from pathlib import Path
 
-from gcs.app.arguments import CONTROLLERS, number, time_span, whole_number
+from gcs.app.arguments import CONTROLLERS, SettingsGrid, number, time_span, whole_number
 from gcs.app.campaigns import add_campaign_arguments
 from gcs.app.levels import BOTH, FULL, LEVELS, run_level
 from gcs.campaign.folder import plain
+from gcs.campaign.grid import check_grid
 from gcs.campaign.scenarios.generator import DEFAULT_KINDS, KINDS
 from gcs.campaign.scenarios.plans import Scenarios
 from gcs.campaign.suites.plans import Suite, read_suite
@@ -23,6 +24,7 @@ Flies many obstacle scenarios in parallel and shows the distribution of clearanc
   gcs courses --count 1000 --out runs/courses-seed1    adds more scenarios to a campaign
   gcs courses --level both --budget 30m      all by planning alone, those that nearly fail in full
   gcs courses --suite tests/*.yaml           tests of Aerialist; also lists in JSON lines, and missions
+  gcs courses --suite figure_eight_spheres --set avoidance.margin=0.25,0.5,1.0    with each of these settings
 
 Every scenario is a mission file that `gcs fly` repeats. A campaign that was interrupted resumes when started again.
 A scenario is passed without contact, with 0.3 m of clearance, payload angles up to 6 deg, arrival at the goal, and the
@@ -50,6 +52,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help=f"speed of a suite's missions that do not say, in m/s (default: {SPEED:g})")  # fmt: skip
     add("--controller", choices=CONTROLLERS, default="idc", help="as for gcs fly (default: idc)")
     add("--config", type=Path, metavar="C", help="system file in place of the default system")
+    add("--set", action=SettingsGrid, dest="grid", default={}, metavar="PATH=A,B,C",
+        help="fly each scenario with each of these settings in place of the system file's, such as "
+        "avoidance.margin=0.4,0.5; if repeated, with every combination")  # fmt: skip
     add("--obstacle-speed", type=partial(number, least=0.5, most=20.0), metavar="V",
         help=f"highest speed of moving obstacles in m/s, but of stop_and_go (default: {FASTEST:g})")  # fmt: skip
     add("--level", choices=LEVELS, default=FULL, help="planning: perception, guidance and safety filter on ideal "
@@ -67,6 +72,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise UnusableInput(f"--level {arguments.level}: the controller {arguments.controller} plans nothing")
     if arguments.level != BOTH and arguments.budget is not None:
         raise UnusableInput("--budget goes with --level both")
+    check_grid(read_system(arguments.config), arguments.grid)  # refused before the campaign begins
     generator, name = _suite(arguments) if arguments.suite else _random(arguments)
     return run_level(generator, arguments.out or Path("runs") / f"courses-{name}", arguments)
 
@@ -75,7 +81,6 @@ def _random(arguments: argparse.Namespace) -> tuple[Scenarios, str]:
     """Return random scenarios, and their name."""
     if arguments.speed is not None:
         raise UnusableInput("--speed goes with --suite: random scenarios have their own speeds")
-    read_system(arguments.config)  # refused before the campaign begins
     scenarios = Scenarios(
         count=arguments.count or COUNT,
         seed=arguments.seed,
@@ -83,6 +88,7 @@ def _random(arguments: argparse.Namespace) -> tuple[Scenarios, str]:
         controller=arguments.controller,
         config=arguments.config,
         fastest=arguments.obstacle_speed or FASTEST,
+        grid=arguments.grid,
     )
     return scenarios, f"seed{arguments.seed}"
 
@@ -94,5 +100,5 @@ def _suite(arguments: argparse.Namespace) -> tuple[Suite, str]:
             raise UnusableInput(f"--{option.replace('_', '-')} is for random scenarios, not for --suite")
     speed = arguments.speed or SPEED
     courses = read_suite(arguments.suite, arguments.config, speed, arguments.seed)
-    suite = Suite(tuple(courses), arguments.seed, speed, arguments.controller, arguments.config)
+    suite = Suite(tuple(courses), arguments.seed, speed, arguments.controller, arguments.config, grid=arguments.grid)
     return suite, plain(arguments.suite[0].stem)

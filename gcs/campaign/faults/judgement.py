@@ -7,6 +7,7 @@ from typing import Any
 
 from gcs.campaign.faults.cases import Case
 from gcs.campaign.faults.sources import AlarmRow, Isolation, isolation
+from gcs.campaign.flight import FlightPlan
 from gcs.campaign.result import Flown, Result
 from gcs.errors import UnusableInput
 from gcs.faults import KINDS
@@ -45,7 +46,7 @@ class Detection:
     alarms: tuple[AlarmRow, ...] = field(default=(), compare=False)
 
 
-def judge(case: Case, flown: Flown, run_dir: Path) -> dict[str, Any]:
+def judge(case: Case, plan: FlightPlan, flown: Flown, run_dir: Path) -> dict[str, Any]:
     """Return the columns of a flight whose last faults are those of its case."""
     begin = first_start(run_dir, len(case.faults))
     stop = stop_time(flown.summary, begin)

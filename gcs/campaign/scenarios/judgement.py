@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from gcs.campaign.flight import FlightPlan
 from gcs.campaign.result import Flown, summary_columns
 from gcs.campaign.scenarios.passage import Passage
 from gcs.config import SystemConfig
@@ -29,7 +30,7 @@ SEPARATION_TOLERANCE = 0.05
 """Share of the gap between neighbouring rotor discs in hover by which a flight may fall below the controller's limit,
 whose rows are soft: with a spacing of 1 m 0.75 m where the controller keeps 0.77 m."""
 COLUMNS = (
-    "number", "name", "kind", "passed", "failures", "outcome", "reason", "exit_code", "clearance_min_m",
+    "number", "name", "kind", "variant", "passed", "failures", "outcome", "reason", "exit_code", "clearance_min_m",
     "tilt_max_deg", "uav_separation_min_m", "contacts", "arrival_s", "nominal_arrival_s", "delay_s", "goal_error_m",
     "duration_s", "step_time_p50_ms", "step_time_p99_ms", "infeasible_steps", "real_time_factor", "wall_s", "cpu_s",
     "replay", "position_rmse_m", "slack_max_m", "passage", "gap_m", "gap_named_m", "format",
@@ -41,19 +42,12 @@ def least_separation(system: SystemConfig) -> float:
     return system.parameters().separation(system.control.mpc.separation_share - SEPARATION_TOLERANCE)
 
 
-def judge(
-    mission: Path,
-    config: Path | None,
-    held_to: Limits,
-    passage: Passage | None,
-    flown: Flown,
-    run_dir: Path,
-) -> dict[str, Any]:
-    """Return the columns of a flight of ``mission`` by the system file ``config``, held to the limits ``held_to``.
+def judge(held_to: Limits, passage: Passage | None, plan: FlightPlan, flown: Flown, run_dir: Path) -> dict[str, Any]:
+    """Return the columns of a flight, held to the limits ``held_to``.
 
     ``passage``: of the standing obstacles; None: there is a way.
     """
-    as_flown = read_mission(mission, config)
+    as_flown = read_mission(plan.mission, plan.config, plan.settings)
     try:
         run = read_run(run_dir) if flown.summary else None
     except GcsError:

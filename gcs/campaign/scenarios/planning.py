@@ -16,7 +16,7 @@ from gcs.planning.schedule import Schedule
 def fly_planning(held_to: Limits, passage: Passage | None, plan: FlightPlan) -> Result:
     """Fly the mission of a ``plan`` on ideal tracking in this process; the arguments are those of its judgement."""
     wall, cpu = time.monotonic(), time.process_time()
-    mission = read_mission(plan.mission, plan.config)
+    mission = read_mission(plan.mission, plan.config, plan.settings)
     schedule = Schedule(mission)
     flight = PlanningFlight(mission, schedule.start)
     flight.fly()

@@ -2,7 +2,7 @@
 
 import hashlib
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -11,6 +11,7 @@ from rich.console import RenderableType
 
 from gcs.campaign.engine import PlanGenerator
 from gcs.campaign.flight import FlightPlan
+from gcs.campaign.grid import Grid, variants
 from gcs.campaign.result import Result
 from gcs.campaign.scenarios.generator import DEFAULT_KINDS, HELD_TO, generate
 from gcs.campaign.scenarios.judgement import COLUMNS, judge, least_separation
@@ -22,7 +23,7 @@ from gcs.config import read_system
 class Scenarios(PlanGenerator):
     """``count`` random scenarios of ``seed``, of ``kinds`` in turn; obstacles move at up to ``fastest`` (m/s).
 
-    ``planning``: on the planning level.
+    ``planning``: on the planning level. ``grid``: of settings, with each of which every scenario is flown.
     """
 
     count: int
@@ -32,6 +33,7 @@ class Scenarios(PlanGenerator):
     config: Path | None = None
     fastest: float = 2.0
     planning: bool = False
+    grid: Grid = field(default_factory=dict)
 
     what = "scenarios"
     passed_means = "passed"
@@ -62,12 +64,13 @@ class Scenarios(PlanGenerator):
             kind = self.kinds[(number - 1) % len(self.kinds)]
             scenario = generate(self.seed, number, kind, system, self.fastest)
             mission = out / "missions" / f"{scenario.name}.toml"
-            judgement = partial(judge, mission, config, HELD_TO, scenario.passage)
+            judgement = partial(judge, HELD_TO, scenario.passage)
             fly = partial(fly_planning, HELD_TO, scenario.passage) if self.planning else None
-            yield FlightPlan(
+            plan = FlightPlan(
                 number, scenario.name, mission, judgement, self.controller, config,
                 labels={"kind": kind}, files={mission: scenario.text}, fly=fly,
             )  # fmt: skip
+            yield from variants(plan, self.grid)
 
     def report(self, results: Sequence[Result], out: Path) -> tuple[list[RenderableType], list[Path]]:
         """Write ``results.csv``, ``timing.csv`` and the distribution."""

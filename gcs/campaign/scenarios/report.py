@@ -40,10 +40,11 @@ def report(results: Sequence[Result], out: Path, separation: float) -> tuple[lis
 
 def _kinds(results: Sequence[Result]) -> Table:
     rows = []
-    for kind in sorted({result.kind for result in results}):
-        chosen = [result for result in results if result.kind == kind]
+    for variant, kind in sorted({(result.variant, result.kind) for result in results}):
+        chosen = [result for result in results if (result.variant, result.kind) == (variant, kind)]
         rows.append(
             {
+                "settings": variant,
                 "kind": kind,
                 "flown": str(len(chosen)),
                 "passed": str(sum(r.passed for r in chosen)),
@@ -51,9 +52,11 @@ def _kinds(results: Sequence[Result]) -> Table:
                 "broken off": str(sum(r.outcome == "aborted" for r in chosen)),
                 "contacts": str(sum(bool(r.contacts) for r in chosen)),
                 "least clearance": extreme(chosen, "clearance_min_m", min, 3, "m"),
+                "largest angle": extreme(chosen, "tilt_max_deg", max, 1, "deg"),
+                "largest RMSE": extreme(chosen, "position_rmse_m", max, 3, "m"),
             }
         )
-    return text_table(rows, left=("kind",))
+    return text_table(rows, left=("settings", "kind"))
 
 
 def _distribution(results: Sequence[Result], quantities: Sequence[_Quantity]) -> Table:

@@ -2,7 +2,7 @@
 
 import hashlib
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -12,6 +12,7 @@ from rich.console import RenderableType
 from gcs.campaign.engine import PlanGenerator
 from gcs.campaign.flight import FlightPlan
 from gcs.campaign.folder import plain
+from gcs.campaign.grid import Grid, variants
 from gcs.campaign.result import Result
 from gcs.campaign.scenarios.generator import HELD_TO
 from gcs.campaign.scenarios.judgement import COLUMNS, judge, least_separation
@@ -70,7 +71,10 @@ def _mission(path: Path, config: Path | None) -> Course:
 
 @dataclass(frozen=True)
 class Suite(PlanGenerator):
-    """``courses`` of other people, with noise of ``seed`` where they do not say; ``planning``: on that level."""
+    """``courses`` of other people, with noise of ``seed`` where they do not say.
+
+    ``planning``: on that level; ``grid``: of settings, with each of which every course is flown.
+    """
 
     courses: tuple[Course, ...]
     seed: int
@@ -78,6 +82,7 @@ class Suite(PlanGenerator):
     controller: str = "idc"
     config: Path | None = None
     planning: bool = False
+    grid: Grid = field(default_factory=dict)
 
     what = "courses"
     passed_means = "passed"
@@ -103,12 +108,13 @@ class Suite(PlanGenerator):
             mission = out / "missions" / f"{name}.toml" if course.text else named(course.source).absolute()
             files = {mission: course.text} if course.text else {}
             files |= {out / "missions" / beside: text for beside, text in course.files.items()}
-            judgement = partial(judge, mission, config, HELD_TO, course.passage)
+            judgement = partial(judge, HELD_TO, course.passage)
             fly = partial(fly_planning, HELD_TO, course.passage) if self.planning else None
-            yield FlightPlan(
+            plan = FlightPlan(
                 number, name, mission, judgement, self.controller, config,
                 labels={"kind": course.kind}, files=files, fly=fly,
             )  # fmt: skip
+            yield from variants(plan, self.grid)
 
     def report(self, results: Sequence[Result], out: Path) -> tuple[list[RenderableType], list[Path]]:
         """Write ``results.csv``, ``timing.csv`` and the distribution."""

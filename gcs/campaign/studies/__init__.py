@@ -1,1 +1,0 @@
-"""One mission, flown with one parameter changed."""
