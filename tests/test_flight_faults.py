@@ -118,7 +118,7 @@ def test_wind_drag_is_compensated_along_trajectory(tmp_path):
 def test_growing_link_latency_ends_in_simultaneous_stop(fly_with_faults, tmp_path):
     """A link that carries less than is sent: what was sent last comes later and later."""
     cap = [fault(BandwidthCap(rate=5000.0), start=START, vehicles=[2])]
-    summary = fly_with_faults(short_figure(tmp_path, duration=12.0), cap, seed=33).summary
+    summary = fly_with_faults(short_figure(tmp_path, duration=12.0), cap, seed=33).figures
     assert summary["outcome"] == "aborted" and summary["landing"]["on_ground"] and summary["contacts"] == 0
     assert summary["uav_separation_min_m"] > 0.9
     assert max(summary["payload_tilt_max_deg"].values()) < 15.0
@@ -131,7 +131,7 @@ def test_vehicles_hold_when_links_are_lost_at_lift_off_in_wind(start, fly_with_f
         fault(Wind(velocity=(2.8, -2.8, 0.0), gust=0.5), start=0.0),
         fault(Partition(), start=start, direction="both"),
     ]
-    summary = fly_with_faults(short_figure(tmp_path), faults, seed=35).summary
+    summary = fly_with_faults(short_figure(tmp_path), faults, seed=35).figures
     assert summary["landing"]["on_ground"] and summary["contacts"] == 0
     assert summary["landing"]["speed_mps"] < 1.0
     assert summary["uav_separation_min_m"] > 0.6

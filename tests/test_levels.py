@@ -5,9 +5,10 @@ from dataclasses import replace
 
 import pytest
 from scenario_results import result_of
+from small_campaign import InThisThread
 
 from gcs.app.cli import main
-from gcs.campaign.engine import Campaign
+from gcs.campaign import engine
 from gcs.campaign.result import Result
 from gcs.campaign.scenarios.levels import contact_bound
 from gcs.campaign.scenarios.levels_page import COURSES, rows
@@ -22,16 +23,18 @@ def flown(monkeypatch):
     """Nothing is flown: planning takes 10 s of CPU, a full flight 40 s; course 5 has a contact in full."""
     flights = []
 
-    def fly(campaign, plan, worker):
+    def fly(plan, folder):
         planning = plan.fly is not None
         flights.append((planning, plan.number))
         hit = (
             {"failures": "contact", "contacts": 1, "clearance_min_m": 0.0} if plan.number == 5 and not planning else {}
         )
         figures = {"clearance_min_m": CLEARANCES[plan.number], "cpu_s": 10.0 if planning else 40.0, **hit}
-        return result_of(campaign, plan, **figures)
+        (folder / f".{plan.name}").mkdir(exist_ok=True)
+        return result_of(run_dir=str(folder / f".{plan.name}"), **figures)
 
-    monkeypatch.setattr(Campaign, "fly_one", fly)
+    monkeypatch.setattr(engine, "fly_plan", fly)
+    monkeypatch.setattr("gcs.app.campaigns.WorkerProcesses", InThisThread)
     return flights
 
 
