@@ -265,8 +265,8 @@ class _Grid:
         graph = csr_array(
             (
                 np.maximum(np.append(costs[is_edge], out), 0.0) + _TIE,
-                np.append(ends[is_edge], first),
-                begins,
+                np.append(ends[is_edge], first).astype(np.int32),  # as earlier versions of SciPy search them
+                begins.astype(np.int32),
             ),
             shape=(count + 2, count + 2),
         )
