@@ -6,7 +6,11 @@ import numpy as np
 import pytest
 from mission_files import MISSIONS
 
+from gcs.campaign.flight import FlightPlan
+from gcs.campaign.scenarios.passage import Passage
+from gcs.campaign.scenarios.planning import fly_planning
 from gcs.config.overrides import with_settings
+from gcs.mission.model import Limits
 from gcs.mission.read import read_mission
 from gcs.planning.flight import PlanningFlight
 from gcs.planning.outcome import planned
@@ -192,6 +196,21 @@ def test_flight_without_a_way_is_broken_off_and_lands(tmp_path):
     run = planned(flown(course(tmp_path, WALL, **{"guidance.navigator.give_up": 2.0})))
     assert run.summary["outcome"] == "aborted" and "closed" in run.summary["reason"]
     assert run.payload_position[-1, 2] > -0.3 and run.summary["clearance_min_m"] > HELD_TO
+
+
+def test_reason_and_the_gap_that_it_names_are_in_the_result(tmp_path):
+    (tmp_path / "course.toml").write_text(PATH + WALL)
+    settings = FEW_RAYS | {"guidance.navigator.give_up": 2.0}
+    plan = FlightPlan(1, "course", tmp_path / "course.toml", dict, settings=settings)
+    result = fly_planning(Limits(), Passage("impassable", None), plan)
+    assert result.outcome == "aborted" and "closed" in result.reason and result.failures == "gap"
+
+
+def test_failure_of_planning_is_a_result(tmp_path, monkeypatch):
+    monkeypatch.setattr(PlanningFlight, "step", lambda flight: 1 // 0)
+    (tmp_path / "course.toml").write_text(PATH)
+    result = fly_planning(Limits(), None, FlightPlan(1, "course", tmp_path / "course.toml", dict))
+    assert (result.outcome, result.exit_code) == ("failed", 1) and "ZeroDivisionError" in result.reason
 
 
 def test_sensors_see_the_obstacles_where_they_have_moved_to(mission):

@@ -1,8 +1,9 @@
 """Obstacle scenarios on the planning level: on ideal tracking, judged as flights are."""
 
 import time
+from typing import Any
 
-from gcs.campaign.flight import FlightPlan
+from gcs.campaign.flight import DONE, OUTSIDE_LIMITS, FlightPlan
 from gcs.campaign.result import Flown, Result, summary_columns
 from gcs.campaign.scenarios.judgement import judged
 from gcs.campaign.scenarios.passage import Passage
@@ -18,10 +19,16 @@ def fly_planning(held_to: Limits, passage: Passage | None, plan: FlightPlan) -> 
     wall, cpu = time.monotonic(), time.process_time()
     mission = read_mission(plan.mission, plan.config, plan.settings)
     schedule = Schedule(mission)
-    flight = PlanningFlight(mission, schedule.start)
-    flight.fly()
-    run = planned(flight)
-    summary = {**run.summary, "cpu_s": round(time.process_time() - cpu, 2)}
-    flown = Flown(0, summary, "", time.monotonic() - wall)
+    flight, run = PlanningFlight(mission, schedule.start), None
+    exit_code, summary, reason = OUTSIDE_LIMITS, dict[str, Any](), ""
+    try:
+        flight.fly()
+        run = planned(flight)
+    except Exception as error:
+        reason = f"{type(error).__name__}: {error}"
+    else:
+        summary = {**run.summary, "cpu_s": round(time.process_time() - cpu, 2)}
+        exit_code, reason = DONE, summary["reason"]
+    flown = Flown(exit_code, summary, reason, time.monotonic() - wall)
     columns = judged(mission, schedule, held_to, passage, flown, run)
     return Result(**{**summary_columns(flown), **columns})
