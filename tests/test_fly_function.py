@@ -4,6 +4,7 @@ import gc
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -264,6 +265,29 @@ def test_flights_that_take_turns_have_the_bytes_of_flights_alone(tmp_path):
             assert flight.result().summary["outcome"] == "completed"
     for number in range(2):
         assert same_bytes(tmp_path / f"alone{number}", tmp_path / f"turns{number}")
+
+
+def resident_mb():
+    return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 2**20
+
+
+@pytest.mark.slow
+@pytest.mark.long
+def test_fifty_flights_in_any_order_have_the_bytes_of_flights_alone_and_take_no_memory(tmp_path):
+    (tmp_path / "low_hop.toml").write_text(LOW_HOP)
+    choices = [(path, seed) for path in (HOP, tmp_path / "low_hop.toml") for seed in (3, 4, 5)]
+    for number, (path, seed) in enumerate(choices):
+        gcs_fly(path, tmp_path / f"alone{number}", "--seed", seed)
+    order, memory = np.random.default_rng(38).integers(len(choices), size=50), []
+    for number in order.tolist():
+        path, seed = choices[number]
+        run_dir = tmp_path / "flown"
+        assert gcs.fly(path, seed=seed, run_dir=run_dir).completed
+        assert same_bytes(run_dir, tmp_path / f"alone{number}")
+        shutil.rmtree(run_dir)
+        memory.append(resident_mb())
+    # The allocator keeps some pages; what a flight has on record is 20 MB and more.
+    assert max(memory[40:]) < max(memory[:10]) + 10.0, memory
 
 
 def test_flight_that_is_over_takes_no_memory_when_the_next_begins(tmp_path):

@@ -45,12 +45,12 @@ def compare(base, scratch, options):
         missions[tree] = {**write_missions(tree, folder, DURATION), FOREST[0]: forest}
     dearer = []
     for name in (*FLIGHTS, FOREST[0]):
-        options = ("--until", FOREST[1]) if name == FOREST[0] else ()
+        until = ("--until", FOREST[1]) if name == FOREST[0] else ()
         ratios = []
         for k in range(options.rounds):
             cost = {}
             for tree in (base, ROOT) if k % 2 else (ROOT, base):
-                cost[tree] = fly(tree, missions[tree][name], *options)["ms_per_second"]
+                cost[tree] = fly(tree, missions[tree][name], *until)["ms_per_second"]
             ratios.append(cost[ROOT] / cost[base])
         median = statistics.median(ratios)
         spread = f"{min(ratios):.2f} to {max(ratios):.2f}"
