@@ -23,7 +23,13 @@ _FILE_FORMAT = "%(asctime)s.%(msecs)03d %(levelname)-7s %(name)s: %(message)s"
 def add_log_arguments(parser: argparse.ArgumentParser) -> None:
     """Add ``-v``, ``-q`` and ``--log-file``."""
     group = parser.add_argument_group("logging")
-    group.add_argument("-v", "--verbose", action="count", default=0, help="log phases and modes; -vv: links and clocks")
+    group.add_argument(
+        "-v",
+        "--verbose",
+        action="count",
+        default=0,
+        help="all figures, phases and modes; -vv: links and clocks",
+    )
     group.add_argument("-q", "--quiet", action="count", default=0, help="log errors only, no warnings")
     group.add_argument("--log-file", type=_log_file, metavar="FILE", help="append the log, at every level, to FILE")
 

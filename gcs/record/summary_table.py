@@ -4,8 +4,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from rich import box
-from rich.console import Console, Group, RenderableType
+from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
@@ -16,11 +15,26 @@ _COLOUR_OF_OUTCOME = {Outcome.COMPLETED: "green", Outcome.INTERRUPTED: "yellow",
 
 
 def print_summary(
-    console: Console, summary: Mapping[str, Any], run_dir: Path | str, pictures: Sequence[Path] = ()
+    console: Console,
+    summary: Mapping[str, Any],
+    run_dir: Path | str,
+    pictures: Sequence[Path] = (),
+    *,
+    details: bool = False,
 ) -> None:
-    """Print what ``gcs fly`` prints at the end: the result in one line, each figure with its limit, the folder."""
+    """Print what ``gcs fly`` prints at the end: the result in one line, figures with their limits, the folder.
+
+    ``details``: those that developers read, too.
+    """
     console.print(_result(summary), soft_wrap=True)  # whole, however narrow the terminal
-    console.print(_figures(summary, run_dir, pictures))
+    console.print(_figures(summary))
+    if details:
+        console.print(_details(summary))
+    if summary["source"] == "estimate":
+        console.print(Text("The swarm kept no truth here: figures are the ground's own estimate.", "yellow"))
+    console.print(Text(f"Records   {run_dir}"), soft_wrap=True)
+    if pictures:
+        console.print(Text("Pictures  " + "  ".join(path.name for path in pictures)), soft_wrap=True)
 
 
 def _result(summary: Mapping[str, Any]) -> Text:
@@ -40,64 +54,65 @@ def _result(summary: Mapping[str, Any]) -> Text:
     return title
 
 
-def _figures(summary: Mapping[str, Any], run_dir: Path | str, pictures: Sequence[Path]) -> RenderableType:
-    limits = summary["limits"]
-    rmse, tilt = summary["position_rmse_m"], summary["payload_tilt_max_deg"]
-    steps, solver = summary["step_time_ms"], summary["solver"]
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    table.add_column("figure")
-    table.add_column("flown", justify="right")
-    table.add_column("limit", justify="right")
-    table.add_column("")
+def _figures(summary: Mapping[str, Any]) -> Table:
+    """Return what a flight is judged by."""
+    limits, tilt = summary["limits"], summary["payload_tilt_max_deg"]
+    table = _table()
 
-    def row(title: str, value: str, limit: str = "", sign: str = "", unit: str = "") -> None:
-        if limit not in limits:
-            table.add_row(title, value)
-            return
-        verdict = Text("held", style="green") if limits[limit]["held"] else Text("NOT HELD", style="bold red")
-        table.add_row(title, value, f"{sign} {limits[limit]['limit']:g} {unit}", verdict)
+    def row(title: str, value: float | None, digits: int, unit: str, limit: str, least: bool = False) -> None:
+        cells: list[str | Text] = [title, _number(value, digits, unit)]
+        if limit in limits:
+            verdict = Text("held", style="green") if limits[limit]["held"] else Text("NOT HELD", style="bold red")
+            cells += [f"at {'least' if least else 'most'} {limits[limit]['limit']:g} {unit}", verdict]
+        table.add_row(*cells)
 
-    row("position error, RMS", _number(rmse["total"], 3, "m"), "position_rmse", "<=", "m")
-    if rmse["total"] is not None:
-        row("  north / east / down", " / ".join(_number(rmse[axis], 3) for axis in "xyz") + " m")
-    # One limit holds for all three angles: it is shown beside the largest.
-    largest = max((angle for angle in tilt.values() if angle is not None), default=None)
-    row("payload angle, largest", _number(largest, 1, "deg"), "payload_tilt_deg", "<=", "deg")
-    angles = " / ".join(_number(tilt[axis], 1) for axis in ("roll", "pitch", "yaw"))
-    row("  roll / pitch / yaw", f"{angles} deg")
     if summary["clearance_min_m"] is not None or not limits.get("clearance", {"held": True})["held"]:
-        row("clearance to obstacles and fence", _number(summary["clearance_min_m"], 3, "m"), "clearance", ">=", "m")
-    row("UAVs apart", _number(summary["uav_separation_min_m"], 3, "m"), "uav_separation", ">=", "m")
+        row("least clearance", summary["clearance_min_m"], 3, "m", "clearance", least=True)
+    row("position error, RMS", summary["position_rmse_m"]["total"], 3, "m", "position_rmse")
+    # One limit holds for all three angles.
+    angles = [angle for angle in tilt.values() if angle is not None]
+    row("largest payload angle", max(angles, default=None), 1, "deg", "payload_tilt_deg")
     if "arrival" in limits:
-        row("from waypoints and landing, largest", _number(limits["arrival"]["value"], 3, "m"), "arrival", "<=", "m")
-    row("contacts", "-" if summary["contacts"] is None else str(summary["contacts"]))
-    step_times = " / ".join(_number(steps[name], 1) for name in ("p50", "p99", "max"))
-    row("control step, median / p99 / max", f"{step_times} ms")
-    if (parts := summary.get("step_parts_ms")) is not None:
-        for names in (("telemetry", "estimation", "perception"), ("planning", "control", "stop_plan"),
-                      ("monitoring", "recording", "setpoints")):  # fmt: skip
-            medians = " / ".join(_number(parts[name]["p50"], 1) for name in names)
-            row(f"  {' / '.join(names).replace('_', ' ')}, median", f"{medians} ms")
-    safety = summary.get("safety")
-    if safety and safety["payload_tracking_bound_m"] is not None:
-        bounds = f"{safety['payload_tracking_bound_m']:g} / {_number(safety['uav_tracking_bound_m'], 2)}"
-        errors = f"{_number(safety['payload_tracking_max_m'], 3)} / {_number(safety['uav_tracking_max_m'], 3)}"
-        row("off the plan, payload / UAVs, largest", f"{errors} m (margins allow {bounds} m)")
-        row("barrier missed by at most", _number(safety["slack_max_m"], 3, "m"))
-        share = f"{100.0 * safety['verified_steps'] / safety['steps']:.1f} %"
-        row("steps whose plan keeps the margin, by exact distances", share)
-        if safety["way_back_max_s"] is not None:
-            row("return to the reference once it was free", _number(safety["way_back_max_s"], 1, "s"))
-    if solver["infeasible_steps"]:
-        row("steps without a feasible solution", str(solver["infeasible_steps"]))
+        row("waypoints missed by", limits["arrival"]["value"], 3, "m", "arrival")
+    row("least distance of two UAVs", summary["uav_separation_min_m"], 3, "m", "uav_separation", least=True)
+    row("contacts", summary["contacts"], 0, "", "")
+    return table
 
-    shown: list[RenderableType] = [table]
-    if summary["source"] == "estimate":
-        shown.append(Text("The swarm kept no truth here: figures are the ground's own estimate.", "yellow"))
-    shown.append(Text(f"Records   {run_dir}"))
-    if pictures:
-        shown.append(Text("Pictures  " + "  ".join(path.name for path in pictures)))
-    return Group(*shown)
+
+def _details(summary: Mapping[str, Any]) -> Table:
+    """Return what tells a developer how the flight was flown."""
+    rmse, tilt, safety = summary["position_rmse_m"], summary["payload_tilt_max_deg"], summary["safety"]
+    steps, parts = summary["step_time_ms"], summary.get("step_parts_ms")
+    table = _table()
+
+    def row(title: str, values: Sequence[float | None], digits: int, unit: str) -> None:
+        table.add_row(title, " / ".join(_number(value, digits) for value in values) + f" {unit}")
+
+    row("position error, north / east / down", [rmse[axis] for axis in "xyz"], 3, "m")
+    row("payload angle, roll / pitch / yaw", [tilt[axis] for axis in ("roll", "pitch", "yaw")], 1, "deg")
+    row("control step, median / p99 / max", [steps[name] for name in ("p50", "p99", "max")], 1, "ms")
+    for name, part in (parts or {}).items():
+        row(f"  {name.replace('_', ' ')}, median / p99", [part["p50"], part["p99"]], 1, "ms")
+    if safety and safety["payload_tracking_bound_m"] is not None:
+        for name in ("payload", "uav"):
+            values = [safety[f"{name}_tracking_max_m"], safety[f"{name}_tracking_bound_m"]]
+            row(f"{name.replace('uav', 'UAVs')} off the plan, largest / bound", values, 3, "m")
+        row("barrier violated by at most", [safety["slack_max_m"]], 3, "m")
+        row("steps verified to keep the margin", [100.0 * safety["verified_steps"] / safety["steps"]], 1, "%")
+        if safety["way_back_max_s"] is not None:
+            row("longest recovery to the reference", [safety["way_back_max_s"]], 1, "s")
+    row("steps without a feasible solution", [summary["solver"]["infeasible_steps"]], 0, "")
+    return table
+
+
+def _table() -> Table:
+    """Return one without a title line; its columns fit 80 characters."""
+    table = Table(box=None, show_header=False, padding=(0, 2, 0, 0))
+    table.add_column()
+    table.add_column(justify="right")
+    table.add_column()
+    table.add_column()
+    return table
 
 
 def void_guarantee(summary: Mapping[str, Any]) -> str:

@@ -108,7 +108,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print(json.dumps({"run_dir": str(result.run_dir), **result.summary}, indent=2))
     elif result.flown:
-        print_summary(console, result.summary, result.run_dir, pictures)
+        print_summary(console, result.summary, result.run_dir, pictures, details=arguments.verbose > 0)
     if mission.faults:
         from gcs.record.faults import fault_notes
 
