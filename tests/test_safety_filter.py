@@ -1,5 +1,7 @@
 """Plans of the safety filter from step to step: when they are made and kept, what they return to and report."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from avoidance_checks import MARGIN
@@ -164,3 +166,23 @@ def test_lag_of_a_team_that_is_to_rest_is_its_horizontal_distance_from_there():
         lags.append(avoided.safety.report.lag)
         assert lags[-1] == pytest.approx(np.hypot(*before.derivatives(np.array([time]))[0, 0, :2]), abs=1e-9)
     assert max(lags) > 0.3
+
+
+def test_stop_is_flown_in_place_of_a_plan_that_does_not_keep_the_barrier(monkeypatch):
+    """By exact distances both keep the margin, up to the horizon; the plan's slack says that it does not beyond."""
+    avoided, mission = avoidance([sphere("s", (8.0, 0.0, -5.0))]), straight(16.0)
+    flown = fly(avoided, mission, 3.0)
+    planner, end = avoided.safety.planner, flown.times[-1] + 3.0 * STEP + avoided.safety.settings.chain.times[-1:]
+    solve = planner.solve
+
+    def with_slack(start, reference, *others):
+        plan = solve(start, reference, *others)
+        return replace(plan, slack=0.3) if reference[1].any() else plan
+
+    moving = avoided.step(flown.times[-1] + STEP, mission).derivatives(end)
+    assert avoided.safety.report.verified and np.linalg.norm(moving[1]) > 0.3
+    monkeypatch.setattr(planner, "solve", with_slack)
+    stopped = avoided.step(flown.times[-1] + 3.0 * STEP, mission).derivatives(end)
+    report = avoided.safety.report
+    assert report.qp_count and report.verified and report.slack == 0.3
+    assert np.linalg.norm(stopped[1]) < 0.1

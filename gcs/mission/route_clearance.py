@@ -33,7 +33,7 @@ def is_clear(mission: Mission, standing: Sequence[Obstacle]) -> bool:
     if not standing:
         return True
     space = free_space(mission, standing)
-    path = np.vstack([[0.0, 0.0, -mission.system.resting_altitude], _path(mission)])
+    path = np.vstack([[0.0, 0.0, -mission.system.resting_altitude], route_places(mission)])
     return keeps_margin(space, path[:-1], path[1:])
 
 
@@ -74,7 +74,7 @@ def curve_places(curve: Lissajous) -> Array:
     return np.stack([a * np.sin(phase), -b * np.sin(2.0 * phase), np.full(len(phase), -curve.altitude)], axis=1)
 
 
-def _path(mission: Mission) -> Array:
+def route_places(mission: Mission) -> Array:
     """Return the places (P, 3) between which the route leads straight, of a curve many."""
     if not isinstance(mission.reference, Route):
         return curve_places(mission.reference)

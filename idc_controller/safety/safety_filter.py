@@ -179,12 +179,17 @@ class AvoidanceFilter:
     def _safer(
         self, plan: Plan, clearance: float, start: Array, crackle: Array, ahead: Array, obstacles: PredictedObstacles
     ) -> tuple[Plan, float, int]:
-        """Return ``plan`` or, where that keeps more than its ``clearance`` (m), a stop; its clearance; QPs solved."""
+        """Return ``plan`` or a stop that is safer; its clearance (m); QPs solved.
+
+        That is one that keeps more than the ``clearance`` of the plan or, where both keep the margin, less slack: a
+        plan with slack does not keep the barrier, and keeps the margin up to its horizon only.
+        """
         planner = self.planner
         rest, begin = self._rest(start, ahead)
         stop, count = self._refine(begin, crackle, rest, *_absolute(rest, planner.free(begin)), obstacles, 2)
         kept = -math.inf if stop is None else self._clearance(rest, stop, obstacles)
-        if stop is None or kept <= clearance:
+        margin_kept = min(kept, clearance) >= self.settings.margin - VERIFIED
+        if stop is None or not (stop.slack < plan.slack if margin_kept else kept > clearance):
             return plan, clearance, count
         # The slack stays that of the plan: by it the progress rests.
         deviation = stop.deviation + (rest - ahead).transpose(1, 0, 2)

@@ -28,6 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--config", type=Path, metavar="C", help="system file in place of the mission's")
     add_settings(parser)
     parser.add_argument("--json", action="store_true", help="print legs, notes and reasons as JSON")
+    parser.add_argument("--plot", type=Path, metavar="FILE", help="draw the map of the mission, too: .png, .svg, .pdf")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -47,6 +48,11 @@ def run(arguments: argparse.Namespace) -> int:
             print(json.dumps({"mission": str(arguments.mission), "accepted": False, "reasons": refused.reasons}))
         raise
     mission = dataclasses.replace(mission, notes=(*mission.notes, *found.lines))
+    if arguments.plot is not None:
+        with importing():
+            from gcs.view.mission_map import write_map
+
+        write_map(mission, arguments.plot)
     if arguments.json:
         print(json.dumps(_document(mission), indent=2))
     else:
