@@ -5,6 +5,9 @@ import numpy as np
 from idc_controller.parameters import SystemParameters, polygon_attachments
 from idc_controller.payload_hull import PayloadHull
 
+UNSYMMETRIC = np.array([[0.5, 0.4, -0.25], [0.3, -0.5, -0.2], [-0.5, -0.3, -0.25], [-0.4, 0.5, -0.1]])
+"""Attachment points on the payload (4, 3) (m, payload frame)."""
+
 
 def system(n=4):
     """Table I for ``n`` UAVs."""

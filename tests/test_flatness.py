@@ -8,8 +8,9 @@ from flights import MISSIONS
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from nonlinear_motion import uav_positions
+from paper_system import UNSYMMETRIC
+from plain_flatness import Wave
 from plain_flatness import flat_reference as plain_reference
-from test_linear_model import UNSYMMETRIC
 
 from gcs.config import read_system
 from idc_controller.model.drag import Air
@@ -20,17 +21,6 @@ from idc_controller.trajectory.flatness import Load, flat_reference
 
 CONFIG = read_system(MISSIONS / "system.toml")
 TIMES = np.linspace(0.3, 12.0, 14)
-
-
-class Wave:
-    """A smooth three-dimensional curve with all its derivatives; as wild as a figure eight at 3 m/s2."""
-
-    amplitude = np.array([6.0, -3.0, 0.4])
-    frequency = np.array([0.5, 1.0, 0.7])
-
-    def derivatives(self, times, order=4):
-        phase = np.asarray(times)[:, None] * self.frequency
-        return np.stack([self.amplitude * self.frequency**k * np.sin(phase + k * np.pi / 2) for k in range(order + 1)])
 
 
 def systems():

@@ -8,9 +8,9 @@ import pytest
 from filterpy.kalman import KalmanFilter
 from flights import MISSIONS
 from paper_system import system
+from plain_flatness import Wave
 from scipy.linalg import expm
 from scipy.stats import chi2
-from test_flatness import Wave
 
 from gcs.config import read_system
 from gcs.config.flight_settings import DEFAULTS

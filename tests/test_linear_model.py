@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from flights import MISSIONS
 from nonlinear_motion import uav_positions, uav_velocities
+from paper_system import UNSYMMETRIC
 from scipy.linalg import expm
 
 from gcs.config import read_system
@@ -14,7 +15,6 @@ from idc_controller.model.nonlinear import Inputs, SystemState, accelerations
 from idc_controller.rotations import euler_from_quaternion, quaternion_from_euler
 
 CONFIG = read_system(MISSIONS / "system.toml")
-UNSYMMETRIC = np.array([[0.5, 0.4, -0.25], [0.3, -0.5, -0.2], [-0.5, -0.3, -0.25], [-0.4, 0.5, -0.1]])
 
 
 def parameters_of(layout):

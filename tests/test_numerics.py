@@ -92,7 +92,7 @@ def test_proxsuite_leaves_its_build_for_avx512_out():
 _DISTANCES = """
 import sys
 import numpy as np
-from test_shapes import EXAMPLES
+from bodies import EXAMPLES
 from idc_controller.geometry.obstacles import Bodies
 rng = np.random.default_rng(1)
 distances = Bodies(EXAMPLES).distance(5.0 * rng.normal(size=(500, 3)), rng.normal(size=(len(EXAMPLES), 3)))

@@ -6,6 +6,7 @@ from statistics import NormalDist
 import numpy as np
 import pybullet
 import pytest
+from bodies import random_scene
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -29,36 +30,12 @@ REACH = 10.0
 LEVEL = (1.0, 0.0, 0.0, 0.0)
 HIGH = (0.0, 0.0, -50.0)
 """Out of reach of the ground."""
-ROCK = MeshHull("rock.stl", ((-1.0, -0.6, 0.5), (0.9, -0.7, 0.5), (1.0, 0.8, 0.5), (-0.8, 0.7, 0.4), (0.1, 0.0, -0.5)))
 
 OCTAHEDRON = MeshHull("octahedron.stl", ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)))
 
 
 def hits(directions, place, bodies, attitude=LEVEL, reach=REACH):
     return first_hits(np.array(directions, dtype=float), np.array([*place, *attitude]), reach, *RayBodies.of(bodies))
-
-
-def random_shape(rng, kind=None):
-    angles = dict(zip(("roll", "pitch", "yaw"), rng.uniform(-3.0, 3.0, 3), strict=True))
-    size = tuple(rng.uniform(0.2, 4.0, 3))
-    return {
-        0: lambda: Sphere(rng.uniform(0.1, 1.5)),
-        1: lambda: Pole(rng.uniform(0.05, 0.6), rng.uniform(1.0, 15.0)),
-        2: lambda: Wall(size, rng.uniform(-3.0, 3.0)),
-        3: lambda: Capsule(rng.uniform(0.1, 0.5), rng.uniform(0.5, 6.0), **angles),
-        4: lambda: Box(size, **angles),
-        5: lambda: Mesh(ROCK, scale=rng.uniform(0.3, 2.0), **angles),
-    }[rng.integers(6) if kind is None else kind]()
-
-
-def random_scene(seed, count, kind=None, high=-50.0, nearest=1.0):
-    """Bodies about a place that is in none of them."""
-    rng, scene = np.random.default_rng(seed), []
-    while len(scene) < count:
-        shape, offset = random_shape(rng, kind), rng.normal(0.0, 4.0, 3)
-        if np.linalg.norm(offset) > shape.reach + nearest:
-            scene.append((shape, (offset[0], offset[1], offset[2] + high)))
-    return scene
 
 
 def random_directions(rng, count):

@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from bodies import random_scene
 from range_scene import return_variance
-from test_range_sensor import random_scene
 
 from gcs.config import RangeSensorConfig
 from idc_controller.estimation.measurements import Attitude, Position

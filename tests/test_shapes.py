@@ -8,23 +8,15 @@ import coal
 import numpy as np
 import pytest
 import shapely
+from bodies import EXAMPLES
 
 from idc_controller.errors import ShapeError
-from idc_controller.geometry.box import Box, Wall
-from idc_controller.geometry.capsule import Capsule
-from idc_controller.geometry.mesh import Mesh, MeshHull
+from idc_controller.geometry.box import Wall
 from idc_controller.geometry.obstacles import Bodies, PointGroups
-from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.shapes import SHAPES, shape_class
-from idc_controller.geometry.sphere import Sphere
 
 pytestmark = pytest.mark.numerics
 
-ROCK = MeshHull("rock.stl", ((-1.0, -0.6, 0.5), (0.9, -0.7, 0.5), (1.0, 0.8, 0.5), (-0.8, 0.7, 0.4), (0.1, 0.0, -0.5)))
-EXAMPLES = [
-    Sphere(0.6), Pole(0.3, 4.0), Wall((0.4, 3.0, 2.0), 0.4), Capsule(0.3, 1.5, roll=0.4, pitch=-0.7, yaw=2.0),
-    Box((0.5, 1.0, 2.0), roll=0.3, pitch=0.5, yaw=-1.0), Mesh(ROCK, scale=1.2, roll=0.1, pitch=0.5, yaw=1.0),
-]  # fmt: skip
 HERE = np.array([1.0, -2.0, -4.0])
 OTHER_BATCH = 1e-13
 """Most that distances (m) of some 10 m differ by between batch sizes: BLAS may sum each size in an order of its own."""
