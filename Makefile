@@ -5,7 +5,7 @@ MISSION ?= missions/figure_eight_spheres.toml
 BASE ?= HEAD~1
 # The OpenBLAS kernels of test-numerics, and the tests that it runs.
 KERNELS ?= Sandybridge Nehalem
-NUMERICS = $(shell grep -l pytest.mark.numerics tests/test_*.py)
+NUMERICS = $(shell grep -rl pytest.mark.numerics tests --include=test_*.py)
 VENV := .venv
 INSTALLED := $(VENV)/installed
 COMPILED := $(VENV)/compiled
@@ -64,7 +64,7 @@ test-lowest: $(INSTALLED)
 
 # Of the last commit, whose version has a dated entry in the changelog.
 release: $(INSTALLED)
-	$(VENV)/bin/python -m pytest -n 0 tests/test_packaging.py
+	$(VENV)/bin/python -m pytest -n 0 tests/project/test_packaging.py
 	tests/packaging/wheel $(VENV)/bin/python
 
 # Any that the processor has; those that sum as the pinned ones do, such as Zen, prove nothing.

@@ -8,7 +8,7 @@ library    choice                         where it is made
 OpenBLAS   kernels "Haswell", one thread  :func:`choose_kernels`: of numpy and of scipy, as they are loaded
 numpy      loops up to AVX2               :func:`choose_kernels`, as it is loaded
 proxsuite  the build for AVX2             ``idc_controller/qp/__init__.py``
-numba      any                            makes no difference (``tests/test_numerics.py``)
+numba      any                            makes no difference (``tests/project/test_numerics.py``)
 =========  =============================  ===================================================================
 
 Imports nothing that loads one of them.

@@ -17,7 +17,7 @@ _TURN = math.sqrt(3.0) - 1.0
 """Share of a turn from each scan to the next: the rays of several scans interleave.
 
 Chosen of several irrational numbers by the largest gap in 1 to 32 successive scans, as it stands in
-tests/test_ray_pattern.py; those that the golden ratio generates only repeat the lattice.
+tests/perception/test_ray_pattern.py; those that the golden ratio generates only repeat the lattice.
 """
 
 

@@ -12,7 +12,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path.insert(0, str(Path(__file__).parents[1] / "support"))
 
 from commit_tree import tree_of
 from measure import FLIGHTS, ROOT, fly, use_one_core, write, write_missions

@@ -1,0 +1,265 @@
+"""The failsafe table: complete, documented, and the more severe reaction wins."""
+
+import math
+import re
+from contextlib import closing
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from gcs.config import read_system
+from gcs.config.flight_settings import DEFAULTS
+from gcs.flight.alarms import AlarmLog
+from gcs.flight.command_sequences import AutonomousLanding
+from gcs.flight.condition import Check, Moment, Reaction, System, Trigger
+from gcs.flight.detectors import MonitorAlarm
+from gcs.flight.failsafe import Failsafe
+from gcs.flight.failsafe_state import FailsafeState
+from gcs.flight.guarantee import GuaranteeAlarm
+from gcs.flight.impact_monitor import ImpactMonitor
+from gcs.flight.listing import listing
+from gcs.flight.payload_monitor import PayloadMonitor
+from gcs.flight.phase import Phase
+from gcs.flight.plan_monitor import PlanMonitor
+from gcs.mavlink.vehicle_link import AddressConflict
+from idc_controller.geometry.sphere import Sphere
+from idc_controller.perception.standing_obstacles import MapObstacle, StandingObstacles
+from idc_controller.trajectory.trajectory import RestTrajectory
+from vehicle_sim.swarm import Swarm
+
+DOCS = Path(__file__).parents[2] / "docs"
+PAGE, SETTINGS = DOCS / "failsafes.md", DOCS / "settings.md"
+
+
+def link(number, *, age=0.0, attitude_age=0.0, latency=0.0, armed=True, offboard=True):
+    """Link of a vehicle at ground time 100 s."""
+    clock = SimpleNamespace(delay=latency, round_trip_max=math.inf, least_delay=lambda window, now: 0.0)
+    status = SimpleNamespace(
+        armed=armed, offboard=offboard, custom_mode=0, last_text="", parameters={"COM_OF_LOSS_T": 0.46}
+    )
+    return SimpleNamespace(
+        system_id=number, telemetry_received_at=100.0 - age,
+        complete_telemetry_received_at=100.0 - max(age, attitude_age), received_at=100.0 - age,
+        clock=clock, status=status, address=("10.0.0.7", number), conflict=AddressConflict(),
+    )  # fmt: skip
+
+
+def state(*links, lost=()):
+    estimator = SimpleNamespace(health=SimpleNamespace(isolation=SimpleNamespace(uavs_without_position=lost)))
+    system = System(
+        SimpleNamespace(links=links),
+        estimator,
+        SimpleNamespace(blocked=lambda time: ""),
+        None,
+        None,
+        PlanMonitor(4),
+        None,
+    )
+    return FailsafeState(system, AlarmLog())
+
+
+def evaluated(flight, check=Check.LINK, phase=Phase.FLY):
+    return flight.evaluate(check, Moment(phase, 50.0, 100.0))
+
+
+def test_page_is_made_from_the_tables():
+    assert PAGE.read_text(encoding="utf-8") == listing(), "run python -m gcs.flight.listing > docs/failsafes.md"
+
+
+def test_codes_are_unique():
+    codes = [row.code for row in (*Failsafe, *MonitorAlarm, *GuaranteeAlarm)]
+    assert len(codes) == len(set(codes))
+    assert all(row.condition is not None for row in Failsafe if row.check is not Check.EVENT)
+
+
+def test_healthy_links_raise_no_failsafe():
+    assert evaluated(state(*(link(i) for i in range(1, 5)))) is None
+
+
+@pytest.mark.parametrize(
+    ("links", "failsafe", "reason", "cut_off"),
+    [
+        ([link(1), link(2, age=0.5)], Failsafe.TELEMETRY_LOST, "vehicle 2 sends no telemetry for 0.46 s", 0.5),
+        ([link(1, age=0.5), link(2, age=0.6)], Failsafe.ALL_TELEMETRY_LOST, "no vehicle sends telemetry", 0.46),
+        (
+            [link(1), link(2, latency=0.13)],
+            Failsafe.LINK_LATENCY_EXCEEDED, "link latency to vehicle 2 is 130 ms (limit 110 ms)", 0.13,
+        ),
+        ([link(1), link(2, armed=False)], Failsafe.DISARMED_IN_FLIGHT, "vehicle 2 has disarmed itself", 0.0),
+        ([link(1, offboard=False), link(2)], Failsafe.OFFBOARD_LEFT, "vehicle 1 has left OFFBOARD", 0.46),
+        (
+            [link(1, attitude_age=0.5), link(2), link(3, attitude_age=0.5)],
+            Failsafe.TELEMETRY_INCOMPLETE, "vehicles 1 and 3 do not send all telemetry", 0.0,
+        ),
+    ],
+)  # fmt: skip
+def test_link_failsafe_names_vehicle_value_and_limit(links, failsafe, reason, cut_off):
+    found, trigger = evaluated(state(*links))
+    assert found is failsafe
+    assert trigger.reason.startswith(reason)
+    assert trigger.cut_off == pytest.approx(cut_off)
+
+
+@pytest.mark.parametrize(("lost", "failsafe"), [((1,), None), ((0, 1), Failsafe.STATES_UNKNOWN)])
+def test_states_of_two_vehicles_unknown_is_a_failsafe(lost, failsafe):
+    found = evaluated(state(link(1), link(2), lost=lost))
+    assert (found and found[0]) is failsafe
+
+
+def test_one_vehicle_without_attitude_is_no_failsafe():
+    assert evaluated(state(link(1, attitude_age=0.5), link(2))) is None
+
+
+def test_first_vehicle_counts_where_reactions_are_equal():
+    found, trigger = evaluated(state(link(1, offboard=False), link(2, age=0.5), link(3)))
+    assert (found, trigger.vehicles) == (Failsafe.OFFBOARD_LEFT, (0,))
+
+
+def test_one_vehicle_counts_before_several_where_reactions_are_equal():
+    partial = [link(number, attitude_age=0.5) for number in (1, 2)]
+    found, trigger = evaluated(state(*partial))
+    assert (found, trigger.vehicles) == (Failsafe.TELEMETRY_INCOMPLETE, (0, 1))
+    flight = state(*partial, link(3, age=0.5))
+    found, trigger = evaluated(flight)
+    assert (found, trigger.vehicles) == (Failsafe.TELEMETRY_LOST, (2,))
+    flight.raise_failsafe(50.0, Phase.FLY, found, trigger)
+    flight.raise_failsafe(50.0, Phase.FLY, *evaluated(state(*partial)))
+    assert [alarm.source for alarm in flight.alarms.alarms] == ["vehicle 3", "team"]
+
+
+def test_more_severe_reaction_wins_and_a_milder_one_is_only_recorded():
+    flight = state(link(1))
+    raised = [
+        flight.raise_failsafe(time, Phase.FLY, failsafe, Trigger(failsafe.code))
+        for time, failsafe in ((1.0, Failsafe.NO_PATH), (2.0, Failsafe.TELEMETRY_LOST), (3.0, Failsafe.INTERRUPTED))
+    ]
+    assert raised == [Reaction.BRAKE_AND_LAND, Reaction.AUTONOMOUS_LANDING, Reaction.NONE]
+    assert (flight.reason, flight.time, flight.interrupted) == ("no_path", 1.0, True)
+    assert [alarm.code for alarm in flight.alarms.alarms] == [
+        Failsafe.NO_PATH, Failsafe.TELEMETRY_LOST, Failsafe.INTERRUPTED
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("phase", "reaction"),
+    [
+        (Phase.CHECK, Reaction.REFUSE),
+        (Phase.SPOOL_UP, Reaction.DISARM),
+        (Phase.LAND, Reaction.AUTONOMOUS_LANDING),
+    ],
+)
+def test_reaction_on_the_ground_is_to_stay_there(phase, reaction):
+    assert Failsafe.TELEMETRY_LOST.reaction.in_phase(phase) is reaction
+    assert Failsafe.DATA_LINK_LOST.reaction.in_phase(phase) is Reaction.END_CONTROL
+
+
+def test_threshold_follows_its_setting():
+    assert "for 0.46 s" in listing()
+    late = state(link(1), link(2, age=DEFAULTS.failsafe.telemetry_timeout - 0.01))
+    assert evaluated(late) is None
+
+
+def test_data_link_loss_waits_for_a_pending_descent():
+    flight = state(link(1, age=4.0))
+    pending = AutonomousLanding(SimpleNamespace(command_all=lambda *command: None), 40.0)
+    moment = Moment(Phase.AUTONOMOUS_LANDING, 50.0, 100.0, pending)
+    assert flight.evaluate(Check.STEP, moment) is None
+    found, _ = evaluated(flight, Check.STEP, Phase.AUTONOMOUS_LANDING)
+    assert found is Failsafe.DATA_LINK_LOST
+
+
+def test_data_link_of_vehicles_that_never_answered_is_not_lost():
+    assert evaluated(state(link(1, age=math.inf)), Check.STEP, Phase.CONNECT) is None
+
+
+def test_set_point_loss_of_the_vehicles_follows_the_telemetry_timeout(tmp_path):
+    path = tmp_path / "system.toml"
+    path.write_text("[flight.failsafe]\ntelemetry_timeout = 0.6\n")
+    config = read_system(path)
+    assert config.flight.failsafe.telemetry_timeout == 0.6
+    with closing(Swarm(config, seed=1)) as swarm:
+        assert [vehicle.parameters["COM_OF_LOSS_T"] for vehicle in swarm.vehicles] == pytest.approx([0.6] * 4)
+    assert "telemetry_timeout" in SETTINGS.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("phase", "height", "below", "stalled"),
+    [
+        (Phase.CLIMB, 0.05, 0.61, True),
+        (Phase.CLIMB, 0.05, 0.59, False),
+        (Phase.CLIMB, 0.5, 0.61, False),  # it has risen
+        (Phase.LAND, 0.05, 0.61, False),
+    ],
+)
+def test_climb_that_does_not_rise_is_ended_when_its_plan_has_risen(phase, height, below, stalled):
+    config = read_system()
+    payload = PayloadMonitor(config.parameters(), config.flight)
+    estimate = SimpleNamespace(x=np.zeros(60))
+    estimate.x[2] = -config.parameters().payload.below - height
+    plan = PlanMonitor(4)
+    team = SimpleNamespace(links=[], parameters=config.parameters())
+    system = System(team, None, None, payload, None, plan, None, None, config.flight.failsafe, 0.6)
+    moment = Moment(phase, 50.0, 100.0, estimate=estimate)
+    assert Failsafe.CLIMB_STALLED.condition(system, moment) is None  # no plan yet
+    plan.compare(50.0, np.zeros((4, 3)), payload_down=estimate.x[2] - below)
+    trigger = Failsafe.CLIMB_STALLED.condition(system, moment)
+    assert (trigger is not None) == stalled
+    if trigger is not None:
+        assert trigger.reason == "the payload does not rise: it is 0.6 m below its plan (limit 0.6 m)"
+
+
+def test_obstacle_over_the_landing_place_is_named_with_the_missing_metres():
+    config = read_system()
+    parameters = config.parameters()
+    payload = PayloadMonitor(parameters, config.flight)
+    estimate = SimpleNamespace(x=np.zeros(60))
+    estimate.x[2] = -3.0
+    rest = RestTrajectory(np.array([4.0, 0.0, -parameters.payload.below]), 20.0)
+    ball = MapObstacle("ball", Sphere(0.5), np.array([4.0, 1.6, -2.0]))
+    on_map = SimpleNamespace(predict=lambda times: StandingObstacles([ball]).predict(len(times), None))
+    team = SimpleNamespace(links=[], parameters=parameters)
+    system = System(team, None, None, payload, None, PlanMonitor(4), None, on_map, config.flight.failsafe, 0.6)
+    moment = Moment(Phase.LAND, 50.0, 100.0, estimate=estimate, descent=(50.0, rest))
+    reason = Failsafe.DESCENT_STALLED.condition(system, moment).reason
+    found = re.fullmatch(
+        r"the payload does not descend: at the landing place, "
+        r"ball is (0\.\d\d) m from the formation there, (0\.\d\d) m are missing",
+        reason,
+    )
+    assert found and float(found[1]) + float(found[2]) == pytest.approx(0.6, abs=0.011)
+    assert float(found[1]) == pytest.approx(1.6 - 0.5 - 0.65, abs=0.1)
+    system = System(team, None, None, payload, None, PlanMonitor(4), None, None, config.flight.failsafe, 0.6)
+    assert Failsafe.DESCENT_STALLED.condition(system, moment).reason == "the payload does not descend"
+
+
+def impact(height, counts, payload=0, monitor=None):
+    """(trigger of IMPACT, the monitor) at a ``height`` (m), by the counts of the vehicles and of the payload unit."""
+    config = read_system()
+    estimate = SimpleNamespace(x=np.zeros(60))
+    estimate.x[2] = -config.parameters().payload.below - height
+    links = [
+        SimpleNamespace(system_id=i, status=SimpleNamespace(clipping=count, payload_clipping=payload))
+        for i, count in enumerate(counts, start=1)
+    ]
+    team = SimpleNamespace(links=links, parameters=config.parameters())
+    monitor = monitor or ImpactMonitor([])
+    monitor.links = links
+    system = System(team, None, None, PayloadMonitor(config.parameters(), config.flight), None, None, monitor)
+    return Failsafe.IMPACT.condition(system, Moment(Phase.FLY, 50.0, 100.0, estimate=estimate)), monitor
+
+
+def test_accelerometer_that_clips_clear_of_the_ground_is_an_impact():
+    before, monitor = impact(2.0, [0, 3, 0, 0])  # of the flight before
+    assert before is None
+    hit, _ = impact(2.0, [0, 4, 0, 0], monitor=monitor)
+    assert hit.vehicles == (1,) and hit.reason == "an impact: the accelerometer of vehicle 2 clipped"
+    hit, _ = impact(2.0, [0, 3, 0, 0], payload=1, monitor=monitor)
+    assert (hit.vehicles, hit.source) == ((), "payload") and "accelerometer of the payload" in hit.reason
+
+
+def test_touch_down_is_no_impact():
+    _, monitor = impact(2.0, [0, 0, 0, 0])
+    assert impact(0.01, [2, 2, 2, 2], payload=5, monitor=monitor)[0] is None
+    assert impact(2.0, [2, 2, 2, 2], payload=5, monitor=monitor)[0] is None  # lifted again
