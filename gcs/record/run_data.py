@@ -138,13 +138,14 @@ class RunData:
     @cached_property
     def clearance(self) -> Array:
         """Distance from the formation to the nearest of the barriers (T,) (m), NaN where unknown."""
-        return self._formation(slice(None)).clearance(self.barriers)
+        return self.formation(slice(None)).clearance(self.barriers)
 
     def clearances(self, rows: slice) -> Array:
         """Return the distance to each of the barriers (K, number of them) (m) in some rows, NaN where unknown."""
-        return self._formation(rows).clearances([replace(b, position=b.position[rows]) for b in self.barriers])
+        return self.formation(rows).clearances([replace(b, position=b.position[rows]) for b in self.barriers])
 
-    def _formation(self, rows: slice) -> Formation:
+    def formation(self, rows: slice) -> Formation:
+        """Return the formation at some rows."""
         return Formation(
             self.payload_position[rows], self.payload_quaternion[rows], self.uav_position[rows],
             self.uav_quaternion[rows], self.payload, self.setting("uav", "disc_radius"),
@@ -156,7 +157,7 @@ class RunData:
         level = np.tile([1.0, 0.0, 0.0, 0.0], (len(places), len(upright), 1))
         uavs = places[:, None] + upright
         return replace(
-            self._formation(slice(0)),
+            self.formation(slice(0)),
             payload_position=places, payload_quaternion=level[:, 0], uav_position=uavs, uav_quaternion=level,
         )  # fmt: skip
 

@@ -1,0 +1,64 @@
+"""The report page of a run: one self-contained ``report.html`` in the run folder."""
+
+import html
+import json
+from contextlib import suppress
+from pathlib import Path
+
+from gcs.errors import UnusableInput
+from gcs.record.run_data import RunData
+from gcs.view.page_data import PageData
+
+REPORT = "report.html"
+_HERE = Path(__file__).parent
+
+
+def write_report(run: RunData, other: RunData | None = None, path: Path | None = None) -> Path:
+    """Write the report page of a run, or of two that are compared, to the first one's folder or ``path``; return it.
+
+    Raises :class:`UnusableInput` where nothing was flown, or where the page cannot be written.
+    """
+    runs = [run] if other is None else [run, other]
+    for each in runs:
+        if len(each.time) == 0:
+            raise UnusableInput(f"{each.folder}: nothing was flown: there is no row in truth.csv or estimate.csv")
+    documents = [PageData(each).document() for each in runs]
+    meta = documents[0][0]["meta"]
+    title = f"{meta['mission']}, seed {meta['seed']}: {meta['outcome']}"
+    if other is not None:
+        second = documents[1][0]["meta"]
+        title += f", compared with {second['mission']}, seed {second['seed']}: {second['outcome']}"
+    data = "\n".join(
+        f'<script type="application/json" class="run-header">{_json(header)}</script>\n'
+        f'<script type="application/octet-stream" class="run-blob">{blob}</script>'
+        for header, blob in documents
+    )
+    return _write(run.folder / REPORT if path is None else path, page(title, data))
+
+
+def page(title: str, data: str) -> str:
+    """Return the page with its script and style, around ``data`` (HTML)."""
+    parts = {
+        "title": html.escape(title),
+        "style": (_HERE / "page.bundle.css").read_text(encoding="utf-8"),
+        "data": data,
+        "script": (_HERE / "page.bundle.js").read_text(encoding="utf-8").replace("</script", "<\\/script"),
+    }
+    template = (_HERE / "page" / "page.html").read_text(encoding="utf-8")
+    pieces = template.split("@")  # the names between two of them are the places
+    return "".join(parts[piece] if k % 2 else piece for k, piece in enumerate(pieces))
+
+
+def _json(value: object) -> str:
+    # Within a script, only "<" could end it.
+    return json.dumps(value, separators=(",", ":"), ensure_ascii=False, allow_nan=False).replace("<", "\\u003c")
+
+
+def _write(path: Path, text: str) -> Path:
+    try:
+        path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        with suppress(OSError):
+            path.unlink(missing_ok=True)
+        raise UnusableInput(f"{path}: cannot be written: {error.strerror}") from None
+    return path

@@ -1,0 +1,113 @@
+"""Events of a run for the report page: phases, modes, faults, alarms, isolated channels and waypoints."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from gcs.record.faults import FAULTS_FILE
+from gcs.record.modes import OFFBOARD
+from gcs.record.reader import read_json
+from gcs.record.run_data import RunData
+from gcs.record.tables import ALARMS, MODES
+
+PHASES, INNOVATIONS = "phases.csv", "innovations.csv"
+
+Event = dict[str, Any]
+
+
+def event(kind: str, start: float, end: float | None, source: str, text: str, severity: str = "info") -> Event:
+    """Return an event as the page reads it; ``end`` None: it has no duration, or lasts to the end (an isolation)."""
+    return {"kind": kind, "start": start, "end": end, "source": source, "text": text, "severity": severity}
+
+
+def events(run: RunData) -> list[Event]:
+    """Return all events of a run, in the order of time."""
+    found = [*phases(run), *modes(run), *faults(run), *alarms(run), *isolations(run), *waypoints(run)]
+    return sorted(found, key=lambda each: each["start"])
+
+
+def phases(run: RunData) -> Iterable[Event]:
+    """Yield the phases of the flight."""
+    table = run.tables[PHASES]
+    ends = [*table["time_s"][1:].tolist(), _end(run)] if len(table) else []
+    for row, end in zip(table, ends, strict=True):
+        yield event("phase", float(row["time_s"]), end, "team", row["phase"])
+
+
+def modes(run: RunData) -> Iterable[Event]:
+    """Yield when vehicles flew by themselves: in another mode than OFFBOARD, or by a failsafe, while armed."""
+    table = run.tables[MODES]
+    for vehicle in np.unique(table["vehicle"]).astype(int).tolist():
+        rows = table[table["vehicle"] == vehicle]
+        ends = [*rows["time_s"][1:].tolist(), _end(run)]
+        for row, end in zip(rows, ends, strict=True):
+            if row["armed"] and (row["mode"] != OFFBOARD or row["failsafe"]):
+                text = f"{row['mode']}{' by a failsafe' if row['failsafe'] else ''}"
+                severity = "error" if row["failsafe"] else "info"
+                yield event("mode", float(row["time_s"]), end, f"vehicle {vehicle}", text, severity)
+
+
+def faults(run: RunData) -> Iterable[Event]:
+    """Yield the occurrences of each fault, in the time of the tables."""
+    record = read_json(run.folder / FAULTS_FILE)
+    take_off, given = record.get("take_off_s"), (run.manifest.get("mission") or {}).get("faults") or []
+    for fault in record.get("faults", ()) if take_off is not None else ():
+        settings = (given[fault["number"] - 1] if fault["number"] <= len(given) else {}).get("settings") or {}
+        detail = ", ".join(f"{name} {_word(value)}" for name, value in settings.items())
+        vehicles = fault.get("vehicles")
+        source = "all vehicles" if vehicles is None else ", ".join(f"vehicle {i}" for i in vehicles)
+        if str(settings.get("channel", "")).startswith("payload"):
+            source = "payload"
+        kind = fault["kind"].replace("_", " ")
+        text = f"{kind}{f' of {direction}' if (direction := fault.get('direction')) else ''}"
+        for start, end in fault.get("activations", ()):
+            until = None if end is None else end + take_off
+            yield event("fault", start + take_off, until, source, f"{text} ({detail})" if detail else text, "warning")
+
+
+def alarms(run: RunData) -> Iterable[Event]:
+    """Yield the onsets of alarms."""
+    for row in run.tables[ALARMS]:
+        text = f"{row['code'].replace('_', ' ')}{': ' if row['text'] else ''}{row['text']}"
+        yield event("alarm", float(row["time_s"]), None, row["source"], text, row["severity"]) | {"code": row["code"]}
+
+
+def isolations(run: RunData) -> Iterable[Event]:
+    """Yield when a channel of a source was isolated: by the innovation tests or, where not on record, by the alarms."""
+    table = run.tables[INNOVATIONS]
+    if not len(table):
+        for row in run.tables[ALARMS]:
+            if row["code"] == "channel_isolated":
+                yield event("isolation", float(row["time_s"]), None, row["source"], row["text"], row["severity"])
+        return
+    for source, channel in dict.fromkeys(zip(table["source"], table["channel"], strict=True)):
+        rows = table[(table["source"] == source) & (table["channel"] == channel)]
+        states = np.array(rows["state"], dtype=str)
+        edges = [0, *(np.flatnonzero(states[1:] != states[:-1]) + 1).tolist(), len(rows)]
+        for begin, end in pairwise(edges):
+            if states[begin] == "isolated":
+                until = float(rows["time_s"][end]) if end < len(rows) else None
+                yield event("isolation", float(rows["time_s"][begin]), until, source, channel, "error")
+
+
+def waypoints(run: RunData) -> Iterable[Event]:
+    """Yield when the payload was nearest to each waypoint of its mission."""
+    return ()
+
+
+def _end(run: RunData) -> float:
+    return float(run.time[-1]) if len(run.time) else 0.0
+
+
+def _word(value: Any) -> str:
+    return (
+        ", ".join(map(_word, value))
+        if isinstance(value, list)
+        else f"{value:g}"
+        if isinstance(value, float)
+        else str(value)
+    )
