@@ -10,13 +10,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gcs.flight.phase import IN_AIR
+from gcs.flight.phase import IN_AIR, Phase
 from gcs.record.incomplete import IncompleteRecords
 from gcs.record.obstacle_recorder import ObstacleRecorder
 from gcs.record.tables import (
     ALARM_COLUMNS,
     ALARMS,
     ESTIMATE_COLUMNS,
+    PHASE_COLUMNS,
+    PHASES,
     PLAN_COLUMNS,
     REFERENCE_COLUMNS,
     STEP_COLUMNS,
@@ -52,6 +54,8 @@ class FlightRecorder:
         self._alarms = TableWriter(run_dir / ALARMS, ALARM_COLUMNS, incomplete)
         self._obstacles = ObstacleRecorder(run_dir, incomplete)
         self._plan = TableWriter(run_dir / "plan.csv", PLAN_COLUMNS, incomplete)
+        self._phases = TableWriter(run_dir / PHASES, PHASE_COLUMNS, incomplete)
+        self._phase: Phase | None = None
         self._next_row: int | None = None
         self.last_time = 0.0
 
@@ -66,6 +70,9 @@ class FlightRecorder:
     def step(self, flight: Flight, time: float, record: StepRecord | None) -> None:
         """Record a control step at team ``time`` (s)."""
         self.last_time = self.incomplete.time = time
+        if flight.phase is not self._phase:
+            self._phase = flight.phase
+            self._phases.write([round(time, 6), flight.phase.value])
         if not math.isnan(flight.takeoff_time):
             self._write_reference(flight, time)
         if record is None:
@@ -122,7 +129,7 @@ class FlightRecorder:
 
     def close(self) -> None:
         """Close all files; harmless when they are closed."""
-        tables = (self._reference, self._estimate, self._steps, self._alarms, self._plan, self._obstacles)
+        tables = (self._reference, self._estimate, self._steps, self._alarms, self._phases, self._plan, self._obstacles)
         for file in (self._tlog, *tables):
             file.close()
 

@@ -48,6 +48,7 @@ STANDING_OBSTACLE_COLUMNS = (
 MODE_COLUMNS = ("time_s", "vehicle", "mode", "armed", "failsafe")
 
 ALARM_COLUMNS = ("time_s", "source", "code", "severity", "text")
+PHASE_COLUMNS = ("time_s", "phase")
 
 
 def truth_columns(number_of_uavs: int) -> tuple[str, ...]:
@@ -58,13 +59,17 @@ def truth_columns(number_of_uavs: int) -> tuple[str, ...]:
 
 
 TRUTH, OBSTACLES, MODES, ALARMS = "truth.csv", "obstacles.csv", "modes.csv", "alarms.csv"
+PHASES = "phases.csv"
 REFERENCE, ESTIMATE, PLAN, STEPS = "reference.csv", "estimate.csv", "plan.csv", "steps.csv"
 COLUMNS: Mapping[str, tuple[str, ...]] = {
     TRUTH: truth_columns(0), OBSTACLES: OBSTACLE_COLUMNS, MODES: MODE_COLUMNS, ALARMS: ALARM_COLUMNS,
     REFERENCE: REFERENCE_COLUMNS, ESTIMATE: ESTIMATE_COLUMNS, PLAN: PLAN_COLUMNS, STEPS: STEP_COLUMNS,
+    PHASES: PHASE_COLUMNS,
 }  # fmt: skip
 """Columns that a file has; ``truth.csv`` also those of the UAVs."""
-TEXT_COLUMNS = frozenset(("name", "shape", "kind", "mode", "source", "code", "severity", "text"))
+TEXT_COLUMNS = frozenset(
+    ("name", "shape", "kind", "mode", "phase", "source", "channel", "state", "code", "severity", "text")
+)
 """Columns of text in any table; all others are of numbers."""
 
 Cell = float | int | bool | str

@@ -1,7 +1,7 @@
 """The data of the report page: a JSON header, and one compressed blob of all arrays, which the header refers to.
 
-``gcs/view/page/data.js`` decodes both. Times are those of the run folder (s), frames north-east-down, quaternions body to
-world, w first.
+``gcs/view/page/data.js`` decodes both. Times are those of the run folder (s), frames north-east-down, quaternions
+body to world, w first.
 """
 
 from __future__ import annotations

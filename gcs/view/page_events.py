@@ -12,9 +12,9 @@ from gcs.record.faults import FAULTS_FILE
 from gcs.record.modes import OFFBOARD
 from gcs.record.reader import read_json
 from gcs.record.run_data import RunData
-from gcs.record.tables import ALARMS, MODES
+from gcs.record.tables import ALARMS, MODES, PHASES
 
-PHASES, INNOVATIONS = "phases.csv", "innovations.csv"
+INNOVATIONS = "innovations.csv"
 
 Event = dict[str, Any]
 
