@@ -32,7 +32,7 @@ The ground station of cooplift: UAVs that carry one payload together.
   gcs missions                              the missions that come with the package
   gcs check delivery                        what will be flown, or every reason why not
   gcs fly figure_eight                      flies it with a simulated swarm of its own
-  gcs report runs/figure-eight-1            draws what happened
+  gcs report runs/figure-eight-1            writes the page that shows what happened
   gcs faults telemetry_faults               flies a campaign of telemetry faults
   gcs courses                               flies 200 random obstacle scenarios and shows the distribution
   gcs reproduce --quick                     the paper's figures and numbers, as printed and as corrected

@@ -18,7 +18,7 @@ def print_summary(
     console: Console,
     summary: Mapping[str, Any],
     run_dir: Path | str,
-    pictures: Sequence[Path] = (),
+    files: Sequence[Path] = (),
     *,
     details: bool = False,
 ) -> None:
@@ -33,8 +33,8 @@ def print_summary(
     if summary["source"] == "estimate":
         console.print(Text("The swarm kept no truth here: figures are the ground's own estimate.", "yellow"))
     console.print(Text(f"Records   {run_dir}"), soft_wrap=True)
-    if pictures:
-        console.print(Text("Pictures  " + "  ".join(path.name for path in pictures)), soft_wrap=True)
+    if files:
+        console.print(Text("Report    " + "  ".join(path.name for path in files)), soft_wrap=True)
 
 
 def _result(summary: Mapping[str, Any]) -> Text:

@@ -8,13 +8,19 @@ from pathlib import Path
 from gcs.errors import UnusableInput
 from gcs.record.run_data import RunData
 from gcs.view.page_data import PageData
+from gcs.view.poster import write_poster
 
 REPORT = "report.html"
 _HERE = Path(__file__).parent
 
 
-def write_report(run: RunData, other: RunData | None = None, path: Path | None = None) -> Path:
-    """Write the report page of a run, or of two that are compared, to the first one's folder or ``path``; return it.
+def report(run: RunData) -> list[Path]:
+    """Write report page and poster of a run into its folder, and return their paths; see :func:`write_report`."""
+    return [write_report(run), write_poster(run)]
+
+
+def write_report(run: RunData, other: RunData | None = None) -> Path:
+    """Write the report page of a run, or of two that are compared, into the first one's folder, and return its path.
 
     Raises :class:`UnusableInput` where nothing was flown, or where the page cannot be written.
     """
@@ -33,7 +39,8 @@ def write_report(run: RunData, other: RunData | None = None, path: Path | None =
         f'<script type="application/octet-stream" class="run-blob">{blob}</script>'
         for header, blob in documents
     )
-    return _write(run.folder / REPORT if path is None else path, page(title, data))
+    name = REPORT if other is None else f"report-{other.folder.resolve().name}.html"
+    return _write(run.folder / name, page(title, data))
 
 
 def page(title: str, data: str) -> str:

@@ -16,13 +16,13 @@ from typing import Any
 import numpy as np
 
 from gcs.record.clearance import ObstacleTrack
-from gcs.record.landing import in_air
 from gcs.record.reader import Table
 from gcs.record.run_data import RunData
 from gcs.record.run_folder import to_json
 from gcs.record.tables import ESTIMATE, PLAN, STEPS
+from gcs.view.link_figures import link_figures
 from gcs.view.page_events import events
-from gcs.view.witness import witness
+from gcs.view.witness import least_clearance
 from idc_controller.arrays import Array
 from idc_controller.geometry.oriented import OrientedShape
 from idc_controller.parameters import polygon_attachments
@@ -102,6 +102,7 @@ class PageData:
         self._tables()
         self._clearances()
         self._innovations()
+        nearest = least_clearance(run)
         self.header = {
             "meta": self._meta(),
             "channels": self._channels,
@@ -109,7 +110,7 @@ class PageData:
             "obstacles": [self._obstacle(track) for track in run.obstacles],
             "tracks": self._tracks(),
             "standing": standing(run),
-            "clearance": least_clearance(run),
+            "clearance": None if nearest is None else nearest.header,
         }
 
     def document(self) -> tuple[Mapping[str, Any], str]:
@@ -187,6 +188,10 @@ class PageData:
         if links:
             self._add("truth.tension", np.ascontiguousarray(forces["time_s"]), names, "N", stack(forces, links))
         self._horizons(self._run.tables[HORIZON])
+        middles, systems, figures = link_figures(self._run.folder / "telemetry.tlog")
+        for name, unit in (("loss", "%"), ("latency", "ms"), ("rate", "1/s")):
+            if len(middles):
+                self._add(f"link.{name}", middles, systems, unit, figures[name])
 
     def _horizons(self, table: Table) -> None:
         """Add paths (T, S, 3) as channels ``horizon.<kind>``; the steps that a path does not have are NaN."""
@@ -340,21 +345,3 @@ def standing(run: RunData) -> list[dict[str, Any]]:
                 "yaw": float(row["yaw_rad"]),
             }  # fmt: skip
     return found + [box | {"end": None} for box in boxes.values()]
-
-
-def least_clearance(run: RunData) -> dict[str, Any] | None:
-    """Return the least clearance from lift-off to touch-down, its time and its witness points; None without one."""
-    if not run.barriers or not run.number_of_uavs:
-        return None
-    air = in_air(run)
-    clearance = run.clearance[air]
-    if not np.isfinite(clearance).any():
-        return None
-    row = (air.start or 0) + int(np.nanargmin(clearance))
-    found = [(barrier.name, witness(run.formation(slice(None)), at_rows(barrier, slice(None)), row))
-             for barrier in run.barriers if np.isfinite(barrier.position[row]).all()]  # fmt: skip
-    name, nearest = min(found, key=lambda pair: pair[1].distance)
-    return {
-        "min": nearest.distance, "time": float(run.time[row]), "obstacle": name,
-        "point_hull": nearest.hull, "point_obstacle": nearest.obstacle,
-    }  # fmt: skip

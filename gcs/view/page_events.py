@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from gcs.mission.targets import Target
+from gcs.record.arrival import closest_in_order
 from gcs.record.faults import FAULTS_FILE
 from gcs.record.modes import OFFBOARD
 from gcs.record.reader import read_json
@@ -95,8 +97,20 @@ def isolations(run: RunData) -> Iterable[Event]:
 
 
 def waypoints(run: RunData) -> Iterable[Event]:
-    """Yield when the payload was nearest to each waypoint of its mission."""
-    return ()
+    """Yield when the payload was nearest to each waypoint of a route, in the order of the route without its jumps."""
+    mission = run.manifest.get("mission") or {}
+    steps = (mission.get("reference") or {}).get("steps") or ()
+    targets = []
+    for step in steps:
+        place = step.get("place") or {}
+        if "spline" in step and None not in (place.get("horizontal"), place.get("altitude")):
+            targets.append(Target(step["source"], (*place["horizontal"], -place["altitude"])))
+    if not targets or not len(run.time):
+        return
+    rows, distances = closest_in_order(run.payload_position, targets, (mission.get("limits") or {}).get("arrival", 0.3))
+    for number, (target, row, distance) in enumerate(zip(targets, rows.tolist(), distances.tolist(), strict=True), 1):
+        text = f"waypoint {number}, {target.name}: nearest, {distance:.2f} m from it"
+        yield event("waypoint", float(run.time[row]), None, "payload", text)
 
 
 def _end(run: RunData) -> float:

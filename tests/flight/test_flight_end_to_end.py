@@ -32,7 +32,7 @@ def test_figure_eight_is_flown_within_limits(figure):
     assert code == 0
     assert summary["outcome"] == "completed"
     check_within_limits(summary)
-    assert (folder / "run" / "position.png").exists()
+    assert (folder / "run" / "report.html").exists() and (folder / "run" / "poster.png").exists()
 
 
 @pytest.mark.long

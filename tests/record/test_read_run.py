@@ -1,14 +1,14 @@
-"""Run folders as they are read, and their pictures: whole, cut off, damaged."""
+"""Run folders as they are read, and their reports: whole, cut off, damaged."""
 
 import numpy as np
 import pytest
 from recorded_run import BALL, write_reference, write_truth
 
 from gcs.errors import UnusableInput
-from gcs.record.figures import report
 from gcs.record.run_data import read_run
 from gcs.record.run_folder import open_run_folder, write_json
 from gcs.record.tables import OBSTACLE_COLUMNS
+from gcs.view.page import report
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.pole import Pole
 from idc_controller.geometry.sphere import Sphere
@@ -51,20 +51,18 @@ def test_rows_of_what_stands_at_every_time_are_read_as_well(folder):
 
 
 @pytest.mark.slow
-def test_report_draws_every_picture_again_and_again(folder):
+def test_report_is_written_again_and_again(folder):
     write_truth(folder, standing=[BALL])
     write_reference(folder)
     limits = {name: {"value": 1.0, "limit": 0.7, "held": True} for name in ("payload_tilt_deg", "uav_separation")}
     write_json(folder / "summary.json", {"outcome": "completed", "limits": limits})
     for _ in range(2):
-        pictures = report(read_run(folder))
-        assert [path.name for path in pictures] == [
-            "position.png", "payload_angles.png", "top_view.png", "thrust.png", "separation.png",
-        ]  # fmt: skip
-        assert all(path.parent == folder and path.read_bytes().startswith(PNG) for path in pictures)
+        assert report(read_run(folder)) == [folder / "report.html", folder / "poster.png"]
+        assert (folder / "poster.png").read_bytes().startswith(PNG)
+        assert "<title>run, seed None: completed</title>" in (folder / "report.html").read_text()
 
 
-def test_killed_run_is_drawn_to_its_last_record(folder):
+def test_killed_run_is_reported_to_its_last_record(folder):
     write_truth(folder, rows=30, moving=flyby)
     for name, cut in (("truth.csv", 5), ("obstacles.csv", 200)):
         content = (folder / name).read_bytes()
@@ -72,7 +70,8 @@ def test_killed_run_is_drawn_to_its_last_record(folder):
     run = read_run(folder)
     assert len(run.time) == 29
     assert np.isnan(run.clearance[-1]) and np.isfinite(run.clearance[0])
-    assert len(report(run)) == 5
+    assert len(report(run)) == 2
+    assert "cut off" in (folder / "report.html").read_text()
 
 
 def test_folder_without_records_is_refused(tmp_path):

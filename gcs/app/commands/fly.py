@@ -50,7 +50,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         f"to which the vehicles send (vehicle-sim: udpin://{THIS_MACHINE}:{GROUND_PORT})",
     )  # fmt: skip
     add("--json", action="store_true", help="print the summary as JSON instead of a table")
-    add("--no-pictures", action="store_true", help="draw none; gcs report does it later")
+    add("--no-pictures", action="store_true", help="write neither report.html nor poster.png; gcs report does it later")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -96,19 +96,19 @@ def run(arguments: argparse.Namespace) -> int:
         vehicle_sim = None if options.connect is not None else started.enter_context(ForkedProgram(PROGRAM))
         progress = started.enter_context(FlightProgress(console))
         result = fly(options, mission, progress.update, vehicle_sim)
-    pictures: list[Path] = []
+    files: list[Path] = []
     if result.flown and not arguments.no_pictures:
         with importing():
-            from gcs.record.figures import report
+            from gcs.view.page import report
 
         try:
-            pictures = report(result.records)
+            files = report(result.records)
         except UnusableInput as error:  # a full disk, a record that has no row
-            LOG.warning("note: no pictures: %s", error)
+            LOG.warning("note: no report: %s", error)
     if arguments.json:
         print(json.dumps({"run_dir": str(result.run_dir), **result.summary}, indent=2))
     elif result.flown:
-        print_summary(console, result.summary, result.run_dir, pictures, details=arguments.verbose > 0)
+        print_summary(console, result.summary, result.run_dir, files, details=arguments.verbose > 0)
     if mission.faults:
         from gcs.record.faults import fault_notes
 

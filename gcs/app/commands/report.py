@@ -1,4 +1,4 @@
-"""``gcs report``: pictures of a run."""
+"""``gcs report``: the report page of a run."""
 
 import argparse
 from pathlib import Path
@@ -6,20 +6,27 @@ from pathlib import Path
 from gcs.app.exit_status import ExitStatus
 from gcs.app.imports import importing
 
-DESCRIPTION = "Draws what happened in a run, and prints the names of the pictures."
+DESCRIPTION = """\
+Writes what happened in a run as one page, report.html in its folder, which any browser shows without a network, and a
+still of the least clearance, poster.png; prints their paths. Of two runs it writes one page that compares them, into
+the first one's folder.
+"""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument("run_dir", type=Path, metavar="RUN_DIR", help="a run folder")
+    parser.add_argument("other", type=Path, nargs="?", metavar="OTHER", help="a second one, which is compared with it")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command, and return its exit status."""
     with importing():
-        from gcs.record.figures import report
         from gcs.record.run_data import read_run
+        from gcs.view.page import report, write_report
 
-    for picture in report(read_run(arguments.run_dir)):
-        print(picture)
+    run = read_run(arguments.run_dir)
+    files = report(run) if arguments.other is None else [write_report(run, read_run(arguments.other))]
+    for file in files:
+        print(file)
     return ExitStatus.DONE
