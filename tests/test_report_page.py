@@ -160,8 +160,9 @@ def write_truth_of_obstacle(folder, obstacle):
 
 def test_clearance_is_that_of_the_time_in_the_air(folder):
     """On the ground the formation stands beside a wall that is nearer than anything in flight."""
-    rest, height = np.full(20, -0.3), np.concatenate([np.linspace(-0.3, -6.0, 40), np.linspace(-6.0, -0.3, 40)])
-    down = np.concatenate([rest, height, rest])
+    pad, ground = np.full(10, -0.3), np.full(10, -0.25)  # the payload's centre on both
+    up = np.linspace(-0.25, -6.0, 40)
+    down = np.concatenate([pad, ground, up, up[::-1], ground])
     write_flight(folder, np.column_stack([np.where(np.arange(len(down)) < 10, 0.0, 3.0), np.zeros(len(down)), down]))
     write_truth_of_obstacle(folder, Obstacle("wall", Wall((0.2, 4.0, 9.0), 0.0), (-1.2, 0.0, -4.5)))
     run = read_run(folder)
