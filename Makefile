@@ -16,7 +16,7 @@ export OPENBLAS_NUM_THREADS := 1
 # Compiled modules are kept: the tests start many programs.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help install fly test test-fast test-long test-lowest test-numerics release golden golden-renew
+.PHONY: help install fly test test-fast test-long test-lowest test-numerics release golden golden-renew page
 .PHONY: claims claims-all claims-write fault-tables anew benchmark benchmark-campaign benchmark-check docs clean
 
 help:
@@ -37,6 +37,7 @@ help:
 	@echo "make benchmark-check  compare the CPU cost of flights with that of the commit BASE ($(BASE))"
 	@echo "make benchmark-campaign  throughput of parallel flights against a single one's"
 	@echo "make docs         write docs/settings.md, docs/failsafes.md and NOTICE from what they are about"
+	@echo "make page         bundle the scripts of the report page anew (needs node and npm)"
 	@echo "make install      only install, into $(VENV)"
 	@echo "make clean        remove $(VENV) and the caches"
 
@@ -109,6 +110,10 @@ docs: $(INSTALLED)
 	$(VENV)/bin/python -m gcs.flight.listing > docs/failsafes.md
 	$(VENV)/bin/python -m gcs.faults.listing docs/faults.md
 	$(VENV)/bin/python tests/packaging/notice.py > NOTICE
+
+# Needs node and npm, which neither the installation nor a flight does.
+page:
+	gcs/view/bundle
 
 install: $(COMPILED)
 

@@ -1,27 +1,30 @@
 """The data of the report page: what it decodes to is what is on record, its witness points have the least clearance."""
 
 import base64
+import hashlib
 import json
 import re
 import zlib
+from pathlib import Path
 
 import numpy as np
 import pytest
 from pymavlink.dialects.v20 import common as mavlink
 from recorded_run import BALL, write_flight, write_plan, write_reference, write_steps, write_truth
 
+import gcs.view.page as page_module
 from gcs.record.landing import in_air
+from gcs.record.link_figures import link_figures
 from gcs.record.run_data import read_run
 from gcs.record.run_folder import open_run_folder, write_json
 from gcs.record.summary import summarise
 from gcs.record.tables import ALARM_COLUMNS, ESTIMATE_COLUMNS, PHASE_COLUMNS, TableWriter
 from gcs.record.tlog import TelemetryLog
-from gcs.view.link_figures import link_figures
+from gcs.record.witness import least_clearance
 from gcs.view.page import write_report
 from gcs.view.page_data import QUANTUM, Blob, PageData, command
 from gcs.view.page_events import events
 from gcs.view.poster import outline
-from gcs.view.witness import least_clearance
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.sphere import Sphere
 from vehicle_sim.world.obstacle_bodies import Obstacle
@@ -299,6 +302,22 @@ def test_horizons_are_paths_with_as_many_steps_as_each_has(folder):
     assert time.tolist() == [1.0, 1.2] and paths.shape == (2, 3, 3)
     assert paths[0, :, 0] == pytest.approx([1.0, 2.0, 3.0], abs=1e-3)
     assert np.isnan(paths[1, 2]).all()
+
+
+def test_bundle_is_that_of_the_sources():
+    """``make page`` makes it anew."""
+    view = Path(page_module.__file__).parent
+    pages = [path for path in (view / "page").rglob("*") if "node_modules" not in path.parts]
+    sources = sorted(
+        f"./{path.relative_to(view / 'page').as_posix()}"
+        for path in pages
+        if path.suffix in (".js", ".css") or path.name == "package-lock.json"
+    )
+    content = b"".join((view / "page" / name).read_bytes() for name in sources)
+    bundle = (view / "page.bundle.js").read_text(encoding="utf-8")
+    assert bundle.startswith(f"/* sources sha256 {hashlib.sha256(content).hexdigest()}\n")
+    for package in ("three 0.", "uplot 1.", "three.js authors", "Leon Sorokin", "Permission is hereby granted"):
+        assert package in bundle[:5000]
 
 
 def test_outline_of_a_turned_wall_has_its_corners():

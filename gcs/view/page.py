@@ -35,12 +35,11 @@ def write_report(run: RunData, other: RunData | None = None) -> Path:
         second = documents[1][0]["meta"]
         title += f", compared with {second['mission']}, seed {second['seed']}: {second['outcome']}"
     data = "\n".join(
-        f'<script type="application/json" class="run-header">{_json(header)}</script>\n'
-        f'<script type="application/octet-stream" class="run-blob">{blob}</script>'
+        f'{script("run-header", header)}\n<script type="application/octet-stream" class="run-blob">{blob}</script>'
         for header, blob in documents
     )
     name = REPORT if other is None else f"report-{other.folder.resolve().name}.html"
-    return _write(run.folder / name, page(title, data))
+    return write_page(run.folder / name, page(title, data))
 
 
 def page(title: str, data: str) -> str:
@@ -56,12 +55,15 @@ def page(title: str, data: str) -> str:
     return "".join(parts[piece] if k % 2 else piece for k, piece in enumerate(pieces))
 
 
-def _json(value: object) -> str:
+def script(name: str, value: object) -> str:
+    """Return an element of the page that holds a value (strict JSON), under a class by which its script finds it."""
     # Within a script, only "<" could end it.
-    return json.dumps(value, separators=(",", ":"), ensure_ascii=False, allow_nan=False).replace("<", "\\u003c")
+    text = json.dumps(value, separators=(",", ":"), ensure_ascii=False, allow_nan=False).replace("<", "\\u003c")
+    return f'<script type="application/json" class="{name}">{text}</script>'
 
 
-def _write(path: Path, text: str) -> Path:
+def write_page(path: Path, text: str) -> Path:
+    """Write a page to ``path`` and return it. Raises :class:`UnusableInput` if it cannot be written."""
     try:
         path.write_text(text, encoding="utf-8")
     except OSError as error:

@@ -16,13 +16,13 @@ from typing import Any
 import numpy as np
 
 from gcs.record.clearance import ObstacleTrack
+from gcs.record.link_figures import link_figures
 from gcs.record.reader import Table
 from gcs.record.run_data import RunData
 from gcs.record.run_folder import to_json
 from gcs.record.tables import ESTIMATE, PLAN, STEPS
-from gcs.view.link_figures import link_figures
+from gcs.record.witness import least_clearance
 from gcs.view.page_events import events
-from gcs.view.witness import least_clearance
 from idc_controller.arrays import Array
 from idc_controller.geometry.oriented import OrientedShape
 from idc_controller.parameters import polygon_attachments

@@ -11,7 +11,7 @@ from scipy.spatial import ConvexHull
 from gcs.record.figures import FLOWN, LIMIT, OBSTACLE, SERIES, save_picture
 from gcs.record.landing import in_air
 from gcs.record.run_data import RunData
-from gcs.view.witness import Nearest, hull_points, least_clearance
+from gcs.record.witness import Nearest, hull_points, least_clearance
 from idc_controller.arrays import Array
 from idc_controller.geometry.shape import Shape
 

@@ -3,12 +3,14 @@
 python tests/packaging/notice.py > NOTICE
 """
 
+import json
 import re
 from importlib import metadata
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 LOCK = ROOT / "constraints.txt"
+PAGE = ROOT / "gcs" / "view" / "page" / "package.json"
 ELSEWHERE = {"cmeel-qhull": "Qhull", "cycler": "BSD-3-Clause", "kiwisolver": "BSD-3-Clause", "pymavlink": "LGPL-3.0"}
 """Licences whose names stand in the text of the licence, not among the metadata."""
 HEAD = """\
@@ -45,10 +47,16 @@ def licence_of(name: str) -> str:
     return "; ".join(named) or (text[0] if text else "not stated")
 
 
+INSIDE = """
+gcs/view/page.bundle.js, which report pages hold, contains these, minified, with the text of their licences:
+"""
+
+
 def notice() -> str:
     """Return the content of NOTICE."""
     rows = [f"{name} {version}: {licence_of(name)}" for name, version in sorted(locked().items())]
-    return HEAD + "\n" + "\n".join(rows) + "\n"
+    inside = [f"{name} {version} (MIT)" for name, version in json.loads(PAGE.read_text())["dependencies"].items()]
+    return HEAD + "\n" + "\n".join(rows) + "\n" + INSIDE + "\n".join(inside) + "\n"
 
 
 if __name__ == "__main__":

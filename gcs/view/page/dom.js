@@ -29,3 +29,25 @@ export function token(name) {
 export function number(value, digits = 2) {
   return value === null || value === undefined || !Number.isFinite(value) ? 'not known' : value.toFixed(digits);
 }
+
+/** A button that copies a text. @param {string} text @param {string} label */
+export function copyable(text, label) {
+  const button = h('button', { type: 'button', title: text }, label);
+  button.addEventListener('click', async () => {
+    try {
+      await navigator.clipboard.writeText(text);
+    } catch {
+      // Without a secure context there is no clipboard: the old way.
+      const area = h('textarea', { value: text });
+      document.body.append(area);
+      area.select();
+      document.execCommand('copy');
+      area.remove();
+    }
+    button.textContent = 'copied';
+    setTimeout(() => {
+      button.textContent = label;
+    }, 1500);
+  });
+  return button;
+}

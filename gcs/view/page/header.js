@@ -1,6 +1,6 @@
 /** The top of the page: what happened, was it safe, by how much, and the command that flies it again. */
 
-import { h, number } from './dom.js';
+import { copyable, h, number } from './dom.js';
 import { faults, happened, LIMITS, position, safety, verdict } from './words.js';
 
 /** @typedef {import('./data.js').Run} Run */
@@ -67,21 +67,7 @@ function limits(run) {
 
 function again(command) {
   if (!command) return null;
-  const button = h('button', { type: 'button' }, 'copy');
-  button.addEventListener('click', async () => {
-    try {
-      await navigator.clipboard.writeText(command);
-    } catch {
-      // Without a secure context there is no clipboard: the old way.
-      const area = h('textarea', { value: command });
-      document.body.append(area);
-      area.select();
-      document.execCommand('copy');
-      area.remove();
-    }
-    button.textContent = 'copied';
-    setTimeout(() => { button.textContent = 'copy'; }, 1500);
-  });
+  const button = copyable(command, 'copy');
   return h('section.card', {}, h('h2', {}, 'Fly it again'), h('div.command', {}, h('code', {}, command), button));
 }
 
@@ -119,6 +105,6 @@ export function comparison(run, ghost) {
     'section.card', {},
     h('h2', {}, 'Two runs'),
     h('p', {}, 'A is what the page is about; B is its ghost in the scene and the dashed curves of the plots.'),
-    h('div.scroll', {}, h('table', {}, h('thead', {}, h('tr', {}, ...head)), h('tbody', {}, outcomes, ...rows))),
+    h('div.scroll.flat', {}, h('table', {}, h('thead', {}, h('tr', {}, ...head)), h('tbody', {}, outcomes, ...rows))),
   );
 }

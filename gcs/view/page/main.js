@@ -1,5 +1,6 @@
-/** The report page: header, scene, timeline, plots and events of one run, or of two that are compared. */
+/** The report page of one run, or of two that are compared, or of a campaign. */
 
+import { campaignPage } from './campaign.js';
 import { Clock } from './clock.js';
 import { decode } from './data.js';
 import { h } from './dom.js';
@@ -38,7 +39,15 @@ async function show() {
   clock.set(run.clearance?.time ?? run.meta.begin);
 }
 
-show().catch((error) => {
+/** Build the page of a campaign. @param {Element} data */
+async function showCampaign(data) {
+  const campaign = JSON.parse(data.textContent ?? '');
+  page.replaceChildren(...campaignPage(campaign));
+  Object.assign(window, { report: { campaign } });
+}
+
+const campaign = document.querySelector('script.campaign');
+(campaign ? showCampaign(campaign) : show()).catch((error) => {
   page.replaceChildren(h('p.failed', {}, `The page cannot be shown: ${error.message}`));
   throw error;
 });
