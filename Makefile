@@ -113,7 +113,7 @@ docs: $(INSTALLED)
 
 # Needs node and npm, which neither the installation nor a flight does.
 page:
-	gcs/view/bundle
+	tests/packaging/page/bundle
 
 install: $(COMPILED)
 

@@ -307,13 +307,9 @@ def test_horizons_are_paths_with_as_many_steps_as_each_has(folder):
 def test_bundle_is_that_of_the_sources():
     """``make page`` makes it anew."""
     view = Path(page_module.__file__).parent
-    pages = [path for path in (view / "page").rglob("*") if "node_modules" not in path.parts]
-    sources = sorted(
-        f"./{path.relative_to(view / 'page').as_posix()}"
-        for path in pages
-        if path.suffix in (".js", ".css") or path.name == "package-lock.json"
-    )
-    content = b"".join((view / "page" / name).read_bytes() for name in sources)
+    sources = sorted((path for path in (view / "page").rglob("*") if path.suffix in (".js", ".css")), key=str)
+    lock = Path(__file__).parent / "packaging" / "page" / "package-lock.json"
+    content = b"".join(path.read_bytes() for path in (*sources, lock))
     bundle = (view / "page.bundle.js").read_text(encoding="utf-8")
     assert bundle.startswith(f"/* sources sha256 {hashlib.sha256(content).hexdigest()}\n")
     for package in ("three 0.", "uplot 1.", "three.js authors", "Leon Sorokin", "Permission is hereby granted"):

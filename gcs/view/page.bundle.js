@@ -1,4 +1,4 @@
-/* sources sha256 e0967ea0777fbbf384337b50ca49793e72c61b2744c31fa28bf70752ccdbab17
+/* sources sha256 d75f36d4cd6feb69f7a2bf6c2d65247b4800fabfed564fb2e5c0e32f3a8e1671
 
 three 0.170.0
 The MIT License

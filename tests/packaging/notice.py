@@ -10,7 +10,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 LOCK = ROOT / "constraints.txt"
-PAGE = ROOT / "gcs" / "view" / "page" / "package.json"
+PAGE = ROOT / "tests" / "packaging" / "page" / "package.json"
 ELSEWHERE = {"cmeel-qhull": "Qhull", "cycler": "BSD-3-Clause", "kiwisolver": "BSD-3-Clause", "pymavlink": "LGPL-3.0"}
 """Licences whose names stand in the text of the licence, not among the metadata."""
 HEAD = """\
