@@ -29,7 +29,7 @@ from idc_controller.parameters import polygon_attachments
 
 QUANTUM = {"m": 5e-4, "": 5e-5, "m/s": 1e-3, "rad/s": 1e-3, "N": 5e-3, "ms": 5e-3}
 """Steps of 16-bit columns are at most these, by unit; a column that spans more is kept as float32."""
-_RATE_LONG, _LONG = 25.0, 120.0
+RATE_LONG, LONG = 25.0, 120.0
 """Rows a second (Hz) that are kept of a flight longer than this (s)."""
 _SERIES_MAX = 6
 """Barriers whose clearance is shown one by one: those that come nearest."""
@@ -95,9 +95,9 @@ class PageData:
         self._run, self._blob = run, Blob()
         self._channels: dict[str, Any] = {}
         self._times: dict[int, dict[str, Any]] = {}
-        dense = len(run.time) > 1 and run.time[-1] - run.time[0] > _LONG
+        dense = len(run.time) > 1 and run.time[-1] - run.time[0] > LONG
         rate = (len(run.time) - 1) / (run.time[-1] - run.time[0]) if dense else 0.0
-        self._rows = slice(None, None, max(round(rate / _RATE_LONG), 1))
+        self._rows = slice(None, None, max(round(rate / RATE_LONG), 1))
         self._motion()
         self._tables()
         self._clearances()
@@ -163,11 +163,11 @@ class PageData:
             self._add("estimate.disturbance", time, _NED, "N", force)
 
     def _thinned(self, table: Table) -> Table:
-        """Return the rows of a table that are kept: of a long flight at most :data:`_RATE_LONG` a second."""
+        """Return the rows of a table that are kept: of a long flight at most :data:`RATE_LONG` a second."""
         if len(table) < 2 or self._rows.step == 1:
             return table
         rate = (len(table) - 1) / max(table["time_s"][-1] - table["time_s"][0], 1e-9)
-        return table[:: max(round(rate / _RATE_LONG), 1)]
+        return table[:: max(round(rate / RATE_LONG), 1)]
 
     def _tables(self) -> None:
         plan, steps, forces = (self._thinned(self._run.tables[name]) for name in (PLAN, STEPS, FORCES))
