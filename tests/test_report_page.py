@@ -24,7 +24,7 @@ from gcs.record.witness import least_clearance
 from gcs.view.page import write_report
 from gcs.view.page_data import QUANTUM, Blob, PageData, command
 from gcs.view.page_events import events
-from gcs.view.poster import outline
+from gcs.view.poster import outline, write_poster
 from idc_controller.geometry.box import Wall
 from idc_controller.geometry.sphere import Sphere
 from vehicle_sim.world.obstacle_bodies import Obstacle
@@ -314,6 +314,18 @@ def test_bundle_is_that_of_the_sources():
     assert bundle.startswith(f"/* sources sha256 {hashlib.sha256(content).hexdigest()}\n")
     for package in ("three 0.", "uplot 1.", "three.js authors", "Leon Sorokin", "Permission is hereby granted"):
         assert package in bundle[:5000]
+
+
+@pytest.mark.slow
+def test_poster_shows_hull_and_obstacle_from_above_and_from_the_side(folder, pictures):
+    write_flight(folder, np.linspace([0.0, 0.0, -8.0], [28.0, 1.0, -8.0], 120))
+    write_truth_of_obstacle(folder, BALL)
+    write_reference(folder)
+    run = read_run(folder)
+    assert write_poster(run) == folder / "poster.png"
+    texts = pictures["poster.png"]
+    assert {"altitude (m)", "north (m)", "formation's hull", "ball"} <= {*texts}
+    assert f"least clearance {np.nanmin(run.clearance):.2f} m, ball" in texts
 
 
 def test_outline_of_a_turned_wall_has_its_corners():

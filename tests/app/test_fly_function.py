@@ -61,7 +61,7 @@ start = 0.0
 delay = 0.02
 vehicles = [2]
 """
-SAME = ("truth.csv", "estimate.csv", "plan.csv", "reference.csv", "alarms.csv", "modes.csv")
+SAME = ("truth.csv", "estimate.csv", "plan.csv", "reference.csv", "alarms.csv", "modes.csv", "phases.csv")
 
 
 def same_bytes(first, second, names=SAME):

@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from flights import HOP, InProcessFlight, system_file
 
@@ -117,6 +118,11 @@ def test_flight_without_a_fault_raises_no_alarm(tmp_path):
         assert flight.flight.completed
         assert flight.flight.failsafes.alarms.alarms == []
     assert (tmp_path / "run" / "alarms.csv").read_text() == ",".join(ALARM_COLUMNS) + "\n"
+    phases = read_table(tmp_path / "run" / "phases.csv")
+    assert phases["phase"].tolist() == [
+        "connect", "check", "arm", "spool up", "climb", "hold", "land", "spool down", "disarm", "ended",
+    ]  # fmt: skip
+    assert (np.diff(phases["time_s"]) > 0.0).all()
 
 
 @pytest.mark.slow

@@ -83,7 +83,8 @@ export function tracking(run) {
     deviation,
     avoiding: plan ? intervals(t, away.map((value) => value !== null && value > AVOIDING)) : [],
     errorMax: largest(error),
-    deviationMax: largest(deviation),
+    // Vehicles that land by themselves have no plan, nor a reference that they should follow.
+    deviationMax: largest(plan ? deviation.map((value, k) => (error[k] === null ? null : value)) : deviation),
   };
 }
 

@@ -1,7 +1,7 @@
 /** The top of the page: what happened, was it safe, by how much, and the command that flies it again. */
 
 import { copyable, h, number } from './dom.js';
-import { faults, happened, LIMITS, position, safety, verdict } from './words.js';
+import { faults, happened, LIMITS, modes, position, safety, verdict } from './words.js';
 
 /** @typedef {import('./data.js').Run} Run */
 
@@ -40,14 +40,14 @@ function jump(clock, time, text) {
 }
 
 function faultCard(run, clock) {
-  const found = faults(run);
+  const found = [...faults(run), ...modes(run)];
   const alarms = run.events.filter((event) => event.kind === 'alarm').length;
   const count = alarms ? `${alarms} alarms are in the list of events.` : 'No alarm was raised.';
-  if (!found.length) return card('Faults and refused sensors', ['No fault was injected and no channel isolated.', count]);
+  if (!found.length) return card('Faults, failsafes, refused sensors', ['No fault was injected and no channel isolated.', count]);
   const items = found.map(({ text, event }) =>
-    h('li', {}, h('button.link', { type: 'button', onclick: () => clock.set(event.start) }, text)),
+    h('li', {}, `${text} `, jump(clock, event.start, 'show')),
   );
-  return h('section.card', {}, h('h2', {}, 'Faults and refused sensors'), h('ul', {}, ...items), h('p', {}, count));
+  return h('section.card', {}, h('h2', {}, 'Faults, failsafes, refused sensors'), h('ul', {}, ...items), h('p', {}, count));
 }
 
 function limits(run) {

@@ -8,7 +8,7 @@ import { consequences, rootMeanSquare, tracking } from './derived.js';
 const OUTCOMES = {
   completed: 'Every waypoint and the landing were reached, and the payload was set down.',
   interrupted: 'The user ended the flight; the payload was set down.',
-  aborted: 'The flight was ended early by a failsafe, and the payload was set down, or it was refused before take-off.',
+  aborted: 'A failsafe ended the flight early, and the payload was set down.',
   failed: 'A waypoint or the landing was missed, or the payload was not set down safely.',
   lost: 'The records end without the vehicles being known to be on the ground.',
   collided: 'Something touched: a vehicle or the payload came into contact.',
@@ -35,7 +35,8 @@ export function verdict(run) {
 /** @param {Run} run @returns {string[]} */
 export function happened(run) {
   const { meta } = run;
-  const found = [OUTCOMES[meta.outcome] ?? ''];
+  const refused = meta.outcome === 'aborted' && !meta.summary.duration_s;
+  const found = [refused ? 'The flight was refused before take-off.' : (OUTCOMES[meta.outcome] ?? '')];
   if (meta.reason) found.push(`Reason: ${meta.reason}.`);
   const duration = meta.summary.duration_s;
   const team = `${meta.vehicles} vehicles carried the payload`;
@@ -112,6 +113,23 @@ export function position(run) {
     found.push(`The plan stayed on the mission's reference; the payload was at most ${number(kept.deviationMax, 3)} m from it.`);
   }
   return found;
+}
+
+/** Sentences about vehicles that flew by themselves, each with its first event. @param {Run} run */
+export function modes(run) {
+  /** @type {Map<string, import('./data.js').Event[]>} */
+  const found = new Map();
+  for (const event of run.events) {
+    if (event.kind === 'mode') found.set(event.text, [...(found.get(event.text) ?? []), event]);
+  }
+  return [...found].map(([text, events]) => {
+    const names = [...new Set(events.map(({ source }) => source.replace('vehicle ', '')))];
+    const who =
+      names.length > 1
+        ? `Vehicles ${names.slice(0, -1).join(', ')} and ${names.at(-1)} flew by themselves`
+        : `Vehicle ${names[0]} flew by itself`;
+    return { text: `${who} from ${number(events[0].start, 1)} s: ${text}.`, event: events[0] };
+  });
 }
 
 /** Sentences about each fault, with the event that it is about. @param {Run} run */
