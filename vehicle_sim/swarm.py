@@ -199,6 +199,8 @@ class Swarm:
         """Record the true ``states`` with the most contacts at a time since the last row; standing obstacles once."""
         obstacles = self.world.obstacles.all() if begins else self._obstacles.moving()
         truth.write(self.world.time, states, self.world.thrusts, self._contacts, obstacles)
+        if not self.world.all_cradled:  # cradles bear what is not known
+            truth.write_tensions(self.world.time, self.world.link_tensions())
         self._contacts = 0
 
     def _onboard(self, states: Array) -> None:

@@ -18,7 +18,9 @@ from gcs.record.summary import limits_not_held, within_limits
 if TYPE_CHECKING:
     import pandas
 
-_TABLES = ("truth", "reference", "estimate", "plan", "obstacles", "alarms")
+_TABLES = (
+    "truth", "forces", "reference", "estimate", "innovations", "plan", "horizon", "obstacles", "alarms",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -68,19 +70,37 @@ class Flight:
         return self._records["truth"]
 
     @property
+    def forces(self) -> Table:
+        """The true tension of each link (N), at the times of ``truth``; negative: compression, nan: not known."""
+        return self._records["forces"]
+
+    @property
     def reference(self) -> Table:
         """The payload's reference by the mission, before avoidance (rows,)."""
         return self._records["reference"]
 
     @property
     def estimate(self) -> Table:
-        """The estimate of the payload's state and of the force that disturbs it (N), a row a control step."""
+        """The estimate of the payload's state and of the force that disturbs it (N), a row a control step.
+
+        With standard deviations, columns ``..._sd``.
+        """
         return self._records["estimate"]
+
+    @property
+    def innovations(self) -> Table:
+        """Innovation tests of each channel at 10 Hz: the largest test ratio since the row before, and its state."""
+        return self._records["innovations"]
 
     @property
     def plan(self) -> Table:
         """The plan of the safety filter, a row a control step in the air."""
         return self._records["plan"]
+
+    @property
+    def horizon(self) -> Table:
+        """The planned path and the stop plan of the payload at 5 Hz, a row a step."""
+        return self._records["horizon"]
 
     @property
     def obstacles(self) -> Table:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcs.errors import UnusableInput
-from gcs.record.tables import COLUMNS, TEXT_COLUMNS, TRUTH, truth_columns
+from gcs.record.tables import COLUMNS, LATER_COLUMNS, TEXT_COLUMNS, TRUTH, truth_columns
 
 Table = NDArray[np.void]
 """Rows with a field a column: float64, text in those of :data:`TEXT_COLUMNS`."""
@@ -19,7 +19,8 @@ Table = NDArray[np.void]
 def read_table(path: Path | str) -> Table:
     """Return a table of a run folder (rows,); without rows where there is none, or none to its header's end.
 
-    A last line without its line break, as a killed process may leave, is left out. Raises :class:`UnusableInput` for a
+    A last line without its line break, as a killed process may leave, is left out. Columns of
+    :data:`~gcs.record.tables.LATER_COLUMNS` that the file lacks are nan. Raises :class:`UnusableInput` for a
     file that cannot be read, that is not such a table, or that lacks a column of :data:`COLUMNS`.
     """
     path = Path(path)
@@ -28,15 +29,23 @@ def read_table(path: Path | str) -> Table:
     columns = header.split(",") if header else [*needed]
     if path.name == TRUTH:
         needed = truth_columns(sum(name.endswith("_thrust_n") for name in columns))
-    if missing := [name for name in needed if name not in columns]:
-        raise UnusableInput(f"{path}, line 1: column {missing[0]} is missing")
-    empty = without_rows(columns)
+    missing = [name for name in needed if name not in columns]
+    if never_written := [name for name in missing if name not in LATER_COLUMNS]:
+        raise UnusableInput(f"{path}, line 1: column {never_written[0]} is missing")
+    empty = without_rows([*columns, *missing])
     if not rows:
         return empty
+    form = without_rows(columns).dtype
     try:
-        return np.loadtxt(io.StringIO(rows), empty.dtype, comments=None, delimiter=",", quotechar='"', ndmin=1)
+        read = np.loadtxt(io.StringIO(rows), form, comments=None, delimiter=",", quotechar='"', ndmin=1)
     except ValueError as error:
         raise UnusableInput(f"{path}, below the header: {error}") from None
+    if not missing:
+        return read
+    table = np.empty(len(read), empty.dtype)
+    for name in empty.dtype.names or ():
+        table[name] = np.nan if name in missing else read[name]
+    return table
 
 
 def without_rows(columns: Iterable[str]) -> Table:

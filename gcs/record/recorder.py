@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gcs.flight.phase import IN_AIR, Phase
+from gcs.record.horizon_recorder import HorizonRecorder
 from gcs.record.incomplete import IncompleteRecords
+from gcs.record.innovation_recorder import InnovationRecorder
 from gcs.record.obstacle_recorder import ObstacleRecorder
 from gcs.record.tables import (
     ALARM_COLUMNS,
@@ -31,11 +33,16 @@ if TYPE_CHECKING:
     from gcs.flight.alarms import Alarm
     from gcs.flight.control_loop import StepRecord
     from gcs.flight.flight import Flight
+    from idc_controller.arrays import Array
     from idc_controller.control.controller import Decision
+    from idc_controller.estimation.estimate import Estimate
     from idc_controller.perception.obstacle_map import ObstacleMap
 
 REFERENCE_INTERVAL = 0.02  # s, the grid of truth.csv
 _GRID_TOLERANCE = 1e-6
+_SD_DIGITS = 7
+_SD_ORDER = [*range(3), *range(6, 9), *range(3, 6), *range(9, 15)]
+"""Of the columns, in the estimator's order: position, velocity, attitude, rates, force."""
 
 
 class FlightRecorder:
@@ -56,6 +63,8 @@ class FlightRecorder:
         self._plan = TableWriter(run_dir / "plan.csv", PLAN_COLUMNS, incomplete)
         self._phases = TableWriter(run_dir / PHASES, PHASE_COLUMNS, incomplete)
         self._phase: Phase | None = None
+        self._innovations = InnovationRecorder(run_dir, incomplete)
+        self._horizon = HorizonRecorder(run_dir, incomplete)
         self._next_row: int | None = None
         self.last_time = 0.0
 
@@ -81,10 +90,17 @@ class FlightRecorder:
         x = estimate.x[:12].tolist()
         attitude = quaternion_from_euler(*x[6:9]).tolist()
         self._estimate.write_numbers(
-            [float(estimate.time), *x[0:3], *attitude, *x[3:6], *x[9:12], *estimate.force.tolist()]
-        )
+            [float(estimate.time), *x[0:3], *attitude, *x[3:6], *x[9:12], *estimate.force.tolist(),
+             *_standard_deviations(estimate).tolist()]
+        )  # fmt: skip
+        control = flight.control
+        self._innovations.record(control.estimator, estimate, time)
         if flight.phase in IN_AIR:
             self._write_plan(estimate.time, decision)
+        if control.stop_plan is not None and control.stop_plan.start == estimate.time:
+            chain, parameters = flight.mission.system.safety.planner.chain, control.controller.parameters
+            trajectory = decision.reference.trajectory
+            self._horizon.record(estimate.time, trajectory, control.stop_plan, chain, parameters)
 
     def _write_plan(self, time: float, decision: Decision) -> None:
         position, _, acceleration = decision.flat.payload[:3, 0].tolist()
@@ -129,7 +145,10 @@ class FlightRecorder:
 
     def close(self) -> None:
         """Close all files; harmless when they are closed."""
-        tables = (self._reference, self._estimate, self._steps, self._alarms, self._phases, self._plan, self._obstacles)
+        tables = (
+            self._reference, self._estimate, self._steps, self._alarms, self._phases, self._plan, self._obstacles,
+            self._innovations, self._horizon,
+        )  # fmt: skip
         for file in (self._tlog, *tables):
             file.close()
 
@@ -140,3 +159,9 @@ class FlightRecorder:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
+
+
+def _standard_deviations(estimate: Estimate) -> Array:
+    """Return those of the payload's state and of the force on it (15,), in the order of the columns."""
+    variances = np.concatenate([estimate.predict_payload_variances(), estimate.force_covariance.diagonal()])
+    return np.asarray(np.sqrt(variances[_SD_ORDER]).round(_SD_DIGITS))

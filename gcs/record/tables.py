@@ -19,8 +19,21 @@ PAYLOAD_COLUMNS = (
     "payload_wx_radps", "payload_wy_radps", "payload_wz_radps",
 )  # fmt: skip
 REFERENCE_COLUMNS = ("time_s", "x_m", "y_m", "z_m", "vx_mps", "vy_mps", "vz_mps")
-# The estimate: the payload's state and the disturbance force on it, as estimated.
-ESTIMATE_COLUMNS = ("time_s", *PAYLOAD_COLUMNS, "disturbance_x_n", "disturbance_y_n", "disturbance_z_n")
+# The estimate: the payload's state and the disturbance force on it, as estimated; then their standard deviations, of
+# the attitude those of three angles.
+_DISTURBANCE_COLUMNS = ("disturbance_x_n", "disturbance_y_n", "disturbance_z_n")
+ESTIMATE_SD_COLUMNS = tuple(
+    f"{name}_sd"
+    for name in (
+        *PAYLOAD_COLUMNS[:3], "payload_roll_rad", "payload_pitch_rad", "payload_yaw_rad", *PAYLOAD_COLUMNS[7:],
+        *_DISTURBANCE_COLUMNS,
+    )
+)  # fmt: skip
+ESTIMATE_COLUMNS = ("time_s", *PAYLOAD_COLUMNS, *_DISTURBANCE_COLUMNS, *ESTIMATE_SD_COLUMNS)
+# Innovation tests of each channel of each source, the largest ratio since the row before.
+INNOVATION_COLUMNS = ("time_s", "source", "channel", "test_ratio", "state")
+# The planned path (kind plan) and the stop plan of that moment (stop), by the stage of the safety filter's horizon.
+HORIZON_COLUMNS = ("time_s", "kind", "step", "x_m", "y_m", "z_m")
 # Wall-clock times stand in this table only, so that every other one repeats to the byte. ``total_ms`` is all that the
 # ground computed; of ``control_ms``, ``mpc_ms`` is the tracker's.
 STEP_COLUMNS = (
@@ -58,15 +71,24 @@ def truth_columns(number_of_uavs: int) -> tuple[str, ...]:
     return ("time_s", *PAYLOAD_COLUMNS, *uavs, "contacts")
 
 
+def force_columns(number_of_uavs: int) -> tuple[str, ...]:
+    """Return the columns of ``forces.csv``: the tension of each link."""
+    return ("time_s", *[f"link{i}_n" for i in range(1, number_of_uavs + 1)])
+
+
 TRUTH, OBSTACLES, MODES, ALARMS = "truth.csv", "obstacles.csv", "modes.csv", "alarms.csv"
 PHASES = "phases.csv"
 REFERENCE, ESTIMATE, PLAN, STEPS = "reference.csv", "estimate.csv", "plan.csv", "steps.csv"
+FORCES, INNOVATIONS, HORIZON = "forces.csv", "innovations.csv", "horizon.csv"
 COLUMNS: Mapping[str, tuple[str, ...]] = {
     TRUTH: truth_columns(0), OBSTACLES: OBSTACLE_COLUMNS, MODES: MODE_COLUMNS, ALARMS: ALARM_COLUMNS,
     REFERENCE: REFERENCE_COLUMNS, ESTIMATE: ESTIMATE_COLUMNS, PLAN: PLAN_COLUMNS, STEPS: STEP_COLUMNS,
     PHASES: PHASE_COLUMNS,
+    FORCES: force_columns(0), INNOVATIONS: INNOVATION_COLUMNS, HORIZON: HORIZON_COLUMNS,
 }  # fmt: skip
-"""Columns that a file has; ``truth.csv`` also those of the UAVs."""
+"""Columns that a file has; ``truth.csv`` also those of the UAVs, ``forces.csv`` those of the links."""
+LATER_COLUMNS = frozenset(ESTIMATE_SD_COLUMNS)
+"""Those that a file of an earlier version may lack; they are read as nan then."""
 TEXT_COLUMNS = frozenset(
     ("name", "shape", "kind", "mode", "phase", "source", "channel", "state", "code", "severity", "text")
 )
@@ -103,8 +125,8 @@ class TableWriter(AppendOnlyFile):
             raise ValueError(f"{self.path.name}: {len(cells)} values for {len(self.columns)} columns")
         return _line(cells)
 
-    def write_numbers(self, *rows: Sequence[float | int]) -> None:
-        """Append rows of floats and integers in one record; see :meth:`write`."""
+    def write_numbers(self, *rows: Sequence[float | int | str]) -> None:
+        """Append rows of floats, integers and plain words in one record; see :meth:`write`."""
         for row in rows:
             if len(row) != len(self.columns):
                 raise ValueError(f"{self.path.name}: {len(row)} values for {len(self.columns)} columns")
@@ -112,7 +134,7 @@ class TableWriter(AppendOnlyFile):
         if b"null" in lines:  # JSON has neither inf nor nan
             self.append(b"".join(map(self._row, rows)))
         else:
-            self.append(lines.replace(b"],[", b"\n") + b"\n")
+            self.append(lines.replace(b"],[", b"\n").replace(b'"', b"") + b"\n")
 
 
 _FORMATS: dict[type, Callable[[Any], str]] = {float: repr, int: repr, str: str}

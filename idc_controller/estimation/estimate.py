@@ -3,6 +3,8 @@
 from collections.abc import Callable
 from typing import NamedTuple
 
+import numpy as np
+
 from idc_controller.arrays import Array, Indices
 from idc_controller.estimation.measurements import SensorKey
 
@@ -25,6 +27,8 @@ class InnovationRecord(NamedTuple):
     """Rows of each (K,); they add up to m."""
     normalised: Array
     """Innovations, one measurement after the other, normalised to variance 1 (m,)."""
+    test_ratios: Array
+    """Normalised innovations squared of pose and motion over their gates (K, 2); above 1: rejected, nan: not tested."""
 
 
 class Estimate(NamedTuple):
@@ -45,6 +49,8 @@ class Estimate(NamedTuple):
     """Predicts :attr:`covariance`."""
     innovations: tuple[InnovationRecord, ...] = ()
     """Innovations applied since the last estimate, in order of time; those replayed come again."""
+    predict_payload_variances: Callable[[], Array] = lambda: np.full(12, np.nan)
+    """Predicts the variances of the payload's position, velocity, attitude (Euler angles) and rates (12,) squared."""
 
     @property
     def covariance(self) -> Array:

@@ -161,5 +161,5 @@ class Estimator:
         on_uavs[:, :2] = x[process.uav_force].reshape(-1, 2)
         return Estimate(
             time, x[:n], x[process.force], on_uavs, float(x[process.mass]),
-            ahead.force_covariance(), ahead.covariance, tuple(innovations),
+            ahead.force_covariance(), ahead.covariance, tuple(innovations), ahead.payload_variances,
         )  # fmt: skip

@@ -2,11 +2,12 @@
 
 import numpy as np
 
+from idc_controller.arrays import Array, Mask
 from idc_controller.estimation.estimate import InnovationRecord
 from idc_controller.estimation.health.innovation_gate import InnovationGate
 from idc_controller.estimation.health.noise_adaptation import Reaction
 from idc_controller.estimation.health.sensor_health import SensorHealth
-from idc_controller.estimation.measurement_model import MeasurementModel
+from idc_controller.estimation.measurement_model import MeasurementModel, ObservationStack
 from idc_controller.estimation.measurements import Position, median_of
 from idc_controller.estimation.propagation import ErrorStateFilter
 from idc_controller.estimation.replay import Moment
@@ -84,12 +85,19 @@ class MeasurementUpdate:
             if degrees_of_freedom < usable:
                 innovation, variance = innovation.subset(accepted), variance[accepted]
             squared = filter.update(innovation, variance, measured)
+        ratios = test.ratios if stack is whole else _of_channels_present(test.ratios, whole, present)
         return InnovationRecord(
             moment.time, squared, degrees_of_freedom, tuple(keys[c] for c in rejected),
-            is_lost or reaction is Reaction.COVARIANCE_RESET, keys, stack.sizes, test.normalised,
+            is_lost or reaction is Reaction.COVARIANCE_RESET, keys, stack.sizes, test.normalised, ratios,
         )  # fmt: skip
 
     def _restart(self, filter: ErrorStateFilter) -> None:
         """Begin anew from the reference where the state is no number: nothing that is measured could mend it."""
         P = filter.process.initial_covariance(self._settings.initial)
         filter.restart(P + filter.process.covariance_reset(P, self._settings.reset))
+
+
+def _of_channels_present(ratios: Array, whole: ObservationStack, present: Mask) -> Array:
+    """Return test ratios (K, 2) with nan for a pose or a motion that is not among the rows ``present`` (m,)."""
+    measured = np.column_stack([present[whole.starts], present[whole.starts + whole.sizes // 2]])
+    return np.where(measured[measured.any(axis=1)], ratios, np.nan)

@@ -9,7 +9,7 @@ import numpy as np
 from idc_controller.arrays import Array, Indices
 from idc_controller.estimation.kalman_filter import Innovation, StructuredKalmanFilter
 from idc_controller.estimation.process_model import ProcessModel
-from idc_controller.estimation.propagation_kernels import about_reference, are_finite, defect
+from idc_controller.estimation.propagation_kernels import about_reference, are_finite, defect, propagated_variances
 from idc_controller.estimation.setpoint_history import SetpointHistory
 from idc_controller.trajectory.reference import Reference
 
@@ -169,8 +169,26 @@ class Outlook(NamedTuple):
 
     def covariance(self) -> Array:
         """Return the covariance (n, n) of the whole state."""
+        return self._covariance(len(self.interval.times) - 1)
+
+    def payload_variances(self) -> Array:
+        """Return the variances (12,) of the payload's states, the diagonal of :meth:`covariance`, at less cost."""
+        interval, last = self.interval, len(self.interval.times) - 2
+        if last < self.k:
+            return self.P.diagonal()[:12]
+        duration, (_, change, probability) = interval.durations[last], interval.setpoints[last]
+        transition = self.process.transition(duration)
+        return propagated_variances(
+            self._covariance(last), transition.dense[:12], transition.push, interval.force_of_mass[last], transition.B,
+            self.process.noise(duration, self.force_scale), _NONE if change is None else change, probability,
+        )  # fmt: skip
+
+    def _covariance(self, end: int) -> Array:
+        """Return the covariance (n, n) at time ``end`` of the interval."""
+        if end <= self.k:
+            return self.P
         filter = ErrorStateFilter(self.process)
         filter.start(self.interval.nominal[0], self.P, self.interval)
-        for k in range(self.k, len(self.interval.times) - 1):
+        for k in range(self.k, end):
             filter.predict(self.interval, k, self.force_scale)
         return filter.P

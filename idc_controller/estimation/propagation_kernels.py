@@ -114,6 +114,33 @@ def propagated(
     return result, covariance
 
 
+@kernel(f"float64[::1]({_MATRIX}, {_MATRIX}, {_MATRIX}, {_VECTOR}, {_MATRIX}, {_MATRIX}, {_VECTOR}, {_VECTOR})")
+def propagated_variances(
+    P: Array, dense: Array, push: Array, direction: Array, B: Array, Q: Array, change: Array, probability: Array
+) -> Array:
+    """Return the first elements of the diagonal of the covariance of :func:`propagated` (r,).
+
+    Args:
+        P: covariance before, symmetric (n, n).
+        dense: first rows of F (r, n), but for the last column.
+        push, direction, B, Q, change, probability: see :func:`propagated`.
+    """
+    first = _dense_rows(dense, push, direction)
+    top, N = np.dot(first, P), len(probability)
+    variances = np.empty(len(dense))
+    for r in range(len(dense)):
+        total = Q[r, r]
+        for c in range(len(P)):
+            total += top[r, c] * first[r, c]
+        if len(change):
+            for i in range(N):
+                tilt = B[r, 2 * i] * change[2 * i] + B[r, 2 * i + 1] * change[2 * i + 1]
+                thrust = B[r, 2 * N + i] * change[2 * N + i]
+                total += probability[i] * (tilt * tilt + thrust * thrust)
+        variances[r] = total
+    return variances
+
+
 @kernel("void(float64[:, ::1], int64, int64[::1], float64)")
 def add_variances(P: Array, first: int, uavs: Indices, variance: float) -> None:
     """Add a ``variance`` to those of two states of each of ``uavs`` (K,) in the covariance ``P`` (n, n).

@@ -225,12 +225,12 @@ def _normalise(residual: Array, covariance: Array, variance: Array, first: int, 
 
 
 @kernel(
-    "Tuple((float64[::1], float64[::1], boolean[::1], boolean[::1]))"
+    "Tuple((float64[::1], float64[::1], boolean[::1], boolean[::1], float64[:, ::1]))"
     "(float64[::1], float64[:, ::1], float64[::1], int64[::1], int64[::1], float64[::1])"
 )
 def gated(
     residual: Array, covariance: Array, variance: Array, starts: Indices, sizes: Indices, limits: Array
-) -> tuple[Array, Array, Mask, Mask]:
+) -> tuple[Array, Array, Mask, Mask, Array]:
     """Test the innovations of K measurements, each by its own block of the covariance.
 
     Args:
@@ -241,11 +241,13 @@ def gated(
         limits: gates (normalised innovation squared) by the number of rows.
 
     Returns:
-        Normalised innovations (m,), their mean square by measurement (K,), the measurements that pass (K,), and the
-        rows that pass (m,): of a rejected measurement with pose and motion, the one that passes alone. A drifting
-        position, say, comes with a true velocity.
+        Normalised innovations (m,), their mean square by measurement (K,), the measurements that pass (K,), the rows
+        that pass (m,): of a rejected measurement with pose and motion, the one that passes alone. A drifting position,
+        say, comes with a true velocity. And the test ratios (K, 2) of pose and motion, normalised innovation squared
+        over its gate: the smaller of the measurement's and its own, so that above 1 it is rejected; in measurements of
+        3 rows or fewer both are the measurement's.
     """
-    normalised, mean_squares = np.empty(len(residual)), np.empty(len(starts))
+    normalised, mean_squares, ratios = np.empty(len(residual)), np.empty(len(starts)), np.empty((len(starts), 2))
     accepted, rows, half = np.empty(len(starts), np.bool_), np.zeros(len(residual), np.bool_), np.empty(3)
     for j in range(len(starts)):
         first, size = starts[j], sizes[j]
@@ -253,13 +255,16 @@ def gated(
         mean_squares[j] = square / size if square == square else np.inf
         accepted[j] = square <= limits[size]
         rows[first : first + size] = accepted[j]
-        if not accepted[j] and size > 3:
+        ratios[j] = square / limits[size] if square == square else np.inf
+        if size > 3:
             part = size // 2
-            for begin in (first, first + part):
-                rows[begin : begin + part] = (
-                    _normalise(residual, covariance, variance, begin, part, half) <= limits[part]
-                )
-    return normalised, mean_squares, accepted, rows
+            for c in range(2):
+                begin = first + c * part
+                square = _normalise(residual, covariance, variance, begin, part, half)
+                if not accepted[j]:
+                    rows[begin : begin + part] = square <= limits[part]
+                ratios[j, c] = min(ratios[j, c], square / limits[part] if square == square else np.inf)
+    return normalised, mean_squares, accepted, rows, ratios
 
 
 @kernel("UniTuple(float64, 2)(float64[::1], float64[::1], boolean[::1], boolean[::1])")

@@ -23,6 +23,8 @@ from idc_controller.trajectory.flatness import FlatReference
 from idc_controller.trajectory.settings import BrakingSettings
 
 _layout = cache(StateLayout)
+_BINOMIALS, _POWERS = np.array([1.0, 4.0, 6.0, 4.0, 1.0]), np.arange(5)
+"""Of the Bernstein polynomials of a quartic."""
 
 
 class Braking(NamedTuple):
@@ -55,6 +57,18 @@ class StopPlan(NamedTuple):
     duration: float
     control_points: Array
     """(N, 5, 3) (m, NED)."""
+
+    def payload_positions(self, parameters: SystemParameters, elapsed: Array) -> Array:
+        """Return where a level payload that hangs at rest below the UAVs is (K, 3) (m, NED), by their mean.
+
+        Args:
+            parameters: of the system.
+            elapsed: times since the start (K,) (s); before it, and after the duration, the UAVs rest.
+        """
+        points = (self.control_points - parameters.p[:, None]).mean(axis=0)
+        points[:, 2] += parameters.l.mean()
+        share = np.clip(elapsed / self.duration, 0.0, 1.0)[:, None]
+        return np.asarray((_BINOMIALS * share**_POWERS * (1.0 - share) ** _POWERS[::-1]) @ points)
 
 
 def stop_plan(

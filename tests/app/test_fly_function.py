@@ -30,7 +30,16 @@ from gcs.mission.toml_mission import route_through
 from gcs.record.landing import in_air
 from gcs.record.run_data import read_run
 from gcs.record.run_folder import write_manifest
-from gcs.record.tables import ESTIMATE_COLUMNS, OBSTACLE_COLUMNS, PLAN_COLUMNS, REFERENCE_COLUMNS, truth_columns
+from gcs.record.tables import (
+    ESTIMATE_COLUMNS,
+    HORIZON_COLUMNS,
+    INNOVATION_COLUMNS,
+    OBSTACLE_COLUMNS,
+    PLAN_COLUMNS,
+    REFERENCE_COLUMNS,
+    force_columns,
+    truth_columns,
+)
 
 ROOT = Path(__file__).parents[2]
 HOP = ROOT / "missions" / "hop.toml"
@@ -61,7 +70,10 @@ start = 0.0
 delay = 0.02
 vehicles = [2]
 """
-SAME = ("truth.csv", "estimate.csv", "plan.csv", "reference.csv", "alarms.csv", "modes.csv", "phases.csv")
+SAME = (
+    "truth.csv", "forces.csv", "estimate.csv", "innovations.csv", "plan.csv", "horizon.csv", "reference.csv",
+    "alarms.csv", "modes.csv", "phases.csv",
+)  # fmt: skip
 
 
 def same_bytes(first, second, names=SAME):
@@ -181,12 +193,31 @@ def test_flight_has_its_records_and_leaves_no_file(tmp_path, monkeypatch):
     assert flight.reference.dtype.names == REFERENCE_COLUMNS
     assert flight.estimate.dtype.names == ESTIMATE_COLUMNS
     assert flight.plan.dtype.names == PLAN_COLUMNS
+    assert flight.forces.dtype.names == force_columns(4)
+    assert flight.innovations.dtype.names == INNOVATION_COLUMNS
+    assert flight.horizon.dtype.names == HORIZON_COLUMNS
     assert flight.obstacles.dtype.names == OBSTACLE_COLUMNS and len(flight.obstacles) == 0
     assert len(flight.alarms) == 0 and flight.faults == ()
     assert -flight.truth["payload_z_m"].min() == pytest.approx(0.8, abs=0.05)
     assert np.interp(9.0, flight.estimate["time_s"], flight.estimate["payload_z_m"]) == pytest.approx(
         np.interp(9.0, flight.truth["time_s"], flight.truth["payload_z_m"]), abs=0.02
     )
+
+    # In hover the links carry the payload; the estimate's errors are as large as it says.
+    hover = slice(*np.searchsorted(flight.forces["time_s"], [7.0, 9.0]))
+    tension = sum(flight.forces[f"link{i}_n"][hover] for i in range(1, 5))
+    assert tension.mean() == pytest.approx(3.1 * 9.81, rel=0.003)
+    assert flight.forces["time_s"][hover].tolist() == pytest.approx(np.arange(7.0, 9.0, 0.02))
+    estimate = flight.estimate[np.searchsorted(flight.estimate["time_s"], 5.0) :]
+    for name in ("payload_x_m", "payload_vy_mps", "payload_wz_radps"):
+        error = estimate[name] - np.interp(estimate["time_s"], flight.truth["time_s"], flight.truth[name])
+        assert 0.4 < np.sqrt(np.mean((error[:100] / estimate[f"{name}_sd"][:100]) ** 2)) < 1.6
+    innovations = flight.innovations[flight.innovations["time_s"] > 5.0]
+    assert len({*zip(innovations["source"], innovations["channel"], strict=True)}) == 20
+    assert np.median(innovations["test_ratio"]) < 0.5 and {*innovations["state"].tolist()} <= {"ok", "rejected"}
+    planned = flight.horizon[(flight.horizon["kind"] == "plan") & (flight.horizon["step"] == 0)]
+    z = np.interp(planned["time_s"], flight.plan["time_s"], flight.plan["z_m"])
+    assert len(planned) > 40 and planned["z_m"] == pytest.approx(z, abs=1e-3)
 
     setpoints = flight.setpoints
     assert {*setpoints["vehicle"].tolist()} == {1, 2, 3, 4} and np.all(np.diff(setpoints["time_s"]) >= 0.0)
@@ -197,7 +228,7 @@ def test_flight_has_its_records_and_leaves_no_file(tmp_path, monkeypatch):
 
     frame = flight.frame("truth")
     assert tuple(frame.columns) == truth_columns(4) and len(frame) == len(flight.truth)
-    with pytest.raises(ValueError, match="'steps' is no record: truth, reference"):
+    with pytest.raises(ValueError, match="'steps' is no record: truth, forces, reference"):
         flight.frame("steps")
 
 

@@ -47,6 +47,27 @@ def test_covariance_of_force_is_that_of_whole_state():
         assert estimate.force_covariance[0, 0] > 0.0
 
 
+def test_variances_of_payload_are_those_of_whole_state():
+    estimator, _, _ = run(samples_of(0.5))
+    u = REFERENCE.at(np.array([0.55])).u[0]
+    for time, switches in ((0.5, ()), (0.7, ()), (0.9, (0.55, 0.62))):
+        for switch in switches:  # which a vehicle may not have received
+            estimator.setpoints.add(switch, u + 0.1)
+        estimate = estimator.estimate(time, REFERENCE)
+        assert estimate.predict_payload_variances() == pytest.approx(estimate.covariance.diagonal()[:12], rel=1e-9)
+
+
+@pytest.mark.parametrize(("missing", "tested"), [((True, False), [False, True]), ((False, True), [True, False])])
+def test_test_ratio_of_channel_that_is_not_measured_is_nan(missing, tested):
+    estimator = started()
+    for each in all_samples(INTERVAL, np.random.default_rng(5)):
+        estimator.add(each.without(*missing) if (each.source, type(each)) == (2, Position) else each)
+    [innovation] = estimator.estimate(INTERVAL, REFERENCE).innovations
+    ratios = dict(zip(innovation.keys, innovation.test_ratios, strict=True))
+    assert np.isfinite(ratios.pop((2, Position))).tolist() == tested
+    assert len(ratios) == 9 and all((ratio > 0.0).all() and (ratio < 1.0).all() for ratio in ratios.values())
+
+
 def test_covariance_grows_with_missing_measurements():
     moments = samples_of(2.0)
     rng = np.random.default_rng(3)

@@ -172,6 +172,7 @@ def test_propagation_by_blocks_equals_dense_product_for_slow_motors_and_long_int
 def plain_gate(residual, covariance, variance, starts, sizes, limits):
     covariance = covariance + np.diag(variance)
     normalised, mean_squares, accepted, rows = [], [], [], np.zeros(len(residual), dtype=bool)
+    ratios = []
 
     def squared(part):
         return residual[part] @ np.linalg.solve(covariance[part, part], residual[part])
@@ -182,10 +183,13 @@ def plain_gate(residual, covariance, variance, starts, sizes, limits):
         mean_squares.append(squared(part) / size)
         accepted.append(squared(part) <= limits[size])
         rows[part] = accepted[-1]
-        if not accepted[-1] and size > 3:
-            for half in (slice(first, first + size // 2), slice(first + size // 2, first + size)):
+        ratios.append([squared(part) / limits[size]] * 2)
+        if size > 3:
+            halves = slice(first, first + size // 2), slice(first + size // 2, first + size)
+            ratios[-1] = [min(squared(half) / limits[size // 2], ratios[-1][0]) for half in halves]
+            for half in halves if not accepted[-1] else ():
                 rows[half] = squared(half) <= limits[size // 2]
-    return np.concatenate(normalised), np.array(mean_squares), np.array(accepted), rows
+    return np.concatenate(normalised), np.array(mean_squares), np.array(accepted), rows, np.array(ratios)
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -205,14 +209,21 @@ def test_compiled_gate_equals_plain_one(seed):
     compiled, plain = gated(*arguments), plain_gate(*arguments)
     for ours, theirs in zip(compiled[:2], plain[:2], strict=True):
         assert ours == pytest.approx(theirs, rel=1e-10)
-    assert all((ours == theirs).all() for ours, theirs in zip(compiled[2:], plain[2:], strict=True))
+    assert all((ours == theirs).all() for ours, theirs in zip(compiled[2:4], plain[2:4], strict=True))
+    assert compiled[4] == pytest.approx(plain[4], rel=1e-10)
     assert 0 < compiled[3].sum() < m
+    channels = (compiled[4] > 1.0).tolist()
+    parts = [(first, first + size // 2 if size > 3 else first) for first, size in zip(starts, sizes, strict=True)]
+    assert channels == [[not compiled[3][row] for row in rows] for rows in parts]
 
 
 def test_gate_rejects_measurement_without_covariance_and_accepts_others():
     covariance, limits = np.diag([np.nan] * 6 + [-2.0] * 6 + [1.0] * 6), lower_quantile(0.999, range(7))
     starts, sizes = np.array([0, 6, 12]), np.full(3, 6)
-    normalised, mean_squares, accepted, rows = gated(np.zeros(18), covariance, np.full(18, 0.1), starts, sizes, limits)
+    normalised, mean_squares, accepted, rows, ratios = gated(
+        np.zeros(18), covariance, np.full(18, 0.1), starts, sizes, limits
+    )
+    assert ratios.tolist() == [[np.inf, np.inf], [np.inf, np.inf], [0.0, 0.0]]
     assert accepted.tolist() == [False, False, True]
     assert rows.tolist() == [False] * 12 + [True] * 6
     assert mean_squares.tolist() == [np.inf, np.inf, 0.0]

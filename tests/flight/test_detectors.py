@@ -62,7 +62,9 @@ class Monitored:
             link.payload_received_at = now if payload else 0.0
         normal = self.random.standard_normal(6 * len(keys))
         sizes = np.full(len(keys), 6)
-        innovations = InnovationRecord(now, float(normal @ normal), len(normal), rejected, reset, keys, sizes, normal)
+        innovations = InnovationRecord(
+            now, float(normal @ normal), len(normal), rejected, reset, keys, sizes, normal, np.zeros((len(keys), 2))
+        )
         size = MODEL.layout.size
         estimate = Estimate(
             now, np.zeros(size), np.array(force), np.zeros((N, 3)), 0.0, np.eye(3), lambda: np.eye(size + 2 * N + 4),

@@ -44,8 +44,8 @@ ALLOWED = {
         "idc_controller.model idc_controller.perception idc_controller.safety idc_controller.trajectory"
     ),
     "gcs.record": (
-        "gcs.config gcs.flight gcs.mavlink gcs.mission idc_controller.control idc_controller.geometry "
-        "idc_controller.perception"
+        "gcs.config gcs.flight gcs.mavlink gcs.mission idc_controller.control idc_controller.estimation "
+        "idc_controller.geometry idc_controller.perception idc_controller.trajectory"
     ),
     "gcs.reproduce": (
         "gcs.campaign gcs.config gcs.flight gcs.record idc_controller.estimation idc_controller.geometry "

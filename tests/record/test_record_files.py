@@ -14,19 +14,29 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from numpy.lib.recfunctions import structured_to_unstructured
 
+from gcs.config import read_system
 from gcs.errors import UnusableInput
 from gcs.record.append_file import AppendOnlyFile
+from gcs.record.horizon_recorder import HorizonRecorder
+from gcs.record.innovation_recorder import InnovationRecorder
 from gcs.record.obstacle_recorder import ObstacleRecorder
 from gcs.record.reader import read_table
 from gcs.record.tables import (
     ALARM_COLUMNS,
     ALARMS,
+    ESTIMATE,
     ESTIMATE_COLUMNS,
+    HORIZON_COLUMNS,
+    INNOVATION_COLUMNS,
     REFERENCE_COLUMNS,
     TableWriter,
+    force_columns,
     truth_columns,
 )
+from idc_controller.estimation.measurements import PAYLOAD, Attitude, Channel, Position, SensorGroup
 from idc_controller.geometry.box import Wall
+from idc_controller.trajectory.integrator_chain import Chain
+from idc_controller.trajectory.stop_plan import StopPlan
 
 FIXED = Wall((1.0, 2.0, 5.0))
 
@@ -202,3 +212,90 @@ def test_columns_follow_the_contract() -> None:
     assert len(truth) == 1 + 13 + 2 * 8 + 1
     assert ",".join(REFERENCE_COLUMNS) == "time_s,x_m,y_m,z_m,vx_mps,vy_mps,vz_mps"
     assert ESTIMATE_COLUMNS[:14] == truth[:14]
+    assert ",".join(force_columns(3)) == "time_s,link1_n,link2_n,link3_n"
+    assert ",".join(INNOVATION_COLUMNS) == "time_s,source,channel,test_ratio,state"
+    assert ",".join(HORIZON_COLUMNS) == "time_s,kind,step,x_m,y_m,z_m"
+
+
+def test_estimate_without_standard_deviations_is_read_with_nan(tmp_path) -> None:
+    columns = [name for name in ESTIMATE_COLUMNS if not name.endswith("_sd")]
+    with TableWriter(tmp_path / ESTIMATE, columns) as table:
+        table.write(range(len(columns)), range(len(columns)))
+    table = read_table(tmp_path / ESTIMATE)
+    assert table.dtype.names == ESTIMATE_COLUMNS and len(table) == 2
+    assert [table[name][1] for name in columns] == [*range(len(columns))]
+    assert np.isnan(table["payload_x_m_sd"]).all() and np.isnan(table["payload_yaw_rad_sd"]).all()
+    header = (tmp_path / ESTIMATE).read_text().replace("payload_vx_mps", "payload_v_mps")
+    (tmp_path / ESTIMATE).write_text(header)
+    with pytest.raises(UnusableInput, match=r"estimate\.csv, line 1: column payload_vx_mps is missing"):
+        read_table(tmp_path / ESTIMATE)
+
+
+class _Health(SimpleNamespace):
+    """Sensor health of four vehicles."""
+
+    def __init__(self, stuck=(), isolated=(), groups=()) -> None:
+        super().__init__(
+            stuck_channels=[*stuck], isolation=SimpleNamespace(isolated=isolated), isolated_groups=dict(groups),
+            number_of_uavs=4,
+        )  # fmt: skip
+
+
+def innovation_tests(time, ratios):
+    """The innovation tests of one moment: ratios of pose and motion by sensor."""
+    return SimpleNamespace(time=time, keys=tuple(ratios), test_ratios=np.array([*ratios.values()]))
+
+
+def test_largest_test_ratio_of_each_channel_is_recorded_with_its_state(tmp_path) -> None:
+    keys = [(source, kind) for source in (PAYLOAD, 0, 1, 2, 3) for kind in (Attitude, Position)]
+    health = [
+        _Health(),
+        _Health(stuck=[Channel(0, Position, 1)], isolated=(Channel(0, Position, 1), Channel(1, Attitude, 0))),
+        _Health(groups={SensorGroup(True, Position): (False, True), SensorGroup(False, Attitude): (True, False)}),
+    ]
+    moments = [
+        [innovation_tests(0.95, {(PAYLOAD, Position): [0.2, 0.3], (2, Attitude): [0.1, np.nan]}),
+         innovation_tests(0.99, {(PAYLOAD, Position): [0.1, 0.4]})],
+        # The first is replayed; the second comes late, with what has been counted.
+        [innovation_tests(0.99, {(PAYLOAD, Position): [9.0, 9.0]}),
+         innovation_tests(0.99, {(PAYLOAD, Position): [9.0, 9.0], (3, Attitude): [1.5, 0.5]})],
+        [],
+    ]  # fmt: skip
+    recorder = InnovationRecorder(tmp_path)
+    observations = SimpleNamespace(observations=dict.fromkeys(keys))
+    for k, (state, innovations) in enumerate(zip(health, moments, strict=True)):
+        estimator = SimpleNamespace(health=state, measurement_model=observations)
+        recorder.record(estimator, SimpleNamespace(innovations=innovations), 1.0 + 0.1 * k)
+        recorder.record(estimator, SimpleNamespace(innovations=[]), 1.05 + 0.1 * k)
+    recorder.close()
+    table = read_table(tmp_path / "innovations.csv")
+    assert table["time_s"].tolist() == [round(1.0 + 0.1 * k, 6) for k in range(3) for _ in range(20)]
+    rows = {(round(t, 1), source, channel): (ratio, state) for t, source, channel, ratio, state in table.tolist()}
+    assert rows[1.0, "payload", "position"] == (0.2, "ok") and rows[1.0, "payload", "velocity"] == (0.4, "ok")
+    assert rows[1.0, "vehicle 3", "attitude"] == (0.1, "ok") and math.isnan(rows[1.0, "vehicle 3", "rates"][0])
+    assert math.isnan(rows[1.1, "payload", "position"][0])
+    assert rows[1.1, "vehicle 4", "attitude"] == (1.5, "rejected") and rows[1.1, "vehicle 4", "rates"] == (0.5, "ok")
+    states = {key: state for key, (_, state) in rows.items() if state not in ("ok", "rejected")}
+    assert states == {
+        (1.1, "vehicle 1", "velocity"): "stuck", (1.1, "vehicle 2", "attitude"): "isolated",
+        (1.2, "payload", "velocity"): "isolated",
+        **{(1.2, f"vehicle {i}", "attitude"): "isolated" for i in range(1, 5)},
+    }  # fmt: skip
+
+
+def test_plan_and_stop_plan_are_recorded_every_third_stage_five_times_a_second(tmp_path) -> None:
+    chain, parameters = Chain(0.1, (2, 4, 3)), read_system().parameters()
+    hang = parameters.p - parameters.l[:, None] * [0.0, 0.0, 1.0]
+    rest = SimpleNamespace(derivatives=lambda times, order: np.array([[[t, 0.0, -5.0] for t in times]]))
+    recorder = HorizonRecorder(tmp_path)
+    for k in range(9):
+        time = 2.0 + 0.05 * k
+        stop = StopPlan(time, 1.0, np.linspace([time, 0.0, -5.0], [time + 1.0, 0.0, -5.0], 5) + hang[:, None])
+        recorder.record(time, rest, stop, chain, parameters)
+    recorder.close()
+    table = read_table(tmp_path / "horizon.csv")
+    assert sorted({*table["time_s"].tolist()}) == [2.0, 2.2, 2.4]
+    rows = table[table["time_s"] == 2.2][["kind", "step", "x_m", "y_m", "z_m"]].tolist()
+    assert rows[:4] == [("plan", k, round(2.2 + 0.1 * k, 3), 0.0, -5.0) for k in (0, 3, 6, 9)]
+    # Evenly spaced control points are passed at an even speed, to the rest.
+    assert rows[4:] == [("stop", k, round(2.2 + min(0.1 * k, 1.0), 3), 0.0, -5.0) for k in (0, 3, 6, 9, 12)]

@@ -48,6 +48,10 @@ class Readings:
         """Return by how much the velocities of payload and UAVs (N + 1) changed in the last step (m/s, z up)."""
         return self._correction.velocity_changes()
 
+    def link_tensions(self, thrusts: Sequence[float], external: Sequence[Sequence[float]] | None) -> list[float]:
+        """Return the tension of each link in the last step (N) (N): see :class:`VelocityCorrection`."""
+        return self._correction.link_tensions(thrusts, external)
+
     def states(self) -> Array:
         """Return the true states of payload and UAVs now, (N + 1, 13) as in :mod:`.state_kernels`, to be read only."""
         return self._correction.states

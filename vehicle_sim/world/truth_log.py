@@ -1,4 +1,4 @@
-"""``truth.csv``, ``obstacles.csv`` and ``modes.csv``: the true state, written by the world."""
+"""``truth.csv``, ``forces.csv``, ``obstacles.csv`` and ``modes.csv``: the true state, written by the world."""
 
 from __future__ import annotations
 
@@ -9,17 +9,18 @@ from typing import TYPE_CHECKING
 from gcs.record.incomplete import IncompleteRecords
 from gcs.record.obstacle_shapes import OBSTACLE_SHAPES, write_shapes
 from gcs.record.run_folder import make_folder
-from gcs.record.tables import MODE_COLUMNS, OBSTACLE_COLUMNS, TableWriter, truth_columns
+from gcs.record.tables import FORCES, MODE_COLUMNS, OBSTACLE_COLUMNS, TableWriter, force_columns, truth_columns
 from idc_controller.arrays import Array
 
 if TYPE_CHECKING:  # the physics engine is not needed to write down what it found
     from vehicle_sim.world.obstacle_bodies import Obstacle
 
 _POSE_COLUMNS = 7  # of a row of a state: position and attitude
+_FORCE_DIGITS = 4  # a tenth of a millinewton
 
 
 class TruthLog:
-    """Writes ``truth.csv``; ``obstacles.csv`` and ``modes.csv`` from their first row on.
+    """Writes ``truth.csv``; ``forces.csv``, ``obstacles.csv`` and ``modes.csv`` from their first row on.
 
     Rows are equal to the byte for equal states. Raises ``gcs.errors.UnusableInput`` if the folder cannot be
     written or holds a truth already; it is made if it is absent. A full disk stops the writing, not the
@@ -30,6 +31,7 @@ class TruthLog:
         self._run_dir = folder = make_folder(run_dir)
         self.incomplete = incomplete = IncompleteRecords()
         self._truth = TableWriter(folder / "truth.csv", truth_columns(number_of_uavs), incomplete)
+        self._forces = TableWriter(folder / FORCES, force_columns(number_of_uavs), incomplete, when_needed=True)
         self._obstacles = TableWriter(folder / "obstacles.csv", OBSTACLE_COLUMNS, incomplete, when_needed=True)
         self._modes = TableWriter(folder / "modes.csv", MODE_COLUMNS, incomplete, when_needed=True)
         self._shapes_written = False
@@ -68,6 +70,10 @@ class TruthLog:
             self.incomplete.add(path, error)
             self._obstacles.close()
 
+    def write_tensions(self, time: float, tensions: Sequence[float]) -> None:
+        """Append the tension of each link (N) (N) at a ``time`` (s)."""
+        self._forces.write_numbers([time, *[round(tension, _FORCE_DIGITS) for tension in tensions]])
+
     def write_mode(self, time: float, vehicle: int, mode: str, armed: bool, failsafe: bool) -> None:
         """Append what a vehicle (its system id) flies from ``time`` (s) on, if it is not what it flew before."""
         if self._flown.get(vehicle) == (mode, armed, failsafe):
@@ -77,7 +83,7 @@ class TruthLog:
 
     def close(self) -> None:
         """Close all files; harmless when they are closed already."""
-        for table in (self._truth, self._obstacles, self._modes):
+        for table in (self._truth, self._forces, self._obstacles, self._modes):
             table.close()
 
     def __enter__(self) -> TruthLog:

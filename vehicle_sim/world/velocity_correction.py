@@ -8,6 +8,7 @@ import numpy as np
 from idc_controller.parameters import SystemParameters
 from idc_controller.rotations_float import Vector
 from vehicle_sim.world.ground import Pose
+from vehicle_sim.world.link_force_kernels import link_tensions
 from vehicle_sim.world.multibody import Multibody
 from vehicle_sim.world.state_kernels import (
     AXIS,
@@ -36,7 +37,7 @@ class VelocityCorrection:
         """Take the constants of the system; ``physics_step`` in s."""
         rows = len(system.uavs) + 1
         self._physics_step, self._free_steps = physics_step, 0
-        self._payload_in_axes = np.array(system.payload_in_axes)
+        self._payload_in_axes, self._gravity = np.array(system.payload_in_axes), parameters.g
         self._now, self._before = np.zeros((rows, READING_COLUMNS)), np.zeros((rows, READING_COLUMNS))
         self._parts, self._memory = np.zeros((rows, PART_COLUMNS)), np.zeros((rows, MEMORY_COLUMNS))
         self.set_payload_moments(system.payload_moments)
@@ -76,6 +77,19 @@ class VelocityCorrection:
         """Return by how much the velocities of payload and UAVs (N + 1) changed in the last step (m/s, z up)."""
         changes: list[list[float]] = (self._now[:, 7:10] - self._before[:, 7:10]).tolist()
         return changes
+
+    def link_tensions(self, thrusts: Sequence[float], external: Sequence[Sequence[float]] | None) -> list[float]:
+        """Return the tension of each link in the last step (N) (N), see :mod:`.link_force_kernels`.
+
+        ``thrusts`` N numbers (N) and ``external`` N triples (N, NED; None: none) of that step.
+        """
+        n = len(thrusts)
+        forces = np.zeros((n, 3)) if external is None else np.array(external, dtype=float)
+        tensions: list[float] = link_tensions(
+            self._now, self._before, self._parts, np.array(thrusts, dtype=float), forces, self._gravity,
+            self._physics_step,
+        ).tolist()  # fmt: skip
+        return tensions
 
     def _evaluate(self) -> None:
         self.states = np.empty((len(self._now), STATE_COLUMNS))

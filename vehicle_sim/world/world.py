@@ -80,6 +80,8 @@ class World:
         self._readings = Readings(client, self._system, parameters, 1.0 / self.physics_hz)
         self.steps = 0
         self._thrusts = (0.0,) * parameters.number_of_uavs
+        self._uav_forces: Sequence[Sequence[float]] | None = None
+        """External forces of the last step on the UAVs."""
         self._contacts = ContactDetector(
             parameters, settings, self._system, self._ground, self.obstacles, self._readings
         )
@@ -133,7 +135,7 @@ class World:
             self._push(payload_force, uav_forces)
         _step_simulation(client)
         self.steps += 1
-        self._thrusts = tuple(thrusts)
+        self._thrusts, self._uav_forces = tuple(thrusts), uav_forces
         self._readings.update()
         if self._cradles.number_held or self.contacts() is not NO_CONTACTS:
             self._readings.restart()
@@ -166,6 +168,19 @@ class World:
     def thrusts(self) -> tuple[float, ...]:
         """The UAVs' thrusts of the last step (N)."""
         return self._thrusts
+
+    def link_tensions(self) -> list[float]:
+        """Return the tension of each link over the last step (N) (N); negative: compression.
+
+        By Newton's law on its UAV. nan where that is not known: a cradle holds the UAV, or anything touches but the
+        payload the ground.
+        """
+        if self.contacts().pairs:
+            return [math.nan] * len(self._thrusts)
+        tensions, cradles = self._readings.link_tensions(self._thrusts, self._uav_forces), self._cradles
+        if not cradles.number_held:
+            return tensions
+        return [math.nan if cradles.held(i) else tension for i, tension in enumerate(tensions)]
 
     def state(self, states: Array | None = None) -> WorldState:
         """Return the true state after the last step: velocities, too, to second order.

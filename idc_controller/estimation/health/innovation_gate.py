@@ -24,6 +24,8 @@ class InnovationTest(NamedTuple):
     """Measurements that pass (K,)."""
     accepted_rows: Mask
     """Rows (m,) of accepted measurements, and of the channels that pass alone in rejected ones."""
+    ratios: Array
+    """Test ratios of pose and motion (K, 2): above 1 they are rejected; equal where one of them alone is tested."""
 
 
 class InnovationGate:

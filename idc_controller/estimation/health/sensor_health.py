@@ -35,7 +35,7 @@ class SensorHealth:
     """Stuck sensors, inconsistent groups and isolated channels of N UAVs and of the payload unit."""
 
     def __init__(self, number_of_uavs: int, noise: MeasurementNoise, settings: EstimatorSettings) -> None:
-        self._number_of_uavs, self._settings = number_of_uavs, settings
+        self.number_of_uavs, self._settings = number_of_uavs, settings
         self._stuck = StuckSensors(noise, settings.stuck_sensor)
         self.dead_reckoning = DeadReckoning(number_of_uavs, settings.dead_reckoning)
         self.isolated_groups: dict[SensorGroup, tuple[bool, bool]] = {}
@@ -48,7 +48,7 @@ class SensorHealth:
     def start(self) -> None:
         """Discard what was learnt from innovations."""
         self.adaptation = NoiseAdaptation(self._settings.reset.payload_rejections, self._settings.adaptation)
-        self.isolation = ChannelIsolation(self._number_of_uavs, self._settings.isolation)
+        self.isolation = ChannelIsolation(self.number_of_uavs, self._settings.isolation)
 
     def snapshot(self) -> HealthSnapshot:
         """Return a copy of what is learnt from innovations."""
@@ -74,7 +74,7 @@ class SensorHealth:
         Of positions a rejection of the velocity counts as well: poses between two samples are extrapolated by it.
         """
         if SensorGroup(False, kind) in self.isolated_groups:
-            return frozenset(range(self._number_of_uavs))
+            return frozenset(range(self.number_of_uavs))
         return frozenset(
             source
             for (source, of), since in self._unusable_since.items()

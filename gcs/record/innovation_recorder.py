@@ -1,0 +1,82 @@
+"""Recorder of the estimator's innovation tests, channel by channel."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from gcs.record.incomplete import IncompleteRecords
+from gcs.record.tables import INNOVATION_COLUMNS, INNOVATIONS, TableWriter
+from idc_controller.estimation.measurements import PAYLOAD, Channel
+
+if TYPE_CHECKING:
+    from idc_controller.estimation.estimate import Estimate
+    from idc_controller.estimation.estimator import Estimator
+    from idc_controller.estimation.health.sensor_health import SensorHealth
+    from idc_controller.estimation.measurements import SensorKey
+
+INTERVAL = 0.1
+"""s, between rows."""
+_GRID_TOLERANCE = 1e-6
+_DIGITS = 4
+
+
+class InnovationRecorder:
+    """Writes the largest test ratio of each channel since the row before, and the channel's state."""
+
+    def __init__(self, run_dir: Path, incomplete: IncompleteRecords | None = None) -> None:
+        self._table = TableWriter(run_dir / INNOVATIONS, INNOVATION_COLUMNS, incomplete)
+        self._largest: dict[SensorKey, list[float]] = {}
+        """Of pose and motion."""
+        self._learnt: dict[SensorKey, float] = {}
+        """Time of the last sample of each sensor that counts (s): one that is replayed counts once."""
+        self._channels: list[tuple[SensorKey, Channel, str]] = []
+        """All, with the name of their source."""
+        self._next = -math.inf
+
+    def record(self, estimator: Estimator, estimate: Estimate, time: float) -> None:
+        """Take the tests of an ``estimate``, and write a row for each channel at team ``time`` (s), if it is due."""
+        largest, learnt = self._largest, self._learnt
+        for innovation in estimate.innovations:
+            for key, ratios in zip(innovation.keys, innovation.test_ratios.tolist(), strict=True):
+                if innovation.time <= learnt.get(key, -math.inf):
+                    continue
+                learnt[key] = innovation.time
+                known = largest.setdefault(key, [math.nan, math.nan])
+                for part in (0, 1):
+                    if not ratios[part] <= known[part]:  # nan: none yet, or not tested
+                        known[part] = known[part] if math.isnan(ratios[part]) else ratios[part]
+        if time < self._next - _GRID_TOLERANCE:
+            return
+        self._next = (math.floor(time / INTERVAL + _GRID_TOLERANCE) + 1) * INTERVAL
+        self._write(estimator, time)
+        largest.clear()
+
+    def _write(self, estimator: Estimator, time: float) -> None:
+        self._channels = self._channels or [
+            (key, Channel(*key, part), "payload" if key[0] == PAYLOAD else f"vehicle {key[0] + 1}")
+            for key in estimator.measurement_model.observations
+            for part in (0, 1)
+        ]
+        states = dict.fromkeys(_isolated(estimator.health), "isolated")
+        states |= dict.fromkeys(estimator.health.stuck_channels, "stuck")
+        at, rows = round(time, 6), []
+        for key, channel, name in self._channels:
+            ratio = self._largest[key][channel.part] if key in self._largest else math.nan
+            state = states.get(channel) if states else None
+            rows.append((at, name, channel.name, round(ratio, _DIGITS), state or ("rejected" if ratio > 1.0 else "ok")))
+        self._table.write_numbers(*rows)
+
+    def close(self) -> None:
+        """Close the table; harmless when it is closed."""
+        self._table.close()
+
+
+def _isolated(health: SensorHealth) -> set[Channel]:
+    """Return the channels that are isolated, alone or with their group."""
+    isolated = set(health.isolation.isolated)
+    for group, parts in health.isolated_groups.items():
+        sources = [PAYLOAD] if group.of_payload else range(health.number_of_uavs)
+        isolated |= {Channel(source, group.kind, part) for source in sources for part in (0, 1) if parts[part]}
+    return isolated
