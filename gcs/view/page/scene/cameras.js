@@ -1,0 +1,129 @@
+/** Three ways to look at the scene: free, with the payload, and from above. */
+
+import { MOUSE, OrthographicCamera, PerspectiveCamera, TOUCH, Vector3 } from 'three';
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { toScene } from './frames.js';
+
+/** @typedef {'free'|'follow'|'top'} Kind */
+
+const FIELD = 40; // deg, of view, up and down
+const FROM = new Vector3(-0.45, 0.5, 1).normalize(); // where the camera first is: south, a bit west, above
+const FILLED = 0.9; // of the picture, at most, by the flight
+
+export class Cameras {
+  /**
+   * @param {HTMLElement} canvas
+   * @param {{low: number[], high: number[]}} box of the flight, north-east-down (m)
+   * @param {number} formation the size of the formation (m)
+   * @param {() => void} onChange
+   */
+  constructor(canvas, box, formation, onChange) {
+    const a = toScene(box.low);
+    const b = toScene(box.high);
+    this.corners = [0, 1, 2, 3, 4, 5, 6, 7].map((k) => new Vector3(k & 1 ? a.x : b.x, k & 2 ? a.y : b.y, k & 4 ? a.z : b.z));
+    this.middle = a.clone().add(b).multiplyScalar(0.5);
+    this.formation = formation;
+    this.perspective = new PerspectiveCamera(FIELD, 1, 0.1, 5000);
+    this.above = new OrthographicCamera(-1, 1, 1, -1, 0.1, 5000);
+    this.above.up.set(0, 0, -1);
+    this.orbit = new OrbitControls(this.perspective, canvas);
+    this.orbit.maxPolarAngle = 0.497 * Math.PI;
+    this.orbit.minDistance = 1;
+    this.orbit.zoomToCursor = false;
+    this.pan = new OrbitControls(this.above, canvas);
+    this.pan.enableRotate = false;
+    this.pan.mouseButtons = { LEFT: MOUSE.PAN, MIDDLE: MOUSE.DOLLY, RIGHT: MOUSE.PAN };
+    this.pan.touches = { ONE: TOUCH.PAN, TWO: TOUCH.DOLLY_PAN };
+    this.followed = new Vector3();
+    /** @type {Kind} */
+    this.kind = 'free';
+    this.isPlaced = false;
+    for (const controls of [this.orbit, this.pan]) {
+      controls.enableDamping = false;
+      controls.addEventListener('change', onChange);
+    }
+  }
+
+  get current() {
+    return this.kind === 'top' ? this.above : this.perspective;
+  }
+
+  /** @param {number} width @param {number} height CSS pixels */
+  resize(width, height) {
+    this.perspective.aspect = width / height;
+    this.perspective.updateProjectionMatrix();
+    this.frameAbove(width / height);
+    if (!this.isPlaced) this.set(this.kind);
+    this.isPlaced = true;
+  }
+
+  /** @param {Kind} kind */
+  set(kind) {
+    this.kind = kind;
+    this.orbit.enabled = kind !== 'top';
+    this.pan.enabled = kind === 'top';
+    if (kind === 'free') this.overview();
+    else if (kind === 'follow') this.nearby();
+    else {
+      this.pan.target.copy(this.middle);
+      this.above.position.copy(this.middle).add(new Vector3(0, 1000, 0));
+      this.above.zoom = 1;
+      this.above.updateProjectionMatrix();
+      this.pan.update();
+    }
+  }
+
+  /** Look at the whole flight. */
+  overview() {
+    this.orbit.target.copy(this.middle);
+    const { perspective } = this;
+    perspective.position.copy(this.middle).add(FROM);
+    perspective.lookAt(this.middle);
+    perspective.updateMatrixWorld();
+    const [right, up, back] = [0, 1, 2].map((k) => new Vector3().setFromMatrixColumn(perspective.matrixWorld, k));
+    const slope = FILLED * Math.tan((FIELD * Math.PI) / 360);
+    let distance = 0;
+    for (const corner of this.corners) {
+      const from = corner.clone().sub(this.middle);
+      const aside = Math.max(Math.abs(from.dot(right)) / perspective.aspect, Math.abs(from.dot(up)));
+      distance = Math.max(distance, from.dot(back) + aside / slope);
+    }
+    perspective.position.copy(this.middle).addScaledVector(FROM, distance);
+    this.orbit.update();
+  }
+
+  /** Look at the formation, from the side from which the camera looks now. */
+  nearby() {
+    const from = this.isPlaced ? this.perspective.position.clone().sub(this.orbit.target).normalize() : FROM;
+    this.orbit.target.copy(this.followed);
+    const distance = (1.6 * this.formation) / Math.min(1, this.perspective.aspect);
+    this.perspective.position.copy(this.followed).addScaledVector(from, distance);
+    this.orbit.update();
+  }
+
+  /** Go along with the payload. @param {Vector3} payload */
+  follow(payload) {
+    const middle = payload.clone();
+    middle.y += 0.35 * this.formation;
+    if (this.kind === 'follow') {
+      this.perspective.position.add(middle).sub(this.followed);
+      this.orbit.target.copy(middle);
+      this.orbit.update();
+    }
+    this.followed.copy(middle);
+  }
+
+  /** The flight from above fills the picture. @param {number} aspect */
+  frameAbove(aspect) {
+    const width = 1.1 * Math.abs(this.corners[0].x - this.corners[1].x);
+    const depth = 1.1 * Math.abs(this.corners[0].z - this.corners[4].z);
+    const half = Math.max(depth, width / aspect) / 2 + 0.5;
+    Object.assign(this.above, { left: -half * aspect, right: half * aspect, top: half, bottom: -half });
+    this.above.updateProjectionMatrix();
+  }
+
+  dispose() {
+    this.orbit.dispose();
+    this.pan.dispose();
+  }
+}

@@ -1,0 +1,61 @@
+/** The key of the scene, whose parts can be switched, and the choice of the camera. */
+
+import { h } from '../dom.js';
+import { gradient } from './palette.js';
+
+const NARROW = 560; // CSS pixels: in a scene narrower than this, the key is closed at first
+
+/**
+ * A part of the scene.
+ * @typedef {{name: string, colour: string, look: 'area'|'glass'|'wire'|'line'|'thin'|'dashed', shown: boolean, show: ((shown: boolean) => void)|null}} Part
+ */
+/** @typedef {{name: string, from: string, to: string, scale: (share: number) => import('three').Color, low: number, high: number}} Scale */
+
+export class Panel {
+  /**
+   * @param {HTMLElement} parent
+   * @param {Part[]} parts
+   * @param {Scale[]} scales
+   * @param {import('./palette.js').Palette} palette
+   * @param {(kind: 'free'|'follow'|'top') => void} onCamera
+   */
+  constructor(parent, parts, scales, palette, onCamera) {
+    this.onCamera = onCamera;
+    const views = /** @type {const} */ ([['free', 'overview'], ['follow', 'follow'], ['top', 'top']]);
+    this.buttons = views.map(([kind, name]) =>
+      h('button', { type: 'button', 'aria-pressed': 'false', 'data-camera': kind, onclick: () => onCamera(kind) }, name));
+    this.cameras = h('div.scene-cameras', { role: 'group', 'aria-label': 'camera' }, ...this.buttons);
+    this.key = h('details.scene-key', { open: parent.clientWidth >= NARROW },
+      h('summary', {}, 'Key'),
+      h('div', {}, ...parts.map(row), ...scales.map((scale) => legend(scale, palette))));
+    parent.append(this.cameras, this.key);
+  }
+
+  /** @param {'free'|'follow'|'top'} kind */
+  choose(kind) {
+    for (const button of this.buttons) button.setAttribute('aria-pressed', String(button.dataset.camera === kind));
+  }
+
+  dispose() {
+    this.cameras.remove();
+    this.key.remove();
+  }
+}
+
+/** @param {Part} part */
+function row({ name, colour, look, shown, show }) {
+  const swatch = h(`span.scene-swatch.${look}`);
+  swatch.style.setProperty('--colour', `var(--${colour})`);
+  if (!show) return h('div.scene-row', {}, h('span.scene-no-box'), swatch, name);
+  const box = h('input', { type: 'checkbox', checked: shown, onchange: () => show(box.checked) });
+  return h('label.scene-row', {}, box, swatch, name);
+}
+
+/** @param {Scale} scale @param {import('./palette.js').Palette} palette */
+function legend({ name, from, to, scale, low, high }, palette) {
+  const bar = h('div.scene-bar');
+  palette.onChange(() => {
+    bar.style.background = gradient(scale, low, high);
+  });
+  return h('div.scene-legend', {}, name, bar, h('div.scene-ends', {}, h('span', {}, from), h('span', {}, to)));
+}
