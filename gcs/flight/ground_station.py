@@ -32,7 +32,7 @@ from idc_controller.control.controller import Decision
 from idc_controller.estimation.measurements import Attitude, Position
 from idc_controller.perception.obstacle_map import ObstacleMap
 
-GROUND_SYSTEM = 255
+GROUND_SYSTEM = px4.GROUND_SYSTEM
 GROUND_COMPONENT = mavlink.MAV_COMP_ID_MISSIONPLANNER
 _HEARTBEAT = packed(
     mavlink.MAVLink_heartbeat_message(

@@ -15,6 +15,9 @@ PAYLOAD_UNIT_SYSTEM = 100
 #: Not an autopilot's, which would make it a vehicle; MAVLink's for a device without parameters.
 PAYLOAD_UNIT_COMPONENT: int = mavlink.MAV_COMP_ID_PERIPHERAL
 
+#: The ground station's system id.
+GROUND_SYSTEM = 255
+
 #: ``param2`` of MAV_CMD_COMPONENT_ARM_DISARM that overrides the checks.
 FORCE_ARM_DISARM = 21196.0
 

@@ -1,1 +1,1 @@
-"""Views of a run: the report page."""
+"""Views of missions and runs; nothing that flies imports this package."""

@@ -52,7 +52,7 @@ ALLOWED = {
         "idc_controller.guidance idc_controller.model idc_controller.paper idc_controller.safety "
         "idc_controller.trajectory"
     ),
-    "gcs.view": "gcs.mission gcs.record idc_controller.geometry",
+    "gcs.view": "gcs.mavlink gcs.mission gcs.record idc_controller.geometry",
     "idc_controller.control": (
         "idc_controller.estimation idc_controller.guidance idc_controller.model idc_controller.qp "
         "idc_controller.safety idc_controller.trajectory"

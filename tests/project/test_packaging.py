@@ -20,7 +20,8 @@ PROJECT = PYPROJECT["project"]
 
 EXTRAS = PROJECT["optional-dependencies"]
 REQUIRED = [*PROJECT["dependencies"], *EXTRAS["cluster"], *EXTRAS["parquet"], *EXTRAS["suites"]]
-DECLARED = [*REQUIRED, *EXTRAS["dev"][1:]]
+DECLARED = [*REQUIRED, *EXTRAS["ulog"], *EXTRAS["dev"][1:]]
+"""With tools that read what is exported, which no package imports."""
 
 
 def normal(name):
@@ -101,8 +102,8 @@ def test_all_packages_are_installed():
 
 
 def test_development_has_all_extras():
-    assert EXTRAS["dev"][0] == "cooplift[cluster,parquet,suites]"
-    assert EXTRAS.keys() == {"cluster", "dev", "parquet", "suites"}
+    assert EXTRAS["dev"][0] == "cooplift[cluster,parquet,suites,ulog]"
+    assert EXTRAS.keys() == {"cluster", "dev", "parquet", "suites", "ulog"}
 
 
 @pytest.mark.parametrize(
