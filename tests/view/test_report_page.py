@@ -308,7 +308,7 @@ def test_bundle_is_that_of_the_sources():
     """``make page`` makes it anew."""
     view = Path(page_module.__file__).parent
     sources = sorted((path for path in (view / "page").rglob("*") if path.suffix in (".js", ".css")), key=str)
-    lock = Path(__file__).parent / "packaging" / "page" / "package-lock.json"
+    lock = Path(__file__).parents[1] / "packaging" / "page" / "package-lock.json"
     content = b"".join(path.read_bytes() for path in (*sources, lock))
     bundle = (view / "page.bundle.js").read_text(encoding="utf-8")
     assert bundle.startswith(f"/* sources sha256 {hashlib.sha256(content).hexdigest()}\n")
